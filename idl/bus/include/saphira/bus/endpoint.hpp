@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/bus/qos.hpp"
+
+namespace saphira::bus {
+
+/// Who wrote a sample: the writer's identity on the bus, unique for ever.
+using WriterId = std::array<std::uint8_t, 16>;
+/// The key of a keyed sample, at most 16 bytes; all zero for a type without key.
+using InstanceKey = std::array<std::uint64_t, 2>;
+
+struct SampleInfo {
+  WriterId writer{};
+  bool disposed = false;  ///< the instance was withdrawn; the data are those that came last
+};
+
+template <class T>
+struct Sample {
+  T data;
+  SampleInfo info;
+};
+
+/// What a transport needs to know of a type. One object a type, made by type_of<T>().
+struct TypeInfo {
+  const char* name;  ///< as on the wire, such as saphira::v1::Goal
+  bool keyed;
+  InstanceKey (*key)(const void* sample);
+  void* (*create)();
+  void (*copy)(const void* from, void* to);
+  void (*destroy)(void* sample);
+};
+
+/// The types of idl/ alone; defined in src/types.cpp.
+template <class T>
+const TypeInfo& type_of();
+
+/// A transport's side of a writer.
+class RawWriter {
+ public:
+  virtual ~RawWriter() = default;
+  /// False where the sample was not taken within the QoS's blocking time.
+  virtual bool write(const void* sample) = 0;
+  virtual bool dispose(const void* sample) = 0;
+  virtual bool wait_acknowledged(int timeout_ms) = 0;
+  virtual std::size_t matched() const = 0;
+};
+
+/// A transport's side of a reader. Samples wait in it until they are taken.
+class RawReader {
+ public:
+  virtual ~RawReader() = default;
+  /// Hands over each sample that has come, oldest first. A reference is good during the call only.
+  virtual void take(const std::function<void(const void* sample, const SampleInfo&)>& each) = 0;
+  /// Writers that were matched and are not any more, since the last call.
+  virtual std::vector<WriterId> take_lost() = 0;
+  virtual std::size_t matched() const = 0;
+};
+
+/// Writes a topic. Thread-compatible; writes are synchronous.
+template <class T>
+class Writer {
+ public:
+  explicit Writer(std::unique_ptr<RawWriter> raw) : raw_(std::move(raw)) {}
+  bool write(const T& sample) { return raw_->write(&sample); }
+  /// Withdraws the instance that has the sample's key.
+  bool dispose(const T& sample) { return raw_->dispose(&sample); }
+  /// Whether every matched reliable reader has what was written; waits for it.
+  bool wait_acknowledged(int timeout_ms) { return raw_->wait_acknowledged(timeout_ms); }
+  std::size_t matched() const { return raw_->matched(); }
+
+ private:
+  std::unique_ptr<RawWriter> raw_;
+};
+
+/// Reads a topic. To be used by the thread that waits on the node.
+template <class T>
+class Reader {
+ public:
+  explicit Reader(std::unique_ptr<RawReader> raw) : raw_(std::move(raw)) {}
+
+  /// Everything that has come since the last call, oldest first.
+  std::vector<Sample<T>> take() {
+    std::vector<Sample<T>> samples;
+    raw_->take([&](const void* sample, const SampleInfo& info) {
+      samples.push_back({*static_cast<const T*>(sample), info});
+    });
+    return samples;
+  }
+
+  /// The newest live sample that has come since the last call; drops the others.
+  std::optional<T> take_newest() {
+    std::optional<T> newest;
+    raw_->take([&](const void* sample, const SampleInfo& info) {
+      if (!info.disposed)
+        newest = *static_cast<const T*>(sample);
+    });
+    return newest;
+  }
+
+  std::vector<WriterId> take_lost() { return raw_->take_lost(); }
+  std::size_t matched() const { return raw_->matched(); }
+
+ private:
+  std::unique_ptr<RawReader> raw_;
+};
+
+}  // namespace saphira::bus

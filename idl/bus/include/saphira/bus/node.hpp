@@ -1,0 +1,99 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "saphira/bus/endpoint.hpp"
+#include "saphira/bus/stop.hpp"
+#include "saphira/bus/topics.hpp"
+
+namespace saphira::bus {
+
+/// The network in one word.
+enum class Profile {
+  host,  ///< this machine alone: loopback only
+  lan,   ///< multicast discovery on every interface, or the one that is named
+  wan,   ///< no multicast: the listed peers only (one side having the other is enough)
+};
+
+struct NodeOptions {
+  std::string name;               ///< of the program on the bus, such as behaviors
+  std::string robot = "pioneer";  ///< the partition; "*" to read every robot
+  std::uint32_t domain = 0;       ///< DDS domain [0, 232]
+  Profile profile = Profile::host;
+  std::vector<std::string> peers;  ///< wan: addresses of the other machines
+  std::string interface;           ///< lan, wan: address of the one interface to use; empty: all
+  bool lockstep = false;           ///< cyclic topics lose nothing and steps wait for their inputs
+};
+
+/// The in-memory bus: nodes that are given the same one hear each other, without DDS, sockets or
+/// threads; delivery is immediate and in order. For tests.
+class MemoryBus;
+std::shared_ptr<MemoryBus> make_memory_bus();
+
+/// What a node counts and tells about itself.
+struct NodeHealth {
+  std::uint32_t incompatible = 0;  ///< endpoints that did not match for their QoS or their type
+  std::string incompatible_text;   ///< the newest of them in words: topic, policy, who
+};
+
+/// One program on the bus (a DDS participant). Makes endpoints, wakes its one thread when something
+/// has come, publishes its status and its log.
+///
+/// Listeners only signal: samples stay in the readers until the node's thread takes them.
+class Node {
+ public:
+  /// Throws std::runtime_error that names the cause (domain, interface, peers).
+  explicit Node(NodeOptions options);
+  Node(NodeOptions options, std::shared_ptr<MemoryBus> memory);
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  template <class T>
+  Writer<T> writer(const Topic<T>& topic) {
+    return Writer<T>(make_writer(topic.name, topic.qos, type_of<T>()));
+  }
+  template <class T>
+  Reader<T> reader(const Topic<T>& topic) {
+    return Reader<T>(make_reader(topic.name, topic.qos, type_of<T>()));
+  }
+
+  /// Readable (poll, select) when a reader of this node has got something or a match has changed.
+  int wake_fd() const;
+  /// Makes wake_fd unreadable again. Call before taking from the readers.
+  void clear_wake();
+  /// Waits for wake_fd, stop or the timeout; clears the wake. False when the time ran out.
+  bool wait(std::chrono::milliseconds timeout, const Stop* stop = nullptr);
+
+  const NodeOptions& options() const;
+  /// Random, one a process start: ServiceStatus.instance, and the writer part of goal ids.
+  std::uint64_t instance() const;
+  NodeHealth health() const;
+
+  /// The status that is published; the program sets what it knows, the node adds identity, health,
+  /// age, CPU and memory.
+  v1::ServiceStatus& status();
+  /// Publishes the status when a second of the wall clock has passed since the last time, or its
+  /// state or reason has changed. Call at least twice a second from the node's thread: a thread
+  /// that hangs shows by its age.
+  void publish_status();
+
+  /// Writes to the program's log (stderr, by spdlog) and to system/log.
+  void log(v1::LogLevel level, const std::string& text);
+  void info(const std::string& text) { log(v1::LOG_INFO, text); }
+  void warn(const std::string& text) { log(v1::LOG_WARNING, text); }
+  void error(const std::string& text) { log(v1::LOG_ERROR, text); }
+
+ private:
+  std::unique_ptr<RawWriter> make_writer(const char* topic, Qos qos, const TypeInfo& type);
+  std::unique_ptr<RawReader> make_reader(const char* topic, Qos qos, const TypeInfo& type);
+
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace saphira::bus

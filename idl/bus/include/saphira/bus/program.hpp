@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "saphira/bus/node.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace saphira::bus {
+
+/// Exit codes of every program.
+enum Exit : int {
+  kExitOk = 0,
+  kExitFailed = 1,  ///< did what was asked, and the outcome is a failure (goal not reached)
+  kExitUsage = 2,   ///< an option or a file that a person wrote is wrong; stderr says where
+  kExitBroken = 3,  ///< could not run: no bus, no memory, our own bug
+};
+
+/// The main() of a service: parses the options that every program has (--robot, --domain,
+/// --profile, --peer, --interface, --lockstep, --name, --log-level; defaults from SAPHIRA_ROBOT,
+/// SAPHIRA_DOMAIN, SAPHIRA_PROFILE, SAPHIRA_PEERS, SAPHIRA_INTERFACE) and those that `add_options`
+/// adds, sets up logging and signals, runs `body`, and turns exceptions into a message and an exit
+/// code.
+int run_program(int argc, char** argv, const std::string& name, const std::string& description,
+                const std::function<void(CLI::App&)>& add_options,
+                const std::function<int(const NodeOptions&, const Stop&)>& body);
+
+/// The options that every program has, for a program with its own command line.
+void add_node_options(CLI::App& app, NodeOptions& options);
+
+}  // namespace saphira::bus

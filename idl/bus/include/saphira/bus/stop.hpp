@@ -1,0 +1,25 @@
+#pragma once
+
+namespace saphira::bus {
+
+/// Ends a program's loops: by request() from any thread, or by SIGINT and SIGTERM after
+/// stop_on_signals().
+class Stop {
+ public:
+  Stop();
+  ~Stop();
+  Stop(const Stop&) = delete;
+  Stop& operator=(const Stop&) = delete;
+
+  void request();
+  bool requested() const;
+  int fd() const { return fd_; }  ///< readable from the request on
+
+ private:
+  int fd_;
+};
+
+/// SIGINT and SIGTERM request this stop. One a process.
+void stop_on_signals(Stop& stop);
+
+}  // namespace saphira::bus

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "behavior.h"
+#include "intention.h"
+#include "motion.h"
+#include "robot.h"
+#include "saphira/bus/qos.hpp"
+#include "system.h"
+
+namespace saphira::bus {
+
+/// A topic: its name, its type and the name of its QoS. Writer, rate and meaning are with the type
+/// in idl/*.idl.
+template <class T>
+struct Topic {
+  const char* name;
+  Qos qos;
+};
+
+namespace topics {
+
+inline constexpr Topic<v1::RobotState> kRobotState{"robot/state", Qos::cyclic};
+inline constexpr Topic<v1::RobotDescription> kRobotDescription{"robot/description", Qos::latched};
+inline constexpr Topic<v1::DeviceCommand> kDevice{"robot/device", Qos::command};
+inline constexpr Topic<v1::MotorCommand> kDriveEstop{"drive/estop", Qos::motion};
+inline constexpr Topic<v1::MotorCommand> kDriveTeleop{"drive/teleop", Qos::motion};
+inline constexpr Topic<v1::MotorCommand> kDriveDirect{"drive/direct", Qos::motion};
+inline constexpr Topic<v1::MotorCommand> kDriveBehaviors{"drive/behaviors", Qos::motion};
+inline constexpr Topic<v1::Grant> kGrant{"drive/grant", Qos::cyclic};
+inline constexpr Topic<v1::StepPermit> kStepPermit{"lockstep/permit", Qos::latched};
+inline constexpr Topic<v1::Behaviors> kBehaviors{"behaviors/state", Qos::cyclic};
+inline constexpr Topic<v1::Intentions> kIntentions{"intentions", Qos::cyclic};
+inline constexpr Topic<v1::Goal> kGoals{"goals", Qos::goal};
+inline constexpr Topic<v1::GoalStatus> kGoalStatus{"goals/status", Qos::latched};
+inline constexpr Topic<v1::ServiceStatus> kStatus{"system/status", Qos::status};
+inline constexpr Topic<v1::LogRecord> kLog{"system/log", Qos::event};
+
+}  // namespace topics
+
+}  // namespace saphira::bus

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira {
+
+/// A mistake in a file that a person wrote. what() reads as compilers print it, with the line and
+/// a caret under the place:
+///
+///     office.wld:12:7: expected a number (x of the end point), found "abc"
+///         0 0 abc 30000
+///             ^
+class FileError : public std::runtime_error {
+ public:
+  /// line and column count from 1; line_text is the offending line, without its line break.
+  FileError(std::string file, int line, int column, const std::string& message,
+            std::string_view line_text = {});
+
+  const std::string& file() const { return file_; }
+  int line() const { return line_; }
+  int column() const { return column_; }
+
+ private:
+  std::string file_;
+  int line_;
+  int column_;
+};
+
+/// A word of a line, with where it stands.
+struct Word {
+  std::string_view text;
+  int column = 1;  ///< from 1
+};
+
+/// One line of a file of words (the Saphira parameter, world and map files): words are separated by
+/// blanks, a semicolon starts a comment. Views into the text that was split.
+struct Line {
+  std::string_view text;
+  int number = 1;  ///< from 1
+  std::vector<Word> words;
+};
+
+/// The lines of a text that have words on them; empty lines and comments are left out.
+std::vector<Line> split_lines(std::string_view text);
+
+/// Reads the words of one line in order and says what was expected where one is wrong.
+class LineReader {
+ public:
+  LineReader(std::string file, const Line& line) : file_(std::move(file)), line_(&line) {}
+
+  bool at_end() const { return next_ >= line_->words.size(); }
+  /// The next word, or FileError "expected <what>".
+  std::string_view word(std::string_view what);
+  /// The next word as a finite number within [low, high], or FileError.
+  double number(std::string_view what, double low = -1e12, double high = 1e12);
+  /// The next word as a whole number within [low, high], or FileError.
+  long integer(std::string_view what, long low, long high);
+  /// FileError unless every word has been read.
+  void expect_end() const;
+  /// A FileError at the word read last (or at the end of the line where there is none).
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  [[noreturn]] void fail_at(int column, const std::string& message) const;
+
+  std::string file_;
+  const Line* line_;
+  std::size_t next_ = 0;
+};
+
+/// The whole content of a file; std::runtime_error that names it where it cannot be read.
+std::string read_file(const std::string& path);
+
+}  // namespace saphira

@@ -1,0 +1,126 @@
+#include "saphira/base/text.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace saphira {
+
+namespace {
+
+std::string describe(const std::string& file, int line, int column, const std::string& message,
+                     std::string_view line_text) {
+  std::string out =
+      file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message;
+  if (!line_text.empty()) {
+    out += "\n    " + std::string(line_text) + "\n    ";
+    // Tabs are kept so that the caret stands under the place whatever their width.
+    for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(column); ++i)
+      out += i < line_text.size() && line_text[i] == '\t' ? '\t' : ' ';
+    out += '^';
+  }
+  return out;
+}
+
+bool blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+}  // namespace
+
+FileError::FileError(std::string file, int line, int column, const std::string& message,
+                     std::string_view line_text)
+    : std::runtime_error(describe(file, line, column, message, line_text)),
+      file_(std::move(file)),
+      line_(line),
+      column_(column) {}
+
+std::vector<Line> split_lines(std::string_view text) {
+  std::vector<Line> lines;
+  int number = 0;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    Line line{text.substr(0, end), ++number, {}};
+    text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+    if (!line.text.empty() && line.text.back() == '\r')
+      line.text.remove_suffix(1);
+    const std::string_view code = line.text.substr(0, line.text.find(';'));
+    std::size_t at = 0;
+    while (true) {
+      while (at < code.size() && blank(code[at]))
+        ++at;
+      if (at == code.size())
+        break;
+      const std::size_t begin = at;
+      while (at < code.size() && !blank(code[at]))
+        ++at;
+      line.words.push_back({code.substr(begin, at - begin), static_cast<int>(begin) + 1});
+    }
+    if (!line.words.empty())
+      lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string_view LineReader::word(std::string_view what) {
+  if (at_end()) {
+    const Word& last = line_->words.back();
+    fail_at(last.column + static_cast<int>(last.text.size()),
+            "expected " + std::string(what) + ", found the end of the line");
+  }
+  return line_->words[next_++].text;
+}
+
+double LineReader::number(std::string_view what, double low, double high) {
+  const std::string_view text = word(what);
+  double value = 0.0;
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    fail("expected a number (" + std::string(what) + "), found \"" + std::string(text) + "\"");
+  if (value < low || value > high) {
+    std::ostringstream range;
+    range << "expected " << what << " between " << low << " and " << high << ", found " << text;
+    fail(range.str());
+  }
+  return value;
+}
+
+long LineReader::integer(std::string_view what, long low, long high) {
+  const double value =
+      number(what, static_cast<double>(low), static_cast<double>(high));
+  if (value != std::floor(value))
+    fail("expected a whole number (" + std::string(what) + ")");
+  return static_cast<long>(value);
+}
+
+void LineReader::expect_end() const {
+  if (!at_end()) {
+    const Word& extra = line_->words[next_];
+    fail_at(extra.column,
+            "expected the end of the line, found \"" + std::string(extra.text) + "\"");
+  }
+}
+
+void LineReader::fail(const std::string& message) const {
+  const std::size_t at = next_ == 0 ? 0 : next_ - 1;
+  fail_at(line_->words[at].column, message);
+}
+
+void LineReader::fail_at(int column, const std::string& message) const {
+  throw FileError(file_, line_->number, column, message, line_->text);
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in)
+    throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad() || text.fail())
+    throw std::runtime_error(path + ": cannot be read (is it a file?)");
+  return text.str();
+}
+
+}  // namespace saphira

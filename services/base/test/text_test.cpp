@@ -1,0 +1,64 @@
+#include "saphira/base/text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira {
+namespace {
+
+TEST(Text, SplitsWordsAndDropsComments) {
+  const auto lines = split_lines("; head\n\n  width 38000 ; mm\r\n\tpop\n");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].number, 3);
+  ASSERT_EQ(lines[0].words.size(), 2U);
+  EXPECT_EQ(lines[0].words[1].text, "38000");
+  EXPECT_EQ(lines[0].words[1].column, 9);
+  EXPECT_EQ(lines[1].words[0].column, 2);
+}
+
+TEST(Text, ErrorNamesThePlaceAndWhatWasExpected) {
+  const auto lines = split_lines("0 0 abc 3");
+  LineReader reader("a.wld", lines[0]);
+  reader.number("x");
+  reader.number("y");
+  try {
+    reader.number("x of the end point");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.line(), 1);
+    EXPECT_EQ(error.column(), 5);
+    EXPECT_STREQ(error.what(),
+                 "a.wld:1:5: expected a number (x of the end point), found \"abc\"\n"
+                 "    0 0 abc 3\n"
+                 "        ^");
+  }
+}
+
+TEST(Text, MissingAndSurplusWordsAreErrors) {
+  const auto lines = split_lines("push 1 2\npop 3\nn 2.5\nn 1e999\nn nan\nn 7");
+  LineReader push("f", lines[0]);
+  push.word("a directive");
+  push.number("x");
+  push.number("y");
+  EXPECT_THROW(push.number("theta"), FileError);
+  LineReader pop("f", lines[1]);
+  pop.word("a directive");
+  EXPECT_THROW(pop.expect_end(), FileError);
+  for (const std::size_t i : {2U, 3U, 4U, 5U}) {
+    LineReader reader("f", lines[i]);
+    reader.word("a name");
+    EXPECT_THROW(reader.integer("count", 0, 5), FileError) << i;
+  }
+}
+
+TEST(Text, UnreadableFileIsNamed) {
+  try {
+    read_file("/nonexistent/file.wld");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/nonexistent/file.wld"), std::string::npos);
+  }
+  EXPECT_THROW(read_file("/"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace saphira

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+
+namespace saphira {
+
+/// A position or displacement [m], x forward, y left (REP 103).
+using Vec2 = Eigen::Vector2d;
+
+inline constexpr double kPi = std::numbers::pi;
+
+inline constexpr double radians(double degrees) { return degrees * kPi / 180.0; }
+inline constexpr double degrees(double radians) { return radians * 180.0 / kPi; }
+
+/// The same angle in [0, 2 pi). sfNormAngle of manual 6.6.3.1.
+inline double norm_angle(double angle) {
+  const double turned = angle - 2.0 * kPi * std::floor(angle / (2.0 * kPi));
+  return turned >= 2.0 * kPi ? 0.0 : turned;
+}
+
+/// The same angle in (-pi, pi]. sfNorm2Angle of manual 6.6.3.1.
+inline double norm2_angle(double angle) {
+  const double turned = norm_angle(angle);
+  return turned > kPi ? turned - 2.0 * kPi : turned;
+}
+
+/// The angle's line in [-pi/2, pi/2], mirrored at the X axis' normal: +100 degrees becomes +80.
+/// sfNorm3Angle of manual 6.6.3.1.
+inline double norm3_angle(double angle) {
+  const double a = norm2_angle(angle);
+  if (a > kPi / 2)
+    return kPi - a;
+  if (a < -kPi / 2)
+    return -kPi - a;
+  return a;
+}
+
+/// A directed point in a plane: position [m] and heading [rad, counter-clockwise]. Also the
+/// transform from the frame that it stands for (`robot` in `pose_in_odom`) to the one it is in.
+struct Pose {
+  double x = 0.0;
+  double y = 0.0;
+  double th = 0.0;
+
+  Vec2 position() const { return {x, y}; }
+  /// The unit vector along the heading.
+  Vec2 direction() const { return {std::cos(th), std::sin(th)}; }
+
+  bool operator==(const Pose&) const = default;
+};
+
+/// A pose given in the frame of `frame`, expressed where `frame` is expressed. The heading is
+/// normalized to (-pi, pi].
+inline Pose compose(const Pose& frame, const Pose& inside) {
+  const double c = std::cos(frame.th);
+  const double s = std::sin(frame.th);
+  return {frame.x + c * inside.x - s * inside.y, frame.y + s * inside.x + c * inside.y,
+          norm2_angle(frame.th + inside.th)};
+}
+
+/// The inverse of compose: `pose` seen from `frame`. Manual 6.6.3.1, sfChangeVP.
+inline Pose relative(const Pose& frame, const Pose& pose) {
+  const double c = std::cos(frame.th);
+  const double s = std::sin(frame.th);
+  const double dx = pose.x - frame.x;
+  const double dy = pose.y - frame.y;
+  return {c * dx + s * dy, -s * dx + c * dy, norm2_angle(pose.th - frame.th)};
+}
+
+inline Vec2 transform(const Pose& frame, const Vec2& inside) {
+  const double c = std::cos(frame.th);
+  const double s = std::sin(frame.th);
+  return {frame.x + c * inside.x() - s * inside.y(), frame.y + s * inside.x() + c * inside.y()};
+}
+
+}  // namespace saphira
