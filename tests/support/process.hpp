@@ -1,0 +1,67 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the tests that run whole programs share: processes, temporary folders, waiting.
+namespace saphira::test {
+
+/// Calls `condition` until it is true or the time is up; what it returned last. The limit is there
+/// for broken runs, so be generous.
+bool wait_until(const std::function<bool()>& condition,
+                std::chrono::milliseconds limit = std::chrono::seconds(30));
+
+/// A folder that goes with the object.
+class TempDir {
+ public:
+  TempDir();
+  ~TempDir();
+  TempDir(const TempDir&) = delete;
+  TempDir& operator=(const TempDir&) = delete;
+  std::string path(const std::string& name = {}) const;
+
+ private:
+  std::string path_;
+};
+
+/// A child process; killed with its object. Its output (both streams) goes to a file.
+class Process {
+ public:
+  /// argv[0] without a slash is one of the project's programs. `environment` adds to our own.
+  Process(std::vector<std::string> argv, std::string output_file,
+          const std::map<std::string, std::string>& environment = {});
+  ~Process();
+  Process(Process&& other) noexcept;
+  Process& operator=(Process&&) = delete;
+  Process(const Process&) = delete;
+
+  pid_t pid() const { return pid_; }
+  void signal(int number) const;
+  bool running();
+  /// The exit code (128 + number after a signal), or nothing when it still runs.
+  std::optional<int> wait(std::chrono::milliseconds limit = std::chrono::seconds(60));
+  /// What it has printed so far.
+  std::string output() const;
+
+ private:
+  pid_t pid_ = -1;
+  std::optional<int> status_;
+  std::string output_file_;
+};
+
+/// A program of this build, such as saphira-bridge; a file of the source tree, such as
+/// config/robots.
+std::string program(const std::string& name);
+std::string source(const std::string& path);
+/// The DDS domain that this test may use.
+std::string domain();
+/// A robot (partition) of this test alone.
+std::string unique_robot();
+
+}  // namespace saphira::test
