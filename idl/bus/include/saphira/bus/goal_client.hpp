@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus {
+
+/// An agent's side of goals: asks for them, changes and cancels them, and follows what becomes of
+/// them. For the node's own thread.
+///
+///   Node node(options);
+///   GoalClient goals(node, "my agent");
+///   v1::Goal goal;
+///   goal.functor("go_to");
+///   goal.arguments({point("position", 3.0, 1.0, 0.0, v1::FRAME_ODOM)});
+///   const v1::GoalId id = goals.ask(goal);
+///   while (...) { node.wait(500ms); goals.poll(); auto status = goals.status(id); ... }
+///
+/// The goals live with the client: when it is destroyed without cancel, or its process dies, each
+/// goal's writer_lost says what becomes of it.
+class GoalClient {
+ public:
+  /// requester: who asks, for people.
+  GoalClient(Node& node, std::string requester);
+
+  /// Asks for a goal; fills in its id and, where it names none, its requester.
+  /// std::runtime_error where the bus did not take it.
+  v1::GoalId ask(v1::Goal goal);
+  /// Asks for something else under the id of a goal that this client asked for.
+  void change(const v1::GoalId& id, v1::Goal goal);
+  /// Withdraws a goal: also one of another client, by its id.
+  void cancel(const v1::GoalId& id);
+
+  /// Takes in what has come on goals/status. Call after each Node::wait.
+  void poll();
+  /// What is known of a goal, by anybody; nothing before its first status.
+  std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
+  /// Every goal that is known, by id.
+  std::vector<v1::GoalStatus> statuses() const;
+
+  /// Waits until everything that was asked, changed and canceled has reached a reader of goals.
+  /// That it is understood is said by its status.
+  bool delivered(int timeout_ms);
+
+ private:
+  using Key = std::pair<std::uint64_t, std::uint64_t>;
+
+  Node& node_;
+  std::string requester_;
+  Writer<v1::Goal> writer_;
+  Reader<v1::GoalStatus> reader_;
+  std::map<Key, v1::GoalStatus> known_;
+  std::map<Key, bool> own_;  ///< ids that this client asked for: kept after their withdrawal
+};
+
+v1::Argument number(const std::string& name, double value);
+v1::Argument text(const std::string& name, const std::string& value);
+/// x, y [m], th [rad], in the frame.
+v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame);
+
+/// Whether a goal in this state has come to its end.
+bool ended(v1::GoalState state);
+/// The state in a word, such as "underway".
+std::string describe(v1::GoalState state);
+/// "1f3a...:2" : the id as people type it. parse_goal_id reads it; nothing where it is not one.
+std::string describe(const v1::GoalId& id);
+std::optional<v1::GoalId> parse_goal_id(const std::string& text);
+/// One line: state, step, progress, reason.
+std::string describe(const v1::GoalStatus& status);
+
+}  // namespace saphira::bus

@@ -1,0 +1,199 @@
+#include "saphira/bus/goal_client.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+
+namespace saphira::bus {
+namespace {
+
+std::pair<std::uint64_t, std::uint64_t> key_of(const v1::GoalId& id) {
+  return {id.writer(), id.number()};
+}
+
+/// Counts the goals of the process, so that two clients on one node never make the same id.
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> number{0};
+  return ++number;
+}
+
+}  // namespace
+
+GoalClient::GoalClient(Node& node, std::string requester)
+    : node_(node),
+      requester_(std::move(requester)),
+      writer_(node.writer(topics::kGoals)),
+      reader_(node.reader(topics::kGoalStatus)) {}
+
+v1::GoalId GoalClient::ask(v1::Goal goal) {
+  v1::GoalId id;
+  id.writer(node_.instance());
+  id.number(next_number());
+  own_[key_of(id)] = true;
+  change(id, std::move(goal));
+  return id;
+}
+
+void GoalClient::change(const v1::GoalId& id, v1::Goal goal) {
+  goal.id(id);
+  if (goal.requester().empty())
+    goal.requester(requester_);
+  if (!writer_.write(goal))
+    throw std::runtime_error("the bus did not take goal " + describe(id));
+}
+
+void GoalClient::cancel(const v1::GoalId& id) {
+  v1::Goal goal;
+  goal.id(id);
+  if (!writer_.dispose(goal))
+    throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
+}
+
+void GoalClient::poll() {
+  for (const auto& sample : reader_.take()) {
+    const Key key = key_of(sample.data.id());
+    if (!sample.info.disposed)
+      known_[key] = sample.data;
+    else if (!own_.contains(key))
+      known_.erase(key);
+  }
+}
+
+std::optional<v1::GoalStatus> GoalClient::status(const v1::GoalId& id) const {
+  const auto found = known_.find(key_of(id));
+  if (found == known_.end())
+    return std::nullopt;
+  return found->second;
+}
+
+std::vector<v1::GoalStatus> GoalClient::statuses() const {
+  std::vector<v1::GoalStatus> all;
+  all.reserve(known_.size());
+  for (const auto& [key, status] : known_)
+    all.push_back(status);
+  return all;
+}
+
+bool GoalClient::delivered(int timeout_ms) {
+  using Clock = std::chrono::steady_clock;
+  const auto limit = Clock::now() + std::chrono::milliseconds(timeout_ms);
+  const auto left = [&] {
+    const auto rest = std::chrono::duration_cast<std::chrono::milliseconds>(limit - Clock::now());
+    return std::max(rest, std::chrono::milliseconds(0));
+  };
+  while (writer_.matched() == 0) {
+    if (left().count() == 0)
+      return false;
+    node_.wait(std::min(left(), std::chrono::milliseconds(50)));
+  }
+  return writer_.wait_acknowledged(static_cast<int>(left().count()));
+}
+
+v1::Argument number(const std::string& name, double value) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_NUMBER);
+  argument.number(value);
+  return argument;
+}
+
+v1::Argument text(const std::string& name, const std::string& value) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_TEXT);
+  argument.text(value);
+  return argument;
+}
+
+v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_POINT);
+  argument.point().x(x);
+  argument.point().y(y);
+  argument.point().th(th);
+  argument.frame(frame);
+  return argument;
+}
+
+bool ended(v1::GoalState state) {
+  switch (state) {
+    case v1::GOAL_WAITING:
+    case v1::GOAL_UNDERWAY:
+    case v1::GOAL_SUSPENDED:
+      return false;
+    case v1::GOAL_REFUSED:
+    case v1::GOAL_SUCCEEDED:
+    case v1::GOAL_FAILED:
+    case v1::GOAL_CANCELED:
+      return true;
+  }
+  return false;
+}
+
+std::string describe(v1::GoalState state) {
+  switch (state) {
+    case v1::GOAL_WAITING:
+      return "waiting";
+    case v1::GOAL_REFUSED:
+      return "refused";
+    case v1::GOAL_UNDERWAY:
+      return "underway";
+    case v1::GOAL_SUSPENDED:
+      return "suspended";
+    case v1::GOAL_SUCCEEDED:
+      return "succeeded";
+    case v1::GOAL_FAILED:
+      return "failed";
+    case v1::GOAL_CANCELED:
+      return "canceled";
+  }
+  return "unknown";
+}
+
+std::string describe(const v1::GoalId& id) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%llx:%llu", static_cast<unsigned long long>(id.writer()),
+                static_cast<unsigned long long>(id.number()));
+  return text;
+}
+
+std::optional<v1::GoalId> parse_goal_id(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    return std::nullopt;
+  const char* const begin = text.data();
+  const char* const middle = begin + colon;
+  const char* const end = begin + text.size();
+  std::uint64_t writer = 0;
+  std::uint64_t count = 0;
+  const auto first = std::from_chars(begin, middle, writer, 16);
+  const auto second = std::from_chars(middle + 1, end, count, 10);
+  if (first.ec != std::errc() || first.ptr != middle || second.ec != std::errc() ||
+      second.ptr != end)
+    return std::nullopt;
+  v1::GoalId id;
+  id.writer(writer);
+  id.number(count);
+  return id;
+}
+
+std::string describe(const v1::GoalStatus& status) {
+  std::string line = describe(status.state());
+  if (!ended(status.state()) && !status.step().empty())
+    line += ": " + status.step();
+  if (status.state() == v1::GOAL_UNDERWAY) {
+    char percent[16];
+    std::snprintf(percent, sizeof percent, " (%.0f %%)", 100.0 * status.progress());
+    line += percent;
+  }
+  if (!status.reason().empty())
+    line += (ended(status.state()) ? ": " : " [") + status.reason() +
+            (ended(status.state()) ? "" : "]");
+  return line;
+}
+
+}  // namespace saphira::bus
