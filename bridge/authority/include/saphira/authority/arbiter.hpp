@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace saphira::authority {
+
+/// Who may drive, strongest first.
+enum class Role { none, estop, teleop, direct, behaviors };
+inline constexpr std::array kRoles{Role::estop, Role::teleop, Role::direct, Role::behaviors};
+
+const char* name(Role role);
+/// A person's role: when it ends, autonomy waits for the quiet time.
+inline bool is_person(Role role) {
+  return role == Role::estop || role == Role::teleop;
+}
+
+using WriterId = std::array<std::uint8_t, 16>;
+
+/// What arbitration looks at of a motor command. Times are seconds of the caller's clock: the
+/// steady clock live, cycles x 0.1 s in lockstep.
+struct Command {
+  Role role = Role::none;
+  WriterId writer{};
+  std::string source;        ///< who drives, for people
+  std::uint64_t epoch = 0;   ///< of the robot state that it answers
+  std::uint64_t cycle = 0;   ///< the same; 0 from a writer without cycles
+  std::uint64_t number = 0;  ///< counts the writer's commands
+  bool active = false;       ///< the dead-man: false releases
+  double received = 0.0;     ///< [s]
+};
+
+struct Settings {
+  double lease = 0.3;  ///< [s] a command drives for so long after it was received
+  double quiet = 2.0;  ///< [s] the robot stands still so long after a person's role ended
+  std::uint64_t intent_cycles = 3;  ///< a command that answers an older cycle than this is stale
+};
+
+struct Refusal {
+  Role role = Role::none;
+  std::string source;
+  std::string reason;
+  bool operator==(const Refusal&) const = default;
+};
+
+struct Grant {
+  Role role = Role::none;  ///< none: nobody drives, the robot is to be stopped
+  WriterId writer{};
+  std::string source;
+  std::string reason;        ///< why this one, or why nobody
+  double expires_in = 0.0;   ///< [s] until the lease of the newest command ends
+  double command_age = 0.0;  ///< [s] of the newest command
+
+  /// Whether the same one drives (a change means: stop first, then obey).
+  bool same_driver(const Grant& other) const {
+    return role == other.role && writer == other.writer;
+  }
+};
+
+/// Decides who drives the robot: the strongest role whose newest command is younger than its lease.
+/// It keeps what was offered and knows no clock. Refuses, with a reason: a repeated number, another
+/// epoch, an answer to an old cycle, a second writer in a role that is held.
+class Arbiter {
+ public:
+  explicit Arbiter(Settings settings = {}) : settings_(settings) {}
+
+  const Settings& settings() const { return settings_; }
+
+  /// A connection to a robot began (or ended: epoch 0). Nobody holds a grant from before.
+  void connect(std::uint64_t epoch);
+  /// The caller was deaf for a while (stopped, hung): nobody holds a grant from before. What is
+  /// received before `until`, or answers a cycle up to `cycle`, may have waited in a queue and is
+  /// refused.
+  void forget(std::uint64_t cycle, double until);
+
+  /// Takes a command as it comes, at robot cycle `cycle`. True when it was accepted: it is then the
+  /// newest of its role. (Accepted does not mean that it drives: see decide.)
+  bool offer(const Command& command, std::uint64_t cycle);
+  /// Refuses a command for a reason that the caller found (a value that is no number).
+  void refuse(Role role, const std::string& source, const std::string& reason);
+
+  /// Who drives now.
+  Grant decide(double now, std::uint64_t cycle);
+
+  /// Who was refused since the last call, each role, source and reason once; at most 16.
+  std::vector<Refusal> take_refused();
+  /// The number of refused commands since the start.
+  std::uint64_t refused_count() const { return refused_count_; }
+
+ private:
+  /// The one who plays a role, by its newest accepted command.
+  struct Player {
+    bool held = false;
+    Command newest;
+  };
+
+  const Player& player(Role role) const { return players_[static_cast<std::size_t>(role)]; }
+  Player& player(Role role) { return players_[static_cast<std::size_t>(role)]; }
+  bool live(const Player& p, double now, std::uint64_t cycle) const;
+  std::string why_not(const Player& p, double now, std::uint64_t cycle) const;
+
+  Settings settings_;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t deaf_cycle_ = 0;
+  double deaf_until_ = -1e300;
+  std::array<Player, 5> players_;
+  /// Newest number by role and writer. Kept over connections, so that an old command that is sent
+  /// again never drives.
+  std::map<std::pair<Role, WriterId>, std::uint64_t> numbers_;
+  Role person_ = Role::none;  ///< the person's role that drove when last decided
+  Role quiet_after_ = Role::none;
+  double quiet_until_ = -1e300;
+  double person_seen_ = -1e300;  ///< end of the person's newest lease
+  std::vector<Refusal> refused_;
+  std::uint64_t refused_count_ = 0;
+};
+
+}  // namespace saphira::authority

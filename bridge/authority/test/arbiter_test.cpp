@@ -1,0 +1,259 @@
+#include "saphira/authority/arbiter.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::authority {
+namespace {
+
+WriterId writer(int n) {
+  WriterId id{};
+  id[0] = static_cast<std::uint8_t>(n);
+  return id;
+}
+
+/// A connected arbiter with a clock and numbered writers.
+struct Scene {
+  Arbiter arbiter;
+  double now = 10.0;
+  std::uint64_t cycle = 100;
+  std::uint64_t number = 0;
+
+  Scene() { arbiter.connect(1); }
+  Command command(Role role, int who, bool active = true) {
+    Command c;
+    c.role = role;
+    c.writer = writer(who);
+    c.source = std::string(name(role)) + std::to_string(who);
+    c.epoch = 1;
+    c.cycle = cycle;
+    c.number = ++number;
+    c.active = active;
+    c.received = now;
+    return c;
+  }
+  bool offer(Role role, int who, bool active = true) {
+    return arbiter.offer(command(role, who, active), cycle);
+  }
+  void wait(int cycles) {
+    now += 0.1 * cycles;
+    cycle += static_cast<std::uint64_t>(cycles);
+  }
+  Role driver() { return arbiter.decide(now, cycle).role; }
+};
+
+TEST(Arbiter, NobodyAskedNobodyDrives) {
+  Scene s;
+  const Grant grant = s.arbiter.decide(s.now, s.cycle);
+  EXPECT_EQ(grant.role, Role::none);
+  EXPECT_EQ(grant.reason, "nobody asked to drive");
+}
+
+// Every set of roles that want to drive: the strongest does, the others hear why not.
+TEST(Arbiter, TheStrongestLiveRoleDrives) {
+  for (unsigned set = 1; set < 16; ++set) {
+    Scene s;
+    Role expected = Role::none;
+    int weaker = -1;
+    for (int i = 0; i < 4; ++i) {
+      if ((set & (1U << i)) == 0)
+        continue;
+      const Role role = kRoles[static_cast<std::size_t>(i)];
+      ASSERT_TRUE(s.offer(role, i));
+      if (expected == Role::none)
+        expected = role;
+      ++weaker;
+    }
+    const Grant grant = s.arbiter.decide(s.now, s.cycle);
+    EXPECT_EQ(grant.role, expected) << set;
+    EXPECT_EQ(grant.source,
+              std::string(name(expected)) + std::to_string(static_cast<int>(expected) - 1));
+    EXPECT_EQ(s.arbiter.take_refused().size(), static_cast<std::size_t>(weaker));
+  }
+}
+
+TEST(Arbiter, ALeaseEnds) {
+  Scene s;
+  s.offer(Role::direct, 1);
+  Grant grant = s.arbiter.decide(s.now, s.cycle);
+  EXPECT_DOUBLE_EQ(grant.expires_in, 0.3);
+  s.now += 0.29;
+  EXPECT_EQ(s.driver(), Role::direct);
+  s.now += 0.02;
+  grant = s.arbiter.decide(s.now, s.cycle);
+  EXPECT_EQ(grant.role, Role::none);
+  EXPECT_NE(grant.reason.find("lease of direct1 (direct) ran out"), std::string::npos);
+}
+
+TEST(Arbiter, ThreeCyclesAreWithinALeaseOfThreeCycles) {
+  for (int start = 0; start < 1000; ++start) {
+    Scene s;
+    s.now = 0.1 * start;
+    s.offer(Role::behaviors, 1);
+    s.now = 0.1 * (start + 3);
+    ASSERT_EQ(s.driver(), Role::behaviors) << start;
+    s.now = 0.1 * (start + 4);
+    ASSERT_EQ(s.driver(), Role::none) << start;
+  }
+}
+
+TEST(Arbiter, ReleaseEndsItAtOnce) {
+  Scene s;
+  s.offer(Role::direct, 1);
+  EXPECT_EQ(s.driver(), Role::direct);
+  EXPECT_TRUE(s.offer(Role::direct, 1, false));
+  EXPECT_EQ(s.driver(), Role::none);
+}
+
+TEST(Arbiter, RepeatedNumbersAreRefused) {
+  Scene s;
+  Command c = s.command(Role::direct, 1);
+  EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
+  s.wait(2);
+  c.received = s.now;
+  c.cycle = s.cycle;
+  EXPECT_FALSE(s.arbiter.offer(c, s.cycle));
+  s.wait(2);
+  EXPECT_EQ(s.driver(), Role::none);
+  const auto refused = s.arbiter.take_refused();
+  ASSERT_EQ(refused.size(), 1U);
+  EXPECT_EQ(refused[0].reason, "repeated command number");
+}
+
+TEST(Arbiter, ASecondWriterWaitsUntilTheFirstIsDone) {
+  Scene s;
+  EXPECT_TRUE(s.offer(Role::direct, 1));
+  EXPECT_FALSE(s.offer(Role::direct, 2));
+  EXPECT_EQ(s.arbiter.take_refused().at(0).reason, "the role is held by direct1");
+  EXPECT_TRUE(s.offer(Role::direct, 2, false)) << "a bystander's release is no offence";
+  EXPECT_EQ(s.driver(), Role::direct);
+  s.offer(Role::direct, 1, false);
+  EXPECT_TRUE(s.offer(Role::direct, 2));
+  EXPECT_EQ(s.arbiter.decide(s.now, s.cycle).source, "direct2");
+  s.wait(4);
+  EXPECT_TRUE(s.offer(Role::direct, 1)) << "the lease of the second ended";
+}
+
+TEST(Arbiter, AutonomyWaitsForTheQuietTimeAfterARelease) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  s.offer(Role::behaviors, 2);
+  EXPECT_EQ(s.driver(), Role::teleop);
+  s.offer(Role::teleop, 1, false);
+  const double released = s.now;
+  while (s.now - released < 1.95) {
+    s.offer(Role::behaviors, 2);
+    const Grant grant = s.arbiter.decide(s.now, s.cycle);
+    ASSERT_EQ(grant.role, Role::none);
+    ASSERT_NE(grant.reason.find("quiet after teleop"), std::string::npos);
+    s.wait(1);
+  }
+  s.offer(Role::behaviors, 2);
+  EXPECT_EQ(s.driver(), Role::behaviors);
+}
+
+TEST(Arbiter, ADroppedJoystickDoesNotMakeTheRobotDriveOff) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  EXPECT_EQ(s.driver(), Role::teleop);
+  const double last = s.now;
+  while (s.now - last < 0.3 + 1.85) {
+    s.wait(1);
+    s.offer(Role::behaviors, 2);
+    const Role role = s.driver();
+    ASSERT_NE(role, Role::behaviors) << s.now - last;
+  }
+  s.wait(2);
+  s.offer(Role::behaviors, 2);
+  EXPECT_EQ(s.driver(), Role::behaviors);
+}
+
+TEST(Arbiter, APersonNeedNotWait) {
+  Scene s;
+  s.offer(Role::estop, 1);
+  EXPECT_EQ(s.driver(), Role::estop);
+  s.offer(Role::estop, 1, false);
+  s.offer(Role::teleop, 2);
+  EXPECT_EQ(s.driver(), Role::teleop);
+}
+
+TEST(Arbiter, ANewConnectionNeedsANewCommand) {
+  Scene s;
+  s.offer(Role::behaviors, 1);
+  EXPECT_EQ(s.driver(), Role::behaviors);
+  s.arbiter.connect(2);
+  EXPECT_EQ(s.driver(), Role::none);
+  EXPECT_FALSE(s.offer(Role::behaviors, 1)) << "answers the old epoch";
+  EXPECT_EQ(s.arbiter.take_refused().at(0).reason, "answers another epoch");
+  Command c = s.command(Role::behaviors, 1);
+  c.epoch = 2;
+  EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
+  EXPECT_EQ(s.driver(), Role::behaviors);
+}
+
+TEST(Arbiter, AWriterWithoutCyclesMayDriveAnyConnection) {
+  Scene s;
+  Command c = s.command(Role::teleop, 1);
+  c.epoch = 0;
+  c.cycle = 0;
+  EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
+  EXPECT_EQ(s.driver(), Role::teleop);
+  s.arbiter.connect(0);
+  c.number = ++s.number;
+  EXPECT_FALSE(s.arbiter.offer(c, s.cycle)) << "no robot";
+  EXPECT_EQ(s.arbiter.decide(s.now, s.cycle).reason, "no robot is connected");
+}
+
+TEST(Arbiter, TheAgeOfTheIntentCounts) {
+  Scene s;
+  Command c = s.command(Role::behaviors, 1);
+  c.cycle = s.cycle - 4;
+  EXPECT_FALSE(s.arbiter.offer(c, s.cycle));
+  c = s.command(Role::behaviors, 1);
+  c.cycle = s.cycle + 1;
+  EXPECT_FALSE(s.arbiter.offer(c, s.cycle)) << "the future";
+  c = s.command(Role::behaviors, 1);
+  c.cycle = s.cycle - 3;
+  EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
+  EXPECT_EQ(s.driver(), Role::behaviors);
+  ++s.cycle;
+  EXPECT_EQ(s.driver(), Role::none) << "young on the bus, but it answers what was 4 cycles ago";
+}
+
+TEST(Arbiter, AfterAGapNothingFromBeforeDrives) {
+  Scene s;
+  s.offer(Role::behaviors, 1);
+  s.wait(5);
+  s.arbiter.forget(s.cycle, s.now + 0.1);
+  EXPECT_EQ(s.driver(), Role::none);
+  EXPECT_FALSE(s.offer(Role::behaviors, 1)) << "it may have waited in a queue";
+  s.now += 0.1;
+  EXPECT_FALSE(s.offer(Role::behaviors, 1)) << "it answers a cycle of before";
+  ++s.cycle;
+  EXPECT_TRUE(s.offer(Role::behaviors, 1));
+  EXPECT_EQ(s.driver(), Role::behaviors);
+}
+
+TEST(Arbiter, AnEmergencyStopIsHeardWhateverItAnswers) {
+  Scene s;
+  s.arbiter.forget(s.cycle, s.now + 10.0);
+  Command c = s.command(Role::estop, 1);
+  c.epoch = 77;
+  c.cycle = 1;
+  EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
+  EXPECT_EQ(s.driver(), Role::estop);
+}
+
+TEST(Arbiter, RefusalsAreToldOnceAndBounded) {
+  Scene s;
+  s.offer(Role::direct, 0);
+  for (int i = 1; i < 100; ++i) {
+    s.offer(Role::direct, i % 50 + 1);
+    s.offer(Role::direct, i % 50 + 1);
+  }
+  EXPECT_EQ(s.arbiter.take_refused().size(), 16U);
+  EXPECT_EQ(s.arbiter.take_refused().size(), 0U);
+  EXPECT_EQ(s.arbiter.refused_count(), 198U);
+}
+
+}  // namespace
+}  // namespace saphira::authority
