@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+namespace saphira::transport {
+
+/// Where a robot server is to be found (manual Table 5-6), as people write it:
+///   /dev/ttyS0, /dev/ttyUSB0@19200   a serial line [9600 baud]
+///   unix:/path, or a path elsewhere  a local socket (the simulator's)
+///   tcp:host:port                    a network
+struct Address {
+  enum class Kind { serial, local, tcp };
+  Kind kind = Kind::local;
+  std::string name;  ///< device, path, or host
+  int baud = 9600;
+  int port = 0;
+
+  std::string text() const;
+};
+
+/// std::invalid_argument says what was expected.
+Address parse_address(const std::string& text);
+
+/// The socket of a simulator on this machine: $ROBOT_SOCKET, else /tmp/saphira-robot-<uid>.
+std::string default_address();
+
+}  // namespace saphira::transport

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saphira/transport/address.hpp"
+
+namespace saphira::transport {
+
+/// The bytes to and from a robot server. Never blocks (but for the look-up of a host's name).
+/// A link that is lost is tried again, first after 50 ms, then less often, at least twice a second.
+/// Times are seconds of a steady clock.
+class Link {
+ public:
+  enum class State { closed, connecting, open };
+
+  explicit Link(Address address) : address_(std::move(address)) {}
+  ~Link() { close("done"); }
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  const Address& address() const { return address_; }
+  State state() const { return state_; }
+  /// -1 while closed.
+  int fd() const { return fd_; }
+  /// What to poll the fd for.
+  short poll_events() const;
+  /// Why it is not open, in words.
+  const std::string& trouble() const { return trouble_; }
+  /// When to call advance next; infinity where only the fd matters.
+  double due() const;
+
+  /// Connects where it is time to, finishes a connection that was begun, sends what waits.
+  void advance(double now);
+  /// Appends what has come. False when the other side has gone: the link is then closed.
+  bool read(std::vector<std::uint8_t>& out, double now);
+  /// Sends the whole packet, or queues what the line does not take now. False (and the link closed)
+  /// where the line is dead, or so slow that commands would wait and become stale.
+  bool write(std::span<const std::uint8_t> bytes, double now);
+  void close(const std::string& why, double now = 0.0);
+
+ private:
+  void open(double now);
+  void opened();
+  bool flush(double now);
+
+  Address address_;
+  State state_ = State::closed;
+  int fd_ = -1;
+  std::string trouble_ = "not connected yet";
+  double next_try_ = 0.0;
+  double give_up_ = 0.0;
+  double backoff_ = 0.0;
+  std::vector<std::uint8_t> waiting_;
+};
+
+}  // namespace saphira::transport

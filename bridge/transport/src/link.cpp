@@ -1,0 +1,203 @@
+#include "saphira/transport/link.hpp"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+
+#include "baud.hpp"
+
+namespace saphira::transport {
+
+namespace {
+
+constexpr double kFirstBackoff = 0.05;  // [s]
+constexpr double kLastBackoff = 0.5;    // [s]
+constexpr double kConnectTime = 3.0;    // [s] for a TCP connection to come about
+// At 9600 baud these are 0.27 s: a command that waits longer is not worth sending.
+constexpr std::size_t kMaxWaiting = 256;
+
+std::string error_text() {
+  return std::strerror(errno);
+}
+
+/// Raw bytes, 8N1, no flow control, as the manual's RS-232 link (5.4).
+bool make_raw(int fd, int baud) {
+  termios line{};
+  if (tcgetattr(fd, &line) != 0)
+    return false;
+  cfmakeraw(&line);
+  line.c_cflag |= CLOCAL | CREAD;
+  line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
+  const auto speed = speed_of(baud);
+  if (!speed || cfsetispeed(&line, *speed) != 0 || cfsetospeed(&line, *speed) != 0)
+    return false;
+  return tcsetattr(fd, TCSANOW, &line) == 0 && tcflush(fd, TCIOFLUSH) == 0;
+}
+
+}  // namespace
+
+short Link::poll_events() const {
+  short events = POLLIN;
+  if (state_ == State::connecting || !waiting_.empty())
+    events |= POLLOUT;
+  return events;
+}
+
+double Link::due() const {
+  if (state_ == State::closed)
+    return next_try_;
+  return state_ == State::connecting ? give_up_ : std::numeric_limits<double>::infinity();
+}
+
+void Link::close(const std::string& why, double now) {
+  if (fd_ >= 0) {
+    // Another process may hold a copy of the descriptor; the other side shall know at once.
+    if (address_.kind != Address::Kind::serial)
+      ::shutdown(fd_, SHUT_RDWR);
+    ::close(fd_);
+  }
+  fd_ = -1;
+  state_ = State::closed;
+  waiting_.clear();
+  trouble_ = why;
+  backoff_ = std::clamp(backoff_ * 2.0, kFirstBackoff, kLastBackoff);
+  next_try_ = now + backoff_;
+}
+
+void Link::opened() {
+  state_ = State::open;
+  trouble_.clear();
+}
+
+void Link::open(double now) {
+  const auto fail = [&](const std::string& what) { close(what + ": " + error_text(), now); };
+  if (address_.kind == Address::Kind::serial) {
+    fd_ = ::open(address_.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (fd_ < 0 || !make_raw(fd_, address_.baud))
+      return fail(address_.name);
+    return opened();
+  }
+  if (address_.kind == Address::Kind::local) {
+    fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    std::memcpy(name.sun_path, address_.name.c_str(),
+                std::min(address_.name.size(), sizeof name.sun_path - 1));
+    if (fd_ < 0 || ::connect(fd_, reinterpret_cast<const sockaddr*>(&name), sizeof name) != 0)
+      return fail(address_.name);
+    return opened();
+  }
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const int code =
+      ::getaddrinfo(address_.name.c_str(), std::to_string(address_.port).c_str(), &hints, &found);
+  if (code != 0)
+    return close(address_.name + ": " + ::gai_strerror(code), now);
+  fd_ = ::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int result = fd_ < 0 ? -1 : ::connect(fd_, found->ai_addr, found->ai_addrlen);
+  const int error = errno;
+  ::freeaddrinfo(found);
+  errno = error;
+  if (result != 0 && (fd_ < 0 || error != EINPROGRESS))
+    return fail(address_.text());
+  // A command packet is sent when it is ready, not when there are more.
+  const int on = 1;
+  ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  if (result == 0)
+    return opened();
+  state_ = State::connecting;
+  trouble_ = "connecting to " + address_.text();
+  give_up_ = now + kConnectTime;
+}
+
+void Link::advance(double now) {
+  if (state_ == State::closed && now >= next_try_)
+    open(now);
+  if (state_ == State::connecting) {
+    pollfd ready{fd_, POLLOUT, 0};
+    if (::poll(&ready, 1, 0) > 0) {
+      int error = 0;
+      socklen_t size = sizeof error;
+      if (::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0)
+        opened();
+      else
+        close(address_.text() + ": " + std::strerror(error), now);
+    } else if (now >= give_up_) {
+      close(address_.text() + ": no answer", now);
+    }
+  }
+  if (state_ == State::open && !waiting_.empty())
+    flush(now);
+}
+
+bool Link::read(std::vector<std::uint8_t>& out, double now) {
+  if (state_ != State::open)
+    return state_ == State::connecting;
+  std::uint8_t buffer[4096];
+  while (true) {
+    const ssize_t n = ::read(fd_, buffer, sizeof buffer);
+    if (n > 0) {
+      backoff_ = 0.0;  // a server that talks is worth a quick second try
+      out.insert(out.end(), buffer, buffer + n);
+      if (static_cast<std::size_t>(n) < sizeof buffer)
+        return true;
+      continue;
+    }
+    if (n < 0 && errno == EINTR)
+      continue;
+    // A raw serial line that is open without blocking reads nothing as 0 bytes.
+    if ((n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) ||
+        (n == 0 && address_.kind == Address::Kind::serial && ::isatty(fd_) == 1))
+      return true;
+    close(
+        n == 0 ? address_.text() + ": closed by the robot" : address_.text() + ": " + error_text(),
+        now);
+    return false;
+  }
+}
+
+bool Link::write(std::span<const std::uint8_t> bytes, double now) {
+  if (state_ != State::open)
+    return false;
+  if (waiting_.size() + bytes.size() > kMaxWaiting) {
+    close(address_.text() + ": does not take commands", now);
+    return false;
+  }
+  waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+  return flush(now);
+}
+
+bool Link::flush(double now) {
+  while (!waiting_.empty()) {
+    // A plain write on a serial line; on a socket without the signal that a lost one raises.
+    const ssize_t n = address_.kind == Address::Kind::serial
+                          ? ::write(fd_, waiting_.data(), waiting_.size())
+                          : ::send(fd_, waiting_.data(), waiting_.size(), MSG_NOSIGNAL);
+    if (n > 0) {
+      waiting_.erase(waiting_.begin(), waiting_.begin() + n);
+      continue;
+    }
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n == 0 || errno == EAGAIN || errno == EWOULDBLOCK)
+      return true;
+    close(address_.text() + ": " + error_text(), now);
+    return false;
+  }
+  return true;
+}
+
+}  // namespace saphira::transport

@@ -1,0 +1,186 @@
+#include "saphira/transport/link.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <numeric>
+#include <stdexcept>
+
+namespace saphira::transport {
+namespace {
+
+TEST(Address, IsReadInEveryForm) {
+  EXPECT_EQ(parse_address("/dev/ttyS0").text(), "/dev/ttyS0@9600");
+  EXPECT_EQ(parse_address("/dev/ttyUSB0@19200").baud, 19200);
+  EXPECT_EQ(parse_address("unix:/tmp/robot").text(), "unix:/tmp/robot");
+  EXPECT_EQ(parse_address("/tmp/robot").kind, Address::Kind::local);
+  EXPECT_EQ(parse_address("tcp:lab:8101").text(), "tcp:lab:8101");
+  EXPECT_EQ(parse_address("tcp:[::1]:8101").name, "::1");
+}
+
+TEST(Address, SaysWhatWasExpected) {
+  for (const char* bad : {"", "robot", "unix:", "tcp:", "tcp:host", "tcp::1", "tcp:host:x",
+                          "tcp:host:70000", "/dev/ttyS0@fast", "/dev/ttyS0@12345"}) {
+    try {
+      parse_address(bad);
+      ADD_FAILURE() << bad;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("expected"), std::string::npos) << bad;
+    }
+  }
+  EXPECT_THROW(parse_address("/" + std::string(200, 'x')), std::invalid_argument);
+}
+
+TEST(Address, DefaultIsTheSimulators) {
+  ::unsetenv("ROBOT_SOCKET");
+  EXPECT_EQ(default_address(), "unix:/tmp/saphira-robot-" + std::to_string(::getuid()));
+  ::setenv("ROBOT_SOCKET", "/tmp/other", 1);
+  EXPECT_EQ(parse_address(default_address()).text(), "unix:/tmp/other");
+  ::unsetenv("ROBOT_SOCKET");
+}
+
+bool readable(int fd) {
+  pollfd ready{fd, POLLIN, 0};
+  return ::poll(&ready, 1, 5000) == 1;
+}
+
+/// A robot server's end: listens on a local socket or on a port of this machine.
+struct Server {
+  explicit Server(bool tcp) {
+    path = "/tmp/saphira-link-test-" + std::to_string(::getpid());
+    if (tcp) {
+      listener = ::socket(AF_INET, SOCK_STREAM, 0);
+      sockaddr_in name{};
+      name.sin_family = AF_INET;
+      name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      EXPECT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&name), sizeof name), 0);
+      socklen_t size = sizeof name;
+      ::getsockname(listener, reinterpret_cast<sockaddr*>(&name), &size);
+      address = "tcp:127.0.0.1:" + std::to_string(ntohs(name.sin_port));
+    } else {
+      ::unlink(path.c_str());
+      listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
+      sockaddr_un name{};
+      name.sun_family = AF_UNIX;
+      path.copy(name.sun_path, sizeof name.sun_path - 1);
+      EXPECT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&name), sizeof name), 0);
+      address = "unix:" + path;
+    }
+    ::listen(listener, 4);
+  }
+  ~Server() {
+    ::close(listener);
+    ::unlink(path.c_str());
+  }
+  int accept() const { return ::accept(listener, nullptr, nullptr); }
+
+  int listener = -1;
+  std::string path;
+  std::string address;
+};
+
+class LinkOn : public ::testing::TestWithParam<bool> {};
+
+TEST_P(LinkOn, ConnectsTalksAndComesBack) {
+  Server server(GetParam());
+  Link link(parse_address(server.address));
+  double now = 100.0;
+  for (int round = 0; round < 3; ++round) {
+    link.advance(now);
+    const int peer = server.accept();
+    ASSERT_GE(peer, 0);
+    pollfd ready{link.fd(), link.poll_events(), 0};
+    if (link.state() == Link::State::connecting)
+      ::poll(&ready, 1, 5000);
+    link.advance(now);
+    ASSERT_EQ(link.state(), Link::State::open) << link.trouble();
+
+    ASSERT_EQ(::write(peer, "hello", 5), 5);
+    ASSERT_TRUE(readable(link.fd()));
+    std::vector<std::uint8_t> in;
+    EXPECT_TRUE(link.read(in, now));
+    EXPECT_EQ(std::string(in.begin(), in.end()), "hello");
+    const std::vector<std::uint8_t> out{1, 2, 3};
+    EXPECT_TRUE(link.write(out, now));
+    char got[8];
+    EXPECT_EQ(::read(peer, got, sizeof got), 3);
+
+    ::close(peer);
+    ASSERT_TRUE(readable(link.fd()));
+    EXPECT_FALSE(link.read(in, now));
+    EXPECT_EQ(link.state(), Link::State::closed);
+    EXPECT_NE(link.trouble().find("closed by the robot"), std::string::npos);
+    EXPECT_GT(link.due(), now);
+    link.advance(now);
+    EXPECT_EQ(link.state(), Link::State::closed) << "too early";
+    now = link.due();
+  }
+}
+INSTANTIATE_TEST_SUITE_P(LocalAndTcp, LinkOn, ::testing::Bool());
+
+TEST(Link, TriesLessAndLessOftenButAtLeastTwiceASecond) {
+  Link link(parse_address("unix:/nonexistent/robot"));
+  double now = 1.0;
+  std::vector<double> waits;
+  for (int i = 0; i < 8; ++i) {
+    link.advance(now);
+    EXPECT_NE(link.trouble().find("/nonexistent/robot"), std::string::npos);
+    waits.push_back(link.due() - now);
+    now = link.due();
+  }
+  EXPECT_NEAR(waits.front(), 0.05, 1e-9);
+  EXPECT_NEAR(waits.back(), 0.5, 1e-9);
+}
+
+TEST(Link, ASlowLineIsNoQueueOfOldCommands) {
+  Server server(false);
+  Link link(parse_address(server.address));
+  link.advance(1.0);
+  const int peer = server.accept();
+  const std::vector<std::uint8_t> packet(100, 7);
+  bool ok = true;
+  for (int i = 0; i < 100000 && ok; ++i)
+    ok = link.write(packet, 1.0);
+  EXPECT_FALSE(ok);
+  EXPECT_NE(link.trouble().find("does not take commands"), std::string::npos);
+  ::close(peer);
+}
+
+TEST(Link, SpeaksOverATerminalLineWithoutChangingABit) {
+  const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(master, 0);
+  ASSERT_EQ(::grantpt(master), 0);
+  ASSERT_EQ(::unlockpt(master), 0);
+  Link link(parse_address(std::string(::ptsname(master)) + "@9600"));
+  link.advance(1.0);
+  ASSERT_EQ(link.state(), Link::State::open) << link.trouble();
+  std::vector<std::uint8_t> all(256);
+  std::iota(all.begin(), all.end(), std::uint8_t{0});
+  ASSERT_TRUE(link.write(all, 1.0));
+  std::vector<std::uint8_t> got;
+  while (got.size() < all.size() && readable(master)) {
+    std::uint8_t buffer[256];
+    const ssize_t n = ::read(master, buffer, sizeof buffer);
+    ASSERT_GT(n, 0);
+    got.insert(got.end(), buffer, buffer + n);
+  }
+  EXPECT_EQ(got, all);
+  std::vector<std::uint8_t> in;
+  EXPECT_TRUE(link.read(in, 1.0)) << "nothing to read is no end";
+  ASSERT_EQ(::write(master, all.data(), all.size()), 256);
+  while (in.size() < all.size() && readable(link.fd()))
+    ASSERT_TRUE(link.read(in, 1.0));
+  EXPECT_EQ(in, all);
+  ::close(master);
+  ASSERT_TRUE(readable(link.fd()));
+  EXPECT_FALSE(link.read(in, 1.0)) << "the line was pulled";
+}
+
+}  // namespace
+}  // namespace saphira::transport
