@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus {
+
+/// A topic of this version's contract, in words.
+struct TopicEntry {
+  std::string name;  ///< such as robot/state
+  std::string type;  ///< such as saphira::v1::RobotState
+  std::string qos;   ///< such as cyclic
+};
+
+/// Every topic of topics.hpp, in that order.
+std::vector<TopicEntry> known_topics();
+
+/// Reads one topic by its name and tells each sample as JSON: members as in the IDL, enumerators by
+/// name, NaN and infinities as null. A withdrawn instance has "_disposed": true as its first member.
+class Echo {
+ public:
+  /// Throws std::runtime_error that names the known topics where `topic` is none of them.
+  Echo(Node& node, const std::string& topic);
+  ~Echo();
+
+  /// One JSON object for each sample that has come since the last call, on one line, oldest first.
+  std::vector<std::string> take_json();
+  /// How many writers are matched.
+  std::size_t matched() const;
+
+ private:
+  std::unique_ptr<RawReader> reader_;
+  const TypeInfo* type_;
+};
+
+/// One reader or writer that was discovered on the bus.
+struct EndpointEntry {
+  std::string topic;
+  std::string type;
+  bool writer = false;
+  std::string program;  ///< the participant's name
+  std::string host;     ///< empty where the participant does not say it
+  std::uint32_t pid = 0;
+  std::string robot;  ///< the partition; several are separated by commas
+  bool reliable = false;
+  std::string durability;  ///< volatile, transient_local, transient, persistent
+  double deadline = 0.0;   ///< [s] [0: none]
+  std::string liveliness;  ///< automatic, or the kind with its lease, such as manual_by_topic 0.3 s
+  std::string ownership;   ///< shared, exclusive
+  std::string id;          ///< GUID in hexadecimal: unique
+  bool known_type = true;  ///< false: the topic is ours and the type is another
+};
+
+/// Two endpoints of one topic and one robot that do not hear each other.
+struct Mismatch {
+  EndpointEntry writer;
+  EndpointEntry reader;
+  std::string why;  ///< such as "reliability: offered best effort, requested reliable"
+};
+
+/// Who is on the bus, but for this node itself. Discovery goes on in the background: what is there
+/// after some tenths of a second on one machine is usually all.
+class Census {
+ public:
+  /// From now on a change of the census wakes the node too.
+  explicit Census(Node& node);
+  ~Census();
+
+  /// Sorted by topic, writers first, then program.
+  std::vector<EndpointEntry> endpoints() const;
+  /// Pairs on one topic with a common partition that cannot match, and why.
+  std::vector<Mismatch> mismatches() const;
+
+ private:
+  Node* node_;
+};
+
+/// Why a writer's samples do not reach a reader of its topic; empty where they do. Partitions that
+/// are disjoint are not a mismatch but two robots.
+std::string why_incompatible(const EndpointEntry& writer, const EndpointEntry& reader);
+
+}  // namespace saphira::bus
