@@ -50,11 +50,14 @@ function(saphira_library name)
 endfunction()
 
 # saphira_program(<name> SOURCES main.cpp... LINK t...): an executable that is installed.
+# The target saphira_programs builds all of them, without the tests.
+add_custom_target(saphira_programs)
 function(saphira_program name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LINK} saphira_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  add_dependencies(saphira_programs ${name})
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "intention.h"
+
+namespace saphira::cli {
+
+/// One argument of a goal as a person types it, name=value:
+///
+///   speed=0.3                  a number, in SI units
+///   heading=90deg              an angle in degrees
+///   position=3,1               a point x,y [m] in odom
+///   position=3,1,1.57@robot    with a heading [rad] (or 90deg), and the frame: odom, robot or map
+///   door=kitchen               text
+///
+/// std::invalid_argument that says what was expected where it is none of these.
+v1::Argument parse_argument(const std::string& word);
+
+/// A goal from its functor and the words of its arguments. std::invalid_argument as above, and for
+/// a name that is there twice.
+v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& words);
+
+/// The goal as a person reads it: go_to(position=(3, 1) in odom).
+std::string describe(const v1::Goal& goal);
+
+}  // namespace saphira::cli

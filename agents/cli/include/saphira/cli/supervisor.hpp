@@ -1,0 +1,94 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira::cli {
+
+/// A child of the supervisor.
+struct ChildSpec {
+  std::string name;
+  std::vector<std::string> argv;                   ///< argv[0] is a path
+  std::map<std::string, std::string> environment;  ///< added to our own
+  bool restart = true;
+};
+
+/// Runs programs: starts them in order, prints what they print line by line, starts again what
+/// ends (after 100 ms, then twice as long each time up to 5 s; back to 100 ms once it has run for
+/// 10 s), and stops all in the reverse order. The children get SIGTERM from the kernel when the
+/// supervisor dies, and a process group each, so that Ctrl-C reaches the supervisor alone.
+///
+/// For one thread, which must outlive the children (PR_SET_PDEATHSIG is about the thread).
+class Supervisor {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// A line that a child wrote, or (from is empty) something that the supervisor has to say.
+  using Print = std::function<void(std::string_view from, std::string_view line)>;
+
+  struct Child {
+    std::string name;
+    pid_t pid = 0;  ///< 0: not running now
+    int starts = 0;
+    std::string ended;  ///< how it ended last, in words
+  };
+
+  Supervisor(std::vector<ChildSpec> children, Print print);
+  /// Stops what still runs.
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  /// Starts every child. std::runtime_error when one cannot be started at all.
+  void start();
+  /// Waits for something to do, for `wake_fd` (-1: none) or the timeout, and does what is due.
+  void step(std::chrono::milliseconds timeout, int wake_fd = -1);
+  /// SIGTERM to each in the reverse order, the next one when it has ended; SIGKILL to what is left
+  /// after `limit`.
+  void stop(std::chrono::milliseconds limit = std::chrono::seconds(2));
+
+  std::vector<Child> children() const;
+  /// A child that ended with a usage error (exit code 2) right after its first start: what it was
+  /// given is wrong, so to start it again is of no use.
+  std::optional<std::string> misused() const;
+  /// Whether no child runs and none will be started again.
+  bool finished() const;
+
+ private:
+  struct Slot {
+    ChildSpec spec;
+    pid_t pid = 0;
+    int pid_fd = -1;
+    int starts = 0;
+    std::string ended;
+    Clock::time_point started;
+    std::optional<Clock::time_point> due;  ///< when to start it again
+    std::chrono::milliseconds backoff{};
+    bool misused = false;
+  };
+  struct Stream {
+    int fd;
+    std::size_t slot;
+    std::string line;
+  };
+
+  void launch(std::size_t index);
+  void poll_once(std::chrono::milliseconds timeout, int wake_fd);
+  bool read_stream(Stream& stream);
+  void reap(std::size_t index);
+  void say(const std::string& text) { print_({}, text); }
+
+  std::vector<Slot> slots_;
+  std::vector<Stream> streams_;  ///< outlive their child: a grandchild may hold them
+  Print print_;
+  bool stopping_ = false;
+};
+
+}  // namespace saphira::cli

@@ -1,0 +1,369 @@
+#include "saphira/cli/deployment.hpp"
+
+#include <unistd.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <stdexcept>
+
+#include "saphira/base/text.hpp"
+#include "saphira/cli/supervisor.hpp"
+
+namespace saphira::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string line_of(const std::string& text, int number) {
+  std::size_t begin = 0;
+  for (int i = 1; i < number && begin != std::string::npos; ++i) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos)
+      ++begin;
+  }
+  if (begin == std::string::npos)
+    return {};
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+/// Reads one file: what the document says, and what is wrong with it.
+class Parser {
+ public:
+  Parser(const std::string& text, const std::string& file) {
+    deployment_.file = file;
+    deployment_.text = text;
+  }
+
+  Deployment parse() {
+    YAML::Node root;
+    try {
+      root = YAML::Load(deployment_.text);
+    } catch (const YAML::ParserException& error) {
+      fail(error.mark, "not YAML: " + error.msg);
+    }
+    if (!root.IsMap())
+      fail(root.Mark(), "expected a deployment (keys such as programs:), found " + kind(root));
+    keys(root, {{"robot", [this](const auto& n) { deployment_.bus.robot = robot(n); }},
+                {"domain", [this](const auto& n) { deployment_.bus.domain = domain(n); }},
+                {"profile", [this](const auto& n) { deployment_.bus.profile = profile(n); }},
+                {"peers",
+                 [this](const auto& n) {
+                   for (const Placed& peer : words(n, "a list of addresses"))
+                     deployment_.bus.peers.push_back(peer.text);
+                 }},
+                {"interface",
+                 [this](const auto& n) {
+                   deployment_.bus.interface = word(n, "the address of an interface");
+                 }},
+                {"lockstep",
+                 [this](const auto& n) { deployment_.bus.lockstep = boolean(n, "lockstep"); }},
+                {"settings", [this](const auto& n) { settings(n); }},
+                {"programs", [this](const auto& n) { programs(n); }}});
+    if (deployment_.programs.empty())
+      fail(root.Mark(), "expected programs: with at least one program");
+    if (deployment_.bus.profile == "wan" && deployment_.bus.peers.empty())
+      fail(root["profile"].Mark(), "profile wan has no multicast: expected peers: as well");
+    return std::move(deployment_);
+  }
+
+ private:
+  using Handler = std::function<void(const YAML::Node&)>;
+  using Handlers = std::vector<std::pair<std::string, Handler>>;
+
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
+    const int line = std::max(mark.line, 0) + 1;
+    const int column = std::max(mark.column, 0) + 1;
+    throw FileError(deployment_.file, line, column, message, line_of(deployment_.text, line));
+  }
+
+  static std::string kind(const YAML::Node& node) {
+    switch (node.Type()) {
+      case YAML::NodeType::Scalar:
+        return "\"" + node.Scalar() + "\"";
+      case YAML::NodeType::Sequence:
+        return "a list";
+      case YAML::NodeType::Map:
+        return "keys";
+      default:
+        return "nothing";
+    }
+  }
+
+  void keys(const YAML::Node& map, const Handlers& handlers) const {
+    std::set<std::string> seen;
+    for (const auto& entry : map) {
+      const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+      const auto handler = std::find_if(handlers.begin(), handlers.end(),
+                                        [&](const auto& known) { return known.first == key; });
+      if (handler == handlers.end()) {
+        std::string names;
+        for (const auto& [name, _] : handlers)
+          names += (names.empty() ? "" : ", ") + name;
+        fail(entry.first.Mark(), "unknown key " + kind(entry.first) + ": expected one of " + names);
+      }
+      if (!seen.insert(key).second)
+        fail(entry.first.Mark(), "the key \"" + key + "\" is there already");
+      handler->second(entry.second);
+    }
+  }
+
+  std::string word(const YAML::Node& node, const std::string& what) const {
+    if (!node.IsScalar() || node.Scalar().empty())
+      fail(node.Mark(), "expected " + what + ", found " + kind(node));
+    return node.Scalar();
+  }
+
+  bool boolean(const YAML::Node& node, const std::string& what) const {
+    bool value = false;
+    if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value))
+      fail(node.Mark(), "expected true or false (" + what + "), found " + kind(node));
+    return value;
+  }
+
+  std::string robot(const YAML::Node& node) const {
+    const std::string name = word(node, "the robot's name");
+    if (name.find_first_of("*?[]") != std::string::npos)
+      fail(node.Mark(), "expected one robot's name, found the pattern \"" + name + "\"");
+    return name;
+  }
+
+  std::uint32_t domain(const YAML::Node& node) const {
+    unsigned value = 0;
+    if (!node.IsScalar() || !YAML::convert<unsigned>::decode(node, value) || value > 232)
+      fail(node.Mark(), "expected a DDS domain between 0 and 232, found " + kind(node));
+    return value;
+  }
+
+  std::string profile(const YAML::Node& node) const {
+    const std::string name = word(node, "a network profile: host, lan or wan");
+    if (name != "host" && name != "lan" && name != "wan")
+      fail(node.Mark(), "expected a network profile: host, lan or wan, found \"" + name + "\"");
+    return name;
+  }
+
+  std::vector<Placed> words(const YAML::Node& node, const std::string& what) const {
+    if (!node.IsSequence())
+      fail(node.Mark(), "expected " + what + ", found " + kind(node));
+    std::vector<Placed> all;
+    for (const auto& entry : node) {
+      if (!entry.IsScalar())
+        fail(entry.Mark(), "expected a word or a number, found " + kind(entry));
+      all.push_back({entry.Scalar(), entry.Mark().line + 1, entry.Mark().column + 1});
+    }
+    return all;
+  }
+
+  void settings(const YAML::Node& node) {
+    if (!node.IsMap())
+      fail(node.Mark(), "expected settings with their defaults (name: value), found " + kind(node));
+    for (const auto& entry : node) {
+      const std::string name = word(entry.first, "the name of a setting");
+      if (name == "config" || name == "run" || name == "robot")
+        fail(entry.first.Mark(), "${" + name + "} is built in: expected another name");
+      if (!entry.second.IsScalar())
+        fail(entry.second.Mark(),
+             "expected the default of " + name + ", found " + kind(entry.second));
+      if (!deployment_.settings.emplace(name, entry.second.Scalar()).second)
+        fail(entry.first.Mark(), "the setting \"" + name + "\" is there already");
+    }
+  }
+
+  void programs(const YAML::Node& node) {
+    if (!node.IsSequence())
+      fail(node.Mark(), "expected a list of programs (- program: NAME), found " + kind(node));
+    for (const auto& entry : node)
+      program(entry);
+  }
+
+  void program(const YAML::Node& node) {
+    if (!node.IsMap())
+      fail(node.Mark(), "expected a program (program: NAME), found " + kind(node));
+    Program made;
+    keys(node,
+         {{"program",
+           [&](const auto& n) {
+             made.program = {word(n, "a program"), n.Mark().line + 1, n.Mark().column + 1};
+           }},
+          {"name", [&](const auto& n) { made.name = word(n, "a name"); }},
+          {"arguments", [&](const auto& n) { made.arguments = words(n, "a list of arguments"); }},
+          {"robot", [&](const auto& n) { made.robot = robot(n); }},
+          {"bus", [&](const auto& n) { made.bus = boolean(n, "bus"); }},
+          {"restart", [&](const auto& n) { made.restart = boolean(n, "restart"); }}});
+    if (made.program.text.empty())
+      fail(node.Mark(), "expected program: in this entry");
+    if (made.name.empty()) {
+      made.name = fs::path(made.program.text).filename().string();
+      if (made.name.starts_with("saphira-"))
+        made.name.erase(0, std::string("saphira-").size());
+    }
+    for (const Program& other : deployment_.programs)
+      if (other.name == made.name)
+        fail(node.Mark(), "the name \"" + made.name + "\" is there already: expected name: OTHER");
+    deployment_.programs.push_back(std::move(made));
+  }
+
+  Deployment deployment_;
+};
+
+[[noreturn]] void fail_at(const Deployment& deployment, const Placed& at,
+                          const std::string& message) {
+  throw FileError(deployment.file, at.line, at.column, message, line_of(deployment.text, at.line));
+}
+
+std::string replaced(const Deployment& deployment, const Placed& at,
+                     const std::map<std::string, std::string>& values) {
+  std::string out;
+  std::size_t from = 0;
+  while (true) {
+    const std::size_t begin = at.text.find("${", from);
+    out += at.text.substr(from, begin - from);
+    if (begin == std::string::npos)
+      return out;
+    const std::size_t end = at.text.find('}', begin);
+    if (end == std::string::npos)
+      fail_at(deployment, at, "expected } after ${ in \"" + at.text + "\"");
+    const std::string name = at.text.substr(begin + 2, end - begin - 2);
+    const auto value = values.find(name);
+    if (value == values.end()) {
+      std::string names;
+      for (const auto& [known, _] : values)
+        names += (names.empty() ? "" : ", ") + known;
+      fail_at(deployment, at, "unknown ${" + name + "}: expected one of " + names);
+    }
+    out += value->second;
+    from = end + 1;
+  }
+}
+
+std::optional<std::string> executable(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0)
+    return path.string();
+  return std::nullopt;
+}
+
+std::string find_program(const Deployment& deployment, const Placed& program,
+                         const std::string& name, const Places& places) {
+  if (name.find('/') != std::string::npos) {
+    // As with every path in a file: from where the file is.
+    const fs::path path = fs::path(deployment.file).parent_path() / name;
+    if (const auto found = executable(path))
+      return *found;
+    fail_at(deployment, program, "expected a program, found no executable " + path.string());
+  }
+  if (const auto found = executable(fs::path(places.bin) / name))
+    return *found;
+  const char* path = std::getenv("PATH");
+  const std::string folders = path == nullptr ? "" : path;
+  for (std::size_t at = 0; at < folders.size();) {
+    const std::size_t end = std::min(folders.find(':', at), folders.size());
+    if (const auto found = executable(fs::path(folders.substr(at, end - at)) / name))
+      return *found;
+    at = end + 1;
+  }
+  fail_at(deployment, program,
+          "expected a program, found no \"" + name + "\" in " + places.bin + " or on PATH");
+}
+
+}  // namespace
+
+Deployment parse_deployment(const std::string& text, const std::string& file) {
+  return Parser(text, file).parse();
+}
+
+Deployment load_deployment(const std::string& file) {
+  return parse_deployment(read_file(file), file);
+}
+
+Places find_places() {
+  const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();
+  // Installed: bin/ and share/saphira/ are siblings. Built: build/<preset>/bin in the source tree.
+  for (const fs::path& config :
+       {bin / "../share/saphira", bin / "../../../config", fs::path(SAPHIRA_SOURCE_CONFIG)}) {
+    std::error_code error;
+    if (fs::is_directory(config / "deployments", error))
+      return {bin.string(), fs::canonical(config).string(), {}};
+  }
+  throw std::runtime_error("no configuration: expected " + (bin / "../share/saphira").string() +
+                           " (installed) or the source tree's config/");
+}
+
+std::string find_deployment(const std::string& name, const Places& places) {
+  const fs::path shipped = fs::path(places.config) / "deployments";
+  for (const fs::path& path : {fs::path(name), shipped / name, shipped / (name + ".yaml")}) {
+    std::error_code error;
+    if (fs::is_regular_file(path, error))
+      return path.string();
+  }
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(shipped))
+    if (entry.path().extension() == ".yaml")
+      names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const std::string& known : names)
+    list += " " + known;
+  throw std::runtime_error("no deployment \"" + name +
+                           "\": expected a file, or one of those that are shipped:" + list);
+}
+
+std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places& places,
+                                     const std::vector<std::string>& set) {
+  std::map<std::string, std::string> values = deployment.settings;
+  for (const std::string& word : set) {
+    const std::size_t equals = word.find('=');
+    const std::string name = word.substr(0, equals);
+    if (equals == std::string::npos || !deployment.settings.contains(name)) {
+      std::string names;
+      for (const auto& [known, value] : deployment.settings)
+        names += " " + known + "=" + value;
+      throw std::invalid_argument("\"" + word + "\" sets nothing: " + deployment.file + " has" +
+                                  (names.empty() ? " no settings" : names));
+    }
+    values[name] = word.substr(equals + 1);
+  }
+  values["config"] = places.config;
+  values["run"] = places.run;
+
+  std::vector<ChildSpec> all;
+  for (const Program& program : deployment.programs) {
+    const std::optional<std::string> robot = program.robot ? program.robot : deployment.bus.robot;
+    const char* from_environment = std::getenv("SAPHIRA_ROBOT");
+    values["robot"] = robot ? *robot : from_environment != nullptr ? from_environment : "pioneer";
+    ChildSpec child;
+    child.name = program.name;
+    child.restart = program.restart;
+    child.argv.push_back(find_program(deployment, program.program,
+                                      replaced(deployment, program.program, values), places));
+    for (const Placed& argument : program.arguments)
+      child.argv.push_back(replaced(deployment, argument, values));
+    if (program.bus) {
+      const BusOptions& bus = deployment.bus;
+      const auto add = [&child](const std::string& option, const std::string& value) {
+        child.argv.push_back(option);
+        child.argv.push_back(value);
+      };
+      if (robot)
+        add("--robot", *robot);
+      if (bus.domain)
+        add("--domain", std::to_string(*bus.domain));
+      if (bus.profile)
+        add("--profile", *bus.profile);
+      for (const std::string& peer : bus.peers)
+        add("--peer", peer);
+      if (bus.interface)
+        add("--interface", *bus.interface);
+      if (bus.lockstep)
+        child.argv.emplace_back("--lockstep");
+    }
+    all.push_back(std::move(child));
+  }
+  return all;
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,166 @@
+#include "saphira/cli/goal_words.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <stdexcept>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+constexpr std::size_t kLongestName = 31;
+constexpr std::size_t kLongestText = 255;
+constexpr std::size_t kMostArguments = 16;
+
+/// The number that the whole of the text is, in SI units; an angle in degrees ends with deg.
+std::optional<double> parse_number(std::string_view text) {
+  const bool angle = text.ends_with("deg");
+  if (angle)
+    text.remove_suffix(3);
+  if (text.starts_with('+'))
+    text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return angle ? radians(value) : value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos)
+      return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::string plain(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+const char* name_of(v1::Frame frame) {
+  switch (frame) {
+    case v1::FRAME_ROBOT:
+      return "robot";
+    case v1::FRAME_ODOM:
+      return "odom";
+    case v1::FRAME_MAP:
+      return "map";
+  }
+  return "?";
+}
+
+/// Whether the text means to be a point, and so has to be a right one.
+bool looks_like_point(std::string_view text) {
+  const std::string_view first = text.substr(0, text.find(','));
+  return first.size() != text.size() && parse_number(first).has_value();
+}
+
+void read_point(std::string_view text, const std::string& word, v1::Argument& argument) {
+  const auto fail = [&word](const std::string& what) {
+    throw std::invalid_argument("expected a point x,y or x,y,th or x,y@frame in \"" + word +
+                                "\": " + what);
+  };
+  argument.kind(v1::ARGUMENT_POINT);
+  argument.frame(v1::FRAME_ODOM);
+  const std::size_t at = text.find('@');
+  if (at != std::string_view::npos) {
+    const std::string_view frame = text.substr(at + 1);
+    if (frame == "robot")
+      argument.frame(v1::FRAME_ROBOT);
+    else if (frame == "map")
+      argument.frame(v1::FRAME_MAP);
+    else if (frame != "odom")
+      fail("\"" + std::string(frame) + "\" is not a frame (odom, robot or map)");
+  }
+  const auto parts = split(text.substr(0, at), ',');
+  if (parts.size() < 2 || parts.size() > 3)
+    fail(std::to_string(parts.size()) + " numbers");
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto value = parse_number(parts[i]);
+    if (!value)
+      fail("\"" + std::string(parts[i]) + "\" is not a number");
+    values[i] = value.value_or(0.0);
+  }
+  argument.point().x(values[0]);
+  argument.point().y(values[1]);
+  argument.point().th(values[2]);
+}
+
+}  // namespace
+
+v1::Argument parse_argument(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
+    throw std::invalid_argument("expected name=value, found \"" + word + "\"");
+  const std::string name = word.substr(0, equals);
+  const std::string value = word.substr(equals + 1);
+  if (name.size() > kLongestName)
+    throw std::invalid_argument("the name \"" + name + "\" is longer than 31 characters");
+  if (value.size() > kLongestText)
+    throw std::invalid_argument("the value of " + name + " is longer than 255 characters");
+  v1::Argument argument;
+  argument.name(name);
+  if (const auto number = parse_number(value)) {
+    argument.kind(v1::ARGUMENT_NUMBER);
+    argument.number(*number);
+  } else if (looks_like_point(value)) {
+    read_point(value, word, argument);
+  } else {
+    argument.kind(v1::ARGUMENT_TEXT);
+    argument.text(value);
+  }
+  return argument;
+}
+
+v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& words) {
+  if (functor.empty() || functor.find('=') != std::string::npos)
+    throw std::invalid_argument("expected a functor such as go_to, found \"" + functor + "\"");
+  if (words.size() > kMostArguments)
+    throw std::invalid_argument("a goal has at most 16 arguments");
+  v1::Goal goal;
+  goal.functor(functor);
+  for (const std::string& word : words) {
+    const v1::Argument argument = parse_argument(word);
+    for (const v1::Argument& other : goal.arguments())
+      if (other.name() == argument.name())
+        throw std::invalid_argument("\"" + argument.name() + "\" is there twice");
+    goal.arguments().push_back(argument);
+  }
+  return goal;
+}
+
+std::string describe(const v1::Goal& goal) {
+  std::string text = goal.functor() + "(";
+  const char* separator = "";
+  for (const v1::Argument& argument : goal.arguments()) {
+    text += separator + argument.name() + "=";
+    separator = ", ";
+    switch (argument.kind()) {
+      case v1::ARGUMENT_NUMBER:
+        text += plain(argument.number());
+        break;
+      case v1::ARGUMENT_TEXT:
+        text += "\"" + argument.text() + "\"";
+        break;
+      case v1::ARGUMENT_POINT:
+        text += "(" + plain(argument.point().x()) + ", " + plain(argument.point().y()) + ") in " +
+                name_of(argument.frame());
+        break;
+    }
+  }
+  return text + ")";
+}
+
+}  // namespace saphira::cli

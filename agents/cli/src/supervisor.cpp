@@ -1,0 +1,262 @@
+#include "saphira/cli/supervisor.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+
+extern "C" char** environ;
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstBackoff{100};
+constexpr milliseconds kLastBackoff{5000};
+constexpr std::chrono::seconds kProven{10};  ///< a child that ran this long starts afresh
+constexpr std::size_t kLongestLine = 4096;   ///< longer ones are broken up
+
+std::string describe_end(int status) {
+  if (WIFEXITED(status))
+    return "exit code " + std::to_string(WEXITSTATUS(status));
+  const int number = WTERMSIG(status);
+  const char* name = sigabbrev_np(number);
+  return "killed by SIG" + std::string(name == nullptr ? std::to_string(number).c_str() : name);
+}
+
+std::vector<std::string> merged_environment(const std::map<std::string, std::string>& added) {
+  std::vector<std::string> all;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    if (!added.contains(text.substr(0, text.find('='))))
+      all.push_back(text);
+  }
+  for (const auto& [name, value] : added)
+    all.push_back(name + "=" + value);
+  return all;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> all;
+  for (std::string& word : words)
+    all.push_back(word.data());
+  all.push_back(nullptr);
+  return all;
+}
+
+milliseconds until(Supervisor::Clock::time_point when) {
+  return std::max(milliseconds(0),
+                  std::chrono::ceil<milliseconds>(when - Supervisor::Clock::now()));
+}
+
+}  // namespace
+
+Supervisor::Supervisor(std::vector<ChildSpec> children, Print print) : print_(std::move(print)) {
+  for (ChildSpec& spec : children)
+    slots_.push_back({std::move(spec), 0, -1, 0, {}, {}, {}, {}, false});
+}
+
+Supervisor::~Supervisor() {
+  stop();
+  for (const Stream& stream : streams_)
+    close(stream.fd);
+}
+
+void Supervisor::start() {
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    launch(i);
+}
+
+void Supervisor::launch(std::size_t index) {
+  Slot& slot = slots_[index];
+  // Everything that allocates comes before the fork: another thread may hold the heap's lock.
+  std::vector<std::string> environment = merged_environment(slot.spec.environment);
+  const std::vector<char*> argv = pointers(slot.spec.argv);
+  const std::vector<char*> env = pointers(environment);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(std::string("no pipe: ") + strerror(errno));
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid < 0) {
+    close(ends[0]);
+    close(ends[1]);
+    throw std::runtime_error(slot.spec.name + " cannot be started: " + strerror(errno));
+  }
+  if (pid == 0) {
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent)
+      _exit(127);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    signal(SIGPIPE, SIG_DFL);
+    signal(SIGINT, SIG_DFL);
+    const int null = open("/dev/null", O_RDONLY);
+    dup2(null, STDIN_FILENO);
+    dup2(ends[1], STDOUT_FILENO);
+    dup2(ends[1], STDERR_FILENO);
+    execve(argv[0], argv.data(), env.data());
+    const char* why = strerrordesc_np(errno);
+    for (const char* text : {"cannot run ", static_cast<const char*>(argv[0]), ": ", why, "\n"})
+      if (write(STDERR_FILENO, text, strlen(text)) < 0)
+        break;
+    _exit(127);
+  }
+  close(ends[1]);
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  streams_.push_back({ends[0], index, {}});
+  slot.pid = pid;
+  slot.pid_fd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+  slot.started = Clock::now();
+  slot.due.reset();
+  if (++slot.starts > 1)
+    say(slot.spec.name + " started again (pid " + std::to_string(pid) + ")");
+}
+
+void Supervisor::step(milliseconds timeout, int wake_fd) {
+  for (const Slot& slot : slots_)
+    if (slot.due)
+      timeout = std::min(timeout, until(*slot.due));
+  poll_once(timeout, wake_fd);
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (slots_[i].due && Clock::now() >= *slots_[i].due)
+      launch(i);
+}
+
+void Supervisor::poll_once(milliseconds timeout, int wake_fd) {
+  std::vector<pollfd> fds;
+  for (const Stream& stream : streams_)
+    fds.push_back({stream.fd, POLLIN, 0});
+  for (const Slot& slot : slots_)
+    fds.push_back({slot.pid_fd, POLLIN, 0});  // a negative one is skipped by poll
+  fds.push_back({wake_fd, POLLIN, 0});
+  poll(fds.data(), fds.size(), static_cast<int>(timeout.count()));
+  std::vector<Stream> open_streams;
+  for (Stream& stream : streams_)
+    if (read_stream(stream))
+      open_streams.push_back(std::move(stream));
+    else
+      close(stream.fd);
+  streams_ = std::move(open_streams);
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    if (slots_[i].pid != 0)
+      reap(i);
+}
+
+bool Supervisor::read_stream(Stream& stream) {
+  char buffer[4096];
+  const std::string& name = slots_[stream.slot].spec.name;
+  while (true) {
+    const ssize_t n = read(stream.fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0)
+      return true;
+    for (const char c : std::string_view(buffer, static_cast<std::size_t>(n))) {
+      if (c != '\n')
+        stream.line += c;
+      if (c == '\n' || stream.line.size() >= kLongestLine) {
+        print_(name, stream.line);
+        stream.line.clear();
+      }
+    }
+    if (n == 0) {
+      if (!stream.line.empty())
+        print_(name, std::exchange(stream.line, {}));
+      return false;
+    }
+  }
+}
+
+void Supervisor::reap(std::size_t index) {
+  Slot& slot = slots_[index];
+  int status = 0;
+  if (waitpid(slot.pid, &status, WNOHANG) != slot.pid)
+    return;
+  // What it said last comes before the news of its end.
+  for (Stream& stream : streams_)
+    if (stream.slot == index)
+      read_stream(stream);
+  if (slot.pid_fd >= 0)
+    close(slot.pid_fd);
+  slot.pid_fd = -1;
+  slot.pid = 0;
+  slot.ended = describe_end(status);
+  if (stopping_)
+    return;
+  const auto ran = Clock::now() - slot.started;
+  slot.misused = WIFEXITED(status) && WEXITSTATUS(status) == 2 && slot.starts == 1;
+  if (!slot.spec.restart || slot.misused) {
+    say(slot.spec.name + " ended: " + slot.ended);
+    return;
+  }
+  slot.backoff = ran >= kProven || slot.backoff == milliseconds(0)
+                     ? kFirstBackoff
+                     : std::min(slot.backoff * 2, kLastBackoff);
+  slot.due = Clock::now() + slot.backoff;
+  say(slot.spec.name + " ended: " + slot.ended + "; started again in " +
+      std::to_string(slot.backoff.count()) + " ms");
+}
+
+void Supervisor::stop(milliseconds limit) {
+  stopping_ = true;
+  const Clock::time_point end = Clock::now() + limit;
+  for (Slot& slot : slots_)
+    slot.due.reset();
+  const auto running = [this](const Slot& slot) { return slot.pid != 0; };
+  for (std::size_t i = slots_.size(); i-- > 0;) {
+    if (slots_[i].pid == 0)
+      continue;
+    kill(slots_[i].pid, SIGTERM);
+    kill(slots_[i].pid, SIGCONT);  // one that was stopped hears the SIGTERM
+    // Each has its share of what is left, so that one that hangs does not take the others' time.
+    const auto share = std::chrono::duration_cast<milliseconds>(until(end) / (i + 1));
+    const Clock::time_point next = Clock::now() + share;
+    while (slots_[i].pid != 0 && Clock::now() < next)
+      poll_once(until(next), -1);
+  }
+  while (std::any_of(slots_.begin(), slots_.end(), running) && Clock::now() < end)
+    poll_once(until(end), -1);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (slots_[i].pid == 0)
+      continue;
+    say(slots_[i].spec.name + " did not end in time: killed");
+    kill(slots_[i].pid, SIGKILL);
+    while (slots_[i].pid != 0)
+      poll_once(milliseconds(100), -1);
+  }
+}
+
+std::vector<Supervisor::Child> Supervisor::children() const {
+  std::vector<Child> all;
+  for (const Slot& slot : slots_)
+    all.push_back({slot.spec.name, slot.pid, slot.starts, slot.ended});
+  return all;
+}
+
+std::optional<std::string> Supervisor::misused() const {
+  for (const Slot& slot : slots_)
+    if (slot.misused)
+      return slot.spec.name;
+  return std::nullopt;
+}
+
+bool Supervisor::finished() const {
+  return std::none_of(slots_.begin(), slots_.end(),
+                      [](const Slot& slot) { return slot.pid != 0 || slot.due; });
+}
+
+}  // namespace saphira::cli

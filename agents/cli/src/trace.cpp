@@ -1,0 +1,136 @@
+#include "saphira/cli/trace.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+/// A column of a trace that counts here, and all of them in number.
+enum Column : std::size_t { kCycle = 0, kX = 1, kY = 2, kTh = 3, kClearance = 9, kContacts = 10 };
+constexpr std::size_t kColumns = 11;
+constexpr std::string_view kHeader = "cycle,";
+
+using Row = std::array<double, kColumns>;
+
+Row parse_row(std::string_view line, int number, const std::string& file) {
+  Row row{};
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    const std::size_t end = std::min(line.find(',', at), line.size());
+    const std::string field(line.substr(at, end - at));
+    char* stopped = nullptr;
+    row[i] = std::strtod(field.c_str(), &stopped);
+    const bool last = i + 1 == kColumns;
+    if (field.empty() || *stopped != '\0' || last != (end == line.size()))
+      throw FileError(file, number, static_cast<int>(at) + 1,
+                      "expected " + std::to_string(kColumns) + " numbers of a trace", line);
+    at = end + 1;
+  }
+  return row;
+}
+
+class Fnv1a {
+ public:
+  void add(std::string_view text) {
+    for (const char c : text)
+      value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  std::string hex() const {
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value_));
+    return text.data();
+  }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+}  // namespace
+
+Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std::string& file) {
+  Track track;
+  track.min_clearance = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t newest = text.rfind(kHeader);
+  Fnv1a hash;
+  bool first = true;
+  double x = 0.0;
+  double y = 0.0;
+  std::uint64_t counted = 0;
+  std::uint64_t before = 0;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string_view::npos)
+      break;
+    const std::string_view line = text.substr(at, end - at);
+    const bool of_newest = newest == std::string_view::npos || at > newest;
+    at = end + 1;
+    ++number;
+    if (line.starts_with(kHeader))
+      continue;
+    const Row row = parse_row(line, number, file);
+    if (of_newest && row[kCycle] > static_cast<double>(last_cycle))
+      break;
+    if (first) {
+      track.start_x = row[kX];
+      track.start_y = row[kY];
+      track.start_th = row[kTh];
+    } else {
+      track.path += std::hypot(row[kX] - x, row[kY] - y);
+    }
+    first = false;
+    x = row[kX];
+    y = row[kY];
+    track.min_clearance = std::fmin(track.min_clearance, row[kClearance]);
+    const auto count = static_cast<std::uint64_t>(row[kContacts]);
+    if (count < counted)  // the simulator was started again
+      before += counted;
+    counted = count;
+    track.contacts = before + counted;
+    if (of_newest)
+      track.cycles = static_cast<std::uint64_t>(row[kCycle]);
+    hash.add(line);
+    hash.add("\n");
+  }
+  track.hash = hash.hex();
+  return track;
+}
+
+std::string to_json(const Summary& summary) {
+  const auto rounded = [](double value, double step) { return std::round(value / step) * step; };
+  nlohmann::ordered_json json;
+  json["arrived"] = summary.arrived;
+  json["time_s"] = rounded(summary.time, 0.1);
+  json["path_m"] = rounded(summary.track.path, 0.001);
+  json["min_clearance_m"] = rounded(summary.track.min_clearance, 0.001);
+  json["contacts"] = summary.track.contacts;
+  json["cycles"] = summary.track.cycles;
+  json["late_cycles"] = summary.late_cycles;
+  json["trajectory_hash"] = summary.track.hash;
+  json["speed_factor"] = rounded(summary.speed_factor, 0.01);
+  return json.dump();
+}
+
+std::string to_text(const Summary& summary) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(),
+                "time              %.1f s (%.2f x real time)\n"
+                "path              %.2f m\n"
+                "smallest clearance %.2f m\n"
+                "contacts          %llu\n"
+                "cycles            %llu, %llu late\n",
+                summary.time, summary.speed_factor, summary.track.path, summary.track.min_clearance,
+                static_cast<unsigned long long>(summary.track.contacts),
+                static_cast<unsigned long long>(summary.track.cycles),
+                static_cast<unsigned long long>(summary.late_cycles));
+  return text.data();
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,183 @@
+#include "saphira/cli/deployment.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::cli {
+namespace {
+
+constexpr const char* kGood = R"(# a comment
+robot: alpha
+domain: 7
+profile: wan
+peers: [192.168.1.20, robot.local]
+interface: 192.168.1.4
+lockstep: true
+settings:
+  world: office
+  seed: 1
+programs:
+  - program: one
+    bus: false
+    arguments: [--world, "${config}/worlds/${world}.wld", --seed, "${seed}", "--socket=${run}/s"]
+  - program: one
+    name: two
+    robot: beta
+    arguments: ["${robot}"]
+    restart: false
+)";
+
+/// A folder with a program "one".
+class DeploymentTest : public testing::Test {
+ protected:
+  DeploymentTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "saphira-cli-XXXXXX").string();
+    EXPECT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    std::ofstream(folder_ + "/one") << "#!/bin/sh\n";
+    std::filesystem::permissions(folder_ + "/one", std::filesystem::perms::owner_all);
+    std::ofstream(folder_ + "/data") << "not a program\n";
+    places_ = {folder_, "/conf", "/run/x"};
+  }
+  ~DeploymentTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string folder_;
+  Places places_;
+};
+
+TEST_F(DeploymentTest, BecomesCommandLines) {
+  const Deployment deployment = parse_deployment(kGood, "good.yaml");
+  const auto children = command_lines(deployment, places_, {"seed=42"});
+  ASSERT_EQ(children.size(), 2U);
+  EXPECT_EQ(children[0].name, "one");
+  EXPECT_TRUE(children[0].restart);
+  EXPECT_EQ(children[0].argv,
+            (std::vector<std::string>{folder_ + "/one", "--world", "/conf/worlds/office.wld",
+                                      "--seed", "42", "--socket=/run/x/s"}));
+  EXPECT_EQ(children[1].name, "two");
+  EXPECT_FALSE(children[1].restart);
+  EXPECT_EQ(children[1].argv,
+            (std::vector<std::string>{folder_ + "/one", "beta", "--robot", "beta", "--domain", "7",
+                                      "--profile", "wan", "--peer", "192.168.1.20", "--peer",
+                                      "robot.local", "--interface", "192.168.1.4", "--lockstep"}));
+}
+
+TEST_F(DeploymentTest, WhatIsNotStatedIsLeftToThePrograms) {
+  const auto children = command_lines(parse_deployment("programs: [{program: one}]", "f"), places_);
+  EXPECT_EQ(children.at(0).argv, std::vector<std::string>{folder_ + "/one"});
+}
+
+TEST_F(DeploymentTest, NamesAreWithoutThePrefix) {
+  const Deployment deployment =
+      parse_deployment("programs: [{program: saphira-bridge}, {program: ./x/agent}]", "f");
+  EXPECT_EQ(deployment.programs[0].name, "bridge");
+  EXPECT_EQ(deployment.programs[1].name, "agent");
+}
+
+TEST_F(DeploymentTest, APathIsFromTheFile) {
+  const auto children = command_lines(
+      parse_deployment("programs: [{program: ./one}]", folder_ + "/x.yaml"), {"/nowhere", "", ""});
+  EXPECT_EQ(children.at(0).argv.at(0), folder_ + "/./one");
+}
+
+TEST_F(DeploymentTest, AnUnknownSettingIsRefused) {
+  const Deployment deployment = parse_deployment(kGood, "good.yaml");
+  for (const char* word : {"sede=1", "seed", "=1", "config=/"})
+    EXPECT_THROW(command_lines(deployment, places_, {word}), std::invalid_argument) << word;
+}
+
+struct Broken {
+  const char* text;
+  int line;
+  int column;
+  const char* says;
+};
+
+class BrokenDeployment : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenDeployment, IsRefusedWithThePlaceAndWhatWasExpected) {
+  const Broken& broken = GetParam();
+  try {
+    command_lines(parse_deployment(broken.text, "broken.yaml"), {"/nowhere", "/conf", "/run"});
+    FAIL() << "was taken: " << broken.text;
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.file(), "broken.yaml");
+    EXPECT_EQ(error.line(), broken.line) << error.what();
+    EXPECT_EQ(error.column(), broken.column) << error.what();
+    EXPECT_NE(std::string(error.what()).find(broken.says), std::string::npos) << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BrokenDeployment,
+    testing::Values(
+        Broken{"", 1, 1, "expected a deployment"}, Broken{"- a\n- b", 1, 1, "found a list"},
+        Broken{"programs: [", 1, 1, "not YAML"}, Broken{"robot: a\n", 1, 1, "expected programs:"},
+        Broken{"programs: []\n", 1, 1, "at least one program"},
+        Broken{"\nprogram:\n  - x\n", 2, 1, "unknown key \"program\": expected one of robot"},
+        Broken{"programs:\n  - program: sh\n    argument: [a]\n", 3, 5,
+               "unknown key \"argument\": expected one of program, name, arguments"},
+        Broken{"programs:\n  - name: a\n", 2, 5, "expected program:"},
+        Broken{"programs:\n  - program: sh\n    arguments: --x 1\n", 3, 16,
+               "expected a list of arguments, found \"--x 1\""},
+        Broken{"programs:\n  - program: sh\n    arguments: [[a]]\n", 3, 17, "found a list"},
+        Broken{"programs:\n  - program: sh\n    bus: perhaps\n", 3, 10, "expected true or false"},
+        Broken{"programs:\n  - program: sh\n  - program: sh\n", 3, 5, "is there already"},
+        Broken{"robot: a\nrobot: b\nprograms: [{program: sh}]\n", 2, 1, "is there already"},
+        Broken{"domain: 233\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 232"},
+        Broken{"domain: -1\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 232"},
+        Broken{"profile: wifi\nprograms: [{program: sh}]\n", 1, 10, "host, lan or wan"},
+        Broken{"profile: wan\nprograms: [{program: sh}]\n", 1, 10, "expected peers:"},
+        Broken{"robot: \"*\"\nprograms: [{program: sh}]\n", 1, 8, "one robot's name"},
+        Broken{"settings: [a]\nprograms: [{program: sh}]\n", 1, 11, "expected settings"},
+        Broken{"settings: {run: a}\nprograms: [{program: sh}]\n", 1, 12, "built in"},
+        Broken{"programs:\n  - program: sh\n    arguments: [a, \"${wrold}\"]\n", 3, 20,
+               "unknown ${wrold}: expected one of config"},
+        Broken{"programs:\n  - program: sh\n    arguments: [\"${run\"]\n", 3, 17, "expected }"},
+        Broken{"programs:\n  - program: no-such-program\n", 2, 14, "found no \"no-such-program\""},
+        Broken{"programs:\n  - program: ./no/such\n", 2, 14, "no executable"}));
+
+TEST(FindDeployment, NamesWhatThereIs) {
+  const char* source = std::getenv("SAPHIRA_SOURCE_DIR");
+  ASSERT_NE(source, nullptr) << "run this test by ctest";
+  const Places places{"/nowhere", std::string(source) + "/config", ""};
+  EXPECT_EQ(find_deployment("demo", places), places.config + "/deployments/demo.yaml");
+  EXPECT_EQ(find_deployment("demo.yaml", places), places.config + "/deployments/demo.yaml");
+  try {
+    find_deployment("dmeo", places);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(" demo"), std::string::npos);
+  }
+}
+
+TEST(ShippedDeployments, AreAllGood) {
+  const char* source = std::getenv("SAPHIRA_SOURCE_DIR");
+  const char* bin = std::getenv("SAPHIRA_BIN_DIR");
+  ASSERT_TRUE(source != nullptr && bin != nullptr) << "run this test by ctest";
+  const Places places{bin, std::string(source) + "/config", "/tmp"};
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(places.config + "/deployments")) {
+    if (entry.path().extension() != ".yaml")
+      continue;
+    ++count;
+    const Deployment deployment = load_deployment(entry.path().string());
+    for (const ChildSpec& child : command_lines(deployment, places)) {
+      for (std::size_t i = 1; i < child.argv.size(); ++i) {
+        if (child.argv[i].starts_with(places.config)) {
+          EXPECT_TRUE(std::filesystem::exists(child.argv[i])) << entry.path() << child.argv[i];
+        }
+      }
+    }
+  }
+  EXPECT_GE(count, 5);
+}
+
+}  // namespace
+}  // namespace saphira::cli

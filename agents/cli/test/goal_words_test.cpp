@@ -1,0 +1,74 @@
+#include "saphira/cli/goal_words.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+namespace saphira::cli {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(GoalWords, Numbers) {
+  for (const auto& [word, value] : {std::pair{"a=0.3", 0.3},
+                                    {"a=-2", -2.0},
+                                    {"a=+1.5", 1.5},
+                                    {"a=1e-2", 0.01},
+                                    {"a=.5", 0.5}}) {
+    const v1::Argument argument = parse_argument(word);
+    EXPECT_EQ(argument.name(), "a");
+    EXPECT_EQ(argument.kind(), v1::ARGUMENT_NUMBER) << word;
+    EXPECT_DOUBLE_EQ(argument.number(), value);
+  }
+  EXPECT_DOUBLE_EQ(parse_argument("heading=-90deg").number(), -kPi / 2);
+}
+
+TEST(GoalWords, Points) {
+  const v1::Argument plain = parse_argument("position=3,-1.5");
+  EXPECT_EQ(plain.kind(), v1::ARGUMENT_POINT);
+  EXPECT_EQ(plain.frame(), v1::FRAME_ODOM);
+  EXPECT_DOUBLE_EQ(plain.point().x(), 3.0);
+  EXPECT_DOUBLE_EQ(plain.point().y(), -1.5);
+  EXPECT_DOUBLE_EQ(plain.point().th(), 0.0);
+  const v1::Argument full = parse_argument("position=3,1,180deg@robot");
+  EXPECT_EQ(full.frame(), v1::FRAME_ROBOT);
+  EXPECT_DOUBLE_EQ(full.point().th(), kPi);
+  EXPECT_EQ(parse_argument("p=1,2@map").frame(), v1::FRAME_MAP);
+  EXPECT_EQ(parse_argument("p=1,2@odom").frame(), v1::FRAME_ODOM);
+}
+
+TEST(GoalWords, Text) {
+  for (const char* word : {"a=kitchen", "a=room=4", "a=deg", "a=nan", "a=inf", "a=a,b", "a=@odom"})
+    EXPECT_EQ(parse_argument(word).kind(), v1::ARGUMENT_TEXT) << word;
+  EXPECT_EQ(parse_argument("a=room=4").text(), "room=4");
+}
+
+TEST(GoalWords, WhatIsWrongIsRefusedInWords) {
+  for (const char* word :
+       {"position", "=3", "a=", "position=1,2,3,4", "position=1,b", "position=1,2@moon",
+        "position=1,", "position=1,2,@odom", "a-name-that-is-longer-than-31-chars=1"})
+    EXPECT_THROW(parse_argument(word), std::invalid_argument) << word;
+  EXPECT_THROW(parse_argument("a=" + std::string(256, 'x')), std::invalid_argument);
+  try {
+    parse_argument("position=1,2@moon");
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("\"moon\" is not a frame"), std::string::npos);
+  }
+}
+
+TEST(GoalWords, AWholeGoal) {
+  const v1::Goal goal = parse_goal("go_to", {"position=3,1", "speed=0.3", "note=now"});
+  EXPECT_EQ(goal.functor(), "go_to");
+  EXPECT_EQ(describe(goal), "go_to(position=(3, 1) in odom, speed=0.3, note=\"now\")");
+  EXPECT_EQ(describe(parse_goal("stop", {})), "stop()");
+  EXPECT_THROW(parse_goal("go_to", {"speed=1", "speed=2"}), std::invalid_argument);
+  EXPECT_THROW(parse_goal("speed=1", {}), std::invalid_argument);
+  std::vector<std::string> many;
+  for (int i = 0; i < 17; ++i)
+    many.push_back("a" + std::to_string(i) + "=1");
+  EXPECT_THROW(parse_goal("go_to", many), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace saphira::cli

@@ -1,0 +1,179 @@
+#include "saphira/cli/supervisor.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace saphira::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = Supervisor::Clock;
+
+ChildSpec shell(const std::string& name, const std::string& script) {
+  return {name, {"/bin/sh", "-c", script}, {}, true};
+}
+
+/// A supervisor whose output is kept.
+class SupervisorTest : public testing::Test {
+ protected:
+  Supervisor::Print keep() {
+    return [this](std::string_view from, std::string_view line) {
+      lines_.push_back(std::string(from) + "|" + std::string(line));
+    };
+  }
+
+  static bool run_until(Supervisor& supervisor, const std::function<bool()>& condition) {
+    const auto end = Clock::now() + std::chrono::seconds(30);
+    while (!condition() && Clock::now() < end)
+      supervisor.step(milliseconds(20));
+    return condition();
+  }
+
+  bool said(const std::string& line) const {
+    return std::find(lines_.begin(), lines_.end(), line) != lines_.end();
+  }
+  std::string all() const {
+    std::string text;
+    for (const std::string& line : lines_)
+      text += line + "\n";
+    return text;
+  }
+
+  std::vector<std::string> lines_;
+};
+
+TEST_F(SupervisorTest, PrintsEachLineWithItsName) {
+  Supervisor supervisor({shell("a", "echo one; echo two >&2; printf three; exec sleep 60"),
+                         shell("b", "echo \"$WHAT\"; exec sleep 60")},
+                        keep());
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return said("a|one") && said("a|two"); })) << all();
+  supervisor.stop();
+  EXPECT_TRUE(said("a|three")) << all();
+}
+
+TEST_F(SupervisorTest, GivesTheEnvironment) {
+  ChildSpec child = shell("a", "echo \"$SAPHIRA_TEST_WORD\"; exec sleep 60");
+  child.environment["SAPHIRA_TEST_WORD"] = "hello";
+  Supervisor supervisor({child}, keep());
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return said("a|hello"); })) << all();
+}
+
+TEST_F(SupervisorTest, StartsAgainWhatIsKilledAndBacksOff) {
+  Supervisor supervisor({shell("a", "exec sleep 60")}, keep());
+  supervisor.start();
+  const auto starts = [&] { return supervisor.children().at(0).starts; };
+  for (int round = 1; round <= 3; ++round) {
+    const pid_t pid = supervisor.children().at(0).pid;
+    ASSERT_GT(pid, 0);
+    const auto killed = Clock::now();
+    kill(pid, SIGKILL);
+    ASSERT_TRUE(run_until(supervisor, [&] { return starts() == round + 1; })) << all();
+    EXPECT_GE(Clock::now() - killed, milliseconds(100) * (1 << (round - 1)));
+  }
+  EXPECT_TRUE(said("|a ended: killed by SIGKILL; started again in 100 ms")) << all();
+  EXPECT_TRUE(said("|a ended: killed by SIGKILL; started again in 400 ms")) << all();
+}
+
+TEST_F(SupervisorTest, AnotherChildGoesOnMeanwhile) {
+  Supervisor supervisor({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")}, keep());
+  supervisor.start();
+  const pid_t other = supervisor.children().at(1).pid;
+  kill(supervisor.children().at(0).pid, SIGKILL);
+  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
+  EXPECT_EQ(supervisor.children().at(1).pid, other);
+}
+
+TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {
+  Supervisor supervisor({shell("a", "echo bad option; exit 2")}, keep());
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.misused().has_value(); }));
+  EXPECT_EQ(supervisor.misused(), "a");
+  EXPECT_TRUE(supervisor.finished());
+  EXPECT_EQ(supervisor.children().at(0).starts, 1);
+  EXPECT_EQ(lines_, (std::vector<std::string>{"a|bad option", "|a ended: exit code 2"}));
+}
+
+TEST_F(SupervisorTest, DoesNotStartAgainWhatMayEnd) {
+  ChildSpec once = shell("a", "exit 0");
+  once.restart = false;
+  Supervisor supervisor({once}, keep());
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.finished(); }));
+  EXPECT_FALSE(supervisor.misused().has_value());
+}
+
+TEST_F(SupervisorTest, SaysWhatCannotRun) {
+  Supervisor supervisor({{"a", {"/no/such/program"}, {}, false}}, keep());
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.finished(); }));
+  EXPECT_TRUE(said("a|cannot run /no/such/program: No such file or directory")) << all();
+}
+
+TEST_F(SupervisorTest, StopsInReverseOrder) {
+  const std::string script = "trap 'echo bye; exit 0' TERM; echo up; while :; do sleep 0.01; done";
+  Supervisor supervisor({shell("a", script), shell("b", script), shell("c", script)}, keep());
+  supervisor.start();
+  ASSERT_TRUE(run_until(supervisor, [&] { return said("a|up") && said("b|up") && said("c|up"); }));
+  lines_.clear();
+  supervisor.stop(std::chrono::seconds(20));
+  EXPECT_EQ(lines_, (std::vector<std::string>{"c|bye", "b|bye", "a|bye"}));
+  EXPECT_TRUE(supervisor.finished());
+}
+
+TEST_F(SupervisorTest, KillsWhatDoesNotEnd) {
+  Supervisor supervisor({shell("a", "trap '' TERM; echo up; while :; do sleep 1; done")}, keep());
+  supervisor.start();
+  ASSERT_TRUE(run_until(supervisor, [&] { return said("a|up"); }));
+  const auto begin = Clock::now();
+  supervisor.stop(milliseconds(300));
+  EXPECT_GE(Clock::now() - begin, milliseconds(300));
+  EXPECT_TRUE(said("|a did not end in time: killed")) << all();
+  EXPECT_EQ(supervisor.children().at(0).ended, "killed by SIGKILL");
+}
+
+TEST_F(SupervisorTest, EndsAlsoWhatWasStopped) {
+  Supervisor supervisor({shell("a", "exec sleep 60")}, keep());
+  supervisor.start();
+  kill(supervisor.children().at(0).pid, SIGSTOP);
+  supervisor.stop(std::chrono::seconds(20));
+  EXPECT_EQ(supervisor.children().at(0).ended, "killed by SIGTERM");
+}
+
+TEST_F(SupervisorTest, TheChildrenEndWithTheirSupervisor) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t middle = fork();
+  if (middle == 0) {
+    Supervisor supervisor({shell("a", "exec sleep 60")}, [](auto, auto) {});
+    supervisor.start();
+    const pid_t child = supervisor.children().at(0).pid;
+    if (write(ends[1], &child, sizeof child) != sizeof child)
+      _exit(1);
+    raise(SIGKILL);
+  }
+  pid_t child = 0;
+  ASSERT_EQ(read(ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
+  waitpid(middle, nullptr, 0);
+  // Re-parented: who reaps it is not ours to say, so a zombie counts as ended.
+  const auto gone = [child] {
+    std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
+    std::string word;
+    stat >> word >> word >> word;
+    return !stat || word == "Z";
+  };
+  const auto limit = Clock::now() + std::chrono::seconds(30);
+  while (!gone() && Clock::now() < limit)
+    usleep(2000);
+  EXPECT_TRUE(gone());
+  close(ends[0]);
+  close(ends[1]);
+}
+
+}  // namespace
+}  // namespace saphira::cli
