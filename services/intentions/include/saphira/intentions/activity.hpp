@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/intentions/goal.hpp"
+
+namespace saphira::intentions {
+
+/// Cycles of 100 ms that the robot has been connected: the only time here. Negative for what
+/// happened before the service began.
+using Ticks = std::int64_t;
+inline constexpr double kTick = 0.1;  ///< [s]
+
+/// What is known of the robot in a cycle.
+struct Robot {
+  bool connected = false;
+  bool has_power = true;   ///< of its motors
+  std::uint64_t odom = 0;  ///< which odom frame
+  Pose pose_in_odom{};
+  double velocity = 0.0;           ///< [m/s]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+};
+
+/// How far a behavior instance says it is.
+struct BehaviorLevel {
+  std::string name;       ///< of the instance
+  double goal = 0.0;      ///< [0..1] how far its goal is satisfied
+  double progress = 0.0;  ///< [0..1]
+};
+
+/// A behavior that is wanted to exist with these parameters.
+struct IntendedBehavior {
+  std::string name;  ///< of the instance, unique in the set
+  std::string schema;
+  int priority = 0;  ///< 0 is the highest
+  bool running = true;
+  Arguments parameters;
+  std::uint32_t intention = 0;  ///< the node that wants it
+
+  bool operator==(const IntendedBehavior&) const = default;
+};
+
+/// The state of an intention (manual 8.4), less the numbers of the C form: the user's own states
+/// are the activity's members, and kRunning stands for all of them.
+enum class IntentionState {
+  kInit,         ///< to be stepped for the first time
+  kRunning,      ///< in a state of its own
+  kSuspended,    ///< not stepped until it is resumed
+  kInterrupted,  ///< to be stepped once more, to put its things away; then suspended
+  kResumed,      ///< to be stepped for the first time after a suspension
+  kSuccess,
+  kFailure,
+  kTimeout,
+  kRemoved
+};
+
+inline constexpr bool finished(IntentionState state) {
+  return state == IntentionState::kSuccess || state == IntentionState::kFailure ||
+         state == IntentionState::kTimeout;
+}
+
+class Activity;
+
+/// What an activity sees and does in its step. Given by the forest for one step of one intention.
+class Self {
+ public:
+  virtual ~Self() = default;
+
+  virtual const Robot& robot() const = 0;
+  virtual Ticks now() const = 0;
+  /// kInit, kResumed, kRunning or kInterrupted.
+  virtual IntentionState state() const = 0;
+
+  /// Intends a behavior under a label of this intention's own, or changes the one that is there
+  /// (intend_beh, manual 8.5). It lasts until it is dropped or this intention ends or is
+  /// interrupted.
+  virtual void intend_behavior(std::string_view label, std::string_view schema, int priority,
+                               Arguments parameters) = 0;
+  virtual void drop_behavior(std::string_view label) = 0;
+  /// How far the behavior says its goal is satisfied [0..1]; 0 until the behaviors service has said
+  /// so of the parameters that it has now. The measure for degrees of blocking (paper 3.4).
+  virtual double level(std::string_view label) const = 0;
+
+  /// Intends a child; its number. Timeout in ticks, 0 for none. A child lives no longer than this
+  /// intention; what it ended with can be read until it is removed (manual 8.4).
+  virtual std::uint32_t intend(std::string_view name, std::string_view schema,
+                               std::unique_ptr<Activity> activity, Ticks timeout,
+                               bool blocking) = 0;
+  virtual IntentionState child_state(std::uint32_t child) const = 0;
+  virtual void remove_child(std::uint32_t child) = 0;
+
+  /// What is being done now, for people: short, and the same from cycle to cycle.
+  virtual void say(std::string step) = 0;
+  virtual void progress(double done) = 0;  ///< [0..1]
+  virtual void succeed(std::string reason) = 0;
+  virtual void fail(GoalCode code, std::string reason) = 0;
+};
+
+/// An instance of a schema: a finite-state machine that is stepped once a cycle (manual 8.1).
+///
+/// Must: return soon, use no clock and no randomness of its own, and come to an end or be one that
+/// is meant to last. May: ignore kInterrupted, since its behaviors and children are removed for it;
+/// it has to intend them anew when it is resumed.
+class Activity {
+ public:
+  virtual ~Activity() = default;
+  virtual void step(Self& self) = 0;
+  /// Other arguments for the one that is running; false where it has to be begun anew.
+  virtual bool change(const Arguments& arguments) {
+    static_cast<void>(arguments);
+    return false;
+  }
+  /// The deadline of its goal has come: a reason in words where that is its success, empty where it
+  /// is a failure.
+  virtual std::string at_deadline(const Robot& robot) {
+    static_cast<void>(robot);
+    return {};
+  }
+};
+
+}  // namespace saphira::intentions

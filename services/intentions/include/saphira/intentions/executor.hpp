@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saphira/intentions/forest.hpp"
+#include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/journal.hpp"
+#include "saphira/intentions/schema.hpp"
+
+namespace saphira::intentions {
+
+/// What happened to a goal on the bus.
+struct GoalEvent {
+  enum class Kind { kWritten, kDisposed, kWriterLost };
+  Kind kind = Kind::kWritten;
+  Goal goal;  ///< kWritten: whole; otherwise only its id counts
+};
+
+/// What a step is given.
+struct Inputs {
+  std::uint64_t epoch = 0;
+  std::uint64_t cycle = 0;
+  Robot robot;
+  std::vector<BehaviorLevel> behaviors;
+  std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
+  std::vector<GoalEvent> events;      ///< since the last step, oldest first
+};
+
+/// What became of the goals since the last time.
+struct News {
+  std::vector<GoalStatus> changed;  ///< to be published, in the order in which it happened
+  std::vector<GoalId> withdrawn;    ///< ended long ago: their status is to be withdrawn
+  std::vector<Placement> placed;    ///< to be remembered over a restart
+  std::vector<Ending> endings;      ///< to be remembered over a restart
+};
+
+/// What a step gives.
+struct Outputs {
+  std::vector<IntendedBehavior> behaviors;
+  std::vector<IntentionNode> nodes;
+  News news;
+};
+
+struct ExecutorOptions {
+  double keep_ended = 60.0;       ///< [s] of robot time that an ended goal's status stays
+  std::size_t max_open = 256;     ///< goals that may be open at once
+  std::size_t max_ended = 65536;  ///< endings that are remembered; the oldest are forgotten
+};
+
+/// Goals in, intended behaviors out (manual 8, paper 3.3): the executor of PRS-lite with a queue of
+/// goals on top.
+///
+/// At most one goal is underway: the most important, of equals the one that came first. A more
+/// important one interrupts it; it resumes afterwards. Nothing is intended when no goal is
+/// underway, which releases the robot.
+class Executor {
+ public:
+  explicit Executor(Registry registry, const Memory& memory = {}, ExecutorOptions options = {});
+
+  /// One cycle of the robot.
+  Outputs step(const Inputs& inputs);
+
+  /// Takes in events between cycles, so that a requester hears of a refusal also while no robot is
+  /// connected. Starts nothing: for the step that follows it is the same whether the events came
+  /// before or with it.
+  News hear(const std::vector<GoalEvent>& events);
+
+  /// There is no robot any more (no cycles come). Goals wait for it; the next step goes on.
+  News robot_gone();
+
+ private:
+  struct Entry {
+    Goal goal;            ///< as it was written, to tell a change from a repetition
+    Arguments arguments;  ///< complete; points in odom once `placed`
+    const Schema* schema = nullptr;
+    bool fresh = true;  ///< no step since it was heard: acceptance counts from the next one
+    bool placed = false;
+    bool changed = false;               ///< while begun, and its activity does not know yet
+    bool replaced = false;              ///< what it replaces has been ended
+    std::optional<std::uint64_t> odom;  ///< the frame that its points are in; none: it has none
+    std::uint64_t order = 0;
+    Ticks accepted = 0;
+    Ticks ended = 0;
+    std::uint32_t node = 0;  ///< root of its tree; 0: not begun
+    GoalStatus status;
+    std::optional<GoalStatus> published;
+    Ticks published_at = 0;
+  };
+  using Entries = std::map<GoalId, Entry>;
+
+  void pass_time(const Inputs& inputs);
+  void take_in(const GoalEvent& event);
+  void take_written(const Goal& goal);
+  void put_up(Entry& entry, const Goal& goal, Arguments complete);
+  static bool depends_on_odom(const Entry& entry, bool placed);
+  void change(Entry& entry, const Goal& goal);
+  std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
+  void end(Entry& entry, GoalState state, GoalCode code, std::string reason);
+  void remember(const Ending& ending);
+  static void wait(Entry& entry, GoalCode code, std::string reason);
+  void suspend(Entry& entry, GoalCode code, std::string reason);
+  void lose_robot();
+  void meet_odom(std::uint64_t odom);
+  void place(Entry& entry, const Robot& robot);
+  void pass_changes();
+  void check_deadlines(const Robot& robot);
+  void replace();
+  Entry* best();
+  Entry* arbitrate();
+  bool collect();
+  News take_news();
+
+  Registry registry_;
+  ExecutorOptions options_;
+  Forest forest_;
+  Entries entries_;
+  std::map<GoalId, Placement> remembered_places_;
+  std::map<GoalId, Ending> remembered_;
+  std::deque<GoalId> remembered_order_;
+  std::uint64_t next_order_ = 1;
+  Ticks now_ = 0;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t cycle_ = 0;
+  bool robot_here_ = false;
+  std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
+  std::vector<GoalId> withdrawn_;
+  std::vector<Placement> placed_;
+  std::vector<Ending> endings_;
+};
+
+}  // namespace saphira::intentions

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "saphira/intentions/schema.hpp"
+
+namespace saphira::intentions {
+
+/// The built-in functors:
+///
+///   go_to(position, [speed], [radius], [patience])   drives to a point around what is in the way
+///   drive(speed, [patience])                         goes on until its deadline or its withdrawal
+///   turn_to(heading | position, [angle], [turn_speed], [patience])
+///   stop()                                           ends what is not more important, and halts
+Registry built_in();
+
+}  // namespace saphira::intentions

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::intentions {
+
+/// Unique for ever: a writer's random number and its own count.
+struct GoalId {
+  std::uint64_t writer = 0;
+  std::uint64_t number = 0;
+
+  auto operator<=>(const GoalId&) const = default;
+};
+
+enum class Frame { kRobot, kOdom, kMap };
+enum class ArgumentKind { kNumber, kText, kPoint };
+
+/// A named, typed argument. Only the member that `kind` names counts.
+struct Argument {
+  std::string name;
+  ArgumentKind kind = ArgumentKind::kNumber;
+  double number = 0.0;  ///< SI
+  std::string text;
+  Pose point;
+  Frame frame = Frame::kOdom;  ///< of `point`
+
+  bool operator==(const Argument&) const = default;
+};
+using Arguments = std::vector<Argument>;
+
+Argument number(std::string name, double value);
+Argument text(std::string name, std::string value);
+Argument point(std::string name, const Pose& value, Frame frame = Frame::kOdom);
+
+/// The argument of that name; nullptr where there is none.
+const Argument* find(const Arguments& arguments, std::string_view name);
+
+enum class WriterLost { kCancel, kKeep };
+
+/// What somebody wants to be true. Writing it again under its id changes it.
+struct Goal {
+  GoalId id;
+  std::string requester;
+  std::string functor;
+  Arguments arguments;
+  int priority = 0;       ///< larger is more important
+  double deadline = 0.0;  ///< [s] of robot time from acceptance; 0: none
+  WriterLost writer_lost = WriterLost::kCancel;
+
+  bool operator==(const Goal&) const = default;
+};
+
+enum class GoalState { kWaiting, kRefused, kUnderway, kSuspended, kSucceeded, kFailed, kCanceled };
+
+enum class GoalCode {
+  kNone,
+  kUnknownFunctor,
+  kBadArgument,
+  kChanged,
+  kDeadline,
+  kBlocked,
+  kNoRobot,
+  kDisposed,
+  kWriterLost,
+  kPreempted
+};
+
+inline constexpr bool ended(GoalState state) {
+  return state == GoalState::kRefused || state == GoalState::kSucceeded ||
+         state == GoalState::kFailed || state == GoalState::kCanceled;
+}
+
+/// What became of a goal so far.
+struct GoalStatus {
+  GoalId id;
+  std::string requester;
+  std::string functor;
+  GoalState state = GoalState::kWaiting;
+  GoalCode code = GoalCode::kNone;
+  std::string reason;     ///< in words; always given at an end
+  std::string step;       ///< what is being done now
+  double progress = 0.0;  ///< [0..1]
+  double elapsed = 0.0;   ///< [s] of robot time since acceptance
+
+  bool operator==(const GoalStatus&) const = default;
+};
+
+/// The word that stands for it in files and messages, such as "succeeded".
+const char* name_of(GoalState state);
+const char* name_of(GoalCode code);
+/// "1f3a:2": the id as people type it.
+std::string describe(const GoalId& id);
+/// What somebody wrote, in quotes, made fit for a message: cut to 40 characters, no control
+/// characters.
+std::string quoted(std::string_view text);
+/// A number as people write it, such as 0.25.
+std::string plain(double value);
+
+}  // namespace saphira::intentions

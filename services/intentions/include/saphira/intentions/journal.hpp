@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/intentions/goal.hpp"
+
+namespace saphira::intentions {
+
+/// How a goal ended: what has to outlive the service so that it never does a goal twice.
+struct Ending {
+  GoalId id;
+  GoalState state = GoalState::kSucceeded;
+  GoalCode code = GoalCode::kNone;
+  std::string reason;
+
+  bool operator==(const Ending&) const = default;
+};
+
+/// Where and when a goal was accepted: after a restart of the service its points are still what
+/// they were, also those that were given from the robot, and its deadline goes on.
+struct Placement {
+  struct Point {
+    std::string name;
+    Pose given;    ///< as it was asked for
+    Pose in_odom;  ///< what became of it
+
+    bool operator==(const Point&) const = default;
+  };
+  GoalId id;
+  std::uint64_t epoch = 0;  ///< of acceptance
+  std::uint64_t cycle = 0;
+  std::uint64_t odom = 0;
+  std::vector<Point> points;
+
+  bool operator==(const Placement&) const = default;
+};
+
+/// What the service remembers over a restart.
+struct Memory {
+  std::vector<Placement> placements;  ///< of goals that have not ended
+  std::vector<Ending> endings;        ///< oldest first
+
+  bool operator==(const Memory&) const = default;
+};
+
+/// Lines of the journal, with their line break:
+///   placed writer(hex) number epoch cycle odom {name x y th x y th}
+///   ended writer(hex) number state code reason...
+std::string write_line(const Placement& placement);
+std::string write_line(const Ending& ending);
+
+/// Reads those lines; the newest of an id counts. A last line without its line break is what a
+/// crash left of a write: it is skipped. FileError for any other line that cannot be read.
+Memory read_journal(const std::string& file, std::string_view content);
+
+}  // namespace saphira::intentions

@@ -1,0 +1,505 @@
+#include "saphira/intentions/executor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace saphira::intentions {
+namespace {
+
+/// How often the status of a goal that is not at its end is published anew.
+constexpr Ticks kStatusPeriod = 10;
+/// Goals that may begin in one cycle, each after the one before it ended in its first step.
+constexpr int kBeginsPerCycle = 8;
+
+constexpr const char* kPositionLost =
+    "position lost: the robot's dead reckoning has begun anew since the goal was accepted, so "
+    "where "
+    "the goal is cannot be told";
+
+double seconds(Ticks ticks) {
+  return kTick * static_cast<double>(ticks);
+}
+
+std::string name_of_goal(const Goal& goal) {
+  std::string name = "goal " + describe(goal.id) + " (" + goal.functor + ")";
+  if (!goal.requester.empty())
+    name += " of " + quoted(goal.requester);
+  return name;
+}
+
+/// Whether somebody who watches wants to hear of it at once.
+bool differs(const GoalStatus& a, const GoalStatus& b) {
+  return a.state != b.state || a.code != b.code || a.reason != b.reason || a.step != b.step ||
+         a.requester != b.requester || a.functor != b.functor;
+}
+
+bool open(const GoalStatus& status) {
+  return !ended(status.state);
+}
+
+/// Whether these arguments, as they were written, are what was placed.
+bool is_of(const Placement& placement, const Arguments& arguments) {
+  auto point = placement.points.begin();
+  for (const Argument& argument : arguments) {
+    if (argument.kind != ArgumentKind::kPoint)
+      continue;
+    if (point == placement.points.end() || point->name != argument.name ||
+        point->given != argument.point)
+      return false;
+    ++point;
+  }
+  return point == placement.points.end();
+}
+
+}  // namespace
+
+Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions options)
+    : registry_(std::move(registry)), options_(options) {
+  for (const Placement& placement : memory.placements)
+    remembered_places_[placement.id] = placement;
+  for (const Ending& ending : memory.endings)
+    remember(ending);
+}
+
+void Executor::remember(const Ending& ending) {
+  if (remembered_.insert_or_assign(ending.id, ending).second)
+    remembered_order_.push_back(ending.id);
+  while (remembered_order_.size() > options_.max_ended) {
+    remembered_.erase(remembered_order_.front());
+    remembered_order_.pop_front();
+  }
+}
+
+News Executor::hear(const std::vector<GoalEvent>& events) {
+  for (const GoalEvent& event : events)
+    take_in(event);
+  return take_news();
+}
+
+News Executor::robot_gone() {
+  lose_robot();
+  return take_news();
+}
+
+Outputs Executor::step(const Inputs& inputs) {
+  pass_time(inputs);
+  for (const GoalEvent& event : inputs.events)
+    take_in(event);
+  for (auto& [id, entry] : entries_) {
+    if (std::exchange(entry.fresh, false))
+      entry.accepted = now_;
+    if (open(entry.status))
+      entry.status.elapsed = seconds(now_ - entry.accepted);
+  }
+  robot_here_ = inputs.robot.connected;
+  if (robot_here_) {
+    meet_odom(inputs.robot.odom);
+    for (auto& [id, entry] : entries_) {
+      if (open(entry.status) && !entry.placed)
+        place(entry, inputs.robot);
+    }
+    pass_changes();
+  } else {
+    lose_robot();
+  }
+  check_deadlines(inputs.robot);
+  replace();
+  if (inputs.behaviors_cycle > 0)
+    forest_.hear(inputs.behaviors,
+                 now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle));
+  if (robot_here_)
+    arbitrate();
+  forest_.step(now_, inputs.robot);
+  // The next goal begins in the cycle in which the one before it ends: without a gap in what is
+  // intended, in which the robot would be released.
+  for (int begun = 0; collect() && robot_here_ && begun < kBeginsPerCycle; ++begun) {
+    if (const Entry* const next = arbitrate())
+      forest_.begin(next->node, now_, inputs.robot);
+  }
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const bool old =
+        !open(entry->second.status) && seconds(now_ - entry->second.ended) >= options_.keep_ended;
+    if (old)
+      withdrawn_.push_back(entry->first);
+    entry = old ? entries_.erase(entry) : std::next(entry);
+  }
+  return {forest_.behaviors(), forest_.nodes(), take_news()};
+}
+
+void Executor::pass_time(const Inputs& inputs) {
+  if (epoch_ == 0)
+    now_ = 0;
+  else if (inputs.epoch != epoch_)
+    ++now_;
+  else if (inputs.cycle > cycle_)
+    now_ += static_cast<Ticks>(inputs.cycle - cycle_);
+  epoch_ = inputs.epoch;
+  cycle_ = inputs.cycle;
+}
+
+// --- goals from the bus
+
+void Executor::take_in(const GoalEvent& event) {
+  if (event.kind == GoalEvent::Kind::kWritten) {
+    take_written(event.goal);
+    return;
+  }
+  const auto found = entries_.find(event.goal.id);
+  if (found == entries_.end() || !open(found->second.status))
+    return;
+  Entry& entry = found->second;
+  if (event.kind == GoalEvent::Kind::kDisposed) {
+    end(entry, GoalState::kCanceled, GoalCode::kDisposed, "withdrawn by its requester");
+  } else if (entry.goal.writer_lost == WriterLost::kCancel) {
+    end(entry, GoalState::kCanceled, GoalCode::kWriterLost,
+        "the program that asked for it is gone");
+  }
+}
+
+void Executor::take_written(const Goal& goal) {
+  const auto found = entries_.find(goal.id);
+  if (found != entries_.end()) {
+    if (open(found->second.status) && goal != found->second.goal)
+      change(found->second, goal);
+    return;  // an ended goal stays ended: its id is used up
+  }
+  Entry& entry = entries_[goal.id];
+  entry.goal = goal;
+  entry.accepted = now_;
+  entry.order = next_order_++;
+  entry.status.id = goal.id;
+  entry.status.requester = goal.requester;
+  entry.status.functor = goal.functor;
+
+  if (const auto done = remembered_.find(goal.id); done != remembered_.end()) {
+    entry.status.state = done->second.state;
+    entry.status.code = done->second.code;
+    entry.status.reason = done->second.reason;
+    entry.status.progress = done->second.state == GoalState::kSucceeded ? 1.0 : 0.0;
+    entry.ended = now_;
+    return;
+  }
+  GoalCode code = GoalCode::kNone;
+  Arguments complete;
+  std::string wrong = complaint(goal, code, complete);
+  if (wrong.empty()) {
+    const auto count = std::count_if(entries_.begin(), entries_.end(),
+                                     [](const auto& each) { return open(each.second.status); });
+    if (static_cast<std::size_t>(count) > options_.max_open)
+      wrong = "too many goals: " + std::to_string(options_.max_open) + " are open already";
+  }
+  if (!wrong.empty()) {
+    end(entry, GoalState::kRefused, code, std::move(wrong));
+    return;
+  }
+  put_up(entry, goal, std::move(complete));
+  if (!robot_here_)
+    wait(entry, GoalCode::kNoRobot, "accepted; waits for the robot");
+  else
+    wait(entry, GoalCode::kNone, "accepted");
+}
+
+/// Makes the entry one for this goal, whose arguments are checked.
+void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
+  entry.goal = goal;
+  entry.schema = registry_.find(goal.functor);
+  entry.arguments = std::move(complete);
+  entry.placed = false;
+  entry.odom.reset();
+  // What is in odom is in the one that its writer could know of.
+  if (odom_ && depends_on_odom(entry, false))
+    entry.odom = odom_;
+  entry.status.requester = goal.requester;
+  entry.status.functor = goal.functor;
+}
+
+/// Whether another odom frame would make the arguments mean something else.
+bool Executor::depends_on_odom(const Entry& entry, bool placed) {
+  return std::any_of(entry.arguments.begin(), entry.arguments.end(), [&](const Argument& argument) {
+    if (argument.kind == ArgumentKind::kPoint)
+      return placed || argument.frame == Frame::kOdom;
+    const auto& known = entry.schema->parameters;
+    return std::any_of(known.begin(), known.end(), [&](const Parameter& parameter) {
+      return parameter.in_odom && parameter.name == argument.name;
+    });
+  });
+}
+
+void Executor::change(Entry& entry, const Goal& goal) {
+  GoalCode code = GoalCode::kNone;
+  Arguments complete;
+  const std::string wrong = complaint(goal, code, complete);
+  if (!wrong.empty()) {
+    // What is not understood never replaces what is: the goal goes on as it was.
+    entry.status.code = code;
+    entry.status.reason = "goes on unchanged, the change was refused: " + wrong;
+    return;
+  }
+  const bool other = goal.functor != entry.goal.functor;
+  const bool arguments = other || goal.arguments != entry.goal.arguments;
+  if (other && entry.node != 0) {
+    forest_.remove(entry.node);
+    entry.node = 0;
+    entry.replaced = false;
+  }
+  if (arguments) {
+    remembered_places_.erase(goal.id);
+    put_up(entry, goal, std::move(complete));
+    entry.changed = entry.node != 0;
+  } else {
+    entry.goal = goal;
+    entry.status.requester = goal.requester;
+  }
+  entry.status.code = GoalCode::kChanged;
+  entry.status.reason = "changed by its requester";
+}
+
+std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& complete) const {
+  const Schema* const schema = registry_.find(goal.functor);
+  if (schema == nullptr) {
+    code = GoalCode::kUnknownFunctor;
+    return "unknown functor " + quoted(goal.functor) + ": expected one of " + registry_.names();
+  }
+  code = GoalCode::kBadArgument;
+  if (goal.id == GoalId{})
+    return "expected an id that is unique for ever, got 0:0";
+  if (!(goal.deadline >= 0.0) || !std::isfinite(goal.deadline))
+    return "expected a deadline of 0 (none) or more seconds, got " + plain(goal.deadline);
+  std::string wrong = check_arguments(*schema, goal.arguments, complete);
+  if (wrong.empty())
+    code = GoalCode::kNone;
+  return wrong;
+}
+
+// --- states
+
+void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string reason) {
+  if (entry.node != 0)
+    forest_.remove(entry.node);
+  entry.node = 0;
+  entry.ended = now_;
+  entry.status.state = state;
+  entry.status.code = code;
+  entry.status.reason = reason.empty() ? name_of(state) : std::move(reason);
+  entry.status.step.clear();
+  if (state == GoalState::kSucceeded)
+    entry.status.progress = 1.0;
+  const Ending ending{entry.goal.id, state, entry.status.code, entry.status.reason};
+  remembered_places_.erase(ending.id);
+  remember(ending);
+  endings_.push_back(ending);
+}
+
+void Executor::wait(Entry& entry, GoalCode code, std::string reason) {
+  entry.status.state = GoalState::kWaiting;
+  entry.status.code = code;
+  entry.status.reason = std::move(reason);
+}
+
+void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
+  if (entry.status.state == GoalState::kUnderway && entry.node != 0)
+    forest_.interrupt(entry.node);
+  entry.status.state = GoalState::kSuspended;
+  entry.status.code = code;
+  entry.status.reason = std::move(reason);
+  entry.status.step.clear();
+}
+
+void Executor::lose_robot() {
+  robot_here_ = false;
+  for (auto& [id, entry] : entries_) {
+    if (entry.status.state == GoalState::kWaiting)
+      wait(entry, GoalCode::kNoRobot, "waits for the robot");
+    else if (open(entry.status))
+      suspend(entry, GoalCode::kNoRobot, "the robot is not connected; goes on when it is");
+  }
+}
+
+void Executor::meet_odom(std::uint64_t odom) {
+  if (odom_ && *odom_ != odom) {
+    for (auto& [id, entry] : entries_) {
+      if (open(entry.status) && entry.odom && *entry.odom != odom)
+        end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+    }
+  }
+  odom_ = odom;
+}
+
+/// Fixes the arguments in odom, from where the robot is; after a restart of the service, as they
+/// were fixed before it.
+void Executor::place(Entry& entry, const Robot& robot) {
+  entry.placed = true;
+  const auto found = remembered_places_.find(entry.goal.id);
+  const bool before = found != remembered_places_.end() && is_of(found->second, entry.arguments);
+  Placement placement;
+  if (before) {
+    placement = found->second;
+    if (placement.epoch == epoch_ && placement.cycle <= cycle_)
+      entry.accepted = now_ - static_cast<Ticks>(cycle_ - placement.cycle);
+    entry.status.elapsed = seconds(now_ - entry.accepted);
+  } else {
+    placement = {entry.goal.id, epoch_, cycle_, robot.odom, {}};
+    for (const Argument& argument : entry.arguments) {
+      if (argument.kind == ArgumentKind::kPoint)
+        placement.points.push_back({argument.name, argument.point,
+                                    argument.frame == Frame::kRobot
+                                        ? compose(robot.pose_in_odom, argument.point)
+                                        : argument.point});
+    }
+  }
+  auto point = placement.points.begin();
+  for (Argument& argument : entry.arguments) {
+    if (argument.kind != ArgumentKind::kPoint)
+      continue;
+    argument.point = (point++)->in_odom;
+    argument.frame = Frame::kOdom;
+  }
+  if (depends_on_odom(entry, true)) {
+    entry.odom = placement.odom;
+    if (placement.odom != robot.odom) {
+      end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+      return;
+    }
+  }
+  if (!before) {
+    remembered_places_[entry.goal.id] = placement;
+    placed_.push_back(std::move(placement));
+  }
+}
+
+/// Tells the activities that are at work of other arguments.
+void Executor::pass_changes() {
+  for (auto& [id, entry] : entries_) {
+    if (!entry.changed || !entry.placed)
+      continue;
+    entry.changed = false;
+    if (entry.node == 0 || forest_.activity(entry.node).change(entry.arguments))
+      continue;
+    forest_.remove(entry.node);
+    entry.node = 0;
+  }
+}
+
+void Executor::check_deadlines(const Robot& robot) {
+  for (auto& [id, entry] : entries_) {
+    if (!open(entry.status) || entry.goal.deadline <= 0.0)
+      continue;
+    // Half a tick of slack, for the rounding of the sum.
+    if (seconds(now_ - entry.accepted) + 0.5 * kTick < entry.goal.deadline)
+      continue;
+    std::string success;
+    if (entry.node != 0)
+      success = forest_.activity(entry.node).at_deadline(robot);
+    if (!success.empty()) {
+      end(entry, GoalState::kSucceeded, GoalCode::kNone, std::move(success));
+      continue;
+    }
+    const GoalStatus& status = entry.status;
+    const std::string& doing = status.state == GoalState::kUnderway ? status.step : status.reason;
+    end(entry, GoalState::kFailed, GoalCode::kDeadline,
+        "not done within its deadline of " + plain(entry.goal.deadline) + " s; it was " +
+            name_of(status.state) + (doing.empty() ? "" : ": " + doing));
+  }
+}
+
+/// Ends what a stop replaces: what was asked for before it and is not more important.
+void Executor::replace() {
+  for (auto& [id, stop] : entries_) {
+    if (!open(stop.status) || !stop.schema->replaces || stop.replaced)
+      continue;
+    stop.replaced = true;
+    for (auto& [other_id, other] : entries_) {
+      const bool earlier =
+          std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
+      if (open(other.status) && !other.schema->replaces && earlier &&
+          other.goal.priority <= stop.goal.priority)
+        end(other, GoalState::kCanceled, GoalCode::kPreempted,
+            "stopped by " + name_of_goal(stop.goal));
+    }
+  }
+}
+
+Executor::Entry* Executor::best() {
+  const auto rank = [](const Entry& entry) {
+    return std::tuple(-static_cast<std::int64_t>(entry.goal.priority), entry.accepted, entry.order);
+  };
+  Entry* best = nullptr;
+  for (auto& [id, entry] : entries_) {
+    if (open(entry.status) && (best == nullptr || rank(entry) < rank(*best)))
+      best = &entry;
+  }
+  return best;
+}
+
+/// Gives the robot to the best goal; the one that is underway now, nullptr where there is none.
+Executor::Entry* Executor::arbitrate() {
+  Entry* const chosen = best();
+  if (chosen == nullptr)
+    return nullptr;
+  for (auto& [id, entry] : entries_) {
+    if (!open(entry.status) || &entry == chosen)
+      continue;
+    const bool more = chosen->goal.priority > entry.goal.priority;
+    const std::string who =
+        name_of_goal(chosen->goal) +
+        (more ? ", which is more important (priority " + std::to_string(chosen->goal.priority) +
+                    " over " + std::to_string(entry.goal.priority) + ")"
+              : ", which came first");
+    if (entry.status.state == GoalState::kWaiting)
+      wait(entry, GoalCode::kNone, "waits for " + who);
+    else
+      suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
+  }
+  if (chosen->status.state != GoalState::kUnderway) {
+    chosen->status.state = GoalState::kUnderway;
+    chosen->status.code = GoalCode::kNone;
+    chosen->status.reason.clear();
+    if (chosen->node != 0)
+      forest_.resume(chosen->node);
+  }
+  if (chosen->node == 0)
+    chosen->node = forest_.plant(chosen->goal.id, describe(chosen->goal.id), chosen->goal.functor,
+                                 chosen->schema->make(chosen->arguments));
+  return chosen;
+}
+
+/// Takes over what the step made of the goals; true where one has ended.
+bool Executor::collect() {
+  const std::map<std::uint32_t, Outcome> outcomes = forest_.take_ended();
+  bool any = false;
+  for (auto& [id, entry] : entries_) {
+    if (entry.node == 0)
+      continue;
+    if (const auto outcome = outcomes.find(entry.node); outcome != outcomes.end()) {
+      entry.node = 0;
+      const bool success = outcome->second.state == IntentionState::kSuccess;
+      end(entry, success ? GoalState::kSucceeded : GoalState::kFailed, outcome->second.code,
+          outcome->second.reason);
+      any = true;
+    } else if (entry.status.state == GoalState::kUnderway) {
+      entry.status.step = forest_.step_of(entry.node);
+      entry.status.progress = forest_.progress_of(entry.node);
+    }
+  }
+  return any;
+}
+
+News Executor::take_news() {
+  News news;
+  for (auto& [id, entry] : entries_) {
+    const bool due = open(entry.status) && now_ - entry.published_at >= kStatusPeriod;
+    if (entry.published && !due && !differs(*entry.published, entry.status))
+      continue;
+    entry.published = entry.status;
+    entry.published_at = now_;
+    news.changed.push_back(entry.status);
+  }
+  news.withdrawn = std::exchange(withdrawn_, {});
+  news.placed = std::exchange(placed_, {});
+  news.endings = std::exchange(endings_, {});
+  return news;
+}
+
+}  // namespace saphira::intentions

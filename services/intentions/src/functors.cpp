@@ -1,0 +1,393 @@
+#include "saphira/intentions/functors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+namespace saphira::intentions {
+namespace {
+
+constexpr int kAvoid = 0;  ///< priorities of the behaviors: 0 is the highest (manual 7.3)
+constexpr int kKeepOff = 1;
+constexpr int kTask = 2;
+constexpr int kRest = 3;  ///< what is left where nothing else has a say
+
+/// The level of a behavior's own goal that counts as reached (paper 3.4, degrees of blocking).
+constexpr double kSatisfied = 0.9;
+
+/// [m/s], [rad/s]: slower than this the robot is at rest, allowing for the packet's rounding.
+constexpr double kRestVelocity = 0.02;
+constexpr double kRestRotation = radians(3.0);
+
+/// [s] without progress after which a goal is given up.
+constexpr double kPatience = 20.0;
+
+bool at_rest(const Robot& robot) {
+  return std::abs(robot.velocity) < kRestVelocity &&
+         std::abs(robot.rotation_velocity) < kRestRotation;
+}
+
+double value_of(const Arguments& arguments, std::string_view name) {
+  const Argument* const argument = find(arguments, name);
+  return argument == nullptr ? 0.0 : argument->number;
+}
+
+std::string format(const char* pattern, double a, double b = 0.0) {
+  char text[96];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+std::string format_point(const Pose& point) {
+  return format("(%.2f, %.2f)", point.x, point.y);
+}
+
+double distance(const Pose& a, const Pose& b) {
+  return (a.position() - b.position()).norm();
+}
+
+/// Whether something that ought to shrink still does.
+class Watchdog {
+ public:
+  /// step: what counts as progress, in the measure's unit.
+  Watchdog(double step, double patience) : step_(step), patience_(patience) {}
+
+  void restart(double measure, Ticks now) {
+    best_ = measure;
+    since_ = now;
+  }
+  /// True when there has been no progress for too long.
+  bool check(double measure, Ticks now) {
+    if (measure <= best_ - step_)
+      restart(measure, now);
+    return static_cast<double>(now - since_) * kTick >= patience_;
+  }
+  double patience() const { return patience_; }
+  void patience(double seconds) { patience_ = seconds; }
+
+ private:
+  double step_;
+  double patience_;
+  double best_ = std::numeric_limits<double>::infinity();
+  Ticks since_ = 0;
+};
+
+bool begins(const Self& self) {
+  return self.state() == IntentionState::kInit || self.state() == IntentionState::kResumed;
+}
+
+std::string why_not_moving(const Robot& robot) {
+  return robot.has_power ? "" : "; the motors have no power";
+}
+
+/// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop for where none of them has
+/// a say. When it is there, Stop alone until it stands.
+class GoTo : public Activity {
+ public:
+  explicit GoTo(const Arguments& arguments) : watchdog_(0.05, kPatience) { take(arguments); }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const double left = distance(self.robot().pose_in_odom, target_);
+    if (new_target_ || begins(self)) {
+      if (new_target_)
+        whole_way_ = left;
+      new_target_ = false;
+      there_ = false;
+      watchdog_.restart(left, self.now());
+    }
+    // The behavior's own word, within reason: it may be content a little before the radius.
+    if (left <= radius_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * radius_))
+      there_ = true;
+    if (there_) {
+      self.drop_behavior("AvoidCollision");
+      self.drop_behavior("KeepOff");
+      self.drop_behavior("GoToPos");
+      self.intend_behavior("Stop", "Stop", kRest, {});
+      self.say("stopping at " + format_point(target_));
+      if (at_rest(self.robot()))
+        self.succeed(format("arrived, %.2f m from the point", left));
+      return;
+    }
+    self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
+    self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
+    self.intend_behavior(
+        "GoToPos", "GoToPos", kTask,
+        {point("goal", target_), number("speed", speed_), number("radius", radius_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say("driving to " + format_point(target_));
+    if (whole_way_ > 0.0)
+      self.progress(1.0 - left / whole_way_);
+    if (watchdog_.check(left, self.now()))
+      self.fail(GoalCode::kBlocked,
+                format("no nearer for %.0f s, %.2f m from the point", watchdog_.patience(), left) +
+                    why_not_moving(self.robot()));
+  }
+
+ private:
+  void take(const Arguments& arguments) {
+    target_ = find(arguments, "position")->point;
+    speed_ = value_of(arguments, "speed");
+    radius_ = value_of(arguments, "radius");
+    watchdog_.patience(value_of(arguments, "patience"));
+    new_target_ = true;
+  }
+
+  Pose target_;
+  double speed_ = 0.0;
+  double radius_ = 0.0;
+  Watchdog watchdog_;
+  double whole_way_ = 0.0;
+  bool new_target_ = true;
+  bool there_ = false;
+};
+
+/// Goes on at a speed around what is in the way. It has no end of its own: its deadline is its
+/// success.
+class Drive : public Activity {
+ public:
+  explicit Drive(const Arguments& arguments) { take(arguments); }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const Pose& pose = self.robot().pose_in_odom;
+    if (begins(self) || restart_) {
+      restart_ = false;
+      anchor_ = pose;
+      anchored_ = self.now();
+    } else {
+      path_ += distance(last_, pose);
+    }
+    last_ = pose;
+    self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
+    self.intend_behavior("ConstantVelocity", "ConstantVelocity", kTask, {number("speed", speed_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say(format("driving at %.2f m/s", speed_));
+    constexpr double kGround = 0.1;  // [m] to be gained within the patience
+    if (distance(anchor_, pose) >= kGround) {
+      anchor_ = pose;
+      anchored_ = self.now();
+    }
+    const double still = static_cast<double>(self.now() - anchored_) * kTick;
+    if (std::abs(speed_) > kRestVelocity && still >= patience_)
+      self.fail(GoalCode::kBlocked,
+                format("has not moved for %.0f s", patience_) + why_not_moving(self.robot()));
+  }
+
+  std::string at_deadline(const Robot& robot) override {
+    static_cast<void>(robot);
+    return format("drove %.2f m until the deadline", path_);
+  }
+
+ private:
+  void take(const Arguments& arguments) {
+    speed_ = value_of(arguments, "speed");
+    patience_ = value_of(arguments, "patience");
+    restart_ = true;
+  }
+
+  double speed_ = 0.0;
+  double patience_ = kPatience;
+  bool restart_ = true;
+  Pose anchor_;
+  Ticks anchored_ = 0;
+  Pose last_;
+  double path_ = 0.0;  ///< [m]
+};
+
+/// Turns on the spot. No behavior looks at obstacles: the robot is round and stays where it is.
+class TurnTo : public Activity {
+ public:
+  explicit TurnTo(const Arguments& arguments) : watchdog_(radians(2.0), kPatience) {
+    take(arguments);
+  }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const Pose& pose = self.robot().pose_in_odom;
+    // A heading is a point far away in that direction; it stays where it was first put, so that
+    // the behavior is not changed every cycle.
+    constexpr double kFar = 1000.0;  // [m]
+    if (new_target_ && heading_)
+      target_ = {pose.x + kFar * std::cos(*heading_), pose.y + kFar * std::sin(*heading_), 0.0};
+    const double toward = std::atan2(target_.y - pose.y, target_.x - pose.x);
+    const double left = std::abs(norm2_angle(toward - pose.th));
+    if (new_target_ || begins(self)) {
+      if (new_target_)
+        whole_turn_ = left;
+      new_target_ = false;
+      watchdog_.restart(left, self.now());
+    }
+    self.intend_behavior("TurnTo", "TurnTo", kTask,
+                         {point("goal", target_), number("success_angle", angle_),
+                          number("turn_speed", turn_speed_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say(heading_ ? format("turning to %.0f degrees", degrees(*heading_))
+                      : "turning to " + format_point(target_));
+    if (whole_turn_ > 0.0)
+      self.progress(1.0 - left / whole_turn_);
+    const bool satisfied =
+        left <= angle_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * angle_);
+    if (satisfied && at_rest(self.robot()))
+      self.succeed(format("turned, %.1f degrees off", degrees(left)));
+    else if (watchdog_.check(left, self.now()))
+      self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.0f degrees off",
+                                           watchdog_.patience(), degrees(left)) +
+                                        why_not_moving(self.robot()));
+  }
+
+ private:
+  void take(const Arguments& arguments) {
+    heading_.reset();
+    if (const Argument* const heading = find(arguments, "heading"))
+      heading_ = heading->number;
+    else
+      target_ = find(arguments, "position")->point;
+    angle_ = value_of(arguments, "angle");
+    turn_speed_ = value_of(arguments, "turn_speed");
+    watchdog_.patience(value_of(arguments, "patience"));
+    new_target_ = true;
+  }
+
+  std::optional<double> heading_;  ///< [rad] in odom
+  Pose target_;
+  double angle_ = 0.0;
+  double turn_speed_ = 0.0;
+  Watchdog watchdog_;
+  double whole_turn_ = 0.0;
+  bool new_target_ = true;
+};
+
+class Halt : public Activity {
+ public:
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const double velocity = std::abs(self.robot().velocity);
+    if (begins(self)) {
+      first_ = velocity;
+      begun_ = self.now();
+    }
+    self.intend_behavior("Stop", "Stop", kAvoid, {});
+    self.say("stopping");
+    if (first_ > 0.0)
+      self.progress(1.0 - velocity / first_);
+    if (at_rest(self.robot()))
+      self.succeed("the robot is at rest");
+    else if (static_cast<double>(self.now() - begun_) * kTick >= kPatience)
+      self.fail(GoalCode::kBlocked,
+                format("still moving after %.0f s, at %.2f m/s", kPatience, self.robot().velocity));
+  }
+
+ private:
+  double first_ = 0.0;
+  Ticks begun_ = 0;
+};
+
+Parameter quantity(std::string name, std::string unit, double low, double high, double usual) {
+  Parameter parameter;
+  parameter.name = std::move(name);
+  parameter.unit = std::move(unit);
+  parameter.low = low;
+  parameter.high = high;
+  parameter.usual = usual;
+  return parameter;
+}
+
+Parameter patience() {
+  return quantity("patience", "s", 1.0, 3600.0, kPatience);
+}
+
+Parameter place(std::string name, bool required) {
+  Parameter parameter;
+  parameter.name = std::move(name);
+  parameter.kind = ArgumentKind::kPoint;
+  parameter.required = required;
+  return parameter;
+}
+
+template <class T>
+std::unique_ptr<Activity> make(const Arguments& arguments) {
+  return std::make_unique<T>(arguments);
+}
+
+}  // namespace
+
+Registry built_in() {
+  Registry registry;
+
+  Schema go_to;
+  go_to.name = "go_to";
+  go_to.summary = "drives to a position, around what is in the way";
+  go_to.parameters = {place("position", true), quantity("speed", "m/s", 0.02, 2.0, 0.3),
+                      quantity("radius", "m", 0.02, 10.0, 0.15), patience()};
+  go_to.make = make<GoTo>;
+  registry.add(std::move(go_to));
+
+  Schema drive;
+  drive.name = "drive";
+  drive.summary = "drives on at a speed until the deadline, around what is in the way";
+  // Backwards, where few robots have sonars, at a walking pace.
+  Parameter speed = quantity("speed", "m/s", -0.2, 2.0, 0.0);
+  speed.usual.reset();
+  speed.required = true;
+  drive.parameters = {speed, patience()};
+  drive.make = make<Drive>;
+  registry.add(std::move(drive));
+
+  Schema turn_to;
+  turn_to.name = "turn_to";
+  turn_to.summary = "turns on the spot to a heading in odom, or towards a position";
+  Parameter heading = quantity("heading", "rad in odom", -2.0 * kPi, 2.0 * kPi, 0.0);
+  heading.usual.reset();
+  heading.in_odom = true;
+  turn_to.parameters = {heading, place("position", false),
+                        quantity("angle", "rad", radians(1.0), kPi, radians(5.0)),
+                        // Manual Table 7-11: 0.5 is slow, 2.0 is fast.
+                        quantity("turn_speed", "", 0.1, 5.0, 1.0), patience()};
+  turn_to.check = [](const Arguments& arguments) -> std::string {
+    const bool has_heading = find(arguments, "heading") != nullptr;
+    const bool has_position = find(arguments, "position") != nullptr;
+    if (has_heading == has_position)
+      return std::string(
+                 "turn_to: expected either \"heading\" (a number) or \"position\" (a "
+                 "point), got ") +
+             (has_heading ? "both" : "neither");
+    return {};
+  };
+  turn_to.make = make<TurnTo>;
+  registry.add(std::move(turn_to));
+
+  Schema stop;
+  stop.name = "stop";
+  stop.summary = "halts the robot, and ends every earlier goal that is not more important";
+  stop.replaces = true;
+  stop.make = [](const Arguments&) -> std::unique_ptr<Activity> {
+    return std::make_unique<Halt>();
+  };
+  registry.add(std::move(stop));
+
+  return registry;
+}
+
+}  // namespace saphira::intentions

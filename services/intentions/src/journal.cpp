@@ -1,0 +1,135 @@
+#include "saphira/intentions/journal.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <map>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+constexpr GoalState kStates[] = {GoalState::kRefused, GoalState::kSucceeded, GoalState::kFailed,
+                                 GoalState::kCanceled};
+constexpr GoalCode kCodes[] = {
+    GoalCode::kNone,       GoalCode::kUnknownFunctor, GoalCode::kBadArgument, GoalCode::kChanged,
+    GoalCode::kDeadline,   GoalCode::kBlocked,        GoalCode::kNoRobot,     GoalCode::kDisposed,
+    GoalCode::kWriterLost, GoalCode::kPreempted};
+
+std::string exact(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string write_id(const GoalId& id) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%llx %llu", static_cast<unsigned long long>(id.writer),
+                static_cast<unsigned long long>(id.number));
+  return text;
+}
+
+/// A whole word as a number to the base; fails the line where it is not one.
+std::uint64_t read_count(LineReader& reader, std::string_view what, int base) {
+  const std::string_view word = reader.word(what);
+  std::uint64_t value = 0;
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), value, base);
+  if (result.ec != std::errc() || result.ptr != word.data() + word.size())
+    reader.fail("expected " + std::string(what) + ", found \"" + std::string(word) + "\"");
+  return value;
+}
+
+GoalId read_id(LineReader& reader) {
+  GoalId id;
+  id.writer = read_count(reader, "the goal's writer, in hexadecimal digits", 16);
+  id.number = read_count(reader, "the goal's number", 10);
+  return id;
+}
+
+template <class Enum, std::size_t size>
+Enum read_name(LineReader& reader, std::string_view what, const Enum (&values)[size]) {
+  const std::string_view word = reader.word(what);
+  for (const Enum value : values) {
+    if (word == name_of(value))
+      return value;
+  }
+  reader.fail("expected " + std::string(what) + ", found \"" + std::string(word) + "\"");
+}
+
+Pose read_pose(LineReader& reader) {
+  Pose pose;
+  pose.x = reader.number("x [m]");
+  pose.y = reader.number("y [m]");
+  pose.th = reader.number("th [rad]");
+  return pose;
+}
+
+}  // namespace
+
+std::string write_line(const Ending& ending) {
+  std::string reason = ending.reason;
+  std::replace_if(
+      reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
+      ' ');
+  return "ended " + write_id(ending.id) + " " + name_of(ending.state) + " " + name_of(ending.code) +
+         " " + reason + "\n";
+}
+
+std::string write_line(const Placement& placement) {
+  std::string line = "placed " + write_id(placement.id) + " " + std::to_string(placement.epoch) +
+                     " " + std::to_string(placement.cycle) + " " + std::to_string(placement.odom);
+  for (const Placement::Point& point : placement.points) {
+    line += " " + point.name;
+    for (const Pose& pose : {point.given, point.in_odom})
+      line += " " + exact(pose.x) + " " + exact(pose.y) + " " + exact(pose.th);
+  }
+  return line + "\n";
+}
+
+Memory read_journal(const std::string& file, std::string_view content) {
+  // A reason is free text: comments and empty lines do not exist in this file, so the part before
+  // it is split by the common rules and the reason is the rest of the line.
+  const std::size_t whole = content.rfind('\n');
+  content = whole == std::string_view::npos ? std::string_view() : content.substr(0, whole + 1);
+  std::map<GoalId, Placement> placements;
+  std::vector<Ending> endings;
+  for (const Line& line : split_lines(content)) {
+    LineReader reader(file, line);
+    const std::string_view kind = reader.word("\"placed\" or \"ended\"");
+    if (kind == "placed") {
+      Placement placement;
+      placement.id = read_id(reader);
+      placement.epoch = read_count(reader, "the epoch of acceptance", 10);
+      placement.cycle = read_count(reader, "the cycle of acceptance", 10);
+      placement.odom = read_count(reader, "the number of the odom frame", 10);
+      while (!reader.at_end()) {
+        Placement::Point point;
+        point.name = reader.word("the name of a point");
+        point.given = read_pose(reader);
+        point.in_odom = read_pose(reader);
+        placement.points.push_back(std::move(point));
+      }
+      placements[placement.id] = std::move(placement);
+    } else if (kind == "ended") {
+      Ending ending;
+      ending.id = read_id(reader);
+      ending.state = read_name(reader, "the state at the end, such as succeeded", kStates);
+      ending.code = read_name(reader, "a code, such as none", kCodes);
+      const std::string_view code = line.words.at(4).text;
+      const auto begin = static_cast<std::size_t>(code.data() + code.size() - line.text.data());
+      ending.reason = line.text.substr(std::min(begin + 1, line.text.size()));
+      placements.erase(ending.id);
+      endings.push_back(std::move(ending));
+    } else {
+      reader.fail("expected \"placed\" or \"ended\", found \"" + std::string(kind) + "\"");
+    }
+  }
+  Memory memory;
+  for (auto& [id, placement] : placements)
+    memory.placements.push_back(std::move(placement));
+  memory.endings = std::move(endings);
+  return memory;
+}
+
+}  // namespace saphira::intentions

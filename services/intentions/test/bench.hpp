@@ -1,0 +1,82 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "saphira/intentions/functors.hpp"
+#include "scripted_robot.hpp"
+
+namespace saphira::intentions {
+
+/// An executor with a scripted robot, stepped by hand.
+class Bench {
+ public:
+  explicit Bench(const Memory& memory = {}, ExecutorOptions options = {})
+      : executor(built_in(), memory, options) {}
+
+  static Goal goal(std::uint64_t number, std::string functor, Arguments arguments,
+                   int priority = 0) {
+    Goal made;
+    made.id = {1, number};
+    made.requester = "somebody";
+    made.functor = std::move(functor);
+    made.arguments = std::move(arguments);
+    made.priority = priority;
+    return made;
+  }
+  void ask(std::uint64_t number, std::string functor, Arguments arguments, int priority = 0) {
+    write(goal(number, std::move(functor), std::move(arguments), priority));
+  }
+  void write(const Goal& made) { events.push_back({GoalEvent::Kind::kWritten, made}); }
+  void dispose(std::uint64_t number) { event(GoalEvent::Kind::kDisposed, number); }
+  void lose_writer(std::uint64_t number) { event(GoalEvent::Kind::kWriterLost, number); }
+
+  bool step() {
+    step_without_moving();
+    world.move(out.behaviors, cycle);
+    return true;
+  }
+  void step_without_moving() {
+    ++cycle;
+    out = executor.step(
+        {epoch, cycle, world.robot, world.levels, cycle - 1, std::exchange(events, {})});
+    note(out.news);
+  }
+  void hear() { note(executor.hear(std::exchange(events, {}))); }
+  void note(const News& news) {
+    for (const GoalStatus& each : news.changed) {
+      statuses[each.id.number] = each;
+      ++published;
+    }
+    for (const GoalId& id : news.withdrawn)
+      statuses.erase(id.number);
+    for (const Placement& each : news.placed)
+      journal += write_line(each);
+    for (const Ending& each : news.endings)
+      journal += write_line(each);
+  }
+
+  const GoalStatus& status(std::uint64_t number) const { return statuses.at(number); }
+  GoalState state(std::uint64_t number) const { return status(number).state; }
+
+  Executor executor;
+  ScriptedRobot world;
+  std::uint64_t epoch = 100;
+  std::uint64_t cycle = 0;
+  std::vector<GoalEvent> events;
+  Outputs out;
+  std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them
+  std::size_t published = 0;
+  std::string journal;
+
+ private:
+  void event(GoalEvent::Kind kind, std::uint64_t number) {
+    GoalEvent made;
+    made.kind = kind;
+    made.goal.id = {1, number};
+    events.push_back(made);
+  }
+};
+
+}  // namespace saphira::intentions

@@ -1,0 +1,426 @@
+#include "saphira/intentions/executor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "bench.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+const Arguments kFar = {point("position", {50.0, 0.0, 0.0})};
+const Arguments kSlow = {number("speed", 0.1)};
+
+TEST(Executor, IntendsNothingWithoutAGoal) {
+  Bench bench;
+  bench.step();
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  EXPECT_TRUE(bench.out.nodes.empty());
+  EXPECT_EQ(bench.published, 0U);
+}
+
+TEST(Executor, RefusesWithAReason) {
+  Bench bench;
+  bench.ask(1, "fly", {});
+  bench.ask(2, "go_to", {});
+  Goal late = Bench::goal(3, "stop", {});
+  late.deadline = -1.0;
+  bench.write(late);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kRefused);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kUnknownFunctor);
+  EXPECT_EQ(bench.status(1).reason,
+            "unknown functor \"fly\": expected one of drive, go_to, stop, turn_to");
+  EXPECT_EQ(bench.status(2).code, GoalCode::kBadArgument);
+  EXPECT_EQ(bench.status(3).reason, "expected a deadline of 0 (none) or more seconds, got -1");
+  EXPECT_TRUE(bench.out.behaviors.empty());
+}
+
+TEST(Executor, RefusesAnIdThatIsNone) {
+  Bench bench;
+  Goal goal = Bench::goal(0, "stop", {});
+  goal.id = {};
+  bench.write(goal);
+  bench.step();
+  EXPECT_EQ(bench.state(0), GoalState::kRefused);
+}
+
+TEST(Executor, RefusesWhatIsTooMany) {
+  ExecutorOptions options;
+  options.max_open = 3;
+  Bench bench({}, options);
+  for (std::uint64_t i = 1; i <= 5; ++i)
+    bench.ask(i, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(3), GoalState::kWaiting);
+  EXPECT_EQ(bench.state(4), GoalState::kRefused);
+  EXPECT_EQ(bench.status(5).reason, "too many goals: 3 are open already");
+}
+
+TEST(Executor, OfEqualsTheFirstIsUnderway) {
+  Bench bench;
+  bench.ask(2, "drive", kSlow);
+  bench.ask(1, "go_to", kFar);
+  bench.step();
+  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(1), GoalState::kWaiting);
+  EXPECT_EQ(bench.status(1).reason, "waits for goal 1:2 (drive) of \"somebody\", which came first");
+  bench.dispose(2);
+  bench.step();
+  EXPECT_EQ(bench.state(2), GoalState::kCanceled);
+  EXPECT_EQ(bench.status(2).code, GoalCode::kDisposed);
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.status(1).reason, "");
+}
+
+TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar);
+  bench.step();
+  bench.step();
+  bench.ask(2, "turn_to", {number("heading", 1.0)}, 5);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kPreempted);
+  EXPECT_EQ(bench.status(1).reason,
+            "interrupted by goal 1:2 (turn_to) of \"somebody\", which is more important (priority "
+            "5 over 0)");
+  for (const IntendedBehavior& behavior : bench.out.behaviors)
+    EXPECT_TRUE(behavior.schema == "TurnTo" || behavior.schema == "Stop");
+  while (bench.step() && bench.state(2) == GoalState::kUnderway && bench.cycle < 100) {
+  }
+  EXPECT_EQ(bench.state(2), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  // Without a cycle in which nothing is intended.
+  EXPECT_EQ(bench.out.behaviors.size(), 4U);
+}
+
+TEST(Executor, AChangedPriorityCounts) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  bench.ask(2, "drive", kSlow);
+  bench.step();
+  bench.ask(2, "drive", kSlow, 1);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+}
+
+TEST(Executor, AStopEndsWhatIsNotMoreImportant) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  bench.ask(2, "go_to", kFar);
+  bench.ask(3, "drive", kSlow, 1);
+  bench.step();
+  bench.step();
+  bench.ask(4, "stop", {});
+  bench.ask(5, "go_to", kFar);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kPreempted);
+  EXPECT_EQ(bench.status(1).reason, "stopped by goal 1:4 (stop) of \"somebody\"");
+  EXPECT_EQ(bench.state(2), GoalState::kCanceled);
+  EXPECT_EQ(bench.state(3), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(4), GoalState::kWaiting);
+  EXPECT_EQ(bench.state(5), GoalState::kWaiting);  // it came after the stop
+  bench.ask(6, "stop", {}, 1);
+  bench.step();
+  EXPECT_EQ(bench.state(3), GoalState::kCanceled);
+  bench.step();
+  bench.step();
+  EXPECT_EQ(bench.state(6), GoalState::kSucceeded);
+  EXPECT_EQ(bench.state(4), GoalState::kSucceeded);  // a stop does not end another
+  EXPECT_EQ(bench.state(5), GoalState::kCanceled);
+  bench.ask(7, "go_to", kFar);
+  bench.step();
+  EXPECT_EQ(bench.state(7), GoalState::kUnderway);
+}
+
+TEST(Executor, ADeadlineCountsFromAcceptance) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  Goal goal = Bench::goal(2, "go_to", kFar);
+  goal.deadline = 2.0;
+  bench.write(goal);
+  while (bench.step() && bench.state(2) == GoalState::kWaiting && bench.cycle < 100) {
+  }
+  EXPECT_EQ(bench.cycle, 21U);
+  EXPECT_EQ(bench.state(2), GoalState::kFailed);
+  EXPECT_EQ(bench.status(2).code, GoalCode::kDeadline);
+  EXPECT_EQ(bench.status(2).reason,
+            "not done within its deadline of 2 s; it was waiting: waits for goal 1:1 (drive) of "
+            "\"somebody\", which came first");
+  EXPECT_EQ(bench.status(2).elapsed, 2.0);
+}
+
+TEST(Executor, TheLossOfItsWriterEndsAGoalUnlessItIsToBeKept) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  Goal kept = Bench::goal(2, "drive", kSlow);
+  kept.writer_lost = WriterLost::kKeep;
+  bench.write(kept);
+  bench.step();
+  bench.lose_writer(1);
+  bench.lose_writer(2);
+  bench.lose_writer(3);  // unknown: nothing
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kWriterLost);
+  EXPECT_EQ(bench.state(2), GoalState::kUnderway);
+}
+
+TEST(Executor, ARepetitionChangesNothing) {
+  Bench bench;
+  bench.world.held = true;
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.step();
+  const std::vector<IntendedBehavior> before = bench.out.behaviors;
+  bench.world.robot.pose_in_odom = {1.0, 0.0, 0.0};
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.step();
+  EXPECT_EQ(bench.out.behaviors, before);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kNone);
+}
+
+TEST(Executor, AChangeGoesOnWithoutBeginningAnew) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0})});
+  for (int i = 0; i < 10; ++i)
+    bench.step();
+  const std::vector<IntendedBehavior> before = bench.out.behaviors;
+  bench.ask(1, "go_to", {point("position", {0.0, 3.0, 0.0}), number("speed", 0.2)});
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kChanged);
+  EXPECT_EQ(bench.status(1).step, "driving to (0.00, 3.00)");
+  ASSERT_EQ(bench.out.behaviors.size(), before.size());
+  EXPECT_EQ(bench.out.behaviors[2].name, before[2].name);
+  EXPECT_EQ(find(bench.out.behaviors[2].parameters, "goal")->point, (Pose{0.0, 3.0, 0.0}));
+  EXPECT_EQ(find(bench.out.behaviors[2].parameters, "speed")->number, 0.2);
+  EXPECT_EQ(bench.status(1).elapsed, 1.0);
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 400) {
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_LE((bench.world.robot.pose_in_odom.position() - Vec2(0.0, 3.0)).norm(), 0.15);
+}
+
+TEST(Executor, AChangeOfTheFunctorBeginsAnew) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar);
+  bench.step();
+  bench.ask(1, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.status(1).functor, "drive");
+  EXPECT_EQ(bench.out.behaviors.at(1).schema, "ConstantVelocity");
+}
+
+TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar);
+  bench.step();
+  const std::vector<IntendedBehavior> before = bench.out.behaviors;
+  bench.ask(1, "go_to", {number("position", 3.0)});
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kBadArgument);
+  EXPECT_EQ(bench.status(1).reason,
+            "goes on unchanged, the change was refused: argument \"position\": expected a point in "
+            "the odom or the robot frame, within 10000 m, got 3");
+  EXPECT_EQ(bench.out.behaviors, before);
+}
+
+TEST(Executor, AnEndedGoalStaysEnded) {
+  Bench bench;
+  bench.ask(1, "stop", {});
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  bench.ask(1, "stop", {});
+  bench.step();
+  bench.ask(1, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+}
+
+TEST(Executor, AnEndedGoalIsKeptForAMinute) {
+  Bench bench;
+  bench.ask(1, "stop", {});
+  bench.step();
+  for (int i = 0; i < 599; ++i)
+    bench.step();
+  EXPECT_EQ(bench.statuses.count(1), 1U);
+  bench.step();
+  EXPECT_EQ(bench.statuses.count(1), 0U);
+  // Its id is used up also after that.
+  bench.ask(1, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+}
+
+TEST(Executor, PublishesOnChangeAndOnceASecond) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  for (int i = 0; i < 101; ++i)
+    bench.step();
+  EXPECT_EQ(bench.published, 11U);
+}
+
+TEST(Executor, HearsWithoutARobot) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(2, "fly", {});
+  bench.hear();
+  EXPECT_EQ(bench.state(1), GoalState::kWaiting);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kNoRobot);
+  EXPECT_EQ(bench.status(1).reason, "accepted; waits for the robot");
+  EXPECT_EQ(bench.state(2), GoalState::kRefused);
+  // The point is from where the robot is when it is there.
+  bench.world.robot.pose_in_odom = {0.0, 5.0, kPi};
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_NEAR(find(bench.out.behaviors.at(2).parameters, "goal")->point.x, -2.0, 1e-12);
+}
+
+TEST(Executor, HearingBetweenCyclesOrWithThemIsTheSame) {
+  Bench between;
+  Bench with;
+  for (Bench* bench : {&between, &with})
+    bench->step();
+  for (Bench* bench : {&between, &with}) {
+    bench->ask(1, "drive", kSlow);
+    bench->ask(2, "go_to", {point("position", {1.0, 1.0, 0.0}, Frame::kRobot)}, 1);
+  }
+  between.hear();
+  for (int i = 0; i < 200; ++i) {
+    between.step();
+    with.step();
+    ASSERT_EQ(between.out.behaviors, with.out.behaviors) << i;
+    ASSERT_EQ(between.statuses, with.statuses) << i;
+  }
+}
+
+TEST(Executor, GoalsWaitForARobotThatIsGone) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar);
+  bench.ask(2, "drive", kSlow);
+  bench.step();
+  bench.note(bench.executor.robot_gone());
+  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kNoRobot);
+  EXPECT_EQ(bench.state(2), GoalState::kWaiting);
+  EXPECT_EQ(bench.status(2).reason, "waits for the robot");
+  // Another connection to the same robot, which knows where it is.
+  bench.epoch = 101;
+  bench.cycle = 0;
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(bench.out.behaviors.size(), 4U);
+}
+
+TEST(Executor, NothingIsIntendedForARobotThatIsNotConnected) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar);
+  bench.step();
+  bench.world.robot.connected = false;
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  bench.world.robot.connected = true;
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+}
+
+TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar);
+  bench.ask(2, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(3, "turn_to", {number("heading", 1.0)});
+  bench.ask(4, "drive", kSlow);
+  bench.step();
+  bench.note(bench.executor.robot_gone());
+  bench.ask(5, "go_to", kFar);  // odom is still the old one, as far as anybody can know
+  bench.ask(6, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.hear();
+  bench.epoch = 101;
+  bench.cycle = 0;
+  bench.world.robot.odom = 2;
+  bench.step();
+  for (const std::uint64_t lost : {1, 2, 3, 5}) {
+    EXPECT_EQ(bench.state(lost), GoalState::kFailed) << lost;
+    EXPECT_EQ(bench.status(lost).code, GoalCode::kNoRobot);
+    EXPECT_NE(bench.status(lost).reason.find("position lost"), std::string::npos);
+  }
+  EXPECT_EQ(bench.state(4), GoalState::kUnderway);
+  EXPECT_EQ(bench.state(6), GoalState::kWaiting);
+}
+
+TEST(Executor, ARestartNeverRedoesAFinishedGoal) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {0.5, 0.0, 0.0})});
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
+  }
+  Bench again(read_journal("memory", bench.journal));
+  again.world = bench.world;
+  again.ask(1, "go_to", {point("position", {0.5, 0.0, 0.0})});
+  again.step();
+  EXPECT_EQ(again.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(again.status(1).reason, bench.status(1).reason);
+  EXPECT_TRUE(again.out.behaviors.empty());
+}
+
+TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
+  Bench bench;
+  Goal goal = Bench::goal(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
+  goal.deadline = 5.0;
+  bench.write(goal);
+  Goal second = Bench::goal(2, "drive", kSlow);
+  bench.step();
+  bench.write(second);
+  for (int i = 0; i < 20; ++i)
+    bench.step();
+
+  Bench again(read_journal("memory", bench.journal));
+  again.world = bench.world;
+  again.cycle = bench.cycle + 10;
+  again.write(second);  // the order in which they come again does not matter
+  again.write(goal);
+  again.step();
+  EXPECT_EQ(again.state(1), GoalState::kUnderway);
+  EXPECT_EQ(find(again.out.behaviors.at(2).parameters, "goal")->point, (Pose{3.0, 0.0, 0.0}));
+  EXPECT_EQ(again.status(1).elapsed, 3.1);
+  while (again.step() && again.state(1) == GoalState::kUnderway && again.cycle < 100) {
+  }
+  EXPECT_EQ(again.status(1).code, GoalCode::kDeadline);
+  EXPECT_EQ(again.cycle, 51U);
+}
+
+TEST(Executor, ARestartKnowsThatThePositionIsLost) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.step();
+  Bench again(read_journal("memory", bench.journal));
+  again.world.robot.odom = 2;
+  again.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
+  again.step();
+  EXPECT_EQ(again.state(1), GoalState::kFailed);
+}
+
+TEST(Executor, TheTreeShowsWhatServesWhichGoal) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow);
+  bench.step();
+  bench.ask(2, "drive", kSlow, 1);
+  bench.step();
+  ASSERT_EQ(bench.out.nodes.size(), 5U);
+  EXPECT_EQ(bench.out.nodes[0].state, IntentionState::kSuspended);
+  EXPECT_EQ(bench.out.nodes[0].goal, (GoalId{1, 1}));
+  EXPECT_EQ(bench.out.nodes[1].schema, "drive");
+  EXPECT_EQ(bench.out.nodes[1].step, "driving at 0.10 m/s");
+  EXPECT_EQ(bench.out.nodes[2].parent, bench.out.nodes[1].id);
+  EXPECT_EQ(bench.out.nodes[2].goal, (GoalId{1, 2}));
+  EXPECT_EQ(bench.out.behaviors[0].intention, bench.out.nodes[2].id);
+}
+
+}  // namespace
+}  // namespace saphira::intentions

@@ -1,0 +1,191 @@
+#include "saphira/intentions/functors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bench.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+std::vector<std::string> schemas(const std::vector<IntendedBehavior>& behaviors) {
+  std::vector<std::string> names;
+  for (const IntendedBehavior& behavior : behaviors)
+    names.push_back(behavior.schema + "/" + std::to_string(behavior.priority));
+  return names;
+}
+
+TEST(GoTo, IntendsTheBehaviorsAndArrives) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {2.0, 1.0, 0.0}), number("speed", 0.4)});
+  bench.step();
+  EXPECT_EQ(schemas(bench.out.behaviors),
+            (std::vector<std::string>{"AvoidCollision/0", "KeepOff/1", "GoToPos/2", "Stop/3"}));
+  const Arguments parameters = bench.out.behaviors[2].parameters;
+  EXPECT_EQ(find(parameters, "goal")->point, (Pose{2.0, 1.0, 0.0}));
+  EXPECT_EQ(find(parameters, "speed")->number, 0.4);
+  EXPECT_EQ(find(parameters, "radius")->number, 0.15);
+  EXPECT_EQ(bench.status(1).step, "driving to (2.00, 1.00)");
+  double progress = 0.0;
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 300) {
+    EXPECT_GE(bench.status(1).progress, progress);
+    progress = bench.status(1).progress;
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
+  EXPECT_NE(bench.status(1).reason.find("arrived, 0."), std::string::npos);
+  EXPECT_EQ(bench.status(1).progress, 1.0);
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  EXPECT_LE((bench.world.robot.pose_in_odom.position() - Vec2(2.0, 1.0)).norm(), 0.15);
+}
+
+TEST(GoTo, SucceedsOnlyWhenTheRobotStands) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {0.1, 0.0, 0.0})});
+  bench.world.robot.velocity = 0.3;
+  bench.world.held = false;
+  bench.step_without_moving();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/3"});
+  bench.world.robot.velocity = 0.0;
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+}
+
+TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {0.25, 0.0, 0.0}), number("radius", 0.15)});
+  bench.world.held = true;
+  bench.step();
+  const std::string name = bench.out.behaviors.at(2).name;
+  for (int i = 0; i < 3; ++i) {
+    bench.world.levels = {{name, 0.95, 0.0}};
+    bench.step_without_moving();
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+
+  Bench far;
+  far.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}), number("radius", 0.15)});
+  far.world.held = true;
+  far.step();
+  const std::string other = far.out.behaviors.at(2).name;
+  for (int i = 0; i < 5; ++i) {
+    far.world.levels = {{other, 1.0, 0.0}};
+    far.step_without_moving();
+  }
+  EXPECT_EQ(far.state(1), GoalState::kUnderway);
+}
+
+TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
+  Bench bench;
+  bench.world.robot.pose_in_odom = {1.0, 1.0, kPi / 2};
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.step();
+  for (int i = 0; i < 20; ++i) {
+    const Argument* const goal = find(bench.out.behaviors.at(2).parameters, "goal");
+    EXPECT_NEAR(goal->point.x, 1.0, 1e-12);
+    EXPECT_NEAR(goal->point.y, 3.0, 1e-12);
+    EXPECT_EQ(goal->frame, Frame::kOdom);
+    bench.step();
+  }
+}
+
+TEST(GoTo, GivesUpWhenItComesNoNearer) {
+  Bench bench;
+  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
+  for (int i = 0; i < 20; ++i)
+    bench.step();
+  bench.world.held = true;
+  const std::uint64_t held = bench.cycle;
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 300) {
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kFailed);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_NEAR(static_cast<double>(bench.cycle - held), 50.0, 3.0);
+  EXPECT_NE(bench.status(1).reason.find("no nearer for 5 s, 2."), std::string::npos)
+      << bench.status(1).reason;
+}
+
+TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
+  Bench bench;
+  Goal goal = bench.goal(1, "drive", {number("speed", 0.2)});
+  goal.deadline = 3.0;
+  bench.write(goal);
+  bench.step();
+  EXPECT_EQ(schemas(bench.out.behaviors),
+            (std::vector<std::string>{"AvoidCollision/0", "ConstantVelocity/2", "Stop/3"}));
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.status(1).elapsed, 3.0);
+  EXPECT_EQ(bench.status(1).reason, "drove 0.58 m until the deadline");
+}
+
+TEST(Drive, GivesUpWhenItDoesNotMove) {
+  Bench bench;
+  bench.world.held = true;
+  bench.ask(1, "drive", {number("speed", 0.2)});
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 400) {
+  }
+  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_EQ(bench.cycle, 201U);
+}
+
+TEST(Drive, AtNoSpeedIsNotBlocked) {
+  Bench bench;
+  bench.ask(1, "drive", {number("speed", 0.0)});
+  for (int i = 0; i < 400; ++i)
+    bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+}
+
+TEST(TurnTo, TurnsToAHeading) {
+  Bench bench;
+  bench.ask(1, "turn_to", {number("heading", 2.0)});
+  bench.step();
+  EXPECT_EQ(schemas(bench.out.behaviors), (std::vector<std::string>{"TurnTo/2", "Stop/3"}));
+  const std::vector<IntendedBehavior> first = bench.out.behaviors;
+  bench.step();
+  EXPECT_EQ(bench.out.behaviors, first);
+  EXPECT_EQ(bench.status(1).step, "turning to 115 degrees");
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
+  EXPECT_NEAR(bench.world.robot.pose_in_odom.th, 2.0, radians(5.0));
+}
+
+TEST(TurnTo, TurnsToAPositionTheShortWay) {
+  Bench bench;
+  bench.ask(1, "turn_to", {point("position", {-1.0, -1.0, 0.0}, Frame::kRobot)});
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;
+  EXPECT_NEAR(bench.world.robot.pose_in_odom.th, radians(-135.0), radians(5.0));
+}
+
+TEST(TurnTo, GivesUp) {
+  Bench bench;
+  bench.world.held = true;
+  bench.world.robot.has_power = false;
+  bench.ask(1, "turn_to", {number("heading", 1.0), number("patience", 2.0)});
+  while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
+  }
+  EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+  EXPECT_EQ(bench.status(1).reason, "no nearer for 2 s, 57 degrees off; the motors have no power");
+}
+
+TEST(Stop, SucceedsWhenTheRobotIsAtRest) {
+  Bench bench;
+  bench.world.robot.velocity = 0.4;
+  bench.ask(1, "stop", {});
+  bench.step_without_moving();
+  EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/0"});
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+  bench.step();
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_EQ(bench.status(1).reason, "the robot is at rest");
+}
+
+}  // namespace
+}  // namespace saphira::intentions

@@ -1,0 +1,79 @@
+#include "saphira/intentions/schema.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "saphira/intentions/functors.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+std::string complaint(const std::string& functor, const Arguments& arguments) {
+  const Registry registry = built_in();
+  Arguments complete;
+  return check_arguments(*registry.find(functor), arguments, complete);
+}
+
+TEST(Schema, FillsInTheDefaults) {
+  const Registry registry = built_in();
+  Arguments complete;
+  EXPECT_EQ(check_arguments(*registry.find("go_to"), {point("position", {3, 1, 0})}, complete), "");
+  EXPECT_EQ(find(complete, "speed")->number, 0.3);
+  EXPECT_EQ(find(complete, "radius")->number, 0.15);
+  EXPECT_EQ(find(complete, "patience")->number, 20.0);
+  EXPECT_EQ(find(complete, "nothing"), nullptr);
+}
+
+TEST(Schema, SaysWhatWasExpectedAndWhatCame) {
+  EXPECT_EQ(complaint("go_to", {}),
+            "go_to needs the argument \"position\": expected a point in the odom or the robot "
+            "frame, within 10000 m, got none");
+  EXPECT_EQ(complaint("drive", {number("speed", 7)}),
+            "argument \"speed\": expected a number from -0.2 to 2 m/s, got 7");
+  EXPECT_EQ(complaint("drive", {text("speed", "fast")}),
+            "argument \"speed\": expected a number from -0.2 to 2 m/s, got the text \"fast\"");
+  EXPECT_EQ(complaint("drive", {number("sped", 0.1)}),
+            "drive has no argument \"sped\": it takes speed, patience");
+  EXPECT_EQ(complaint("stop", {number("now", 1)}),
+            "stop has no argument \"now\": it takes no arguments");
+  EXPECT_EQ(complaint("drive", {number("speed", 0.1), number("speed", 0.2)}),
+            "argument \"speed\" is given twice");
+  EXPECT_EQ(complaint("go_to", {point("position", {1, 0, 0}, Frame::kMap)}),
+            "argument \"position\": expected a point in the odom or the robot frame, within 10000 "
+            "m, got the point (1, 0) in map");
+  EXPECT_EQ(complaint("turn_to", {}),
+            "turn_to: expected either \"heading\" (a number) or \"position\" (a point), got "
+            "neither");
+}
+
+TEST(Schema, RefusesWhatIsNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double wrong : {nan, infinity, -infinity}) {
+    EXPECT_NE(complaint("drive", {number("speed", wrong)}), "");
+    EXPECT_NE(complaint("go_to", {point("position", {wrong, 0, 0})}), "");
+    EXPECT_NE(complaint("go_to", {point("position", {0, wrong, 0})}), "");
+    EXPECT_NE(complaint("go_to", {point("position", {0, 0, wrong})}), "");
+  }
+}
+
+TEST(Schema, MessagesDoNotRepeatWhateverIsSent) {
+  const std::string name(10000, 'x');
+  EXPECT_LT(complaint("drive", {number(name, 1)}).size(), 200U);
+  EXPECT_EQ(complaint("stop", {number("a\nb\x1b", 1)}).find('\n'), std::string::npos);
+}
+
+TEST(Schema, AReloadedSchemaTakesThePlaceOfTheOldOne) {
+  Registry registry = built_in();
+  Schema schema;
+  schema.name = "stop";
+  schema.summary = "another";
+  registry.add(schema);
+  EXPECT_EQ(registry.find("stop")->summary, "another");
+  EXPECT_EQ(registry.names(), "drive, go_to, stop, turn_to");
+}
+
+}  // namespace
+}  // namespace saphira::intentions
