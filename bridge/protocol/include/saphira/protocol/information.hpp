@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "saphira/protocol/packet.hpp"
+#include "saphira/protocol/parameters.hpp"
+
+namespace saphira::protocol {
+
+/// The low digit of the packet's first byte, 0x3S. sfSTATUSNOPOWER, sfSTATUSSTOPPED,
+/// sfSTATUSMOVING.
+enum class Motors : std::uint8_t { kNoPower = 1, kStopped = 2, kMoving = 3 };
+
+/// A range of this or more says that no echo came (manual 6.3.2).
+inline constexpr double kNoEcho = 5.0;  // [m]
+
+struct RawSonar {
+  std::uint8_t number = 0;
+  std::uint16_t range = 0;
+  bool operator==(const RawSonar&) const = default;
+};
+
+/// The information packet of manual Table 5-5 in the units of the packet. (The table's second
+/// "Bumpers" row is not a field: every client and server has one stall field of two bytes.)
+struct InformationPacket {
+  Motors motors = Motors::kStopped;
+  std::uint16_t x = 0;  ///< 15 bits, rolls over
+  std::uint16_t y = 0;  ///< 15 bits, rolls over
+  std::int16_t th = 0;
+  std::int16_t left_velocity = 0;
+  std::int16_t right_velocity = 0;
+  std::uint8_t battery = 0;  ///< [0.1 V]
+  std::uint8_t left_stall = 0;
+  std::uint8_t right_stall = 0;
+  std::int16_t control = 0;  ///< the server's heading setpoint
+  std::uint16_t ptu = 0;
+  std::uint8_t say = 0;
+  std::vector<RawSonar> sonars;  ///< the new readings, in the order of firing
+  // Everything behind the sonars is missing in the packets of some servers: 0 then.
+  std::uint16_t timer = 0;
+  std::uint8_t analog = 0;
+  std::uint8_t digital_input = 0;
+  std::uint8_t digital_output = 0;
+
+  bool operator==(const InformationPacket&) const = default;
+};
+
+/// Sonar readings beyond this many do not fit into a packet; encode leaves them out.
+inline constexpr std::size_t kMaxSonarsInPacket = (kMaxBody - 25) / 3;
+
+/// The whole packet (frame included).
+Bytes encode(const InformationPacket& packet);
+
+/// Reads a packet's body. Fields that later servers append are skipped. Nothing if it is another
+/// packet, or ends before its sonar readings do.
+std::optional<InformationPacket> decode_information(ByteView body);
+
+struct Sonar {
+  std::uint8_t number = 0;
+  double range = 0.0;  ///< [m]
+  bool echo = false;
+};
+
+/// The same in SI units.
+struct Information {
+  Motors motors = Motors::kStopped;
+  double th = 0.0;                 ///< [rad] in (-pi, pi], of the server's own coordinates
+  double left_velocity = 0.0;      ///< [m/s]
+  double right_velocity = 0.0;     ///< [m/s]
+  double velocity = 0.0;           ///< [m/s] of the middle
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  double battery = 0.0;            ///< [V]
+  bool left_stalled = false;
+  bool right_stalled = false;
+  std::uint16_t bumpers = 0;  ///< both stall bytes as they came, the left one low
+  double control = 0.0;       ///< [rad] in (-pi, pi], the server's heading setpoint
+  std::uint16_t ptu = 0;      ///< [us]
+  std::uint8_t say = 0;
+  std::vector<Sonar> sonars;
+  std::uint16_t timer = 0;
+  std::uint8_t analog = 0;
+  std::uint8_t digital_input = 0;
+  std::uint8_t digital_output = 0;
+};
+
+/// Everything but the position, which rolls over: see DeadReckoning.
+Information interpret(const InformationPacket& packet, const RobotParameters& parameters);
+
+/// The way from one 15-bit coordinate to the next, in counts, the short way round: right as long as
+/// the robot moved less than half the range (0.8 m on a Pioneer 1) between the two.
+int position_difference(std::uint16_t from, std::uint16_t to);
+
+/// Follows the server's position over its roll-over.
+class DeadReckoning {
+ public:
+  /// The first packet defines where the origin is: its position is what the packet says.
+  /// Returns the pose in the server's coordinates, position unwrapped [m], heading in (-pi, pi].
+  Pose update(const InformationPacket& packet, const RobotParameters& parameters);
+  /// Until the next packet, as if there had been none.
+  void reset() { known_ = false; }
+
+ private:
+  bool known_ = false;
+  std::uint16_t last_x_ = 0;
+  std::uint16_t last_y_ = 0;
+  std::int64_t x_ = 0;  // counts
+  std::int64_t y_ = 0;
+};
+
+}  // namespace saphira::protocol

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::protocol {
+
+struct SonarUnit {
+  std::uint8_t number = 0;
+  Pose pose_in_robot;  ///< of the transducer, looking along its heading
+};
+
+/// What a robot parameter file says (manual 3.2 and 10), in SI units. The defaults are the Pioneer
+/// 1's, except that there are no sonars.
+struct RobotParameters {
+  std::string file;         ///< where it was read
+  std::string name;         ///< keyword Name
+  std::string robot_class;  ///< Class; the second string of the SYNC2 answer
+  std::string subclass;     ///< Subclass
+
+  // One unit of the information packet.
+  double angle_unit = 0.0061359;      ///< [rad] AngleConvFactor
+  double distance_unit = 0.05066e-3;  ///< [m] DistConvFactor
+  double velocity_unit = 2.5332e-3;   ///< [m/s] VelConvFactor
+  double range_unit = 0.1734e-3;      ///< [m] RangeConvFactor
+  /// [rad/m] DiffConvFactor: rotation = (right - left) / 2 * this, of wheel ways or velocities.
+  double rotation_per_difference = 3.33333;
+  /// [m/s] Vel2Divisor: the unit of the command VEL2.
+  double vel2_unit = 0.004;
+
+  double radius = 0.220;    ///< [m] RobotRadius
+  double diagonal = 0.090;  ///< [m] RobotDiagonal: half-height to the diagonal of the octagon
+
+  double max_velocity = 0.4;                      ///< [m/s] MaxVelocity
+  double max_rotation_velocity = radians(100.0);  ///< [rad/s] MaxRVelocity
+  double acceleration = 0.5;                      ///< [m/s2] Acceleration
+  double deceleration = 2.0;                      ///< [m/s2] Deceleration
+  double rotation_acceleration = radians(300.0);  ///< [rad/s2] RotAcceleration
+  double rotation_deceleration = radians(300.0);  ///< [rad/s2] RotDeceleration
+
+  // Errors of the simulated dead reckoning, manual Table 3-1. How the simulator reads them is said
+  // in saphira/sim/robot.hpp.
+  double encode_jitter = 0.0;  ///< EncodeJitter
+  double angle_jitter = 0.0;   ///< AngleJitter
+  double angle_drift = 0.0;    ///< AngleDrift
+
+  double battery = 12.6;         ///< [V] Battery: what the simulator reports
+  int front_buffer = 30;         ///< readings; FrontBuffer
+  int side_buffer = 40;          ///< readings of each side; SideBuffer
+  double front_max_range = 2.5;  ///< [m] FrontMaxRange (sfFrontMaxRange, manual 6.6.1)
+
+  std::vector<SonarUnit> sonars;  ///< SonarNum of them, by number
+
+  /// Oddities that do no harm, as lines to print ("file:line: ..."): units beyond SonarNum.
+  std::vector<std::string> warnings;
+};
+
+/// Reads the text of a parameter file; `file` names it in errors. Keywords may stand in any order
+/// and case, each at most once; the value may stand on the line behind its keyword. FileError where
+/// it is wrong.
+RobotParameters parse_parameters(std::string_view text, const std::string& file);
+
+/// The same from a file.
+RobotParameters load_parameters(const std::string& path);
+
+/// Which parameter files fit a robot, the best first (manual 5.4.2): the lower-case subclass, if it
+/// has one, then the lower-case class, each with ".p". The strings come from the robot: what is not
+/// a plain file name is left out.
+std::vector<std::string> parameter_file_names(std::string_view robot_class,
+                                              std::string_view subclass);
+
+}  // namespace saphira::protocol

@@ -1,0 +1,248 @@
+#include "saphira/protocol/command.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::protocol {
+
+namespace {
+
+// Manual Table 5-3.
+constexpr std::uint8_t kArgInt = 0x3B;
+constexpr std::uint8_t kArgNegativeInt = 0x1B;
+constexpr std::uint8_t kArgString = 0x2B;
+constexpr std::size_t kMaxPolling = 12;
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+
+int rounded(double value, int low, int high) {
+  if (std::isnan(value))
+    return 0;
+  return static_cast<int>(
+      std::lround(std::clamp(value, static_cast<double>(low), static_cast<double>(high))));
+}
+
+Bytes bare(Number number) {
+  const Bytes body{static_cast<std::uint8_t>(number)};
+  return frame(body);
+}
+
+// Negative integers travel as their absolute value with a type of their own.
+Bytes with_int(Number number, int value) {
+  const unsigned size = static_cast<unsigned>(std::abs(value));
+  const Bytes body{static_cast<std::uint8_t>(number), value < 0 ? kArgNegativeInt : kArgInt,
+                   static_cast<std::uint8_t>(size & 0xFFU),
+                   static_cast<std::uint8_t>(size >> 8U & 0xFFU)};
+  return frame(body);
+}
+
+Bytes with_string(Number number, const Bytes& text, StringForm form) {
+  Bytes body{static_cast<std::uint8_t>(number), kArgString};
+  if (form == StringForm::kLengthPrefixed)
+    body.push_back(static_cast<std::uint8_t>(text.size()));
+  body.insert(body.end(), text.begin(), text.end());
+  if (form == StringForm::kNulTerminated)
+    body.push_back(0);
+  return frame(body);
+}
+
+// The argument of a command, as far as there is one.
+struct Argument {
+  enum class Kind { kNone, kInt, kString, kBroken } kind = Kind::kNone;
+  int value = 0;
+  Bytes text;
+};
+
+Argument read_argument(ByteView body) {
+  if (body.size() <= 2)
+    return {};
+  const ByteView data = body.subspan(2);
+  switch (body[1]) {
+    case kArgInt:
+    case kArgNegativeInt: {
+      if (data.size() < 2)
+        return {Argument::Kind::kBroken, 0, {}};
+      const int size = data[0] | data[1] << 8;
+      // A positive type whose value does not fit a signed word is a negative number in two's
+      // complement, as some clients send it.
+      if (body[1] == kArgInt)
+        return {Argument::Kind::kInt, size > 0x7FFF ? size - 0x10000 : size, {}};
+      return {Argument::Kind::kInt, size > 0x7FFF ? size - 0x10000 : -size, {}};
+    }
+    case kArgString: {
+      // A string of the manual ends with NUL and has none inside; so a final NUL decides.
+      if (data.back() == 0) {
+        const auto end = std::find(data.begin(), data.end(), 0);
+        return {Argument::Kind::kString, 0, Bytes(data.begin(), end)};
+      }
+      if (data[0] == data.size() - 1)
+        return {Argument::Kind::kString, 0, Bytes(data.begin() + 1, data.end())};
+      return {Argument::Kind::kBroken, 0, {}};
+    }
+    default:
+      return {Argument::Kind::kBroken, 0, {}};
+  }
+}
+
+}  // namespace
+
+Bytes encode(const Command& command, double vel2_unit, StringForm form) {
+  return std::visit(
+      Overloaded{
+          [](const Pulse&) { return bare(Number::kPulse); },
+          [](const Open&) { return bare(Number::kOpen); },
+          [](const Close&) { return bare(Number::kClose); },
+          [form](const Polling& c) {
+            Bytes text;
+            for (const std::uint8_t sonar : c.sonars)
+              if (text.size() < kMaxPolling && sonar < 255)
+                text.push_back(static_cast<std::uint8_t>(sonar + 1));
+            return with_string(Number::kPolling, text, form);
+          },
+          [](const SetOrigin&) { return bare(Number::kSetOrigin); },
+          [](const Velocity& c) {
+            return with_int(Number::kVelocity, rounded(c.velocity * 1000.0, -32767, 32767));
+          },
+          [](const Heading& c) {
+            const int whole = std::isfinite(c.heading)
+                                  ? rounded(degrees(norm_angle(c.heading)), 0, 360) % 360
+                                  : 0;
+            return with_int(Number::kHeading, whole);
+          },
+          [](const DeltaHeading& c) {
+            return with_int(Number::kDeltaHeading, rounded(degrees(c.delta), -255, 255));
+          },
+          [](const RotationVelocity& c) {
+            return with_int(Number::kRotationVelocity, rounded(degrees(c.velocity), -255, 255));
+          },
+          [vel2_unit](const WheelVelocities& c) {
+            const int left = rounded(c.left / vel2_unit, -127, 127);
+            const int right = rounded(c.right / vel2_unit, -127, 127);
+            // Two signed bytes, the right wheel in the low one. Not an integer: never negated.
+            const Bytes body{static_cast<std::uint8_t>(Number::kWheelVelocities), kArgInt,
+                             static_cast<std::uint8_t>(right & 0xFF),
+                             static_cast<std::uint8_t>(left & 0xFF)};
+            return frame(body);
+          },
+          [](const DigitalOutput& c) { return with_int(Number::kDigitalOutput, c.bits); },
+          [](const Timer& c) { return with_int(Number::kTimer, c.pin); },
+          [](const Gripper& c) { return with_int(Number::kGripper, c.state); },
+          [](const Ptu& c) { return with_int(Number::kPtu, c.width); },
+          [](const Step&) { return bare(Number::kStep); },
+          [](const Unknown& c) {
+            const Bytes body{c.number};
+            return frame(body);
+          },
+      },
+      command);
+}
+
+Command decode_command(ByteView body, double vel2_unit) {
+  if (body.empty())
+    return Unknown{};
+  const Unknown unknown{body[0]};
+  const Argument argument = read_argument(body);
+  const bool is_string = argument.kind == Argument::Kind::kString;
+  const auto number = static_cast<Number>(body[0]);
+  switch (number) {  // those for which an argument says nothing, whatever it is
+    case Number::kPulse:
+      return Pulse{};
+    case Number::kOpen:
+      return Open{};
+    case Number::kClose:
+      return Close{};
+    case Number::kSetOrigin:
+      return SetOrigin{};
+    case Number::kStep:
+      return Step{};
+    default:
+      break;
+  }
+  if (argument.kind == Argument::Kind::kBroken)
+    return unknown;
+  if (number == Number::kPolling) {
+    if (argument.kind == Argument::Kind::kInt)
+      return unknown;
+    Polling polling;
+    for (const std::uint8_t byte : argument.text)
+      if (byte > 0 && polling.sonars.size() < kMaxPolling)
+        polling.sonars.push_back(static_cast<std::uint8_t>(byte - 1));
+    return polling;
+  }
+  if (is_string)
+    return unknown;
+  const int value = argument.value;
+  // The devices' arguments are bit patterns or counts: no sign.
+  const auto word = static_cast<std::uint16_t>(value & 0xFFFF);
+  switch (number) {
+    case Number::kVelocity:
+      return Velocity{value / 1000.0};
+    case Number::kHeading:
+      return Heading{radians(value)};
+    case Number::kDeltaHeading:
+      return DeltaHeading{radians(value)};
+    case Number::kRotationVelocity:
+      return RotationVelocity{radians(value)};
+    case Number::kWheelVelocities: {
+      if (argument.kind == Argument::Kind::kNone)
+        return WheelVelocities{};
+      const auto right = static_cast<std::int8_t>(body[2]);
+      const auto left = static_cast<std::int8_t>(body[3]);
+      return WheelVelocities{left * vel2_unit, right * vel2_unit};
+    }
+    case Number::kDigitalOutput:
+      return DigitalOutput{static_cast<std::uint8_t>(word & 0xFFU)};
+    case Number::kTimer:
+      return word < 8 ? Command{Timer{static_cast<std::uint8_t>(word)}} : Command{unknown};
+    case Number::kGripper:
+      return Gripper{word};
+    case Number::kPtu:
+      return Ptu{word};
+    default:
+      return unknown;
+  }
+}
+
+Bytes encode_sync(int number) {
+  const Bytes body{static_cast<std::uint8_t>(number)};
+  return frame(body);
+}
+
+Bytes encode_sync2_reply(const RobotIdentity& identity) {
+  Bytes body{2};
+  std::size_t left = kMaxBody - 1 - 3;  // the three NULs
+  for (const std::string* text : {&identity.name, &identity.robot_class, &identity.subclass}) {
+    const std::size_t size = std::min(text->find('\0'), std::min(text->size(), left));
+    body.insert(body.end(), text->begin(), text->begin() + static_cast<std::ptrdiff_t>(size));
+    body.push_back(0);
+    left -= size;
+  }
+  return frame(body);
+}
+
+std::optional<int> sync_number(ByteView body) {
+  if (body.empty() || body[0] > 2)
+    return std::nullopt;
+  return body[0];
+}
+
+std::optional<RobotIdentity> decode_sync2_reply(ByteView body) {
+  if (body.empty() || body[0] != 2)
+    return std::nullopt;
+  RobotIdentity identity;
+  auto at = body.begin() + 1;
+  for (std::string* text : {&identity.name, &identity.robot_class, &identity.subclass}) {
+    const auto end = std::find(at, body.end(), 0);
+    text->assign(at, end);
+    at = end == body.end() ? end : end + 1;
+  }
+  return identity;
+}
+
+}  // namespace saphira::protocol

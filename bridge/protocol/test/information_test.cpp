@@ -1,0 +1,164 @@
+#include "saphira/protocol/information.hpp"
+
+#include <gtest/gtest.h>
+
+#include "saphira/base/random.hpp"
+
+namespace saphira::protocol {
+namespace {
+
+Bytes body_of(const Bytes& packet) {
+  return {packet.begin() + 3, packet.end() - 2};
+}
+
+InformationPacket sample() {
+  InformationPacket p;
+  p.motors = Motors::kMoving;
+  p.x = 0x7FFE;
+  p.y = 0x1234;
+  p.th = -256;
+  p.left_velocity = -40;
+  p.right_velocity = 100;
+  p.battery = 126;
+  p.left_stall = 1;
+  p.right_stall = 0;
+  p.control = 512;
+  p.ptu = 1500;
+  p.say = 3;
+  p.sonars = {{3, 5000}, {0, 28836}};
+  p.timer = 77;
+  p.analog = 200;
+  p.digital_input = 0x0F;
+  p.digital_output = 0xA5;
+  return p;
+}
+
+// Table 5-5 in order; little-endian; one stall field of two bytes.
+TEST(Information, BytesAreTheTables) {
+  EXPECT_EQ(body_of(encode(sample())),
+            (Bytes{0x33, 0xFE, 0x7F, 0x34, 0x12, 0x00, 0xFF, 0xD8, 0xFF, 100, 0,
+                   126,  1,    0,    0x00, 0x02, 0xDC, 0x05, 3,    2,    3,   0x88,
+                   0x13, 0,    0xA4, 0x70, 77,   0,    200,  0x0F, 0xA5}));
+}
+
+TEST(Information, SurvivesTheWire) {
+  EXPECT_EQ(decode_information(body_of(encode(sample()))), sample());
+  Random random(3);
+  for (int i = 0; i < 500; ++i) {
+    InformationPacket p = sample();
+    p.x = static_cast<std::uint16_t>(random.next() & 0x7FFFU);
+    p.th = static_cast<std::int16_t>(random.next());
+    p.control = static_cast<std::int16_t>(random.next());
+    p.sonars.resize(random.next() % (kMaxSonarsInPacket + 1));
+    for (auto& sonar : p.sonars)
+      sonar = {static_cast<std::uint8_t>(random.next()), static_cast<std::uint16_t>(random.next())};
+    ASSERT_EQ(decode_information(body_of(encode(p))), p);
+  }
+}
+
+TEST(Information, AppendedFieldsAreSkipped) {
+  Bytes body = body_of(encode(sample()));
+  body.insert(body.end(), {1, 2, 3, 4, 5});
+  EXPECT_EQ(decode_information(body), sample());
+}
+
+TEST(Information, EverythingBehindTheSonarsMayBeMissing) {
+  Bytes body = body_of(encode(sample()));
+  for (int i = 0; i < 5; ++i) {
+    body.pop_back();
+    const auto packet = decode_information(body);
+    ASSERT_TRUE(packet);
+    EXPECT_EQ(packet->sonars, sample().sonars);
+    EXPECT_EQ(packet->digital_output, 0);
+  }
+  while (!body.empty()) {
+    body.pop_back();
+    EXPECT_FALSE(decode_information(body)) << body.size();
+  }
+}
+
+TEST(Information, OtherPacketsAreNot) {
+  for (int type = 0; type < 256; ++type) {
+    Bytes body = body_of(encode(sample()));
+    body[0] = static_cast<std::uint8_t>(type);
+    EXPECT_EQ(decode_information(body).has_value(), type >= 0x31 && type <= 0x34) << type;
+  }
+}
+
+TEST(Information, TooManySonarsAreLeftOut) {
+  InformationPacket p;
+  p.sonars.resize(100);
+  const auto got = decode_information(body_of(encode(p)));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->sonars.size(), kMaxSonarsInPacket);
+}
+
+TEST(Information, InSiUnits) {
+  RobotParameters pioneer;  // the conversion factors of the Pioneer 1
+  const Information in = interpret(sample(), pioneer);
+  EXPECT_EQ(in.motors, Motors::kMoving);
+  EXPECT_NEAR(in.th, -kPi / 2, 1e-4);
+  EXPECT_NEAR(in.left_velocity, -0.101328, 1e-9);
+  EXPECT_NEAR(in.right_velocity, 0.25332, 1e-9);
+  EXPECT_NEAR(in.velocity, 0.075996, 1e-9);
+  EXPECT_NEAR(in.rotation_velocity, (0.25332 + 0.101328) / 2 * 3.33333, 1e-9);
+  EXPECT_NEAR(in.battery, 12.6, 1e-9);
+  EXPECT_TRUE(in.left_stalled);
+  EXPECT_FALSE(in.right_stalled);
+  EXPECT_EQ(in.bumpers, 1);
+  EXPECT_NEAR(std::abs(in.control), kPi, 1e-3);
+  ASSERT_EQ(in.sonars.size(), 2U);
+  EXPECT_EQ(in.sonars[0].number, 3);
+  EXPECT_NEAR(in.sonars[0].range, 0.867, 1e-9);
+  EXPECT_TRUE(in.sonars[0].echo);
+  EXPECT_FALSE(in.sonars[1].echo);
+}
+
+// 5000 says that no echo was received, whatever the robot's unit of range.
+TEST(Information, FiveThousandMillimetresAreNoEcho) {
+  for (const double unit : {0.1734e-3, 0.229e-3, 0.268e-3, 1e-3}) {
+    RobotParameters parameters;
+    parameters.range_unit = unit;
+    InformationPacket p;
+    p.sonars = {{0, static_cast<std::uint16_t>(std::lround(5.0 / unit))},
+                {1, static_cast<std::uint16_t>(std::lround(5.0 / unit) - 2)}};
+    const Information in = interpret(p, parameters);
+    EXPECT_FALSE(in.sonars[0].echo) << unit;
+    EXPECT_TRUE(in.sonars[1].echo) << unit;
+  }
+}
+
+// Manual 5.5.1, in units: the position rolls over and is followed.
+TEST(DeadReckoning, FollowsTheRollOver) {
+  EXPECT_EQ(position_difference(0x7FFF, 0), 1);
+  EXPECT_EQ(position_difference(0, 0x7FFF), -1);
+  EXPECT_EQ(position_difference(5, 5), 0);
+  EXPECT_EQ(position_difference(0, 0x3FFF), 0x3FFF);
+
+  RobotParameters parameters;
+  DeadReckoning reckoning;
+  Random random(5);
+  double x = 0.0;
+  double y = 0.0;
+  InformationPacket packet;
+  reckoning.update(packet, parameters);
+  for (int i = 0; i < 2000; ++i) {
+    x += random.uniform(-0.02, 0.05);
+    y -= random.uniform(-0.02, 0.05);
+    const auto counts = [&](double v) {
+      return static_cast<std::uint16_t>(
+          static_cast<unsigned>(std::lround(v / parameters.distance_unit)) & 0x7FFFU);
+    };
+    packet.x = counts(x);
+    packet.y = counts(y);
+    const Pose pose = reckoning.update(packet, parameters);
+    ASSERT_NEAR(pose.x, x, parameters.distance_unit);
+    ASSERT_NEAR(pose.y, y, parameters.distance_unit);
+  }
+  EXPECT_GT(x, 10.0);  // it did roll over
+  reckoning.reset();
+  EXPECT_LT(reckoning.update(packet, parameters).x, 1.7);
+}
+
+}  // namespace
+}  // namespace saphira::protocol
