@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saphira/protocol/command.hpp"
+
+namespace saphira::reflector {
+
+using Packets = std::vector<protocol::Bytes>;
+
+/// Brings a session with a robot server about (manual 5.4): SYNC0, 1, 2, each echoed, then OPEN.
+/// Each call returns the packets to be sent. Times in seconds of any clock.
+class Connection {
+ public:
+  enum class State { closed, sync0, sync1, sync2, open };
+
+  static constexpr double kRetry = 0.3;  ///< [s] a lost packet is sent again
+
+  /// The link is up.
+  Packets begin(double now);
+  /// The link is gone.
+  void end() { state_ = State::closed; }
+  /// A packet's body has come.
+  Packets packet(protocol::ByteView body, double now);
+  /// Time has passed.
+  Packets tick(double now);
+
+  State state() const { return state_; }
+  bool open() const { return state_ == State::open; }
+  const protocol::RobotIdentity& identity() const { return identity_; }
+  /// When to call tick next (while neither closed nor open).
+  double due() const { return sent_ + kRetry; }
+  /// What it waits for, in words.
+  std::string waiting_for() const;
+
+ private:
+  Packets go(State state, double now);
+
+  State state_ = State::closed;
+  protocol::RobotIdentity identity_;
+  double sent_ = 0.0;
+  int tries_ = 0;
+};
+
+}  // namespace saphira::reflector

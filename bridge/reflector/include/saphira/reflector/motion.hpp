@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::reflector {
+
+enum class Translation { none, velocity, position };
+enum class Rotation { none, velocity, heading, relative_heading };
+
+/// What a driver wants of the two channels (manual 6.4). They are independent.
+struct Motion {
+  Translation translation = Translation::none;
+  double velocity = 0.0;   ///< [m/s] setpoint; the greatest speed of a position [0: robot's own]
+  double distance = 0.0;   ///< [m] of a position
+  std::uint64_t move = 0;  ///< a new number begins a new position or relative heading
+  Rotation rotation = Rotation::none;
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  double heading = 0.0;            ///< [rad] in odom, or relative
+};
+
+/// The robot's ability to move.
+struct Limits {
+  double max_velocity = 0.4;           ///< [m/s]
+  double max_rotation_velocity = 1.7;  ///< [rad/s]
+  double deceleration = 0.5;           ///< [m/s2] of a position's end; well under the server's own
+};
+
+/// The setpoints of one moment.
+struct Setpoints {
+  double velocity = 0.0;           ///< [m/s]
+  bool turn_to_heading = false;    ///< whether heading or rotation_velocity counts
+  double heading_in_odom = 0.0;    ///< [rad]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  bool operator==(const Setpoints&) const = default;
+};
+
+/// Direct motion control: turns what a driver wants into setpoints. The position mode is made here,
+/// since no robot of the manual has it: a trapezoid of the speed by the distance that is left.
+class DirectMotion {
+ public:
+  explicit DirectMotion(Limits limits = {}) : limits_(limits) {}
+  void configure(Limits limits) { limits_ = limits; }
+
+  /// Both channels to zero; positions and headings are forgotten.
+  void stop();
+  /// The newest wish of the driver.
+  void set(const Motion& motion, const Pose& pose_in_odom);
+  /// The robot went on by `advance` [m] along its heading.
+  void moved(double advance) { travelled_ += advance; }
+
+  Setpoints setpoints() const;
+
+  /// Whether the distance is done to within `tolerance` [m]; true where no position was asked.
+  bool done_position(double tolerance) const;
+  /// Whether the robot points to within `tolerance` [rad] of its heading setpoint.
+  bool done_heading(double tolerance, double heading_in_odom) const;
+
+ private:
+  Limits limits_;
+  Setpoints setpoints_;
+  std::optional<double> target_;  ///< [m] on the scale of travelled_
+  double speed_ = 0.0;            ///< [m/s] the greatest of a position
+  double travelled_ = 0.0;
+  std::optional<std::uint64_t> move_;  ///< of the position
+  std::optional<std::uint64_t> turn_;  ///< of the relative heading
+};
+
+}  // namespace saphira::reflector

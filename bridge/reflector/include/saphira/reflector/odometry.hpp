@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::reflector {
+
+/// The server's dead reckoning as it comes: position counters of 15 bits that roll over (manual
+/// 5.5.1), heading.
+struct RawPose {
+  std::uint16_t x = 0;  ///< 15 bits
+  std::uint16_t y = 0;  ///< 15 bits
+  double th = 0.0;      ///< [rad] in the server's own frame
+};
+
+/// What has to be known to go on with an odom frame later: over a reconnection, or a restart of the
+/// bridge.
+struct OdometryMemory {
+  std::uint64_t odom = 0;  ///< the frame's number
+  RawPose raw;             ///< of the newest packet
+  Pose raw_unwrapped;      ///< the same without the roll-over [m, rad], server's frame
+  Pose server_in_odom;     ///< where the server's frame stands in odom
+};
+
+/// One line of text, for a small file; and back, nothing where the text is not one.
+std::string to_text(const OdometryMemory& memory);
+std::optional<OdometryMemory> from_text(const std::string& text);
+
+/// Unwraps the position counters and says in which odom frame they are.
+class Odometry {
+ public:
+  struct Settings {
+    double distance_unit = 0.001;            ///< [m] of one count
+    double near_distance = 0.3;              ///< [m] a robot that is so near was not carried away
+    double near_angle = 20.0 * kPi / 180.0;  ///< [rad]
+    double max_velocity = 1.0;               ///< [m/s] faster is a jump of the counters
+  };
+
+  Odometry() = default;
+  explicit Odometry(Settings settings) : settings_(settings) {}
+  void configure(Settings settings) { settings_ = settings; }
+
+  /// A connection begins. The first packet after it goes on with the remembered frame when its raw
+  /// pose is near the remembered one, and is not the exact (0, 0, 0) of a power-up; otherwise it
+  /// begins frame `fresh` at (0, 0, 0).
+  void connect(std::optional<OdometryMemory> memory, std::uint64_t fresh);
+  /// A packet, `dt` seconds after the last. A jump that no robot makes begins frame `fresh`.
+  /// Returns whether a frame began.
+  bool update(const RawPose& raw, double dt, std::uint64_t fresh);
+
+  std::uint64_t odom() const { return memory_.odom; }
+  const Pose& pose_in_odom() const { return pose_; }
+  /// The rotation from the server's frame to odom [rad]: heading_in_odom = heading + this.
+  double rotation() const { return memory_.server_in_odom.th; }
+  const OdometryMemory& memory() const { return memory_; }
+  /// How far the last packet's motion went, along the robot's own heading [m].
+  double advance() const { return advance_; }
+
+ private:
+  void begin(const RawPose& raw, std::uint64_t odom);
+
+  Settings settings_;
+  bool first_ = true;
+  std::optional<OdometryMemory> remembered_;
+  std::uint64_t fresh_ = 0;
+  OdometryMemory memory_;
+  Pose pose_;
+  double advance_ = 0.0;
+};
+
+}  // namespace saphira::reflector

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/protocol/information.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/reflector/channels.hpp"
+#include "saphira/reflector/devices.hpp"
+#include "saphira/reflector/motion.hpp"
+#include "saphira/reflector/odometry.hpp"
+
+namespace saphira::reflector {
+
+/// The robot as its newest packet shows it (manual Tables 5-5 and 6-2).
+struct State {
+  std::uint64_t cycle = 0;  ///< packets since the connection was opened
+  std::uint64_t odom = 0;
+  Pose pose_in_odom;
+  protocol::Information information;
+  double target_velocity = 0.0;         ///< [m/s] what was sent last
+  double target_heading_in_odom = 0.0;  ///< [rad] the server's own heading setpoint
+  unsigned motor_packets_per_s = 0;
+  unsigned sonar_readings_per_s = 0;
+};
+
+/// The state reflector (manual 6.3): information packets in, the robot's state out; setpoints in,
+/// command packets out, until the state shows them. Knows no clock: every call is given the time in
+/// seconds (the steady clock live, cycles x 0.1 s in lockstep).
+class Reflector {
+ public:
+  void configure(const protocol::RobotParameters& parameters);
+  const protocol::RobotParameters& parameters() const { return parameters_; }
+
+  /// The server was opened. `memory`: of the odom frame before, if any; `fresh`: the number of the
+  /// frame that begins otherwise. Zero setpoints are due at once.
+  void open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh);
+
+  /// A packet. `fresh`: the number of the odom frame that begins where continuity is lost.
+  const State& packet(const protocol::InformationPacket& packet, double now, std::uint64_t fresh);
+  const State& state() const { return state_; }
+  const OdometryMemory& odometry() const { return odometry_.memory(); }
+
+  /// Direct motion control: what the driver wants. Not yet what is sent: see hold().
+  void set(const Motion& motion) { motion_.set(motion, state_.pose_in_odom); }
+  void stop() { motion_.stop(); }
+  const DirectMotion& motion() const { return motion_; }
+
+  /// The setpoints that the server is to hold, after whatever the guard made of motion().
+  void hold(const Setpoints& setpoints);
+  void request(const protocol::Command& device) { devices_.request(device); }
+
+  /// What is to be sent now. Includes a PULSE where nothing else was said for half a second.
+  std::vector<protocol::Command> due(double now);
+  bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }
+  double sent_velocity() const { return channels_.sent_velocity(); }
+  std::optional<std::string> take_trouble() { return devices_.take_trouble(); }
+
+ private:
+  protocol::RobotParameters parameters_;
+  Odometry odometry_;
+  DirectMotion motion_;
+  Channels channels_;
+  Devices devices_;
+  State state_;
+  double last_packet_ = 0.0;
+  double last_sent_ = 0.0;
+  std::deque<double> packet_times_;
+  std::deque<std::pair<double, std::size_t>> sonar_times_;
+};
+
+}  // namespace saphira::reflector

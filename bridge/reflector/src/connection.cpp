@@ -1,0 +1,83 @@
+#include "saphira/reflector/connection.hpp"
+
+namespace saphira::reflector {
+
+namespace {
+
+constexpr int kTries = 5;
+
+int sync_of(Connection::State state) {
+  return static_cast<int>(state) - static_cast<int>(Connection::State::sync0);
+}
+
+bool is_information(std::uint8_t type) {
+  return (type & 0xF0U) == 0x30U;
+}
+
+}  // namespace
+
+Packets Connection::go(State state, double now) {
+  if (state != state_)
+    tries_ = 0;
+  state_ = state;
+  sent_ = now;
+  ++tries_;
+  return {state == State::open ? protocol::encode(protocol::Open{})
+                               : protocol::encode_sync(sync_of(state))};
+}
+
+Packets Connection::begin(double now) {
+  identity_ = {};
+  state_ = State::closed;
+  return go(State::sync0, now);
+}
+
+Packets Connection::packet(protocol::ByteView body, double now) {
+  if (body.empty() || state_ == State::closed || state_ == State::open)
+    return {};
+  if (is_information(body[0])) {
+    // The server is still open from a session before. Once in a while is enough: what comes now
+    // may have been on its way.
+    if (now - sent_ < kRetry / 2.0 && tries_ > 1)
+      return {};
+    ++tries_;
+    Packets out{protocol::encode(protocol::Close{})};
+    const Packets again = go(State::sync0, now);
+    out.insert(out.end(), again.begin(), again.end());
+    tries_ = 2;
+    return out;
+  }
+  if (protocol::sync_number(body) != sync_of(state_))
+    return {};
+  switch (state_) {
+    case State::sync0:
+      return go(State::sync1, now);
+    case State::sync1:
+      return go(State::sync2, now);
+    case State::sync2:
+      identity_ = protocol::decode_sync2_reply(body).value_or(protocol::RobotIdentity{});
+      return go(State::open, now);
+    default:
+      return {};
+  }
+}
+
+Packets Connection::tick(double now) {
+  if (state_ == State::closed || state_ == State::open || now < due() - 1e-9)
+    return {};
+  return go(tries_ >= kTries ? State::sync0 : state_, now);
+}
+
+std::string Connection::waiting_for() const {
+  switch (state_) {
+    case State::closed:
+      return "a link to the robot";
+    case State::open:
+      return "";
+    default:
+      return "the robot to answer SYNC" + std::to_string(sync_of(state_)) +
+             (state_ == State::sync0 ? " (is it switched on?)" : "");
+  }
+}
+
+}  // namespace saphira::reflector

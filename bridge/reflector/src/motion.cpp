@@ -1,0 +1,86 @@
+#include "saphira/reflector/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::reflector {
+
+namespace {
+
+// The manual's Pioneer cannot be placed better than about 0.1 m (6.4); this only ends the creeping.
+constexpr double kThere = 0.005;    // [m]
+constexpr double kCreep = 0.03;     // [m/s] the least speed that moves a robot
+constexpr double kReaction = 0.15;  // [s] from a packet to the effect of its answer
+
+}  // namespace
+
+void DirectMotion::stop() {
+  setpoints_ = {};
+  target_.reset();
+  move_.reset();
+  turn_.reset();
+}
+
+void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
+  switch (motion.translation) {
+    case Translation::none:
+      break;
+    case Translation::velocity:
+      target_.reset();
+      move_.reset();
+      setpoints_.velocity = motion.velocity;
+      break;
+    case Translation::position:
+      if (move_ != motion.move) {
+        move_ = motion.move;
+        target_ = travelled_ + motion.distance;
+      }
+      speed_ = std::abs(motion.velocity) > 0.0 ? std::abs(motion.velocity) : limits_.max_velocity;
+      break;
+  }
+  switch (motion.rotation) {
+    case Rotation::none:
+      break;
+    case Rotation::velocity:
+      turn_.reset();
+      setpoints_.turn_to_heading = false;
+      setpoints_.rotation_velocity = motion.rotation_velocity;
+      break;
+    case Rotation::heading:
+      turn_.reset();
+      setpoints_.turn_to_heading = true;
+      setpoints_.heading_in_odom = norm2_angle(motion.heading);
+      break;
+    case Rotation::relative_heading:
+      if (turn_ != motion.move) {
+        turn_ = motion.move;
+        setpoints_.turn_to_heading = true;
+        setpoints_.heading_in_odom = norm2_angle(pose_in_odom.th + motion.heading);
+      }
+      break;
+  }
+}
+
+Setpoints DirectMotion::setpoints() const {
+  Setpoints out = setpoints_;
+  if (target_) {
+    const double left = *target_ - travelled_;
+    const double a = limits_.deceleration;
+    // v t + v^2 / 2a = left: the speed from which the robot still stops at the target.
+    const double v = a * (std::sqrt(kReaction * kReaction + 2.0 * std::abs(left) / a) - kReaction);
+    out.velocity =
+        std::abs(left) < kThere ? 0.0 : std::copysign(std::min(speed_, std::max(kCreep, v)), left);
+  }
+  return out;
+}
+
+bool DirectMotion::done_position(double tolerance) const {
+  return !target_ || std::abs(*target_ - travelled_) <= tolerance;
+}
+
+bool DirectMotion::done_heading(double tolerance, double heading_in_odom) const {
+  return !setpoints_.turn_to_heading ||
+         std::abs(norm2_angle(setpoints_.heading_in_odom - heading_in_odom)) <= tolerance;
+}
+
+}  // namespace saphira::reflector

@@ -1,0 +1,95 @@
+#include "saphira/reflector/odometry.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "saphira/protocol/information.hpp"
+
+namespace saphira::reflector {
+
+std::string to_text(const OdometryMemory& m) {
+  char text[256];
+  std::snprintf(text, sizeof text, "odom1 %llu %u %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n",
+                static_cast<unsigned long long>(m.odom), m.raw.x, m.raw.y, m.raw.th,
+                m.raw_unwrapped.x, m.raw_unwrapped.y, m.raw_unwrapped.th, m.server_in_odom.x,
+                m.server_in_odom.y, m.server_in_odom.th);
+  return text;
+}
+
+std::optional<OdometryMemory> from_text(const std::string& text) {
+  OdometryMemory m;
+  unsigned long long odom = 0;
+  unsigned x = 0;
+  unsigned y = 0;
+  char end = 0;
+  const int n =
+      std::sscanf(text.c_str(), "odom1 %llu %u %u %lf %lf %lf %lf %lf %lf %lf%c", &odom, &x, &y,
+                  &m.raw.th, &m.raw_unwrapped.x, &m.raw_unwrapped.y, &m.raw_unwrapped.th,
+                  &m.server_in_odom.x, &m.server_in_odom.y, &m.server_in_odom.th, &end);
+  if (n != 11 || end != '\n' || x > 0x7FFF || y > 0x7FFF)
+    return std::nullopt;
+  for (const double value : {m.raw.th, m.raw_unwrapped.x, m.raw_unwrapped.y, m.raw_unwrapped.th,
+                             m.server_in_odom.x, m.server_in_odom.y, m.server_in_odom.th}) {
+    if (!std::isfinite(value))
+      return std::nullopt;
+  }
+  m.odom = odom;
+  m.raw.x = static_cast<std::uint16_t>(x);
+  m.raw.y = static_cast<std::uint16_t>(y);
+  return m;
+}
+
+void Odometry::connect(std::optional<OdometryMemory> memory, std::uint64_t fresh) {
+  first_ = true;
+  remembered_ = memory;
+  fresh_ = fresh;
+}
+
+void Odometry::begin(const RawPose& raw, std::uint64_t odom) {
+  memory_.odom = odom;
+  memory_.raw = raw;
+  memory_.raw_unwrapped = {raw.x * settings_.distance_unit, raw.y * settings_.distance_unit,
+                           norm2_angle(raw.th)};
+  memory_.server_in_odom = relative(memory_.raw_unwrapped, {0.0, 0.0, 0.0});
+  pose_ = {};
+  advance_ = 0.0;
+}
+
+bool Odometry::update(const RawPose& raw, double dt, std::uint64_t fresh) {
+  double allowed = 0.0;
+  if (first_) {
+    first_ = false;
+    const bool power_up = raw.x == 0 && raw.y == 0 && raw.th == 0.0;
+    if (!remembered_ || power_up) {
+      begin(raw, fresh_);
+      return true;
+    }
+    memory_ = *remembered_;
+    allowed = settings_.near_distance;
+    if (std::abs(norm2_angle(raw.th - memory_.raw.th)) > settings_.near_angle) {
+      begin(raw, fresh_);
+      return true;
+    }
+    fresh = fresh_;
+  } else {
+    allowed = settings_.near_distance + 1.5 * settings_.max_velocity * dt;
+  }
+
+  const double dx = protocol::position_difference(memory_.raw.x, raw.x) * settings_.distance_unit;
+  const double dy = protocol::position_difference(memory_.raw.y, raw.y) * settings_.distance_unit;
+  if (std::hypot(dx, dy) > allowed) {
+    begin(raw, fresh);
+    return true;
+  }
+  const double middle =
+      memory_.raw_unwrapped.th + norm2_angle(raw.th - memory_.raw_unwrapped.th) / 2.0;
+  advance_ = dx * std::cos(middle) + dy * std::sin(middle);
+  memory_.raw = raw;
+  memory_.raw_unwrapped.x += dx;
+  memory_.raw_unwrapped.y += dy;
+  memory_.raw_unwrapped.th = norm2_angle(raw.th);
+  pose_ = compose(memory_.server_in_odom, memory_.raw_unwrapped);
+  return false;
+}
+
+}  // namespace saphira::reflector

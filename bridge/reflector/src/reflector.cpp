@@ -1,0 +1,94 @@
+#include "saphira/reflector/reflector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::reflector {
+
+namespace {
+
+constexpr double kTick = 1e-6;
+// A position is ended more gently than the server stops: the server's own way of braking is not
+// known exactly, and passengers like it.
+constexpr double kGentle = 0.5;  // [m/s2]
+
+}  // namespace
+
+void Reflector::configure(const protocol::RobotParameters& parameters) {
+  parameters_ = parameters;
+  Odometry::Settings odometry;
+  odometry.distance_unit = parameters.distance_unit;
+  odometry.max_velocity = parameters.max_velocity;
+  odometry_.configure(odometry);
+  motion_.configure({parameters.max_velocity, parameters.max_rotation_velocity,
+                     std::min(kGentle, parameters.deceleration)});
+}
+
+void Reflector::open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh) {
+  state_ = {};
+  odometry_.connect(memory, fresh);
+  motion_.stop();
+  channels_.connect();
+  devices_.connect();
+  last_packet_ = now;
+  last_sent_ = now;
+  packet_times_.clear();
+  sonar_times_.clear();
+}
+
+const State& Reflector::packet(const protocol::InformationPacket& packet, double now,
+                               std::uint64_t fresh) {
+  state_.information = protocol::interpret(packet, parameters_);
+  const RawPose raw{packet.x, packet.y, state_.information.th};
+  // What the robot went since it was told to begin at the origin is at most one cycle's way.
+  const double unit = parameters_.distance_unit;
+  const bool origin = std::abs(protocol::position_difference(0, packet.x)) * unit < 0.1 &&
+                      std::abs(protocol::position_difference(0, packet.y)) * unit < 0.1 &&
+                      std::abs(raw.th) < 0.2;
+  const bool began = odometry_.update(raw, now - last_packet_, fresh);
+  if (began)
+    motion_.stop();  // a heading or a way that was meant in the old frame means nothing now
+  else
+    motion_.moved(odometry_.advance());
+  devices_.reflect(packet, origin);
+  last_packet_ = now;
+
+  ++state_.cycle;
+  state_.odom = odometry_.odom();
+  state_.pose_in_odom = odometry_.pose_in_odom();
+  state_.target_velocity = channels_.sent_velocity();
+  state_.target_heading_in_odom = norm2_angle(state_.information.control + odometry_.rotation());
+  channels_.cycle({state_.information.velocity, state_.information.rotation_velocity,
+                   state_.information.control});
+
+  packet_times_.push_back(now);
+  sonar_times_.emplace_back(now, packet.sonars.size());
+  while (packet_times_.front() <= now - 1.0 + kTick)
+    packet_times_.pop_front();
+  while (sonar_times_.front().first <= now - 1.0 + kTick)
+    sonar_times_.pop_front();
+  state_.motor_packets_per_s = static_cast<unsigned>(packet_times_.size());
+  state_.sonar_readings_per_s = 0;
+  for (const auto& [time, count] : sonar_times_)
+    state_.sonar_readings_per_s += static_cast<unsigned>(count);
+  return state_;
+}
+
+void Reflector::hold(const Setpoints& setpoints) {
+  channels_.want(setpoints, odometry_.rotation());
+}
+
+std::vector<protocol::Command> Reflector::due(double now) {
+  std::vector<protocol::Command> out;
+  for (const Order& order : channels_.due(now))
+    out.push_back(to_command(order));
+  for (protocol::Command& command : devices_.due(now))
+    out.push_back(std::move(command));
+  if (out.empty() && now - last_sent_ >= Channels::kRepeat - kTick)
+    out.emplace_back(protocol::Pulse{});
+  if (!out.empty())
+    last_sent_ = now;
+  return out;
+}
+
+}  // namespace saphira::reflector

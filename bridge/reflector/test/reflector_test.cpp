@@ -1,0 +1,152 @@
+#include "saphira/reflector/reflector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::reflector {
+namespace {
+
+using protocol::InformationPacket;
+
+protocol::RobotParameters pioneer() {
+  protocol::RobotParameters p;
+  p.angle_unit = 0.0061359;
+  p.distance_unit = 0.05066e-3;
+  p.velocity_unit = 2.5332e-3;
+  return p;
+}
+
+Reflector open_reflector() {
+  Reflector r;
+  r.configure(pioneer());
+  r.open(0.0, {}, 1);
+  return r;
+}
+
+TEST(Reflector, ZerosFirstThenTheState) {
+  Reflector r = open_reflector();
+  const auto first = r.due(0.0);
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_EQ(first[0], protocol::Command(protocol::Velocity{0.0}));
+  EXPECT_EQ(first[1], protocol::Command(protocol::RotationVelocity{0.0}));
+
+  InformationPacket packet;
+  packet.motors = protocol::Motors::kMoving;
+  packet.x = 1000;
+  packet.left_velocity = 100;
+  packet.right_velocity = 110;
+  packet.battery = 126;
+  packet.left_stall = 1;
+  packet.sonars = {{3, 5000}, {4, 40000}};
+  const State& s = r.packet(packet, 0.1, 2);
+  EXPECT_EQ(s.cycle, 1U);
+  EXPECT_EQ(s.odom, 1U);
+  EXPECT_EQ(s.pose_in_odom, Pose{});
+  EXPECT_NEAR(s.information.velocity, 0.105 * 2.5332, 1e-9);
+  EXPECT_TRUE(s.information.left_stalled);
+  EXPECT_FALSE(s.information.right_stalled);
+  packet.x = 1400;
+  r.packet(packet, 0.2, 2);
+  EXPECT_NEAR(s.pose_in_odom.x, 400 * 0.05066e-3, 1e-9);
+}
+
+TEST(Reflector, CountsPacketsPerSecond) {
+  Reflector r = open_reflector();
+  InformationPacket packet;
+  packet.sonars = {{0, 1000}, {1, 1000}, {2, 1000}};
+  for (int cycle = 1; cycle <= 25; ++cycle) {
+    r.packet(packet, 0.1 * cycle, 2);
+    EXPECT_EQ(r.state().motor_packets_per_s, std::min(10U, static_cast<unsigned>(cycle)));
+  }
+  EXPECT_EQ(r.state().sonar_readings_per_s, 30U);
+  r.packet(packet, 4.0, 2);
+  EXPECT_EQ(r.state().motor_packets_per_s, 1U);
+}
+
+TEST(Reflector, HeadingsAreInOdomWhateverTheServersFrame) {
+  Reflector r = open_reflector();
+  r.due(0.0);
+  InformationPacket packet;
+  packet.th = 256;  // 90 degrees
+  packet.x = 5;
+  r.packet(packet, 0.1, 2);
+  EXPECT_EQ(r.state().pose_in_odom.th, 0.0);
+  Motion m;
+  m.rotation = Rotation::heading;
+  m.heading = radians(-60.0);
+  r.set(m);
+  r.hold(r.motion().setpoints());
+  const auto out = r.due(0.1);
+  ASSERT_EQ(out.size(), 1U);
+  const auto* heading = std::get_if<protocol::Heading>(&out[0]);
+  ASSERT_NE(heading, nullptr);
+  EXPECT_NEAR(degrees(heading->heading), 30.0, 1e-9);
+}
+
+TEST(Reflector, ALostOdomFrameStopsTheMotionThatWasMeantInIt) {
+  Reflector r = open_reflector();
+  InformationPacket packet;
+  packet.x = 20000;
+  r.packet(packet, 0.1, 2);
+  Motion m;
+  m.rotation = Rotation::heading;
+  m.heading = 1.0;
+  r.set(m);
+  packet.x = 0;
+  r.packet(packet, 0.2, 2);
+  EXPECT_EQ(r.state().odom, 2U);
+  EXPECT_EQ(r.motion().setpoints(), Setpoints{});
+}
+
+TEST(Reflector, DevicesAreSentUntilShown) {
+  Reflector r = open_reflector();
+  r.due(0.0);
+  r.request(protocol::DigitalOutput{5});
+  r.request(protocol::DigitalOutput{6});
+  r.request(protocol::Timer{2});
+  InformationPacket packet;
+  int output = 0;
+  int timer = 0;
+  for (int cycle = 1; cycle <= 20; ++cycle) {
+    if (cycle == 10)
+      packet.digital_output = 6;
+    r.packet(packet, 0.1 * cycle, 2);
+    for (const protocol::Command& command : r.due(0.1 * cycle)) {
+      if (command == protocol::Command(protocol::DigitalOutput{6}))
+        ++output;
+      EXPECT_NE(command, protocol::Command(protocol::DigitalOutput{5})) << "was replaced";
+      if (std::holds_alternative<protocol::Timer>(command))
+        ++timer;
+    }
+  }
+  EXPECT_EQ(output, 5);
+  EXPECT_EQ(timer, 1);
+  EXPECT_FALSE(r.take_trouble());
+  r.request(protocol::Ptu{1500});
+  for (int cycle = 21; cycle <= 100; ++cycle) {
+    r.packet(packet, 0.1 * cycle, 2);
+    r.due(0.1 * cycle);
+  }
+  const auto trouble = r.take_trouble();
+  ASSERT_TRUE(trouble);
+  EXPECT_NE(trouble->find("position servo"), std::string::npos);
+}
+
+TEST(Reflector, TheWatchdogHearsSomethingAtLeastTwiceASecond) {
+  Reflector r = open_reflector();
+  double last = 0.0;
+  r.due(0.0);
+  InformationPacket packet;
+  for (int cycle = 1; cycle <= 100; ++cycle) {
+    const double now = 0.1 * cycle;
+    r.packet(packet, now, 2);
+    if (!r.due(now).empty())
+      last = now;
+    ASSERT_LE(now - last, 0.5 + 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace saphira::reflector
