@@ -36,6 +36,8 @@ struct TypeInfo {
   void* (*create)();
   void (*copy)(const void* from, void* to);
   void (*destroy)(void* sample);
+  /// One JSON object, on one line; `prefix` is put behind its opening brace.
+  std::string (*json)(const void* sample, const char* prefix);
 };
 
 /// The types of idl/ alone; defined in src/types.cpp.

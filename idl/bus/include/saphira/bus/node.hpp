@@ -29,9 +29,16 @@ struct NodeOptions {
   bool lockstep = false;           ///< cyclic topics lose nothing and steps wait for their inputs
 };
 
+class Node;
+
 /// The in-memory bus: nodes that are given the same one hear each other, without DDS, sockets or
 /// threads; delivery is immediate and in order. For tests.
 class MemoryBus;
+class Echo;
+namespace internal {
+class Transport;
+Transport& transport_of(Node& node);
+}  // namespace internal
 std::shared_ptr<MemoryBus> make_memory_bus();
 
 /// What a node counts and tells about itself.
@@ -79,8 +86,8 @@ class Node {
   v1::ServiceStatus& status();
   /// Publishes the status when a second of the wall clock has passed since the last time, or its
   /// state or reason has changed. Call at least twice a second from the node's thread: a thread
-  /// that hangs shows by its age.
-  void publish_status();
+  /// that hangs shows by its age. True where it was published.
+  bool publish_status();
 
   /// Writes to the program's log (stderr, by spdlog) and to system/log.
   void log(v1::LogLevel level, const std::string& text);
@@ -89,6 +96,10 @@ class Node {
   void error(const std::string& text) { log(v1::LOG_ERROR, text); }
 
  private:
+  friend class Echo;
+  friend internal::Transport& internal::transport_of(Node& node);
+
+  internal::Transport& transport();
   std::unique_ptr<RawWriter> make_writer(const char* topic, Qos qos, const TypeInfo& type);
   std::unique_ptr<RawReader> make_reader(const char* topic, Qos qos, const TypeInfo& type);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 namespace saphira::bus {
 
 /// Ends a program's loops: by request() from any thread, or by SIGINT and SIGTERM after
@@ -12,14 +14,15 @@ class Stop {
   Stop& operator=(const Stop&) = delete;
 
   void request();
-  bool requested() const;
+  bool requested() const { return requested_.load(std::memory_order_acquire); }
   int fd() const { return fd_; }  ///< readable from the request on
 
  private:
   int fd_;
+  std::atomic<bool> requested_{false};
 };
 
-/// SIGINT and SIGTERM request this stop. One a process.
+/// SIGINT and SIGTERM request this stop, which must outlive the signals. One a process.
 void stop_on_signals(Stop& stop);
 
 }  // namespace saphira::bus

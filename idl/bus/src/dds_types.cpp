@@ -1,0 +1,51 @@
+#include "dds_types.hpp"
+
+#include <mutex>
+
+#include "behaviorPubSubTypes.h"
+#include "intentionPubSubTypes.h"
+#include "motionPubSubTypes.h"
+#include "robotPubSubTypes.h"
+#include "systemPubSubTypes.h"
+
+namespace saphira::bus::internal {
+namespace {
+
+// The generated getKey works in a buffer of the object, and one object serves every endpoint of
+// a participant: a write by the program and a sample received by the transport would meet in it.
+template <class Generated>
+class OneAtATime : public Generated {
+ public:
+  bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle,
+              bool force_md5) override {
+    const std::scoped_lock lock(mutex_);
+    return Generated::getKey(data, handle, force_md5);
+  }
+
+ private:
+  std::mutex mutex_;
+};
+
+template <class... Generated>
+std::vector<eprosima::fastdds::dds::TypeSupport> make() {
+  std::vector<eprosima::fastdds::dds::TypeSupport> types;
+  (types.emplace_back(new OneAtATime<Generated>), ...);
+  for (auto& type : types) {
+    // With a TypeObject attached, a participant that is discovered meanwhile can crash Fast DDS.
+    type->auto_fill_type_object(false);
+    type->auto_fill_type_information(false);
+  }
+  return types;
+}
+
+}  // namespace
+
+std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
+  return make<v1::RobotStatePubSubType, v1::RobotDescriptionPubSubType,
+              v1::DeviceCommandPubSubType, v1::MotorCommandPubSubType, v1::GrantPubSubType,
+              v1::StepPermitPubSubType, v1::BehaviorsPubSubType, v1::IntentionsPubSubType,
+              v1::GoalPubSubType, v1::GoalStatusPubSubType, v1::ServiceStatusPubSubType,
+              v1::LogRecordPubSubType>();
+}
+
+}  // namespace saphira::bus::internal

@@ -1,0 +1,76 @@
+#pragma once
+
+// What the two transports share. Not for users of the library, but for its tests.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "saphira/bus/introspect.hpp"
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus::internal {
+
+/// What a QoS name comes to.
+struct Policies {
+  bool reliable = false;
+  bool transient_local = false;
+  int writer_depth = 1;  ///< KEEP_LAST, per key
+  int reader_depth = 1;
+  int lifespan_ms = 0;   ///< [0: for ever]
+  int heartbeat_ms = 0;  ///< of a reliable writer; how soon a lost sample is noticed
+};
+
+Policies policies(Qos qos, bool lockstep);
+const char* qos_name(Qos qos);
+
+/// Wakes a node's one thread: many signals until it clears are one write to its eventfd.
+class Wake {
+ public:
+  Wake();
+  ~Wake();
+  Wake(const Wake&) = delete;
+  Wake& operator=(const Wake&) = delete;
+
+  void signal();
+  void clear();
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+  std::atomic<bool> pending_{false};
+};
+
+/// One node's side of a bus.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  virtual std::unique_ptr<RawWriter> make_writer(const char* topic, const Policies& policies,
+                                                 const TypeInfo& type) = 0;
+  virtual std::unique_ptr<RawReader> make_reader(const char* topic, const Policies& policies,
+                                                 const TypeInfo& type) = 0;
+  /// Everybody's endpoints but this node's.
+  virtual std::vector<EndpointEntry> endpoints() const = 0;
+  /// Endpoints that did not match one of this node's since the last call, one text each.
+  virtual std::vector<std::string> take_troubles() = 0;
+  /// Whether a change of endpoints() wakes the node.
+  virtual void watch_endpoints(bool watch) = 0;
+};
+
+std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options,
+                                              std::shared_ptr<Wake> wake);
+std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
+                                                 std::shared_ptr<MemoryBus> bus,
+                                                 std::shared_ptr<Wake> wake);
+
+/// Whether two partitions, either of them with wildcards, have something in common.
+bool partitions_meet(const std::string& one, const std::string& other);
+
+std::string host_name();
+
+/// A node's transport, for tests that need a QoS that no name has.
+Transport& transport_of(Node& node);
+
+}  // namespace saphira::bus::internal

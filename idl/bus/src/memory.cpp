@@ -1,0 +1,284 @@
+// The bus within a process, for tests: the same rules of matching, latching, withdrawing and losing
+// as over DDS, delivered at once and in order.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "internal.hpp"
+
+namespace saphira::bus {
+namespace internal {
+namespace {
+
+class MemoryWriter;
+class MemoryReader;
+
+}  // namespace
+}  // namespace internal
+
+class MemoryBus {
+ public:
+  std::mutex mutex;
+  std::uint64_t endpoints_made = 0;
+  std::vector<internal::MemoryWriter*> writers;
+  std::vector<internal::MemoryReader*> readers;
+};
+
+std::shared_ptr<MemoryBus> make_memory_bus() { return std::make_shared<MemoryBus>(); }
+
+namespace internal {
+namespace {
+
+struct Item {
+  std::shared_ptr<const void> data;
+  InstanceKey key;
+  WriterId writer;
+  bool disposed;
+};
+
+// KEEP_LAST: of each key the newest `depth`.
+void keep_last(std::deque<Item>& items, const InstanceKey& key, int depth) {
+  const auto same = [&](const Item& item) { return item.key == key; };
+  if (std::count_if(items.begin(), items.end(), same) > depth)
+    items.erase(std::find_if(items.begin(), items.end(), same));
+}
+
+// What both kinds of endpoint and the node they belong to have in common.
+struct Common {
+  std::shared_ptr<MemoryBus> bus;
+  std::shared_ptr<Wake> wake;
+  std::shared_ptr<std::vector<std::string>> troubles;  // of the node, guarded by the bus's mutex
+  EndpointEntry entry;
+  Policies policies;
+  const TypeInfo* type;
+};
+
+class MemoryWriter : public RawWriter {
+ public:
+  explicit MemoryWriter(Common common);
+  ~MemoryWriter() override;
+  MemoryWriter(const MemoryWriter&) = delete;
+  MemoryWriter& operator=(const MemoryWriter&) = delete;
+
+  bool write(const void* sample) override { return put(sample, false); }
+  bool dispose(const void* sample) override { return put(sample, true); }
+  bool wait_acknowledged(int /*timeout_ms*/) override { return true; }
+  std::size_t matched() const override;
+
+  Common common;
+  WriterId id{};
+  std::vector<MemoryReader*> matches;
+  std::deque<Item> history;
+
+ private:
+  bool put(const void* sample, bool disposed);
+};
+
+class MemoryReader : public RawReader {
+ public:
+  explicit MemoryReader(Common common);
+  ~MemoryReader() override;
+  MemoryReader(const MemoryReader&) = delete;
+  MemoryReader& operator=(const MemoryReader&) = delete;
+
+  void take(const std::function<void(const void*, const SampleInfo&)>& each) override;
+  std::vector<WriterId> take_lost() override;
+  std::size_t matched() const override;
+
+  void deliver(const Item& item) {
+    queue.push_back(item);
+    keep_last(queue, item.key, common.policies.reader_depth);
+    common.wake->signal();
+  }
+
+  Common common;
+  std::vector<MemoryWriter*> matches;
+  std::deque<Item> queue;
+  std::vector<WriterId> lost;
+
+ private:
+  std::map<InstanceKey, std::shared_ptr<const void>> last_;  // taken, and not withdrawn since
+};
+
+// With the bus's mutex.
+void match(MemoryWriter& writer, MemoryReader& reader) {
+  const auto& offered = writer.common.entry;
+  const auto& requested = reader.common.entry;
+  if (offered.topic != requested.topic || !partitions_meet(offered.robot, requested.robot))
+    return;
+  if (const std::string why = why_incompatible(offered, requested); !why.empty()) {
+    const std::string head = "topic " + offered.topic + ": ";
+    writer.common.troubles->push_back(head + "the reader of " + requested.program +
+                                      " does not match, " + why);
+    reader.common.troubles->push_back(head + "the writer of " + offered.program +
+                                      " does not match, " + why);
+  } else {
+    writer.matches.push_back(&reader);
+    reader.matches.push_back(&writer);
+    if (reader.common.policies.transient_local)
+      for (const auto& item : writer.history)
+        reader.deliver(item);
+  }
+  writer.common.wake->signal();
+  reader.common.wake->signal();
+}
+
+MemoryWriter::MemoryWriter(Common the_common) : common(std::move(the_common)) {
+  const std::scoped_lock lock(common.bus->mutex);
+  const std::uint64_t number = ++common.bus->endpoints_made;
+  for (unsigned i = 0; i < 8; ++i)
+    id[i] = static_cast<std::uint8_t>(number >> (8U * i));
+  common.entry.id = std::to_string(number);
+  common.bus->writers.push_back(this);
+  for (auto* reader : common.bus->readers)
+    match(*this, *reader);
+}
+
+MemoryWriter::~MemoryWriter() {
+  const std::scoped_lock lock(common.bus->mutex);
+  std::erase(common.bus->writers, this);
+  for (auto* reader : matches) {
+    std::erase(reader->matches, this);
+    reader->lost.push_back(id);
+    reader->common.wake->signal();
+  }
+}
+
+bool MemoryWriter::put(const void* sample, bool disposed) {
+  std::shared_ptr<void> copy(common.type->create(), common.type->destroy);
+  common.type->copy(sample, copy.get());
+  const Item item{std::move(copy), common.type->key(sample), id, disposed};
+  const std::scoped_lock lock(common.bus->mutex);
+  if (common.policies.transient_local) {
+    history.push_back(item);
+    keep_last(history, item.key, common.policies.writer_depth);
+  }
+  for (auto* reader : matches)
+    reader->deliver(item);
+  return true;
+}
+
+std::size_t MemoryWriter::matched() const {
+  const std::scoped_lock lock(common.bus->mutex);
+  return matches.size();
+}
+
+MemoryReader::MemoryReader(Common the_common) : common(std::move(the_common)) {
+  const std::scoped_lock lock(common.bus->mutex);
+  common.entry.id = std::to_string(++common.bus->endpoints_made);
+  common.bus->readers.push_back(this);
+  for (auto* writer : common.bus->writers)
+    match(*writer, *this);
+}
+
+MemoryReader::~MemoryReader() {
+  const std::scoped_lock lock(common.bus->mutex);
+  std::erase(common.bus->readers, this);
+  for (auto* writer : matches) {
+    std::erase(writer->matches, this);
+    writer->common.wake->signal();
+  }
+}
+
+void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)>& each) {
+  std::deque<Item> items;
+  {
+    const std::scoped_lock lock(common.bus->mutex);
+    items.swap(queue);
+  }
+  for (const auto& item : items) {
+    const SampleInfo info{item.writer, item.disposed};
+    if (!item.disposed) {
+      if (common.type->keyed)
+        last_[item.key] = item.data;
+      each(item.data.get(), info);
+    } else if (const auto found = last_.find(item.key); found != last_.end()) {
+      const auto data = std::move(found->second);
+      last_.erase(found);
+      each(data.get(), info);
+    }
+  }
+}
+
+std::vector<WriterId> MemoryReader::take_lost() {
+  const std::scoped_lock lock(common.bus->mutex);
+  return std::exchange(lost, {});
+}
+
+std::size_t MemoryReader::matched() const {
+  const std::scoped_lock lock(common.bus->mutex);
+  return matches.size();
+}
+
+class MemoryTransport : public Transport {
+ public:
+  MemoryTransport(const NodeOptions& options, std::shared_ptr<MemoryBus> bus,
+                  std::shared_ptr<Wake> wake)
+      : options_(options), bus_(std::move(bus)), wake_(std::move(wake)) {}
+
+  std::unique_ptr<RawWriter> make_writer(const char* topic, const Policies& policies,
+                                         const TypeInfo& type) override {
+    return std::make_unique<MemoryWriter>(common(topic, policies, type, true));
+  }
+  std::unique_ptr<RawReader> make_reader(const char* topic, const Policies& policies,
+                                         const TypeInfo& type) override {
+    return std::make_unique<MemoryReader>(common(topic, policies, type, false));
+  }
+
+  std::vector<EndpointEntry> endpoints() const override {
+    const std::scoped_lock lock(bus_->mutex);
+    std::vector<EndpointEntry> result;
+    for (const auto* writer : bus_->writers)
+      if (writer->common.wake != wake_)
+        result.push_back(writer->common.entry);
+    for (const auto* reader : bus_->readers)
+      if (reader->common.wake != wake_)
+        result.push_back(reader->common.entry);
+    return result;
+  }
+  std::vector<std::string> take_troubles() override {
+    const std::scoped_lock lock(bus_->mutex);
+    return std::exchange(*troubles_, {});
+  }
+  void watch_endpoints(bool /*watch*/) override {}
+
+ private:
+  Common common(const char* topic, const Policies& policies, const TypeInfo& type,
+                bool writer) const {
+    EndpointEntry entry;
+    entry.topic = topic;
+    entry.type = type.name;
+    entry.writer = writer;
+    entry.program = options_.name;
+    entry.host = host_name();
+    entry.pid = static_cast<std::uint32_t>(getpid());
+    entry.robot = options_.robot;
+    entry.reliable = policies.reliable;
+    entry.durability = policies.transient_local ? "transient_local" : "volatile";
+    entry.liveliness = "automatic";
+    entry.ownership = "shared";
+    return {bus_, wake_, troubles_, entry, policies, &type};
+  }
+
+  NodeOptions options_;
+  std::shared_ptr<MemoryBus> bus_;
+  std::shared_ptr<Wake> wake_;
+  std::shared_ptr<std::vector<std::string>> troubles_ =
+      std::make_shared<std::vector<std::string>>();
+};
+
+}  // namespace
+
+std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
+                                                 std::shared_ptr<MemoryBus> bus,
+                                                 std::shared_ptr<Wake> wake) {
+  return std::make_unique<MemoryTransport>(options, std::move(bus), std::move(wake));
+}
+
+}  // namespace internal
+}  // namespace saphira::bus

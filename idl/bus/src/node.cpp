@@ -1,0 +1,217 @@
+#include "saphira/bus/node.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <random>
+#include <stdexcept>
+
+#include "internal.hpp"
+#include "log.hpp"
+
+namespace saphira::bus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double to_seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+// Of the whole process, as are its memory and its id: nodes that share one say the same.
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return to_seconds(usage.ru_utime) + to_seconds(usage.ru_stime);
+}
+
+double resident_mb() {
+  std::array<char, 128> text{};
+  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0)
+    return 0.0;
+  const auto got = read(file, text.data(), text.size() - 1);
+  close(file);
+  unsigned long total = 0;
+  unsigned long resident = 0;
+  if (got <= 0 || std::sscanf(text.data(), "%lu %lu", &total, &resident) != 2)
+    return 0.0;
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+std::uint64_t random_instance() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32U) | device();
+}
+
+}  // namespace
+
+struct Node::Impl {
+  explicit Impl(NodeOptions the_options) : options(std::move(the_options)) {}
+
+  void start() {
+    status.instance() = random_instance();
+    status.name() = options.name;
+    status.host() = internal::host_name();
+    status.pid() = static_cast<std::uint32_t>(getpid());
+    status.state() = v1::SERVICE_STARTING;
+    status.lockstep() = options.lockstep;
+    last_cpu = cpu_seconds();
+    last_published = started;
+    status_writer.emplace(transport->make_writer(
+        topics::kStatus.name, internal::policies(topics::kStatus.qos, options.lockstep),
+        type_of<v1::ServiceStatus>()));
+    log_writer.emplace(transport->make_writer(
+        topics::kLog.name, internal::policies(topics::kLog.qos, options.lockstep),
+        type_of<v1::LogRecord>()));
+  }
+
+  void note_troubles() {
+    for (auto& text : transport->take_troubles()) {
+      ++health.incompatible;
+      log(v1::LOG_ERROR, text);
+      health.incompatible_text = std::move(text);
+    }
+  }
+
+  void log(v1::LogLevel level, const std::string& text) {
+    internal::write_log(level, options.name + ": " + text);
+    if (level == v1::LOG_DEBUG)
+      return;
+    v1::LogRecord record;
+    record.instance() = status.instance();
+    record.name() = options.name;
+    record.level() = level;
+    record.time_ns() = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                           std::chrono::system_clock::now().time_since_epoch())
+                           .count();
+    record.stamp() = status.stamp();
+    record.text() = text;
+    log_writer->write(record);
+  }
+
+  const NodeOptions options;
+  const std::shared_ptr<internal::Wake> wake = std::make_shared<internal::Wake>();
+  std::unique_ptr<internal::Transport> transport;
+  v1::ServiceStatus status;
+  NodeHealth health;
+  std::optional<Writer<v1::ServiceStatus>> status_writer;
+  std::optional<Writer<v1::LogRecord>> log_writer;
+  const Clock::time_point started = Clock::now();
+  Clock::time_point last_published;
+  double last_cpu = 0.0;
+  bool published = false;
+  v1::ServiceState published_state = v1::SERVICE_STARTING;
+  std::string published_reason;
+};
+
+Node::Node(NodeOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
+  impl_->transport = internal::make_dds_transport(impl_->options, impl_->wake);
+  impl_->start();
+}
+
+Node::Node(NodeOptions options, std::shared_ptr<MemoryBus> memory)
+    : impl_(std::make_unique<Impl>(std::move(options))) {
+  impl_->transport =
+      internal::make_memory_transport(impl_->options, std::move(memory), impl_->wake);
+  impl_->start();
+}
+
+Node::~Node() {
+  // Gone in good order: nobody has to wait until the status is old.
+  if (impl_->published) {
+    impl_->status_writer->dispose(impl_->status);
+    impl_->status_writer->wait_acknowledged(100);
+  }
+}
+
+std::unique_ptr<RawWriter> Node::make_writer(const char* topic, Qos qos, const TypeInfo& type) {
+  return impl_->transport->make_writer(topic, internal::policies(qos, impl_->options.lockstep),
+                                       type);
+}
+
+std::unique_ptr<RawReader> Node::make_reader(const char* topic, Qos qos, const TypeInfo& type) {
+  return impl_->transport->make_reader(topic, internal::policies(qos, impl_->options.lockstep),
+                                       type);
+}
+
+int Node::wake_fd() const { return impl_->wake->fd(); }
+void Node::clear_wake() { impl_->wake->clear(); }
+
+bool Node::wait(std::chrono::milliseconds timeout, const Stop* stop) {
+  const auto end = Clock::now() + timeout;
+  std::array<pollfd, 2> fds{{{impl_->wake->fd(), POLLIN, 0}, {-1, POLLIN, 0}}};
+  if (stop != nullptr)
+    fds[1].fd = stop->fd();
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+    const int ready = poll(fds.data(), fds.size(), static_cast<int>(std::max<long>(0, left)));
+    if (ready > 0)
+      break;
+    if (ready == 0)
+      return false;
+    if (errno != EINTR)
+      throw std::system_error(errno, std::generic_category(), "poll");
+  }
+  impl_->wake->clear();
+  return true;
+}
+
+const NodeOptions& Node::options() const { return impl_->options; }
+std::uint64_t Node::instance() const { return impl_->status.instance(); }
+
+NodeHealth Node::health() const {
+  impl_->note_troubles();
+  return impl_->health;
+}
+
+v1::ServiceStatus& Node::status() { return impl_->status; }
+
+bool Node::publish_status() {
+  Impl& self = *impl_;
+  const auto now = Clock::now();
+  const double since = std::chrono::duration<double>(now - self.last_published).count();
+  if (self.published && since < 1.0 && self.status.state() == self.published_state &&
+      self.status.reason() == self.published_reason)
+    return false;
+  self.note_troubles();
+  self.status.incompatible() = self.health.incompatible;
+  self.status.uptime() = std::chrono::duration<double>(now - self.started).count();
+  self.status.rss_mb() = resident_mb();
+  // A share of too short a time would only show the grain of the measurement.
+  if (since > 0.5) {
+    const double cpu = cpu_seconds();
+    self.status.cpu_percent() = 100.0 * (cpu - self.last_cpu) / since;
+    self.last_cpu = cpu;
+    self.last_published = now;
+  }
+  self.status_writer->write(self.status);
+  self.published_state = self.status.state();
+  self.published_reason = self.status.reason();
+  self.published = true;
+  return true;
+}
+
+void Node::log(v1::LogLevel level, const std::string& text) { impl_->log(level, text); }
+
+namespace internal {
+
+Transport& transport_of(Node& node) { return node.transport(); }
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0)
+    return "unknown";
+  return name.data();
+}
+
+}  // namespace internal
+
+internal::Transport& Node::transport() { return *impl_->transport; }
+
+}  // namespace saphira::bus

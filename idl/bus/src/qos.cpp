@@ -1,0 +1,62 @@
+#include "saphira/bus/qos.hpp"
+
+#include "internal.hpp"
+
+namespace saphira::bus::internal {
+
+// The one table. Why each is as it is: idl/README.md.
+Policies policies(Qos qos, bool lockstep) {
+  switch (qos) {
+    case Qos::cyclic:
+    case Qos::motion:
+      // Live, a lost sample is replaced by the next; the reader is a little deeper than the writer
+      // so that a service that was slow for one cycle still finds the sample before the newest, and
+      // two writers of one role do not overwrite each other.
+      // In lockstep nothing may be lost, and who starts later must find the cycle that is waited for.
+      return lockstep ? Policies{.reliable = true,
+                                 .transient_local = true,
+                                 .writer_depth = 8,
+                                 .reader_depth = 8,
+                                 .heartbeat_ms = 50}
+                      : Policies{.reader_depth = 4};
+    case Qos::command:
+      return {.reliable = true,
+              .writer_depth = 16,
+              .reader_depth = 64,
+              .lifespan_ms = 2000,
+              .heartbeat_ms = 100};
+    case Qos::goal:
+    case Qos::latched:
+    case Qos::status:
+      return {.reliable = true, .transient_local = true, .heartbeat_ms = 100};
+    case Qos::event:
+      return {.reliable = true,
+              .transient_local = true,
+              .writer_depth = 100,
+              .reader_depth = 1000,
+              .heartbeat_ms = 200};
+  }
+  return {};
+}
+
+const char* qos_name(Qos qos) {
+  switch (qos) {
+    case Qos::cyclic:
+      return "cyclic";
+    case Qos::motion:
+      return "motion";
+    case Qos::command:
+      return "command";
+    case Qos::goal:
+      return "goal";
+    case Qos::latched:
+      return "latched";
+    case Qos::event:
+      return "event";
+    case Qos::status:
+      return "status";
+  }
+  return "?";
+}
+
+}  // namespace saphira::bus::internal

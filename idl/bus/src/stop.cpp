@@ -1,0 +1,53 @@
+#include "saphira/bus/stop.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <system_error>
+
+namespace saphira::bus {
+namespace {
+
+std::atomic<Stop*> signal_stop{nullptr};
+
+// Only what is allowed in a signal handler: an atomic and write(2).
+void on_signal(int /*signal*/) {
+  const int saved = errno;
+  if (Stop* stop = signal_stop.load())
+    stop->request();
+  errno = saved;
+}
+
+}  // namespace
+
+Stop::Stop() : fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (fd_ < 0)
+    throw std::system_error(errno, std::generic_category(), "eventfd");
+}
+
+Stop::~Stop() {
+  Stop* self = this;
+  signal_stop.compare_exchange_strong(self, nullptr);
+  close(fd_);
+}
+
+void Stop::request() {
+  requested_.store(true, std::memory_order_release);
+  const std::uint64_t one = 1;
+  // Can only fail where the counter is full, and then it is readable already.
+  [[maybe_unused]] const auto written = write(fd_, &one, sizeof one);
+}
+
+void stop_on_signals(Stop& stop) {
+  signal_stop = &stop;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+}  // namespace saphira::bus

@@ -1,0 +1,36 @@
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "internal.hpp"
+
+namespace saphira::bus::internal {
+
+Wake::Wake() : fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (fd_ < 0)
+    throw std::system_error(errno, std::generic_category(), "eventfd");
+}
+
+Wake::~Wake() { close(fd_); }
+
+void Wake::signal() {
+  if (pending_.exchange(true))
+    return;
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = write(fd_, &one, sizeof one);
+}
+
+void Wake::clear() {
+  if (!pending_.load())
+    return;
+  // First the descriptor, then the flag: a signal in between writes nothing, but what it announces
+  // is there already when the caller takes. The other way round its write would be read away and
+  // the flag left standing, for ever.
+  std::uint64_t count = 0;
+  [[maybe_unused]] const auto got = read(fd_, &count, sizeof count);
+  pending_.store(false);
+}
+
+}  // namespace saphira::bus::internal
