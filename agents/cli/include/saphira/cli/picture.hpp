@@ -1,0 +1,38 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::cli {
+
+/// What the terminal's picture shows, in odom: the echoes that the sonars returned, where the robot
+/// has been, where it is, and where it is to go. After the local perceptual space of manual 2.3.3.
+class Picture {
+ public:
+  void set_radius(double radius) { radius_ = radius; }
+  void set_goal(const Vec2& goal) { goal_ = goal; }
+  void move_robot(const Pose& pose);
+  /// An echo; those that fall on the same 5 cm are one.
+  void add_echo(const Vec2& point);
+  void clear();
+
+  /// Lines of `columns` characters with colors (ANSI), `rows` of them, x of odom to the right.
+  /// utf8: Braille dots, eight a character; else one letter a character.
+  std::vector<std::string> draw(int columns, int rows, bool utf8) const;
+
+ private:
+  Pose robot_;
+  double radius_ = 0.22;
+  std::optional<Vec2> goal_;
+  std::vector<Vec2> wake_;
+  std::set<std::pair<int, int>> echoes_;  ///< in cells
+  std::deque<std::pair<int, int>> order_;
+};
+
+}  // namespace saphira::cli

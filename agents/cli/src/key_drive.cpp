@@ -1,0 +1,159 @@
+#include "saphira/cli/key_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::cli {
+
+namespace {
+
+std::optional<DriveKey> plain_key(char c) {
+  switch (c) {
+    case 'i':
+    case 'I':
+      return DriveKey::faster;
+    case 'm':
+    case 'M':
+      return DriveKey::slower;
+    case 'j':
+    case 'J':
+      return DriveKey::left;
+    case 'l':
+    case 'L':
+      return DriveKey::right;
+    case 'k':
+    case 'K':
+    case ' ':
+      return DriveKey::stop;
+    case '.':
+    case '\r':
+    case '\n':
+      return DriveKey::keep;
+    case 'g':
+    case 'G':
+      return DriveKey::constant;
+    case 'c':
+    case 'C':
+      return DriveKey::avoidance;
+    case 'q':
+    case 'Q':
+    case '\x03':
+    case '\x04':
+      return DriveKey::quit;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<DriveKey> arrow(char c) {
+  switch (c) {
+    case 'A':
+      return DriveKey::faster;
+    case 'B':
+      return DriveKey::slower;
+    case 'D':
+      return DriveKey::left;
+    case 'C':
+      return DriveKey::right;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<DriveKey> take_keys(std::string& input) {
+  std::vector<DriveKey> keys;
+  std::size_t at = 0;
+  while (at < input.size()) {
+    if (input[at] != '\x1b') {
+      if (const auto key = plain_key(input[at]))
+        keys.push_back(*key);
+      ++at;
+      continue;
+    }
+    // Cursor keys: ESC [ A, or ESC O A in application mode. Other sequences end with a letter or ~.
+    if (at + 1 == input.size())
+      break;
+    if (input[at + 1] != '[' && input[at + 1] != 'O') {
+      ++at;
+      continue;
+    }
+    std::size_t end = at + 2;
+    while (end < input.size() && input[end] >= '0' && input[end] <= '?')
+      ++end;
+    if (end == input.size())
+      break;
+    if (end == at + 2) {
+      if (const auto key = arrow(input[end]))
+        keys.push_back(*key);
+    }
+    at = end + 1;
+  }
+  input.erase(0, at);
+  return keys;
+}
+
+void KeyDrive::press(DriveKey key, double now) {
+  if (key > DriveKey::keep)
+    return;
+  if (!setpoint(now).active)
+    ++setpoint_.move;  // hold the heading that the robot has now
+  const bool repeated = now - last_key_ <= settings_.repeat_gap;
+  last_key_ = now;
+  hold_until_ = std::max(repeated ? 0.0 : hold_until_,
+                         now + (repeated ? settings_.repeat_hold : settings_.first_hold));
+  setpoint_.active = true;
+  stopped_ = key == DriveKey::stop;
+
+  const double step =
+      std::min(settings_.velocity_step, settings_.velocity_rate * (now - last_step_));
+  const auto accelerate = [&](double by) {
+    last_step_ = now;
+    setpoint_.velocity =
+        std::clamp(setpoint_.velocity + by, -settings_.max_velocity, settings_.max_velocity);
+    if (std::fabs(setpoint_.velocity) < 1e-9)
+      setpoint_.velocity = 0.0;
+  };
+  const auto turn = [&](double by) {
+    setpoint_.heading = by;
+    ++setpoint_.move;
+  };
+  switch (key) {
+    case DriveKey::faster:
+      accelerate(step);
+      break;
+    case DriveKey::slower:
+      accelerate(-step);
+      break;
+    case DriveKey::left:
+      turn(settings_.turn_step);
+      break;
+    case DriveKey::right:
+      turn(-settings_.turn_step);
+      break;
+    case DriveKey::stop:
+      setpoint_.velocity = 0.0;
+      turn(0.0);
+      break;
+    default:
+      break;
+  }
+}
+
+void KeyDrive::release() {
+  hold_until_ = -1e9;
+  last_key_ = -1e9;
+  stopped_ = false;
+  setpoint_.active = false;
+  setpoint_.velocity = 0.0;
+  setpoint_.heading = 0.0;
+}
+
+KeyDrive::Setpoint KeyDrive::setpoint(double now) {
+  if (setpoint_.active && !stopped_ && now > hold_until_)
+    release();
+  return setpoint_;
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,141 @@
+#include "saphira/cli/key_drive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::cli {
+namespace {
+
+using Keys = std::vector<DriveKey>;
+
+Keys keys_of(std::string input) {
+  return take_keys(input);
+}
+
+TEST(TakeKeys, TheKeysOfTheManual) {
+  EXPECT_EQ(keys_of("imjlk gc"),
+            (Keys{DriveKey::faster, DriveKey::slower, DriveKey::left, DriveKey::right,
+                  DriveKey::stop, DriveKey::stop, DriveKey::constant, DriveKey::avoidance}));
+  EXPECT_EQ(keys_of("\x1b[A\x1b[B\x1b[D\x1bOC"),
+            (Keys{DriveKey::faster, DriveKey::slower, DriveKey::left, DriveKey::right}));
+  EXPECT_EQ(keys_of("q\x03"), (Keys{DriveKey::quit, DriveKey::quit}));
+}
+
+TEST(TakeKeys, OtherKeysDoNothing) {
+  // F5 is ESC [ 1 5 ~; shift-up is ESC [ 1 ; 2 A; alt-x is ESC x.
+  EXPECT_EQ(keys_of("xyz\x1b[15~\x1b[1;2A\x1bx7"), Keys{});
+}
+
+TEST(TakeKeys, ASequenceInTwoPiecesIsWaitedFor) {
+  std::string input = "i\x1b";
+  EXPECT_EQ(take_keys(input), Keys{DriveKey::faster});
+  input += "[";
+  EXPECT_EQ(take_keys(input), Keys{});
+  input += "A";
+  EXPECT_EQ(take_keys(input), Keys{DriveKey::faster});
+  EXPECT_TRUE(input.empty());
+}
+
+TEST(KeyDrive, NothingIsDrivenWithoutAKey) {
+  EXPECT_FALSE(KeyDrive().setpoint(0.0).active);
+}
+
+TEST(KeyDrive, ATapDrivesForTheFirstHoldAndStops) {
+  KeyDrive drive;
+  drive.press(DriveKey::faster, 10.0);
+  EXPECT_TRUE(drive.setpoint(10.0).active);
+  EXPECT_DOUBLE_EQ(drive.setpoint(10.0).velocity, 0.05);
+  EXPECT_TRUE(drive.setpoint(10.7).active);
+  const auto after = drive.setpoint(10.9);
+  EXPECT_FALSE(after.active);
+  EXPECT_EQ(after.velocity, 0.0);
+}
+
+TEST(KeyDrive, AHeldKeyBridgesTheDelayBeforeItsFirstRepeat) {
+  KeyDrive drive;
+  drive.press(DriveKey::faster, 0.0);
+  EXPECT_TRUE(drive.setpoint(0.66).active);
+  double now = 0.66;
+  for (; now < 3.0; now += 0.033) {
+    drive.press(DriveKey::faster, now);
+    EXPECT_TRUE(drive.setpoint(now + 0.03).active);
+  }
+  EXPECT_DOUBLE_EQ(drive.setpoint(now).velocity, 0.4);
+}
+
+TEST(KeyDrive, LettingGoOfAHeldKeyStopsSoon) {
+  KeyDrive drive;
+  drive.press(DriveKey::keep, 0.0);
+  for (double now = 0.5; now <= 0.9; now += 0.05)
+    drive.press(DriveKey::keep, now);
+  EXPECT_TRUE(drive.setpoint(1.1).active);
+  EXPECT_FALSE(drive.setpoint(1.25).active);
+}
+
+TEST(KeyDrive, AHeldKeyAcceleratesNoFasterThanTheRate) {
+  KeyDrive drive;
+  drive.press(DriveKey::faster, 0.0);
+  for (int i = 1; i <= 30; ++i)
+    drive.press(DriveKey::faster, 0.5 + i * 0.033);
+  EXPECT_LT(drive.setpoint(1.5).velocity, 0.05 + 0.05 + 0.2 * 1.0 + 0.01);
+}
+
+TEST(KeyDrive, TheRobotsLimitHolds) {
+  KeyDrive drive;
+  drive.set_max_velocity(0.12);
+  for (int i = 0; i < 10; ++i)
+    drive.press(DriveKey::faster, i * 0.5);
+  EXPECT_DOUBLE_EQ(drive.setpoint(4.6).velocity, 0.12);
+  for (int i = 10; i < 30; ++i)
+    drive.press(DriveKey::slower, i * 0.5);
+  EXPECT_DOUBLE_EQ(drive.setpoint(14.6).velocity, -0.12);
+}
+
+TEST(KeyDrive, EachTurnIsANewMove) {
+  KeyDrive drive;
+  drive.press(DriveKey::faster, 0.0);
+  const auto straight = drive.setpoint(0.0);
+  EXPECT_EQ(straight.heading, 0.0);
+  drive.press(DriveKey::left, 0.1);
+  const auto left = drive.setpoint(0.1);
+  EXPECT_GT(left.heading, 0.0);
+  EXPECT_NE(left.move, straight.move);
+  EXPECT_DOUBLE_EQ(left.velocity, straight.velocity);
+  drive.press(DriveKey::right, 0.2);
+  EXPECT_LT(drive.setpoint(0.2).heading, 0.0);
+  EXPECT_NE(drive.setpoint(0.2).move, left.move);
+  drive.press(DriveKey::keep, 0.3);
+  EXPECT_EQ(drive.setpoint(0.3).move, drive.setpoint(0.2).move);
+}
+
+TEST(KeyDrive, AfterAReleaseTheHeadingIsHeldAnew) {
+  KeyDrive drive;
+  drive.press(DriveKey::left, 0.0);
+  const auto first = drive.setpoint(0.0);
+  EXPECT_FALSE(drive.setpoint(5.0).active);
+  drive.press(DriveKey::faster, 6.0);
+  const auto second = drive.setpoint(6.0);
+  EXPECT_NE(second.move, first.move);
+  EXPECT_EQ(second.heading, 0.0);
+}
+
+TEST(KeyDrive, AllStopHoldsWithoutKeys) {
+  KeyDrive drive;
+  drive.press(DriveKey::faster, 0.0);
+  drive.press(DriveKey::stop, 0.1);
+  const auto long_after = drive.setpoint(60.0);
+  EXPECT_TRUE(long_after.active);
+  EXPECT_EQ(long_after.velocity, 0.0);
+  drive.press(DriveKey::faster, 61.0);
+  EXPECT_TRUE(drive.setpoint(61.5).active);
+  EXPECT_FALSE(drive.setpoint(62.0).active);
+}
+
+TEST(KeyDrive, ReleaseIsAtOnce) {
+  KeyDrive drive;
+  drive.press(DriveKey::stop, 0.0);
+  drive.release();
+  EXPECT_FALSE(drive.setpoint(0.0).active);
+}
+
+}  // namespace
+}  // namespace saphira::cli
