@@ -187,8 +187,10 @@ void Executor::take_written(const Goal& goal) {
   if (wrong.empty()) {
     const auto count = std::count_if(entries_.begin(), entries_.end(),
                                      [](const auto& each) { return open(each.second.status); });
-    if (static_cast<std::size_t>(count) > options_.max_open)
+    if (static_cast<std::size_t>(count) > options_.max_open) {
+      code = GoalCode::kTooMany;
       wrong = "too many goals: " + std::to_string(options_.max_open) + " are open already";
+    }
   }
   if (!wrong.empty()) {
     end(entry, GoalState::kRefused, code, std::move(wrong));

@@ -23,6 +23,8 @@ constexpr double kRestRotation = radians(3.0);
 
 /// [s] without progress after which a goal is given up.
 constexpr double kPatience = 20.0;
+constexpr double kGround = 0.1;  ///< [m] that driving has to gain within the patience
+constexpr double kFar = 1000.0;  ///< [m] where the point is that stands for a heading
 
 bool at_rest(const Robot& robot) {
   return std::abs(robot.velocity) < kRestVelocity &&
@@ -177,7 +179,6 @@ class Drive : public Activity {
     self.intend_behavior("ConstantVelocity", "ConstantVelocity", kTask, {number("speed", speed_)});
     self.intend_behavior("Stop", "Stop", kRest, {});
     self.say(format("driving at %.2f m/s", speed_));
-    constexpr double kGround = 0.1;  // [m] to be gained within the patience
     if (distance(anchor_, pose) >= kGround) {
       anchor_ = pose;
       anchored_ = self.now();
@@ -227,7 +228,6 @@ class TurnTo : public Activity {
     const Pose& pose = self.robot().pose_in_odom;
     // A heading is a point far away in that direction; it stays where it was first put, so that
     // the behavior is not changed every cycle.
-    constexpr double kFar = 1000.0;  // [m]
     if (new_target_ && heading_)
       target_ = {pose.x + kFar * std::cos(*heading_), pose.y + kFar * std::sin(*heading_), 0.0};
     const double toward = std::atan2(target_.y - pose.y, target_.x - pose.x);

@@ -67,6 +67,8 @@ const char* name_of(GoalCode code) {
       return "bad_argument";
     case GoalCode::kChanged:
       return "changed";
+    case GoalCode::kTooMany:
+      return "too_many";
     case GoalCode::kDeadline:
       return "deadline";
     case GoalCode::kBlocked:
@@ -91,13 +93,13 @@ std::string describe(const GoalId& id) {
 }
 
 std::string quoted(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t longest = 40;
   std::string result = "\"";
-  for (const char c : text.substr(0, kLongest)) {
+  for (const char c : text.substr(0, longest)) {
     const auto byte = static_cast<unsigned char>(c);
     result += byte < 0x20 || byte == 0x7f ? '?' : c;
   }
-  return result + (text.size() > kLongest ? "...\"" : "\"");
+  return result + (text.size() > longest ? "...\"" : "\"");
 }
 
 std::string plain(double value) {

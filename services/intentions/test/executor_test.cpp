@@ -53,6 +53,7 @@ TEST(Executor, RefusesWhatIsTooMany) {
   bench.step();
   EXPECT_EQ(bench.state(3), GoalState::kWaiting);
   EXPECT_EQ(bench.state(4), GoalState::kRefused);
+  EXPECT_EQ(bench.status(5).code, GoalCode::kTooMany);
   EXPECT_EQ(bench.status(5).reason, "too many goals: 3 are open already");
 }
 

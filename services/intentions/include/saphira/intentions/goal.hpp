@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,7 +14,10 @@ struct GoalId {
   std::uint64_t writer = 0;
   std::uint64_t number = 0;
 
-  auto operator<=>(const GoalId&) const = default;
+  bool operator==(const GoalId&) const = default;
+  bool operator<(const GoalId& other) const {
+    return writer != other.writer ? writer < other.writer : number < other.number;
+  }
 };
 
 enum class Frame { kRobot, kOdom, kMap };
@@ -63,6 +65,7 @@ enum class GoalCode {
   kUnknownFunctor,
   kBadArgument,
   kChanged,
+  kTooMany,
   kDeadline,
   kBlocked,
   kNoRobot,
