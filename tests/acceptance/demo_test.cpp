@@ -1,0 +1,77 @@
+// The demo as a user runs it: the robot arrives, touches nothing, and in lockstep every run of a
+// seed is the same to the last bit, in one process or in many.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "process.hpp"
+
+namespace saphira::test {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  nlohmann::json summary;
+  std::string text;
+};
+
+Outcome demo(const std::vector<std::string>& options) {
+  const TempDir folder;
+  std::vector<std::string> argv{"saphira", "demo", "--headless", "--json"};
+  argv.insert(argv.end(), options.begin(), options.end());
+  Process process(argv, folder.path("output"));
+  Outcome outcome;
+  outcome.code = process.wait(std::chrono::minutes(4)).value_or(-1);
+  outcome.text = process.output();
+  std::string text = outcome.text;
+  while (text.ends_with('\n'))
+    text.pop_back();
+  outcome.summary =
+      nlohmann::json::parse(text.substr(text.rfind('\n') + 1), nullptr, /*allow_exceptions=*/false);
+  return outcome;
+}
+
+class LockstepDemo : public testing::TestWithParam<int> {};
+
+TEST_P(LockstepDemo, ArrivesUntouchedAndIsTheSameInOneProcessAndInMany) {
+  const std::vector<std::string> separate{"--lockstep", "--seed", std::to_string(GetParam())};
+  std::vector<std::string> single = separate;
+  single.emplace_back("--single-process");
+  const Outcome first = demo(separate);
+  ASSERT_EQ(first.code, 0) << first.text;
+  EXPECT_TRUE(first.summary.at("arrived").get<bool>());
+  EXPECT_EQ(first.summary.at("contacts"), 0);
+  EXPECT_GT(first.summary.at("min_clearance_m"), 0.0);
+  EXPECT_GT(first.summary.at("path_m"), 5.0);
+  for (const auto& options : {separate, single}) {
+    const Outcome again = demo(options);
+    ASSERT_EQ(again.code, 0) << again.text;
+    EXPECT_EQ(again.summary.at("trajectory_hash"), first.summary.at("trajectory_hash"))
+        << again.text << first.text;
+    EXPECT_EQ(again.summary.at("cycles"), first.summary.at("cycles"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(TenSeeds, LockstepDemo, testing::Range(1, 11));
+
+TEST(Demo, SeedsDiffer) {
+  const Outcome one = demo({"--lockstep", "--single-process", "--seed", "1"});
+  const Outcome two = demo({"--lockstep", "--single-process", "--seed", "2"});
+  EXPECT_NE(one.summary.at("trajectory_hash"), two.summary.at("trajectory_hash"));
+}
+
+TEST(Demo, LiveArrivesUntouched) {
+  const Outcome live = demo({"--seed", "1"});
+  ASSERT_EQ(live.code, 0) << live.text;
+  EXPECT_TRUE(live.summary.at("arrived").get<bool>());
+  EXPECT_EQ(live.summary.at("contacts"), 0);
+}
+
+TEST(Demo, OutOfTimeIsAFailureThatSaysSo) {
+  const Outcome late = demo({"--lockstep", "--time-limit", "3"});
+  EXPECT_EQ(late.code, 1) << late.text;
+  EXPECT_FALSE(late.summary.at("arrived").get<bool>());
+}
+
+}  // namespace
+}  // namespace saphira::test

@@ -1,0 +1,90 @@
+// Losing any program while the robot drives ends in a robot that stands, in half a second, and the
+// system goes on by itself when the program is back.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "system.hpp"
+
+namespace saphira::test {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+struct Loss {
+  const char* name;
+  int signal;
+};
+
+void PrintTo(const Loss& loss, std::ostream* out) {
+  *out << loss.name << " " << (loss.signal == SIGKILL ? "killed" : "stopped");
+}
+
+class LossTest : public testing::TestWithParam<Loss> {};
+
+TEST_P(LossTest, TheRobotStandsWithinHalfASecondAndTheSystemGoesOn) {
+  const Loss loss = GetParam();
+  System system;
+  system.start_all();
+  const v1::GoalId goal = system.go_to(8.0, 0.0);
+  ASSERT_TRUE(system.wait_moving()) << system.output();
+
+  system[loss.name].signal(loss.signal);
+  const auto lost = steady_clock::now();
+  ASSERT_TRUE(system.wait_still(std::chrono::seconds(5))) << system.output();
+  const auto took = std::chrono::duration_cast<milliseconds>(steady_clock::now() - lost);
+  // The trace has a line each 100 ms, so what it shows may be 100 ms old.
+  EXPECT_LE(took.count(), 600) << system.output();
+  RecordProperty("stood_after_ms", std::to_string(took.count()));
+  std::printf("%s: stood after %ld ms\n", loss.name, static_cast<long>(took.count()));
+
+  // It does not drive off by itself while the program is away.
+  const long cycle = system.truth().cycle;
+  if (std::string(loss.name) != "saphira-bridge")
+    ASSERT_TRUE(wait_until([&] { return system.truth().cycle > cycle + 10; })) << system.output();
+  EXPECT_TRUE(system.truth().still()) << system.output();
+
+  if (loss.signal == SIGKILL)
+    system.start(loss.name);
+  else
+    system[loss.name].signal(SIGCONT);
+  EXPECT_TRUE(system.wait_moving()) << system.output();
+  EXPECT_EQ(system.truth().contacts, 0);
+  system.goals().cancel(goal);
+  EXPECT_TRUE(system.wait_still(std::chrono::seconds(5))) << system.output();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EveryProgram, LossTest,
+    testing::Values(Loss{"saphira-behaviors", SIGKILL}, Loss{"saphira-behaviors", SIGSTOP},
+                    Loss{"saphira-intentions", SIGKILL}, Loss{"saphira-intentions", SIGSTOP},
+                    Loss{"saphira-bridge", SIGKILL}, Loss{"saphira-bridge", SIGSTOP}),
+    [](const auto& info) {
+      return std::string(info.param.name).substr(8) +
+             (info.param.signal == SIGKILL ? "Killed" : "Stopped");
+    });
+
+TEST(TwoRobots, DoNotHearEachOther) {
+  System one;
+  System two;
+  one.start_all();
+  two.start_all();
+  auto states = two.node().reader(bus::topics::kRobotState);
+  const v1::GoalId goal = one.go_to(8.0, 0.0);
+  ASSERT_TRUE(one.wait_moving()) << one.output();
+  long count = 0;
+  ASSERT_TRUE(wait_until([&] {
+    for (const auto& sample : states.take()) {
+      EXPECT_LT(std::abs(sample.data.velocity()), 0.01);
+      ++count;
+    }
+    return count >= 20;
+  })) << two.output();
+  EXPECT_TRUE(two.truth().still());
+  EXPECT_FALSE(one.truth().still());
+  two.goals().poll();
+  EXPECT_FALSE(two.goals().status(goal).has_value());
+}
+
+}  // namespace
+}  // namespace saphira::test

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "process.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/node.hpp"
+
+namespace saphira::test {
+
+/// One line of the simulator's trace: the truth. [m, rad, m/s, rad/s]
+struct Truth {
+  long cycle = 0;
+  double x = 0.0;
+  double y = 0.0;
+  double velocity = 0.0;
+  double rotation_velocity = 0.0;
+  long contacts = 0;
+  /// Far below what people see move; the servo's last tremble is not motion.
+  bool still() const;
+};
+
+/// A robot with its services as separate processes, live, in a partition and folder of its own, and
+/// a node of the test beside them.
+class System {
+ public:
+  /// `bridge_port` replaces the simulator's socket as the bridge's address (a proxy between them).
+  explicit System(std::string bridge_port = {});
+
+  /// Starts, or starts again, one of saphira-sim, saphira-bridge, saphira-behaviors,
+  /// saphira-intentions.
+  void start(const std::string& name);
+  void start_all();
+  Process& operator[](const std::string& name) { return *processes_.at(name); }
+
+  std::string simulator_socket() const { return folder_.path("robot"); }
+  const std::string& robot() const { return robot_; }
+  const TempDir& folder() const { return folder_; }
+  bus::Node& node() { return node_; }
+  bus::GoalClient& goals() { return goals_; }
+  /// Asks the robot to go to a place [m] in odom.
+  v1::GoalId go_to(double x, double y);
+
+  /// The newest line of the trace.
+  Truth truth() const;
+  /// Waits for the trace to say so.
+  bool wait_moving(std::chrono::milliseconds limit = std::chrono::seconds(30));
+  bool wait_still(std::chrono::milliseconds limit);
+  /// Everything that the processes have printed.
+  std::string output() const;
+
+ private:
+  TempDir folder_;
+  std::string robot_ = unique_robot();
+  std::string bridge_port_;
+  bus::Node node_;
+  bus::GoalClient goals_;
+  std::map<std::string, std::unique_ptr<Process>> processes_;
+};
+
+}  // namespace saphira::test

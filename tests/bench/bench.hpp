@@ -1,0 +1,41 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+/// What the benchmark programs share.
+namespace saphira::bench {
+
+/// The folder of the running program, where the other programs are, too.
+std::string bin_dir();
+/// A file or folder of config/, in the source tree or the installed one.
+std::string config(const std::string& path);
+
+double percentile(std::vector<double> values, double p);
+
+/// A child with its output dropped; terminated with the object.
+class Child {
+ public:
+  explicit Child(std::vector<std::string> argv);
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  pid_t pid() const { return pid_; }
+
+ private:
+  pid_t pid_;
+};
+
+/// Runs a program to its end and returns what it wrote to stdout; std::runtime_error when it fails.
+std::string output_of(const std::vector<std::string>& argv);
+
+/// CPU seconds that a process has used, and its resident memory [MB]. 0 when it is gone.
+double cpu_seconds(pid_t pid);
+double resident_mb(pid_t pid);
+/// The process and all its descendants.
+std::vector<pid_t> family(pid_t pid);
+std::string name_of(pid_t pid);
+
+}  // namespace saphira::bench

@@ -1,0 +1,48 @@
+// How fast the whole system runs in lockstep: the demo, in one process and in separate ones.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "bench.hpp"
+
+namespace {
+
+nlohmann::json demo(bool single, int seed) {
+  std::vector<std::string> argv{"saphira", "demo",   "--headless",        "--lockstep",
+                                "--json",  "--seed", std::to_string(seed)};
+  if (single)
+    argv.emplace_back("--single-process");
+  std::string text = saphira::bench::output_of(argv);
+  while (text.ends_with('\n'))
+    text.pop_back();
+  return nlohmann::json::parse(text.substr(text.rfind('\n') + 1));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Lockstep speed of the demo, as multiples of real time"};
+  bool json = false;
+  int runs = 5;
+  app.add_flag("--json", json, "one JSON object on the last line");
+  app.add_option("--runs", runs, "runs of each kind")->check(CLI::Range(1, 100));
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<double> single;
+  std::vector<double> separate;
+  for (int i = 1; i <= runs; ++i) {
+    single.push_back(demo(true, i).at("speed_factor").get<double>());
+    separate.push_back(demo(false, i).at("speed_factor").get<double>());
+    std::printf("seed %d: one process %.0f x real time, separate processes %.0f x\n", i,
+                single.back(), separate.back());
+  }
+  const double single_x = saphira::bench::percentile(single, 0.5);
+  const double separate_x = saphira::bench::percentile(separate, 0.5);
+  std::printf("median: one process %.0f x (limit 300), separate processes %.0f x (limit 100)\n",
+              single_x, separate_x);
+  if (json)
+    std::printf(
+        "%s\n",
+        nlohmann::json{{"single_process_x", single_x}, {"separate_x", separate_x}}.dump().c_str());
+  return 0;
+}

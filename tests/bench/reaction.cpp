@@ -1,0 +1,273 @@
+// Reaction time: from an information packet at the bridge's socket to the command packet that
+// answers it, with bridge and behaviors in processes of their own; beside it, in turns, a raw Fast
+// DDS two-hop ping with payloads of the same size. The program plays the robot server and the
+// intentions.
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <variant>
+
+#include "bench.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/information.hpp"
+
+using namespace saphira;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+double us_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+/// A robot server that says what it is told and listens.
+class ScriptedRobot {
+ public:
+  explicit ScriptedRobot(std::string path) : path_(std::move(path)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path_.copy(address.sun_path, sizeof address.sun_path - 1);
+    listen_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (bind(listen_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+        listen(listen_, 1) != 0)
+      throw std::runtime_error("cannot listen on " + path_);
+  }
+  ~ScriptedRobot() {
+    close(fd_);
+    close(listen_);
+    unlink(path_.c_str());
+  }
+  ScriptedRobot(const ScriptedRobot&) = delete;
+  ScriptedRobot& operator=(const ScriptedRobot&) = delete;
+
+  /// Answers the opening dialogue until the client has sent OPEN.
+  void connect() {
+    pollfd waiting{listen_, POLLIN, 0};
+    if (poll(&waiting, 1, 10000) != 1)
+      throw std::runtime_error("the bridge did not connect");
+    fd_ = accept4(listen_, nullptr, nullptr, SOCK_CLOEXEC);
+    int synced = -1;
+    while (true) {
+      const protocol::Bytes body = packet(10000);
+      const std::optional<int> sync = protocol::sync_number(body);
+      if (synced == 2 && sync == 1)
+        return;  // OPEN has the bytes of SYNC1
+      if (sync == 2)
+        send(protocol::encode_sync2_reply({"Robot", "Pioneer", ""}));
+      else if (sync)
+        send(protocol::encode_sync(*sync));
+      synced = sync.value_or(synced);
+    }
+  }
+
+  void send(const protocol::Bytes& bytes) const {
+    if (write(fd_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+      throw std::runtime_error("the bridge has gone");
+  }
+
+  /// The body of the next packet; empty when none comes in time.
+  protocol::Bytes packet(int timeout_ms) {
+    const auto end = Clock::now() + std::chrono::milliseconds(timeout_ms);
+    while (true) {
+      if (auto body = parser_.next())
+        return *body;
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+      pollfd waiting{fd_, POLLIN, 0};
+      if (left < 0 || poll(&waiting, 1, static_cast<int>(left) + 1) != 1)
+        return {};
+      std::uint8_t buffer[512];
+      const ssize_t n = read(fd_, buffer, sizeof buffer);
+      if (n <= 0)
+        throw std::runtime_error("the bridge has gone");
+      parser_.feed({buffer, static_cast<std::size_t>(n)});
+    }
+  }
+
+ private:
+  std::string path_;
+  int listen_ = -1;
+  int fd_ = -1;
+  protocol::PacketParser parser_;
+};
+
+/// An information packet of a robot that drives at 0.2 m/s and points left and right of its way in
+/// turns, so that every packet asks for another heading.
+protocol::InformationPacket information(long n) {
+  protocol::InformationPacket packet;
+  packet.motors = protocol::Motors::kMoving;
+  packet.th = static_cast<std::int16_t>(n % 2 == 0 ? 50 : -50);  // 17.6 degrees
+  packet.left_velocity = packet.right_velocity = 79;
+  packet.battery = 126;
+  for (std::uint8_t i = 0; i < 3; ++i)
+    packet.sonars.push_back({static_cast<std::uint8_t>((n * 3 + i) % 7), 28835});  // no echo
+  return packet;
+}
+
+/// What the intentions would publish: go far ahead, avoiding what is in the way.
+v1::Intentions intentions(const v1::Stamp& stamp) {
+  const auto behavior = [](const char* schema, int priority, std::vector<v1::Argument> parameters) {
+    v1::IntendedBehavior b;
+    b.name(schema);
+    b.schema(schema);
+    b.priority(priority);
+    b.running(true);
+    b.parameters(std::move(parameters));
+    return b;
+  };
+  v1::Intentions sample;
+  sample.stamp(stamp);
+  sample.behavior_control(true);
+  sample.behaviors({behavior("AvoidCollision", 0, {}), behavior("KeepOff", 1, {}),
+                    behavior("GoToPos", 2,
+                             {bus::point("goal", 50.0, 0.0, 0.0, v1::FRAME_ODOM),
+                              bus::number("speed", 0.2), bus::number("radius", 0.2)})});
+  return sample;
+}
+
+class Reaction {
+ public:
+  Reaction(bus::Node& node, ScriptedRobot& robot)
+      : robot_(robot),
+        states_(node.reader(bus::topics::kRobotState)),
+        intend_(node.writer(bus::topics::kIntentions)) {}
+
+  /// One cycle: what the answer took [us]; nothing where none came in 50 ms.
+  std::optional<double> cycle() {
+    const protocol::Bytes packet = protocol::encode(information(++n_));
+    const auto start = Clock::now();
+    robot_.send(packet);
+    std::optional<double> took;
+    while (us_since(start) < 50000.0) {
+      const protocol::Bytes body = robot_.packet(10);
+      if (body.empty())
+        continue;
+      const protocol::Command command = protocol::decode_command(body);
+      const auto* heading = std::get_if<protocol::Heading>(&command);
+      if (heading != nullptr && heading->heading != last_heading_) {
+        took = us_since(start);
+        last_heading_ = heading->heading;
+        break;
+      }
+    }
+    // For the next cycle, well after the answer.
+    if (const auto state = states_.take_newest())
+      intend_.write(intentions(state->stamp()));
+    return took;
+  }
+
+ private:
+  ScriptedRobot& robot_;
+  bus::Reader<v1::RobotState> states_;
+  bus::Writer<v1::Intentions> intend_;
+  long n_ = 0;
+  double last_heading_ = -1.0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Reaction time of bridge and behaviors beside a raw two-hop ping"};
+  bool json = false;
+  double hz = 10.0;
+  int blocks = 6;
+  int count = 50;
+  app.add_flag("--json", json, "one JSON object on the last line");
+  app.add_option("--hz", hz, "information packets a second")->check(CLI::Range(1.0, 50.0));
+  app.add_option("--blocks", blocks, "turns of reaction and ping")->check(CLI::Range(1, 1000));
+  app.add_option("--count", count, "samples a turn")->check(CLI::Range(10, 100000));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const std::string domain = "198";
+    const std::string name = "bench" + std::to_string(getpid());
+    const std::string socket = "/tmp/saphira-" + name;
+    ScriptedRobot robot(socket);
+    const bench::Child bridge({"saphira-bridge", "--robot-port", "unix:" + socket, "--robots",
+                               bench::config("robots"), "--robot", name, "--domain", domain});
+    const bench::Child behaviors({"saphira-behaviors", "--robot", name, "--domain", domain});
+    robot.connect();
+
+    bus::NodeOptions options;
+    options.name = "bench";
+    options.robot = name;
+    options.domain = static_cast<std::uint32_t>(std::stoul(domain));
+    bus::Node node(options);
+    Reaction reaction(node, robot);
+
+    const auto period = std::chrono::duration<double>(1.0 / hz);
+    const auto paced = [&](const std::function<void()>& each, int times) {
+      auto next = Clock::now();
+      for (int i = 0; i < times; ++i) {
+        each();
+        next += std::chrono::duration_cast<Clock::duration>(period);
+        std::this_thread::sleep_until(next);
+      }
+    };
+    // Until the processes have found each other and the grant is held.
+    int answered = 0;
+    for (int i = 0; i < 300 && answered < 20; ++i)
+      paced([&] { answered = reaction.cycle() ? answered + 1 : 0; }, 1);
+    if (answered < 20)
+      throw std::runtime_error("no answers: bridge or behaviors do not run");
+
+    std::vector<double> ours;
+    std::vector<double> raw;
+    int unanswered = 0;
+    for (int block = 0; block < blocks; ++block) {
+      paced(
+          [&] {
+            if (const auto took = reaction.cycle())
+              ours.push_back(*took);
+            else
+              ++unanswered;
+          },
+          count);
+      const auto ping = nlohmann::json::parse(
+          bench::output_of({"saphira-bench-raw-ping", "--hz", std::to_string(hz), "--count",
+                            std::to_string(count), "--json"}));
+      for (const double us : ping.at("us"))
+        raw.push_back(us);
+      // The silence made the bridge look for its robot; let the loop close again.
+      answered = 0;
+      for (int i = 0; i < 300 && answered < 5; ++i)
+        paced([&] { answered = reaction.cycle() ? answered + 1 : 0; }, 1);
+    }
+    const double p50 = bench::percentile(ours, 0.5);
+    const double p99 = bench::percentile(ours, 0.99);
+    const double raw50 = bench::percentile(raw, 0.5);
+    const double raw99 = bench::percentile(raw, 0.99);
+    std::printf("%zu reactions at %.0f Hz, %d without an answer\n", ours.size(), hz, unanswered);
+    std::printf("packet to command   p50 %6.0f us   p99 %6.0f us\n", p50, p99);
+    std::printf("raw two-hop ping    p50 %6.0f us   p99 %6.0f us\n", raw50, raw99);
+    std::printf("ratio               p50 %6.2f (limit 1.5)   p99 %6.2f (limit 2)\n", p50 / raw50,
+                p99 / raw99);
+    if (json)
+      std::printf("%s\n", nlohmann::json{{"ratio_p50", p50 / raw50},
+                                         {"ratio_p99", p99 / raw99},
+                                         {"p50_us", p50},
+                                         {"p99_us", p99},
+                                         {"raw_p50_us", raw50},
+                                         {"raw_p99_us", raw99},
+                                         {"unanswered", unanswered}}
+                              .dump()
+                              .c_str());
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira-bench-reaction: %s\n", error.what());
+    return 1;
+  }
+}
