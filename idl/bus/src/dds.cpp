@@ -1,5 +1,10 @@
 // The bus over Fast DDS. The only place that knows it, with dds_types.cpp.
 
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
+#include <fastrtps/utils/IPFinder.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,11 +27,6 @@
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/attributes/LibrarySettingsAttributes.h>
-#include <fastrtps/utils/IPFinder.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <map>
 #include <mutex>
 #include <set>
@@ -56,7 +56,9 @@ constexpr int kAnnouncement_ms = 250;
 // By unicast to every place where a peer may be: less often, for the sake of a radio.
 constexpr int kPeerAnnouncement_ms = 500;
 
-Duration_t milliseconds(int ms) { return {ms / 1000, static_cast<std::uint32_t>(ms % 1000) * 1000000U}; }
+Duration_t milliseconds(int ms) {
+  return {ms / 1000, static_cast<std::uint32_t>(ms % 1000) * 1000000U};
+}
 double seconds(const Duration_t& duration) {
   return duration == eprosima::fastrtps::c_TimeInfinite
              ? 0.0
@@ -151,7 +153,8 @@ rtps::Locator_t locator(const std::string& address) {
   }
   const auto resolved = rtps::IPLocator::resolveNameDNS(address);
   if (resolved.first.empty())
-    throw std::runtime_error("peer \"" + address + "\" is neither an IPv4 address nor a known host");
+    throw std::runtime_error("peer \"" + address +
+                             "\" is neither an IPv4 address nor a known host");
   rtps::IPLocator::setIPv4(result, *resolved.first.begin());
   return result;
 }
@@ -330,8 +333,8 @@ class Discovery : public fdds::DomainParticipantListener {
       const std::string why =
           own.writer ? why_incompatible(own, other) : why_incompatible(other, own);
       if (!why.empty() && told_.insert({own.id, other.id}).second)
-        return "topic " + own.topic + ": " + name(with_program(guid, other)) +
-               " does not match, " + why;
+        return "topic " + own.topic + ": " + name(with_program(guid, other)) + " does not match, " +
+               why;
     }
     return "topic " + own.topic + ": " + (own.writer ? "a reader" : "a writer") +
            " does not match, " + policy;
@@ -551,6 +554,12 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
         scratch_(type.create(), type.destroy) {
     fdds::DataReaderQos qos = fdds::DATAREADER_QOS_DEFAULT;
     set_common_qos(qos, policies, policies.reader_depth);
+    if (type.keyed) {
+      // With either of the DYNAMIC modes a reader never sees that an instance was withdrawn: the
+      // message has no payload, and a buffer of no size is not to be had.
+      qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+      qos.resource_limits().allocated_samples = 1;
+    }
     auto* dds_topic = bus_->topic(topic, type.name);
     if (dds_topic != nullptr)
       reader_ = bus_->subscriber->create_datareader(

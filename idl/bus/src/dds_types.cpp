@@ -41,11 +41,10 @@ std::vector<eprosima::fastdds::dds::TypeSupport> make() {
 }  // namespace
 
 std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
-  return make<v1::RobotStatePubSubType, v1::RobotDescriptionPubSubType,
-              v1::DeviceCommandPubSubType, v1::MotorCommandPubSubType, v1::GrantPubSubType,
-              v1::StepPermitPubSubType, v1::BehaviorsPubSubType, v1::IntentionsPubSubType,
-              v1::GoalPubSubType, v1::GoalStatusPubSubType, v1::ServiceStatusPubSubType,
-              v1::LogRecordPubSubType>();
+  return make<v1::RobotStatePubSubType, v1::RobotDescriptionPubSubType, v1::DeviceCommandPubSubType,
+              v1::MotorCommandPubSubType, v1::GrantPubSubType, v1::StepPermitPubSubType,
+              v1::BehaviorsPubSubType, v1::IntentionsPubSubType, v1::GoalPubSubType,
+              v1::GoalStatusPubSubType, v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
 }
 
 }  // namespace saphira::bus::internal

@@ -29,7 +29,9 @@ class MemoryBus {
   std::vector<internal::MemoryReader*> readers;
 };
 
-std::shared_ptr<MemoryBus> make_memory_bus() { return std::make_shared<MemoryBus>(); }
+std::shared_ptr<MemoryBus> make_memory_bus() {
+  return std::make_shared<MemoryBus>();
+}
 
 namespace internal {
 namespace {

@@ -140,8 +140,12 @@ std::unique_ptr<RawReader> Node::make_reader(const char* topic, Qos qos, const T
                                        type);
 }
 
-int Node::wake_fd() const { return impl_->wake->fd(); }
-void Node::clear_wake() { impl_->wake->clear(); }
+int Node::wake_fd() const {
+  return impl_->wake->fd();
+}
+void Node::clear_wake() {
+  impl_->wake->clear();
+}
 
 bool Node::wait(std::chrono::milliseconds timeout, const Stop* stop) {
   const auto end = Clock::now() + timeout;
@@ -162,15 +166,21 @@ bool Node::wait(std::chrono::milliseconds timeout, const Stop* stop) {
   return true;
 }
 
-const NodeOptions& Node::options() const { return impl_->options; }
-std::uint64_t Node::instance() const { return impl_->status.instance(); }
+const NodeOptions& Node::options() const {
+  return impl_->options;
+}
+std::uint64_t Node::instance() const {
+  return impl_->status.instance();
+}
 
 NodeHealth Node::health() const {
   impl_->note_troubles();
   return impl_->health;
 }
 
-v1::ServiceStatus& Node::status() { return impl_->status; }
+v1::ServiceStatus& Node::status() {
+  return impl_->status;
+}
 
 bool Node::publish_status() {
   Impl& self = *impl_;
@@ -197,11 +207,15 @@ bool Node::publish_status() {
   return true;
 }
 
-void Node::log(v1::LogLevel level, const std::string& text) { impl_->log(level, text); }
+void Node::log(v1::LogLevel level, const std::string& text) {
+  impl_->log(level, text);
+}
 
 namespace internal {
 
-Transport& transport_of(Node& node) { return node.transport(); }
+Transport& transport_of(Node& node) {
+  return node.transport();
+}
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -212,6 +226,8 @@ std::string host_name() {
 
 }  // namespace internal
 
-internal::Transport& Node::transport() { return *impl_->transport; }
+internal::Transport& Node::transport() {
+  return *impl_->transport;
+}
 
 }  // namespace saphira::bus

@@ -12,7 +12,8 @@ Policies policies(Qos qos, bool lockstep) {
       // Live, a lost sample is replaced by the next; the reader is a little deeper than the writer
       // so that a service that was slow for one cycle still finds the sample before the newest, and
       // two writers of one role do not overwrite each other.
-      // In lockstep nothing may be lost, and who starts later must find the cycle that is waited for.
+      // In lockstep nothing may be lost, and who starts later must find the cycle that is waited
+      // for.
       return lockstep ? Policies{.reliable = true,
                                  .transient_local = true,
                                  .writer_depth = 8,

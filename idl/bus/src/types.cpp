@@ -4,11 +4,15 @@
 namespace saphira::bus {
 namespace {
 
-InstanceKey key_of(const v1::Goal& sample) { return {sample.id().writer(), sample.id().number()}; }
+InstanceKey key_of(const v1::Goal& sample) {
+  return {sample.id().writer(), sample.id().number()};
+}
 InstanceKey key_of(const v1::GoalStatus& sample) {
   return {sample.id().writer(), sample.id().number()};
 }
-InstanceKey key_of(const v1::ServiceStatus& sample) { return {sample.instance(), 0}; }
+InstanceKey key_of(const v1::ServiceStatus& sample) {
+  return {sample.instance(), 0};
+}
 template <class T>
 InstanceKey key_of(const T& /*sample*/) {
   return {};
@@ -28,11 +32,11 @@ TypeInfo make_type(const char* name) {
 
 }  // namespace
 
-#define SAPHIRA_TYPE(T)                                            \
-  template <>                                                      \
-  const TypeInfo& type_of<v1::T>() {                               \
+#define SAPHIRA_TYPE(T)                                                \
+  template <>                                                          \
+  const TypeInfo& type_of<v1::T>() {                                   \
     static const TypeInfo type = make_type<v1::T>("saphira::v1::" #T); \
-    return type;                                                   \
+    return type;                                                       \
   }
 SAPHIRA_TYPE(RobotState)
 SAPHIRA_TYPE(RobotDescription)

@@ -13,7 +13,9 @@ Wake::Wake() : fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
-Wake::~Wake() { close(fd_); }
+Wake::~Wake() {
+  close(fd_);
+}
 
 void Wake::signal() {
   if (pending_.exchange(true))

@@ -20,7 +20,8 @@ struct TopicEntry {
 std::vector<TopicEntry> known_topics();
 
 /// Reads one topic by its name and tells each sample as JSON: members as in the IDL, enumerators by
-/// name, NaN and infinities as null. A withdrawn instance has "_disposed": true as its first member.
+/// name, NaN and infinities as null. A withdrawn instance has "_disposed": true as its first
+/// member.
 class Echo {
  public:
   /// Throws std::runtime_error that names the known topics where `topic` is none of them.
