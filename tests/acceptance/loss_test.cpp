@@ -40,8 +40,9 @@ TEST_P(LossTest, TheRobotStandsWithinHalfASecondAndTheSystemGoesOn) {
 
   // It does not drive off by itself while the program is away.
   const long cycle = system.truth().cycle;
-  if (std::string(loss.name) != "saphira-bridge")
+  if (std::string(loss.name) != "saphira-bridge") {
     ASSERT_TRUE(wait_until([&] { return system.truth().cycle > cycle + 10; })) << system.output();
+  }
   EXPECT_TRUE(system.truth().still()) << system.output();
 
   if (loss.signal == SIGKILL)
@@ -59,9 +60,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Loss{"saphira-behaviors", SIGKILL}, Loss{"saphira-behaviors", SIGSTOP},
                     Loss{"saphira-intentions", SIGKILL}, Loss{"saphira-intentions", SIGSTOP},
                     Loss{"saphira-bridge", SIGKILL}, Loss{"saphira-bridge", SIGSTOP}),
-    [](const auto& info) {
-      return std::string(info.param.name).substr(8) +
-             (info.param.signal == SIGKILL ? "Killed" : "Stopped");
+    [](const testing::TestParamInfo<Loss>& test) {
+      return std::string(test.param.name).substr(8) +
+             (test.param.signal == SIGKILL ? "Killed" : "Stopped");
     });
 
 TEST(TwoRobots, DoNotHearEachOther) {
