@@ -1,11 +1,11 @@
 #pragma once
 
-#include <chrono>
+#include <algorithm>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "saphira/bus/node.hpp"
 
@@ -17,7 +17,7 @@ class Input {
  public:
   virtual ~Input() = default;
   /// The sample for N-1; live, the newest of this epoch where that one has not come; nullptr before
-  /// any has come. T::stamp says how old it is.
+  /// any has come. T::stamp says how old it is. Good until the next call of Cycle::next().
   virtual const T* value() const = 0;
 };
 
@@ -28,10 +28,81 @@ struct Step {
   bool stale = false;      ///< live: some input of N-1 had not come, an older one stands in for it
 };
 
+namespace detail {
+
+/// What the clockwork does with an input, whatever its type.
+class InputSlot {
+ public:
+  virtual ~InputSlot() = default;
+  /// Takes what has come; keeps a sample where `accept` says so.
+  virtual void drain(const std::function<bool(const v1::Stamp&)>& accept) = 0;
+  /// Forgets the samples of an epoch.
+  virtual void forget(std::uint64_t epoch) = 0;
+  /// The newest cycle of an epoch, up to a limit, that is here; 0 where there is none.
+  virtual std::uint64_t newest(std::uint64_t epoch, std::uint64_t limit) const = 0;
+  /// Makes the sample of just that cycle the value; 0: none.
+  virtual void select(std::uint64_t epoch, std::uint64_t cycle) = 0;
+  virtual std::size_t matched() const = 0;
+  virtual const char* name() const = 0;
+};
+
+template <class T>
+class TypedInput final : public Input<T>, public InputSlot {
+ public:
+  TypedInput(Reader<T> reader, const char* name) : reader_(std::move(reader)), name_(name) {}
+
+  const T* value() const override { return value_; }
+
+  void drain(const std::function<bool(const v1::Stamp&)>& accept) override {
+    value_ = nullptr;
+    reader_.visit([&](const T& sample, const SampleInfo& info) {
+      if (info.disposed || !accept(sample.stamp()))
+        return;
+      samples_.push_back(sample);
+      if (samples_.size() > kKept)
+        samples_.pop_front();
+    });
+  }
+  void forget(std::uint64_t epoch) override {
+    value_ = nullptr;
+    std::erase_if(samples_, [&](const T& sample) { return sample.stamp().epoch() == epoch; });
+  }
+  std::uint64_t newest(std::uint64_t epoch, std::uint64_t limit) const override {
+    std::uint64_t best = 0;
+    for (const T& sample : samples_)
+      if (sample.stamp().epoch() == epoch && sample.stamp().cycle() <= limit)
+        best = std::max<std::uint64_t>(best, sample.stamp().cycle());
+    return best;
+  }
+  void select(std::uint64_t epoch, std::uint64_t cycle) override {
+    value_ = nullptr;
+    for (const T& sample : samples_)
+      if (sample.stamp().epoch() == epoch && sample.stamp().cycle() == cycle)
+        value_ = &sample;
+  }
+  std::size_t matched() const override { return reader_.matched(); }
+  const char* name() const override { return name_; }
+
+ private:
+  // As deep as the history of a cyclic topic in lockstep.
+  static constexpr std::size_t kKept = 8;
+
+  Reader<T> reader_;
+  const char* name_;
+  std::deque<T> samples_;
+  const T* value_ = nullptr;
+};
+
+}  // namespace detail
+
 /// A service's clockwork: which cycle is to be stepped now, with which inputs. The rules are
 /// design.md's: the step for N sees RobotState(N) and the other services' samples for N-1; live, a
 /// missing input is replaced by the newest one and counted; in lockstep the step waits for it.
-/// Samples of another epoch are refused, counted and logged.
+/// Samples of an epoch that was left are refused, counted and logged; a new epoch is adopted when
+/// the bridge's RobotState says it.
+///
+/// A service that comes late into a running lockstep steps first the oldest cycle for which the
+/// inputs are still to be had, so that whoever waits for one of those cycles gets it.
 ///
 ///   Cycle cycle(node);
 ///   auto& intentions = cycle.input(topics::kIntentions);
@@ -40,14 +111,21 @@ class Cycle {
  public:
   explicit Cycle(Node& node);
   ~Cycle();
+  Cycle(const Cycle&) = delete;
+  Cycle& operator=(const Cycle&) = delete;
 
-  /// Declares an input. Owned by the cycle.
+  /// Declares an input, before the first next(). Owned by the cycle.
   template <class T>
-  Input<T>& input(const Topic<T>& topic);
+  Input<T>& input(const Topic<T>& topic) {
+    auto made = std::make_unique<detail::TypedInput<T>>(node_.reader(topic), topic.name);
+    auto& result = *made;
+    add(std::move(made));
+    return result;
+  }
 
   /// Waits for the next step; nothing when stop was requested. Publishes the node's status while it
-  /// waits. `idle` is called whenever the node woke without a step being due, and at least twice a
-  /// second.
+  /// waits, and sets its state, reason and counters. `idle` is called whenever the node woke
+  /// without a step being due, and at least twice a second.
   std::optional<Step> next(const Stop& stop, const std::function<void()>& idle = {});
   /// Ends the step that next() began: counts its time.
   void done();
@@ -56,7 +134,10 @@ class Cycle {
   const v1::Stamp& stamp() const;
 
  private:
+  void add(std::unique_ptr<detail::InputSlot> slot);
+
   struct Impl;
+  Node& node_;
   std::unique_ptr<Impl> impl_;
 };
 

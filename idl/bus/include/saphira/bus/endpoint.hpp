@@ -97,6 +97,14 @@ class Reader {
     return samples;
   }
 
+  /// As take(), without copies: each(const T&, const SampleInfo&), good during the call only.
+  template <class Each>
+  void visit(Each&& each) {
+    raw_->take([&](const void* sample, const SampleInfo& info) {
+      each(*static_cast<const T*>(sample), info);
+    });
+  }
+
   /// The newest live sample that has come since the last call; drops the others.
   std::optional<T> take_newest() {
     std::optional<T> newest;

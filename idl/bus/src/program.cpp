@@ -1,0 +1,70 @@
+#include "saphira/bus/program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include "log.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::bus {
+
+void add_node_options(CLI::App& app, NodeOptions& options) {
+  app.add_option("--name", options.name, "Name of this program on the bus")->capture_default_str();
+  app.add_option("--robot", options.robot, "The robot to belong to")
+      ->envname("SAPHIRA_ROBOT")
+      ->capture_default_str();
+  app.add_option("--domain", options.domain, "DDS domain")
+      ->envname("SAPHIRA_DOMAIN")
+      ->check(CLI::Range(0, 232))
+      ->capture_default_str();
+  static const std::map<std::string, Profile> kProfiles{
+      {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
+  app.add_option("--profile", options.profile,
+                 "Network: host (this machine alone), lan (multicast), wan (the listed peers)")
+      ->envname("SAPHIRA_PROFILE")
+      ->transform(CLI::CheckedTransformer(kProfiles))
+      ->default_str("host");
+  app.add_option("--peer", options.peers, "wan: addresses of the other machines")
+      ->envname("SAPHIRA_PEERS")
+      ->delimiter(',');
+  app.add_option("--interface", options.interface, "lan, wan: address of the one interface to use")
+      ->envname("SAPHIRA_INTERFACE");
+  app.add_flag("--lockstep", options.lockstep,
+               "Lose no sample of a cycle and wait for every input (simulator in single step)");
+  app.add_option_function<std::string>(
+         "--log-level", [](const std::string& level) { internal::set_log_level(level); },
+         "What is written to stderr: debug, info, warning or error")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
+      ->default_str("info");
+}
+
+int run_program(int argc, char** argv, const std::string& name, const std::string& description,
+                const std::function<void(CLI::App&)>& add_options,
+                const std::function<int(const NodeOptions&, const Stop&)>& body) {
+  NodeOptions options;
+  options.name = name;
+  CLI::App app{description, "saphira-" + name};
+  add_node_options(app, options);
+  if (add_options)
+    add_options(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+  try {
+    Stop stop;
+    stop_on_signals(stop);
+    return body(options, stop);
+  } catch (const FileError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    internal::write_log(v1::LOG_ERROR, options.name + ": " + error.what());
+    return kExitBroken;
+  }
+}
+
+}  // namespace saphira::bus
