@@ -115,6 +115,14 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   return true;
 }
 
+void Arbiter::lost(Role role, const WriterId& writer, double now) {
+  Player& p = player(role);
+  if (p.held && p.newest.writer == writer && p.newest.active) {
+    p.newest.active = false;
+    p.newest.received = now;
+  }
+}
+
 bool Arbiter::live(const Player& p, double now, std::uint64_t cycle) const {
   return p.held && p.newest.active && now - p.newest.received <= settings_.lease + kTick &&
          (p.newest.cycle == 0 || cycle - p.newest.cycle <= settings_.intent_cycles);

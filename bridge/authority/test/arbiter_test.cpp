@@ -104,6 +104,17 @@ TEST(Arbiter, ReleaseEndsItAtOnce) {
   EXPECT_EQ(s.driver(), Role::none);
 }
 
+TEST(Arbiter, AWriterThatIsGoneReleases) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  s.offer(Role::behaviors, 2);
+  EXPECT_EQ(s.driver(), Role::teleop);
+  s.arbiter.lost(Role::teleop, writer(3), s.now);
+  EXPECT_EQ(s.driver(), Role::teleop);
+  s.arbiter.lost(Role::teleop, writer(1), s.now);
+  EXPECT_EQ(s.driver(), Role::none) << "and quiet";
+}
+
 TEST(Arbiter, RepeatedNumbersAreRefused) {
   Scene s;
   Command c = s.command(Role::direct, 1);

@@ -7,6 +7,7 @@ namespace saphira::reflector {
 
 namespace {
 
+constexpr std::size_t kMaxDrivers = 256;
 // The manual's Pioneer cannot be placed better than about 0.1 m (6.4); this only ends the creeping.
 constexpr double kThere = 0.005;    // [m]
 constexpr double kCreep = 0.03;     // [m/s] the least speed that moves a robot
@@ -17,24 +18,28 @@ constexpr double kReaction = 0.15;  // [s] from a packet to the effect of its an
 void DirectMotion::stop() {
   setpoints_ = {};
   target_.reset();
-  move_.reset();
-  turn_.reset();
 }
 
 void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
+  bool begins = false;
+  if (motion.translation == Translation::position ||
+      motion.rotation == Rotation::relative_heading) {
+    if (begun_.size() >= kMaxDrivers && !begun_.contains(motion.driver))
+      begun_.clear();
+    const auto [move, fresh] = begun_.try_emplace(motion.driver, motion.move);
+    begins = fresh || move->second != motion.move;
+    move->second = motion.move;
+  }
   switch (motion.translation) {
     case Translation::none:
       break;
     case Translation::velocity:
       target_.reset();
-      move_.reset();
       setpoints_.velocity = motion.velocity;
       break;
     case Translation::position:
-      if (move_ != motion.move) {
-        move_ = motion.move;
+      if (begins)
         target_ = travelled_ + motion.distance;
-      }
       speed_ = std::abs(motion.velocity) > 0.0 ? std::abs(motion.velocity) : limits_.max_velocity;
       break;
   }
@@ -42,18 +47,15 @@ void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
     case Rotation::none:
       break;
     case Rotation::velocity:
-      turn_.reset();
       setpoints_.turn_to_heading = false;
       setpoints_.rotation_velocity = motion.rotation_velocity;
       break;
     case Rotation::heading:
-      turn_.reset();
       setpoints_.turn_to_heading = true;
       setpoints_.heading_in_odom = norm2_angle(motion.heading);
       break;
     case Rotation::relative_heading:
-      if (turn_ != motion.move) {
-        turn_ = motion.move;
+      if (begins) {
         setpoints_.turn_to_heading = true;
         setpoints_.heading_in_odom = norm2_angle(pose_in_odom.th + motion.heading);
       }

@@ -49,6 +49,23 @@ TEST(DirectMotion, ARelativeHeadingIsTakenOnce) {
   EXPECT_NEAR(direct.setpoints().heading_in_odom, norm2_angle(3.5 + kPi / 2), 1e-12);
 }
 
+TEST(DirectMotion, AnInterruptedMoveIsOver) {
+  DirectMotion direct(kPioneer);
+  Motion m;
+  m.translation = Translation::position;
+  m.distance = 1.0;
+  m.move = 7;
+  m.driver = 1;
+  direct.set(m, {});
+  EXPECT_GT(direct.setpoints().velocity, 0.0);
+  direct.stop();
+  direct.set(m, {});
+  EXPECT_EQ(direct.setpoints().velocity, 0.0);
+  m.driver = 2;
+  direct.set(m, {});
+  EXPECT_GT(direct.setpoints().velocity, 0.0) << "another one's seventh move";
+}
+
 /// A robot that follows velocity setpoints with the accelerations of the manual's Pioneer, heard
 /// every 0.1 s, obeying one packet late.
 double drive(DirectMotion& direct, double* top, double* overshoot, double distance) {

@@ -79,6 +79,8 @@ class Arbiter {
   /// Takes a command as it comes, at robot cycle `cycle`. True when it was accepted: it is then the
   /// newest of its role. (Accepted does not mean that it drives: see decide.)
   bool offer(const Command& command, std::uint64_t cycle);
+  /// A writer is gone from the bus: as if it had released its role.
+  void lost(Role role, const WriterId& writer, double now);
   /// Refuses a command for a reason that the caller found (a value that is no number).
   void refuse(Role role, const std::string& source, const std::string& reason);
 

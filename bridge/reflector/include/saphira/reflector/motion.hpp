@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 
 #include "saphira/geometry/pose.hpp"
@@ -19,6 +20,7 @@ struct Motion {
   Rotation rotation = Rotation::none;
   double rotation_velocity = 0.0;  ///< [rad/s]
   double heading = 0.0;            ///< [rad] in odom, or relative
+  std::uint64_t driver = 0;        ///< who; each driver counts its own moves
 };
 
 /// The robot's ability to move.
@@ -44,7 +46,8 @@ class DirectMotion {
   explicit DirectMotion(Limits limits = {}) : limits_(limits) {}
   void configure(Limits limits) { limits_ = limits; }
 
-  /// Both channels to zero; positions and headings are forgotten.
+  /// Both channels to zero. A position or relative heading that was under way is over: the same
+  /// `move` of the same driver does not begin it again.
   void stop();
   /// The newest wish of the driver.
   void set(const Motion& motion, const Pose& pose_in_odom);
@@ -64,8 +67,7 @@ class DirectMotion {
   std::optional<double> target_;  ///< [m] on the scale of travelled_
   double speed_ = 0.0;            ///< [m/s] the greatest of a position
   double travelled_ = 0.0;
-  std::optional<std::uint64_t> move_;  ///< of the position
-  std::optional<std::uint64_t> turn_;  ///< of the relative heading
+  std::map<std::uint64_t, std::uint64_t> begun_;  ///< each driver's newest move
 };
 
 }  // namespace saphira::reflector

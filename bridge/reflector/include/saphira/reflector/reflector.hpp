@@ -48,6 +48,12 @@ class Reflector {
   void set(const Motion& motion) { motion_.set(motion, state_.pose_in_odom); }
   void stop() { motion_.stop(); }
   const DirectMotion& motion() const { return motion_; }
+  /// Zero setpoints are due at once, whatever was sent before: somebody else may have spoken to the
+  /// server meanwhile.
+  void zero_first() {
+    motion_.stop();
+    channels_.connect();
+  }
 
   /// The setpoints that the server is to hold, after whatever the guard made of motion().
   void hold(const Setpoints& setpoints);

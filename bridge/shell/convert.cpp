@@ -1,0 +1,303 @@
+#include "convert.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saphira::bridge {
+
+namespace {
+
+constexpr std::size_t kMaxText = 255;  // what a writer that sends novels may say of itself
+
+v1::MotorStatus to_bus(protocol::Motors motors) {
+  switch (motors) {
+    case protocol::Motors::kNoPower:
+      return v1::MOTORS_NO_POWER;
+    case protocol::Motors::kMoving:
+      return v1::MOTORS_MOVING;
+    case protocol::Motors::kStopped:
+      break;
+  }
+  return v1::MOTORS_STOPPED;
+}
+
+v1::Role to_bus(authority::Role role) {
+  switch (role) {
+    case authority::Role::estop:
+      return v1::ROLE_ESTOP;
+    case authority::Role::teleop:
+      return v1::ROLE_TELEOP;
+    case authority::Role::direct:
+      return v1::ROLE_DIRECT;
+    case authority::Role::behaviors:
+      return v1::ROLE_BEHAVIORS;
+    case authority::Role::none:
+      break;
+  }
+  return v1::ROLE_NONE;
+}
+
+v1::GuardAction to_bus(authority::GuardAction action) {
+  switch (action) {
+    case authority::GuardAction::limit:
+      return v1::GUARD_LIMIT;
+    case authority::GuardAction::slow:
+      return v1::GUARD_SLOW;
+    case authority::GuardAction::stop:
+      return v1::GUARD_STOP;
+    case authority::GuardAction::none:
+      break;
+  }
+  return v1::GUARD_NONE;
+}
+
+template <class T>
+T short_of(unsigned value) {
+  return static_cast<T>(std::min<unsigned>(value, std::numeric_limits<T>::max()));
+}
+
+}  // namespace
+
+v1::Pose2 to_bus(const Pose& pose) {
+  v1::Pose2 out;
+  out.x(pose.x);
+  out.y(pose.y);
+  out.th(pose.th);
+  return out;
+}
+
+v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
+                      std::uint64_t bad_packets) {
+  const protocol::Information& in = state.information;
+  v1::RobotState out;
+  out.stamp(stamp);
+  out.odom(state.odom);
+  out.pose_in_odom(to_bus(state.pose_in_odom));
+  out.velocity(in.velocity);
+  out.rotation_velocity(in.rotation_velocity);
+  out.left_velocity(in.left_velocity);
+  out.right_velocity(in.right_velocity);
+  out.target_velocity(state.target_velocity);
+  out.target_heading_in_odom(state.target_heading_in_odom);
+  out.status(to_bus(in.motors));
+  out.left_stalled(in.left_stalled);
+  out.right_stalled(in.right_stalled);
+  out.bumpers(in.bumpers);
+  out.battery(in.battery);
+  out.ptu(in.ptu);
+  out.say(in.say);
+  out.timer(in.timer);
+  out.analog(in.analog);
+  out.digital_input(in.digital_input);
+  out.digital_output(in.digital_output);
+  for (const protocol::Sonar& sonar : in.sonars) {
+    if (out.sonars().size() == 64)
+      break;
+    v1::SonarReading reading;
+    reading.sonar(sonar.number);
+    reading.range(static_cast<float>(sonar.range));
+    reading.echo(sonar.echo);
+    out.sonars().push_back(reading);
+  }
+  out.motor_packets_per_s(short_of<std::uint16_t>(state.motor_packets_per_s));
+  out.sonar_readings_per_s(short_of<std::uint16_t>(state.sonar_readings_per_s));
+  out.vision_packets_per_s(0);
+  out.bad_packets(static_cast<std::uint32_t>(bad_packets));
+  return out;
+}
+
+v1::RobotDescription to_bus(const protocol::RobotParameters& p,
+                            const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
+                            const std::string& link, bool lockstep) {
+  v1::RobotDescription out;
+  out.stamp(stamp);
+  out.name(identity.name);
+  out.robot_class(identity.robot_class);
+  out.robot_subclass(identity.subclass);
+  out.parameter_file(p.file);
+  out.link(link);
+  out.radius(p.radius);
+  out.diagonal(p.diagonal);
+  out.max_velocity(p.max_velocity);
+  out.max_rotation_velocity(p.max_rotation_velocity);
+  out.acceleration(p.acceleration);
+  out.rotation_acceleration(p.rotation_acceleration);
+  out.front_buffer(static_cast<std::uint16_t>(p.front_buffer));
+  out.side_buffer(static_cast<std::uint16_t>(p.side_buffer));
+  out.front_max_range(p.front_max_range);
+  out.lockstep(lockstep);
+  for (const protocol::SonarUnit& unit : p.sonars) {
+    if (out.sonars().size() == 64)
+      break;
+    v1::SonarPose sonar;
+    sonar.sonar(unit.number);
+    sonar.pose_in_robot(to_bus(unit.pose_in_robot));
+    out.sonars().push_back(sonar);
+  }
+  return out;
+}
+
+v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarded,
+                 const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
+  v1::Grant out;
+  out.stamp(stamp);
+  out.role(to_bus(grant.role));
+  out.source(grant.source);
+  out.reason(grant.reason);
+  out.expires_in(grant.expires_in);
+  out.command_age(grant.command_age);
+  out.guard(to_bus(guarded.action));
+  out.guard_reason(guarded.reason);
+  out.velocity(guarded.velocity);
+  for (const authority::Refusal& refusal : refused) {
+    if (out.refused().size() == 16)
+      break;
+    v1::Refusal r;
+    r.role(to_bus(refusal.role));
+    r.source(refusal.source);
+    r.reason(refusal.reason);
+    out.refused().push_back(r);
+  }
+  return out;
+}
+
+std::string trouble(const v1::MotorCommand& command) {
+  const struct {
+    const char* name;
+    double value;
+  } numbers[] = {{"velocity", command.velocity()},
+                 {"distance", command.distance()},
+                 {"rotation_velocity", command.rotation_velocity()},
+                 {"heading", command.heading()}};
+  for (const auto& number : numbers) {
+    // Beyond any robot and any angle that means something; also keeps the packet's integers whole.
+    if (!std::isfinite(number.value) || std::abs(number.value) > 1e4)
+      return std::string(number.name) + " is no usable number";
+  }
+  if (command.translation() > v1::TRANSLATION_POSITION)
+    return "unknown translation mode";
+  if (command.rotation() > v1::ROTATION_RELATIVE_HEADING)
+    return "unknown rotation mode";
+  return {};
+}
+
+reflector::Motion to_motion(const v1::MotorCommand& command) {
+  reflector::Motion out;
+  switch (command.translation()) {
+    case v1::TRANSLATION_NONE:
+      break;
+    case v1::TRANSLATION_VELOCITY:
+      out.translation = reflector::Translation::velocity;
+      break;
+    case v1::TRANSLATION_POSITION:
+      out.translation = reflector::Translation::position;
+      break;
+  }
+  switch (command.rotation()) {
+    case v1::ROTATION_NONE:
+      break;
+    case v1::ROTATION_VELOCITY:
+      out.rotation = reflector::Rotation::velocity;
+      break;
+    case v1::ROTATION_HEADING:
+      out.rotation = reflector::Rotation::heading;
+      break;
+    case v1::ROTATION_RELATIVE_HEADING:
+      out.rotation = reflector::Rotation::relative_heading;
+      break;
+  }
+  out.velocity = command.velocity();
+  out.distance = command.distance();
+  out.move = command.move();
+  out.rotation_velocity = command.rotation_velocity();
+  out.heading = command.heading();
+  return out;
+}
+
+authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
+                              const authority::WriterId& writer, double received) {
+  authority::Command out;
+  out.role = role;
+  out.writer = writer;
+  out.source = command.source().substr(0, kMaxText);
+  out.epoch = command.stamp().epoch();
+  out.cycle = command.stamp().cycle();
+  out.number = command.number();
+  out.active = command.active();
+  out.received = received;
+  return out;
+}
+
+std::optional<protocol::Command> to_device(const v1::DeviceCommand& command, std::string& why) {
+  const auto within = [&](long low, long high) {
+    if (command.value() >= low && command.value() <= high)
+      return true;
+    why = "value " + std::to_string(command.value()) + " is not within " + std::to_string(low) +
+          ".." + std::to_string(high);
+    return false;
+  };
+  const long value = command.value();
+  switch (command.kind()) {
+    case v1::DEVICE_DIGITAL_OUTPUT:
+      if (within(0, 255))
+        return protocol::DigitalOutput{static_cast<std::uint8_t>(value)};
+      return std::nullopt;
+    case v1::DEVICE_TIMER:
+      if (within(0, 7))
+        return protocol::Timer{static_cast<std::uint8_t>(value)};
+      return std::nullopt;
+    case v1::DEVICE_GRIPPER:
+      if (within(0, 255))
+        return protocol::Gripper{static_cast<std::uint16_t>(value)};
+      return std::nullopt;
+    case v1::DEVICE_PTU:
+      if (within(0, 0xFFFF))
+        return protocol::Ptu{static_cast<std::uint16_t>(value)};
+      return std::nullopt;
+    case v1::DEVICE_POLLING: {
+      protocol::Polling polling;
+      for (const std::uint8_t sonar : command.polling()) {
+        if (sonar >= 255) {
+          why = "sonar 255 cannot be polled";
+          return std::nullopt;
+        }
+        polling.sonars.push_back(sonar);
+      }
+      return polling;
+    }
+    case v1::DEVICE_SET_ORIGIN:
+      return protocol::SetOrigin{};
+  }
+  why = "unknown kind of device";
+  return std::nullopt;
+}
+
+void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,
+              std::vector<authority::Echo>& echoes, std::vector<int>& silent) {
+  for (const protocol::Sonar& sonar : state.information.sonars) {
+    for (const protocol::SonarUnit& unit : parameters.sonars) {
+      if (unit.number != sonar.number)
+        continue;
+      if (sonar.echo)
+        echoes.push_back({sonar.number, state.pose_in_odom, unit.pose_in_robot, sonar.range});
+      else
+        silent.push_back(sonar.number);
+    }
+  }
+}
+
+authority::Body to_body(const protocol::RobotParameters& parameters) {
+  authority::Body out;
+  out.radius = parameters.radius;
+  out.max_velocity = parameters.max_velocity;
+  out.max_rotation_velocity = parameters.max_rotation_velocity;
+  out.deceleration = parameters.deceleration;
+  for (const protocol::SonarUnit& unit : parameters.sonars) {
+    if (std::abs(norm2_angle(unit.pose_in_robot.th)) > radians(120.0))
+      out.sees_behind = true;
+  }
+  return out;
+}
+
+}  // namespace saphira::bridge

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motion.h"
+#include "robot.h"
+#include "saphira/authority/arbiter.hpp"
+#include "saphira/authority/guard.hpp"
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/reflector/reflector.hpp"
+
+namespace saphira::bridge {
+
+// Between the contract's types and the libraries'. Pure functions.
+
+v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
+                      std::uint64_t bad_packets);
+v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
+                            const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
+                            const std::string& link, bool lockstep);
+v1::Pose2 to_bus(const Pose& pose);
+
+/// A grant, what the guard did to it, the velocity that was sent, who was refused.
+v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarded,
+                 const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp);
+
+/// What is wrong with a motor command; empty where nothing is. Anybody may write one: a number that
+/// is none, or an enumerator of no contract, is refused here.
+std::string trouble(const v1::MotorCommand& command);
+/// Only for a command without trouble.
+reflector::Motion to_motion(const v1::MotorCommand& command);
+authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
+                              const authority::WriterId& writer, double received);
+
+/// The protocol's command; nothing, and why, where the value is out of range.
+std::optional<protocol::Command> to_device(const v1::DeviceCommand& command, std::string& why);
+
+/// The readings of a packet for the guard: those with an echo, and the sonars that fired without.
+void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,
+              std::vector<authority::Echo>& echoes, std::vector<int>& silent);
+authority::Body to_body(const protocol::RobotParameters& parameters);
+
+}  // namespace saphira::bridge

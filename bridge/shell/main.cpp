@@ -1,0 +1,57 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "saphira/bus/program.hpp"
+#include "shell.hpp"
+
+namespace {
+
+/// Where the parameter files are: installed beside the program, or in the source tree.
+std::string robots_folder() {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
+  for (const fs::path& folder :
+       {bin / "../share/saphira/robots", fs::path(SAPHIRA_SOURCE_CONFIG "/robots")}) {
+    if (fs::is_directory(folder))
+      return folder.lexically_normal().string();
+  }
+  return "config/robots";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  saphira::bridge::BridgeOptions options;
+  options.robots_folder = robots_folder();
+  double lease_ms = options.lease * 1000.0;
+  double quiet_ms = options.quiet * 1000.0;
+  bool no_guard = false;
+  bool no_keeper = false;
+  return saphira::bus::run_program(
+      argc, argv, "bridge", "Connects one robot server to the bus and decides who drives it.",
+      [&](CLI::App& app) {
+        app.add_option("--robot-port,--link", options.robot_port,
+                       "the robot: /dev/tty...[@baud], unix:/path or tcp:host:port")
+            ->capture_default_str();
+        app.add_option("--robots", options.robots_folder, "folder of robot parameter files")
+            ->capture_default_str();
+        app.add_option("--lease-ms", lease_ms, "a command drives for so long")
+            ->capture_default_str();
+        app.add_option("--quiet-ms", quiet_ms, "stillness between a person and autonomy")
+            ->capture_default_str();
+        app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
+        app.add_option("--state", options.state_file,
+                       "file that keeps the robot's position over a restart");
+        app.add_flag("--free-step", options.free_step, "lockstep: step without a permit");
+        app.add_flag("--no-keeper", no_keeper, "no second process that stops the robot");
+      },
+      [&](const saphira::bus::NodeOptions& node, const saphira::bus::Stop& stop) {
+        options.lease = lease_ms / 1000.0;
+        options.quiet = quiet_ms / 1000.0;
+        options.guard = !no_guard;
+        options.keeper = !no_keeper;
+        saphira::bridge::Shell shell(node, options);
+        return shell.run(stop);
+      });
+}

@@ -1,0 +1,631 @@
+#include "shell.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "convert.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/program.hpp"
+
+namespace saphira::bridge {
+
+namespace {
+
+using authority::Role;
+
+constexpr double kSilent = 0.5;     // [s] without a packet: the link is silent, the robot stands
+constexpr double kDead = 2.0;       // [s] then the link is given up
+constexpr double kDeadStep = 10.0;  // [s] for the simulator to make a step
+constexpr double kGap = 0.25;       // [s] the bridge's own loop was not heard for so long
+constexpr double kSettle = 0.1;     // [s] after a gap: what comes now waited in some queue
+constexpr double kWaitForDriver =
+    0.05;                       // [s] from a packet until what is due goes without its answer
+constexpr double kBeat = 0.05;  // [s] of the keeper
+constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
+constexpr double kHoldOff = 2.0;       // [s] until a robot that could not be served is tried again
+constexpr double kCycle = 0.1;         // [s] manual 2.1.1
+
+double steady() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::uint64_t milliseconds_since_1970() {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
+                                        std::chrono::system_clock::now().time_since_epoch())
+                                        .count());
+}
+
+std::vector<std::uint8_t> stop_packets() {
+  std::vector<std::uint8_t> out = protocol::encode(protocol::Velocity{0.0});
+  const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
+  out.insert(out.end(), turn.begin(), turn.end());
+  return out;
+}
+
+std::uint64_t driver_of(const authority::WriterId& writer) {
+  std::uint64_t out = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const std::uint8_t byte : writer)
+    out = (out ^ byte) * 0x100000001b3ULL;
+  return out;
+}
+
+std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
+  return wanted ? std::make_unique<transport::Keeper>(stop_packets()) : nullptr;
+}
+
+/// Checks what a person gave before anything is made of it.
+BridgeOptions checked(BridgeOptions options) {
+  transport::parse_address(options.robot_port);
+  if (!std::filesystem::is_directory(options.robots_folder))
+    throw std::invalid_argument("--robots " + options.robots_folder +
+                                ": expected a folder with robot parameter files");
+  if (!(options.lease > 0.0) || !(options.quiet >= 0.0))
+    throw std::invalid_argument("--lease-ms: expected more than 0; --quiet-ms: 0 or more");
+  return options;
+}
+
+}  // namespace
+
+Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
+             std::shared_ptr<bus::MemoryBus> memory)
+    : options_(checked(std::move(options))),
+      lockstep_(node.lockstep),
+      keeper_(make_keeper(options_.keeper)),
+      node_(memory ? bus::Node(node, std::move(memory)) : bus::Node(node)),
+      state_writer_(node_.writer(bus::topics::kRobotState)),
+      description_writer_(node_.writer(bus::topics::kRobotDescription)),
+      grant_writer_(node_.writer(bus::topics::kGrant)),
+      devices_(node_.reader(bus::topics::kDevice)),
+      permits_(node_.reader(bus::topics::kStepPermit)),
+      link_(transport::parse_address(options_.robot_port)),
+      arbiter_({options_.lease, options_.quiet, 3}) {
+  drives_.push_back({Role::estop, node_.reader(bus::topics::kDriveEstop), {}, false});
+  drives_.push_back({Role::teleop, node_.reader(bus::topics::kDriveTeleop), {}, false});
+  drives_.push_back({Role::direct, node_.reader(bus::topics::kDriveDirect), {}, false});
+  drives_.push_back({Role::behaviors, node_.reader(bus::topics::kDriveBehaviors), {}, false});
+  for (authority::GuardSettings& settings : guards_)
+    settings.enabled = options_.guard;
+
+  if (!options_.state_file.empty()) {
+    state_fd_ = ::open(options_.state_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (state_fd_ < 0)
+      throw std::invalid_argument("--state " + options_.state_file + ": " + std::strerror(errno));
+    const std::string text = read_file(options_.state_file);
+    memory_ = reflector::from_text(text);
+    if (memory_)
+      last_odom_ = memory_->odom;
+    else if (!text.empty())
+      node_.warn(options_.state_file + " holds no position: a new one begins");
+  }
+}
+
+Shell::~Shell() {
+  if (state_fd_ >= 0)
+    ::close(state_fd_);
+}
+
+double Shell::time() const {
+  return lockstep_ ? static_cast<double>(stamp_.cycle()) * kCycle : steady();
+}
+
+int Shell::run(const bus::Stop& stop) {
+  node_.info("robot at " + link_.address().text());
+  last_loop_ = steady();
+  while (!stop.requested()) {
+    double now = steady();
+    tend_link(now);
+    if (!lockstep_ && epoch_ != 0) {
+      if (flush_at_ > 0.0 && now >= flush_at_) {
+        if (grant_.role == Role::behaviors)
+          ++late_;
+        decide();
+        flush(now);
+      } else if (grant_.role != Role::none && now >= expires_at_) {
+        decide();
+        flush(now);
+      } else if (now - last_packet_ > 1.5 * kCycle && reflector_.pending(now)) {
+        flush(now);  // no packets come, so no cycle makes the beat
+      }
+    }
+    publish_status(now);
+
+    pollfd fds[3] = {{stop.fd(), POLLIN, 0}, {node_.wake_fd(), POLLIN, 0}, {-1, 0, 0}};
+    fds[2].fd = link_.fd();  // poll ignores what is negative
+    fds[2].events = link_.poll_events();
+    const int n = ::poll(fds, 3, timeout_ms(steady()));
+    now = steady();
+    const double gap = now - last_loop_;
+    last_loop_ = now;
+    if (gap > kGap && !lockstep_ && epoch_ != 0)
+      after_gap(gap, now);
+    if (n <= 0)
+      continue;
+    if (fds[2].revents != 0)
+      receive(now);
+    if (fds[1].revents != 0) {
+      node_.clear_wake();
+      take_all(now);
+    }
+  }
+
+  node_.status().state(v1::SERVICE_STOPPING);
+  node_.status().reason("asked to stop");
+  if (epoch_ != 0) {
+    const double now = steady();
+    reflector_.zero_first();
+    flush(now);
+    send(protocol::encode(protocol::Close{}), now);
+    lost("the bridge ends", now);
+  }
+  node_.publish_status();
+  return bus::kExitOk;
+}
+
+int Shell::timeout_ms(double now) const {
+  double until = now + kCycle;
+  if (flush_at_ > 0.0)
+    until = std::min(until, flush_at_);
+  if (!lockstep_ && grant_.role != Role::none)
+    until = std::min(until, expires_at_);
+  if (connection_.state() != reflector::Connection::State::closed && !connection_.open())
+    until = std::min(until, connection_.due());
+  if (hold_off_ <= now)
+    until = std::min(until, link_.due());
+  if (parser_.pending())
+    until = std::min(until, last_bytes_ + kPacketPause);
+  // Rounded up: a timer that wakes too early would spin.
+  return std::clamp(static_cast<int>(std::ceil((until - now) * 1000.0)), 0, 100);
+}
+
+// ---- The robot's side.
+
+void Shell::tend_link(double now) {
+  if (keeper_ && now - last_beat_ >= kBeat) {
+    keeper_->beat();
+    last_beat_ = now;
+  }
+  if (now < hold_off_)
+    return;
+  const bool was_open = link_.state() == transport::Link::State::open;
+  link_.advance(now);
+  const bool is_open = link_.state() == transport::Link::State::open;
+  if (!is_open) {
+    if (was_open)
+      lost(link_.trouble(), now);
+    return;
+  }
+  if (!was_open || connection_.state() == reflector::Connection::State::closed) {
+    parser_.reset();
+    last_bytes_ = now;
+    for (const protocol::Bytes& packet : connection_.begin(now))
+      send(packet, now);
+    return;
+  }
+  if (parser_.pending() && now - last_bytes_ >= kPacketPause) {
+    parser_.gap();
+    while (auto body = parser_.next())
+      packet(*body, now);
+  }
+  if (!connection_.open()) {
+    for (const protocol::Bytes& packet : connection_.tick(now))
+      send(packet, now);
+    return;
+  }
+  const double silence = now - last_packet_;
+  if (lockstep_) {
+    if (stepping_ && silence > kDeadStep)
+      lost("the simulator did not make a step within 10 s", now);
+    return;
+  }
+  if (silence > kDead) {
+    lost("robot link silent", now);
+  } else if (silence > kSilent && !link_silent_) {
+    // The age of the link: nobody drives what nobody sees.
+    link_silent_ = true;
+    node_.warn("robot link silent for 0.5 s: the robot is told to stop");
+    arbiter_.forget(stamp_.cycle(), time());
+    reflector_.zero_first();
+    decide();
+    flush(now);
+  }
+}
+
+void Shell::receive(double now) {
+  if (link_.state() != transport::Link::State::open)
+    return;  // a connection that is coming about: tend_link
+  input_.clear();
+  const bool alive = link_.read(input_, now);
+  if (!input_.empty()) {
+    last_bytes_ = now;
+    parser_.feed(input_);
+    while (auto body = parser_.next())
+      packet(*body, now);
+  }
+  if (!alive)
+    lost(link_.trouble(), now);
+}
+
+void Shell::packet(const protocol::Bytes& body, double now) {
+  if (!connection_.open()) {
+    for (const protocol::Bytes& answer : connection_.packet(body, now))
+      send(answer, now);
+    if (connection_.open())
+      opened(now);
+    return;
+  }
+  if (epoch_ == 0)
+    return;
+  if (const auto in = protocol::decode_information(body))
+    information(*in, now);
+}
+
+bool Shell::send(const protocol::Bytes& packet, double now) {
+  return link_.write(packet, now);
+}
+
+void Shell::opened(double now) {
+  const protocol::RobotIdentity& robot = connection_.identity();
+  const std::string who =
+      "robot \"" + robot.name + "\" (" + robot.robot_class + ", " + robot.subclass + ")";
+  try {
+    std::string looked_for;
+    std::string path;
+    for (const std::string& file :
+         protocol::parameter_file_names(robot.robot_class, robot.subclass)) {
+      looked_for += (looked_for.empty() ? "" : ", ") + file;
+      const std::filesystem::path candidate = std::filesystem::path(options_.robots_folder) / file;
+      if (path.empty() && std::filesystem::exists(candidate))
+        path = candidate.string();
+    }
+    if (path.empty())
+      throw std::runtime_error(
+          "no parameter file for " + who + ": looked for " +
+          (looked_for.empty() ? "nothing (the robot names no class)" : looked_for) + " in " +
+          options_.robots_folder);
+    const protocol::RobotParameters parameters = protocol::load_parameters(path);
+    for (const std::string& warning : parameters.warnings)
+      node_.warn(warning);
+    reflector_.configure(parameters);
+  } catch (const std::exception& error) {
+    if (robot_trouble_ != error.what())
+      node_.error(error.what());
+    robot_trouble_ = error.what();
+    send(protocol::encode(protocol::Close{}), now);
+    lost(robot_trouble_, now);
+    hold_off_ = now + kHoldOff;
+    return;
+  }
+  robot_trouble_.clear();
+
+  // What was said before there was a robot is heard, and refused, before there is one.
+  take_all(now);
+  epoch_ = std::max(milliseconds_since_1970(), last_epoch_ + 1);
+  last_epoch_ = epoch_;
+  stamp_.epoch(epoch_);
+  stamp_.cycle(0);
+  body_ = to_body(reflector_.parameters());
+  echoes_.clear();
+  reflector_.open(time(), memory_, std::max(epoch_, last_odom_ + 1));
+  arbiter_.connect(epoch_);
+  grant_ = {};
+  guarded_ = {};
+  bad_before_ = parser_.counters().bad_packets();
+  last_packet_ = now;
+  link_silent_ = false;
+  answered_ = 0;
+  stepping_ = false;
+  stepped_ = false;
+  flush(now);  // the zero setpoints
+  // The world of a single-stepped simulator stands still by itself.
+  if (keeper_ && !lockstep_)
+    keeper_->watch(link_.fd());
+  description_writer_.write(
+      to_bus(reflector_.parameters(), robot, stamp_, link_.address().text(), lockstep_));
+  node_.info("connected to " + who + ", " + reflector_.parameters().file);
+  step(now);
+}
+
+void Shell::information(const protocol::InformationPacket& packet, double now) {
+  const std::uint64_t odom_before = reflector_.state().odom;
+  stamp_.cycle(stamp_.cycle() + 1);
+  const reflector::State& state =
+      reflector_.packet(packet, time(), std::max(epoch_, last_odom_ + 1));
+  state_writer_.write(to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_));
+
+  last_packet_ = now;
+  link_silent_ = false;
+  reacted_ = false;
+  stepping_ = false;
+  stepped_ = false;
+  ++steps_;
+  last_odom_ = std::max(last_odom_, state.odom);
+  if (state.cycle == 1) {
+    node_.info(memory_ && memory_->odom == state.odom ? "goes on in the odom frame of before"
+                                                      : "a new odom frame begins");
+  } else if (state.odom != odom_before) {
+    node_.warn("the robot's position jumped: a new odom frame begins");
+    arbiter_.forget(stamp_.cycle() - 1, time());  // what was meant in the old frame
+    echoes_.clear();
+  }
+  std::vector<authority::Echo> echoes;
+  std::vector<int> silent;
+  to_guard(state, reflector_.parameters(), echoes, silent);
+  echoes_.update(stamp_.cycle(), echoes, silent);
+  if (const auto trouble = reflector_.take_trouble())
+    node_.warn(*trouble);
+
+  if (lockstep_) {
+    remember();
+    return step(now);
+  }
+  decide();
+  // The driver that follows the cycles answers this packet in a moment, and there is one command a
+  // cycle: so it is waited for. Not where the robot is to stand.
+  const bool follows = std::any_of(drives_.begin(), drives_.end(), [&](const Drive& drive) {
+    return drive.role == grant_.role && drive.follows_cycles;
+  });
+  if (!follows || (guarded_.velocity == 0.0 && reflector_.sent_velocity() != 0.0))
+    flush(now);
+  else
+    flush_at_ = now + kWaitForDriver;
+  publish_grant();
+  remember();
+}
+
+void Shell::lost(const std::string& why, double now) {
+  if (epoch_ != 0) {
+    node_.warn("the robot is lost: " + why);
+    if (stamp_.cycle() > 0)
+      memory_ = reflector_.odometry();
+  }
+  if (keeper_)
+    keeper_->unwatch();
+  link_.close(why, now);
+  connection_.end();
+  arbiter_.connect(0);
+  grant_ = arbiter_.decide(time(), stamp_.cycle());
+  guarded_ = {};
+  if (epoch_ != 0)
+    publish_grant();
+  epoch_ = 0;
+  stamp_ = {};
+  flush_at_ = 0.0;
+}
+
+void Shell::after_gap(double gap, double now) {
+  char text[96];
+  std::snprintf(text, sizeof text,
+                "the bridge stood still for %.2f s: the robot is stopped, a new grant is needed",
+                gap);
+  node_.warn(text);
+  arbiter_.forget(stamp_.cycle(), time() + kSettle);
+  reflector_.zero_first();
+  decide();
+  flush(now);
+}
+
+void Shell::remember() {
+  if (state_fd_ < 0)
+    return;
+  // One write of one size: a kill leaves the old line or the new one.
+  std::string text = reflector::to_text(reflector_.odometry());
+  text.resize(256, ' ');
+  text.back() = '\n';
+  if (::pwrite(state_fd_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    node_.error(options_.state_file + ": " + std::strerror(errno));
+    ::close(state_fd_);
+    state_fd_ = -1;
+  }
+}
+
+// ---- The bus's side.
+
+void Shell::take_all(double now) {
+  bool driver = false;
+  for (Drive& drive : drives_)
+    driver = take_drive(drive, now) || driver;
+  take_devices();
+  if (const auto permit = permits_.take_newest())
+    permit_ = permit->until_cycle();
+  if (epoch_ == 0)
+    return;
+  if (lockstep_)
+    return step(now);
+  const authority::Grant before = grant_;
+  decide();
+  if (driver || !grant_.same_driver(before))
+    flush(now);
+}
+
+bool Shell::take_drive(Drive& drive, double now) {
+  bool driver = false;
+  for (const auto& sample : drive.reader.take()) {
+    if (sample.info.disposed)
+      continue;
+    const v1::MotorCommand& in = sample.data;
+    const std::string wrong = trouble(in);
+    if (!wrong.empty()) {
+      ++malformed_;
+      arbiter_.refuse(drive.role, in.source().substr(0, 255), wrong);
+      continue;
+    }
+    if (drive.role == Role::behaviors && epoch_ != 0 && in.stamp().epoch() == epoch_)
+      answered_ = in.stamp().cycle();
+    const authority::Command command =
+        to_command(in, drive.role, sample.info.writer, lockstep_ ? time() : now);
+    if (!arbiter_.offer(command, stamp_.cycle()))
+      continue;
+    driver = driver || (drive.role == grant_.role && sample.info.writer == grant_.writer);
+    if (command.active) {
+      drive.motion = to_motion(in);
+      drive.motion.driver = driver_of(sample.info.writer);
+      drive.follows_cycles = in.stamp().cycle() != 0;
+    }
+  }
+  for (const bus::WriterId& writer : drive.reader.take_lost())
+    arbiter_.lost(drive.role, writer, lockstep_ ? time() : now);
+  return driver;
+}
+
+void Shell::take_devices() {
+  for (const auto& sample : devices_.take()) {
+    if (sample.info.disposed)
+      continue;
+    std::string why = "no robot is connected";
+    const auto command = epoch_ == 0 ? std::nullopt : to_device(sample.data, why);
+    const std::string who = sample.data.source().substr(0, 255);
+    if (command) {
+      node_.info("device command of " + who);
+      reflector_.request(*command);
+    } else {
+      ++malformed_;
+      node_.warn("device command of " + who + " refused: " + why);
+    }
+  }
+}
+
+// ---- Between the two.
+
+void Shell::decide() {
+  const double t = time();
+  authority::Grant grant = arbiter_.decide(t, stamp_.cycle());
+  const bool changed = !grant.same_driver(grant_);
+  // Loss, release and change of hands are a stop: nothing of one driver's wishes is left to the
+  // next.
+  if (changed || grant.role == Role::none || grant.role == Role::estop)
+    reflector_.stop();
+  if (grant.role != Role::none && grant.role != Role::estop) {
+    for (const Drive& drive : drives_) {
+      if (drive.role == grant.role)
+        reflector_.set(drive.motion);
+    }
+  }
+  reflector::Setpoints wanted = reflector_.motion().setpoints();
+  const authority::GuardAction action_before = guarded_.action;
+  guarded_ = {wanted.velocity, wanted.rotation_velocity, authority::GuardAction::none, {}};
+  if (grant.role != Role::none && grant.role != Role::estop) {
+    guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant.role)], body_,
+                                echoes_.seen_from(reflector_.state().pose_in_odom), wanted.velocity,
+                                wanted.rotation_velocity);
+  }
+  wanted.velocity = guarded_.velocity;
+  wanted.rotation_velocity = guarded_.rotation_velocity;
+  reflector_.hold(wanted);
+  if (guarded_.action == authority::GuardAction::stop && guarded_.action != action_before)
+    node_.info("guard: " + guarded_.reason);
+  const std::string reason = grant.reason;
+  grant_ = std::move(grant);
+  expires_at_ = t + grant_.expires_in + 1e-4;
+  if (changed) {
+    node_.info(grant_.role == Role::none
+                   ? "nobody drives: " + reason
+                   : grant_.source + " drives (" + authority::name(grant_.role) + ")");
+    grant_changed_ = true;
+  }
+}
+
+void Shell::flush(double now) {
+  flush_at_ = 0.0;
+  bool sent = false;
+  for (const protocol::Command& command : reflector_.due(time())) {
+    if (!send(protocol::encode(command, reflector_.parameters().vel2_unit), now))
+      return;  // the link is closed now: the loop sees it
+    sent = true;
+  }
+  if (sent && !reacted_) {
+    reacted_ = true;
+    const double reaction = steady() - last_packet_;
+    reaction_sum_ += reaction;
+    reaction_max_ = std::max(reaction_max_, reaction);
+    ++reactions_;
+  }
+  // After the packets: nobody waits for these words.
+  if (grant_changed_ && !lockstep_)
+    publish_grant();
+}
+
+void Shell::step(double now) {
+  const std::uint64_t cycle = stamp_.cycle();
+  if (!lockstep_ || epoch_ == 0 || stepping_)
+    return;
+  if (cycle > 0 && !stepped_) {
+    if (answered_ != cycle)
+      return;
+    stepped_ = true;
+    decide();
+    flush(now);
+    publish_grant();
+  }
+  if (!options_.free_step && permit_ <= cycle)
+    return;
+  stepping_ = true;
+  last_packet_ = now;
+  send(protocol::encode(protocol::Step{}), now);
+}
+
+void Shell::publish_grant() {
+  grant_changed_ = false;
+  grant_writer_.write(to_bus(grant_, guarded_, arbiter_.take_refused(), stamp_));
+}
+
+void Shell::publish_status(double now) {
+  if (now - status_at_ < kCycle)
+    return;
+  status_at_ = now;
+  v1::ServiceStatus& status = node_.status();
+  v1::ServiceState state = v1::SERVICE_RUNNING;
+  std::string reason;
+  if (!robot_trouble_.empty()) {
+    state = v1::SERVICE_WAITING;
+    reason = robot_trouble_;
+  } else if (link_.state() != transport::Link::State::open) {
+    state = v1::SERVICE_WAITING;
+    reason = "robot link: " + link_.trouble();
+  } else if (!connection_.open()) {
+    state = v1::SERVICE_WAITING;
+    reason = "waits for " + connection_.waiting_for();
+  } else if (link_silent_) {
+    state = v1::SERVICE_WAITING;
+    reason = stamp_.cycle() > 0 ? "robot link silent"
+                                : "robot link silent: no packet has come (a simulator in single "
+                                  "step needs --lockstep here)";
+  } else if (lockstep_ && !stepping_) {
+    state = v1::SERVICE_WAITING;
+    reason = stepped_ || stamp_.cycle() == 0
+                 ? "waits for a permit to step"
+                 : "waits for the behaviors' command for cycle " + std::to_string(stamp_.cycle());
+  } else if (keeper_ && !keeper_->alive()) {
+    state = v1::SERVICE_DEGRADED;
+    reason = "the keeper is gone: nobody stops the robot when the bridge hangs";
+  }
+  if (status.state() != state || status.reason() != reason) {
+    status.state(state);
+    status.reason(reason);
+  }
+  status.stamp(stamp_);
+  status.lockstep(lockstep_);
+  status.steps(steps_);
+  status.late_cycles(late_);
+  status.refused_samples(arbiter_.refused_count() + malformed_);
+  // A step of the bridge is its reaction: from a packet to the commands that answer it.
+  if (now - reaction_at_ >= 1.0) {
+    status.step_ms_mean(reactions_ > 0 ? reaction_sum_ / reactions_ * 1000.0 : 0.0);
+    status.step_ms_max(reaction_max_ * 1000.0);
+    reaction_sum_ = 0.0;
+    reaction_max_ = 0.0;
+    reactions_ = 0;
+    reaction_at_ = now;
+  }
+  node_.publish_status();
+}
+
+}  // namespace saphira::bridge
