@@ -32,7 +32,7 @@ struct Cycle::Impl {
         lockstep(the_node.options().lockstep),
         robot(the_node.reader(topics::kRobotState)) {}
 
-  bool left_before(std::uint64_t epoch) const { return left.contains(epoch); }
+  bool left_before(std::uint64_t other) const { return left.contains(other); }
 
   void refuse(const char* topic, const v1::Stamp& stamp, const char* why) {
     ++status.refused_samples();
