@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/information.hpp"
+#include "saphira/protocol/packet.hpp"
+#include "saphira/sim/robot.hpp"
+#include "saphira/sim/sonar.hpp"
+#include "saphira/sim/trace.hpp"
+#include "saphira/sim/world.hpp"
+
+namespace saphira::sim {
+
+/// Ticks from one information packet to the next: 100 ms (manual 5.3).
+inline constexpr int kTicksPerPacket = 10;
+/// Ticks without a packet from the client after which the motors stop: two seconds (manual 5.4.4).
+inline constexpr int kWatchdogTicks = 200;
+
+struct ServerOptions {
+  std::uint64_t seed = 1;
+  bool single_step = false;        ///< from the start; otherwise from the first STEP on
+  std::string name = "Simulator";  ///< Table 5-7
+  bool trace = false;              ///< whether rows are kept for take_trace()
+  SonarModel sonar;
+};
+
+/// What the client has sent, since the simulator started.
+struct ServerCounters {
+  std::uint64_t commands = 0;
+  std::uint64_t unknown_commands = 0;  ///< ignored
+  std::uint64_t watchdog_stops = 0;
+  std::uint64_t bad_packets = 0;  ///< ignored, manual 5.1.3
+};
+
+/// A robot server without the line that it talks on: bytes in, ticks of time in, bytes out.
+///
+/// States (manual 5.4): waiting for SYNC0, SYNC1, SYNC2; synchronized; open. A closed or lost
+/// connection stops the robot and goes back to waiting; dead reckoning goes on from where it was.
+///
+/// In single step, time passes in receive(), 100 ms a STEP, and advance() does nothing.
+class Server {
+ public:
+  /// The world outlives the server. std::invalid_argument where the robot would stand in a wall.
+  Server(const World& world, const protocol::RobotParameters& parameters,
+         const Pose& start_in_world, const ServerOptions& options);
+
+  /// Bytes from the client.
+  void receive(protocol::ByteView bytes);
+  /// Lets ticks of time pass. The world stands still while no client has opened it, but for a robot
+  /// that is still coming to rest, and that to the end of a cycle.
+  void advance(int ticks);
+  /// The client is gone.
+  void disconnect();
+  /// The line has been silent longer than bytes of one packet are apart; see PacketParser::gap. In
+  /// live mode advance() does this itself.
+  void gap();
+
+  /// What goes to the client.
+  protocol::Bytes take_output();
+  /// Rows since the last call; none unless ServerOptions::trace.
+  std::vector<TraceRow> take_trace();
+
+  bool is_open() const { return state_ == State::kOpen; }
+  bool single_step() const { return single_step_; }
+  /// Whether advance() would do anything.
+  bool runs() const { return is_open() ? !single_step_ : robot_.moving() || phase_ != 0; }
+  /// Ticks until the next information packet.
+  int ticks_to_packet() const { return kTicksPerPacket - phase_; }
+  /// Whether bytes of a packet wait for the rest of it.
+  bool packet_pending() const { return parser_.pending(); }
+
+  const Robot& robot() const { return robot_; }
+  std::uint64_t cycle() const { return cycle_; }
+  ServerCounters counters() const;
+  std::uint8_t digital_output() const { return digital_output_; }
+  std::uint16_t gripper() const { return gripper_; }
+
+ private:
+  enum class State { kSync0, kSync1, kSync2, kSynchronized, kOpen };
+
+  void drain();
+  void handle(const protocol::Bytes& body);
+  bool synchronize(const protocol::Bytes& body);
+  void act(const protocol::Command& command);
+  void open();
+  void close();
+  void tick();
+  void finish_cycle();
+  protocol::InformationPacket information() const;
+  void send(const protocol::Bytes& packet);
+
+  protocol::RobotParameters parameters_;
+  ServerOptions options_;
+  Robot robot_;
+  Sonars sonars_;
+  protocol::PacketParser parser_;
+  protocol::Bytes output_;
+  std::vector<TraceRow> trace_;
+
+  State state_ = State::kSync0;
+  bool single_step_;
+  std::uint64_t cycle_ = 0;
+  int phase_ = 0;         // ticks since the last packet
+  int silent_ticks_ = 0;  // since the last good packet came
+  int quiet_ticks_ = 0;   // since the last byte came
+  bool first_row_ = true;
+  bool watchdog_ = false;  // has stopped the motors
+  std::vector<protocol::RawSonar> readings_;
+  ServerCounters counters_;
+
+  std::uint8_t digital_output_ = 0;
+  std::uint16_t gripper_ = 0;
+  std::uint16_t ptu_ = 0;
+};
+
+}  // namespace saphira::sim

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "saphira/base/random.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/world.hpp"
+
+namespace saphira::sim {
+
+/// How a sonar sees.
+struct SonarModel {
+  double cone = radians(25.0);    ///< [rad] full width of the beam
+  int rays = 9;                   ///< over the cone; the nearest echo counts
+  double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
+  double min_range = 0.05;        ///< [m] nearer things read as this
+  double noise = 0.003;           ///< [m] standard deviation of a range...
+  double relative_noise = 0.003;  ///< ...plus this share of it
+  double dropout = 0.005;         ///< probability that an echo is not heard
+  /// [rad] A surface that is met at more than this from its normal throws the sound off: its echo
+  /// is lost with probability specular_loss (one decision a firing).
+  double critical_angle = radians(60.0);
+  double specular_loss = 0.3;
+};
+
+struct SonarEcho {
+  std::uint8_t number = 0;
+  std::optional<double> range;  ///< [m]; nothing: no echo
+};
+
+/// The sonars of a robot, fired one at a time in the polling sequence.
+class Sonars {
+ public:
+  /// Between two firings: 25 a second, as a Pioneer 1 does.
+  static constexpr int kTicksBetween = 4;
+
+  Sonars(const World& world, const protocol::RobotParameters& parameters, const SonarModel& model,
+         std::uint64_t seed);
+
+  /// Which sonars fire, over and over; those that the robot does not have are left out.
+  void set_polling(const std::vector<std::uint8_t>& sequence);
+  /// All of them in order.
+  void set_default_polling();
+
+  /// One tick of time; a reading if one was made in it.
+  std::optional<SonarEcho> tick(const Pose& robot_in_world);
+
+  /// One firing.
+  SonarEcho fire(std::uint8_t number, const Pose& robot_in_world);
+
+ private:
+  std::vector<protocol::SonarUnit> units_;
+  SonarModel model_;
+  Neighbourhood near_;
+  Random random_;
+  std::vector<std::uint8_t> sequence_;
+  std::size_t next_ = 0;
+  int wait_ = kTicksBetween;
+  std::vector<Segment> in_beam_;
+};
+
+}  // namespace saphira::sim

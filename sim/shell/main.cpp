@@ -1,0 +1,103 @@
+// saphira-sim: a simulated robot behind a local socket or a TCP port.
+
+#include <pthread.h>
+#include <signal.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "saphira/base/text.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/host.hpp"
+#include "saphira/sim/trace.hpp"
+#include "saphira/sim/world.hpp"
+
+namespace {
+
+constexpr int kExitUsage = 2;
+
+// Readable when the program shall end. SIGPIPE is answered where a write fails.
+int stop_on_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
+}
+
+saphira::Pose parse_position(const std::string& text) {
+  const auto lines = saphira::split_lines(text);
+  if (lines.size() != 1)
+    throw std::runtime_error("--position: expected \"x y th\" in mm, mm, degrees");
+  saphira::LineReader in("--position", lines.front());
+  const double x = in.number("x in mm") / 1000.0;
+  const double y = in.number("y in mm") / 1000.0;
+  const double th = saphira::radians(in.number("th in degrees"));
+  in.expect_end();
+  return {x, y, saphira::norm2_angle(th)};
+}
+
+void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions& options) {
+  const auto world = saphira::sim::load_world(options.world);
+  const auto robot = saphira::protocol::load_parameters(options.robot);
+  const auto trace = saphira::sim::parse_trace(saphira::read_file(files[0]), files[0]);
+  std::ofstream out(files[1], std::ios::binary);
+  out << saphira::sim::plot_svg(world, trace, robot.radius) << std::flush;
+  if (!out)
+    throw std::runtime_error(files[1] + ": cannot be written");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"A simulated robot: a robot server as the Saphira manual describes it"};
+  saphira::sim::HostOptions options;
+  std::string position;
+  std::vector<std::string> plot_files;
+  app.add_option("--world", options.world, "World file")->required();
+  app.add_option("--robot", options.robot, "Robot parameter file")->required();
+  auto* socket = app.add_option("--socket", options.socket,
+                                "Local socket to listen on (default: $ROBOT_SOCKET, otherwise "
+                                "/tmp/saphira-robot-<uid>)");
+  app.add_option("--tcp", options.tcp, "TCP port to listen on instead; 0: a free one")
+      ->excludes(socket);
+  app.add_option("--tcp-address", options.tcp_address,
+                 "Address of the TCP port; anybody who reaches it can drive the robot")
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Seed of all that is random")->capture_default_str();
+  app.add_flag("--step", options.step, "Single-step from the start: time passes by command 64");
+  app.add_option("--rate", options.rate, "Times real time")->capture_default_str();
+  app.add_option("--trace", options.trace, "File for the true state of every cycle, CSV");
+  app.add_option("--position", position,
+                 "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's");
+  app.add_option("--plot", plot_files, "Draw a trace into a picture (SVG), and end")
+      ->expected(2)
+      ->type_name("TRACE.csv OUT.svg");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+
+  try {
+    if (!position.empty())
+      options.position = parse_position(position);
+    if (!plot_files.empty()) {
+      plot(plot_files, options);
+      return 0;
+    }
+    const auto logger = spdlog::stderr_color_mt("sim");
+    options.log = [&logger](const std::string& text) { logger->info("{}", text); };
+    saphira::sim::run(options, stop_on_signals());
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "saphira-sim: " << error.what() << '\n';
+    return kExitUsage;
+  }
+}

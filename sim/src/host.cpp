@@ -1,0 +1,417 @@
+#include "saphira/sim/host.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/timerfd.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "saphira/base/text.hpp"
+#include "saphira/sim/server.hpp"
+
+namespace saphira::sim {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::runtime_error(what + ": " + std::strerror(errno));
+}
+
+class Fd {
+ public:
+  explicit Fd(int fd = -1) : fd_(fd) {}
+  ~Fd() { reset(); }
+  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Fd& operator=(Fd&& other) noexcept {
+    if (this != &other)
+      reset(std::exchange(other.fd_, -1));
+    return *this;
+  }
+  Fd(const Fd&) = delete;
+  Fd& operator=(const Fd&) = delete;
+  void reset(int fd = -1) {
+    if (fd_ >= 0)
+      ::close(fd_);
+    fd_ = fd;
+  }
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+sockaddr_un local_address(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof address.sun_path)
+    throw std::runtime_error("socket " + path + ": expected a path of 1 to " +
+                             std::to_string(sizeof address.sun_path - 1) + " characters");
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  return address;
+}
+
+// The socket that is listened on; a local one is removed at the end.
+class Listener {
+ public:
+  explicit Listener(const HostOptions& options) {
+    if (options.tcp)
+      listen_tcp(options.tcp_address, *options.tcp);
+    else
+      listen_local(options.socket.value_or(default_socket()));
+  }
+  ~Listener() {
+    // Unless another simulator has put its own there meanwhile.
+    struct stat now {};
+    if (!path_.empty() && ::stat(path_.c_str(), &now) == 0 && now.st_ino == inode_)
+      ::unlink(path_.c_str());
+  }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  int fd() const { return fd_.get(); }
+  const std::string& name() const { return name_; }
+
+ private:
+  void listen_local(const std::string& path) {
+    const sockaddr_un address = local_address(path);
+    name_ = path;
+    // A simulator that was killed leaves its socket behind; one that lives answers.
+    const Fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    const auto* where = reinterpret_cast<const sockaddr*>(&address);
+    struct stat there {};
+    if (::lstat(path.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) {
+      if (::connect(probe.get(), where, sizeof address) == 0)
+        throw std::runtime_error("socket " + path + ": another simulator listens on it");
+      if (errno == ECONNREFUSED)
+        ::unlink(path.c_str());
+    }
+    fd_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!fd_ || ::bind(fd_.get(), where, sizeof address) != 0 || ::listen(fd_.get(), 8) != 0)
+      fail("socket " + path);
+    path_ = path;
+    if (::stat(path.c_str(), &there) == 0)
+      inode_ = there.st_ino;
+  }
+
+  void listen_tcp(const std::string& text, std::uint16_t port) {
+    name_ = text + ":" + std::to_string(port);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    if (::inet_pton(AF_INET, text.c_str(), &address.sin_addr) != 1)
+      throw std::runtime_error("address " + text + ": expected four numbers, such as 127.0.0.1");
+    fd_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    const int yes = 1;
+    if (fd_)
+      ::setsockopt(fd_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    if (!fd_ || ::bind(fd_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+        ::listen(fd_.get(), 8) != 0)
+      fail("port " + name_);
+    socklen_t size = sizeof address;
+    if (::getsockname(fd_.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0)
+      name_ = text + ":" + std::to_string(ntohs(address.sin_port));
+  }
+
+  Fd fd_;
+  std::string name_;
+  std::string path_;
+  ino_t inode_ = 0;
+};
+
+class TraceFile {
+ public:
+  explicit TraceFile(const std::string& path) : path_(path) {
+    if (path.empty())
+      return;
+    file_.reset(std::fopen(path.c_str(), "we"));
+    if (!file_)
+      fail("trace " + path);
+  }
+  void write(const std::vector<TraceRow>& rows) {
+    if (!file_)
+      return;
+    for (const TraceRow& row : rows) {
+      const std::string text = (row.first ? trace_header() : "") + to_csv(row);
+      std::fwrite(text.data(), 1, text.size(), file_.get());
+    }
+  }
+  void flush() {
+    if (file_ && (std::fflush(file_.get()) != 0 || std::ferror(file_.get()) != 0))
+      fail("trace " + path_);
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::string path_;
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+// How many ticks are due by the wall clock. Time in which nothing ran is time in which the process
+// slept as a whole (stopped, or the machine suspended): it is left out rather than caught up with.
+class Pace {
+ public:
+  explicit Pace(double rate) : tick_(kTick / rate) {}
+
+  void restart() {
+    origin_ = Clock::now();
+    done_ = 0;
+  }
+  int due() {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - origin_).count();
+    const auto due = static_cast<std::int64_t>(elapsed / tick_) - done_;
+    const auto most = static_cast<std::int64_t>(std::max(2.0 * kTicksPerPacket, 0.3 / tick_));
+    if (due > most) {
+      restart();
+      return static_cast<int>(most);
+    }
+    done_ += std::max<std::int64_t>(due, 0);
+    return static_cast<int>(std::max<std::int64_t>(due, 0));
+  }
+  /// When that many ticks more will be due.
+  double seconds_until(int ticks) const {
+    const double at = static_cast<double>(done_ + ticks) * tick_;
+    return at - std::chrono::duration<double>(Clock::now() - origin_).count();
+  }
+
+ private:
+  double tick_;  // [s] of the wall clock
+  Clock::time_point origin_ = Clock::now();
+  std::int64_t done_ = 0;
+};
+
+// A timer that poll() wakes up for; nothing runs between packets but what the client sends.
+class Timer {
+ public:
+  Timer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
+    if (!fd_)
+      fail("timer");
+  }
+  void set(double seconds) const {
+    const auto nanoseconds = static_cast<std::int64_t>(std::max(seconds, 1e-6) * 1e9);
+    itimerspec spec{};
+    spec.it_value.tv_sec = nanoseconds / 1'000'000'000;
+    spec.it_value.tv_nsec = nanoseconds % 1'000'000'000;
+    ::timerfd_settime(fd_.get(), 0, &spec, nullptr);
+  }
+  void clear() const {
+    const itimerspec spec{};
+    ::timerfd_settime(fd_.get(), 0, &spec, nullptr);
+  }
+  int fd() const { return fd_.get(); }
+
+ private:
+  Fd fd_;
+};
+
+class Host {
+ public:
+  Host(const HostOptions& options, const World& world, const protocol::RobotParameters& parameters,
+       const Pose& start, const ServerOptions& server_options)
+      : log_(options.log),
+        server_(world, parameters, start, server_options),
+        pace_(options.rate),
+        trace_(options.trace),
+        listener_(options) {
+    log("listening on " + listener_.name() + (options.step ? ", single-step" : ""));
+  }
+
+  void run(int stop_fd) {
+    while (true) {
+      schedule();
+      // In that order: stop, client, timer, listener. poll leaves out those below zero.
+      std::array<pollfd, 4> fds{{{stop_fd, POLLIN, 0},
+                                 {client_.get(), POLLIN, 0},
+                                 {timer_.fd(), POLLIN, 0},
+                                 {listener_.fd(), POLLIN, 0}}};
+      if (!output_.empty())
+        fds[1].events |= POLLOUT;
+      if (::poll(fds.data(), fds.size(), -1) < 0) {
+        if (errno == EINTR)
+          continue;
+        fail("poll");
+      }
+      if (fds[0].revents != 0)
+        break;
+      step(fds[1].revents != 0, fds[2].revents != 0);
+      if (fds[3].revents != 0)
+        accept();
+    }
+    hang_up("stopped");
+    trace_.write(server_.take_trace());
+    trace_.flush();
+    const ServerCounters counters = server_.counters();
+    log("stopped; " + std::to_string(server_.robot().contacts()) + " contacts, " +
+        std::to_string(counters.bad_packets) + " bad packets, " +
+        std::to_string(counters.unknown_commands) + " unknown commands");
+  }
+
+ private:
+  void log(const std::string& text) const {
+    if (log_)
+      log_(text);
+  }
+
+  // Wakes up when the next information packet is due, or to look for an end of silence.
+  void schedule() {
+    if (server_.runs()) {
+      if (!running_)
+        pace_.restart();
+      running_ = true;
+      timer_.set(pace_.seconds_until(server_.ticks_to_packet()));
+      timed_ = true;
+      return;
+    }
+    running_ = false;
+    if (server_.packet_pending()) {
+      constexpr double kGap = 0.050;  // [s]
+      timer_.set(kGap);
+      timed_ = true;
+    } else if (timed_) {
+      timer_.clear();
+      timed_ = false;
+    }
+  }
+
+  void step(bool client_ready, bool timer_ready) {
+    if (timer_ready) {
+      std::uint64_t count = 0;
+      [[maybe_unused]] const auto size = ::read(timer_.fd(), &count, sizeof count);
+    }
+    // Time first, so that what has come acts now and not when the packet before it was due.
+    if (running_)
+      server_.advance(pace_.due());
+    else if (timer_ready && !client_ready)
+      server_.gap();
+    if (client_ready)
+      read_client();
+    write_client();
+    const auto rows = server_.take_trace();
+    trace_.write(rows);
+    // Live, somebody may be watching the file.
+    if (running_ && !rows.empty())
+      trace_.flush();
+  }
+
+  void accept() {
+    Fd fd(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!fd)
+      return;
+    if (client_) {
+      log("a second client was refused: one at a time");
+      return;
+    }
+    const int yes = 1;  // fails on a local socket, where it is not needed
+    ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    client_ = std::move(fd);
+    log("a client has connected");
+  }
+
+  void read_client() {
+    std::array<std::uint8_t, 4096> buffer{};
+    const ssize_t size = ::read(client_.get(), buffer.data(), buffer.size());
+    if (size > 0) {
+      server_.receive({buffer.data(), static_cast<std::size_t>(size)});
+    } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
+      hang_up("the client has gone");
+      trace_.write(server_.take_trace());
+      trace_.flush();
+    }
+  }
+
+  void write_client() {
+    const protocol::Bytes fresh = server_.take_output();
+    if (!client_)
+      return;
+    // A client that does not read loses whole packets, the newest: they are stale when it wakes.
+    constexpr std::size_t kMost = 65536;
+    if (output_.size() + fresh.size() <= kMost)
+      output_.insert(output_.end(), fresh.begin(), fresh.end());
+    while (!output_.empty()) {
+      const ssize_t size = ::send(client_.get(), output_.data(), output_.size(), MSG_NOSIGNAL);
+      if (size > 0) {
+        output_.erase(output_.begin(), output_.begin() + size);
+      } else if (errno == EINTR) {
+        continue;
+      } else {
+        if (errno != EAGAIN)
+          hang_up("the client has gone");
+        return;
+      }
+    }
+  }
+
+  void hang_up(const std::string& why) {
+    output_.clear();
+    if (!client_)
+      return;
+    client_.reset();
+    server_.disconnect();
+    log(why);
+  }
+
+  std::function<void(const std::string&)> log_;
+  Server server_;
+  Pace pace_;
+  Timer timer_;
+  TraceFile trace_;
+  Listener listener_;
+  Fd client_;
+  protocol::Bytes output_;
+  bool running_ = false;
+  bool timed_ = false;
+};
+
+}  // namespace
+
+std::string default_socket() {
+  if (const char* path = std::getenv("ROBOT_SOCKET"); path != nullptr && *path != '\0')
+    return path;
+  return "/tmp/saphira-robot-" + std::to_string(::getuid());
+}
+
+void run(const HostOptions& options, int stop_fd) {
+  if (!(options.rate > 0.0 && options.rate <= 1000.0))
+    throw std::runtime_error("rate: expected more than 0 and at most 1000 times real time");
+  const World world = load_world(options.world);
+  const protocol::RobotParameters parameters = protocol::load_parameters(options.robot);
+  if (options.log)
+    for (const std::string& warning : parameters.warnings)
+      options.log(warning);
+  const std::optional<Pose> start = options.position ? options.position : world.start;
+  if (!start)
+    throw std::runtime_error(options.world +
+                             ": expected a position directive, or a position among the options");
+  ServerOptions server_options;
+  server_options.seed = options.seed;
+  server_options.single_step = options.step;
+  server_options.trace = !options.trace.empty();
+  try {
+    Host(options, world, parameters, *start, server_options).run(stop_fd);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.world + ": " + error.what());
+  }
+}
+
+}  // namespace saphira::sim

@@ -1,0 +1,91 @@
+#include "saphira/sim/sonar.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::sim {
+
+namespace {
+
+// The farthest that a transducer stands from the middle of a robot: the loader's limit is more, but
+// then only a few segments more are looked at.
+double farthest(const std::vector<protocol::SonarUnit>& units) {
+  double far = 0.0;
+  for (const auto& unit : units)
+    far = std::max(far, unit.pose_in_robot.position().norm());
+  return far;
+}
+
+}  // namespace
+
+Sonars::Sonars(const World& world, const protocol::RobotParameters& parameters,
+               const SonarModel& model, std::uint64_t seed)
+    : units_(parameters.sonars),
+      model_(model),
+      near_(world, model.max_range + farthest(units_)),
+      random_(seed, 2) {
+  set_default_polling();
+}
+
+void Sonars::set_polling(const std::vector<std::uint8_t>& sequence) {
+  sequence_.clear();
+  for (const std::uint8_t number : sequence)
+    if (number < units_.size())
+      sequence_.push_back(number);
+  next_ = 0;
+}
+
+void Sonars::set_default_polling() {
+  std::vector<std::uint8_t> all;
+  for (const auto& unit : units_)
+    all.push_back(unit.number);
+  set_polling(all);
+}
+
+std::optional<SonarEcho> Sonars::tick(const Pose& robot_in_world) {
+  if (--wait_ > 0)
+    return std::nullopt;
+  wait_ = kTicksBetween;
+  if (sequence_.empty())
+    return std::nullopt;
+  const std::uint8_t number = sequence_[next_];
+  next_ = (next_ + 1) % sequence_.size();
+  return fire(number, robot_in_world);
+}
+
+SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
+  const Pose at = compose(robot_in_world, units_[number].pose_in_robot);
+  // Always the same draws, so that one reading's fate does not shift those of the next.
+  const bool dropped = random_.chance(model_.dropout);
+  const bool glancing_lost = random_.chance(model_.specular_loss);
+  const double noise = random_.normal();
+
+  // Only segments that reach into the half-plane ahead, and into the beam's circle.
+  const Vec2 ahead = at.direction();
+  const Vec2 origin = at.position();
+  in_beam_.clear();
+  for (const Segment& segment : near_.around(robot_in_world.position())) {
+    if ((segment.from - origin).dot(ahead) > 0.0 || (segment.to - origin).dot(ahead) > 0.0)
+      in_beam_.push_back(segment);
+  }
+
+  std::optional<double> nearest;
+  for (int i = 0; i < model_.rays; ++i) {
+    const double offset =
+        model_.rays == 1 ? 0.0 : model_.cone * (static_cast<double>(i) / (model_.rays - 1) - 0.5);
+    const Vec2 direction(std::cos(at.th + offset), std::sin(at.th + offset));
+    const auto hit = cast_ray(in_beam_, origin, direction, model_.max_range);
+    if (!hit || (glancing_lost && hit->incidence > model_.critical_angle))
+      continue;
+    if (!nearest || hit->range < *nearest)
+      nearest = hit->range;
+  }
+  if (!nearest || dropped)
+    return {number, std::nullopt};
+  const double range = *nearest + noise * (model_.noise + model_.relative_noise * *nearest);
+  if (range >= model_.max_range)
+    return {number, std::nullopt};
+  return {number, std::max(range, model_.min_range)};
+}
+
+}  // namespace saphira::sim
