@@ -11,8 +11,12 @@ using Vec2 = Eigen::Vector2d;
 
 inline constexpr double kPi = std::numbers::pi;
 
-inline constexpr double radians(double degrees) { return degrees * kPi / 180.0; }
-inline constexpr double degrees(double radians) { return radians * 180.0 / kPi; }
+inline constexpr double radians(double degrees) {
+  return degrees * kPi / 180.0;
+}
+inline constexpr double degrees(double radians) {
+  return radians * 180.0 / kPi;
+}
 
 /// The same angle in [0, 2 pi). sfNormAngle of manual 6.6.3.1.
 inline double norm_angle(double angle) {
@@ -35,6 +39,21 @@ inline double norm3_angle(double angle) {
   if (a < -kPi / 2)
     return -kPi - a;
   return a;
+}
+
+/// sfAddAngle, sfSubAngle: in [0, 2 pi).
+inline double add_angle(double a, double b) {
+  return norm_angle(a + b);
+}
+inline double sub_angle(double a, double b) {
+  return norm_angle(a - b);
+}
+/// sfAdd2Angle, sfSub2Angle: in (-pi, pi].
+inline double add2_angle(double a, double b) {
+  return norm2_angle(a + b);
+}
+inline double sub2_angle(double a, double b) {
+  return norm2_angle(a - b);
 }
 
 /// A directed point in a plane: position [m] and heading [rad, counter-clockwise]. Also the
@@ -73,6 +92,15 @@ inline Vec2 transform(const Pose& frame, const Vec2& inside) {
   const double c = std::cos(frame.th);
   const double s = std::sin(frame.th);
   return {frame.x + c * inside.x() - s * inside.y(), frame.y + s * inside.x() + c * inside.y()};
+}
+
+/// The inverse of transform: a position seen from `frame`.
+inline Vec2 to_frame(const Pose& frame, const Vec2& outside) {
+  const double c = std::cos(frame.th);
+  const double s = std::sin(frame.th);
+  const double dx = outside.x() - frame.x;
+  const double dy = outside.y() - frame.y;
+  return {c * dx + s * dy, -s * dx + c * dy};
 }
 
 }  // namespace saphira

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/behaviors/fuzzy.hpp"
+#include "saphira/behaviors/parameter.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+
+namespace saphira::behaviors {
+
+/// What the behaviors have to know of the robot that they drive; from its description.
+struct RobotModel {
+  double radius = 0.22;                 ///< [m] of the hull
+  double max_velocity = 0.4;            ///< [m/s]
+  double max_rotation_velocity = 1.75;  ///< [rad/s]
+  double deceleration = 2.0;            ///< [m/s2] of a stop
+  lps::LpsSettings lps;
+};
+
+/// The robot in this cycle.
+struct RobotNow {
+  Pose pose_in_odom;
+  double velocity = 0.0;           ///< [m/s]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+};
+
+enum class Side { none, left, right };
+
+/// What behaviors tell each other within a cycle: lower priorities are updated first, so that those
+/// which avoid know what those below them want. Empty again every cycle.
+struct Shared {
+  /// Where the robot would go if nothing were in the way: [rad] from its heading, and how far [m].
+  std::optional<double> goal_bearing;
+  double goal_distance = 0.0;
+  /// sfPreferredTurnDir (manual 7.8): the side to turn to where the front is blocked.
+  Side preferred_turn = Side::none;
+};
+
+/// What a behavior sees in its update.
+struct Context {
+  const RobotModel& model;
+  const RobotNow& robot;
+  const lps::LocalPerceptualSpace& lps;
+  std::uint64_t cycle;
+  Shared& shared;
+};
+
+/// The control action of a rule (manual 7.2, 7.6.4).
+enum class Action { turn_left, turn_right, accelerate, decelerate, speed };
+
+struct Rule {
+  std::string name;
+  Fuzzy strength = 0.0;  ///< of the antecedent
+  Action action = Action::speed;
+  /// Turns: [rad], as large as the turn, not negative. Speed: [m/s] the setpoint. Accelerate and
+  /// decelerate: [m/s] from the present velocity, not negative.
+  double value = 0.0;
+};
+
+/// How much a behavior wants to have a say on each channel, and how it stands with its goal (the
+/// Activity section of manual 7.2).
+struct Activity {
+  Fuzzy turn = 0.0;
+  Fuzzy speed = 0.0;
+  Fuzzy goal = 0.0;
+  Fuzzy progress = 0.0;
+};
+
+struct Evaluation {
+  std::vector<Rule> rules;
+  Activity activity;
+};
+
+/// One instance of a behavior: the update function of manual 7.6.2, and what it remembers.
+///
+/// Rules with opposite consequents are to have disjoint antecedents: the blend averages them (paper
+/// 3.1, footnote 3).
+class Behavior {
+ public:
+  virtual ~Behavior() = default;
+  /// Once, before the first update (manual 7.6.3). May start clocks by context.cycle.
+  virtual void init(const Parameters& parameters, const Context& context);
+  /// Every cycle in which the behavior runs. Reads the LPS, computes the fuzzy variables and from
+  /// them the rules. Parameters may have changed since the last time.
+  virtual Evaluation update(const Parameters& parameters, const Context& context) = 0;
+};
+
+/// A kind of behavior: its parameters and how an instance is made. Those written in C++ are made by
+/// a function; those written in the behavior language will bring an interpreter along.
+struct Schema {
+  std::string name;
+  std::string summary;
+  std::vector<ParameterSpec> parameters;
+  std::function<std::unique_ptr<Behavior>()> make;
+};
+
+class Registry {
+ public:
+  /// A schema of the same name is replaced: instances that run stay as they were made.
+  void add(Schema schema);
+  const Schema* find(const std::string& name) const;
+  std::vector<std::string> names() const;
+
+ private:
+  std::map<std::string, Schema> schemas_;
+};
+
+/// The predefined behaviors of manual 7.8.
+Registry predefined();
+
+}  // namespace saphira::behaviors

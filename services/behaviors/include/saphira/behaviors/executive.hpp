@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "saphira/behaviors/behavior.hpp"
+#include "saphira/behaviors/blend.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+
+namespace saphira::behaviors {
+
+/// A behavior that is to be there. The name is unique in its set.
+struct Intended {
+  std::string name;
+  std::string schema;
+  int priority = 0;  ///< 0 is the highest
+  bool running = true;
+  std::vector<Argument> parameters;
+};
+
+/// What is intended, the whole of it, as of some cycle.
+struct Intent {
+  std::uint64_t cycle = 0;
+  bool control = false;  ///< sfBehaviorControl (manual 7.4)
+  std::vector<Intended> behaviors;
+};
+
+struct Inputs {
+  std::uint64_t cycle = 0;
+  RobotNow robot;
+  std::vector<lps::SonarReading> sonars;  ///< new ones, in firing order
+  const Intent* intent = nullptr;         ///< the newest; nullptr where none has come
+};
+
+/// One behavior as it stands.
+struct BehaviorState {
+  std::string name;
+  std::string schema;
+  bool running = false;
+  Blended blended;  ///< its rules and its share; empty when it is not running
+};
+
+struct Output {
+  bool control = false;
+  std::vector<BehaviorState> behaviors;  ///< by priority, highest first; then by name
+  Blend blend;
+  std::string trouble;  ///< what was asked for and could not be made, and why; empty: nothing
+
+  /// The motor setpoints. Not active: the robot is not to be driven by behaviors now.
+  bool active = false;
+  std::string inactive_reason;
+  double speed = 0.0;            ///< [m/s]
+  double heading_in_odom = 0.0;  ///< [rad] (-pi, pi]
+};
+
+struct ExecutiveSettings {
+  /// The age of the intent [cycles] from which on nobody is taken to intend anything.
+  std::uint64_t intent_lease = 2;
+};
+
+/// The behavior executive (manual 7.4): keeps the LPS, makes the set of behaviors what is intended,
+/// evaluates those that run and blends them.
+///
+/// All behaviors are evaluated also while control is off, or the intent is too old to drive by.
+class Executive {
+ public:
+  Executive(Registry registry, RobotModel model, ExecutiveSettings settings = {});
+
+  Output step(const Inputs& inputs);
+  /// Another epoch or another odom frame: forgets the LPS and all behaviors.
+  void reset();
+  /// As reset, for another robot.
+  void reset(RobotModel model);
+
+  const lps::LocalPerceptualSpace& lps() const { return lps_; }
+  const RobotModel& model() const { return model_; }
+  Registry& registry() { return registry_; }
+
+ private:
+  struct Instance {
+    Intended intended;  ///< as it was asked for last
+    Parameters parameters;
+    std::unique_ptr<Behavior> behavior;
+    bool initialised = false;
+  };
+  /// Makes the instances what is intended; returns what was wrong.
+  std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
+  std::string adopt(const Intended& intended, const Pose& robot_in_odom,
+                    std::vector<Instance>& next);
+
+  Registry registry_;
+  RobotModel model_;
+  ExecutiveSettings settings_;
+  lps::LocalPerceptualSpace lps_;
+  std::vector<Instance> instances_;
+};
+
+}  // namespace saphira::behaviors

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::behaviors {
+
+enum class Frame { robot, odom, map };
+
+/// A point as somebody gave it.
+struct PlacedPoint {
+  Pose pose;
+  Frame frame = Frame::odom;
+
+  bool operator==(const PlacedPoint&) const = default;
+};
+
+enum class Kind { number, text, point };
+
+/// A named argument of an intended behavior.
+struct Argument {
+  std::string name;
+  std::variant<double, std::string, PlacedPoint> value;
+
+  bool operator==(const Argument&) const = default;
+};
+
+/// A parameter that a schema takes.
+struct ParameterSpec {
+  std::string name;
+  Kind kind = Kind::number;
+  std::string meaning;  ///< with its unit, for people
+  bool required = false;
+  double low = 0.0;  ///< of numbers
+  double high = 0.0;
+  double usual = 0.0;                ///< of numbers that are not given
+  std::vector<std::string> choices;  ///< of texts; the first is the usual one
+};
+
+/// The parameters of one behavior: every number and text that its schema has, checked; points in
+/// odom.
+class Parameters {
+ public:
+  /// Checks `arguments` against `specs` and fills in what is usual. A point in the robot's frame is
+  /// placed where the robot is now. Where something is wrong: nothing, and `trouble` says what was
+  /// expected.
+  static std::optional<Parameters> check(const std::vector<ParameterSpec>& specs,
+                                         const std::vector<Argument>& arguments,
+                                         const Pose& robot_in_odom, std::string& trouble);
+
+  double number(std::string_view name) const;
+  const std::string& text(std::string_view name) const;
+  /// In odom; nothing where it was not given.
+  std::optional<Pose> point(std::string_view name) const;
+
+ private:
+  struct Item {
+    std::string name;
+    std::variant<double, std::string, Pose> value;
+  };
+  const Item& find(std::string_view name) const;
+  std::vector<Item> items_;
+};
+
+/// For the tables of schemas.
+ParameterSpec number_parameter(std::string name, std::string meaning, double low, double high,
+                               double usual);
+ParameterSpec point_parameter(std::string name, std::string meaning);
+ParameterSpec choice_parameter(std::string name, std::string meaning,
+                               std::vector<std::string> choices);
+
+}  // namespace saphira::behaviors

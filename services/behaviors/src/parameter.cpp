@@ -1,0 +1,162 @@
+#include "saphira/behaviors/parameter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace saphira::behaviors {
+namespace {
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::number:
+      return "a number";
+    case Kind::text:
+      return "a text";
+    case Kind::point:
+      return "a point";
+  }
+  return "";
+}
+
+std::string plain(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+bool finite(const Pose& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.th);
+}
+
+/// What is wrong with the argument; empty when nothing is.
+std::string fault(const ParameterSpec& spec, const Argument& argument) {
+  if (argument.value.index() != static_cast<std::size_t>(spec.kind))
+    return std::string("expected ") + name_of(spec.kind) + " (" + spec.meaning + ")";
+  if (const double* const number = std::get_if<double>(&argument.value)) {
+    // Written so that not-a-number is a fault.
+    if (!(*number >= spec.low && *number <= spec.high))
+      return "expected a number from " + plain(spec.low) + " to " + plain(spec.high) + " (" +
+             spec.meaning + "), got " + plain(*number);
+  } else if (const auto* const text = std::get_if<std::string>(&argument.value)) {
+    if (std::find(spec.choices.begin(), spec.choices.end(), *text) == spec.choices.end()) {
+      std::string expected;
+      for (const std::string& choice : spec.choices)
+        expected += (expected.empty() ? "" : " or ") + choice;
+      return "expected " + expected + ", got \"" + text->substr(0, 40) + "\"";
+    }
+  } else {
+    const PlacedPoint& point = std::get<PlacedPoint>(argument.value);
+    if (!finite(point.pose))
+      return "expected a point with finite coordinates";
+    if (point.frame == Frame::map)
+      return "expected a point in odom or in the robot's frame; where the map is is not known";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& specs,
+                                            const std::vector<Argument>& arguments,
+                                            const Pose& robot_in_odom, std::string& trouble) {
+  for (const Argument& argument : arguments)
+    if (std::none_of(specs.begin(), specs.end(),
+                     [&](const ParameterSpec& s) { return s.name == argument.name; })) {
+      trouble = "unknown parameter \"" + argument.name.substr(0, 40) + "\"; expected ";
+      if (specs.empty())
+        trouble += "none";
+      for (const ParameterSpec& spec : specs)
+        trouble += (&spec == &specs.front() ? "" : ", ") + spec.name;
+      return {};
+    }
+  Parameters parameters;
+  for (const ParameterSpec& spec : specs) {
+    const auto given = std::find_if(arguments.begin(), arguments.end(),
+                                    [&](const Argument& a) { return a.name == spec.name; });
+    if (given == arguments.end()) {
+      if (spec.required) {
+        trouble = "parameter \"" + spec.name + "\" is missing: expected " + name_of(spec.kind) +
+                  " (" + spec.meaning + ")";
+        return {};
+      }
+      if (spec.kind == Kind::number)
+        parameters.items_.push_back({spec.name, spec.usual});
+      else if (spec.kind == Kind::text)
+        parameters.items_.push_back({spec.name, spec.choices.front()});
+      continue;
+    }
+    if (const std::string wrong = fault(spec, *given); !wrong.empty()) {
+      trouble = "parameter \"" + spec.name + "\": " + wrong;
+      return {};
+    }
+    if (const double* const number = std::get_if<double>(&given->value))
+      parameters.items_.push_back({spec.name, *number});
+    else if (const auto* const text = std::get_if<std::string>(&given->value))
+      parameters.items_.push_back({spec.name, *text});
+    else {
+      const PlacedPoint& point = std::get<PlacedPoint>(given->value);
+      parameters.items_.push_back({spec.name, point.frame == Frame::robot
+                                                  ? compose(robot_in_odom, point.pose)
+                                                  : point.pose});
+    }
+  }
+  return parameters;
+}
+
+const Parameters::Item& Parameters::find(std::string_view name) const {
+  for (const Item& item : items_)
+    if (item.name == name)
+      return item;
+  throw std::logic_error("a behavior asked for a parameter that its schema does not have: " +
+                         std::string(name));
+}
+
+double Parameters::number(std::string_view name) const {
+  return std::get<double>(find(name).value);
+}
+
+const std::string& Parameters::text(std::string_view name) const {
+  return std::get<std::string>(find(name).value);
+}
+
+std::optional<Pose> Parameters::point(std::string_view name) const {
+  for (const Item& item : items_)
+    if (item.name == name)
+      return std::get<Pose>(item.value);
+  return {};
+}
+
+ParameterSpec number_parameter(std::string name, std::string meaning, double low, double high,
+                               double usual) {
+  ParameterSpec spec;
+  spec.name = std::move(name);
+  spec.meaning = std::move(meaning);
+  spec.low = low;
+  spec.high = high;
+  spec.usual = usual;
+  return spec;
+}
+
+ParameterSpec point_parameter(std::string name, std::string meaning) {
+  ParameterSpec spec;
+  spec.name = std::move(name);
+  spec.kind = Kind::point;
+  spec.meaning = std::move(meaning);
+  spec.required = true;
+  return spec;
+}
+
+ParameterSpec choice_parameter(std::string name, std::string meaning,
+                               std::vector<std::string> choices) {
+  ParameterSpec spec;
+  spec.name = std::move(name);
+  spec.kind = Kind::text;
+  spec.meaning = std::move(meaning);
+  spec.choices = std::move(choices);
+  return spec;
+}
+
+}  // namespace saphira::behaviors

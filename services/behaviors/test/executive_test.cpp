@@ -1,0 +1,195 @@
+#include "saphira/behaviors/executive.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::behaviors {
+namespace {
+
+Argument number(std::string name, double value) {
+  return {std::move(name), value};
+}
+Argument point(std::string name, Pose pose, Frame frame = Frame::odom) {
+  return {std::move(name), PlacedPoint{pose, frame}};
+}
+
+RobotModel pioneer() {
+  RobotModel model;
+  const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
+  for (int i = 0; i < 7; ++i)
+    model.lps.sonars.push_back({i, {0.1, 0.0, radians(bearings[i])}});
+  return model;
+}
+
+/// Counts what is done with it.
+struct Counts {
+  int made = 0;
+  int inits = 0;
+  int updates = 0;
+  double last = 0.0;
+};
+class Probe : public Behavior {
+ public:
+  explicit Probe(Counts& counts) : counts_(&counts) { ++counts_->made; }
+  void init(const Parameters&, const Context&) override { ++counts_->inits; }
+  Evaluation update(const Parameters& parameters, const Context&) override {
+    ++counts_->updates;
+    counts_->last = parameters.number("value");
+    return {{{"go", 1.0, Action::speed, counts_->last}}, {.speed = 1.0}};
+  }
+
+ private:
+  Counts* counts_;
+};
+
+class ExecutiveTest : public ::testing::Test {
+ protected:
+  ExecutiveTest() : executive_(predefined(), pioneer()) {
+    executive_.registry().add(
+        {"Probe", "", {number_parameter("value", "m/s", 0.0, 1.0, 0.5)}, [this] {
+           return std::make_unique<Probe>(counts_);
+         }});
+  }
+  Output step(std::vector<Intended> behaviors, bool control = true) {
+    ++cycle_;
+    const Intent intent{cycle_ - 1, control, std::move(behaviors)};
+    return executive_.step({cycle_, robot_, {}, &intent});
+  }
+
+  Counts counts_;
+  Executive executive_;
+  RobotNow robot_;
+  std::uint64_t cycle_ = 10;
+};
+
+TEST_F(ExecutiveTest, MakesWhatIsIntendedAndKeepsIt) {
+  step({{"p", "Probe", 0, true, {}}});
+  const Output output = step({{"p", "Probe", 0, true, {}}});
+  EXPECT_EQ(counts_.made, 1);
+  EXPECT_EQ(counts_.inits, 1);
+  EXPECT_EQ(counts_.updates, 2);
+  EXPECT_TRUE(output.active);
+  EXPECT_EQ(output.blend.speed, 0.5);
+  EXPECT_EQ(output.speed, 0.4);  // cut to the robot's
+}
+
+TEST_F(ExecutiveTest, TakesOverChangedParametersWithoutInit) {
+  step({{"p", "Probe", 0, true, {}}});
+  step({{"p", "Probe", 3, true, {number("value", 0.25)}}});
+  EXPECT_EQ(counts_.inits, 1);
+  EXPECT_EQ(counts_.last, 0.25);
+}
+
+TEST_F(ExecutiveTest, RemovesWhatIsNotIntended) {
+  step({{"p", "Probe", 0, true, {}}});
+  const Output output = step({});
+  EXPECT_TRUE(output.behaviors.empty());
+  EXPECT_FALSE(output.active);
+  step({{"p", "Probe", 0, true, {}}});
+  EXPECT_EQ(counts_.inits, 2);
+}
+
+TEST_F(ExecutiveTest, AnotherSchemaIsAnotherBehavior) {
+  step({{"p", "Probe", 0, true, {}}});
+  const Output output = step({{"p", "Stop", 0, true, {}}});
+  EXPECT_EQ(output.behaviors.at(0).schema, "Stop");
+}
+
+TEST_F(ExecutiveTest, SetOffItStaysAndDoesNotRun) {
+  const Output off = step({{"p", "Probe", 0, false, {}}});
+  ASSERT_EQ(off.behaviors.size(), 1U);
+  EXPECT_FALSE(off.behaviors[0].running);
+  EXPECT_EQ(counts_.updates, 0);
+  EXPECT_FALSE(off.active);
+  EXPECT_TRUE(step({{"p", "Probe", 0, true, {}}}).active);
+  EXPECT_EQ(counts_.made, 1);
+}
+
+TEST_F(ExecutiveTest, WithoutControlBehaviorsAreStillEvaluated) {
+  const Output output = step({{"p", "Probe", 0, true, {}}}, false);
+  EXPECT_EQ(counts_.updates, 1);
+  EXPECT_TRUE(output.blend.moving);
+  EXPECT_FALSE(output.active);
+  EXPECT_EQ(output.inactive_reason, "behavior control is off");
+}
+
+TEST_F(ExecutiveTest, AnOldIntentDoesNotDrive) {
+  const Intent intent{100, true, {{"p", "Probe", 0, true, {}}}};
+  EXPECT_TRUE(executive_.step({101, robot_, {}, &intent}).active);
+  EXPECT_TRUE(executive_.step({102, robot_, {}, &intent}).active);
+  const Output output = executive_.step({103, robot_, {}, &intent});
+  EXPECT_FALSE(output.active);
+  EXPECT_EQ(output.inactive_reason, "the newest intent is 3 cycles old");
+  EXPECT_FALSE(executive_.step({104, robot_, {}, nullptr}).active);
+}
+
+TEST_F(ExecutiveTest, SaysWhatIsWrongAndRunsTheOthers) {
+  const Output output = step({{"a", "Fly", 0, true, {}},
+                              {"b", "GoToPos", 1, true, {number("speed", 0.2)}},
+                              {"c", "GoToPos", 1, true, {number("goal", 0.2)}},
+                              {"d", "KeepOff", 1, true, {number("caution", 0.2)}},
+                              {"e", "KeepOff", 1, true, {number("sensitivity", 7.0)}},
+                              {"f", "Probe", 2, true, {}},
+                              {"f", "Stop", 2, true, {}},
+                              {"g", "TurnTo", 2, true, {point("goal", {}, Frame::map)}}});
+  ASSERT_EQ(output.behaviors.size(), 1U);
+  EXPECT_TRUE(output.active);
+  for (const char* part :
+       {"a: unknown schema \"Fly\"", "b: parameter \"goal\" is missing: expected a point",
+        "c: parameter \"goal\": expected a point", "d: unknown parameter \"caution\"",
+        "e: parameter \"sensitivity\": expected a number from 0.2 to 2",
+        "f: the name is there twice", "g: parameter \"goal\": expected a point in odom"})
+    EXPECT_NE(output.trouble.find(part), std::string::npos) << part << "\n" << output.trouble;
+}
+
+TEST_F(ExecutiveTest, OrderOfTheSetDoesNotShow) {
+  const Output output = step({{"z", "Stop", 1, true, {}},
+                              {"b", "Probe", 1, true, {}},
+                              {"y", "AvoidCollision", 0, true, {}}});
+  ASSERT_EQ(output.behaviors.size(), 3U);
+  EXPECT_EQ(output.behaviors[0].name, "y");
+  EXPECT_EQ(output.behaviors[1].name, "b");
+  EXPECT_EQ(output.behaviors[2].name, "z");
+}
+
+TEST_F(ExecutiveTest, NobodyRecommendsASpeedThenItStands) {
+  robot_.velocity = 0.3;
+  const Output output = step({{"t", "TurnTo", 0, true, {point("goal", {0.0, 5.0, 0.0})}}});
+  EXPECT_TRUE(output.active);
+  EXPECT_FALSE(output.blend.moving);
+  EXPECT_EQ(output.speed, 0.0);
+  EXPECT_GT(output.heading_in_odom, 0.0);
+}
+
+TEST_F(ExecutiveTest, APointInTheRobotsFrameIsPlacedOnce) {
+  robot_.pose_in_odom = {1.0, 0.0, kPi / 2};
+  const std::vector<Intended> set{
+      {"g", "GoToPos", 0, true, {point("goal", {2.0, 0.0, 0.0}, Frame::robot)}}};
+  EXPECT_NEAR(step(set).heading_in_odom, kPi / 2, 1e-9);
+  // Had it moved along, the robot would still go ahead.
+  robot_.pose_in_odom = {2.0, 2.0, kPi / 2};
+  EXPECT_EQ(step(set).behaviors[0].blended.evaluation.rules[0].strength, 1.0);
+  EXPECT_GT(step(set).blend.turn, 0.3);
+}
+
+TEST_F(ExecutiveTest, ResetBeginsAnew) {
+  step({{"p", "Probe", 0, true, {}}});
+  executive_.reset();
+  step({{"p", "Probe", 0, true, {}}});
+  EXPECT_EQ(counts_.inits, 2);
+}
+
+TEST_F(ExecutiveTest, EverySchemaRunsOnItsDefaults) {
+  for (const std::string& name : executive_.registry().names()) {
+    std::vector<Argument> arguments;
+    for (const ParameterSpec& spec : executive_.registry().find(name)->parameters)
+      if (spec.required)
+        arguments.push_back(point(spec.name, {3.0, 0.0, 0.0}));
+    const Output output = step({{name, name, 0, true, arguments}});
+    EXPECT_EQ(output.trouble, "");
+    ASSERT_EQ(output.behaviors.size(), 1U);
+    EXPECT_FALSE(output.behaviors[0].blended.evaluation.rules.empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace saphira::behaviors

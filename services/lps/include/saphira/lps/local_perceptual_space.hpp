@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/lps/artifact.hpp"
+#include "saphira/lps/obstacle_memory.hpp"
+#include "saphira/lps/occupancy.hpp"
+#include "saphira/lps/sonar_buffer.hpp"
+
+namespace saphira::lps {
+
+struct SonarReading {
+  int sonar = 0;
+  double range = 0.0;  ///< [m] along the axis; meaningless without an echo
+  bool echo = false;
+};
+
+struct SonarMount {
+  int sonar = 0;
+  Pose in_robot;
+};
+
+/// What the LPS has to know of a robot; from its description.
+struct LpsSettings {
+  std::vector<SonarMount> sonars;
+  std::size_t front_buffer = 30;  ///< readings
+  std::size_t side_buffer = 20;   ///< readings, each side
+  double front_max_range = 2.5;   ///< [m] sfFrontMaxRange
+  MemorySettings memory;
+};
+
+/// Which buffer a sonar feeds (manual 6.6.1), by where it looks: within 60 degrees of ahead, the
+/// front one; within 30 degrees of straight left or right, that side's. Sonars that look backwards
+/// feed none; the obstacle memory takes them too.
+enum class Feeds { none, front, left, right };
+Feeds feeds(const Pose& sonar_in_robot);
+
+/// Which readings an occupancy function looks at.
+enum class Source {
+  front,      ///< sfFRONT
+  sides,      ///< sfSIDES: both side buffers
+  all,        ///< sfALL: the three buffers
+  remembered  ///< the obstacle memory
+};
+
+/// The Local Perceptual Space (manual 6.6): the geometry around the robot, in its own frame.
+/// Everything in it stays registered as the robot moves by dead reckoning.
+class LocalPerceptualSpace {
+ public:
+  explicit LocalPerceptualSpace(LpsSettings settings = {});
+
+  /// One cycle: the robot is at `robot_in_odom`, and these readings came since the last update, in
+  /// firing order. They are placed along the way between the two poses: at 100 degrees a second
+  /// the robot turns by ten in a cycle, half a sonar's cone.
+  void update(const Pose& robot_in_odom, const std::vector<SonarReading>& readings,
+              std::uint64_t cycle);
+  /// Forgets everything but the settings.
+  void reset();
+
+  const LpsSettings& settings() const { return settings_; }
+  const Pose& robot_in_odom() const { return robot_in_odom_; }
+  /// sfRobotOrigin's global place.
+  const Pose& robot_in_global() const { return robot_in_global_; }
+  std::uint64_t cycle() const { return cycle_; }
+
+  const SonarBuffer& front() const { return front_; }
+  const SonarBuffer& left() const { return left_; }
+  const SonarBuffer& right() const { return right_; }
+  void set_front_buffer(std::size_t limit) { front_.set_limit(limit); }
+  void set_side_buffer(std::size_t limit);
+  void set_front_max_range(double range) { settings_.front_max_range = range; }
+
+  /// The valid readings of a source, in the robot's frame.
+  std::vector<Vec2> points(Source source) const;
+  const std::vector<Vec2>& obstacles() const { return memory_.points(); }
+
+  /// sfOccBox and sfOccBoxRet. The manual gives the box functions no source: they look at all
+  /// buffers.
+  Occupancy box(Axis axis, double cx, double cy, double h, double w,
+                Source source = Source::all) const;
+  /// sfOccPlane and sfOccPlaneRet.
+  Occupancy plane(Direction direction, Source source, double d, double s1, double s2) const;
+
+  /// sfCreateLocalPoint, sfCreateGlobalPoint: an ARTIFACT of type POS, not yet added.
+  Artifact local_point(const Pose& in_robot) const;
+  Artifact global_point(const Pose& in_global) const;
+  /// sfSetLocalCoords, sfSetGlobalCoords: the one set of coordinates from the other.
+  void set_local(Artifact& artifact) const;
+  void set_global(Artifact& artifact) const;
+
+  /// sfAddPoint: registers the artifact from now on. Gives it an id where it has none, which is
+  /// returned; one with the id of an artifact that is there replaces it (sfAddPointCheck).
+  std::uint32_t add(Artifact artifact);
+  /// sfRemPoint. False where there was none.
+  bool remove(std::uint32_t id);
+  /// sfFindArtifact; nullptr where there is none. Good until the next add, remove or reset.
+  Artifact* find(std::uint32_t id);
+  const Artifact* find(std::uint32_t id) const;
+  /// The pointlist, in order of addition. The global origin (sfGlobalOrigin) is always the first.
+  const std::vector<Artifact>& artifacts() const { return artifacts_; }
+
+  /// sfMoveRobot: the robot is in fact (dx, dy, dth) [m, rad], in its own frame, from where the
+  /// global frame had it. Artifacts keep their global place, so their local one changes; sonar
+  /// readings, which are relative to the robot, stay.
+  void move_robot(double dx, double dy, double dth);
+
+ private:
+  void take(const SonarReading& reading, const Pose& robot_in_odom);
+  void register_artifacts();
+
+  LpsSettings settings_;
+  bool placed_ = false;  ///< an odometry pose has come
+  Pose robot_in_odom_;
+  Pose robot_in_global_;
+  std::uint64_t cycle_ = 0;
+  SonarBuffer front_;
+  SonarBuffer left_;
+  SonarBuffer right_;
+  ObstacleMemory memory_;
+  std::vector<Artifact> artifacts_;
+  std::uint32_t last_id_ = 0;
+};
+
+}  // namespace saphira::lps
