@@ -1,33 +1,47 @@
+#include <type_traits>
+
+#include "json.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/topics.hpp"
+#include "saphira_visit.hpp"
 
 namespace saphira::bus {
 namespace {
 
-InstanceKey key_of(const v1::Goal& sample) {
-  return {sample.id().writer(), sample.id().number()};
-}
-InstanceKey key_of(const v1::GoalStatus& sample) {
-  return {sample.id().writer(), sample.id().number()};
-}
-InstanceKey key_of(const v1::ServiceStatus& sample) {
-  return {sample.instance(), 0};
-}
+using internal::to_json;
+
+// Integers, in their order; a struct within the key counts whole, as fastddsgen has it.
+struct KeyWords {
+  template <class T>
+  void operator()(const char* /*name*/, const T& value) {
+    if constexpr (std::is_integral_v<T>)
+      words.at(count++) = static_cast<std::uint64_t>(value);
+    else
+      visit_members(value, *this);
+  }
+  InstanceKey words{};
+  std::size_t count = 0;
+};
+
 template <class T>
-InstanceKey key_of(const T& /*sample*/) {
-  return {};
+InstanceKey key_of(const T& sample) {
+  KeyWords words;
+  visit_keys(sample, words);
+  return words.words;
 }
 
 template <class T>
 TypeInfo make_type(const char* name) {
-  return {.name = name,
-          .keyed = T::isKeyDefined(),
-          .key = [](const void* sample) { return key_of(*static_cast<const T*>(sample)); },
-          .create = []() -> void* { return new T; },
-          .copy = [](const void* from,
-                     void* to) { *static_cast<T*>(to) = *static_cast<const T*>(from); },
-          .destroy = [](void* sample) { delete static_cast<T*>(sample); },
-          .json = [](const void*, const char*) { return std::string("{}"); }};
+  return {
+      .name = name,
+      .keyed = T::isKeyDefined(),
+      .key = [](const void* sample) { return key_of(*static_cast<const T*>(sample)); },
+      .create = []() -> void* { return new T; },
+      .copy = [](const void* from,
+                 void* to) { *static_cast<T*>(to) = *static_cast<const T*>(from); },
+      .destroy = [](void* sample) { delete static_cast<T*>(sample); },
+      .json = [](const void* sample,
+                 const char* prefix) { return to_json(*static_cast<const T*>(sample), prefix); }};
 }
 
 }  // namespace

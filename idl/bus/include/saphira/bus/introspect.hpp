@@ -35,7 +35,7 @@ class Echo {
 
  private:
   std::unique_ptr<RawReader> reader_;
-  const TypeInfo* type_;
+  const TypeInfo* type_ = nullptr;
 };
 
 /// One reader or writer that was discovered on the bus.

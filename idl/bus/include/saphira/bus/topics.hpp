@@ -37,4 +37,25 @@ inline constexpr Topic<v1::LogRecord> kLog{"system/log", Qos::event};
 
 }  // namespace topics
 
+/// Calls f(topic) for each of them.
+template <class F>
+void for_each_topic(F&& f) {
+  using namespace topics;
+  f(kRobotState);
+  f(kRobotDescription);
+  f(kDevice);
+  f(kDriveEstop);
+  f(kDriveTeleop);
+  f(kDriveDirect);
+  f(kDriveBehaviors);
+  f(kGrant);
+  f(kStepPermit);
+  f(kBehaviors);
+  f(kIntentions);
+  f(kGoals);
+  f(kGoalStatus);
+  f(kStatus);
+  f(kLog);
+}
+
 }  // namespace saphira::bus

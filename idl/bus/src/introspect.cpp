@@ -1,0 +1,89 @@
+#include "saphira/bus/introspect.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+#include "internal.hpp"
+
+namespace saphira::bus {
+
+std::vector<TopicEntry> known_topics() {
+  std::vector<TopicEntry> result;
+  for_each_topic([&]<class T>(const Topic<T>& topic) {
+    result.push_back({topic.name, type_of<T>().name, internal::qos_name(topic.qos)});
+  });
+  return result;
+}
+
+Echo::Echo(Node& node, const std::string& topic) {
+  std::string names;
+  for_each_topic([&]<class T>(const Topic<T>& known) {
+    names += std::string(names.empty() ? "" : ", ") + known.name;
+    if (topic != known.name)
+      return;
+    type_ = &type_of<T>();
+    reader_ = node.make_reader(known.name, known.qos, *type_);
+  });
+  if (!reader_)
+    throw std::runtime_error("no topic \"" + topic + "\"; there are " + names);
+}
+
+Echo::~Echo() = default;
+
+std::vector<std::string> Echo::take_json() {
+  std::vector<std::string> result;
+  reader_->take([&](const void* sample, const SampleInfo& info) {
+    result.push_back(type_->json(sample, info.disposed ? "\"_disposed\":true," : ""));
+  });
+  return result;
+}
+
+std::size_t Echo::matched() const {
+  return reader_->matched();
+}
+
+Census::Census(Node& node) : node_(&node) {
+  internal::transport_of(node).watch_endpoints(true);
+}
+
+Census::~Census() {
+  internal::transport_of(*node_).watch_endpoints(false);
+}
+
+std::vector<EndpointEntry> Census::endpoints() const {
+  auto result = internal::transport_of(*node_).endpoints();
+  const auto known = known_topics();
+  for (auto& endpoint : result) {
+    const auto topic = std::find_if(known.begin(), known.end(), [&](const TopicEntry& entry) {
+      return entry.name == endpoint.topic;
+    });
+    endpoint.known_type = topic == known.end() || topic->type == endpoint.type;
+  }
+  const auto order = [](const EndpointEntry& entry) {
+    return std::make_tuple(std::cref(entry.topic), !entry.writer, std::cref(entry.program),
+                           std::cref(entry.id));
+  };
+  std::sort(result.begin(), result.end(),
+            [&](const EndpointEntry& a, const EndpointEntry& b) { return order(a) < order(b); });
+  return result;
+}
+
+std::vector<Mismatch> Census::mismatches() const {
+  std::vector<Mismatch> result;
+  const auto all = endpoints();
+  for (const auto& writer : all) {
+    if (!writer.writer)
+      continue;
+    for (const auto& reader : all) {
+      if (reader.writer || reader.topic != writer.topic ||
+          !internal::partitions_meet(writer.robot, reader.robot))
+        continue;
+      if (auto why = why_incompatible(writer, reader); !why.empty())
+        result.push_back({writer, reader, std::move(why)});
+    }
+  }
+  return result;
+}
+
+}  // namespace saphira::bus

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "saphira_visit.hpp"
+
+namespace saphira::bus::internal {
+
+/// Writes a sample of a generated type as JSON: numbers so that they read back to the same value,
+/// what JSON has no number for as null.
+class JsonWriter {
+ public:
+  template <class T>
+  void value(const T& item) {
+    if constexpr (std::is_same_v<T, bool>)
+      text_ += item ? "true" : "false";
+    else if constexpr (std::is_same_v<T, std::string>)
+      quote(item);
+    else if constexpr (std::is_floating_point_v<T>)
+      number(item, std::isfinite(item));
+    else if constexpr (std::is_same_v<T, std::uint8_t>)
+      number(static_cast<unsigned>(item), true);
+    else if constexpr (std::is_integral_v<T>)
+      number(item, true);
+    else if constexpr (std::is_enum_v<T>)
+      named(name_of(item), static_cast<std::uint32_t>(item));
+    else
+      structure(item, "");
+  }
+  template <class T>
+  void value(const Named<T>& item) {
+    named(item.name, item.value);
+  }
+  template <class T>
+  void value(const std::vector<T>& items) {
+    text_ += '[';
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (i > 0)
+        text_ += ',';
+      value(items[i]);
+    }
+    text_ += ']';
+  }
+  template <class T>
+  void structure(const T& item, std::string_view prefix) {
+    text_ += '{';
+    text_ += prefix;
+    bool first = true;
+    visit_members(item, [&](const char* name, const auto& member) {
+      text_ += first ? "\"" : ",\"";
+      first = false;
+      text_ += name;
+      text_ += "\":";
+      value(member);
+    });
+    text_ += '}';
+  }
+  std::string&& take() { return std::move(text_); }
+
+ private:
+  template <class T>
+  void number(T item, bool finite) {
+    std::array<char, 40> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), item).ptr;
+    text_ += finite ? std::string_view(buffer.data(), end) : std::string_view("null");
+  }
+  template <class T>
+  void named(const char* name, T item) {
+    if (name != nullptr)
+      quote(name);
+    else
+      number(item, true);
+  }
+  void quote(std::string_view item) {
+    text_ += '"';
+    for (const char c : item) {
+      if (c == '"' || c == '\\') {
+        text_ += '\\';
+        text_ += c;
+      } else if (static_cast<unsigned char>(c) < 0x20) {
+        std::array<char, 8> escape{};
+        std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
+        text_ += escape.data();
+      } else {
+        text_ += c;
+      }
+    }
+    text_ += '"';
+  }
+
+  std::string text_;
+};
+
+template <class T>
+std::string to_json(const T& sample, std::string_view prefix) {
+  JsonWriter writer;
+  writer.structure(sample, prefix);
+  return writer.take();
+}
+
+}  // namespace saphira::bus::internal
