@@ -168,7 +168,9 @@ class Parser {
       if (!entry.second.IsScalar())
         fail(entry.second.Mark(),
              "expected the default of " + name + ", found " + kind(entry.second));
-      if (!deployment_.settings.emplace(name, entry.second.Scalar()).second)
+      const Placed value{entry.second.Scalar(), entry.second.Mark().line + 1,
+                         entry.second.Mark().column + 1};
+      if (!deployment_.settings.emplace(name, value).second)
         fail(entry.first.Mark(), "the setting \"" + name + "\" is there already");
     }
   }
@@ -314,27 +316,30 @@ std::string find_deployment(const std::string& name, const Places& places) {
 
 std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places& places,
                                      const std::vector<std::string>& set) {
-  std::map<std::string, std::string> values = deployment.settings;
+  std::map<std::string, std::string> values{{"config", places.config},
+                                            {"run", places.run},
+                                            {"robot", deployment.bus.robot.value_or(places.robot)}};
+  std::map<std::string, std::string> settings;
+  for (const auto& [name, value] : deployment.settings)
+    settings[name] = replaced(deployment, value, values);
   for (const std::string& word : set) {
     const std::size_t equals = word.find('=');
-    const std::string name = word.substr(0, equals);
-    if (equals == std::string::npos || !deployment.settings.contains(name)) {
+    const auto setting = settings.find(word.substr(0, equals));
+    if (equals == std::string::npos || setting == settings.end()) {
       std::string names;
-      for (const auto& [known, value] : deployment.settings)
+      for (const auto& [known, value] : settings)
         names += " " + known + "=" + value;
       throw std::invalid_argument("\"" + word + "\" sets nothing: " + deployment.file + " has" +
                                   (names.empty() ? " no settings" : names));
     }
-    values[name] = word.substr(equals + 1);
+    setting->second = word.substr(equals + 1);
   }
-  values["config"] = places.config;
-  values["run"] = places.run;
+  values.insert(settings.begin(), settings.end());
 
   std::vector<ChildSpec> all;
   for (const Program& program : deployment.programs) {
     const std::optional<std::string> robot = program.robot ? program.robot : deployment.bus.robot;
-    const char* from_environment = std::getenv("SAPHIRA_ROBOT");
-    values["robot"] = robot ? *robot : from_environment != nullptr ? from_environment : "pioneer";
+    values["robot"] = robot.value_or(places.robot);
     ChildSpec child;
     child.name = program.name;
     child.restart = program.restart;

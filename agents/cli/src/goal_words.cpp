@@ -141,6 +141,43 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
   return goal;
 }
 
+v1::Goal parse_request(const std::vector<std::string>& words) {
+  if (words.empty())
+    throw std::invalid_argument("expected a goal, such as go 3 1");
+  std::vector<std::string> rest(words.begin() + 1, words.end());
+  // The words in front that are no name=value, of which a short form has a fixed number.
+  std::size_t bare = 0;
+  while (bare < rest.size() && rest[bare].find('=') == std::string::npos)
+    ++bare;
+  const auto expect = [&](std::size_t count, const std::string& form) {
+    if (bare != count)
+      throw std::invalid_argument("expected " + form + ", found " + std::to_string(bare) +
+                                  (bare == 1 ? " word" : " words") + " after " + words[0]);
+    for (std::size_t i = 0; i < count; ++i)
+      if (!parse_number(rest[i]))
+        throw std::invalid_argument("expected " + form + ", found \"" + rest[i] + "\"");
+  };
+  const auto with = [&](const std::string& first) {
+    rest.erase(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(bare));
+    rest.insert(rest.begin(), first);
+    return rest;
+  };
+  if (words[0] == "go") {
+    expect(2, "go X Y [m]");
+    return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
+  }
+  if (words[0] == "drive" && bare > 0) {
+    expect(1, "drive SPEED [m/s]");
+    return parse_goal("drive", with("speed=" + rest[0]));
+  }
+  if (words[0] == "turn") {
+    expect(1, "turn DEGREES");
+    return parse_goal("turn_to",
+                      with("heading=" + rest[0] + (rest[0].ends_with("deg") ? "" : "deg")));
+  }
+  return parse_goal(words[0], rest);
+}
+
 std::string describe(const v1::Goal& goal) {
   std::string text = goal.functor() + "(";
   const char* separator = "";

@@ -126,23 +126,24 @@ void Supervisor::launch(std::size_t index) {
     say(slot.spec.name + " started again (pid " + std::to_string(pid) + ")");
 }
 
-void Supervisor::step(milliseconds timeout, int wake_fd) {
+void Supervisor::step(milliseconds timeout, std::initializer_list<int> wake_fds) {
   for (const Slot& slot : slots_)
     if (slot.due)
       timeout = std::min(timeout, until(*slot.due));
-  poll_once(timeout, wake_fd);
+  poll_once(timeout, wake_fds);
   for (std::size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].due && Clock::now() >= *slots_[i].due)
       launch(i);
 }
 
-void Supervisor::poll_once(milliseconds timeout, int wake_fd) {
+void Supervisor::poll_once(milliseconds timeout, std::initializer_list<int> wake_fds) {
   std::vector<pollfd> fds;
   for (const Stream& stream : streams_)
     fds.push_back({stream.fd, POLLIN, 0});
   for (const Slot& slot : slots_)
     fds.push_back({slot.pid_fd, POLLIN, 0});  // a negative one is skipped by poll
-  fds.push_back({wake_fd, POLLIN, 0});
+  for (const int fd : wake_fds)
+    fds.push_back({fd, POLLIN, 0});
   poll(fds.data(), fds.size(), static_cast<int>(timeout.count()));
   std::vector<Stream> open_streams;
   for (Stream& stream : streams_)
@@ -226,17 +227,17 @@ void Supervisor::stop(milliseconds limit) {
     const auto share = std::chrono::duration_cast<milliseconds>(until(end) / (i + 1));
     const Clock::time_point next = Clock::now() + share;
     while (slots_[i].pid != 0 && Clock::now() < next)
-      poll_once(until(next), -1);
+      poll_once(until(next));
   }
   while (std::any_of(slots_.begin(), slots_.end(), running) && Clock::now() < end)
-    poll_once(until(end), -1);
+    poll_once(until(end));
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     if (slots_[i].pid == 0)
       continue;
     say(slots_[i].spec.name + " did not end in time: killed");
     kill(slots_[i].pid, SIGKILL);
     while (slots_[i].pid != 0)
-      poll_once(milliseconds(100), -1);
+      poll_once(milliseconds(100));
   }
 }
 

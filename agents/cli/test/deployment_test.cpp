@@ -20,12 +20,12 @@ peers: [192.168.1.20, robot.local]
 interface: 192.168.1.4
 lockstep: true
 settings:
-  world: office
+  world: "${config}/office.wld"
   seed: 1
 programs:
   - program: one
     bus: false
-    arguments: [--world, "${config}/worlds/${world}.wld", --seed, "${seed}", "--socket=${run}/s"]
+    arguments: [--world, "${world}", --seed, "${seed}", "--socket=${run}/s"]
   - program: one
     name: two
     robot: beta
@@ -58,8 +58,8 @@ TEST_F(DeploymentTest, BecomesCommandLines) {
   EXPECT_EQ(children[0].name, "one");
   EXPECT_TRUE(children[0].restart);
   EXPECT_EQ(children[0].argv,
-            (std::vector<std::string>{folder_ + "/one", "--world", "/conf/worlds/office.wld",
-                                      "--seed", "42", "--socket=/run/x/s"}));
+            (std::vector<std::string>{folder_ + "/one", "--world", "/conf/office.wld", "--seed",
+                                      "42", "--socket=/run/x/s"}));
   EXPECT_EQ(children[1].name, "two");
   EXPECT_FALSE(children[1].restart);
   EXPECT_EQ(children[1].argv,
@@ -139,6 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"settings: {run: a}\nprograms: [{program: sh}]\n", 1, 12, "built in"},
         Broken{"programs:\n  - program: sh\n    arguments: [a, \"${wrold}\"]\n", 3, 20,
                "unknown ${wrold}: expected one of config"},
+        Broken{"settings:\n  a: \"${b}\"\nprograms: [{program: sh}]\n", 2, 6, "unknown ${b}"},
         Broken{"programs:\n  - program: sh\n    arguments: [\"${run\"]\n", 3, 17, "expected }"},
         Broken{"programs:\n  - program: no-such-program\n", 2, 14, "found no \"no-such-program\""},
         Broken{"programs:\n  - program: ./no/such\n", 2, 14, "no executable"}));

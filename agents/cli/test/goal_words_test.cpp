@@ -70,5 +70,35 @@ TEST(GoalWords, AWholeGoal) {
   EXPECT_THROW(parse_goal("go_to", many), std::invalid_argument);
 }
 
+TEST(GoalWords, ShortForms) {
+  const auto said = [](const std::vector<std::string>& words) {
+    return describe(parse_request(words));
+  };
+  EXPECT_EQ(said({"go", "3", "-1.5"}), "go_to(position=(3, -1.5) in odom)");
+  EXPECT_EQ(said({"go", "3", "1", "speed=0.2"}), "go_to(position=(3, 1) in odom, speed=0.2)");
+  EXPECT_EQ(said({"drive", "0.3"}), "drive(speed=0.3)");
+  EXPECT_EQ(said({"drive", "speed=0.3"}), "drive(speed=0.3)");
+  EXPECT_EQ(said({"drive"}), "drive()");
+  EXPECT_EQ(said({"turn", "180"}), "turn_to(heading=3.14159)");
+  EXPECT_EQ(said({"turn", "180deg"}), "turn_to(heading=3.14159)");
+  EXPECT_EQ(said({"stop"}), "stop()");
+  EXPECT_EQ(said({"follow", "who=ann"}), "follow(who=\"ann\")");
+}
+
+TEST(GoalWords, WrongShortFormsAreRefused) {
+  const std::vector<std::vector<std::string>> wrong{{},
+                                                    {"go"},
+                                                    {"go", "3"},
+                                                    {"go", "3", "1", "2"},
+                                                    {"go", "a", "b"},
+                                                    {"drive", "fast"},
+                                                    {"turn"},
+                                                    {"turn", "left"},
+                                                    {"stop", "now"},
+                                                    {"go_to", "3", "1"}};
+  for (const auto& words : wrong)
+    EXPECT_THROW(parse_request(words), std::invalid_argument) << testing::PrintToString(words);
+}
+
 }  // namespace
 }  // namespace saphira::cli

@@ -43,7 +43,8 @@ struct Deployment {
   std::string file;
   std::string text;  ///< of the file, for messages
   BusOptions bus;
-  std::map<std::string, std::string> settings;  ///< may be set when it is started; with defaults
+  /// May be set when it is started; with defaults, in which the built-in ${names} count.
+  std::map<std::string, Placed> settings;
   std::vector<Program> programs;
 };
 
@@ -53,9 +54,10 @@ Deployment load_deployment(const std::string& file);
 
 /// Where things are on this machine.
 struct Places {
-  std::string bin;     ///< the folder of our programs
-  std::string config;  ///< the folder of our configuration: ${config}
-  std::string run;     ///< for sockets and what must outlast a restart: ${run}
+  std::string bin;                ///< the folder of our programs
+  std::string config;             ///< the folder of our configuration: ${config}
+  std::string run;                ///< for sockets and what must outlast a restart: ${run}
+  std::string robot = "pioneer";  ///< ${robot} where the deployment states none
 };
 /// The places of the running program: config is ../share/saphira beside it, or the source tree's.
 /// `run` is left empty. std::runtime_error when there is no config.

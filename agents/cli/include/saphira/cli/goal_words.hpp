@@ -22,6 +22,15 @@ v1::Argument parse_argument(const std::string& word);
 /// a name that is there twice.
 v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& words);
 
+/// A goal as a person types it: a functor and its arguments, or in short
+///
+///   go X Y        go_to position=X,Y       [m] in odom
+///   drive SPEED   drive speed=SPEED        [m/s]
+///   turn DEGREES  turn_to heading=DEGREESdeg
+///
+/// each with further name=value words behind it. std::invalid_argument as above.
+v1::Goal parse_request(const std::vector<std::string>& words);
+
 /// The goal as a person reads it: go_to(position=(3, 1) in odom).
 std::string describe(const v1::Goal& goal);
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -48,8 +49,8 @@ class Supervisor {
 
   /// Starts every child. std::runtime_error when one cannot be started at all.
   void start();
-  /// Waits for something to do, for `wake_fd` (-1: none) or the timeout, and does what is due.
-  void step(std::chrono::milliseconds timeout, int wake_fd = -1);
+  /// Waits for something to do, for one of `wake_fds` or the timeout, and does what is due.
+  void step(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
   /// SIGTERM to each in the reverse order, the next one when it has ended; SIGKILL to what is left
   /// after `limit`.
   void stop(std::chrono::milliseconds limit = std::chrono::seconds(2));
@@ -80,7 +81,7 @@ class Supervisor {
   };
 
   void launch(std::size_t index);
-  void poll_once(std::chrono::milliseconds timeout, int wake_fd);
+  void poll_once(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
   bool read_stream(Stream& stream);
   void reap(std::size_t index);
   void say(const std::string& text) { print_({}, text); }

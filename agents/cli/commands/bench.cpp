@@ -1,0 +1,72 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <system_error>
+
+#include "commands.hpp"
+#include "saphira/cli/deployment.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+constexpr const char* kPrefix = "saphira-bench-";
+
+std::vector<std::string> benchmarks(const std::string& bin) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(bin)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kPrefix) && entry.path().extension().empty())
+      names.push_back(name.substr(std::strlen(kPrefix)));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+int bench(const std::string& name, const std::vector<std::string>& arguments) {
+  const std::string bin = find_places().bin;
+  const auto names = benchmarks(bin);
+  if (name.empty()) {
+    for (const std::string& known : names)
+      std::cout << known << '\n';
+    if (names.empty())
+      std::cout << "no benchmarks are built here (./saphira bench builds them)\n";
+    return bus::kExitOk;
+  }
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    std::cerr << "saphira: no benchmark \"" << name << "\": expected one of";
+    for (const std::string& known : names)
+      std::cerr << ' ' << known;
+    std::cerr << '\n';
+    return bus::kExitUsage;
+  }
+  std::vector<std::string> words{bin + "/" + kPrefix + name};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  argv.push_back(nullptr);
+  execv(argv[0], argv.data());
+  throw std::system_error(errno, std::generic_category(), words[0]);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Chosen& chosen) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "bench", "Run a benchmark, with its own options behind its name; without a name: list them");
+  command->add_option("name", *name, "the benchmark");
+  command->prefix_command();
+  command->callback([name, command, &chosen] {
+    chosen.run = [name, rest = command->remaining()](const bus::NodeOptions&, const bus::Stop&) {
+      return bench(*name, rest);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "saphira/bus/node.hpp"
+#include "saphira/bus/program.hpp"
+
+/// The subcommands of `saphira`. Each adds itself to the command line, and when it is chosen says
+/// what to run.
+namespace saphira::cli {
+
+/// What was chosen; set by the callback of a subcommand.
+struct Chosen {
+  std::function<int(const bus::NodeOptions&, const bus::Stop&)> run;
+};
+
+void add_demo(CLI::App& app, Chosen& chosen);
+void add_up(CLI::App& app, Chosen& chosen);
+void add_status(CLI::App& app, Chosen& chosen);
+void add_list(CLI::App& app, Chosen& chosen);
+void add_echo(CLI::App& app, Chosen& chosen);
+void add_log(CLI::App& app, Chosen& chosen);
+void add_goal(CLI::App& app, Chosen& chosen);
+void add_drive(CLI::App& app, Chosen& chosen);
+void add_bench(CLI::App& app, Chosen& chosen);
+
+}  // namespace saphira::cli

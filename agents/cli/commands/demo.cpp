@@ -1,0 +1,466 @@
+// The system as a newcomer meets it: a simulated robot drives somewhere, and one sees how.
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <random>
+
+#include "commands.hpp"
+#include "run_folder.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/cli/deployment.hpp"
+#include "saphira/cli/goal_words.hpp"
+#include "saphira/cli/picture.hpp"
+#include "saphira/cli/supervisor.hpp"
+#include "saphira/cli/trace.hpp"
+#include "saphira/geometry/pose.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// In odom, which begins where the robot stands: a room of the shipped office that is reached
+/// through two doors.
+constexpr double kGoalX = 8.0;
+constexpr double kGoalY = 3.0;
+constexpr double kTimeLimit = 180.0;  ///< [s] of robot time
+constexpr double kPatience = 20.0;    ///< [s] of wall time without any news
+constexpr std::size_t kKeptLines = 60;
+
+struct Options {
+  bool headless = false;
+  bool lockstep = false;
+  bool single_process = false;
+  bool json = false;
+  bool verbose = false;
+  std::uint64_t seed = 1;
+  double time_limit = kTimeLimit;
+  std::string world;
+  std::vector<double> goal{kGoalX, kGoalY};
+  std::string trace;
+};
+
+std::uint64_t random_number() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32U) | device();
+}
+
+/// A bus of our own: a robot that nobody else has, and unless one was asked for, a domain at
+/// random. (Above 100 the ports of a domain run into those that the kernel gives out.)
+bus::NodeOptions own_bus(bus::NodeOptions options) {
+  if (options.domain == 0 && std::getenv("SAPHIRA_DOMAIN") == nullptr)
+    options.domain = 60 + static_cast<std::uint32_t>(random_number() % 40);
+  options.robot = "demo-" + std::to_string(getpid());
+  options.profile = bus::Profile::host;
+  options.peers.clear();
+  options.interface.clear();
+  options.name = "demo";
+  options.lockstep = false;  // we only watch
+  return options;
+}
+
+std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& node,
+                                const std::string& run, const std::string& trace) {
+  Places places = find_places();
+  places.run = run;
+  Deployment deployment = load_deployment(find_deployment("demo", places));
+  deployment.bus.robot = node.robot;
+  deployment.bus.domain = node.domain;
+  deployment.bus.profile = "host";
+  deployment.bus.lockstep = options.lockstep;
+  std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
+  if (!options.world.empty())
+    set.push_back("world=" + options.world);
+  const std::vector<std::string> more = options.lockstep
+                                            ? std::vector<std::string>{"--trace", trace, "--step"}
+                                            : std::vector<std::string>{"--trace", trace};
+  if (options.single_process) {
+    // saphira-all takes the options of all four, and those of the bus once.
+    Program all{"all", {"saphira-all"}, {}, {}, true, true};
+    for (const Program& program : deployment.programs)
+      all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
+    deployment.programs = {all};
+  }
+  std::vector<ChildSpec> children = command_lines(deployment, places, set);
+  // The simulator is the first of the deployment; alone, all of it is.
+  children.at(0).argv.insert(children.at(0).argv.end(), more.begin(), more.end());
+  return children;
+}
+
+bool is_utf8() {
+  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    const char* value = std::getenv(name);
+    if (value == nullptr || *value == '\0')
+      continue;
+    const std::string text = value;
+    return text.find("UTF-8") != std::string::npos || text.find("utf8") != std::string::npos;
+  }
+  return false;
+}
+
+/// What the bus says while the robot drives, and how it is shown.
+class Watcher {
+ public:
+  Watcher(bus::Node& node, const Vec2& goal)
+      : goal_(goal),
+        robots_(node.reader(bus::topics::kRobotState)),
+        descriptions_(node.reader(bus::topics::kRobotDescription)),
+        grants_(node.reader(bus::topics::kGrant)) {
+    picture_.set_goal(goal);
+  }
+
+  /// True when something came.
+  bool poll() {
+    if (const auto description = descriptions_.take_newest()) {
+      description_ = description;
+      picture_.set_radius(description->radius());
+    }
+    if (auto grant = grants_.take_newest())
+      grant_ = std::move(grant);
+    bool any = false;
+    for (const auto& sample : robots_.take()) {
+      any = true;
+      robot_ = sample.data;
+      take_echoes(sample.data);
+    }
+    return any;
+  }
+
+  bool connected() const { return robot_.has_value(); }
+  double robot_time() const {
+    return robot_ ? 0.1 * static_cast<double>(robot_->stamp().cycle()) : 0.0;
+  }
+
+  std::string line(const std::optional<v1::GoalStatus>& status) const {
+    if (!robot_)
+      return "no robot yet";
+    const Pose pose = pose_of(*robot_);
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "%6.1f s  at (%5.2f, %5.2f)  %5.2f m to go  %4.2f m/s  ", robot_time(), pose.x,
+                  pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
+    std::string line = text.data();
+    line += (grant_ ? std::string(name_of(grant_->role())) : "?") + " drives";
+    if (grant_ && grant_->guard() != v1::GUARD_NONE)
+      line += ", the guard " + std::string(name_of(grant_->guard()));
+    line += nearest();
+    if (status)
+      line += "  " + bus::describe(*status);
+    return line;
+  }
+
+  std::vector<std::string> picture(int columns, int rows, bool utf8) const {
+    return picture_.draw(columns, rows, utf8);
+  }
+
+ private:
+  struct Reading {
+    std::uint64_t cycle = 0;
+    double range = 0.0;
+  };
+
+  static Pose pose_of(const v1::RobotState& robot) {
+    return {robot.pose_in_odom().x(), robot.pose_in_odom().y(), robot.pose_in_odom().th()};
+  }
+
+  void take_echoes(const v1::RobotState& robot) {
+    const Pose pose = pose_of(robot);
+    picture_.move_robot(pose);
+    for (const v1::SonarReading& reading : robot.sonars()) {
+      if (!reading.echo()) {
+        newest_.erase(reading.sonar());
+        continue;
+      }
+      newest_[reading.sonar()] = {robot.stamp().cycle(), reading.range()};
+      if (!description_)
+        continue;
+      for (const v1::SonarPose& sonar : description_->sonars())
+        if (sonar.sonar() == reading.sonar()) {
+          const Pose in_robot{sonar.pose_in_robot().x(), sonar.pose_in_robot().y(),
+                              sonar.pose_in_robot().th()};
+          picture_.add_echo(
+              transform(compose(pose, in_robot), Vec2(static_cast<double>(reading.range()), 0.0)));
+        }
+    }
+  }
+
+  std::string nearest() const {
+    double range = std::numeric_limits<double>::infinity();
+    int sonar = 0;
+    for (const auto& [index, reading] : newest_)
+      if (reading.cycle + 10 > robot_->stamp().cycle() && reading.range < range) {
+        range = reading.range;
+        sonar = index;
+      }
+    std::array<char, 64> text{};
+    if (std::isfinite(range))
+      std::snprintf(text.data(), text.size(), "  nearest %.2f m (sonar %d)", range, sonar);
+    return text.data();
+  }
+
+  Vec2 goal_;
+  Picture picture_;
+  bus::Reader<v1::RobotState> robots_;
+  bus::Reader<v1::RobotDescription> descriptions_;
+  bus::Reader<v1::Grant> grants_;
+  std::optional<v1::RobotState> robot_;
+  std::optional<v1::RobotDescription> description_;
+  std::optional<v1::Grant> grant_;
+  std::map<int, Reading> newest_;  ///< by sonar
+};
+
+/// The terminal's other page, for the picture; the first page comes back with the destructor.
+class Screen {
+ public:
+  explicit Screen(bool wanted) : on_(wanted) {
+    if (on_)
+      put("\x1b[?1049h\x1b[?25l");
+  }
+  ~Screen() { leave(); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  bool on() const { return on_; }
+  void leave() {
+    if (on_)
+      put("\x1b[?25h\x1b[?1049l");
+    on_ = false;
+  }
+
+  void draw(const Watcher& watcher, const std::optional<v1::GoalStatus>& status) const {
+    winsize size{};
+    int columns = 80;
+    int rows = 24;
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
+      columns = size.ws_col;
+      rows = size.ws_row;
+    }
+    std::string out = "\x1b[H";
+    for (const std::string& line : watcher.picture(columns, rows - 2, utf8_))
+      out += line + "\r\n";
+    const std::string line = watcher.line(status);
+    const auto width = static_cast<std::size_t>(columns);
+    out += "\x1b[K" + line.substr(0, width) + "\r\n\x1b[K";
+    if (line.size() > width)
+      out += line.substr(width, width - 1);
+    put(out);
+  }
+
+ private:
+  static void put(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::fflush(stdout);
+  }
+  bool on_;
+  bool utf8_ = is_utf8();
+};
+
+class Demo {
+ public:
+  Demo(const Options& options, const bus::NodeOptions& node_options)
+      : options_(options),
+        node_options_(own_bus(node_options)),
+        trace_(options.trace.empty() ? folder_.path() + "/trace.csv" : options.trace),
+        supervisor_(programs(options, node_options_, folder_.path(), trace_),
+                    [this](auto from, auto line) { keep(from, line); }) {}
+
+  int run(const bus::Stop& stop) {
+    std::ofstream(trace_).close();
+    // Children first: they come up while we make our node.
+    supervisor_.start();
+    drive(stop);
+    const bool interrupted = stop.requested();
+    supervisor_.stop();
+    screen_.leave();
+    return report(interrupted);
+  }
+
+ private:
+  void keep(std::string_view from, std::string_view line) {
+    kept_.push_back((from.empty() ? "saphira" : std::string(from)) + " | " + std::string(line));
+    if (kept_.size() > kKeptLines)
+      kept_.pop_front();
+    if (options_.verbose && !screen_.on())
+      std::cerr << kept_.back() << '\n';
+  }
+
+  bool lines() const { return !screen_.on() && !options_.json; }
+
+  void drive(const bus::Stop& stop) {
+    bus::Node node(node_options_);
+    Processes processes(node);
+    Watcher watcher(node, Vec2(options_.goal[0], options_.goal[1]));
+    bus::GoalClient goals(node, "saphira demo");
+    auto permits = node.writer(bus::topics::kStepPermit);
+
+    v1::Goal goal;
+    goal.functor("go_to");
+    goal.arguments(
+        {bus::point("position", options_.goal[0], options_.goal[1], 0.0, v1::FRAME_ODOM)});
+    goal.deadline(options_.time_limit);
+    const v1::GoalId id = goals.ask(goal);
+    if (lines()) {
+      std::printf("robot %s on domain %u: saphira --robot %s --domain %u status shows it\n",
+                  node_options_.robot.c_str(), node_options_.domain, node_options_.robot.c_str(),
+                  node_options_.domain);
+      std::printf("goal %s, in %.0f s at most\n", describe(goal).c_str(), options_.time_limit);
+      std::fflush(stdout);
+    }
+
+    // In lockstep the goal is there before the first step, so that it is taken at the same cycle
+    // in every run.
+    const auto asked = Clock::now();
+    while (!goals.delivered(100)) {
+      supervisor_.step(milliseconds(0));
+      if (stop.requested() || gave_up(asked, processes))
+        return;
+      processes.poll();
+    }
+    if (options_.lockstep) {
+      v1::StepPermit permit;
+      permit.source("saphira demo");
+      permit.until_cycle(std::numeric_limits<std::uint64_t>::max());
+      permits.write(permit);
+    }
+
+    auto began = Clock::now();
+    bool accepted = false;
+    auto news = Clock::now();
+    auto shown = Clock::now() - std::chrono::hours(1);
+    double shown_time = -1e9;
+    while (!stop.requested()) {
+      supervisor_.step(milliseconds(200), {stop.fd(), node.wake_fd()});
+      node.clear_wake();
+      processes.poll();
+      goals.poll();
+      if (watcher.poll())
+        news = Clock::now();
+      status_ = goals.status(id);
+      if (status_ && !accepted) {
+        accepted = true;
+        if (!options_.lockstep)
+          began = Clock::now();
+      }
+      if (status_ && bus::ended(status_->state())) {
+        wall_ = seconds_since(began);
+        show(watcher);
+        break;
+      }
+      // Once a second of the robot, and not more often than a person reads.
+      const double wall = seconds_since(shown);
+      if (screen_.on()
+              ? wall > 0.1
+              : wall > 0.1 && watcher.connected() && watcher.robot_time() >= shown_time + 1.0) {
+        show(watcher);
+        shown = Clock::now();
+        shown_time = std::floor(watcher.robot_time());
+      }
+      if (supervisor_.misused() || gave_up(news, processes))
+        return;
+    }
+    late_cycles_ = processes.late_cycles();
+  }
+
+  void show(const Watcher& watcher) {
+    if (screen_.on())
+      screen_.draw(watcher, status_);
+    else if (lines()) {
+      std::printf("%s\n", watcher.line(status_).c_str());
+      std::fflush(stdout);
+    }
+  }
+
+  bool gave_up(Clock::time_point last_news, const Processes& processes) {
+    if (seconds_since(last_news) < kPatience)
+      return false;
+    trouble_ = "nothing was heard for " + std::to_string(static_cast<int>(kPatience)) +
+               " s: " + who_is_there(node_options_, processes);
+    return true;
+  }
+
+  int report(bool interrupted) {
+    Summary summary;
+    summary.arrived = status_ && status_->state() == v1::GOAL_SUCCEEDED;
+    const bool ended = status_ && bus::ended(status_->state());
+    summary.track = evaluate_trace(
+        read_file(trace_),
+        ended ? status_->stamp().cycle() : std::numeric_limits<std::uint64_t>::max(), trace_);
+    summary.time = status_ ? status_->elapsed() : 0.0;
+    summary.late_cycles = late_cycles_;
+    summary.speed_factor = wall_ > 0.0 ? summary.time / wall_ : 0.0;
+
+    std::string outcome = status_ ? bus::describe(*status_) : "the goal got no answer";
+    if (const auto misused = supervisor_.misused())
+      trouble_ = *misused + " could not be started as the demo needs it";
+    if (interrupted)
+      outcome = "interrupted; " + outcome;
+    std::FILE* out = options_.json ? stderr : stdout;
+    std::fprintf(out, "%s: %s\n%s", summary.arrived ? "arrived" : "did not arrive", outcome.c_str(),
+                 to_text(summary).c_str());
+    if (!trouble_.empty())
+      std::fprintf(stderr, "saphira: %s\n", trouble_.c_str());
+    if (!summary.arrived && !interrupted && !options_.verbose) {
+      std::fputs("the last that the programs said:\n", stderr);
+      for (const std::string& line : kept_)
+        std::fprintf(stderr, "  %s\n", line.c_str());
+    }
+    if (options_.json)
+      std::printf("%s\n", to_json(summary).c_str());
+    std::fflush(stdout);
+    return summary.arrived ? bus::kExitOk : bus::kExitFailed;
+  }
+
+  Options options_;
+  bus::NodeOptions node_options_;
+  RunFolder folder_;
+  std::string trace_;
+  std::deque<std::string> kept_;  ///< what the programs said last
+  Screen screen_{!options_.headless && !options_.json && isatty(STDOUT_FILENO) != 0};
+  Supervisor supervisor_;
+  std::optional<v1::GoalStatus> status_;
+  double wall_ = 0.0;
+  std::uint64_t late_cycles_ = 0;
+  std::string trouble_;
+};
+
+}  // namespace
+
+void add_demo(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("demo", "A simulated robot drives to a goal in an office");
+  command->add_flag("--headless", options->headless, "lines in place of the picture");
+  command->add_option("--seed", options->seed, "of the simulator's noise")->capture_default_str();
+  command->add_flag("--lockstep", options->lockstep,
+                    "step by step, as fast as the machine can; every run of a seed is the same");
+  command->add_flag("--single-process", options->single_process, "all services in one process");
+  command->add_flag("--json", options->json, "the summary as JSON on the last line");
+  command->add_option("--time-limit", options->time_limit, "[s] of robot time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--world", options->world, "a world file in place of the office");
+  command->add_option("--goal", options->goal, "X Y [m], seen from where the robot starts")
+      ->expected(2)
+      ->capture_default_str();
+  command->add_option("--trace", options->trace, "keep the true trajectory in this file (CSV)");
+  command->add_flag("--verbose,-v", options->verbose, "show what the programs say");
+  command->footer("Exit code 0: the robot arrived; 1: it did not, in the time that was given.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return Demo(*options, node).run(stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

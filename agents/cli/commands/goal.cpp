@@ -1,0 +1,177 @@
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "commands.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/cli/goal_words.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+struct Options {
+  std::vector<std::string> words;
+  int priority = 0;
+  double deadline = 0.0;
+  bool keep = false;
+};
+
+/// Prints each change of a goal's status once.
+class Follower {
+ public:
+  /// True when the goal has come to its end.
+  bool show(const v1::GoalStatus& status) {
+    // Progress alone is news every tenth.
+    const std::string key = bus::describe(status.state()) + status.step() + status.reason() +
+                            std::to_string(std::floor(status.progress() * 10.0));
+    if (key != last_) {
+      std::printf("%7.1f s  %s\n", status.elapsed(), bus::describe(status).c_str());
+      std::fflush(stdout);
+      last_ = key;
+    }
+    return bus::ended(status.state());
+  }
+
+ private:
+  std::string last_;
+};
+
+int ask(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  v1::Goal goal;
+  try {
+    goal = parse_request(options.words);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "saphira: " << error.what() << '\n';
+    return bus::kExitUsage;
+  }
+  goal.priority(options.priority);
+  goal.deadline(options.deadline);
+  goal.writer_lost(options.keep ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
+
+  bus::Node node(node_options);
+  Processes processes(node);
+  bus::GoalClient goals(node, "saphira goal");
+  const v1::GoalId id = goals.ask(goal);
+  std::printf("goal %s  %s\n", bus::describe(id).c_str(), describe(goal).c_str());
+  std::fflush(stdout);
+
+  Follower follower;
+  const auto began = Clock::now();
+  double told = 0.0;
+  bool canceled = false;
+  Clock::time_point canceled_at;
+  while (true) {
+    // Once stop is requested its descriptor stays readable: then wait for the bus alone.
+    node.wait(milliseconds(200), canceled ? nullptr : &stop);
+    processes.poll();
+    goals.poll();
+    const auto status = goals.status(id);
+    if (status && follower.show(*status))
+      return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
+    if (!status && seconds_since(began) > told + 3.0) {
+      told += 3.0;
+      std::cerr << "saphira: no answer yet: " << who_is_there(node_options, processes) << '\n';
+    }
+    if (!status && seconds_since(began) > 15.0) {
+      std::cerr << "saphira: given up\n";
+      goals.cancel(id);
+      return bus::kExitFailed;
+    }
+    if (stop.requested() && options.keep) {
+      std::printf("left underway; saphira goal cancel %s ends it\n", bus::describe(id).c_str());
+      return bus::kExitFailed;
+    }
+    if (stop.requested() && !canceled) {
+      goals.cancel(id);
+      canceled = true;
+      canceled_at = Clock::now();
+    }
+    if (canceled && seconds_since(canceled_at) > 2.0) {
+      std::cerr << "saphira: withdrawn, and nothing was heard of it within 2 s\n";
+      return bus::kExitFailed;
+    }
+  }
+}
+
+int cancel(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  const auto id = options.words.size() == 2 ? bus::parse_goal_id(options.words[1]) : std::nullopt;
+  if (!id) {
+    std::cerr << "saphira: expected goal cancel ID, such as 1f3a:2 (saphira goal list)\n";
+    return bus::kExitUsage;
+  }
+  bus::Node node(node_options);
+  Processes processes(node);
+  bus::GoalClient goals(node, "saphira goal");
+  Follower follower;
+  const auto began = Clock::now();
+  bool asked = false;
+  while (!stop.requested() && seconds_since(began) < 5.0) {
+    node.wait(milliseconds(100), &stop);
+    processes.poll();
+    goals.poll();
+    const auto status = goals.status(*id);
+    if (status && !asked) {
+      goals.cancel(*id);
+      asked = goals.delivered(2000);
+    }
+    if (status && follower.show(*status))
+      return bus::kExitOk;
+  }
+  std::cerr << "saphira: "
+            << (asked ? "withdrawn, and it has not ended yet"
+                      : "nothing is known of this goal; " + who_is_there(node_options, processes))
+            << '\n';
+  return bus::kExitFailed;
+}
+
+int list(const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  bus::Node node(node_options);
+  Processes processes(node);
+  bus::GoalClient goals(node, "saphira goal");
+  const auto end = Clock::now() + milliseconds(1300);
+  while (!stop.requested() && Clock::now() < end) {
+    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+    processes.poll();
+    goals.poll();
+  }
+  for (const v1::GoalStatus& status : goals.statuses())
+    std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id()).c_str(),
+                status.functor().c_str(), status.requester().c_str(),
+                bus::describe(status).c_str());
+  if (goals.statuses().empty())
+    std::cout << "no goals; " << who_is_there(node_options, processes) << '\n';
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+void add_goal(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
+  command->add_option("words", options->words,
+                      "go X Y | drive SPEED | turn DEGREES | stop | FUNCTOR name=value... | "
+                      "list | cancel ID");
+  command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
+  command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--keep", options->keep, "the goal goes on when this program ends");
+  command->footer(
+      "Values: 0.3 (SI units), 90deg, x,y or x,y,th with @odom, @robot or @map, text.\n"
+      "Negative numbers may need -- before them: saphira goal -- go -1.5 2\n"
+      "Ctrl-C withdraws the goal. Exit code 0: it succeeded; 1: it did not.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      if (!options->words.empty() && options->words[0] == "cancel")
+        return cancel(*options, node, stop);
+      if (options->words == std::vector<std::string>{"list"})
+        return list(node, stop);
+      return ask(*options, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,141 @@
+// list and echo: the bus as it is.
+#include <array>
+#include <cstdio>
+#include <iostream>
+
+#include "commands.hpp"
+#include "saphira/bus/introspect.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Discovery on one machine takes tens of milliseconds, over a network up to the announcement
+/// period of 250 ms and its round trips.
+constexpr milliseconds kDiscovery{1000};
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+std::string describe(const bus::EndpointEntry& endpoint) {
+  std::string text = endpoint.program.empty() ? "?" : endpoint.program;
+  if (endpoint.pid != 0)
+    text += "[" + std::to_string(endpoint.pid) + "]";
+  if (!endpoint.host.empty())
+    text += "@" + endpoint.host;
+  return text;
+}
+
+std::string qos_of(const bus::EndpointEntry& endpoint) {
+  std::string text = (endpoint.reliable ? "reliable " : "best effort ") + endpoint.durability;
+  if (endpoint.deadline > 0.0)
+    text += ", deadline " + short_number(endpoint.deadline) + " s";
+  if (endpoint.liveliness != "automatic" && !endpoint.liveliness.empty())
+    text += ", " + endpoint.liveliness;
+  if (endpoint.ownership != "shared" && !endpoint.ownership.empty())
+    text += ", " + endpoint.ownership;
+  return text;
+}
+
+int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  const bus::Census census(node);
+  const auto end = Clock::now() + kDiscovery;
+  while (!stop.requested() && Clock::now() < end)
+    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  const auto known = bus::known_topics();
+  std::string topic;
+  bool any = false;
+  for (const bus::EndpointEntry& endpoint : census.endpoints()) {
+    any = true;
+    if (endpoint.topic != topic) {
+      topic = endpoint.topic;
+      std::string qos = "not of this contract";
+      for (const bus::TopicEntry& entry : known)
+        if (entry.name == topic)
+          qos = entry.qos;
+      std::cout << topic << "  " << endpoint.type << "  (" << qos << ")\n";
+    }
+    std::cout << (endpoint.writer ? "  writer  " : "  reader  ") << describe(endpoint) << "  "
+              << endpoint.robot << "  " << qos_of(endpoint)
+              << (endpoint.known_type ? "" : "  TYPE " + endpoint.type) << '\n';
+  }
+  const auto mismatches = census.mismatches();
+  for (const bus::Mismatch& mismatch : mismatches)
+    std::cout << "MISMATCH on " << mismatch.writer.topic << ": " << describe(mismatch.writer)
+              << " is not heard by " << describe(mismatch.reader) << ": " << mismatch.why << '\n';
+  if (!any) {
+    std::cout << "nobody is on the bus\n";
+    return bus::kExitFailed;
+  }
+  return mismatches.empty() ? bus::kExitOk : bus::kExitFailed;
+}
+
+int echo(const std::string& topic, std::uint64_t count, const bus::NodeOptions& options,
+         const bus::Stop& stop) {
+  bool known = false;
+  std::string names;
+  for (const bus::TopicEntry& entry : bus::known_topics()) {
+    known = known || entry.name == topic;
+    names += " " + entry.name;
+  }
+  if (!known) {
+    std::cerr << "saphira: no topic \"" << topic << "\": expected one of" << names << '\n';
+    return bus::kExitUsage;
+  }
+  bus::Node node(options);
+  bus::Echo reader(node, topic);
+  std::uint64_t shown = 0;
+  const auto began = Clock::now();
+  bool warned = false;
+  while (!stop.requested()) {
+    for (const std::string& line : reader.take_json()) {
+      std::cout << line << '\n';
+      if (++shown == count) {
+        std::cout.flush();
+        return bus::kExitOk;
+      }
+    }
+    std::cout.flush();
+    if (!std::cout)
+      return bus::kExitOk;  // who read our output has left
+    if (!warned && shown == 0 && reader.matched() == 0 && seconds_since(began) > 2.0) {
+      std::cerr << "saphira: nobody writes " << topic << " for robot " << options.robot
+                << "; waiting\n";
+      warned = true;
+    }
+    node.wait(milliseconds(500), &stop);
+  }
+  return count == 0 ? bus::kExitOk : bus::kExitFailed;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Chosen& chosen) {
+  app.add_subcommand("list", "Topics, types, writers and readers with their QoS, and mismatches")
+      ->callback([&chosen] { chosen.run = list; });
+}
+
+void add_echo(CLI::App& app, Chosen& chosen) {
+  struct Options {
+    std::string topic;
+    std::uint64_t count = 0;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("echo", "What is written on a topic, as JSON lines");
+  command->add_option("topic", options->topic, "such as robot/state")->required();
+  command->add_option("-n", options->count, "end after so many samples");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return echo(options->topic, options->count, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,33 @@
+#include "commands.hpp"
+
+int main(int argc, char** argv) {
+  using namespace saphira;
+  cli::Chosen chosen;
+  CLI::App* root = nullptr;
+  return bus::run_program(
+      argc, argv, "cli", "Runs, watches and drives a robot on the Saphira bus",
+      [&](CLI::App& app) {
+        root = &app;
+        app.name("saphira");
+        app.require_subcommand(0, 1);
+        cli::add_demo(app, chosen);
+        cli::add_up(app, chosen);
+        cli::add_status(app, chosen);
+        cli::add_goal(app, chosen);
+        cli::add_drive(app, chosen);
+        cli::add_log(app, chosen);
+        cli::add_bench(app, chosen);
+        app.add_subcommand("help", "This text");
+        // --robot and the like may stand behind the subcommand as well.
+        for (CLI::App* command : app.get_subcommands({}))
+          command->fallthrough();
+      },
+      [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
+        if (chosen.run)
+          return chosen.run(options, stop);
+        std::fputs(root->help().c_str(), stdout);
+        std::fputs("\n./saphira test builds and runs the tests. README.md says how to begin.\n",
+                   stdout);
+        return bus::kExitOk;
+      });
+}

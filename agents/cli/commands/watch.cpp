@@ -1,0 +1,50 @@
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+void Processes::poll() {
+  for (const auto& sample : reader_.take()) {
+    Entry& entry = entries_[sample.data.instance()];
+    entry.gone = sample.info.disposed;
+    if (!sample.info.disposed) {
+      entry.status = sample.data;
+      entry.came = Clock::now();
+    }
+  }
+}
+
+std::vector<SeenProcess> Processes::all() const {
+  std::vector<SeenProcess> processes;
+  for (const auto& [instance, entry] : entries_)
+    if (!entry.gone && !entry.status.name().empty())
+      processes.push_back({entry.status, seconds_since(entry.came)});
+  return processes;
+}
+
+std::uint64_t Processes::late_cycles() const {
+  std::uint64_t sum = 0;
+  for (const auto& [instance, entry] : entries_)
+    sum += entry.status.late_cycles();
+  return sum;
+}
+
+std::string who_is_there(const bus::NodeOptions& options, const Processes& processes) {
+  static constexpr const char* kProfiles[] = {"host", "lan", "wan"};
+  const auto all = processes.all();
+  const std::string where = "robot " + options.robot + ", domain " +
+                            std::to_string(options.domain) + ", profile " +
+                            kProfiles[static_cast<int>(options.profile)];
+  if (all.empty())
+    return "no program is on the bus (" + where +
+           "): is it up (saphira up demo), and are these the same on both sides?";
+  const std::string missing = missing_services(all);
+  if (!missing.empty())
+    return "not on the bus (" + where + "): " + missing + "; saphira status shows what is";
+  for (const SeenProcess& process : all)
+    if (process.status.state() != v1::SERVICE_RUNNING && !process.status.reason().empty())
+      return process.status.name() + " is " + name_of(process.status.state()) + ": " +
+             process.status.reason();
+  return "all services are on the bus (" + where + ")";
+}
+
+}  // namespace saphira::cli

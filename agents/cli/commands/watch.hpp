@@ -1,0 +1,43 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/bus/node.hpp"
+#include "saphira/cli/words.hpp"
+
+namespace saphira::cli {
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point when) {
+  return std::chrono::duration<double>(Clock::now() - when).count();
+}
+
+/// Keeps what every process said of itself last.
+class Processes {
+ public:
+  explicit Processes(bus::Node& node) : reader_(node.reader(bus::topics::kStatus)) {}
+
+  void poll();
+  std::vector<SeenProcess> all() const;
+  /// Of all processes that were seen, also those that ended.
+  std::uint64_t late_cycles() const;
+
+ private:
+  struct Entry {
+    v1::ServiceStatus status;
+    Clock::time_point came;
+    bool gone = false;  ///< in good order
+  };
+  bus::Reader<v1::ServiceStatus> reader_;
+  std::map<std::uint64_t, Entry> entries_;
+};
+
+/// What is there to hear us, in words, for when nobody answers.
+std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
+
+}  // namespace saphira::cli
