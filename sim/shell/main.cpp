@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   std::string position;
   std::vector<std::string> plot_files;
   app.add_option("--world", options.world, "World file")->required();
-  app.add_option("--robot", options.robot, "Robot parameter file")->required();
+  app.add_option("--robot,--robot-file", options.robot, "Robot parameter file")->required();
   auto* socket = app.add_option("--socket", options.socket,
                                 "Local socket to listen on (default: $ROBOT_SOCKET, otherwise "
                                 "/tmp/saphira-robot-<uid>)");
