@@ -1,1 +1,259 @@
+#include "saphira/sim/robot.hpp"
+
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace saphira::sim {
+namespace {
+
+using protocol::RobotParameters;
+
+World empty() {
+  return parse_world("width 100000 height 100000", "empty.wld");
+}
+
+// One wall at x = 2 m, from y = -5 to 5.
+World walled() {
+  return parse_world("width 9000 height 9000\n2000 -5000 2000 5000", "wall.wld");
+}
+
+void run(Robot& robot, int ticks) {
+  for (int i = 0; i < ticks; ++i)
+    robot.tick();
+}
+
+// Manual 5.5: constant acceleration to the speed that was set.
+TEST(Robot, AcceleratesAtAConstantRate) {
+  const World world = empty();
+  RobotParameters parameters;  // 0.5 m/s2, 2 m/s2, at most 0.4 m/s
+  Robot robot(world, parameters, {}, 1);
+  robot.set_velocity(0.3);
+  run(robot, 30);
+  EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
+  run(robot, 40);
+  EXPECT_NEAR(robot.velocity(), 0.3, 1e-12);
+  robot.set_velocity(-1.0);  // clamped
+  run(robot, 15);
+  EXPECT_NEAR(robot.velocity(), 0.0, 1e-9);
+  run(robot, 80);
+  EXPECT_NEAR(robot.velocity(), -0.4, 1e-9);
+  robot.stop();
+  run(robot, 20);
+  EXPECT_EQ(robot.velocity(), 0.0);
+  EXPECT_FALSE(robot.moving());
+  EXPECT_EQ(robot.pose_in_world().y, 0.0);
+}
+
+// Manual Figure 5-2.
+TEST(Robot, TurnsByATrapezoid) {
+  const World world = empty();
+  RobotParameters parameters;
+  Robot robot(world, parameters, {}, 1);
+  robot.set_heading(radians(170.0));
+  std::vector<double> speeds;
+  for (int i = 0; i < 400; ++i) {
+    robot.tick();
+    speeds.push_back(robot.rotation_velocity());
+    ASSERT_LE(robot.pose_in_odom().th, radians(170.0) + 0.002) << "overshoot";
+  }
+  EXPECT_NEAR(robot.pose_in_odom().th, radians(170.0), 0.002);
+  EXPECT_FALSE(robot.moving());
+  const double top = *std::max_element(speeds.begin(), speeds.end());
+  EXPECT_NEAR(top, parameters.max_rotation_velocity, 1e-9);
+  const double step = parameters.rotation_acceleration * kTick;
+  EXPECT_NEAR(speeds[9], 10 * step, 1e-9);  // the rising side
+  for (std::size_t i = 1; i < speeds.size(); ++i)
+    ASSERT_LE(std::abs(speeds[i] - speeds[i - 1]), step + 1e-9);
+  // 170 degrees at 100 deg/s with both ramps of 1/3 s: 1.7 + 1/3 s.
+  const auto done = std::find(speeds.begin() + 10, speeds.end(), 0.0) - speeds.begin();
+  EXPECT_NEAR(static_cast<double>(done) * kTick, 2.03, 0.1);
+}
+
+TEST(Robot, TurnsTheShortWayRound) {
+  const World world = empty();
+  Robot robot(world, RobotParameters{}, {}, 1);
+  robot.set_heading(radians(350.0));
+  run(robot, 100);
+  EXPECT_NEAR(robot.pose_in_odom().th, radians(-10.0), 0.002);
+  robot.turn_by(radians(-20.0));
+  run(robot, 100);
+  EXPECT_NEAR(robot.pose_in_odom().th, radians(-30.0), 0.003);
+}
+
+TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
+  const World world = empty();
+  RobotParameters parameters;
+  Robot robot(world, parameters, {}, 1);
+  robot.set_heading(radians(90.0));
+  run(robot, 50);
+  robot.set_heading(radians(-90.0));
+  double last = robot.rotation_velocity();
+  EXPECT_GT(last, 1.0);
+  for (int i = 0; i < 400; ++i) {
+    robot.tick();
+    ASSERT_LE(std::abs(robot.rotation_velocity() - last),
+              parameters.rotation_acceleration * kTick + 1e-9);
+    last = robot.rotation_velocity();
+  }
+  EXPECT_NEAR(robot.pose_in_odom().th, radians(-90.0), 0.002);
+}
+
+TEST(Robot, WheelVelocities) {
+  const World world = empty();
+  RobotParameters parameters;
+  Robot robot(world, parameters, {}, 1);
+  robot.set_wheel_velocities(0.1, 0.2);
+  run(robot, 100);
+  EXPECT_NEAR(robot.left_velocity(), 0.1, 1e-9);
+  EXPECT_NEAR(robot.right_velocity(), 0.2, 1e-9);
+  EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
+  EXPECT_NEAR(robot.rotation_velocity(), 0.05 * parameters.rotation_per_difference, 1e-9);
+  // Another command leaves the mode (manual 5.4.6).
+  robot.set_heading(robot.pose_in_odom().th);
+  run(robot, 100);
+  EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
+  EXPECT_EQ(robot.rotation_velocity(), 0.0);
+}
+
+TEST(Robot, BrakingKeepsTheVelocityForLater) {
+  const World world = empty();
+  Robot robot(world, RobotParameters{}, {}, 1);
+  robot.set_velocity(0.3);
+  robot.set_rotation_velocity(0.5);
+  run(robot, 100);
+  robot.brake(true);
+  run(robot, 30);
+  EXPECT_FALSE(robot.moving());
+  EXPECT_EQ(robot.target_velocity(), 0.0);
+  robot.brake(false);
+  run(robot, 100);
+  EXPECT_NEAR(robot.velocity(), 0.3, 1e-12);
+  EXPECT_EQ(robot.rotation_velocity(), 0.0);  // at the current heading
+}
+
+TEST(Robot, StopsAtAWallAndNeverBehindIt) {
+  const World world = walled();
+  for (const double th : {0.0, 20.0, -20.0, 60.0, -60.0, 80.0}) {
+    RobotParameters parameters;
+    Robot robot(world, parameters, {1.0, 0.0, radians(th)}, 1);
+    robot.set_velocity(0.4);
+    for (int i = 0; i < 2000; ++i) {
+      robot.tick();
+      ASSERT_GE(robot.clearance(), -1e-12) << th;
+    }
+    EXPECT_LT(robot.clearance(), 1e-6) << th;
+    EXPECT_EQ(robot.contacts(), 1) << th;
+    EXPECT_EQ(robot.velocity(), 0.0) << th;
+    // Manual 6.3.1: head on both motors stall, otherwise the one at that side.
+    EXPECT_EQ(robot.left_stalled(), th < 30.0) << th;
+    EXPECT_EQ(robot.right_stalled(), th > -30.0) << th;
+  }
+}
+
+TEST(Robot, BacksIntoAWallTheSameWay) {
+  const World world = walled();
+  Robot robot(world, RobotParameters{}, {1.0, 0.0, radians(180.0 - 60.0)}, 1);
+  robot.set_velocity(-0.4);
+  run(robot, 2000);
+  EXPECT_GE(robot.clearance(), -1e-12);
+  EXPECT_EQ(robot.contacts(), 1);
+  // The wall is at +x; the robot looks to 120 degrees, so it is behind and to its right.
+  EXPECT_FALSE(robot.left_stalled());
+  EXPECT_TRUE(robot.right_stalled());
+}
+
+TEST(Robot, DrivesOffAWallAndCountsTheNextContact) {
+  const World world = walled();
+  Robot robot(world, RobotParameters{}, {1.5, 0.0, 0.0}, 1);
+  for (int i = 1; i <= 3; ++i) {
+    robot.set_velocity(0.2);
+    run(robot, 400);
+    EXPECT_EQ(robot.contacts(), i);
+    robot.clear_stalls();
+    robot.set_velocity(-0.2);
+    run(robot, 200);
+    EXPECT_GT(robot.clearance(), 0.2);
+    EXPECT_FALSE(robot.left_stalled());
+  }
+}
+
+TEST(Robot, WithoutErrorsDeadReckoningIsTheTruth) {
+  const World world = empty();
+  const Pose start{3.0, 4.0, 1.0};
+  Robot robot(world, RobotParameters{}, start, 1);
+  robot.set_velocity(0.4);
+  robot.set_rotation_velocity(0.3);
+  run(robot, 3000);
+  const Pose expected = compose(start, robot.pose_in_odom());
+  EXPECT_NEAR(expected.x, robot.pose_in_world().x, 1e-9);
+  EXPECT_NEAR(expected.y, robot.pose_in_world().y, 1e-9);
+  robot.set_origin();
+  EXPECT_EQ(robot.pose_in_odom(), Pose{});
+}
+
+TEST(Robot, SettingTheOriginKeepsTheDirectionThatWasSet) {
+  const World world = empty();
+  Robot robot(world, RobotParameters{}, {}, 1);
+  robot.set_heading(1.0);
+  run(robot, 20);
+  robot.set_origin();
+  run(robot, 200);
+  EXPECT_NEAR(robot.pose_in_world().th, 1.0, 0.003);
+}
+
+// Manual Table 3-1 as robot.hpp reads it, over 400 robots; the bounds are four standard errors.
+TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
+  const World world = empty();
+  RobotParameters parameters;
+  parameters.encode_jitter = 0.01;
+  parameters.angle_jitter = 0.02;
+  parameters.angle_drift = 0.003;
+  constexpr int kRobots = 400;
+  double squares_way = 0.0;
+  double squares_turn = 0.0;
+  int left = 0;
+  for (int i = 0; i < kRobots; ++i) {
+    Robot robot(world, parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i));
+    robot.set_velocity(0.4);
+    run(robot, 1080);  // 4.16 m
+    const double way = robot.pose_in_world().x - 50.0;
+    const double drift = robot.pose_in_odom().th / way;
+    EXPECT_NEAR(std::abs(drift), 0.003, 1e-9);
+    left += drift > 0.0 ? 1 : 0;
+    const double measured = std::hypot(robot.pose_in_odom().x, robot.pose_in_odom().y);
+    squares_way += (measured - way) * (measured - way) / way;
+    robot.stop();
+    run(robot, 50);
+    const Pose before = robot.pose_in_odom();
+    const double before_in_world = robot.pose_in_world().th;
+    robot.set_rotation_velocity(1.0);
+    run(robot, 200);
+    const double turn = norm2_angle(robot.pose_in_world().th - before_in_world);
+    const double error = norm2_angle(robot.pose_in_odom().th - before.th - turn);
+    squares_turn += error * error / turn;
+  }
+  EXPECT_NEAR(std::sqrt(squares_way / kRobots), 0.01, 0.0015);
+  EXPECT_NEAR(std::sqrt(squares_turn / kRobots), 0.02, 0.003);
+  EXPECT_NEAR(left, kRobots / 2, 40);
+}
+
+TEST(Robot, OneSeedOneTrajectory) {
+  const World world = walled();
+  RobotParameters parameters;
+  parameters.encode_jitter = 0.01;
+  parameters.angle_jitter = 0.02;
+  const auto trajectory = [&](std::uint64_t seed) {
+    Robot robot(world, parameters, {}, seed);
+    robot.set_velocity(0.3);
+    robot.set_heading(2.0);
+    run(robot, 1000);
+    return robot.pose_in_odom();
+  };
+  EXPECT_EQ(trajectory(5), trajectory(5));
+  EXPECT_NE(trajectory(5), trajectory(6));
+}
+
+}  // namespace
+}  // namespace saphira::sim

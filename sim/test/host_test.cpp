@@ -1,0 +1,333 @@
+#include "saphira/sim/host.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "saphira/base/text.hpp"
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/information.hpp"
+#include "saphira/sim/trace.hpp"
+
+namespace saphira::sim {
+namespace {
+
+using namespace std::chrono_literals;
+using protocol::Bytes;
+
+std::string source(const std::string& path) {
+  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
+}
+
+// Generous: only a failure takes so long.
+constexpr auto kLimit = 20s;
+
+template <class Condition>
+bool wait_for(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + kLimit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end)
+      return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+class Client {
+ public:
+  explicit Client(const std::string& path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+    fd_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    connect(reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  }
+  explicit Client(std::uint16_t port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    fd_ = ::socket(AF_INET, SOCK_STREAM, 0);
+    connect(reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  }
+  ~Client() { close(); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  void close() {
+    if (fd_ >= 0)
+      ::close(fd_);
+    fd_ = -1;
+  }
+  void send(const Bytes& bytes) const {
+    EXPECT_EQ(::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
+  }
+  /// The next packet's body; empty when the connection has closed.
+  Bytes next() {
+    while (true) {
+      if (auto body = parser_.next())
+        return *body;
+      pollfd wait{fd_, POLLIN, 0};
+      const int ready =
+          ::poll(&wait, 1, static_cast<int>(std::chrono::milliseconds(kLimit).count()));
+      std::uint8_t buffer[1024];
+      const ssize_t size = ready == 1 ? ::read(fd_, buffer, sizeof buffer) : -1;
+      if (size <= 0) {
+        EXPECT_EQ(ready, 1) << "no packet came";
+        return {};
+      }
+      parser_.feed({buffer, static_cast<std::size_t>(size)});
+    }
+  }
+  protocol::InformationPacket information() {
+    while (true) {
+      const Bytes body = next();
+      if (body.empty())
+        return {};
+      if (const auto packet = protocol::decode_information(body))
+        return *packet;
+    }
+  }
+  void open() {
+    for (int i = 0; i < 3; ++i) {
+      send(protocol::encode_sync(i));
+      EXPECT_EQ(protocol::sync_number(next()), i);
+    }
+    send(encode(protocol::Open{}));
+  }
+
+ private:
+  void connect(const sockaddr* address, socklen_t size) const {
+    EXPECT_TRUE(wait_for([&] { return ::connect(fd_, address, size) == 0; }));
+  }
+
+  int fd_ = -1;
+  protocol::PacketParser parser_;
+};
+
+class HostTest : public ::testing::Test {
+ protected:
+  HostTest() : stop_(::eventfd(0, 0)) {
+    std::string name = "/tmp/saphira-host-test-XXXXXX";
+    directory_ = ::mkdtemp(name.data());
+    options_.world = source("config/worlds/office.wld");
+    options_.robot = source("config/robots/pioneer.p");
+    options_.socket = directory_ + "/robot";
+    options_.trace = directory_ + "/trace.csv";
+    options_.log = [this](const std::string& line) {
+      const std::scoped_lock lock(mutex_);
+      log_ += line + "\n";
+    };
+  }
+  ~HostTest() override {
+    stop();
+    ::close(stop_);
+    std::filesystem::remove_all(directory_);
+  }
+
+  void start() {
+    thread_ = std::thread([this] { run(options_, stop_); });
+  }
+  void stop() {
+    if (!thread_.joinable())
+      return;
+    const std::uint64_t one = 1;
+    EXPECT_EQ(::write(stop_, &one, sizeof one), static_cast<ssize_t>(sizeof one));
+    thread_.join();
+    std::uint64_t count = 0;
+    EXPECT_EQ(::read(stop_, &count, sizeof count), static_cast<ssize_t>(sizeof count));
+  }
+  std::string log() {
+    const std::scoped_lock lock(mutex_);
+    return log_;
+  }
+  bool logs(const std::string& text) {
+    return wait_for([&] { return log().find(text) != std::string::npos; });
+  }
+  std::vector<TraceRow> trace() const {
+    return parse_trace(read_file(options_.trace), options_.trace);
+  }
+
+  HostOptions options_;
+  std::string directory_;
+  int stop_;
+  std::thread thread_;
+  std::mutex mutex_;
+  std::string log_;
+};
+
+TEST_F(HostTest, ServesLive) {
+  options_.rate = 20.0;
+  start();
+  Client client(*options_.socket);
+  client.open();
+  client.send(encode(protocol::Velocity{0.3}));
+  for (int i = 0; i < 20; ++i) {
+    client.information();
+    client.send(encode(protocol::Pulse{}));
+  }
+  // The trace can be read while it grows.
+  EXPECT_TRUE(wait_for([&] { return trace().size() >= 20U; }));
+  client.close();
+  EXPECT_TRUE(logs("the client has gone"));
+  EXPECT_TRUE(wait_for([&] { return trace().back().velocity == 0.0; }));
+  EXPECT_GT(trace().back().pose_in_world.x, 1.6);
+  stop();
+  EXPECT_FALSE(std::filesystem::exists(*options_.socket));
+}
+
+TEST_F(HostTest, TheWatchdogWorksLive) {
+  options_.rate = 50.0;
+  start();
+  Client client(*options_.socket);
+  client.open();
+  client.send(encode(protocol::Velocity{0.2}));
+  protocol::InformationPacket packet;
+  for (int i = 0; i < 15; ++i)
+    packet = client.information();
+  EXPECT_EQ(packet.motors, protocol::Motors::kMoving);
+  for (int i = 0; i < 10; ++i)
+    packet = client.information();
+  EXPECT_EQ(packet.motors, protocol::Motors::kStopped);
+}
+
+TEST_F(HostTest, SingleStepsAndFlushesTheTrace) {
+  options_.step = true;
+  start();
+  Client client(*options_.socket);
+  client.open();
+  client.send(encode(protocol::Velocity{0.3}));
+  for (int i = 0; i < 100; ++i) {
+    client.send(encode(protocol::Step{}));
+    client.information();
+  }
+  stop();
+  const auto rows = trace();
+  ASSERT_GE(rows.size(), 100U);
+  EXPECT_TRUE(rows[0].first);
+  EXPECT_EQ(rows[99].cycle, 100U);
+  EXPECT_EQ(rows.back().velocity, 0.0);  // it was stopped before the end
+}
+
+// Without a tick of time, a false header must still not hold back the step behind it.
+TEST_F(HostTest, AFalseHeaderDoesNotStallSingleStep) {
+  options_.step = true;
+  start();
+  Client client(*options_.socket);
+  client.open();
+  client.send({0xFA, 0xFB, 180});
+  client.send(encode(protocol::Step{}));
+  EXPECT_EQ(client.information().motors, protocol::Motors::kStopped);
+}
+
+TEST_F(HostTest, RefusesASecondClientAndTakesTheNext) {
+  start();
+  {
+    Client first(*options_.socket);
+    first.open();
+    Client second(*options_.socket);
+    EXPECT_TRUE(second.next().empty());
+    EXPECT_TRUE(logs("second client was refused"));
+    first.information();
+  }
+  EXPECT_TRUE(logs("the client has gone"));
+  Client third(*options_.socket);
+  third.open();
+  third.information();
+}
+
+TEST_F(HostTest, ServesTcp) {
+  options_.tcp = 0;
+  options_.step = true;
+  start();
+  ASSERT_TRUE(logs("listening on 127.0.0.1:"));
+  const std::string line = log();
+  const auto at = line.find("127.0.0.1:") + 10;
+  Client client(static_cast<std::uint16_t>(std::stoi(line.substr(at))));
+  client.open();
+  client.send(encode(protocol::Step{}));
+  client.information();
+}
+
+TEST_F(HostTest, TakesOverTheSocketOfOneThatDied) {
+  {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, options_.socket->c_str(), sizeof address.sun_path - 1);
+    const int fd = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    ASSERT_EQ(::bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    ::close(fd);
+  }
+  ASSERT_TRUE(std::filesystem::exists(*options_.socket));
+  start();
+  Client client(*options_.socket);
+  client.open();
+}
+
+TEST_F(HostTest, RefusesWhatItCannotServe) {
+  const auto message = [&](const HostOptions& options) -> std::string {
+    try {
+      run(options, stop_);
+      return "no error";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  const auto with = [&](auto change) {
+    HostOptions options = options_;
+    change(options);
+    return message(options);
+  };
+  using Options = HostOptions;
+  EXPECT_NE(with([](Options& o) { o.world = "/nowhere.wld"; }).find("/nowhere.wld"),
+            std::string::npos);
+  EXPECT_NE(with([](Options& o) { o.rate = 0.0; }).find("rate"), std::string::npos);
+  EXPECT_NE(with([](Options& o) {
+              o.position = Pose{1.5, 6.0, 0.0};
+            }).find("in a wall"),
+            std::string::npos);
+  EXPECT_NE(with([](Options& o) { o.socket = std::string(200, 'x'); }).find("characters"),
+            std::string::npos);
+  EXPECT_NE(with([](Options& o) { o.socket = "/nowhere/robot"; }).find("/nowhere/robot"),
+            std::string::npos);
+  EXPECT_NE(with([](Options& o) { o.trace = "/nowhere/t.csv"; }).find("/nowhere/t.csv"),
+            std::string::npos);
+  EXPECT_NE(with([](Options& o) {
+              o.tcp = 0;
+              o.tcp_address = "nobody";
+            }).find("nobody"),
+            std::string::npos);
+  const std::string bare = directory_ + "/bare.wld";
+  std::ofstream(bare) << "width 1000 height 1000\n";
+  EXPECT_NE(with([&](Options& o) { o.world = bare; }).find("position"), std::string::npos);
+
+  start();
+  EXPECT_TRUE(logs("listening"));
+  EXPECT_NE(message(options_).find("another simulator"), std::string::npos);
+}
+
+TEST(Host, DefaultSocket) {
+  ::unsetenv("ROBOT_SOCKET");
+  EXPECT_EQ(default_socket(), "/tmp/saphira-robot-" + std::to_string(::getuid()));
+  ::setenv("ROBOT_SOCKET", "/tmp/mine", 1);
+  EXPECT_EQ(default_socket(), "/tmp/mine");
+  ::unsetenv("ROBOT_SOCKET");
+}
+
+}  // namespace
+}  // namespace saphira::sim
