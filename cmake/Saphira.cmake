@@ -82,6 +82,11 @@ function(saphira_test name)
     set_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN ${next})
     list(APPEND environment "SAPHIRA_DOMAIN=${domain}")
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}." PROPERTIES
-    TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${environment}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}."
+    TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT})
+  # Apart, since gtest_discover_tests takes a property that is a list to pieces.
+  set(setter "${CMAKE_CURRENT_BINARY_DIR}/${name}_environment.cmake")
+  file(WRITE "${setter}" "if(${name}_tests)
+  set_tests_properties(\${${name}_tests} PROPERTIES ENVIRONMENT \"${environment}\")\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${setter}")
 endfunction()
