@@ -519,6 +519,9 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
   // Fast DDS takes a writable pointer and only reads it.
   bool write(const void* sample) override { return writer_->write(const_cast<void*>(sample)); }
   bool dispose(const void* sample) override {
+    // An instance that another writer has written is withdrawn as well: it has to be made known
+    // here first.
+    writer_->register_instance(const_cast<void*>(sample));
     return writer_->dispose(const_cast<void*>(sample), fdds::HANDLE_NIL) ==
            ReturnCode_t::RETCODE_OK;
   }

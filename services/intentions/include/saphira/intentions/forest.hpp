@@ -21,6 +21,8 @@ struct IntentionNode {
   bool blocking = true;
   std::string step;
   GoalId goal;  ///< that it serves
+
+  bool operator==(const IntentionNode&) const = default;
 };
 
 /// How an intention came to its end.

@@ -1,0 +1,252 @@
+#include "intentions/shell/convert.hpp"
+
+#include <array>
+#include <utility>
+
+namespace saphira::intentions {
+namespace {
+
+/// An enumeration's two sides, in pairs: both ways are the same table.
+template <class Ours, class Theirs, std::size_t size>
+using Table = std::array<std::pair<Ours, Theirs>, size>;
+
+constexpr Table<ArgumentKind, v1::ArgumentKind, 3> kKinds = {{
+    {ArgumentKind::kNumber, v1::ARGUMENT_NUMBER},
+    {ArgumentKind::kText, v1::ARGUMENT_TEXT},
+    {ArgumentKind::kPoint, v1::ARGUMENT_POINT},
+}};
+constexpr Table<Frame, v1::Frame, 3> kFrames = {{
+    {Frame::kRobot, v1::FRAME_ROBOT},
+    {Frame::kOdom, v1::FRAME_ODOM},
+    {Frame::kMap, v1::FRAME_MAP},
+}};
+constexpr Table<GoalState, v1::GoalState, 7> kStates = {{
+    {GoalState::kWaiting, v1::GOAL_WAITING},
+    {GoalState::kRefused, v1::GOAL_REFUSED},
+    {GoalState::kUnderway, v1::GOAL_UNDERWAY},
+    {GoalState::kSuspended, v1::GOAL_SUSPENDED},
+    {GoalState::kSucceeded, v1::GOAL_SUCCEEDED},
+    {GoalState::kFailed, v1::GOAL_FAILED},
+    {GoalState::kCanceled, v1::GOAL_CANCELED},
+}};
+constexpr Table<GoalCode, v1::GoalCode, 11> kCodes = {{
+    {GoalCode::kNone, v1::CODE_NONE},
+    {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
+    {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
+    {GoalCode::kChanged, v1::CODE_CHANGED},
+    {GoalCode::kTooMany, v1::CODE_TOO_MANY},
+    {GoalCode::kDeadline, v1::CODE_DEADLINE},
+    {GoalCode::kBlocked, v1::CODE_BLOCKED},
+    {GoalCode::kNoRobot, v1::CODE_NO_ROBOT},
+    {GoalCode::kDisposed, v1::CODE_DISPOSED},
+    {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
+    {GoalCode::kPreempted, v1::CODE_PREEMPTED},
+}};
+// The bus does not tell the first step after a suspension from the ones that follow; what is
+// removed does not get there.
+constexpr Table<IntentionState, v1::IntentionState, 8> kIntentionStates = {{
+    {IntentionState::kInit, v1::INTENTION_INIT},
+    {IntentionState::kRunning, v1::INTENTION_RUNNING},
+    {IntentionState::kResumed, v1::INTENTION_RUNNING},
+    {IntentionState::kSuspended, v1::INTENTION_SUSPENDED},
+    {IntentionState::kInterrupted, v1::INTENTION_INTERRUPTED},
+    {IntentionState::kSuccess, v1::INTENTION_SUCCESS},
+    {IntentionState::kFailure, v1::INTENTION_FAILURE},
+    {IntentionState::kTimeout, v1::INTENTION_TIMEOUT},
+}};
+
+template <class Ours, class Theirs, std::size_t size>
+Theirs to_bus(const Table<Ours, Theirs, size>& table, Ours value) {
+  for (const auto& [ours, theirs] : table) {
+    if (ours == value)
+      return theirs;
+  }
+  return table.front().second;
+}
+
+template <class Ours, class Theirs, std::size_t size>
+Ours from_bus(const Table<Ours, Theirs, size>& table, Theirs value, Ours otherwise) {
+  for (const auto& [ours, theirs] : table) {
+    if (theirs == value)
+      return ours;
+  }
+  return otherwise;
+}
+
+Arguments from_bus(const std::vector<v1::Argument>& arguments) {
+  Arguments result;
+  result.reserve(arguments.size());
+  for (const v1::Argument& argument : arguments)
+    result.push_back(intentions::from_bus(argument));
+  return result;
+}
+
+std::vector<v1::Argument> to_bus(const Arguments& arguments) {
+  std::vector<v1::Argument> result;
+  result.reserve(arguments.size());
+  for (const Argument& argument : arguments)
+    result.push_back(intentions::to_bus(argument));
+  return result;
+}
+
+}  // namespace
+
+Argument from_bus(const v1::Argument& argument) {
+  Argument result;
+  result.name = argument.name();
+  result.kind = from_bus(kKinds, argument.kind(), ArgumentKind::kText);
+  result.number = argument.number();
+  result.text = argument.text();
+  result.point = {argument.point().x(), argument.point().y(), argument.point().th()};
+  result.frame = from_bus(kFrames, argument.frame(), Frame::kMap);
+  return result;
+}
+
+v1::Argument to_bus(const Argument& argument) {
+  v1::Argument result;
+  result.name(argument.name);
+  result.kind(to_bus(kKinds, argument.kind));
+  result.number(argument.number);
+  result.text(argument.text);
+  result.point().x(argument.point.x);
+  result.point().y(argument.point.y);
+  result.point().th(argument.point.th);
+  result.frame(to_bus(kFrames, argument.frame));
+  return result;
+}
+
+GoalId from_bus(const v1::GoalId& id) {
+  return {id.writer(), id.number()};
+}
+
+v1::GoalId to_bus(const GoalId& id) {
+  v1::GoalId result;
+  result.writer(id.writer);
+  result.number(id.number);
+  return result;
+}
+
+Goal from_bus(const v1::Goal& goal) {
+  Goal result;
+  result.id = from_bus(goal.id());
+  result.requester = goal.requester();
+  result.functor = goal.functor();
+  result.arguments = from_bus(goal.arguments());
+  result.priority = goal.priority();
+  result.deadline = goal.deadline();
+  result.writer_lost =
+      goal.writer_lost() == v1::WRITER_LOST_KEEP ? WriterLost::kKeep : WriterLost::kCancel;
+  return result;
+}
+
+v1::Goal to_bus(const Goal& goal) {
+  v1::Goal result;
+  result.id(to_bus(goal.id));
+  result.requester(goal.requester);
+  result.functor(goal.functor);
+  result.arguments(to_bus(goal.arguments));
+  result.priority(goal.priority);
+  result.deadline(goal.deadline);
+  result.writer_lost(goal.writer_lost == WriterLost::kKeep ? v1::WRITER_LOST_KEEP
+                                                           : v1::WRITER_LOST_CANCEL);
+  return result;
+}
+
+GoalStatus from_bus(const v1::GoalStatus& status) {
+  GoalStatus result;
+  result.id = from_bus(status.id());
+  result.requester = status.requester();
+  result.functor = status.functor();
+  result.state = from_bus(kStates, status.state(), GoalState::kWaiting);
+  result.code = from_bus(kCodes, status.code(), GoalCode::kNone);
+  result.reason = status.reason();
+  result.step = status.step();
+  result.progress = status.progress();
+  result.elapsed = status.elapsed();
+  return result;
+}
+
+v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
+  v1::GoalStatus result;
+  result.id(to_bus(status.id));
+  result.stamp(stamp);
+  result.requester(status.requester);
+  result.functor(status.functor);
+  result.state(to_bus(kStates, status.state));
+  result.code(to_bus(kCodes, status.code));
+  result.reason(status.reason);
+  result.step(status.step);
+  result.progress(status.progress);
+  result.elapsed(status.elapsed);
+  return result;
+}
+
+IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {
+  IntendedBehavior result;
+  result.name = behavior.name();
+  result.schema = behavior.schema();
+  result.priority = behavior.priority();
+  result.running = behavior.running();
+  result.parameters = from_bus(behavior.parameters());
+  result.intention = behavior.intention();
+  return result;
+}
+
+v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
+  v1::IntendedBehavior result;
+  result.name(behavior.name);
+  result.schema(behavior.schema);
+  result.priority(behavior.priority);
+  result.running(behavior.running);
+  result.parameters(to_bus(behavior.parameters));
+  result.intention(behavior.intention);
+  return result;
+}
+
+IntentionNode from_bus(const v1::IntentionNode& node) {
+  IntentionNode result;
+  result.id = node.id();
+  result.parent = node.parent();
+  result.name = node.name();
+  result.schema = node.schema();
+  result.state = from_bus(kIntentionStates, node.state(), IntentionState::kRunning);
+  result.blocking = node.blocking();
+  result.step = node.step();
+  result.goal = from_bus(node.goal());
+  return result;
+}
+
+v1::IntentionNode to_bus(const IntentionNode& node) {
+  v1::IntentionNode result;
+  result.id(node.id);
+  result.parent(node.parent);
+  result.name(node.name);
+  result.schema(node.schema);
+  result.state(to_bus(kIntentionStates, node.state));
+  result.blocking(node.blocking);
+  result.step(node.step);
+  result.goal(to_bus(node.goal));
+  return result;
+}
+
+Robot from_bus(const v1::RobotState& robot) {
+  Robot result;
+  result.connected = robot.status() != v1::MOTORS_NOT_CONNECTED;
+  result.has_power = robot.status() != v1::MOTORS_NO_POWER;
+  result.odom = robot.odom();
+  const v1::Pose2& pose = robot.pose_in_odom();
+  result.pose_in_odom = {pose.x(), pose.y(), pose.th()};
+  result.velocity = robot.velocity();
+  result.rotation_velocity = robot.rotation_velocity();
+  return result;
+}
+
+std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors) {
+  std::vector<BehaviorLevel> result;
+  result.reserve(behaviors.behaviors().size());
+  for (const v1::BehaviorState& behavior : behaviors.behaviors())
+    result.push_back({behavior.name(), behavior.goal(), behavior.progress()});
+  return result;
+}
+
+}  // namespace saphira::intentions

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "behavior.h"
+#include "intention.h"
+#include "robot.h"
+#include "saphira/intentions/executor.hpp"
+
+namespace saphira::intentions {
+
+/// The types of the bus to those of the library and back. What a writer that does not keep to the
+/// contract puts into an enumeration becomes the value that is refused, or the cautious one.
+
+Argument from_bus(const v1::Argument& argument);
+v1::Argument to_bus(const Argument& argument);
+
+GoalId from_bus(const v1::GoalId& id);
+v1::GoalId to_bus(const GoalId& id);
+
+Goal from_bus(const v1::Goal& goal);
+v1::Goal to_bus(const Goal& goal);
+
+GoalStatus from_bus(const v1::GoalStatus& status);
+v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp);
+
+IntendedBehavior from_bus(const v1::IntendedBehavior& behavior);
+v1::IntendedBehavior to_bus(const IntendedBehavior& behavior);
+
+IntentionNode from_bus(const v1::IntentionNode& node);
+v1::IntentionNode to_bus(const IntentionNode& node);
+
+Robot from_bus(const v1::RobotState& robot);
+std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors);
+
+}  // namespace saphira::intentions

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "intentions/shell/memory_file.hpp"
+#include "saphira/bus/cycle.hpp"
+#include "saphira/intentions/executor.hpp"
+
+namespace saphira::intentions {
+
+struct ShellOptions {
+  std::string memory_file;  ///< what outlives the service; empty: nothing does
+};
+
+/// The intentions service on the bus. To be made and run in one thread.
+class Shell {
+ public:
+  /// Throws FileError or std::runtime_error where the memory file cannot be read or written.
+  explicit Shell(bus::Node& node, const ShellOptions& options = {});
+
+  /// Steps until stop is requested.
+  void run(const bus::Stop& stop) {
+    while (step(stop)) {
+    }
+  }
+  /// Waits for one cycle and steps it; false when stop was requested.
+  bool step(const bus::Stop& stop);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::vector<GoalEvent> take_events();
+  void idle();
+  void publish(const News& news);
+
+  bus::Node& node_;
+  bus::Cycle cycle_;
+  bus::Input<v1::Behaviors>& behaviors_;
+  bus::Reader<v1::Goal> goals_;
+  bus::Writer<v1::Intentions> intentions_;
+  bus::Writer<v1::GoalStatus> statuses_;
+  MemoryFile memory_;
+  Executor executor_;
+  std::map<GoalId, bus::WriterId> writers_;  ///< who wrote each goal last
+  std::map<GoalId, GoalState> logged_;
+  v1::Stamp stamp_;  ///< of the newest step
+  Clock::time_point stepped_ = Clock::now();
+  bool robot_here_ = false;
+};
+
+}  // namespace saphira::intentions

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "intentions/shell/convert.hpp"
+#include "saphira/bus/node.hpp"
+#include "scripted_robot.hpp"
+
+namespace saphira::intentions {
+
+/// The bridge and the behaviors service in one, as simple as can be, on the bus.
+class ScriptedBus {
+ public:
+  explicit ScriptedBus(bus::Node& node)
+      : state_(node.writer(bus::topics::kRobotState)),
+        behaviors_(node.writer(bus::topics::kBehaviors)),
+        intentions_(node.reader(bus::topics::kIntentions)) {}
+
+  ScriptedRobot world;
+  std::uint64_t epoch = 100;
+  std::uint64_t cycle = 0;
+
+  /// The robot's next cycle.
+  void publish_state() {
+    ++cycle;
+    v1::RobotState state;
+    state.stamp(stamp());
+    state.odom(world.robot.odom);
+    state.pose_in_odom().x(world.robot.pose_in_odom.x);
+    state.pose_in_odom().y(world.robot.pose_in_odom.y);
+    state.pose_in_odom().th(world.robot.pose_in_odom.th);
+    state.velocity(world.robot.velocity);
+    state.rotation_velocity(world.robot.rotation_velocity);
+    state.status(v1::MOTORS_MOVING);
+    state_.write(state);
+  }
+
+  /// Does what the intentions of this cycle ask for, where they have come: publishes the behaviors
+  /// sample of the cycle and moves the world on.
+  bool act() {
+    for (const auto& sample : intentions_.take()) {
+      if (sample.data.stamp().cycle() == cycle && sample.data.stamp().epoch() == epoch)
+        intended = sample.data;
+    }
+    if (!intended || intended->stamp().cycle() != cycle || intended->stamp().epoch() != epoch)
+      return false;
+    std::vector<IntendedBehavior> behaviors;
+    for (const v1::IntendedBehavior& behavior : intended->behaviors())
+      behaviors.push_back(from_bus(behavior));
+    world.move(behaviors, cycle);
+    v1::Behaviors sample;
+    sample.stamp(stamp());
+    sample.control(true);
+    for (const BehaviorLevel& level : world.levels) {
+      v1::BehaviorState state;
+      state.name(level.name);
+      state.goal(level.goal);
+      sample.behaviors().push_back(state);
+    }
+    behaviors_.write(sample);
+    return true;
+  }
+
+  std::optional<v1::Intentions> intended;  ///< the newest that were acted on
+
+ private:
+  v1::Stamp stamp() const {
+    v1::Stamp made;
+    made.epoch(epoch);
+    made.cycle(cycle);
+    return made;
+  }
+
+  bus::Writer<v1::RobotState> state_;
+  bus::Writer<v1::Behaviors> behaviors_;
+  bus::Reader<v1::Intentions> intentions_;
+};
+
+}  // namespace saphira::intentions
