@@ -1,5 +1,6 @@
 #include "saphira/bus/cycle.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <set>
@@ -282,6 +283,12 @@ void Cycle::done() {
   ++impl_->timed;
   impl_->total_ms += ms;
   impl_->max_ms = std::max(impl_->max_ms, ms);
+}
+
+bool Cycle::connected() const {
+  return impl_->robot.matched() > 0 &&
+         std::all_of(impl_->inputs.begin(), impl_->inputs.end(),
+                     [](const auto& slot) { return slot->matched() > 0; });
 }
 
 const v1::Stamp& Cycle::stamp() const {

@@ -130,6 +130,9 @@ class Cycle {
   /// Ends the step that next() began: counts its time.
   void done();
 
+  /// Whether a bridge and a writer of each input have been found.
+  bool connected() const;
+
   /// The stamp for what is published in this step.
   const v1::Stamp& stamp() const;
 

@@ -1,0 +1,375 @@
+#include <poll.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "harness.hpp"
+#include "saphira/bus/introspect.hpp"
+
+namespace saphira::bus::test {
+namespace {
+
+class Bus : public OnEachBus {};
+INSTANTIATE_TEST_SUITE_P(Over, Bus, testing::Values("memory", "dds"),
+                         [](const auto& bus) { return bus.param; });
+
+TEST_P(Bus, WhatIsWrittenIsRead) {
+  auto a = node("a");
+  auto b = node("b");
+  auto writer = a->writer(topics::kRobotState);
+  auto reader = b->reader(topics::kRobotState);
+  ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
+  ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
+  auto state = robot_state(3, 4);
+  state.pose_in_odom().x(1.25);
+  state.sonars().resize(2);
+  state.sonars()[1].range(0.5F);
+  state.battery(12.5);
+  ASSERT_TRUE(writer.write(state));
+  const auto samples = take_at_least(*b, reader, 1);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_TRUE(samples[0].data == state);
+  EXPECT_FALSE(samples[0].info.disposed);
+  EXPECT_NE(samples[0].info.writer, WriterId{});
+}
+
+TEST_P(Bus, NewestOfWhatHasCome) {
+  auto a = node("a", "", true);
+  auto b = node("b", "", true);
+  auto writer = a->writer(topics::kRobotState);
+  for (std::uint64_t cycle = 1; cycle <= 5; ++cycle)
+    writer.write(robot_state(1, cycle));
+  auto reader = b->reader(topics::kRobotState);
+  std::uint64_t newest = 0;
+  EXPECT_TRUE(eventually(*b, [&] {
+    if (const auto state = reader.take_newest())
+      newest = state->stamp().cycle();
+    return newest == 5;
+  }));
+  EXPECT_FALSE(reader.take_newest().has_value());
+}
+
+TEST_P(Bus, LateReaderOfLatchedTopicGetsTheNewestOfEachKey) {
+  auto a = node("a");
+  auto writer = a->writer(topics::kGoals);
+  writer.write(goal(1, "old"));
+  writer.write(goal(2, "old"));
+  writer.write(goal(1, "new"));
+  writer.write(goal(2, "new"));
+  auto b = node("b");
+  auto reader = b->reader(topics::kGoals);
+  const auto samples = take_at_least(*b, reader, 2);
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_EQ(samples[0].data.functor(), "new");
+  EXPECT_EQ(samples[1].data.functor(), "new");
+  EXPECT_NE(samples[0].data.id().number(), samples[1].data.id().number());
+}
+
+TEST_P(Bus, ManyKeys) {
+  auto a = node("a");
+  auto b = node("b");
+  auto writer = a->writer(topics::kGoals);
+  auto reader = b->reader(topics::kGoals);
+  for (std::uint64_t number = 1; number <= 200; ++number)
+    ASSERT_TRUE(writer.write(goal(number)));
+  EXPECT_EQ(take_at_least(*b, reader, 200).size(), 200U);
+}
+
+TEST_P(Bus, DisposeTellsWhatWasWithdrawn) {
+  auto a = node("a");
+  auto b = node("b");
+  auto writer = a->writer(topics::kGoals);
+  auto reader = b->reader(topics::kGoals);
+  writer.write(goal(1, "one"));
+  writer.write(goal(2, "two"));
+  take_at_least(*b, reader, 2);
+  ASSERT_TRUE(writer.dispose(goal(1)));
+  const auto gone = take_at_least(*b, reader, 1);
+  ASSERT_EQ(gone.size(), 1U);
+  EXPECT_TRUE(gone[0].info.disposed);
+  EXPECT_EQ(gone[0].data.functor(), "one");
+  // It may be asked for again.
+  writer.write(goal(1, "again"));
+  const auto again = take_at_least(*b, reader, 1);
+  EXPECT_FALSE(again[0].info.disposed);
+  EXPECT_EQ(again[0].data.functor(), "again");
+}
+
+TEST_P(Bus, LateReaderDoesNotSeeWhatWasWithdrawn) {
+  auto a = node("a");
+  auto writer = a->writer(topics::kGoals);
+  writer.write(goal(1));
+  writer.dispose(goal(1));
+  writer.write(goal(2));
+  auto b = node("b");
+  auto reader = b->reader(topics::kGoals);
+  const auto samples = take_at_least(*b, reader, 1);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].data.id().number(), 2U);
+}
+
+TEST_P(Bus, WriterThatEndsIsLostByItsName) {
+  auto a = node("a");
+  auto b = node("b");
+  auto reader = b->reader(topics::kGoals);
+  auto staying = b->writer(topics::kGoals);
+  WriterId id;
+  {
+    auto writer = a->writer(topics::kGoals);
+    writer.write(goal(1));
+    const auto samples = take_at_least(*b, reader, 1);
+    ASSERT_EQ(samples.size(), 1U);
+    id = samples[0].info.writer;
+    EXPECT_TRUE(reader.take_lost().empty());
+  }
+  std::vector<WriterId> lost;
+  EXPECT_TRUE(eventually(*b, [&] { return !(lost = reader.take_lost()).empty(); }));
+  EXPECT_EQ(lost, std::vector<WriterId>{id});
+  EXPECT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
+}
+
+TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
+  const std::string one = robot("one");
+  const std::string two = robot("two");
+  auto a = node("a", one);
+  auto b = node("b", two);
+  auto fleet = node("fleet", "*");
+  auto writer_a = a->writer(topics::kGoals);
+  auto writer_b = b->writer(topics::kGoals);
+  auto reader_b = b->reader(topics::kGoals);
+  auto reader_fleet = fleet->reader(topics::kGoals);
+  const std::uint64_t mark = a->instance();  // "*" also hears tests that run beside this one
+  auto goal_a = goal(1);
+  goal_a.id().writer(mark);
+  auto goal_b = goal(2);
+  goal_b.id().writer(mark);
+  writer_a.write(goal_a);
+  writer_b.write(goal_b);
+  std::vector<std::uint64_t> heard;
+  EXPECT_TRUE(eventually(*fleet, [&] {
+    for (const auto& sample : reader_fleet.take())
+      if (sample.data.id().writer() == mark)
+        heard.push_back(sample.data.id().number());
+    return heard.size() >= 2;
+  }));
+  std::sort(heard.begin(), heard.end());
+  EXPECT_EQ(heard, (std::vector<std::uint64_t>{1, 2}));
+  const auto samples = take_at_least(*b, reader_b, 1);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].data.id().number(), 2U);
+  EXPECT_EQ(reader_b.matched(), 1U);
+}
+
+TEST_P(Bus, CommandsAreNotForLateReaders) {
+  auto a = node("a");
+  auto writer = a->writer(topics::kDevice);
+  v1::DeviceCommand command;
+  command.value(1);
+  writer.write(command);
+  auto b = node("b");
+  auto reader = b->reader(topics::kDevice);
+  ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
+  ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
+  command.value(2);
+  writer.write(command);
+  const auto samples = take_at_least(*b, reader, 1);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].data.value(), 2);
+}
+
+TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {
+  auto a = node("weak");
+  auto b = node("strong");
+  auto writer = Writer<v1::Goal>(internal::transport_of(*a).make_writer(
+      topics::kGoals.name, internal::Policies{}, type_of<v1::Goal>()));
+  auto reader = b->reader(topics::kGoals);
+  EXPECT_TRUE(eventually(*a, [&] { return a->health().incompatible == 1; }));
+  EXPECT_TRUE(eventually(*b, [&] { return b->health().incompatible == 1; }));
+  EXPECT_EQ(writer.matched(), 0U);
+  const std::string text_a = a->health().incompatible_text;
+  const std::string text_b = b->health().incompatible_text;
+  EXPECT_NE(text_a.find("goals"), std::string::npos) << text_a;
+  EXPECT_NE(text_a.find("the reader of strong"), std::string::npos) << text_a;
+  EXPECT_NE(text_b.find("the writer of weak"), std::string::npos) << text_b;
+  EXPECT_NE(text_b.find("reliability: offered best effort, requested reliable"), std::string::npos)
+      << text_b;
+  b->publish_status();
+  EXPECT_EQ(b->status().incompatible(), 1U);
+}
+
+TEST_P(Bus, OtherTypeOnATopicOfOursIsReported) {
+  auto a = node("odd");
+  auto b = node("b");
+  auto reader = b->reader(topics::kRobotState);
+  auto writer = Writer<v1::Goal>(internal::transport_of(*a).make_writer(
+      topics::kRobotState.name, internal::policies(Qos::cyclic, false), type_of<v1::Goal>()));
+  EXPECT_TRUE(eventually(*b, [&] { return b->health().incompatible == 1; }));
+  const std::string text = b->health().incompatible_text;
+  EXPECT_NE(text.find("odd"), std::string::npos) << text;
+  EXPECT_NE(text.find("saphira::v1::Goal"), std::string::npos) << text;
+  EXPECT_NE(text.find("saphira::v1::RobotState"), std::string::npos) << text;
+  EXPECT_EQ(reader.matched(), 0U);
+}
+
+TEST_P(Bus, StatusComesAtOnceAndIsWithdrawnAtTheEnd) {
+  auto b = node("b");
+  auto reader = b->reader(topics::kStatus);
+  auto a = node("a");
+  EXPECT_TRUE(a->publish_status());
+  EXPECT_FALSE(a->publish_status());
+  a->status().state() = v1::SERVICE_RUNNING;
+  EXPECT_TRUE(a->publish_status());
+  bool running = false;
+  EXPECT_TRUE(eventually(*b, [&] {
+    for (const auto& sample : reader.take())
+      running |= sample.data.name() == "a" && sample.data.state() == v1::SERVICE_RUNNING &&
+                 sample.data.rss_mb() > 1.0 && sample.data.instance() == a->instance();
+    return running;
+  }));
+  a.reset();
+  bool gone = false;
+  EXPECT_TRUE(eventually(*b, [&] {
+    for (const auto& sample : reader.take())
+      gone |= sample.data.name() == "a" && sample.info.disposed;
+    return gone;
+  }));
+}
+
+TEST_P(Bus, LogIsReadByWhoComesLater) {
+  auto a = node("a");
+  a->warn("odd things");
+  auto b = node("b");
+  auto reader = b->reader(topics::kLog);
+  const auto samples = take_at_least(*b, reader, 1);
+  EXPECT_EQ(samples[0].data.text(), "odd things");
+  EXPECT_EQ(samples[0].data.level(), v1::LOG_WARNING);
+  EXPECT_EQ(samples[0].data.name(), "a");
+}
+
+TEST_P(Bus, StopEndsAWait) {
+  auto a = node("a");
+  Stop stop;
+  stop.request();
+  a->clear_wake();
+  EXPECT_TRUE(a->wait(milliseconds(10000), &stop));
+  EXPECT_TRUE(stop.requested());
+}
+
+TEST_P(Bus, EchoSpeaksJson) {
+  auto a = node("a");
+  auto writer = a->writer(topics::kGoalStatus);
+  v1::GoalStatus status;
+  status.id().writer(18446744073709551615ULL);
+  status.id().number(2);
+  status.state() = v1::GOAL_FAILED;
+  status.code() = v1::CODE_BLOCKED;
+  status.reason() = "a \"wall\"\n";
+  status.progress() = 0.1;
+  status.elapsed() = std::numeric_limits<double>::quiet_NaN();
+  writer.write(status);
+  auto b = node("b");
+  Echo echo(*b, "goals/status");
+  std::vector<std::string> lines;
+  ASSERT_TRUE(eventually(*b, [&] { return !(lines = echo.take_json()).empty(); }));
+  EXPECT_EQ(lines[0],
+            R"({"id":{"writer":18446744073709551615,"number":2},"stamp":{"epoch":0,"cycle":0},)"
+            R"("requester":"","functor":"","state":"GOAL_FAILED","code":"CODE_BLOCKED",)"
+            R"("reason":"a \"wall\"\u000a","step":"","progress":0.1,"elapsed":null})");
+  writer.dispose(status);
+  ASSERT_TRUE(eventually(*b, [&] { return !(lines = echo.take_json()).empty(); }));
+  EXPECT_EQ(lines[0].substr(0, 25), R"({"_disposed":true,"id":{")");
+}
+
+TEST_P(Bus, EchoNamesTheTopicsThatThereAre) {
+  auto a = node("a");
+  try {
+    const Echo echo(*a, "robot/stat");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("robot/state"), std::string::npos) << error.what();
+  }
+  // Every topic can be read.
+  for (const auto& topic : known_topics())
+    EXPECT_TRUE(Echo(*a, topic.name).take_json().empty());
+}
+
+TEST_P(Bus, CensusTellsWhoIsThereAndWhoDoesNotMatch) {
+  const std::string here = robot("census");
+  auto a = node("weak", here);
+  auto b = node("strong", here);
+  auto c = node("census", here);
+  const Census census(*c);
+  auto writer = Writer<v1::Goal>(internal::transport_of(*a).make_writer(
+      topics::kGoals.name, internal::Policies{}, type_of<v1::Goal>()));
+  auto reader = b->reader(topics::kGoals);
+  std::vector<Mismatch> mismatches;
+  ASSERT_TRUE(eventually(*c, [&] { return !(mismatches = census.mismatches()).empty(); }));
+  EXPECT_EQ(mismatches[0].writer.program, "weak");
+  EXPECT_EQ(mismatches[0].reader.program, "strong");
+  EXPECT_EQ(mismatches[0].why, "reliability: offered best effort, requested reliable");
+  EXPECT_EQ(mismatches[0].reader.durability, "transient_local");
+  EXPECT_EQ(mismatches[0].reader.host, internal::host_name());
+  EXPECT_EQ(mismatches[0].reader.pid, static_cast<std::uint32_t>(getpid()));
+  EXPECT_EQ(mismatches[0].reader.robot, here);
+  for (const auto& endpoint : census.endpoints())
+    EXPECT_NE(endpoint.program, "census");
+  b.reset();
+}
+
+TEST(Wake, ManySignalsAreOneWakeUntilCleared) {
+  internal::Wake wake;
+  const auto readable = [&] {
+    pollfd fd{wake.fd(), POLLIN, 0};
+    return poll(&fd, 1, 0) == 1;
+  };
+  EXPECT_FALSE(readable());
+  wake.signal();
+  wake.signal();
+  wake.signal();
+  EXPECT_TRUE(readable());
+  wake.clear();
+  EXPECT_FALSE(readable());
+  wake.clear();
+  wake.signal();
+  EXPECT_TRUE(readable());
+}
+
+TEST(Partitions, MeetByWildcard) {
+  EXPECT_TRUE(internal::partitions_meet("a", "a"));
+  EXPECT_TRUE(internal::partitions_meet("*", "a"));
+  EXPECT_TRUE(internal::partitions_meet("fleet-3", "fleet-*"));
+  EXPECT_TRUE(internal::partitions_meet("x,a", "a"));
+  EXPECT_FALSE(internal::partitions_meet("a", "b"));
+  EXPECT_FALSE(internal::partitions_meet("", "b"));
+}
+
+TEST(Dds, WrongSettingsAreNamed) {
+  NodeOptions options;
+  options.domain = 400;
+  EXPECT_THROW(Node{options}, std::runtime_error);
+  options.domain = domain();
+  options.profile = Profile::lan;
+  options.interface = "203.0.113.7";
+  try {
+    const Node node(options);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("203.0.113.7"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("127.0.0.1"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Dds, NodesAreFreedInAnyOrder) {
+  NodeOptions options;
+  options.domain = domain();
+  options.robot = robot("order");
+  auto node = std::make_unique<Node>(options);
+  auto writer = node->writer(topics::kGoals);
+  auto reader = node->reader(topics::kGoals);
+  node.reset();
+  EXPECT_TRUE(writer.write(goal(1)));
+  EXPECT_EQ(reader.take().size(), 1U);
+}
+
+}  // namespace
+}  // namespace saphira::bus::test

@@ -1,0 +1,373 @@
+#include "saphira/bus/cycle.hpp"
+
+#include <poll.h>
+
+#include <atomic>
+#include <thread>
+
+#include "harness.hpp"
+
+namespace saphira::bus::test {
+namespace {
+
+// A bridge and an intentions service that are written by hand, and a service that steps.
+class Cycles : public OnEachBus {
+ protected:
+  void start(bool lockstep) {
+    bridge_ = node("bridge", "", lockstep);
+    other_ = node("intentions", "", lockstep);
+    service_ = node("service", "", lockstep);
+    cycle_ = std::make_unique<Cycle>(*service_);
+    input_ = &cycle_->input(topics::kIntentions);
+    robot_.emplace(bridge_->writer(topics::kRobotState));
+    intentions_.emplace(other_->writer(topics::kIntentions));
+    ASSERT_TRUE(eventually(*bridge_, [&] { return robot_->matched() == 1; }));
+    ASSERT_TRUE(eventually(*other_, [&] { return intentions_->matched() == 1; }));
+    ASSERT_TRUE(eventually(*service_, [&] { return cycle_->connected(); }));
+  }
+
+  // The next step, or nothing when there is none for so long.
+  std::optional<Step> next(milliseconds patience) {
+    Stop stop;
+    Stop over;
+    std::thread guard([&] {
+      pollfd fd{over.fd(), POLLIN, 0};
+      if (poll(&fd, 1, static_cast<int>(patience.count())) == 0)
+        stop.request();
+    });
+    auto result = cycle_->next(stop);
+    over.request();
+    guard.join();
+    return result;
+  }
+  std::uint64_t step() {
+    const auto result = next(milliseconds(10000));
+    if (!result)
+      return 0;
+    cycle_->done();
+    return result->robot.stamp().cycle();
+  }
+  bool no_step() { return !next(absence()).has_value(); }
+
+  // Live samples are read one by one: they are not kept for a reader that is behind.
+  void send(std::uint64_t epoch, std::uint64_t number) {
+    robot_->write(robot_state(epoch, number));
+  }
+  void send_intentions(std::uint64_t epoch, std::uint64_t number) {
+    intentions_->write(intentions(epoch, number));
+    // Two topics have no order between them; here the input is to be there first.
+    service_->wait(milliseconds(GetParam() == "dds" ? 50 : 0));
+  }
+
+  std::unique_ptr<Node> bridge_;
+  std::unique_ptr<Node> other_;
+  std::unique_ptr<Node> service_;
+  std::unique_ptr<Cycle> cycle_;
+  Input<v1::Intentions>* input_ = nullptr;
+  std::optional<Writer<v1::RobotState>> robot_;
+  std::optional<Writer<v1::Intentions>> intentions_;
+};
+INSTANTIATE_TEST_SUITE_P(Over, Cycles, testing::Values("memory", "dds"),
+                         [](const auto& bus) { return bus.param; });
+
+TEST_P(Cycles, LiveStepsOnEachStateWithTheInputOfTheCycleBefore) {
+  start(false);
+  send(1, 1);
+  const auto first = next(milliseconds(10000));
+  ASSERT_TRUE(first);
+  EXPECT_TRUE(first->new_epoch);
+  EXPECT_EQ(input_->value(), nullptr);
+  EXPECT_EQ(cycle_->stamp().epoch(), 1U);
+  EXPECT_EQ(cycle_->stamp().cycle(), 1U);
+  cycle_->done();
+  send_intentions(1, 1);
+  send(1, 2);
+  const auto second = next(milliseconds(10000));
+  ASSERT_TRUE(second);
+  EXPECT_FALSE(second->new_epoch);
+  EXPECT_FALSE(second->stale);
+  ASSERT_NE(input_->value(), nullptr);
+  EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+  cycle_->done();
+  EXPECT_EQ(service_->status().steps(), 2U);
+  EXPECT_EQ(service_->status().late_cycles(), 0U);
+  EXPECT_EQ(service_->status().state(), v1::SERVICE_RUNNING);
+  EXPECT_TRUE(no_step());
+}
+
+TEST_P(Cycles, LiveGoesOnWithAnOldInputAndSaysSo) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send_intentions(1, 1);
+  for (std::uint64_t number = 2; number <= 4; ++number) {
+    send(1, number);
+    const auto result = next(milliseconds(10000));
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->stale, number > 2);
+    ASSERT_NE(input_->value(), nullptr);
+    EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+    cycle_->done();
+  }
+  EXPECT_EQ(service_->status().late_cycles(), 2U);
+  EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
+  EXPECT_NE(service_->status().reason().find("intentions"), std::string::npos);
+}
+
+TEST_P(Cycles, LiveNeverReadsTheCycleThatIsBeingComputed) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send_intentions(1, 1);
+  send_intentions(1, 2);
+  send(1, 2);
+  ASSERT_EQ(step(), 2U);
+  ASSERT_NE(input_->value(), nullptr);
+  EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+}
+
+TEST_P(Cycles, LiveSkipsToTheNewestAndCounts) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  for (std::uint64_t number = 2; number <= 6; ++number)
+    send(1, number);
+  std::uint64_t number = 1;
+  while (number < 6) {  // over DDS some of them may come one by one
+    const std::uint64_t stepped = step();
+    ASSERT_GT(stepped, number);
+    number = stepped;
+  }
+  const std::uint64_t steps = service_->status().steps();
+  EXPECT_GE(service_->status().late_cycles(), 6U - steps);
+  if (GetParam() == "memory") {
+    EXPECT_EQ(steps, 2U);
+    EXPECT_EQ(service_->status().late_cycles(), 4U + 1U);  // four skipped, one on stale input
+  }
+}
+
+TEST_P(Cycles, SamplesOfAnEpochThatWasLeftAreRefused) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send(2, 1);
+  const auto fresh = next(milliseconds(10000));
+  ASSERT_TRUE(fresh);
+  EXPECT_TRUE(fresh->new_epoch);
+  EXPECT_EQ(cycle_->stamp().epoch(), 2U);
+  cycle_->done();
+  EXPECT_EQ(service_->status().refused_samples(), 0U);
+  send(1, 2);
+  send_intentions(1, 1);
+  EXPECT_TRUE(no_step());
+  EXPECT_EQ(service_->status().refused_samples(), 2U);
+  send(2, 2);
+  ASSERT_EQ(step(), 2U);
+  EXPECT_EQ(input_->value(), nullptr);
+  EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
+}
+
+TEST_P(Cycles, StateWithoutEpochIsRefused) {
+  start(false);
+  send(0, 0);
+  EXPECT_TRUE(no_step());
+  EXPECT_EQ(service_->status().refused_samples(), 1U);
+}
+
+TEST_P(Cycles, LockstepWaitsForItsInput) {
+  start(true);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send(1, 2);
+  EXPECT_TRUE(no_step());
+  intentions_->write(intentions(1, 1));
+  const auto second = next(milliseconds(10000));
+  ASSERT_TRUE(second);
+  EXPECT_FALSE(second->stale);
+  ASSERT_NE(input_->value(), nullptr);
+  EXPECT_EQ(input_->value()->stamp().cycle(), 1U);
+}
+
+TEST_P(Cycles, LockstepStepsEveryStateInOrder) {
+  start(true);
+  for (std::uint64_t number = 1; number <= 6; ++number) {
+    send(1, number);
+    send_intentions(1, number);
+  }
+  for (std::uint64_t number = 1; number <= 6; ++number) {
+    ASSERT_EQ(step(), number);
+    if (number > 1) {
+      ASSERT_NE(input_->value(), nullptr);
+      EXPECT_EQ(input_->value()->stamp().cycle(), number - 1);
+    }
+  }
+  EXPECT_TRUE(no_step());
+  EXPECT_EQ(service_->status().late_cycles(), 0U);
+}
+
+TEST_P(Cycles, LockstepKeepsTheInputsOfAnEpochThatIsNotKnownYet) {
+  start(true);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send_intentions(2, 1);  // the other service was faster
+  EXPECT_TRUE(no_step());
+  send(2, 1);
+  ASSERT_EQ(step(), 1U);
+  send(2, 2);
+  ASSERT_EQ(step(), 2U);
+  ASSERT_NE(input_->value(), nullptr);
+  EXPECT_EQ(input_->value()->stamp().epoch(), 2U);
+}
+
+TEST_P(Cycles, LockstepSaysWhatItWaitsFor) {
+  start(true);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send(1, 2);
+  EXPECT_FALSE(next(milliseconds(2500)).has_value());
+  EXPECT_EQ(service_->status().state(), v1::SERVICE_WAITING);
+  EXPECT_EQ(service_->status().reason(), "waits for intentions of cycle 1");
+  intentions_.reset();
+  EXPECT_FALSE(next(milliseconds(2500)).has_value());
+  EXPECT_EQ(service_->status().reason(), "waits for intentions of cycle 1: nobody writes it");
+}
+
+TEST_P(Cycles, LockstepServiceThatComesLateGivesTheOthersWhatTheyWaitFor) {
+  start(true);
+  cycle_.reset();
+  // The bridge is at 20, intentions has answered 19 and waits for this service's 19.
+  for (std::uint64_t number = 1; number <= 20; ++number)
+    send(1, number);
+  for (std::uint64_t number = 1; number <= 19; ++number)
+    intentions_->write(intentions(1, number));
+  cycle_ = std::make_unique<Cycle>(*service_);
+  input_ = &cycle_->input(topics::kIntentions);
+  std::uint64_t number = step();
+  EXPECT_GE(number, 13U);
+  EXPECT_LE(number, 19U);
+  while (number < 20) {
+    ASSERT_NE(input_->value(), nullptr);
+    EXPECT_EQ(input_->value()->stamp().cycle(), number - 1);
+    ASSERT_EQ(step(), number + 1);
+    ++number;
+  }
+}
+
+TEST_P(Cycles, LockstepBeginsWithoutAnInputThatNobodyHas) {
+  start(true);
+  for (std::uint64_t number = 1; number <= 20; ++number)
+    send(1, number);
+  const auto result = next(milliseconds(10000));
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->stale);
+  EXPECT_GE(result->robot.stamp().cycle(), 13U);
+  EXPECT_EQ(input_->value(), nullptr);
+}
+
+TEST_P(Cycles, QuietBridgeIsSaid) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  robot_.reset();
+  EXPECT_FALSE(next(milliseconds(1200)).has_value());
+  EXPECT_EQ(service_->status().state(), v1::SERVICE_WAITING);
+  EXPECT_EQ(service_->status().reason(), "waits for robot/state of cycle 2: nobody writes it");
+}
+
+// Two services that read each other and a bridge that waits for one of them, in threads of their
+// own: the lockstep of the whole system, whoever starts first.
+class Lockstep : public OnEachBus {
+ protected:
+  static constexpr std::uint64_t kCycles = 50;
+
+  void run(int first);
+
+  template <class In, class Out>
+  std::thread service(const std::string& name, const Topic<In>& in, const Topic<Out>& out,
+                      std::vector<std::uint64_t>& seen) {
+    return std::thread([this, name, &in, &out, &seen] {
+      auto own = node(name, "", true);
+      Cycle cycle(*own);
+      auto& input = cycle.input(in);
+      auto writer = own->writer(out);
+      while (const auto step = cycle.next(stop_)) {
+        seen.push_back(step->robot.stamp().cycle() * 1000 +
+                       (input.value() == nullptr ? 0 : input.value()->stamp().cycle()));
+        Out sample;
+        sample.stamp(cycle.stamp());
+        writer.write(sample);
+        cycle.done();
+      }
+    });
+  }
+  std::thread bridge() {
+    return std::thread([this] {
+      auto own = node("bridge", "", true);
+      auto robot_writer = own->writer(topics::kRobotState);
+      auto reader = own->reader(topics::kBehaviors);
+      for (std::uint64_t number = 1; number <= kCycles; ++number) {
+        robot_writer.write(robot_state(9, number));
+        arrived_ = arrived_ && eventually(*own, [&] {
+                     bool there = false;
+                     for (const auto& sample : reader.take())
+                       there |= sample.data.stamp().cycle() == number;
+                     return there;
+                   });
+      }
+      stop_.request();
+    });
+  }
+  static std::vector<std::uint64_t> expected() {
+    std::vector<std::uint64_t> result;
+    for (std::uint64_t number = 1; number <= kCycles; ++number)
+      result.push_back(number * 1000 + number - 1);
+    return result;
+  }
+
+  Stop stop_;
+  std::atomic<bool> arrived_{true};
+  std::vector<std::uint64_t> behaviors_;
+  std::vector<std::uint64_t> intentions_;
+};
+INSTANTIATE_TEST_SUITE_P(Over, Lockstep, testing::Values("memory", "dds"),
+                         [](const auto& bus) { return bus.param; });
+
+void Lockstep::run(int first) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i) {
+    switch ((i + first) % 3) {
+      case 0:
+        threads.push_back(bridge());
+        break;
+      case 1:
+        threads.push_back(
+            service("behaviors", topics::kIntentions, topics::kBehaviors, behaviors_));
+        break;
+      default:
+        threads.push_back(
+            service("intentions", topics::kBehaviors, topics::kIntentions, intentions_));
+    }
+  }
+  for (auto& thread : threads)
+    thread.join();
+  EXPECT_TRUE(arrived_);
+  EXPECT_EQ(behaviors_, expected());
+  // Intentions may be stopped before its last step.
+  auto steps = expected();
+  ASSERT_GE(intentions_.size() + 1, steps.size());
+  steps.resize(intentions_.size());
+  EXPECT_EQ(intentions_, steps);
+}
+
+TEST_P(Lockstep, BridgeFirst) {
+  run(0);
+}
+TEST_P(Lockstep, BehaviorsFirst) {
+  run(1);
+}
+TEST_P(Lockstep, IntentionsFirst) {
+  run(2);
+}
+
+}  // namespace
+}  // namespace saphira::bus::test

@@ -1,0 +1,104 @@
+#pragma once
+
+// The same tests over both transports, and waiting for conditions.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "internal.hpp"
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus::test {
+
+using std::chrono::milliseconds;
+
+inline std::uint32_t domain() {
+  const char* text = std::getenv("SAPHIRA_DOMAIN");
+  return text == nullptr ? 19U : static_cast<std::uint32_t>(std::atoi(text));
+}
+
+/// A robot that no other test process has.
+inline std::string robot(const std::string& name) {
+  return "t" + std::to_string(getpid()) + name;
+}
+
+/// Parameter: "memory" or "dds".
+class OnEachBus : public testing::TestWithParam<std::string> {
+ protected:
+  std::unique_ptr<Node> node(const std::string& name, const std::string& robot_name = "",
+                             bool lockstep = false) {
+    NodeOptions options;
+    options.name = name;
+    options.robot = robot_name.empty() ? robot("a") : robot_name;
+    options.domain = domain();
+    options.lockstep = lockstep;
+    return GetParam() == "dds" ? std::make_unique<Node>(options)
+                               : std::make_unique<Node>(options, memory_);
+  }
+  /// How long the absence of something is watched: what is in memory is there at once.
+  milliseconds absence() const { return milliseconds(GetParam() == "dds" ? 200 : 1); }
+
+ private:
+  std::shared_ptr<MemoryBus> memory_ = make_memory_bus();
+};
+
+/// Waits until the condition holds; it is asked again whenever the node wakes.
+template <class Condition>
+bool eventually(Node& node, Condition&& condition, milliseconds limit = milliseconds(20000)) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  do {
+    node.clear_wake();
+    if (condition())
+      return true;
+    node.wait(milliseconds(20));
+  } while (std::chrono::steady_clock::now() < end);
+  return condition();
+}
+
+template <class T>
+std::vector<Sample<T>> take_at_least(Node& node, Reader<T>& reader, std::size_t count) {
+  std::vector<Sample<T>> samples;
+  EXPECT_TRUE(eventually(node,
+                         [&] {
+                           for (auto& sample : reader.take())
+                             samples.push_back(std::move(sample));
+                           return samples.size() >= count;
+                         }))
+      << "got " << samples.size() << " of " << count;
+  return samples;
+}
+
+inline v1::Goal goal(std::uint64_t number, const std::string& functor = "go_to") {
+  v1::Goal result;
+  result.id().writer(77);
+  result.id().number(number);
+  result.functor(functor);
+  return result;
+}
+
+inline v1::Stamp stamp(std::uint64_t epoch, std::uint64_t cycle) {
+  v1::Stamp result;
+  result.epoch(epoch);
+  result.cycle(cycle);
+  return result;
+}
+
+inline v1::RobotState robot_state(std::uint64_t epoch, std::uint64_t cycle) {
+  v1::RobotState result;
+  result.stamp(stamp(epoch, cycle));
+  return result;
+}
+
+inline v1::Intentions intentions(std::uint64_t epoch, std::uint64_t cycle) {
+  v1::Intentions result;
+  result.stamp(stamp(epoch, cycle));
+  return result;
+}
+
+}  // namespace saphira::bus::test
