@@ -1,0 +1,47 @@
+// An agent: sends the robot to a point and follows it there.
+//   go_there X Y       in meters, ahead and to the left of where the robot is now
+// The bus is that of the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <saphira/bus/goal_client.hpp>
+#include <saphira/bus/program.hpp>
+
+namespace bus = saphira::bus;
+namespace v1 = saphira::v1;
+
+int main(int argc, char** argv) {
+  double x = 0.0;
+  double y = 0.0;
+  const auto add_options = [&](CLI::App& app) {
+    app.add_option("x", x, "meters ahead")->required();
+    app.add_option("y", y, "meters to the left")->required();
+  };
+  const auto body = [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
+    bus::Node node(options);
+    bus::GoalClient goals(node, "go_there");
+
+    v1::Goal goal;
+    goal.functor("go_to");
+    goal.arguments({bus::point("position", x, y, 0.0, v1::FRAME_ROBOT)});
+    const v1::GoalId id = goals.ask(goal);
+
+    std::string told;
+    while (!stop.requested()) {
+      node.wait(std::chrono::milliseconds(500), &stop);
+      goals.poll();
+      const auto status = goals.status(id);
+      if (!status)
+        continue;
+      if (const std::string line = bus::describe(*status); line != told)
+        std::cout << (told = line) << std::endl;
+      if (bus::ended(status->state()))
+        return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
+    }
+    goals.cancel(id);  // Ctrl-C
+    goals.delivered(1000);
+    return bus::kExitFailed;
+  };
+  return bus::run_program(argc, argv, "go_there", "Sends the robot to a point", add_options, body);
+}
