@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "saphira/bus/program.hpp"
 #include "shell.hpp"
@@ -51,7 +53,12 @@ int main(int argc, char** argv) {
         options.quiet = quiet_ms / 1000.0;
         options.guard = !no_guard;
         options.keeper = !no_keeper;
-        saphira::bridge::Shell shell(node, options);
-        return shell.run(stop);
+        try {
+          saphira::bridge::Shell shell(node, options);
+          return shell.run(stop);
+        } catch (const std::invalid_argument& error) {
+          std::fprintf(stderr, "saphira-bridge: %s\n", error.what());
+          return static_cast<int>(saphira::bus::kExitUsage);
+        }
       });
 }

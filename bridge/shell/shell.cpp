@@ -13,7 +13,6 @@
 #include <stdexcept>
 
 #include "convert.hpp"
-#include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace saphira::bridge {
@@ -99,7 +98,9 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
     state_fd_ = ::open(options_.state_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (state_fd_ < 0)
       throw std::invalid_argument("--state " + options_.state_file + ": " + std::strerror(errno));
-    const std::string text = read_file(options_.state_file);
+    char buffer[512];
+    const ssize_t n = ::pread(state_fd_, buffer, sizeof buffer, 0);
+    const std::string text(buffer, static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
     memory_ = reflector::from_text(text);
     if (memory_)
       last_odom_ = memory_->odom;
@@ -231,6 +232,8 @@ void Shell::tend_link(double now) {
   } else if (silence > kSilent && !link_silent_) {
     // The age of the link: nobody drives what nobody sees.
     link_silent_ = true;
+    if (stamp_.cycle() == 0)
+      send(protocol::encode(protocol::Open{}), now);  // it may have been lost
     node_.warn("robot link silent for 0.5 s: the robot is told to stop");
     arbiter_.forget(stamp_.cycle(), time());
     reflector_.zero_first();
@@ -383,7 +386,7 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
 
 void Shell::lost(const std::string& why, double now) {
   if (epoch_ != 0) {
-    node_.warn("the robot is lost: " + why);
+    node_.warn("connection to the robot ended: " + why);
     if (stamp_.cycle() > 0)
       memory_ = reflector_.odometry();
   }

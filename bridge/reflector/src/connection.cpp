@@ -4,7 +4,8 @@ namespace saphira::reflector {
 
 namespace {
 
-constexpr int kTries = 5;
+// The answer to SYNC2 is long: on a bad line it needs many tries.
+constexpr int kTries = 20;
 
 int sync_of(Connection::State state) {
   return static_cast<int>(state) - static_cast<int>(Connection::State::sync0);

@@ -44,7 +44,7 @@ TEST(Connection, RepeatsWhatIsNotAnswered) {
   EXPECT_TRUE(c.tick(1.1).empty());
   EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{0});
   c.packet(Bytes{0}, 2.0);
-  for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 19; ++i)
     EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{1});
   EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{0}) << "from the beginning";
   EXPECT_NE(c.waiting_for().find("SYNC0"), std::string::npos);

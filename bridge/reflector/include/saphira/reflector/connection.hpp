@@ -15,7 +15,7 @@ class Connection {
  public:
   enum class State { closed, sync0, sync1, sync2, open };
 
-  static constexpr double kRetry = 0.3;  ///< [s] a lost packet is sent again
+  static constexpr double kRetry = 0.2;  ///< [s] a lost packet is sent again
 
   /// The link is up.
   Packets begin(double now);

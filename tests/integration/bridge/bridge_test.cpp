@@ -1,0 +1,248 @@
+// The bridge over the real bus, with a simulated robot in a process of its own: who drives, and
+// that nothing else moves the robot.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "scene.hpp"
+
+namespace saphira::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+void forward(v1::MotorCommand& command, double velocity, double rotation = 0.0) {
+  command.active(true);
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.velocity(velocity);
+  command.rotation(v1::ROTATION_VELOCITY);
+  command.rotation_velocity(rotation);
+}
+
+TEST(Bridge, DescribesTheRobotAndDrivesIt) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
+      << scene.bridge_log();
+  EXPECT_EQ(scene.description->robot_class(), "Pioneer");
+  EXPECT_EQ(scene.description->sonars().size(), 7U);
+  EXPECT_NEAR(scene.description->radius(), 0.22, 1e-9);
+  EXPECT_NEAR(scene.description->max_velocity(), 0.4, 1e-9);
+  EXPECT_EQ(scene.description->stamp().epoch(), scene.state.stamp().epoch());
+  EXPECT_EQ(scene.state.pose_in_odom().x(), 0.0);
+
+  forward(scene.command, 0.2, 0.3);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] {
+    return scene.state.velocity() > 0.18 && scene.state.rotation_velocity() > 0.2;
+  })) << scene.bridge_log();
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_DIRECT);
+  EXPECT_EQ(scene.grant.source(), "test");
+  EXPECT_NEAR(scene.grant.velocity(), 0.2, 1e-9);
+  EXPECT_GT(scene.grant.expires_in(), 0.0);
+  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+
+  // Release is a stop at once: what remains is the robot's own braking (0.2 m/s at 2 m/s2).
+  scene.drives = false;
+  scene.command.active(false);
+  const std::uint64_t released = scene.state.stamp().cycle();
+  scene.publish();
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  const std::uint64_t still = stood_still(scene.trace(), released);
+  EXPECT_GT(still, 0U);
+  EXPECT_LE(still, released + 4);
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
+}
+
+TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  forward(scene.command, 0.4);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.38; })) << scene.bridge_log();
+  scene.publish();
+  const std::uint64_t last = scene.state.stamp().cycle();
+  scene.drives = false;
+  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
+  EXPECT_NE(scene.grant.reason().find("lease of test (direct) ran out"), std::string::npos)
+      << scene.grant.reason();
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  const std::uint64_t still = stood_still(scene.trace(), last);
+  RecordProperty("cycles_to_standstill", static_cast<int>(still - last));
+  std::printf("stood still %d cycles after the last command\n", static_cast<int>(still - last));
+  EXPECT_GT(still, 0U);
+  EXPECT_LE(still, last + 5 + 1) << "0.5 s, and the cycle that had begun";
+}
+
+TEST(Bridge, APersonTakesOverAndAutonomyWaits) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  forward(scene.command, 0.2);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.18; })) << scene.bridge_log();
+
+  bus::NodeOptions other = scene.node.options();
+  bus::Node joystick(other);
+  bus::Writer<v1::MotorCommand> teleop = joystick.writer(bus::topics::kDriveTeleop);
+  v1::MotorCommand by_hand;
+  by_hand.source("joystick");
+  forward(by_hand, -0.1);
+  ASSERT_TRUE(scene.until([&] {
+    by_hand.number(by_hand.number() + 1);
+    teleop.write(by_hand);
+    return scene.state.velocity() < -0.08;
+  }));
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_TELEOP);
+  ASSERT_TRUE(scene.until([&] {
+    by_hand.number(by_hand.number() + 1);
+    teleop.write(by_hand);
+    return !scene.grant.refused().empty() && scene.grant.refused()[0].source() == "test";
+  })) << "the direct driver hears who is stronger";
+
+  by_hand.active(false);
+  by_hand.number(by_hand.number() + 1);
+  teleop.write(by_hand);
+  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
+  const std::uint64_t released = scene.state.stamp().cycle();
+  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_DIRECT; }));
+  EXPECT_GE(scene.grant.stamp().cycle(), released + 18) << "two seconds of quiet";
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.18; }));
+}
+
+TEST(Bridge, AnEmergencyStopStopsWhateverItSays) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  forward(scene.command, 0.3);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.25; })) << scene.bridge_log();
+  bus::Node button(scene.node.options());
+  bus::Writer<v1::MotorCommand> estop = button.writer(bus::topics::kDriveEstop);
+  v1::MotorCommand stop;
+  stop.source("button");
+  forward(stop, 0.4);
+  ASSERT_TRUE(scene.until([&] {
+    stop.number(stop.number() + 1);
+    estop.write(stop);
+    return scene.grant.role() == v1::ROLE_ESTOP && scene.rests();
+  }));
+}
+
+TEST(Bridge, RefusesWhatIsNoNumber) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  forward(scene.command, std::numeric_limits<double>::quiet_NaN());
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] {
+    return !scene.grant.refused().empty() &&
+           scene.grant.refused()[0].reason() == "velocity is no usable number";
+  }));
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
+  for (const sim::TraceRow& row : scene.trace())
+    ASSERT_EQ(row.velocity, 0.0);
+}
+
+TEST(Bridge, TheGuardStopsBeforeAWall) {
+  Scene scene;
+  scene.world += "11500 8000 11500 12000\n";
+  scene.start_simulator();
+  scene.start_bridge();
+  forward(scene.command, 0.4);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.grant.guard() == v1::GUARD_STOP; }))
+      << scene.bridge_log();
+  EXPECT_NE(scene.grant.guard_reason().find("ahead"), std::string::npos);
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  scene.watch(milliseconds(1000));
+  const auto rows = scene.trace();
+  EXPECT_EQ(rows.back().contacts, 0);
+  EXPECT_GT(rows.back().clearance, 0.02);
+  EXPECT_LT(rows.back().clearance, 0.2) << "stopped needlessly early";
+  std::printf("stood %.3f m before the wall\n", rows.back().clearance);
+  // Turning away is free.
+  forward(scene.command, 0.4, 0.8);
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.3; }));
+}
+
+TEST(Bridge, DrivesADistanceAndTurnsToAHeading) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  scene.command.translation(v1::TRANSLATION_POSITION);
+  scene.command.distance(0.8);
+  scene.command.velocity(0.3);
+  scene.command.move(1);
+  scene.command.rotation(v1::ROTATION_RELATIVE_HEADING);
+  scene.command.heading(0.0);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.7; }));
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  EXPECT_NEAR(scene.state.pose_in_odom().x(), 0.8, 0.03);
+  scene.command.move(2);
+  scene.command.distance(-0.3);
+  scene.command.heading(kPi / 2);
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().th() > 1.4; }));
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  EXPECT_NEAR(scene.state.pose_in_odom().th(), kPi / 2, radians(2.0));
+}
+
+TEST(Bridge, DevicesReflect) {
+  Scene scene;
+  bus::Writer<v1::DeviceCommand> devices = scene.node.writer(bus::topics::kDevice);
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  v1::DeviceCommand output;
+  output.source("test");
+  output.kind(v1::DEVICE_DIGITAL_OUTPUT);
+  output.value(0x5A);
+  devices.write(output);
+  EXPECT_TRUE(scene.until([&] { return scene.state.digital_output() == 0x5A; }));
+  output.kind(v1::DEVICE_PTU);
+  output.value(1500);
+  devices.write(output);
+  EXPECT_TRUE(scene.until([&] { return scene.state.ptu() == 1500; }));
+  output.value(-1);
+  devices.write(output);
+  EXPECT_TRUE(scene.until([&] {
+    return scene.bridge_log().find("device command of test refused: value -1") != std::string::npos;
+  }));
+}
+
+TEST(Bridge, SaysWhichParameterFilesItLookedFor) {
+  Scene scene;
+  scene.start_simulator();
+  scene.robots_folder = scene.folder.path();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] {
+    return scene.status.state() == v1::SERVICE_WAITING &&
+           scene.status.reason().find("psos43m.p, pioneer.p") != std::string::npos;
+  })) << scene.status.reason();
+}
+
+TEST(Bridge, AWrongOptionEndsItWithAMessage) {
+  Scene scene;
+  scene.robots_folder = "/nonexistent";
+  scene.start_bridge();
+  EXPECT_EQ(scene.bridge->wait(), 2);
+  EXPECT_NE(scene.bridge_log().find("/nonexistent: expected a folder"), std::string::npos);
+}
+
+TEST(Bridge, SaysThatThereIsNoRobot) {
+  Scene scene;
+  scene.start_bridge();
+  EXPECT_TRUE(scene.until([&] {
+    return scene.status.state() == v1::SERVICE_WAITING &&
+           scene.status.reason().find("robot link: ") == 0;
+  })) << scene.status.reason();
+}
+
+}  // namespace
+}  // namespace saphira::test

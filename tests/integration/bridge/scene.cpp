@@ -1,0 +1,146 @@
+#include "scene.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::test {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+bus::NodeOptions node_options(const std::string& robot, bool lockstep) {
+  bus::NodeOptions options;
+  options.name = "test";
+  options.robot = robot;
+  options.domain = static_cast<std::uint32_t>(std::stoul(domain()));
+  options.lockstep = lockstep;
+  return options;
+}
+
+}  // namespace
+
+Scene::Scene(bool lockstep)
+    : node(node_options(robot, lockstep)),
+      lockstep_(lockstep),
+      states_(node.reader(bus::topics::kRobotState)),
+      descriptions_(node.reader(bus::topics::kRobotDescription)),
+      grants_(node.reader(bus::topics::kGrant)),
+      statuses_(node.reader(bus::topics::kStatus)) {
+  robot_port = folder.path("robot");
+  use(bus::topics::kDriveDirect);
+  command.source("test");
+  command.active(true);
+}
+
+void Scene::use(const bus::Topic<v1::MotorCommand>& role) {
+  driver_.emplace(node.writer(role));
+}
+
+void Scene::start_simulator() {
+  std::ofstream(folder.path("test.wld")) << world;
+  std::vector<std::string> argv{"saphira-sim",
+                                "--world",
+                                folder.path("test.wld"),
+                                "--robot",
+                                source("config/robots/pioneer.p"),
+                                "--socket",
+                                folder.path("robot"),
+                                "--trace",
+                                folder.path("trace.csv")};
+  if (lockstep_)
+    argv.emplace_back("--step");
+  simulator.reset();
+  simulator = std::make_unique<Process>(argv, folder.path("sim.log"));
+}
+
+void Scene::start_bridge() {
+  std::vector<std::string> argv{"saphira-bridge", "--robot",  robot,      "--domain",   domain(),
+                                "--robot-port",   robot_port, "--robots", robots_folder};
+  if (lockstep_)
+    argv.emplace_back("--lockstep");
+  argv.insert(argv.end(), bridge_options.begin(), bridge_options.end());
+  bridge.reset();
+  bridge =
+      std::make_unique<Process>(argv, folder.path("bridge" + std::to_string(++runs_) + ".log"));
+}
+
+void Scene::publish() {
+  command.number(command.number() + 1);
+  if (follows_cycles)
+    command.stamp(state.stamp());
+  else
+    command.stamp(v1::Stamp());
+  driver_->write(command);
+  published_ = std::chrono::steady_clock::now();
+}
+
+void Scene::take() {
+  for (const auto& sample : states_.take()) {
+    state = sample.data;
+    states.push_back(state);
+  }
+  for (const auto& sample : descriptions_.take()) {
+    if (!sample.info.disposed)
+      description = sample.data;
+  }
+  for (const auto& sample : grants_.take()) {
+    grant = sample.data;
+    grants.push_back(grant);
+  }
+  for (const auto& sample : statuses_.take()) {
+    if (!sample.info.disposed && sample.data.name() == "bridge")
+      status = sample.data;
+  }
+}
+
+bool Scene::until(const std::function<bool()>& condition, milliseconds limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (true) {
+    take();
+    if (condition())
+      return true;
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= end)
+      return false;
+    if (drives && now - published_ >= milliseconds(50))
+      publish();
+    node.wait(milliseconds(10));
+  }
+}
+
+void Scene::watch(milliseconds time) {
+  until([] { return false; }, time);
+}
+
+bool Scene::rests() const {
+  return std::abs(state.velocity()) < 0.01 && std::abs(state.rotation_velocity()) < 0.05;
+}
+
+std::vector<sim::TraceRow> Scene::whole_trace() const {
+  return sim::parse_trace(read_file(folder.path("trace.csv")), "trace.csv");
+}
+
+std::vector<sim::TraceRow> Scene::trace() const {
+  std::vector<sim::TraceRow> rows = whole_trace();
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].first)
+      begin = i;
+  }
+  rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(begin));
+  return rows;
+}
+
+std::uint64_t stood_still(const std::vector<sim::TraceRow>& rows, std::uint64_t cycle) {
+  for (const sim::TraceRow& row : rows) {
+    if (row.cycle >= cycle && std::abs(row.velocity) < 1e-3 &&
+        std::abs(row.rotation_velocity) < 1e-2)
+      return row.cycle;
+  }
+  return 0;
+}
+
+}  // namespace saphira::test

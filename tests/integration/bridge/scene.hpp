@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "process.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/sim/trace.hpp"
+
+namespace saphira::test {
+
+/// A simulator, a bridge, and a driver on the bus, each of which a test may hinder.
+class Scene {
+ public:
+  explicit Scene(bool lockstep = false);
+
+  /// 20 m x 20 m of free floor with the robot in the middle, unless a test writes another.
+  std::string world = "width 20000 height 20000\nposition 10000 10000 0\n";
+  std::vector<std::string> bridge_options;
+  std::string robots_folder = source("config/robots");
+  /// Instead of the simulator's socket.
+  std::string robot_port;
+
+  void start_simulator();
+  void start_bridge();
+
+  // ---- The driver. It publishes what `command` holds, on `role`'s topic, every 50 ms while it
+  // ---- is told to watch and drives.
+  void use(const bus::Topic<v1::MotorCommand>& role);
+  v1::MotorCommand command;
+  bool drives = false;
+  bool follows_cycles = true;  ///< stamps its commands with the newest robot state
+  void publish();
+
+  /// Watches and drives until the condition holds; false when the time is up.
+  bool until(const std::function<bool()>& condition,
+             std::chrono::milliseconds limit = std::chrono::seconds(30));
+  void watch(std::chrono::milliseconds time);
+
+  v1::RobotState state;
+  v1::Grant grant;
+  std::optional<v1::RobotDescription> description;
+  v1::ServiceStatus status;  ///< the bridge's
+  std::vector<v1::Grant> grants;
+  std::vector<v1::RobotState> states;
+
+  bool connected() const { return state.stamp().cycle() > 0; }
+  bool rests() const;
+
+  /// What was true, from the simulator's trace; of the newest connection alone.
+  std::vector<sim::TraceRow> trace() const;
+  std::vector<sim::TraceRow> whole_trace() const;
+  std::string bridge_log() const { return bridge->output(); }
+
+  TempDir folder;
+  std::string robot = unique_robot();
+  bus::Node node;
+  std::unique_ptr<Process> simulator;
+  std::unique_ptr<Process> bridge;
+
+ private:
+  void take();
+
+  bool lockstep_;
+  int runs_ = 0;
+  bus::Reader<v1::RobotState> states_;
+  bus::Reader<v1::RobotDescription> descriptions_;
+  bus::Reader<v1::Grant> grants_;
+  bus::Reader<v1::ServiceStatus> statuses_;
+  std::optional<bus::Writer<v1::MotorCommand>> driver_;
+  std::chrono::steady_clock::time_point published_;
+};
+
+/// The true cycle in which the robot first stood still at or after `cycle`; 0 where it did not.
+std::uint64_t stood_still(const std::vector<sim::TraceRow>& rows, std::uint64_t cycle);
+
+}  // namespace saphira::test
