@@ -122,6 +122,7 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
   out.max_velocity(p.max_velocity);
   out.max_rotation_velocity(p.max_rotation_velocity);
   out.acceleration(p.acceleration);
+  out.deceleration(p.deceleration);
   out.rotation_acceleration(p.rotation_acceleration);
   out.front_buffer(static_cast<std::uint16_t>(p.front_buffer));
   out.side_buffer(static_cast<std::uint16_t>(p.side_buffer));

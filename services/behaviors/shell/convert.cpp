@@ -1,0 +1,146 @@
+#include "behaviors/shell/convert.hpp"
+
+namespace saphira::behaviors {
+namespace {
+
+Pose from_bus(const v1::Pose2& pose) {
+  return {pose.x(), pose.y(), pose.th()};
+}
+
+Frame from_bus(v1::Frame frame) {
+  switch (frame) {
+    case v1::FRAME_ROBOT:
+      return Frame::robot;
+    case v1::FRAME_MAP:
+      return Frame::map;
+    default:
+      return Frame::odom;
+  }
+}
+
+v1::ControlAction to_bus(Action action) {
+  switch (action) {
+    case Action::turn_left:
+      return v1::CONTROL_TURN_LEFT;
+    case Action::turn_right:
+      return v1::CONTROL_TURN_RIGHT;
+    case Action::accelerate:
+      return v1::CONTROL_ACCELERATE;
+    case Action::decelerate:
+      return v1::CONTROL_DECELERATE;
+    case Action::speed:
+      break;
+  }
+  return v1::CONTROL_SPEED;
+}
+
+}  // namespace
+
+RobotModel from_bus(const v1::RobotDescription& description) {
+  RobotModel model;
+  model.radius = description.radius();
+  model.max_velocity = description.max_velocity();
+  model.max_rotation_velocity = description.max_rotation_velocity();
+  model.deceleration = description.deceleration();
+  model.lps.front_buffer = description.front_buffer();
+  model.lps.side_buffer = description.side_buffer();
+  model.lps.front_max_range = description.front_max_range();
+  for (const v1::SonarPose& sonar : description.sonars())
+    model.lps.sonars.push_back({sonar.sonar(), from_bus(sonar.pose_in_robot())});
+  return model;
+}
+
+RobotNow from_bus(const v1::RobotState& state) {
+  return {from_bus(state.pose_in_odom()), state.velocity(), state.rotation_velocity()};
+}
+
+std::vector<lps::SonarReading> sonars_from_bus(const v1::RobotState& state) {
+  std::vector<lps::SonarReading> readings;
+  readings.reserve(state.sonars().size());
+  for (const v1::SonarReading& reading : state.sonars())
+    readings.push_back({reading.sonar(), static_cast<double>(reading.range()), reading.echo()});
+  return readings;
+}
+
+Argument from_bus(const v1::Argument& argument) {
+  switch (argument.kind()) {
+    case v1::ARGUMENT_POINT:
+      return {argument.name(), PlacedPoint{from_bus(argument.point()), from_bus(argument.frame())}};
+    case v1::ARGUMENT_TEXT:
+      return {argument.name(), argument.text()};
+    default:
+      return {argument.name(), argument.number()};
+  }
+}
+
+Intent from_bus(const v1::Intentions& intentions) {
+  Intent intent;
+  intent.cycle = intentions.stamp().cycle();
+  intent.control = intentions.behavior_control();
+  intent.behaviors.reserve(intentions.behaviors().size());
+  for (const v1::IntendedBehavior& behavior : intentions.behaviors()) {
+    Intended wanted{
+        behavior.name(), behavior.schema(), behavior.priority(), behavior.running(), {}};
+    for (const v1::Argument& parameter : behavior.parameters())
+      wanted.parameters.push_back(from_bus(parameter));
+    intent.behaviors.push_back(std::move(wanted));
+  }
+  return intent;
+}
+
+v1::BehaviorState to_bus(const BehaviorState& state) {
+  const Blended& blended = state.blended;
+  const Activity& activity = blended.evaluation.activity;
+  v1::BehaviorState sample;
+  sample.name(state.name);
+  sample.schema(state.schema);
+  sample.priority(blended.priority);
+  sample.running(state.running);
+  sample.turn_activity(activity.turn);
+  sample.speed_activity(activity.speed);
+  sample.turn_weight(blended.turn_weight);
+  sample.speed_weight(blended.speed_weight);
+  sample.goal(activity.goal);
+  sample.progress(activity.progress);
+  sample.recommends_turn(blended.recommends_turn);
+  sample.turn(blended.turn);
+  sample.recommends_speed(blended.recommends_speed);
+  sample.speed(blended.speed);
+  for (const Rule& rule : blended.evaluation.rules) {
+    v1::RuleState out;
+    out.name(rule.name);
+    out.strength(rule.strength);
+    out.action(to_bus(rule.action));
+    out.value(rule.value);
+    sample.rules().push_back(std::move(out));
+  }
+  return sample;
+}
+
+v1::Behaviors to_bus(const Output& output) {
+  v1::Behaviors sample;
+  sample.control(output.control);
+  sample.behaviors().reserve(output.behaviors.size());
+  for (const BehaviorState& state : output.behaviors)
+    sample.behaviors().push_back(to_bus(state));
+  sample.turning(output.blend.turning);
+  sample.turn(output.blend.turn);
+  sample.moving(output.blend.moving);
+  sample.speed(output.blend.speed);
+  sample.trouble(output.trouble);
+  return sample;
+}
+
+v1::MotorCommand command_to_bus(const Output& output) {
+  v1::MotorCommand command;
+  command.active(output.active);
+  if (output.active) {
+    command.translation(v1::TRANSLATION_VELOCITY);
+    command.velocity(output.speed);
+    command.rotation(v1::ROTATION_HEADING);
+    command.heading(output.heading_in_odom);
+  }
+  return command;
+}
+
+}  // namespace saphira::behaviors

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "behavior.h"
+#include "intention.h"
+#include "motion.h"
+#include "robot.h"
+#include "saphira/behaviors/executive.hpp"
+
+/// Between the types of the bus and those of the library: pure functions, nothing else.
+namespace saphira::behaviors {
+
+RobotModel from_bus(const v1::RobotDescription& description);
+RobotNow from_bus(const v1::RobotState& state);
+std::vector<lps::SonarReading> sonars_from_bus(const v1::RobotState& state);
+Argument from_bus(const v1::Argument& argument);
+Intent from_bus(const v1::Intentions& intentions);
+
+v1::BehaviorState to_bus(const BehaviorState& state);
+/// The behaviors sample; its stamp is the caller's.
+v1::Behaviors to_bus(const Output& output);
+/// The motor command; its stamp, source and number are the caller's.
+v1::MotorCommand command_to_bus(const Output& output);
+
+}  // namespace saphira::behaviors
