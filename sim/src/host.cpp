@@ -32,6 +32,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Silence after which a packet that has begun will not be completed.
+constexpr double kGap = 0.050;  // [s]
+
+// Bytes that may wait for a client that does not read. It then loses whole packets, the newest:
+// they are stale when it wakes.
+constexpr std::size_t kMost = 65536;
+
 [[noreturn]] void fail(const std::string& what) {
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
@@ -285,7 +292,6 @@ class Host {
     }
     running_ = false;
     if (server_.packet_pending()) {
-      constexpr double kGap = 0.050;  // [s]
       timer_.set(kGap);
       timed_ = true;
     } else if (timed_) {
@@ -344,8 +350,6 @@ class Host {
     const protocol::Bytes fresh = server_.take_output();
     if (!client_)
       return;
-    // A client that does not read loses whole packets, the newest: they are stale when it wakes.
-    constexpr std::size_t kMost = 65536;
     if (output_.size() + fresh.size() <= kMost)
       output_.insert(output_.end(), fresh.begin(), fresh.end());
     while (!output_.empty()) {

@@ -15,10 +15,14 @@ namespace {
 // A packet's bytes come within a few milliseconds of each other on any line that we serve.
 constexpr int kGapTicks = 5;
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 template <class... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
 };
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
 
 std::int16_t to_word(double value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -32768.0, 32767.0)));
@@ -232,7 +236,6 @@ void Server::finish_cycle() {
   robot_.clear_stalls();
   if (!options_.trace)
     return;
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const bool heading = robot_.controls_heading();
   trace_.push_back(
       {first_row_, cycle_, robot_.pose_in_world(), robot_.velocity(), robot_.rotation_velocity(),

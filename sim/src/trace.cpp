@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kColumns = 11;
 
+constexpr int kRowsBetweenOutlines = 50;  // of a picture: 5 s
+
 // A number of a trace: unlike the numbers that people write it may be nan or inf.
 double trace_number(std::string_view text, const std::string& file, int line, int column,
                     std::string_view whole) {
@@ -103,7 +105,6 @@ std::vector<TraceRow> parse_trace(std::string_view text, const std::string& file
 }
 
 std::string plot_svg(const World& world, const std::vector<TraceRow>& trace, double radius) {
-  constexpr int kRowsBetweenOutlines = 50;
   const double height = world.height;
   std::string out;
   print(out,

@@ -1,0 +1,95 @@
+// Bytes from a line: through the parser in pieces, into every decoder, and into a whole server.
+// What comes out of the parser must stand in the input as a packet, whatever the pieces.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/information.hpp"
+#include "saphira/protocol/packet.hpp"
+#include "saphira/sim/server.hpp"
+
+namespace {
+
+using namespace saphira;
+
+void require(bool condition) {
+  if (!condition)
+    std::abort();
+}
+
+void decode_everything(const protocol::Bytes& body) {
+  const protocol::Command command = protocol::decode_command(body);
+  // What was understood can be said again. (An unknown command's argument is not kept.)
+  const protocol::Bytes again = protocol::encode(command);
+  require(
+      std::holds_alternative<protocol::Unknown>(command) ||
+      protocol::decode_command(protocol::ByteView(again).subspan(3, again.size() - 5)).index() ==
+          command.index());
+  protocol::decode_sync2_reply(body);
+  if (const auto packet = protocol::decode_information(body)) {
+    const protocol::RobotParameters parameters;
+    protocol::interpret(*packet, parameters);
+    protocol::DeadReckoning().update(*packet, parameters);
+    const protocol::Bytes copy = protocol::encode(*packet);
+    const auto back =
+        protocol::decode_information(protocol::ByteView(copy).subspan(3, copy.size() - 5));
+    require(back.has_value());
+    if (packet->sonars.size() <= protocol::kMaxSonarsInPacket)
+      require(*back == *packet);
+  }
+}
+
+void serve(protocol::ByteView bytes) {
+  static const sim::World world =
+      sim::parse_world("width 4000 height 4000 0 0 4000 0 4000 0 4000 4000", "fuzz.wld");
+  protocol::RobotParameters parameters;
+  parameters.sonars.resize(1);
+  sim::Server server(world, parameters, {2.0, 2.0, 0.0}, {});
+  for (int i = 0; i < 3; ++i)
+    server.receive(protocol::encode_sync(i));
+  server.receive(protocol::encode(protocol::Open{}));
+  server.receive(bytes);
+  // And once more with a frame around it, so that commands with damaged bodies arrive.
+  if (!bytes.empty())
+    server.receive(protocol::frame(bytes.first(std::min(bytes.size(), protocol::kMaxBody))));
+  server.advance(30);
+  server.disconnect();
+  server.advance(1000);
+  require(!server.robot().moving());
+  require(server.robot().clearance() > -1e-9);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const protocol::ByteView input(data, size);
+  protocol::PacketParser parser;
+  std::size_t at = 0;
+  std::size_t piece = size > 0 ? data[0] : 0;
+  auto from = input.begin();
+  while (at < size) {
+    piece = (piece * 31 + 7) % 61 + 1;
+    const std::size_t length = std::min(piece, size - at);
+    parser.feed(input.subspan(at, length));
+    at += length;
+    if (piece == 13)
+      parser.gap();
+    while (const auto body = parser.next()) {
+      // In order, and each byte at most once.
+      const protocol::Bytes packet = protocol::frame(*body);
+      const auto found = std::search(from, input.end(), packet.begin(), packet.end());
+      require(found != input.end());
+      from = found + static_cast<std::ptrdiff_t>(packet.size());
+      decode_everything(*body);
+    }
+  }
+  require(parser.counters().skipped_bytes <= size);
+  if (size > 0)
+    decode_everything(protocol::Bytes(
+        input.begin(),
+        input.begin() + static_cast<std::ptrdiff_t>(std::min(size, protocol::kMaxBody))));
+  serve(input);
+  return 0;
+}
