@@ -14,6 +14,7 @@
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
@@ -22,9 +23,10 @@ void test(const std::string& input) {
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
 }
 
+const char* const kTokens[] = {"\xFA\xFB", "-",    "1e999", "nan",          "\n",       ";",
+                               "0",        "push", "pop",   "999999999999", "SonarUnit"};
+
 std::string mutate(std::string text, saphira::Random& random) {
-  static const char* const kTokens[] = {
-      "\xFA\xFB", "-", "1e999", "nan", "\n", ";", "0", "push", "pop", "999999999999", "SonarUnit"};
   const std::uint32_t changes = 1 + random.next() % 8;
   for (std::uint32_t i = 0; i < changes; ++i) {
     const std::size_t at = text.empty() ? 0 : random.next() % (text.size() + 1);

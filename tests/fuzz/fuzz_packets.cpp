@@ -63,6 +63,7 @@ void serve(protocol::ByteView bytes) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const protocol::ByteView input(data, size);
   protocol::PacketParser parser;
