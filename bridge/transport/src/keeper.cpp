@@ -121,7 +121,7 @@ char receive(int socket, int& passed) {
 
 }  // namespace
 
-Keeper::Keeper(std::vector<std::uint8_t> stop, std::chrono::milliseconds silence) {
+Keeper::Keeper(const std::vector<std::uint8_t>& stop, std::chrono::milliseconds silence) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::runtime_error(std::string("keeper: no socket pair: ") + std::strerror(errno));

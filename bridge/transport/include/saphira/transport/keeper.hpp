@@ -17,7 +17,7 @@ class Keeper {
  public:
   /// `stop`: the packets that stop the robot; `silence`: how long the bridge may be silent.
   /// std::runtime_error where no process can be made.
-  explicit Keeper(std::vector<std::uint8_t> stop,
+  explicit Keeper(const std::vector<std::uint8_t>& stop,
                   std::chrono::milliseconds silence = std::chrono::milliseconds(300));
   ~Keeper();
   Keeper(const Keeper&) = delete;

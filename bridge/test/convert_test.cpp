@@ -1,0 +1,190 @@
+#include "convert.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace saphira::bridge {
+namespace {
+
+v1::Stamp stamp(std::uint64_t epoch, std::uint64_t cycle) {
+  v1::Stamp out;
+  out.epoch(epoch);
+  out.cycle(cycle);
+  return out;
+}
+
+TEST(Convert, EveryFieldOfTheState) {
+  reflector::State s;
+  s.cycle = 9;
+  s.odom = 4;
+  s.pose_in_odom = {1.0, 2.0, 3.0};
+  s.target_velocity = 0.25;
+  s.target_heading_in_odom = -1.0;
+  s.motor_packets_per_s = 10;
+  s.sonar_readings_per_s = 25;
+  protocol::Information& in = s.information;
+  in.motors = protocol::Motors::kMoving;
+  in.velocity = 0.1;
+  in.rotation_velocity = 0.2;
+  in.left_velocity = 0.08;
+  in.right_velocity = 0.12;
+  in.battery = 12.6;
+  in.right_stalled = true;
+  in.bumpers = 0x0100;
+  in.ptu = 1500;
+  in.say = 3;
+  in.timer = 77;
+  in.analog = 200;
+  in.digital_input = 5;
+  in.digital_output = 6;
+  in.sonars = {{2, 1.25, true}, {3, 5.0, false}};
+  const v1::RobotState out = to_bus(s, stamp(8, 9), 12);
+  EXPECT_EQ(out.stamp().epoch(), 8U);
+  EXPECT_EQ(out.stamp().cycle(), 9U);
+  EXPECT_EQ(out.odom(), 4U);
+  EXPECT_EQ(out.pose_in_odom().x(), 1.0);
+  EXPECT_EQ(out.pose_in_odom().y(), 2.0);
+  EXPECT_EQ(out.pose_in_odom().th(), 3.0);
+  EXPECT_EQ(out.velocity(), 0.1);
+  EXPECT_EQ(out.rotation_velocity(), 0.2);
+  EXPECT_EQ(out.left_velocity(), 0.08);
+  EXPECT_EQ(out.right_velocity(), 0.12);
+  EXPECT_EQ(out.target_velocity(), 0.25);
+  EXPECT_EQ(out.target_heading_in_odom(), -1.0);
+  EXPECT_EQ(out.status(), v1::MOTORS_MOVING);
+  EXPECT_FALSE(out.left_stalled());
+  EXPECT_TRUE(out.right_stalled());
+  EXPECT_EQ(out.bumpers(), 0x0100);
+  EXPECT_EQ(out.battery(), 12.6);
+  EXPECT_EQ(out.ptu(), 1500);
+  EXPECT_EQ(out.say(), 3);
+  EXPECT_EQ(out.timer(), 77);
+  EXPECT_EQ(out.analog(), 200);
+  EXPECT_EQ(out.digital_input(), 5);
+  EXPECT_EQ(out.digital_output(), 6);
+  ASSERT_EQ(out.sonars().size(), 2U);
+  EXPECT_EQ(out.sonars()[0].sonar(), 2);
+  EXPECT_EQ(out.sonars()[0].range(), 1.25F);
+  EXPECT_TRUE(out.sonars()[0].echo());
+  EXPECT_FALSE(out.sonars()[1].echo());
+  EXPECT_EQ(out.motor_packets_per_s(), 10);
+  EXPECT_EQ(out.sonar_readings_per_s(), 25);
+  EXPECT_EQ(out.bad_packets(), 12U);
+}
+
+TEST(Convert, MotorCommands) {
+  v1::MotorCommand in;
+  in.stamp(stamp(3, 4));
+  in.source("me");
+  in.number(5);
+  in.active(true);
+  in.translation(v1::TRANSLATION_POSITION);
+  in.velocity(0.2);
+  in.distance(-1.0);
+  in.move(6);
+  in.rotation(v1::ROTATION_HEADING);
+  in.rotation_velocity(0.3);
+  in.heading(1.5);
+  EXPECT_EQ(trouble(in), "");
+  const reflector::Motion motion = to_motion(in);
+  EXPECT_EQ(motion.translation, reflector::Translation::position);
+  EXPECT_EQ(motion.velocity, 0.2);
+  EXPECT_EQ(motion.distance, -1.0);
+  EXPECT_EQ(motion.move, 6U);
+  EXPECT_EQ(motion.rotation, reflector::Rotation::heading);
+  EXPECT_EQ(motion.rotation_velocity, 0.3);
+  EXPECT_EQ(motion.heading, 1.5);
+  const authority::Command command = to_command(in, authority::Role::direct, {7}, 8.0);
+  EXPECT_EQ(command.epoch, 3U);
+  EXPECT_EQ(command.cycle, 4U);
+  EXPECT_EQ(command.number, 5U);
+  EXPECT_EQ(command.source, "me");
+  EXPECT_EQ(command.role, authority::Role::direct);
+  EXPECT_EQ(command.writer[0], 7);
+  EXPECT_EQ(command.received, 8.0);
+  EXPECT_TRUE(command.active);
+
+  in.source(std::string(100000, 'x'));
+  EXPECT_LE(to_command(in, authority::Role::direct, {7}, 8.0).source.size(), 255U);
+  in.heading(std::numeric_limits<double>::infinity());
+  EXPECT_NE(trouble(in), "");
+  in.heading(0.0);
+  in.velocity(1e9);
+  EXPECT_NE(trouble(in), "");
+  in.velocity(0.0);
+  in.rotation(static_cast<v1::RotationMode>(99));
+  EXPECT_NE(trouble(in), "");
+  in.rotation(v1::ROTATION_NONE);
+  in.translation(static_cast<v1::TranslationMode>(99));
+  EXPECT_NE(trouble(in), "");
+}
+
+TEST(Convert, DeviceCommandsAreChecked) {
+  const auto make = [](v1::DeviceKind kind, int value) {
+    v1::DeviceCommand out;
+    out.kind(kind);
+    out.value(value);
+    return out;
+  };
+  std::string why;
+  EXPECT_EQ(to_device(make(v1::DEVICE_DIGITAL_OUTPUT, 255), why),
+            protocol::Command(protocol::DigitalOutput{255}));
+  EXPECT_EQ(to_device(make(v1::DEVICE_TIMER, 7), why), protocol::Command(protocol::Timer{7}));
+  EXPECT_EQ(to_device(make(v1::DEVICE_GRIPPER, 4), why), protocol::Command(protocol::Gripper{4}));
+  EXPECT_EQ(to_device(make(v1::DEVICE_PTU, 1500), why), protocol::Command(protocol::Ptu{1500}));
+  EXPECT_EQ(to_device(make(v1::DEVICE_SET_ORIGIN, 0), why),
+            protocol::Command(protocol::SetOrigin{}));
+  v1::DeviceCommand polling = make(v1::DEVICE_POLLING, 0);
+  polling.polling({0, 1, 0, 5});
+  EXPECT_EQ(to_device(polling, why), protocol::Command(protocol::Polling{{0, 1, 0, 5}}));
+  EXPECT_EQ(why, "");
+  EXPECT_FALSE(to_device(make(v1::DEVICE_TIMER, 8), why));
+  EXPECT_EQ(why, "value 8 is not within 0..7");
+  EXPECT_FALSE(to_device(make(v1::DEVICE_DIGITAL_OUTPUT, -1), why));
+  EXPECT_FALSE(to_device(make(v1::DEVICE_PTU, 70000), why));
+  EXPECT_FALSE(to_device(make(static_cast<v1::DeviceKind>(50), 0), why));
+  EXPECT_EQ(why, "unknown kind of device");
+}
+
+TEST(Convert, GrantAndGuard) {
+  authority::Grant grant;
+  grant.role = authority::Role::teleop;
+  grant.source = "joystick";
+  grant.reason = "because";
+  grant.expires_in = 0.2;
+  grant.command_age = 0.1;
+  const std::vector<authority::Refusal> refused(20, {authority::Role::behaviors, "b", "weaker"});
+  const v1::Grant out =
+      to_bus(grant, {0.3, 0.0, authority::GuardAction::slow, "near"}, refused, stamp(1, 2));
+  EXPECT_EQ(out.role(), v1::ROLE_TELEOP);
+  EXPECT_EQ(out.source(), "joystick");
+  EXPECT_EQ(out.reason(), "because");
+  EXPECT_EQ(out.expires_in(), 0.2);
+  EXPECT_EQ(out.command_age(), 0.1);
+  EXPECT_EQ(out.guard(), v1::GUARD_SLOW);
+  EXPECT_EQ(out.guard_reason(), "near");
+  EXPECT_EQ(out.velocity(), 0.3);
+  EXPECT_EQ(out.refused().size(), 16U);
+  EXPECT_EQ(out.refused()[0].role(), v1::ROLE_BEHAVIORS);
+}
+
+TEST(Convert, ReadingsForTheGuard) {
+  protocol::RobotParameters p;
+  p.sonars = {{0, {0.1, 0.1, kPi / 2}}, {3, {0.13, 0.0, 0.0}}};
+  EXPECT_FALSE(to_body(p).sees_behind);
+  p.sonars.push_back({7, {-0.1, 0.0, kPi}});
+  EXPECT_TRUE(to_body(p).sees_behind);
+  reflector::State s;
+  s.information.sonars = {{3, 1.0, true}, {0, 5.0, false}, {9, 1.0, true}};
+  std::vector<authority::Echo> echoes;
+  std::vector<int> silent;
+  to_guard(s, p, echoes, silent);
+  ASSERT_EQ(echoes.size(), 1U) << "a sonar that no file places is left out";
+  EXPECT_EQ(echoes[0].sonar, 3);
+  EXPECT_EQ(silent, std::vector<int>{0});
+}
+
+}  // namespace
+}  // namespace saphira::bridge
