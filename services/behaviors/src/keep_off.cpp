@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "free_path.hpp"
@@ -8,10 +7,24 @@
 namespace saphira::behaviors {
 namespace {
 
-constexpr double kLookahead = 1.0;  ///< [m] at sensitivity 1
-constexpr double kRoom = 0.12;      ///< [m] beside the hull, where there is room
+/// [m] at sensitivity 1. Within the first the robot becomes cautious. Within the second it turns
+/// away if a small turn is enough, within the third if it has to turn far: a robot that turns on
+/// the spot has time, and what sonars show of a gap from further off is narrower than the gap.
+constexpr double kCaution = 1.0;
+constexpr double kSmallTurn = 0.7;
+constexpr double kLargeTurn = 0.45;
+/// Of these distances: a way that is free so far is free; one that is free for the second part is
+/// as good as blocked.
+constexpr double kFree = 0.8;
+constexpr double kBlocked = 0.4;
+
+constexpr double kRoom = 0.1;                 ///< [m] beside the hull, where there is room
+constexpr double kTight = 0.05;               ///< [m] beside the hull, at the least
+constexpr double kTightCost = radians(40.0);  ///< a tight way is worth so much of a turn
+
 constexpr double kWidest = radians(100.0);
 constexpr double kStep = radians(5.0);
+constexpr double kMostTurn = radians(40.0);
 
 /// Steers to the free direction that is nearest to where the robot would go otherwise. Keeps the
 /// side on which it goes around something until the way that it would go is free again: then it
@@ -19,69 +32,73 @@ constexpr double kStep = radians(5.0);
 class KeepOff : public Behavior {
  public:
   Evaluation update(const Parameters& parameters, const Context& context) override {
-    const double sensitivity = parameters.number("sensitivity");
-    const double lookahead = kLookahead * std::clamp(0.5 + 0.5 * sensitivity, 0.5, 1.5);
-    const double wide = context.model.radius + kRoom;
+    const double scale = 0.5 + 0.5 * parameters.number("sensitivity");
+    const std::vector<Vec2>& points = context.lps.obstacles();
+    const double radius = context.model.radius;
     const double wish = std::clamp(context.shared.goal_bearing.value_or(0.0), -kWidest, kWidest);
     // What stands behind the goal is not in the way.
-    const double reach = context.shared.goal_bearing
-                             ? std::min(lookahead, context.shared.goal_distance + 0.05)
-                             : lookahead;
-    const std::vector<Vec2>& points = context.lps.obstacles();
-    const auto blocked = [&](double direction, double to) {
-      return down_straight(free_path(points, direction, wide, to), 0.4 * to, to);
-    };
-    const Fuzzy wish_blocked = blocked(wish, reach);
-    const Fuzzy ahead_blocked = blocked(0.0, lookahead);
-    const Side told = side_from(parameters.text("preferred_turn"));
-
-    if (wish_blocked <= 0.05)
+    const double goal = context.shared.goal_bearing ? context.shared.goal_distance + 0.05 : 1e9;
+    const double reach = std::min(kSmallTurn * scale, goal);
+    const double wish_free = free_path(points, wish, radius + kRoom, reach);
+    const double caution = kCaution * scale;
+    const double wish_caution = std::min(caution, goal);
+    const Fuzzy near = f_or(down_straight(free_path(points, wish, radius + kRoom, wish_caution),
+                                          kBlocked * wish_caution, wish_caution),
+                            down_straight(free_path(points, 0.0, radius + kRoom, caution),
+                                          kBlocked * caution, caution));
+    if (wish_free >= reach)
       side_ = Side::none;
+
     double best = wish;
-    if (wish_blocked > 0.0) {
-      const double left = first_free(points, wish, kStep, wide, lookahead);
-      const double right = first_free(points, wish, -kStep, wide, lookahead);
-      if (side_ == Side::none) {
-        if (told != Side::none)
-          side_ = told;
-        else
-          side_ = std::abs(left) + std::abs(left - wish) <= std::abs(right) + std::abs(right - wish)
-                      ? Side::left
-                      : Side::right;
-      }
-      best = side_ == Side::left ? left : right;
-      context.shared.preferred_turn = side_;
+    if (wish_free < kFree * reach) {
+      const Way left = best_way(points, radius, wish, Side::left, wish_caution);
+      const Way right = best_way(points, radius, wish, Side::right, wish_caution);
+      if (side_ == Side::none)
+        side_ = side_from(parameters.text("preferred_turn"));
+      if (side_ == Side::none)
+        side_ = left.cost <= right.cost ? Side::left : Side::right;
+      best = (side_ == Side::left ? left : right).direction;
     }
-    const Fuzzy active = f_or(wish_blocked, std::min(ahead_blocked, wish_blocked));
+    if (side_ != Side::none)
+      context.shared.preferred_turn = side_;
+
+    const double from = reach - (reach - std::min(reach, kLargeTurn * scale)) *
+                                    straight_up(std::abs(best), radians(20.0), radians(70.0));
+    const Fuzzy blocked = down_straight(wish_free, kBlocked * from, from);
+    const double turn = std::min(std::abs(best), kMostTurn);
     Evaluation evaluation;
     evaluation.rules = {
-        {"way is left", best > 0.0 ? 1.0 : 0.0, Action::turn_left,
-         std::min(std::abs(best), radians(40.0))},
-        {"way is right", best > 0.0 ? 0.0 : 1.0, Action::turn_right,
-         std::min(std::abs(best), radians(40.0))},
-        {"caution", f_or(wish_blocked, ahead_blocked), Action::speed,
-         parameters.number("caution_speed")},
+        {"way is left", best > 0.0 ? 1.0 : 0.0, Action::turn_left, turn},
+        {"way is right", best > 0.0 ? 0.0 : 1.0, Action::turn_right, turn},
+        {"caution", near, Action::speed, parameters.number("caution_speed")},
     };
-    evaluation.activity = {.turn = active, .speed = f_or(wish_blocked, ahead_blocked)};
+    evaluation.activity = {.turn = blocked, .speed = near};
     return evaluation;
   }
 
  private:
-  static double first_free(const std::vector<Vec2>& points, double wish, double step, double radius,
-                           double lookahead) {
-    double best = wish;
-    double best_free = -1.0;
+  struct Way {
+    double direction = 0.0;  ///< [rad]
+    double cost = 1e9;       ///< [rad]
+  };
+
+  /// The cheapest direction on that side of `wish`: the way off and the turn, and more where it is
+  /// tight; one that is blocked costs more than any that is free.
+  static Way best_way(const std::vector<Vec2>& points, double radius, double wish, Side side,
+                      double reach) {
+    Way best{wish, 1e9};
     for (int i = 0; i <= static_cast<int>(2.0 * kWidest / kStep); ++i) {
-      const double direction = wish + i * step;
+      const double direction = wish + (side == Side::left ? i : -i) * kStep;
       if (std::abs(direction) > kWidest + 1e-9)
         break;
-      const double free = free_path(points, direction, radius, lookahead);
-      if (free >= 0.8 * lookahead)
-        return direction;
-      if (free > best_free) {
-        best_free = free;
-        best = direction;
-      }
+      double cost = std::abs(direction - wish) + 0.5 * std::abs(direction);
+      const double tight = free_path(points, direction, radius + kTight, reach);
+      if (tight < kFree * reach)
+        cost += 2.0 * kPi * (2.0 - tight / reach);
+      else if (free_path(points, direction, radius + kRoom, reach) < kFree * reach)
+        cost += kTightCost;
+      if (cost < best.cost)
+        best = {direction, cost};
     }
     return best;
   }

@@ -71,6 +71,7 @@ void LocalPerceptualSpace::update(const Pose& robot_in_odom,
   robot_in_odom_ = robot_in_odom;
   robot_in_global_ = compose(robot_in_global_, moved);
   cycle_ = cycle;
+  memory_.move_to(robot_in_odom_);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const double part = static_cast<double>(i + 1) / static_cast<double>(readings.size());
     take(readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}));
@@ -78,7 +79,7 @@ void LocalPerceptualSpace::update(const Pose& robot_in_odom,
   front_.move_to(robot_in_odom_);
   left_.move_to(robot_in_odom_);
   right_.move_to(robot_in_odom_);
-  memory_.update(robot_in_odom_, cycle_);
+  memory_.collect(robot_in_odom_);
   register_artifacts();
 }
 
@@ -109,9 +110,9 @@ void LocalPerceptualSpace::take(const SonarReading& reading, const Pose& robot_i
       break;
   }
   if (near)
-    memory_.echo(sonar_in_odom, reading.range, cycle_);
+    memory_.echo(sonar_in_odom, reading.range);
   else
-    memory_.silence(sonar_in_odom, settings_.front_max_range);
+    memory_.silence(sonar_in_odom);
 }
 
 std::vector<Vec2> LocalPerceptualSpace::points(Source source) const {

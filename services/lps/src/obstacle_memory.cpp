@@ -6,55 +6,133 @@
 namespace saphira::lps {
 namespace {
 
-constexpr int kFirstBelief = 3;
-constexpr int kMostBelief = 6;
-constexpr int kDoubtOfEcho = 2;
-constexpr int kDoubtOfSilence = 1;
+/// [m] The grid follows when the robot is so far from its middle.
+constexpr double kFollow = 0.5;
+
+std::size_t area(int cells) {
+  return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
+}
 
 }  // namespace
 
-void ObstacleMemory::echo(const Pose& sonar_in_odom, double range, std::uint64_t cycle) {
-  disprove(sonar_in_odom, range - settings_.margin, kDoubtOfEcho);
-  const Vec2 place = sonar_in_odom.position() + range * sonar_in_odom.direction();
-  for (Obstacle& obstacle : obstacles_)
-    if ((obstacle.in_odom - place).norm() <= settings_.same_place) {
-      obstacle.in_odom = (obstacle.in_odom + place) / 2.0;
-      obstacle.seen = cycle;
-      obstacle.belief = std::min(obstacle.belief + 1, kMostBelief);
-      return;
-    }
-  if (obstacles_.size() >= settings_.capacity)
-    obstacles_.erase(
-        std::min_element(obstacles_.begin(), obstacles_.end(),
-                         [](const Obstacle& a, const Obstacle& b) { return a.seen < b.seen; }));
-  obstacles_.push_back({place, cycle, kFirstBelief});
-}
-
-void ObstacleMemory::silence(const Pose& sonar_in_odom, double range) {
-  disprove(sonar_in_odom, range, kDoubtOfSilence);
-}
-
-void ObstacleMemory::disprove(const Pose& sonar_in_odom, double range, int doubt) {
-  for (Obstacle& obstacle : obstacles_) {
-    const Vec2 seen = to_frame(sonar_in_odom, obstacle.in_odom);
-    if (seen.norm() < range && std::abs(std::atan2(seen.y(), seen.x())) <= settings_.beam)
-      obstacle.belief -= doubt;
-  }
-}
-
-void ObstacleMemory::update(const Pose& robot_in_odom, std::uint64_t cycle) {
-  std::erase_if(obstacles_, [&](const Obstacle& obstacle) {
-    return obstacle.belief <= 0 || cycle - obstacle.seen > settings_.kept_cycles ||
-           (obstacle.in_odom - robot_in_odom.position()).norm() > settings_.kept_distance;
-  });
-  in_robot_.clear();
-  for (const Obstacle& obstacle : obstacles_)
-    in_robot_.push_back(to_frame(robot_in_odom, obstacle.in_odom));
-}
+ObstacleMemory::ObstacleMemory(MemorySettings settings)
+    : settings_(settings), beliefs_(area(settings.cells), 0.0) {}
 
 void ObstacleMemory::clear() {
-  obstacles_.clear();
-  in_robot_.clear();
+  placed_ = false;
+  std::fill(beliefs_.begin(), beliefs_.end(), 0.0);
+  points_.clear();
+}
+
+void ObstacleMemory::move_to(const Pose& robot_in_odom) {
+  for (double& belief : beliefs_)
+    belief *= settings_.fading;
+  const long half = settings_.cells / 2;
+  const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;
+  const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;
+  const long follow = std::lround(kFollow / settings_.cell);
+  if (placed_ && std::abs(column0 - column0_) <= follow && std::abs(row0 - row0_) <= follow)
+    return;
+  if (placed_) {
+    std::vector<double> moved(beliefs_.size(), 0.0);
+    const long n = settings_.cells;
+    for (long row = 0; row < n; ++row)
+      for (long column = 0; column < n; ++column) {
+        const long old_row = row + row0 - row0_;
+        const long old_column = column + column0 - column0_;
+        if (old_row >= 0 && old_row < n && old_column >= 0 && old_column < n)
+          moved[static_cast<std::size_t>(row * n + column)] =
+              beliefs_[static_cast<std::size_t>(old_row * n + old_column)];
+      }
+    beliefs_ = std::move(moved);
+  }
+  placed_ = true;
+  column0_ = column0;
+  row0_ = row0;
+}
+
+template <class F>
+void ObstacleMemory::for_cone(const Pose& sonar, double range, F&& f) {
+  const double cell = settings_.cell;
+  const long n = settings_.cells;
+  // The box around the cone: its tip, the ends of the arc, the middle of the arc. The arc's extreme
+  // lies within a cell of these for a cone as narrow as a sonar's.
+  double low_x = sonar.x, high_x = sonar.x, low_y = sonar.y, high_y = sonar.y;
+  for (const double off : {-settings_.beam, 0.0, settings_.beam}) {
+    const double x = sonar.x + range * std::cos(sonar.th + off);
+    const double y = sonar.y + range * std::sin(sonar.th + off);
+    low_x = std::min(low_x, x);
+    high_x = std::max(high_x, x);
+    low_y = std::min(low_y, y);
+    high_y = std::max(high_y, y);
+  }
+  const auto clamped = [n](double v) {
+    return std::clamp(static_cast<long>(std::floor(v)), 0L, n);
+  };
+  const long column_begin = clamped(low_x / cell - 1.0 - static_cast<double>(column0_));
+  const long column_end = clamped(high_x / cell + 2.0 - static_cast<double>(column0_));
+  const long row_begin = clamped(low_y / cell - 1.0 - static_cast<double>(row0_));
+  const long row_end = clamped(high_y / cell + 2.0 - static_cast<double>(row0_));
+  const double c = std::cos(sonar.th);
+  const double s = std::sin(sonar.th);
+  const double edge = std::tan(settings_.beam);
+  for (long row = row_begin; row < row_end; ++row)
+    for (long column = column_begin; column < column_end; ++column) {
+      const double dx = (static_cast<double>(column + column0_) + 0.5) * cell - sonar.x;
+      const double dy = (static_cast<double>(row + row0_) + 0.5) * cell - sonar.y;
+      const double along = c * dx + s * dy;
+      const double across = -s * dx + c * dy;
+      if (along <= 0.0 || std::abs(across) > edge * along)
+        continue;
+      const double distance = std::sqrt(along * along + across * across);
+      if (distance <= range)
+        f(beliefs_[static_cast<std::size_t>(row * n + column)], distance,
+          std::atan2(std::abs(across), along));
+    }
+}
+
+void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
+  const double soft = settings_.beam - settings_.sure;
+  for_cone(sonar_in_odom, range, [&](double& belief, double /*distance*/, double off) {
+    const double sure = std::clamp((settings_.beam - off) / soft, 0.0, 1.0);
+    belief = std::max(belief - doubt * sure, -settings_.most);
+  });
+}
+
+void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
+  pass(sonar_in_odom, range - 2.0 * settings_.thickness, settings_.passed);
+  // The arc cell that is likeliest so far takes the echo in full, the others in proportion.
+  const auto on_arc = [&](double distance) {
+    return std::abs(distance - range) <= settings_.thickness;
+  };
+  const auto likely = [&](double belief, double off) {
+    return std::exp(belief) * (1.0 - 0.5 * off / settings_.beam);
+  };
+  const double far = range + settings_.thickness;
+  double likeliest = 0.0;
+  for_cone(sonar_in_odom, far, [&](double& belief, double distance, double off) {
+    if (on_arc(distance))
+      likeliest = std::max(likeliest, likely(belief, off));
+  });
+  for_cone(sonar_in_odom, far, [&](double& belief, double distance, double off) {
+    if (on_arc(distance))
+      belief = std::min(belief + settings_.seen * likely(belief, off) / likeliest, settings_.most);
+  });
+}
+
+void ObstacleMemory::silence(const Pose& sonar_in_odom) {
+  pass(sonar_in_odom, settings_.silent_range, settings_.silent);
+}
+
+void ObstacleMemory::collect(const Pose& robot_in_odom) {
+  points_.clear();
+  const long n = settings_.cells;
+  for (long row = 0; row < n; ++row)
+    for (long column = 0; column < n; ++column)
+      if (beliefs_[static_cast<std::size_t>(row * n + column)] >= settings_.obstacle)
+        points_.push_back(to_frame(robot_in_odom,
+                                   {(static_cast<double>(column + column0_) + 0.5) * settings_.cell,
+                                    (static_cast<double>(row + row0_) + 0.5) * settings_.cell}));
 }
 
 }  // namespace saphira::lps

@@ -2,71 +2,123 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace saphira::lps {
 namespace {
 
-TEST(ObstacleMemory, KeepsWhatLeavesTheSonarsSight) {
-  ObstacleMemory memory;
-  memory.echo({0.0, 0.0, 0.0}, 1.0, 1);
-  memory.update({0.8, -0.3, 0.0}, 40);
-  ASSERT_EQ(memory.points().size(), 1U);
-  EXPECT_NEAR(memory.points()[0].x(), 0.2, 1e-12);
-  EXPECT_NEAR(memory.points()[0].y(), 0.3, 1e-12);
+constexpr Pose kOrigin{};
+
+/// Distance [m] from a place in the robot's frame to the nearest obstacle.
+double nearest(const ObstacleMemory& memory, const Vec2& place) {
+  double best = 1e9;
+  for (const Vec2& p : memory.points())
+    best = std::min(best, (p - place).norm());
+  return best;
 }
 
-TEST(ObstacleMemory, ForgetsWhatIsOldOrFar) {
+TEST(ObstacleMemory, BelievesTheFirstEcho) {
   ObstacleMemory memory;
-  memory.echo({0.0, 0.0, 0.0}, 1.0, 1);
-  memory.update({}, 101);
-  EXPECT_EQ(memory.points().size(), 1U);
-  memory.update({}, 102);
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  memory.collect(kOrigin);
+  EXPECT_LT(nearest(memory, {1.0, 0.0}), 0.06);
+  // It is on the arc, and nowhere else.
+  for (const Vec2& p : memory.points())
+    EXPECT_NEAR(p.norm(), 1.0, 0.06);
+}
+
+TEST(ObstacleMemory, KeepsWhatLeavesTheSonarsSight) {
+  ObstacleMemory memory;
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  memory.echo(kOrigin, 1.0);
+  const Pose later{0.8, -0.3, 0.0};
+  for (int cycle = 0; cycle < 50; ++cycle)
+    memory.move_to(later);
+  memory.collect(later);
+  EXPECT_LT(nearest(memory, {0.2, 0.3}), 0.06);
+}
+
+TEST(ObstacleMemory, ForgetsInTime) {
+  ObstacleMemory memory;
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  for (int cycle = 0; cycle < 200; ++cycle)
+    memory.move_to(kOrigin);
+  memory.collect(kOrigin);
   EXPECT_TRUE(memory.points().empty());
-  memory.echo({0.0, 0.0, 0.0}, 1.0, 103);
-  memory.update({4.5, 0.0, 0.0}, 104);
+}
+
+TEST(ObstacleMemory, GoesWithTheRobot) {
+  ObstacleMemory memory;
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  Pose robot;
+  for (robot.x = 0.0; robot.x < 1.9; robot.x += 0.1)
+    memory.move_to(robot);
+  memory.collect(robot);
+  EXPECT_LT(nearest(memory, {1.0 - robot.x, 0.0}), 0.06);
+  // And leaves behind what is out of its grid.
+  for (; robot.x < 5.0; robot.x += 0.1)
+    memory.move_to(robot);
+  memory.collect(robot);
   EXPECT_TRUE(memory.points().empty());
 }
 
 TEST(ObstacleMemory, AnEchoFromBehindDisproves) {
   ObstacleMemory memory;
-  memory.echo({0.0, 0.0, 0.0}, 1.0, 1);
-  memory.echo({0.0, 0.0, 0.0}, 2.0, 2);
-  memory.update({}, 2);
-  EXPECT_EQ(memory.points().size(), 2U);  // once may be a mistake
-  memory.echo({0.0, 0.0, 0.0}, 2.0, 3);
-  memory.update({}, 3);
-  ASSERT_EQ(memory.points().size(), 1U);
-  EXPECT_NEAR(memory.points()[0].x(), 2.0, 1e-12);
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  memory.echo(kOrigin, 2.0);
+  memory.echo(kOrigin, 2.0);
+  memory.collect(kOrigin);
+  EXPECT_GT(nearest(memory, {1.0, 0.0}), 0.15);
+  EXPECT_LT(nearest(memory, {2.0, 0.0}), 0.06);
 }
 
 TEST(ObstacleMemory, SilenceDisprovesMoreSlowly) {
   ObstacleMemory memory;
-  memory.echo({0.0, 0.0, 0.0}, 1.0, 1);
-  for (int i = 0; i < 2; ++i)
-    memory.silence({0.0, 0.0, 0.0}, 2.5);
-  memory.update({}, 2);
-  EXPECT_EQ(memory.points().size(), 1U);
-  memory.silence({0.0, 0.0, 0.0}, 2.5);
-  memory.update({}, 3);
-  EXPECT_TRUE(memory.points().empty());
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
+  memory.silence(kOrigin);
+  memory.collect(kOrigin);
+  EXPECT_LT(nearest(memory, {1.0, 0.0}), 0.06);
+  memory.silence(kOrigin);
+  memory.collect(kOrigin);
+  EXPECT_GT(nearest(memory, {1.0, 0.0}), 0.15);
 }
 
 TEST(ObstacleMemory, BeamsBesideItSayNothing) {
   ObstacleMemory memory;
-  memory.echo({0.0, 0.0, 0.0}, 1.0, 1);
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.0);
   for (int i = 0; i < 9; ++i)
-    memory.silence({0.0, 0.0, radians(15)}, 2.5);
-  memory.update({}, 2);
-  EXPECT_EQ(memory.points().size(), 1U);
+    memory.silence({0.0, 0.0, radians(25)});
+  memory.collect(kOrigin);
+  EXPECT_LT(nearest(memory, {1.0, 0.0}), 0.06);
 }
 
-TEST(ObstacleMemory, IsBounded) {
-  MemorySettings settings;
-  settings.capacity = 5;
-  ObstacleMemory memory(settings);
-  for (int i = 0; i < 20; ++i)
-    memory.echo({0.0, 0.0, radians(18.0 * i)}, 1.0, static_cast<std::uint64_t>(i));
-  memory.update({}, 20);
-  EXPECT_EQ(memory.points().size(), 5U);
+// A gap whose edge only the outer half of a beam meets: the neighbouring beam goes through, so the
+// echo is put where the neighbour does not look.
+TEST(ObstacleMemory, NeighboursNarrowTheArc) {
+  ObstacleMemory memory;
+  memory.move_to(kOrigin);
+  const Pose neighbour{0.0, 0.0, radians(-15)};
+  memory.echo(neighbour, 2.0);
+  memory.echo(kOrigin, 1.0);
+  memory.echo(neighbour, 2.0);
+  memory.collect(kOrigin);
+  double middle = 0.0;
+  int n = 0;
+  for (const Vec2& p : memory.points())
+    if (p.norm() < 1.5) {
+      middle += p.y();
+      ++n;
+    }
+  ASSERT_GT(n, 0);
+  EXPECT_GT(middle / n, 0.03);
+  EXPECT_GT(nearest(memory, {std::cos(radians(-11)), std::sin(radians(-11))}), 0.06);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -8,49 +7,61 @@
 
 namespace saphira::lps {
 
-/// How long and how firmly obstacles are remembered.
+/// How obstacles are believed. Beliefs are log odds: 0 is "not known".
 struct MemorySettings {
-  std::uint64_t kept_cycles = 100;  ///< since it was seen last
-  double kept_distance = 3.0;       ///< [m] from the robot
-  std::size_t capacity = 400;       ///< the oldest goes
-  double same_place = 0.08;         ///< [m] echoes so near to each other are one obstacle
-  double beam = radians(8.0);       ///< [rad] half angle within which a beam would surely have hit
-  double margin = 0.25;             ///< [m] a beam ends so far behind what it disproves
+  double cell = 0.05;           ///< [m]
+  int cells = 120;              ///< along each side; the robot is near the middle
+  double beam = radians(12.5);  ///< [rad] half angle of a sonar's cone
+  double sure = radians(9.0);   ///< [rad] within which it would surely have seen something
+  double thickness = 0.05;      ///< [m] an echo may be off by so much
+  double seen = 1.5;            ///< added where an echo comes from
+  double passed = 1.2;          ///< taken away where a beam with an echo has passed
+  double silent = 0.6;          ///< taken away where a beam without an echo has passed
+  double silent_range = 1.5;    ///< [m] up to which silence means something
+  double most = 4.0;            ///< a belief stays within this of 0
+  double obstacle = 0.6;        ///< belief from which on there is one
+  double fading = 0.99;         ///< of all beliefs, a cycle: 4 are forgotten in 19 s
 };
 
 /// What the sonars have seen around the robot, for as long as nothing speaks against it.
 ///
 /// The manual's buffers forget by count: an obstacle that leaves the front sonars' sight while the
 /// robot rounds it (a Pioneer sees nothing between 45 and 75 degrees) is gone from the front buffer
-/// after 1.7 s, and the robot turns into it. Here an echo is believed until it is old or far, or
-/// until later beams have passed through its place: an echo from behind it disproves more than
-/// silence does, since a smooth wall met at a slant is silent too.
+/// after 1.7 s, and the robot turns into it. And they put an echo on the axis of the beam, while it
+/// comes from somewhere on the arc across: a gap of a metre looks closed from a metre off. Here
+/// each beam speaks for the whole of its cone, in a grid that goes with the robot: the cone up to
+/// the arc is free, and the obstacle is on the arc, more likely where it was likely before (Moravec
+/// and Elfes 1985). Silence says less than an echo from behind, since a smooth wall that is met at
+/// a slant is silent too.
 class ObstacleMemory {
  public:
-  explicit ObstacleMemory(MemorySettings settings = {}) : settings_(settings) {}
+  explicit ObstacleMemory(MemorySettings settings = {});
 
   /// A beam from `sonar_in_odom` along its heading met something at `range` [m].
-  void echo(const Pose& sonar_in_odom, double range, std::uint64_t cycle);
-  /// A beam met nothing within `range` [m].
-  void silence(const Pose& sonar_in_odom, double range);
-  /// Forgets what is old or far, and registers the rest with the robot.
-  void update(const Pose& robot_in_odom, std::uint64_t cycle);
+  void echo(const Pose& sonar_in_odom, double range);
+  /// A beam met nothing.
+  void silence(const Pose& sonar_in_odom);
+  /// A cycle has passed, and the robot is here: before the beams of the cycle.
+  void move_to(const Pose& robot_in_odom);
+  /// Registers the obstacles with the robot: after the beams of the cycle.
+  void collect(const Pose& robot_in_odom);
   void clear();
 
-  /// In the robot's frame as of the last update.
-  const std::vector<Vec2>& points() const { return in_robot_; }
+  /// The cells that hold an obstacle, in the robot's frame as of the last collect.
+  const std::vector<Vec2>& points() const { return points_; }
 
  private:
-  struct Obstacle {
-    Vec2 in_odom;
-    std::uint64_t seen;
-    int belief;
-  };
-  void disprove(const Pose& sonar_in_odom, double range, int doubt);
+  /// Calls f(belief, distance, off axis) for each cell within the cone, up to `range`.
+  template <class F>
+  void for_cone(const Pose& sonar_in_odom, double range, F&& f);
+  void pass(const Pose& sonar_in_odom, double range, double doubt);
 
   MemorySettings settings_;
-  std::vector<Obstacle> obstacles_;
-  std::vector<Vec2> in_robot_;
+  bool placed_ = false;
+  long column0_ = 0;  ///< of the grid's corner, in cells of odom
+  long row0_ = 0;
+  std::vector<double> beliefs_;  ///< by rows
+  std::vector<Vec2> points_;
 };
 
 }  // namespace saphira::lps
