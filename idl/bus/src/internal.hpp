@@ -36,6 +36,7 @@ class Wake {
 
   void signal();
   void clear();
+  bool pending() const { return pending_.load(std::memory_order_acquire); }
   int fd() const { return fd_; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -163,6 +164,16 @@ bool Node::wait(std::chrono::milliseconds timeout, const Stop* stop) {
       throw std::system_error(errno, std::generic_category(), "poll");
   }
   impl_->wake->clear();
+  return true;
+}
+
+bool Node::spin(std::chrono::microseconds limit) {
+  const auto end = Clock::now() + limit;
+  while (!impl_->wake->pending()) {
+    if (Clock::now() >= end)
+      return false;
+    sched_yield();
+  }
   return true;
 }
 

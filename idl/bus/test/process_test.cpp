@@ -1,0 +1,117 @@
+// Two processes: what becomes of one's samples when it dies, stops, and comes back.
+#include "process.hpp"
+
+#include <csignal>
+
+#include "harness.hpp"
+
+namespace saphira::bus::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Processes : public testing::Test {
+ protected:
+  Processes() : robot_(robot("p")) {
+    NodeOptions options;
+    options.name = "test";
+    options.robot = robot_;
+    options.domain = domain();
+    node_ = std::make_unique<Node>(options);
+  }
+
+  saphira::test::Process peer(const std::string& role, std::vector<std::string> more = {}) {
+    std::vector<std::string> argv{"saphira-bus-peer", "--robot", robot_, "--role", role};
+    argv.insert(argv.end(), more.begin(), more.end());
+    return {argv,
+            folder_.path("peer" + std::to_string(++started_)),
+            {{"SAPHIRA_DOMAIN", std::to_string(domain())}, {"SAPHIRA_PROFILE", "host"}}};
+  }
+  static double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+  std::string robot_;
+  std::unique_ptr<Node> node_;
+  saphira::test::TempDir folder_;
+  int started_ = 0;
+};
+
+TEST_F(Processes, AnyOrderOfStart) {
+  auto writer = peer("writer");
+  auto early = node_->reader(topics::kGoals);
+  EXPECT_EQ(take_at_least(*node_, early, 1).size(), 1U);
+  auto reader = peer("reader");
+  EXPECT_EQ(reader.wait(), 0) << reader.output();
+  writer.signal(SIGTERM);
+  EXPECT_EQ(writer.wait(), 0) << writer.output();
+}
+
+TEST_F(Processes, WriterThatIsKilledIsLostAfterItsLease) {
+  auto goals = node_->reader(topics::kGoals);
+  auto writer = peer("writer");
+  const auto got = take_at_least(*node_, goals, 1);
+  ASSERT_EQ(got.size(), 1U);
+  writer.signal(SIGKILL);
+  const auto killed = Clock::now();
+  std::vector<WriterId> lost;
+  EXPECT_TRUE(eventually(*node_, [&] { return !(lost = goals.take_lost()).empty(); }));
+  EXPECT_EQ(lost, std::vector<WriterId>{got[0].info.writer});
+  EXPECT_GT(seconds_since(killed), 1.5);  // a short silence is not the end
+  EXPECT_LT(seconds_since(killed), 8.0);  // the lease of 3 s, and a machine that is busy
+  EXPECT_EQ(goals.matched(), 0U);
+  // It was not withdrawn: what becomes of it is for its reader to say.
+  EXPECT_TRUE(goals.take().empty());
+}
+
+TEST_F(Processes, WriterThatEndsIsLostAtOnce) {
+  auto goals = node_->reader(topics::kGoals);
+  auto writer = peer("writer");
+  ASSERT_EQ(take_at_least(*node_, goals, 1).size(), 1U);
+  writer.signal(SIGTERM);
+  const auto asked = Clock::now();
+  EXPECT_TRUE(eventually(*node_, [&] { return !goals.take_lost().empty(); }));
+  EXPECT_LT(seconds_since(asked), 2.0);
+}
+
+TEST_F(Processes, RestartedReaderFindsTheGoalsOfLivingWriters) {
+  auto goals = node_->writer(topics::kGoals);
+  auto robot_writer = node_->writer(topics::kRobotState);
+  goals.write(goal(5));
+  for (int round = 0; round < 3; ++round) {
+    auto reader = peer("reader", {"--count", "0"});
+    EXPECT_EQ(reader.wait(), 0) << reader.output();
+  }
+}
+
+TEST_F(Processes, RestartedWriterIsHeardSoonAfterAKill) {
+  auto states = node_->reader(topics::kRobotState);
+  for (int round = 0; round < 3; ++round) {
+    auto writer = peer("writer", {"--hz", "100"});
+    const auto start = Clock::now();
+    std::uint64_t epoch = 0;
+    ASSERT_TRUE(eventually(*node_, [&] {
+      for (const auto& sample : states.take())
+        epoch = sample.data.stamp().epoch();
+      return epoch != 0;
+    }));
+    // Usually 50 ms; a lost announcement costs a quarter of a second.
+    EXPECT_LT(seconds_since(start), 3.0);
+    writer.signal(SIGKILL);
+    writer.wait();
+    states.take();
+  }
+}
+
+TEST_F(Processes, TwelveFindEachOther) {
+  auto states = node_->reader(topics::kRobotState);
+  std::vector<saphira::test::Process> writers;
+  for (int i = 0; i < 12; ++i)
+    writers.push_back(peer("writer", {"--hz", "5"}));
+  EXPECT_TRUE(eventually(*node_, [&] { return states.matched() == 12; }));
+  auto reader = peer("reader", {"--count", "60"});
+  EXPECT_EQ(reader.wait(), 0) << reader.output();
+}
+
+}  // namespace
+}  // namespace saphira::bus::test
