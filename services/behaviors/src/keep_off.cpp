@@ -18,12 +18,14 @@ constexpr double kLargeTurn = 0.45;
 constexpr double kFree = 0.8;
 constexpr double kBlocked = 0.4;
 
-constexpr double kRoom = 0.1;                 ///< [m] beside the hull, where there is room
-constexpr double kTight = 0.05;               ///< [m] beside the hull, at the least
+constexpr double kRoom = 0.12;                ///< [m] beside the hull, where there is room
+constexpr double kTight = 0.08;               ///< [m] beside the hull, at the least
 constexpr double kTightCost = radians(40.0);  ///< a tight way is worth so much of a turn
 
 constexpr double kWidest = radians(100.0);
-constexpr double kStep = radians(5.0);
+constexpr double kStep = radians(2.5);
+/// Of the way's bearing: less than all of it, or the robot would follow the grain of the readings.
+constexpr double kGain = 0.6;
 constexpr double kMostTurn = radians(40.0);
 
 /// Steers to the free direction that is nearest to where the robot would go otherwise. Keeps the
@@ -33,7 +35,10 @@ class KeepOff : public Behavior {
  public:
   Evaluation update(const Parameters& parameters, const Context& context) override {
     const double scale = 0.5 + 0.5 * parameters.number("sensitivity");
-    const std::vector<Vec2>& points = context.lps.obstacles();
+    std::vector<Vec2> points;  // those that matter
+    for (const Vec2& p : context.lps.obstacles())
+      if (p.norm() < kCaution * scale + context.model.radius + kRoom)
+        points.push_back(p);
     const double radius = context.model.radius;
     const double wish = std::clamp(context.shared.goal_bearing.value_or(0.0), -kWidest, kWidest);
     // What stands behind the goal is not in the way.
@@ -65,7 +70,7 @@ class KeepOff : public Behavior {
     const double from = reach - (reach - std::min(reach, kLargeTurn * scale)) *
                                     straight_up(std::abs(best), radians(20.0), radians(70.0));
     const Fuzzy blocked = down_straight(wish_free, kBlocked * from, from);
-    const double turn = std::min(std::abs(best), kMostTurn);
+    const double turn = std::min(kGain * std::abs(best), kMostTurn);
     Evaluation evaluation;
     evaluation.rules = {
         {"way is left", best > 0.0 ? 1.0 : 0.0, Action::turn_left, turn},

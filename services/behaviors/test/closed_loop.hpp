@@ -39,7 +39,7 @@ struct Drive {
   sim::SonarModel sonar;
 };
 
-struct Run {
+struct DriveResult {
   bool arrived = false;
   std::uint64_t cycles = 0;
   int contacts = 0;
@@ -68,12 +68,12 @@ inline std::vector<Intended> go_to(const Vec2& goal_in_odom, double speed = 0.3,
           {"stop", "Stop", 3, true, {}}};
 }
 
-inline Run drive(const sim::World& world, const protocol::RobotParameters& parameters,
-                 const Pose& start_in_world, const Drive& what, const Watch& watch = {}) {
+inline DriveResult drive(const sim::World& world, const protocol::RobotParameters& parameters,
+                         const Pose& start_in_world, const Drive& what, const Watch& watch = {}) {
   sim::Robot robot(world, parameters, start_in_world, what.seed);
   sim::Sonars sonars(world, parameters, what.sonar, what.seed);
   Executive executive(predefined(), model_of(parameters));
-  Run run;
+  DriveResult run;
   std::vector<lps::SonarReading> readings;
   Intent intent{0, true, what.behaviors};
   double swing = 0.0;  // [rad] turned since it last changed sides

@@ -1,0 +1,222 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "closed_loop.hpp"
+
+// What the behaviors are worth: the executive drives the simulated Pioneer, with the noise of its
+// sonars and its dead reckoning, through worlds that a reactive robot has to manage. Ten seeds
+// each.
+namespace saphira::behaviors {
+namespace {
+
+constexpr std::uint64_t kSeeds = 10;
+
+std::string source_dir() {
+  const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
+  return dir == nullptr ? "." : dir;
+}
+
+const protocol::RobotParameters& pioneer() {
+  static const protocol::RobotParameters parameters =
+      protocol::load_parameters(source_dir() + "/config/robots/pioneer.p");
+  return parameters;
+}
+
+/// A rectangle as a world file has it; centre and sides in mm, angle in degrees.
+std::string box(double x, double y, double angle, double width, double height) {
+  const auto number = [](double v) { return std::to_string(v) + " "; };
+  const double xs[] = {-width / 2, width / 2, width / 2, -width / 2};
+  const double ys[] = {-height / 2, -height / 2, height / 2, height / 2};
+  std::string text = "push " + number(x) + number(y) + number(angle) + "\n";
+  for (int i = 0; i < 4; ++i)
+    text +=
+        number(xs[i]) + number(ys[i]) + number(xs[(i + 1) % 4]) + number(ys[(i + 1) % 4]) + "\n";
+  return text + "pop\n";
+}
+
+/// A hall of 20 by 20 m with things in it.
+sim::World hall(const std::string& things) {
+  return sim::parse_world(
+      "width 20000 height 20000\n"
+      "0 0 20000 0\n20000 0 20000 20000\n20000 20000 0 20000\n0 20000 0 0\n" +
+          things,
+      "hall");
+}
+
+/// Twelve boxes in the middle of the hall, of different sizes and askew; wherever two are near each
+/// other there is at least a metre between them.
+sim::World field(std::uint64_t seed) {
+  Random random(seed);
+  std::string things;
+  std::vector<Vec2> places;
+  for (int i = 0; i < 400 && places.size() < 12; ++i) {
+    const Vec2 place(random.uniform(4, 12), random.uniform(6, 14));
+    const double size = random.uniform(0.3, 0.9);
+    const double angle = random.uniform(0, 90);
+    bool free = true;
+    for (const Vec2& other : places)
+      free = free && (other - place).norm() >= 2.3;
+    if (!free)
+      continue;
+    places.push_back(place);
+    things += box(place.x() * 1e3, place.y() * 1e3, angle, size * 1e3, size * 1e3);
+  }
+  return hall(things);
+}
+
+struct Expected {
+  double clearance = 0.04;  ///< [m]
+  double detour = 1.4;      ///< path over the straight line, at the most, on average
+  double swings = 12.0;     ///< on average
+  double speed = 0.3;
+};
+
+void expect_arrivals(const sim::World& world, const Pose& start, const Vec2& goal,
+                     const Expected& expected = {}) {
+  double path = 0.0;
+  double swings = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Drive what;
+    what.goal_in_odom = goal;
+    what.behaviors = go_to(goal, expected.speed);
+    what.seed = seed;
+    const DriveResult run = drive(world, pioneer(), start, what);
+    EXPECT_TRUE(run.arrived) << "seed " << seed << " ended at " << run.end_in_world.x << ", "
+                             << run.end_in_world.y;
+    EXPECT_EQ(run.contacts, 0) << "seed " << seed;
+    EXPECT_GE(run.min_clearance, expected.clearance) << "seed " << seed;
+    path += run.path / kSeeds;
+    swings += static_cast<double>(run.swings) / kSeeds;
+  }
+  EXPECT_LE(path, expected.detour * goal.norm());
+  EXPECT_LE(swings, expected.swings);
+}
+
+TEST(Drive, InTheOpen) {
+  expect_arrivals(hall(""), {2, 10, 0}, {8, 3}, {.clearance = 1.0, .detour = 1.05, .swings = 2});
+}
+
+TEST(Drive, TurnsRoundAndDoesNotOrbitTheGoal) {
+  expect_arrivals(hall(""), {5, 10, 0}, {-2, 0.3}, {.clearance = 1.0, .detour = 1.05, .swings = 2});
+  expect_arrivals(hall(""), {5, 10, 0}, {0, 0.5}, {.clearance = 1.0, .detour = 1.3, .swings = 2});
+}
+
+TEST(Drive, AroundABoxStraightAhead) {
+  expect_arrivals(hall(box(6000, 10000, 0, 600, 600)), {3, 10, 0}, {6, 0});
+}
+
+TEST(Drive, AroundAWideBoxStraightAhead) {
+  expect_arrivals(hall(box(6000, 10000, 0, 1000, 2400)), {3, 10, 0}, {6, 0});
+}
+
+TEST(Drive, AroundACornerStraightAhead) {
+  expect_arrivals(hall(box(6000, 10000, 45, 800, 800)), {3, 10, 0}, {6, 0});
+}
+
+TEST(Drive, AroundAWall) {
+  expect_arrivals(hall(box(6000, 10000, 0, 200, 4000)), {3, 10, 0}, {6, 0.5}, {.detour = 1.7});
+}
+
+TEST(Drive, AlongASlantingWall) {
+  expect_arrivals(hall(box(7000, 10000, 30, 5000, 200)), {3, 10, 0}, {8, -1}, {.swings = 20});
+}
+
+TEST(Drive, ThroughAGapOfAMetre) {
+  expect_arrivals(hall(box(6000, 7500, 0, 200, 4000) + box(6000, 12500, 0, 200, 4000)), {3, 10, 0},
+                  {6, 0}, {.detour = 1.1});
+}
+
+TEST(Drive, ThroughACorridorOfAMetre) {
+  expect_arrivals(hall(box(7000, 9400, 0, 6000, 200) + box(7000, 10600, 0, 6000, 200)), {2, 10, 0},
+                  {10, 0}, {.detour = 1.1});
+}
+
+TEST(Drive, OutOfAPocket) {
+  expect_arrivals(hall(box(7000, 10000, 0, 200, 2000) + box(6500, 11000, 0, 1200, 200) +
+                       box(6500, 9000, 0, 1200, 200)),
+                  {3, 10, 0}, {6, 0}, {.detour = 1.8});
+}
+
+TEST(Drive, ThroughTheOffice) {
+  expect_arrivals(sim::load_world(source_dir() + "/config/worlds/office.wld"), {1.5, 7, 0},
+                  {16, 1});
+}
+
+TEST(Drive, AtFullSpeed) {
+  expect_arrivals(sim::load_world(source_dir() + "/config/worlds/office.wld"), {1.5, 7, 0}, {16, 1},
+                  {.speed = 0.4});
+}
+
+class Field : public ::testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(Field, OfBoxes) {
+  expect_arrivals(field(GetParam()), {2, 10, 0}, {12, 0}, {.swings = 16});
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, Field, ::testing::Range<std::uint64_t>(100, 106));
+
+/// AvoidCollision by itself, as the functor `drive` intends it: when the front is blocked it stops,
+/// turns in place until there is a way, and goes on.
+TEST(Drive, WandersOnAvoidCollisionAlone) {
+  const sim::World world = field(100);
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Drive what;
+    what.goal_in_odom = {1e6, 0.0};
+    what.behaviors = {{"avoid", "AvoidCollision", 0, true, {}},
+                      {"go", "ConstantVelocity", 2, true, {{"speed", 0.3}}}};
+    what.limit = 2000;
+    what.seed = seed;
+    const DriveResult run = drive(world, pioneer(), {2, 10, 0}, what);
+    EXPECT_EQ(run.contacts, 0);
+    EXPECT_GE(run.min_clearance, 0.04);
+    EXPECT_GE(run.path, 45.0);  // of 60 m at full speed: it never stays stuck
+  }
+}
+
+/// StopCollision does not turn: it stands before a wall.
+TEST(Drive, StopCollisionStandsBeforeAWall) {
+  const sim::World world = hall(box(6000, 10000, 0, 200, 4000));
+  Drive what;
+  what.goal_in_odom = {1e6, 0.0};
+  what.behaviors = {{"halt", "StopCollision", 0, true, {}},
+                    {"go", "ConstantVelocity", 2, true, {{"speed", 0.4}}}};
+  what.limit = 200;
+  const DriveResult run = drive(world, pioneer(), {3, 10, 0}, what);
+  EXPECT_EQ(run.contacts, 0);
+  EXPECT_NEAR(run.end_in_world.x, 5.9 - 0.22 - 0.1, 0.1);
+  EXPECT_LT(run.path, 2.8);
+}
+
+TEST(Drive, TurnToTurnsTheShortWayOnTheSpot) {
+  for (const double bearing : {170.0, -170.0, 90.0, -20.0}) {
+    Drive what;
+    what.goal_in_odom = {1e6, 0.0};
+    what.behaviors = {{"turn",
+                       "TurnTo",
+                       2,
+                       true,
+                       {{"goal", PlacedPoint{{5.0 * std::cos(radians(bearing)),
+                                              5.0 * std::sin(radians(bearing)), 0.0},
+                                             Frame::odom}},
+                        {"success_angle", 0.05}}},
+                      {"stop", "Stop", 3, true, {}}};
+    what.limit = 60;
+    double goal = 0.0;
+    double turned = 0.0;
+    double last = 0.0;
+    const DriveResult run =
+        drive(hall(""), pioneer(), {10, 10, 0}, what,
+              [&](const sim::Robot& robot, const Inputs&, const Output& output, const Executive&) {
+                turned += norm2_angle(robot.pose_in_odom().th - last);
+                last = robot.pose_in_odom().th;
+                goal = output.behaviors[0].blended.evaluation.activity.goal;
+              });
+    EXPECT_NEAR(degrees(turned), bearing, degrees(0.05));
+    EXPECT_EQ(goal, 1.0);
+    EXPECT_LT(run.path, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace saphira::behaviors
