@@ -15,9 +15,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
+std::string build_folder() {
+  const char* const folder = std::getenv("SAPHIRA_BUILD_DIR");
+  return folder == nullptr ? "" : folder;
+}
+
 /// An entry of the CMake cache of this build, so that the agent is built the same way.
 std::string cached(const std::string& name) {
-  std::ifstream cache(std::string(std::getenv("SAPHIRA_BUILD_DIR")) + "/CMakeCache.txt");
+  std::ifstream cache(build_folder() + "/CMakeCache.txt");
   for (std::string line; std::getline(cache, line);) {
     if (line.starts_with(name + ":"))
       return line.substr(line.find('=') + 1);
@@ -34,7 +39,7 @@ TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
   };
   const std::string prefix = dir.path("installed");
   const std::string build = dir.path("build");
-  run({"/usr/bin/env", "cmake", "--install", std::getenv("SAPHIRA_BUILD_DIR"), "--prefix", prefix});
+  run({"/usr/bin/env", "cmake", "--install", build_folder(), "--prefix", prefix});
   const std::string sanitize = cached("SAPHIRA_SANITIZE");
   run({"/usr/bin/env", "cmake", "-S", test::source("agents/examples/go_there"), "-B", build, "-G",
        "Ninja", "-DCMAKE_PREFIX_PATH=" + prefix,

@@ -347,7 +347,7 @@ TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
   bench.cycle = 0;
   bench.world.robot.odom = 2;
   bench.step();
-  for (const std::uint64_t lost : {1, 2, 3, 5}) {
+  for (const std::uint64_t lost : {1U, 2U, 3U, 5U}) {
     EXPECT_EQ(bench.state(lost), GoalState::kFailed) << lost;
     EXPECT_EQ(bench.status(lost).code, GoalCode::kNoRobot);
     EXPECT_NE(bench.status(lost).reason.find("position lost"), std::string::npos);

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<std::string> schemas(const std::vector<IntendedBehavior>& behaviors) {
   std::vector<std::string> names;
+  names.reserve(behaviors.size());
   for (const IntendedBehavior& behavior : behaviors)
     names.push_back(behavior.schema + "/" + std::to_string(behavior.priority));
   return names;

@@ -8,6 +8,8 @@
 namespace saphira::intentions {
 namespace {
 
+constexpr const char* kFunctors[] = {"go_to", "drive", "turn_to", "stop", "fly"};
+
 Arguments random_arguments(Random& random, const std::string& functor) {
   if (random.chance(0.1))
     return {number("nonsense", random.uniform(-9, 9))};
@@ -25,7 +27,6 @@ Arguments random_arguments(Random& random, const std::string& functor) {
 /// Whatever comes: one goal at most is underway, what is intended serves it, an end is for good and
 /// has a reason, and when no more comes every goal comes to its end.
 TEST(ExecutorProperty, HoldsForRandomGoals) {
-  constexpr const char* kFunctors[] = {"go_to", "drive", "turn_to", "stop", "fly"};
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Random random(seed);
     Bench bench;
