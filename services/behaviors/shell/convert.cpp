@@ -3,6 +3,8 @@
 namespace saphira::behaviors {
 namespace {
 
+constexpr std::size_t kMostRules = 64;  // the bound of BehaviorState.rules
+
 Pose from_bus(const v1::Pose2& pose) {
   return {pose.x(), pose.y(), pose.th()};
 }
@@ -107,6 +109,8 @@ v1::BehaviorState to_bus(const BehaviorState& state) {
   sample.recommends_speed(blended.recommends_speed);
   sample.speed(blended.speed);
   for (const Rule& rule : blended.evaluation.rules) {
+    if (sample.rules().size() == kMostRules)
+      break;
     v1::RuleState out;
     out.name(rule.name);
     out.strength(rule.strength);

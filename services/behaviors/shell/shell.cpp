@@ -18,20 +18,24 @@ bool Shell::step(const bus::Stop& stop) {
     return false;
   Output output;
   if (know_robot(step->robot, stop)) {
-    // A new origin of the odometry moves everything that is remembered.
-    if (step->robot.odom() != odom_)
-      executive_.reset();
-    odom_ = step->robot.odom();
     Inputs inputs;
     inputs.cycle = cycle_.stamp().cycle();
+    // Another origin of the odometry: what is remembered is elsewhere, and so are the points that
+    // were intended before.
+    if (odom_ && *odom_ != step->robot.odom()) {
+      executive_.reset();
+      odom_since_ = inputs.cycle;
+    }
+    odom_ = step->robot.odom();
     inputs.robot = from_bus(step->robot);
     inputs.sonars = sonars_from_bus(step->robot);
     std::optional<Intent> intent;
-    if (const v1::Intentions* const sample = intentions_.value())
+    const v1::Intentions* const sample = intentions_.value();
+    if (sample != nullptr && sample->stamp().cycle() >= odom_since_)
       inputs.intent = &intent.emplace(from_bus(*sample));
     output = executive_.step(inputs);
   } else {
-    output.inactive_reason = "no description of the robot";
+    wait_for_description();
   }
   publish(output);
   cycle_.done();
@@ -54,13 +58,23 @@ bool Shell::know_robot(const v1::RobotState& robot, const bus::Stop& stop) {
          (!description_ || description_->stamp().epoch() != epoch)) {
     node_.wait(std::chrono::milliseconds(500), &stop);
     take_description();
+    wait_for_description();
     node_.publish_status();
   }
   if (!description_ || description_->stamp().epoch() != epoch)
     return false;
   executive_.reset(from_bus(*description_));
   model_epoch_ = epoch;
+  odom_.reset();
+  odom_since_ = 0;
+  node_.status().state() = v1::SERVICE_RUNNING;
+  node_.status().reason().clear();
   return true;
+}
+
+void Shell::wait_for_description() {
+  node_.status().state() = v1::SERVICE_WAITING;
+  node_.status().reason() = std::string("waits for ") + bus::topics::kRobotDescription.name;
 }
 
 void Shell::publish(const Output& output) {
@@ -77,6 +91,9 @@ void Shell::publish(const Output& output) {
   if (output.trouble != trouble_ && !output.trouble.empty())
     node_.warn("behaviors that cannot be had: " + output.trouble);
   trouble_ = output.trouble;
+  if (output.active != active_)
+    node_.info(output.active ? "drives" : "does not drive: " + output.inactive_reason);
+  active_ = output.active;
 }
 
 }  // namespace saphira::behaviors

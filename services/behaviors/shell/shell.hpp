@@ -25,6 +25,7 @@ class Shell {
  private:
   void take_description();
   bool know_robot(const v1::RobotState& robot, const bus::Stop& stop);
+  void wait_for_description();
   void publish(const Output& output);
 
   bus::Node& node_;
@@ -36,10 +37,12 @@ class Shell {
 
   std::optional<v1::RobotDescription> description_;  ///< the newest
   std::uint64_t model_epoch_ = 0;                    ///< of the description the executive has
-  std::uint64_t odom_ = 0;
+  std::optional<std::uint64_t> odom_;                ///< of the newest step
+  std::uint64_t odom_since_ = 0;                     ///< cycle in which it last changed
   Executive executive_{predefined(), RobotModel{}};
   std::uint64_t number_ = 0;  ///< of the newest motor command
   std::string trouble_;
+  bool active_ = false;
 };
 
 }  // namespace saphira::behaviors

@@ -1,0 +1,186 @@
+#include "behaviors/shell/shell.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::behaviors {
+namespace {
+
+bus::NodeOptions named(const std::string& name, bool lockstep) {
+  bus::NodeOptions options;
+  options.name = name;
+  options.lockstep = lockstep;
+  return options;
+}
+
+v1::Argument number(const char* name, double value) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_NUMBER);
+  argument.number(value);
+  return argument;
+}
+
+v1::IntendedBehavior behavior(const char* schema, int priority,
+                              std::vector<v1::Argument> parameters = {}) {
+  v1::IntendedBehavior b;
+  b.name(schema);
+  b.schema(schema);
+  b.priority(priority);
+  b.running(true);
+  b.parameters(std::move(parameters));
+  return b;
+}
+
+/// The service between a scripted bridge and scripted intentions, on a bus within the process.
+class ShellTest : public testing::TestWithParam<bool> {
+ protected:
+  void describe() {
+    v1::RobotDescription description;
+    description.stamp().epoch(epoch);
+    description.radius(0.22);
+    description.max_velocity(0.4);
+    description.max_rotation_velocity(1.7);
+    description.front_buffer(30);
+    description.side_buffer(40);
+    description.front_max_range(2.5);
+    descriptions.write(description);
+  }
+  /// RobotState of the next cycle.
+  void state() {
+    v1::RobotState sample;
+    sample.stamp().epoch(epoch);
+    sample.stamp().cycle(++cycle);
+    sample.odom(odom);
+    sample.pose_in_odom().th(heading);
+    states.write(sample);
+  }
+  void intend(std::vector<v1::IntendedBehavior> set) {
+    v1::Intentions sample;
+    sample.stamp().epoch(epoch);
+    sample.stamp().cycle(cycle);
+    sample.behavior_control(true);
+    sample.behaviors(std::move(set));
+    intentions.write(sample);
+  }
+  void step() {
+    ASSERT_TRUE(shell.step(stop));
+    const std::optional<v1::MotorCommand> newest = commands.take_newest();
+    ASSERT_TRUE(newest);
+    command = *newest;
+    const std::optional<v1::Behaviors> told_now = behaviors.take_newest();
+    ASSERT_TRUE(told_now);
+    told = *told_now;
+    EXPECT_EQ(command.stamp().epoch(), epoch);
+    EXPECT_EQ(command.stamp().cycle(), cycle);
+    EXPECT_EQ(told.stamp().cycle(), cycle);
+  }
+  void one(std::vector<v1::IntendedBehavior> set) {
+    state();
+    step();
+    intend(std::move(set));
+  }
+
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Stop stop;
+  bus::Node bridge{named("bridge", GetParam()), memory};
+  bus::Node service{named("behaviors", GetParam()), memory};
+  bus::Writer<v1::RobotState> states{bridge.writer(bus::topics::kRobotState)};
+  bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
+  bus::Writer<v1::Intentions> intentions{bridge.writer(bus::topics::kIntentions)};
+  bus::Reader<v1::MotorCommand> commands{bridge.reader(bus::topics::kDriveBehaviors)};
+  bus::Reader<v1::Behaviors> behaviors{bridge.reader(bus::topics::kBehaviors)};
+  Shell shell{service};
+
+  std::uint64_t epoch = 77;
+  std::uint64_t cycle = 0;
+  std::uint64_t odom = 1;
+  double heading = 1.0;
+  v1::MotorCommand command;
+  v1::Behaviors told;
+};
+
+INSTANTIATE_TEST_SUITE_P(LiveAndLockstep, ShellTest, testing::Bool());
+
+TEST_P(ShellTest, CommandsWhatIsIntended) {
+  describe();
+  one({behavior("ConstantVelocity", 2, {number("speed", 0.25)})});
+  EXPECT_FALSE(command.active());
+  const std::uint64_t first = command.number();
+  one({});
+  EXPECT_TRUE(command.active());
+  EXPECT_EQ(command.velocity(), 0.25);
+  EXPECT_EQ(command.heading(), 1.0);
+  EXPECT_EQ(command.source(), "behaviors");
+  EXPECT_GT(command.number(), first);
+  ASSERT_EQ(told.behaviors().size(), 1U);
+  EXPECT_EQ(told.behaviors()[0].speed_weight(), 1.0);
+  // Nothing is intended any more.
+  state();
+  step();
+  EXPECT_FALSE(command.active());
+  EXPECT_TRUE(told.behaviors().empty());
+}
+
+TEST_P(ShellTest, SaysWhatCannotBeHad) {
+  describe();
+  one({behavior("Fly", 0), behavior("Stop", 3)});
+  state();
+  step();
+  EXPECT_TRUE(command.active());
+  EXPECT_NE(told.trouble().find("unknown schema \"Fly\""), std::string::npos);
+  EXPECT_EQ(told.behaviors().size(), 1U);
+}
+
+TEST_P(ShellTest, ANewEpochBeginsAnew) {
+  describe();
+  one({behavior("ConstantVelocity", 2)});
+  one({behavior("ConstantVelocity", 2)});
+  EXPECT_TRUE(command.active());
+  epoch = 78;
+  cycle = 0;
+  describe();
+  one({behavior("Stop", 2)});
+  EXPECT_FALSE(command.active());
+  one({});
+  EXPECT_TRUE(command.active());
+  EXPECT_EQ(told.behaviors().at(0).schema(), "Stop");
+}
+
+TEST_P(ShellTest, WhatWasIntendedInAnotherOdomIsNotDrivenBy) {
+  describe();
+  one({behavior("ConstantVelocity", 2)});
+  one({behavior("ConstantVelocity", 2)});
+  EXPECT_TRUE(command.active());
+  odom = 2;
+  one({behavior("ConstantVelocity", 2)});
+  EXPECT_FALSE(command.active());
+  one({});
+  EXPECT_TRUE(command.active());
+}
+
+class LiveShellTest : public ShellTest {};
+INSTANTIATE_TEST_SUITE_P(Live, LiveShellTest, testing::Values(false));
+
+TEST_P(LiveShellTest, ReleasesWhenTheIntentIsOld) {
+  describe();
+  one({behavior("ConstantVelocity", 2)});
+  for (int age = 1; age <= 4; ++age) {
+    state();
+    step();
+    EXPECT_EQ(command.active(), age <= 2) << age;
+  }
+}
+
+TEST_P(LiveShellTest, WaitsForTheDescriptionWithoutHoldingUpTheBridge) {
+  one({behavior("ConstantVelocity", 2)});
+  EXPECT_FALSE(command.active());
+  EXPECT_EQ(service.status().state(), v1::SERVICE_WAITING);
+  EXPECT_EQ(service.status().reason(), "waits for robot/description");
+  describe();
+  one({});
+  EXPECT_TRUE(command.active());
+  EXPECT_EQ(service.status().state(), v1::SERVICE_RUNNING);
+}
+
+}  // namespace
+}  // namespace saphira::behaviors
