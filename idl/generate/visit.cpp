@@ -169,8 +169,9 @@ class Parser {
   void structure() {
     const std::string name = word();
     expect("{");
-    std::string members;
-    std::string keys;
+    std::ostringstream members;
+    std::ostringstream keys;
+    std::set<std::string> named;
     while (!take("}")) {
       bool key = false;
       while (next_ < tokens_.size() && tokens_[next_].text[0] == '@')
@@ -178,17 +179,20 @@ class Parser {
       const std::string of = type();
       const std::string member = word();
       const std::string value = "sample." + member + "()";
-      members += "  visit(\"" + member + "\", ";
-      members += constants.contains(of)
-                     ? "Named<" + of + ">{" + value + ", name_of_" + of + "(" + value + ")}"
-                     : value;
-      members += ");\n";
+      members << "  visit(\"" << member << "\", ";
+      if (constants.contains(of)) {
+        members << "Named<" << of << ">{" << value << ", name_of_" << of << "(" << value << ")}";
+        named.insert(of);
+      } else {
+        members << value;
+      }
+      members << ");\n";
       if (key)
-        keys += "  visit(\"" + member + "\", " + value + ");\n";
+        keys << "  visit(\"" << member << "\", " << value << ");\n";
       expect(";");
     }
     for (const auto& [of, values] : constants) {
-      if (members.find("name_of_" + of) == std::string::npos || !written_.insert(of).second)
+      if (!named.contains(of) || !written_.insert(of).second)
         continue;
       out_ << "inline const char* name_of_" << of << "(" << of << " value) {\n";
       for (const auto& item : values)
@@ -197,10 +201,10 @@ class Parser {
     }
     out_ << "template <class Visit>\nvoid visit_members(const " << name
          << "& sample, Visit&& visit) {\n"
-         << members << "}\n";
+         << members.str() << "}\n";
     out_ << "template <class Visit>\nvoid visit_keys([[maybe_unused]] const " << name
          << "& sample, [[maybe_unused]] Visit&& visit) {\n"
-         << keys << "}\n";
+         << keys.str() << "}\n";
   }
 
   std::string file_;

@@ -11,9 +11,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(500);
-// How long nothing may happen before the status says what is waited for.
-constexpr double kQuietLive_s = 0.5;
-constexpr double kQuietLockstep_s = 2.0;
+// Seconds without a step before the status says what is waited for.
+constexpr double kQuietLive = 0.5;
+constexpr double kQuietLockstep = 2.0;
 // A step that was late shows in the state for so many steps.
 constexpr std::uint64_t kDegradedSteps = 10;
 // RobotStates that wait: more than a bridge in lockstep can be ahead.
@@ -198,7 +198,7 @@ struct Cycle::Impl {
   }
 
   void note_waiting() {
-    quiet = since(waiting_since) > (lockstep ? kQuietLockstep_s : kQuietLive_s);
+    quiet = since(waiting_since) > (lockstep ? kQuietLockstep : kQuietLive);
     if (!quiet)
       return;
     status.state() = v1::SERVICE_WAITING;

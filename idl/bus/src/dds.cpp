@@ -49,12 +49,13 @@ using eprosima::fastrtps::types::ReturnCode_t;
 constexpr std::uint32_t kMaxDomain = 232;
 // How many programs of one machine can be found by a peer that knows nothing but its address.
 constexpr std::uint32_t kProgramsPerPeer = 12;
-// Seconds after which a program that has died without a word is taken for gone.
-constexpr int kLease_ms = 3000;
-// How often a program announces itself: what a restarted one waits at the most until it is found.
-constexpr int kAnnouncement_ms = 250;
+// [ms] after which a program that has died without a word is taken for gone.
+constexpr int kLease = 3000;
+// [ms] between two announcements of a program: what a restarted one waits at the most until it is
+// found.
+constexpr int kAnnouncement = 250;
 // By unicast to every place where a peer may be: less often, for the sake of a radio.
-constexpr int kPeerAnnouncement_ms = 500;
+constexpr int kPeerAnnouncement = 500;
 
 Duration_t milliseconds(int ms) {
   return {ms / 1000, static_cast<std::uint32_t>(ms % 1000) * 1000000U};
@@ -182,8 +183,8 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
 
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.discovery_config.leaseDuration = milliseconds(kLease_ms);
-  builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kAnnouncement_ms);
+  builtin.discovery_config.leaseDuration = milliseconds(kLease);
+  builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kAnnouncement);
   std::string own_address = "127.0.0.1";
   switch (options.profile) {
     case Profile::host:
@@ -200,7 +201,7 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
   }
   if (options.profile == Profile::wan) {
     builtin.avoid_builtin_multicast = true;
-    builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kPeerAnnouncement_ms);
+    builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kPeerAnnouncement);
     // A unicast place for discovery, and so no multicast one.
     rtps::Locator_t here;
     here.kind = LOCATOR_KIND_UDPv4;
@@ -353,13 +354,13 @@ class Discovery : public fdds::DomainParticipantListener {
       for (const auto& partition : proxy.m_qos.m_partition.names())
         endpoint.robot += (endpoint.robot.empty() ? "" : ",") + partition;
       endpoint.reliable = proxy.m_qos.m_reliability.kind == fdds::RELIABLE_RELIABILITY_QOS;
-      static constexpr const char* kDurability[] = {"volatile", "transient_local", "transient",
-                                                    "persistent"};
-      endpoint.durability = kDurability[proxy.m_qos.m_durability.kind & 3U];
+      static constexpr const char* durability[] = {"volatile", "transient_local", "transient",
+                                                   "persistent"};
+      endpoint.durability = durability[proxy.m_qos.m_durability.kind & 3U];
       endpoint.deadline = seconds(proxy.m_qos.m_deadline.period);
-      static constexpr const char* kLiveliness[] = {"automatic", "manual_by_participant",
-                                                    "manual_by_topic", "automatic"};
-      endpoint.liveliness = kLiveliness[proxy.m_qos.m_liveliness.kind & 3U];
+      static constexpr const char* liveliness[] = {"automatic", "manual_by_participant",
+                                                   "manual_by_topic", "automatic"};
+      endpoint.liveliness = liveliness[proxy.m_qos.m_liveliness.kind & 3U];
       if (const double lease = seconds(proxy.m_qos.m_liveliness.lease_duration); lease > 0.0) {
         std::ostringstream text;
         text << " " << lease << " s";

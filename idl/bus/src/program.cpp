@@ -19,12 +19,12 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->envname("SAPHIRA_DOMAIN")
       ->check(CLI::Range(0, 232))
       ->capture_default_str();
-  static const std::map<std::string, Profile> kProfiles{
+  static const std::map<std::string, Profile> profiles{
       {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
   app.add_option("--profile", options.profile,
                  "Network: host (this machine alone), lan (multicast), wan (the listed peers)")
       ->envname("SAPHIRA_PROFILE")
-      ->transform(CLI::CheckedTransformer(kProfiles))
+      ->transform(CLI::CheckedTransformer(profiles))
       ->default_str("host");
   app.add_option("--peer", options.peers, "wan: addresses of the other machines")
       ->envname("SAPHIRA_PEERS")

@@ -106,6 +106,7 @@ TEST_F(Processes, RestartedWriterIsHeardSoonAfterAKill) {
 TEST_F(Processes, TwelveFindEachOther) {
   auto states = node_->reader(topics::kRobotState);
   std::vector<saphira::test::Process> writers;
+  writers.reserve(12);
   for (int i = 0; i < 12; ++i)
     writers.push_back(peer("writer", {"--hz", "5"}));
   EXPECT_TRUE(eventually(*node_, [&] { return states.matched() == 12; }));
