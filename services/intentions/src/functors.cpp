@@ -21,6 +21,9 @@ constexpr double kSatisfied = 0.9;
 constexpr double kRestVelocity = 0.02;
 constexpr double kRestRotation = radians(3.0);
 
+/// Cycles until a robot that had just been told to move would show it.
+constexpr Ticks kOnTheWay = 3;
+
 /// [s] without progress after which a goal is given up.
 constexpr double kPatience = 20.0;
 constexpr double kGround = 0.1;  ///< [m] that driving has to gain within the patience
@@ -292,9 +295,10 @@ class Halt : public Activity {
     self.say("stopping");
     if (first_ > 0.0)
       self.progress(1.0 - velocity / first_);
-    if (at_rest(self.robot()))
+    const Ticks passed = self.now() - begun_;
+    if (at_rest(self.robot()) && passed >= kOnTheWay)
       self.succeed("the robot is at rest");
-    else if (static_cast<double>(self.now() - begun_) * kTick >= kPatience)
+    else if (static_cast<double>(passed) * kTick >= kPatience)
       self.fail(GoalCode::kBlocked,
                 format("still moving after %.0f s, at %.2f m/s", kPatience, self.robot().velocity));
   }

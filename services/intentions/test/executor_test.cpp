@@ -126,8 +126,8 @@ TEST(Executor, AStopEndsWhatIsNotMoreImportant) {
   bench.ask(6, "stop", {}, 1);
   bench.step();
   EXPECT_EQ(bench.state(3), GoalState::kCanceled);
-  bench.step();
-  bench.step();
+  for (int i = 0; i < 10; ++i)
+    bench.step();
   EXPECT_EQ(bench.state(6), GoalState::kSucceeded);
   EXPECT_EQ(bench.state(4), GoalState::kSucceeded);  // a stop does not end another
   EXPECT_EQ(bench.state(5), GoalState::kCanceled);
@@ -233,7 +233,8 @@ TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
 TEST(Executor, AnEndedGoalStaysEnded) {
   Bench bench;
   bench.ask(1, "stop", {});
-  bench.step();
+  for (int i = 0; i < 4; ++i)
+    bench.step();
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
   bench.ask(1, "stop", {});
   bench.step();
@@ -246,7 +247,9 @@ TEST(Executor, AnEndedGoalStaysEnded) {
 TEST(Executor, AnEndedGoalIsKeptForAMinute) {
   Bench bench;
   bench.ask(1, "stop", {});
-  bench.step();
+  for (int i = 0; i < 4; ++i)
+    bench.step();
+  ASSERT_EQ(bench.state(1), GoalState::kSucceeded);
   for (int i = 0; i < 599; ++i)
     bench.step();
   EXPECT_EQ(bench.statuses.count(1), 1U);
