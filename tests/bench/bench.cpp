@@ -24,7 +24,7 @@ std::string bin_dir() {
 
 std::string config(const std::string& path) {
   const fs::path bin = bin_dir();
-  for (const fs::path& root : {bin / "../share/saphira", bin / "../../../config"})
+  for (const fs::path& root : {bin / "../share/saphira", fs::path(SAPHIRA_SOURCE_CONFIG)})
     if (fs::exists(root / path))
       return fs::canonical(root / path).string();
   throw std::runtime_error("config/" + path + " not found beside " + bin.string());

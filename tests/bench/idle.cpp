@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Cost of the idle system, live at 10 Hz"};
   bool json = false;
   unsigned seconds = 20;
-  std::string deployment = config("deployments/demo.yaml");
+  std::string deployment = "demo";
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--seconds", seconds, "how long to watch")->check(CLI::Range(2, 3600));
   app.add_option("--deployment", deployment, "what to run");

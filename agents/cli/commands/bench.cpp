@@ -61,7 +61,7 @@ void add_bench(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand(
       "bench", "Run a benchmark, with its own options behind its name; without a name: list them");
   command->add_option("name", *name, "the benchmark");
-  command->prefix_command();
+  command->allow_extras();
   command->callback([name, command, &chosen] {
     chosen.run = [name, rest = command->remaining()](const bus::NodeOptions&, const bus::Stop&) {
       return bench(*name, rest);
