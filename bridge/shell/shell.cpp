@@ -27,8 +27,9 @@ constexpr double kDeadStep = 10.0;  // [s] for the simulator to make a step
 constexpr double kGap = 0.25;       // [s] the bridge's own loop was not heard for so long
 constexpr double kSettle = 0.1;     // [s] after a gap: what comes now waited in some queue
 constexpr double kWaitForDriver =
-    0.05;                       // [s] from a packet until what is due goes without its answer
-constexpr double kBeat = 0.05;  // [s] of the keeper
+    0.05;  // [s] from a packet until what is due goes without its answer
+constexpr std::chrono::microseconds kSpin{500};
+constexpr double kBeat = 0.05;         // [s] of the keeper
 constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
 constexpr double kHoldOff = 2.0;       // [s] until a robot that could not be served is tried again
 constexpr double kCycle = 0.1;         // [s] manual 2.1.1
@@ -123,6 +124,7 @@ int Shell::run(const bus::Stop& stop) {
   last_loop_ = steady();
   while (!stop.requested()) {
     double now = steady();
+    mind_gap(now);
     tend_link(now);
     if (!lockstep_ && epoch_ != 0) {
       if (flush_at_ > 0.0 && now >= flush_at_) {
@@ -144,15 +146,19 @@ int Shell::run(const bus::Stop& stop) {
     fds[2].events = link_.poll_events();
     const int n = ::poll(fds, 3, timeout_ms(steady()));
     now = steady();
-    const double gap = now - last_loop_;
-    last_loop_ = now;
-    if (gap > kGap && !lockstep_ && epoch_ != 0)
-      after_gap(gap, now);
+    mind_gap(now);
     if (n <= 0)
       continue;
-    if (fds[2].revents != 0)
+    bool woken = fds[1].revents != 0;
+    if (fds[2].revents != 0) {
       receive(now);
-    if (fds[1].revents != 0) {
+      // The answer to a packet is a fraction of a millisecond away.
+      if (flush_at_ > 0.0 && !woken) {
+        woken = node_.spin(kSpin);
+        now = steady();
+      }
+    }
+    if (woken) {
       node_.clear_wake();
       take_all(now);
     }
@@ -404,13 +410,18 @@ void Shell::lost(const std::string& why, double now) {
   flush_at_ = 0.0;
 }
 
-void Shell::after_gap(double gap, double now) {
+void Shell::mind_gap(double now) {
+  const double gap = now - last_loop_;
+  last_loop_ = now;
+  if (gap <= kGap || lockstep_ || epoch_ == 0)
+    return;
   char text[96];
   std::snprintf(text, sizeof text,
                 "the bridge stood still for %.2f s: the robot is stopped, a new grant is needed",
                 gap);
   node_.warn(text);
-  arbiter_.forget(stamp_.cycle(), time() + kSettle);
+  arbiter_.forget(stamp_.cycle(), now + kSettle);
+  last_packet_ = now;  // it was the bridge that was silent, not the link
   reflector_.zero_first();
   decide();
   flush(now);

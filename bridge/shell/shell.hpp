@@ -54,7 +54,8 @@ class Shell {
   void information(const protocol::InformationPacket& packet, double now);
   bool send(const protocol::Bytes& packet, double now);
   void lost(const std::string& why, double now);
-  void after_gap(double gap, double now);
+  /// Whether the loop was heard in time; if not, all that was received before counts as old.
+  void mind_gap(double now);
 
   // The bus's side.
   void take_all(double now);
