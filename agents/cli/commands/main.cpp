@@ -21,8 +21,9 @@ int main(int argc, char** argv) {
         cli::add_bench(app, chosen);
         app.add_subcommand("help", "This text");
         // --robot and the like may stand behind the subcommand as well.
+        // (Those of a benchmark are its own.)
         for (CLI::App* command : app.get_subcommands({}))
-          command->fallthrough();
+          command->fallthrough(command->get_name() != "bench");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
         if (chosen.run)
