@@ -105,12 +105,10 @@ class ScriptedRobot {
   protocol::PacketParser parser_;
 };
 
-/// An information packet of a robot that drives at 0.2 m/s and points left and right of its way in
-/// turns, so that every packet asks for another heading.
+/// An information packet of a robot that drives at 0.2 m/s and sees nothing.
 protocol::InformationPacket information(long n) {
   protocol::InformationPacket packet;
   packet.motors = protocol::Motors::kMoving;
-  packet.th = static_cast<std::int16_t>(n % 2 == 0 ? 50 : -50);  // 17.6 degrees
   packet.left_velocity = packet.right_velocity = 79;
   packet.battery = 126;
   for (std::uint8_t i = 0; i < 3; ++i)
@@ -118,7 +116,8 @@ protocol::InformationPacket information(long n) {
   return packet;
 }
 
-/// What the intentions would publish: go far ahead, avoiding what is in the way.
+/// What the intentions would publish: go far ahead, avoiding what is in the way. The goal is to the
+/// left and to the right in turns, so that every cycle asks for another heading.
 v1::Intentions intentions(const v1::Stamp& stamp) {
   const auto behavior = [](const char* schema, int priority, std::vector<v1::Argument> parameters) {
     v1::IntendedBehavior b;
@@ -129,12 +128,13 @@ v1::Intentions intentions(const v1::Stamp& stamp) {
     b.parameters(std::move(parameters));
     return b;
   };
+  const double y = stamp.cycle() % 2 == 0 ? 10.0 : -10.0;
   v1::Intentions sample;
   sample.stamp(stamp);
   sample.behavior_control(true);
   sample.behaviors({behavior("AvoidCollision", 0, {}), behavior("KeepOff", 1, {}),
                     behavior("GoToPos", 2,
-                             {bus::point("goal", 50.0, 0.0, 0.0, v1::FRAME_ODOM),
+                             {bus::point("goal", 50.0, y, 0.0, v1::FRAME_ODOM),
                               bus::number("speed", 0.2), bus::number("radius", 0.2)})});
   return sample;
 }
