@@ -18,6 +18,10 @@ constexpr double kBraking = 0.8;
 /// [rad] of turn per unit of turn gain.
 constexpr double kTurnScale = radians(5.0);
 
+/// [m] before the bubble: from the first on the robot is blocked, until there is the second.
+constexpr double kBlocked = 0.03;
+constexpr double kClear = 0.2;
+
 /// What is in the way, from the LPS: the fuzzy variables of paper 3.1.
 struct Blocked {
   double gap = 0.0;  ///< [m] from the bubble to what is ahead
@@ -92,8 +96,6 @@ class AvoidCollision : public Behavior {
   /// Blocked: nothing is left before the bubble. Then the robot turns on the spot to one side, and
   /// to no other, until there is a way.
   void choose_side(const Blocked& blocked, const Parameters& parameters, const Context& context) {
-    constexpr double kBlocked = 0.03;  ///< [m]
-    constexpr double kClear = 0.2;     ///< [m]
     if (side_ != Side::none) {
       if (blocked.gap > kClear)
         side_ = Side::none;

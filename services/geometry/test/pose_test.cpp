@@ -25,6 +25,8 @@ TEST(Pose, ComposeAndRelativeAreInverse) {
   EXPECT_NEAR(back.th, inside.th, 1e-12);
   const Vec2 point = transform(frame, inside.position());
   EXPECT_NEAR(point.x(), compose(frame, inside).x, 1e-12);
+  EXPECT_NEAR(to_frame(frame, point).x(), inside.x, 1e-12);
+  EXPECT_NEAR(to_frame(frame, point).y(), inside.y, 1e-12);
 }
 
 }  // namespace

@@ -26,11 +26,11 @@ void append_valid(const SonarBuffer& buffer, std::vector<Vec2>& points) {
 }  // namespace
 
 Feeds feeds(const Pose& sonar_in_robot) {
-  constexpr double kSlack = 1e-6;  // bearings come from files in degrees
+  const double slack = 1e-6;  // bearings come from files in degrees
   const double bearing = norm2_angle(sonar_in_robot.th);
-  if (std::abs(bearing) <= radians(60.0) + kSlack)
+  if (std::abs(bearing) <= radians(60.0) + slack)
     return Feeds::front;
-  if (std::abs(bearing) <= radians(120.0) + kSlack)
+  if (std::abs(bearing) <= radians(120.0) + slack)
     return bearing > 0.0 ? Feeds::left : Feeds::right;
   return Feeds::none;
 }

@@ -87,14 +87,14 @@ void ObstacleMemory::for_cone(const Pose& sonar, double range, F&& f) {
       const double distance = std::sqrt(along * along + across * across);
       if (distance <= range)
         f(beliefs_[static_cast<std::size_t>(row * n + column)], distance,
-          std::atan2(std::abs(across), along));
+          std::abs(across) / (edge * along));
     }
 }
 
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {
-  const double soft = settings_.beam - settings_.sure;
+  const double soft = 1.0 - std::tan(settings_.sure) / std::tan(settings_.beam);
   for_cone(sonar_in_odom, range, [&](double& belief, double /*distance*/, double off) {
-    const double sure = std::clamp((settings_.beam - off) / soft, 0.0, 1.0);
+    const double sure = std::min((1.0 - off) / soft, 1.0);
     belief = std::max(belief - doubt * sure, -settings_.most);
   });
 }
@@ -106,7 +106,7 @@ void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
     return std::abs(distance - range) <= settings_.thickness;
   };
   const auto likely = [&](double belief, double off) {
-    return std::exp(belief) * (1.0 - 0.5 * off / settings_.beam);
+    return std::exp(belief) * (1.0 - 0.5 * off);
   };
   const double far = range + settings_.thickness;
   double likeliest = 0.0;
@@ -126,12 +126,14 @@ void ObstacleMemory::silence(const Pose& sonar_in_odom) {
 
 void ObstacleMemory::collect(const Pose& robot_in_odom) {
   points_.clear();
+  const ToFrame to_robot(robot_in_odom);
+  const double obstacle = settings_.obstacle;
   const long n = settings_.cells;
+  const double* belief = beliefs_.data();
   for (long row = 0; row < n; ++row)
     for (long column = 0; column < n; ++column)
-      if (beliefs_[static_cast<std::size_t>(row * n + column)] >= settings_.obstacle)
-        points_.push_back(to_frame(robot_in_odom,
-                                   {(static_cast<double>(column + column0_) + 0.5) * settings_.cell,
+      if (*belief++ >= obstacle)
+        points_.push_back(to_robot({(static_cast<double>(column + column0_) + 0.5) * settings_.cell,
                                     (static_cast<double>(row + row0_) + 0.5) * settings_.cell}));
 }
 

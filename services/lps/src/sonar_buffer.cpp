@@ -21,8 +21,7 @@ void SonarBuffer::set_limit(std::size_t limit) {
 }
 
 void SonarBuffer::add(const Vec2& in_odom, const Pose& robot_in_odom) {
-  const Pose seen = relative(robot_in_odom, {in_odom.x(), in_odom.y(), 0.0});
-  put({in_odom, seen.position(), true});
+  put({in_odom, to_frame(robot_in_odom, in_odom), true});
 }
 
 void SonarBuffer::add_miss() {
@@ -38,9 +37,10 @@ void SonarBuffer::put(const SonarEntry& entry) {
 }
 
 void SonarBuffer::move_to(const Pose& robot_in_odom) {
+  const ToFrame to_robot(robot_in_odom);
   for (SonarEntry& entry : entries_)
     if (entry.valid)
-      entry.in_robot = to_frame(robot_in_odom, entry.in_odom);
+      entry.in_robot = to_robot(entry.in_odom);
 }
 
 std::vector<SonarEntry> SonarBuffer::in_order() const {

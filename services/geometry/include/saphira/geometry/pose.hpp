@@ -94,13 +94,27 @@ inline Vec2 transform(const Pose& frame, const Vec2& inside) {
   return {frame.x + c * inside.x() - s * inside.y(), frame.y + s * inside.x() + c * inside.y()};
 }
 
+/// The inverse of transform, for many positions seen from one frame.
+class ToFrame {
+ public:
+  explicit ToFrame(const Pose& frame)
+      : x_(frame.x), y_(frame.y), c_(std::cos(frame.th)), s_(std::sin(frame.th)) {}
+  Vec2 operator()(const Vec2& outside) const {
+    const double dx = outside.x() - x_;
+    const double dy = outside.y() - y_;
+    return {c_ * dx + s_ * dy, -s_ * dx + c_ * dy};
+  }
+
+ private:
+  double x_;
+  double y_;
+  double c_;
+  double s_;
+};
+
 /// The inverse of transform: a position seen from `frame`.
 inline Vec2 to_frame(const Pose& frame, const Vec2& outside) {
-  const double c = std::cos(frame.th);
-  const double s = std::sin(frame.th);
-  const double dx = outside.x() - frame.x;
-  const double dy = outside.y() - frame.y;
-  return {c * dx + s * dy, -s * dx + c * dy};
+  return ToFrame(frame)(outside);
 }
 
 }  // namespace saphira

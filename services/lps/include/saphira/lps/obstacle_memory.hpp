@@ -51,7 +51,8 @@ class ObstacleMemory {
   const std::vector<Vec2>& points() const { return points_; }
 
  private:
-  /// Calls f(belief, distance, off axis) for each cell within the cone, up to `range`.
+  /// Calls f(belief, distance, off) for each cell within the cone, up to `range`; off is 0 on the
+  /// axis and 1 on the rim of the cone.
   template <class F>
   void for_cone(const Pose& sonar_in_odom, double range, F&& f);
   void pass(const Pose& sonar_in_odom, double range, double doubt);
