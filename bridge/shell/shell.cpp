@@ -502,7 +502,9 @@ void Shell::take_devices() {
       reflector_.request(*command);
     } else {
       ++malformed_;
-      node_.warn("device command of " + who + " refused: " + why);
+      std::string text = "device command of ";
+      text.append(who).append(" refused: ").append(why);
+      node_.warn(text);
     }
   }
 }
