@@ -102,7 +102,7 @@ void Shell::publish(const News& news) {
     if (logged != logged_.end() && logged->second == status.state)
       continue;
     logged_[status.id] = status.state;
-    node_.info("goal " + describe(status.id) + " (" + status.functor + ") of " +
+    node_.info("goal " + describe(status.id) + ", " + quoted(status.functor) + " of " +
                quoted(status.requester) + ": " + name_of(status.state) +
                (status.reason.empty() ? "" : ": " + status.reason));
   }
