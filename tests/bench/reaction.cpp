@@ -144,7 +144,7 @@ class Reaction {
  public:
   Reaction(bus::Node& node, ScriptedRobot& robot)
       : robot_(robot),
-        states_(node.reader(bus::topics::kRobotState)),
+        states_(std::in_place, node.reader(bus::topics::kRobotState)),
         intend_(node.writer(bus::topics::kIntentions)) {}
 
   /// One cycle: what the answer took [us]; nothing where none came in 50 ms.
@@ -166,15 +166,22 @@ class Reaction {
       }
     }
     // For the next cycle, well after the answer.
-    if (const auto state = states_.take_newest())
-      intend_.write(intentions(state->stamp()));
+    if (states_)
+      if (const auto state = states_->take_newest())
+        stamp_ = state->stamp();
+    stamp_.cycle(static_cast<std::uint64_t>(n_));
+    intend_.write(intentions(stamp_));
     return took;
   }
 
+  /// The epoch is known: from now on the bridge's states go to the behaviors alone.
+  void stop_reading() { states_.reset(); }
+
  private:
   ScriptedRobot& robot_;
-  bus::Reader<v1::RobotState> states_;
+  std::optional<bus::Reader<v1::RobotState>> states_;
   bus::Writer<v1::Intentions> intend_;
+  v1::Stamp stamp_;
   long n_ = 0;
   double last_heading_ = -1.0;
 };
@@ -222,6 +229,7 @@ int main(int argc, char** argv) {
       paced([&] { answered = reaction.cycle() ? answered + 1 : 0; }, 1);
     if (answered < 20)
       throw std::runtime_error("no answers: bridge or behaviors do not run");
+    reaction.stop_reading();
 
     // Both at once, out of phase: the same machine at the same time. (A robot server must not fall
     // silent meanwhile.)
