@@ -202,15 +202,17 @@ void Shell::tend_link(double now) {
   }
   if (now < hold_off_)
     return;
-  const bool was_open = link_.state() == transport::Link::State::open;
+  // A link that a write found dead, before it is opened again.
+  const bool session = connection_.state() != reflector::Connection::State::closed;
+  if (session && link_.state() != transport::Link::State::open)
+    lost(link_.trouble(), now);
   link_.advance(now);
-  const bool is_open = link_.state() == transport::Link::State::open;
-  if (!is_open) {
-    if (was_open)
+  if (link_.state() != transport::Link::State::open) {
+    if (connection_.state() != reflector::Connection::State::closed)
       lost(link_.trouble(), now);
     return;
   }
-  if (!was_open || connection_.state() == reflector::Connection::State::closed) {
+  if (connection_.state() == reflector::Connection::State::closed) {
     parser_.reset();
     last_bytes_ = now;
     for (const protocol::Bytes& packet : connection_.begin(now))
@@ -392,7 +394,8 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
 
 void Shell::lost(const std::string& why, double now) {
   if (epoch_ != 0) {
-    node_.warn("connection to the robot ended: " + why);
+    node_.log(node_.status().state() == v1::SERVICE_STOPPING ? v1::LOG_INFO : v1::LOG_WARNING,
+              "connection to the robot ended: " + why);
     if (stamp_.cycle() > 0)
       memory_ = reflector_.odometry();
   }
@@ -466,14 +469,15 @@ bool Shell::take_drive(Drive& drive, double now) {
     if (sample.info.disposed)
       continue;
     const v1::MotorCommand& in = sample.data;
+    // Whatever it says: a lockstep that waited for a better answer would wait for ever.
+    if (drive.role == Role::behaviors && epoch_ != 0 && in.stamp().epoch() == epoch_)
+      answered_ = in.stamp().cycle();
     const std::string wrong = trouble(in);
     if (!wrong.empty()) {
       ++malformed_;
       arbiter_.refuse(drive.role, in.source().substr(0, 255), wrong);
       continue;
     }
-    if (drive.role == Role::behaviors && epoch_ != 0 && in.stamp().epoch() == epoch_)
-      answered_ = in.stamp().cycle();
     const authority::Command command =
         to_command(in, drive.role, sample.info.writer, lockstep_ ? time() : now);
     if (!arbiter_.offer(command, stamp_.cycle()))
