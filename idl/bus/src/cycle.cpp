@@ -265,7 +265,6 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       self.joining = false;
       self.last = step->robot.stamp().cycle();
       self.note_step(*step);
-      self.publish_status();
       self.began = Clock::now();
       return step;
     }
@@ -283,6 +282,8 @@ void Cycle::done() {
   ++impl_->timed;
   impl_->total_ms += ms;
   impl_->max_ms = std::max(impl_->max_ms, ms);
+  // After the step, not before it: what it costs must not delay the robot.
+  impl_->publish_status();
 }
 
 bool Cycle::connected() const {
