@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace saphira {
@@ -25,7 +26,9 @@ std::string describe(const std::string& file, int line, int column, const std::s
   return out;
 }
 
-bool blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+bool blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
 
 }  // namespace
 
@@ -88,8 +91,7 @@ double LineReader::number(std::string_view what, double low, double high) {
 }
 
 long LineReader::integer(std::string_view what, long low, long high) {
-  const double value =
-      number(what, static_cast<double>(low), static_cast<double>(high));
+  const double value = number(what, static_cast<double>(low), static_cast<double>(high));
   if (value != std::floor(value))
     fail("expected a whole number (" + std::string(what) + ")");
   return static_cast<long>(value);
@@ -116,11 +118,10 @@ std::string read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in)
     throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad() || text.fail())
+  in.peek();
+  if (in.bad())
     throw std::runtime_error(path + ": cannot be read (is it a file?)");
-  return text.str();
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace saphira

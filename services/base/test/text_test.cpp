@@ -58,6 +58,7 @@ TEST(Text, UnreadableFileIsNamed) {
     EXPECT_NE(std::string(error.what()).find("/nonexistent/file.wld"), std::string::npos);
   }
   EXPECT_THROW(read_file("/"), std::runtime_error);
+  EXPECT_EQ(read_file("/dev/null"), "");
 }
 
 }  // namespace
