@@ -310,8 +310,8 @@ std::string find_deployment(const std::string& name, const Places& places) {
   std::string list;
   for (const std::string& known : names)
     list += " " + known;
-  throw std::runtime_error("no deployment \"" + name +
-                           "\": expected a file, or one of those that are shipped:" + list);
+  throw std::invalid_argument("no deployment \"" + name +
+                              "\": expected a file, or one of those that are shipped:" + list);
 }
 
 std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places& places,
