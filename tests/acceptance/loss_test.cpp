@@ -16,6 +16,7 @@ struct Loss {
   int signal;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest looks for
 void PrintTo(const Loss& loss, std::ostream* out) {
   *out << loss.name << " " << (loss.signal == SIGKILL ? "killed" : "stopped");
 }

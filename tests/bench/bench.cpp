@@ -45,6 +45,7 @@ pid_t start(std::vector<std::string> argv, int out) {
   if (argv.at(0).find('/') == std::string::npos)
     argv[0] = bin_dir() + "/" + argv[0];
   std::vector<char*> pointers;
+  pointers.reserve(argv.size() + 1);
   for (std::string& word : argv)
     pointers.push_back(word.data());
   pointers.push_back(nullptr);
@@ -88,7 +89,7 @@ std::string output_of(const std::vector<std::string>& argv) {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     std::string line;
     for (const std::string& word : argv)
-      line += word + " ";
+      line.append(word).append(" ");
     throw std::runtime_error(line + "failed");
   }
   return text;

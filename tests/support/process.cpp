@@ -58,6 +58,7 @@ Process::Process(std::vector<std::string> argv, std::string output_file,
   if (argv.at(0).find('/') == std::string::npos)
     argv[0] = program(argv[0]);
   std::vector<char*> pointers;
+  pointers.reserve(argv.size() + 1);
   for (std::string& word : argv)
     pointers.push_back(word.data());
   pointers.push_back(nullptr);
