@@ -243,7 +243,8 @@ class Teleop {
           robot_->right_stalled() ? "  RIGHT STALLED" : "");
       line = text.data();
     }
-    std::string second = setpoint.active ? "driving" : "released";
+    const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0;
+    std::string second = !setpoint.active ? "released" : still ? "holding still" : "driving";
     if (grant_)
       second += "  |  " + describe(*grant_);
     std::string third = note_;

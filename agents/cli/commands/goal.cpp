@@ -161,7 +161,6 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   command->add_flag("--keep", options->keep, "the goal goes on when this program ends");
   command->footer(
       "Values: 0.3 (SI units), 90deg, x,y or x,y,th with @odom, @robot or @map, text.\n"
-      "Negative numbers may need -- before them: saphira goal -- go -1.5 2\n"
       "Ctrl-C withdraws the goal. Exit code 0: it succeeded; 1: it did not.");
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {

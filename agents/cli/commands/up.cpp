@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "run_folder.hpp"
@@ -102,7 +104,12 @@ void add_up(CLI::App& app, Chosen& chosen) {
       ->type_size(1);
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return up(options->deployment, options->set, node, stop);
+      try {
+        return up(options->deployment, options->set, node, stop);
+      } catch (const std::invalid_argument& error) {
+        std::cerr << "saphira: " << error.what() << '\n';
+        return static_cast<int>(bus::kExitUsage);
+      }
     };
   });
 }

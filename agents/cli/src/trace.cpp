@@ -104,28 +104,28 @@ Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std:
 }
 
 std::string to_json(const Summary& summary) {
-  const auto rounded = [](double value, double step) { return std::round(value / step) * step; };
+  const auto rounded = [](double value, double per) { return std::round(value * per) / per; };
   nlohmann::ordered_json json;
   json["arrived"] = summary.arrived;
-  json["time_s"] = rounded(summary.time, 0.1);
-  json["path_m"] = rounded(summary.track.path, 0.001);
-  json["min_clearance_m"] = rounded(summary.track.min_clearance, 0.001);
+  json["time_s"] = rounded(summary.time, 10.0);
+  json["path_m"] = rounded(summary.track.path, 1000.0);
+  json["min_clearance_m"] = rounded(summary.track.min_clearance, 1000.0);
   json["contacts"] = summary.track.contacts;
   json["cycles"] = summary.track.cycles;
   json["late_cycles"] = summary.late_cycles;
   json["trajectory_hash"] = summary.track.hash;
-  json["speed_factor"] = rounded(summary.speed_factor, 0.01);
+  json["speed_factor"] = rounded(summary.speed_factor, 100.0);
   return json.dump();
 }
 
 std::string to_text(const Summary& summary) {
   std::array<char, 512> text{};
   std::snprintf(text.data(), text.size(),
-                "time              %.1f s (%.2f x real time)\n"
-                "path              %.2f m\n"
-                "smallest clearance %.2f m\n"
-                "contacts          %llu\n"
-                "cycles            %llu, %llu late\n",
+                "time                %.1f s (%.2f x real time)\n"
+                "path                %.2f m\n"
+                "smallest clearance  %.2f m\n"
+                "contacts            %llu\n"
+                "cycles              %llu, %llu late\n",
                 summary.time, summary.speed_factor, summary.track.path, summary.track.min_clearance,
                 static_cast<unsigned long long>(summary.track.contacts),
                 static_cast<unsigned long long>(summary.track.cycles),

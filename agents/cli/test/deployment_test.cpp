@@ -153,7 +153,7 @@ TEST(FindDeployment, NamesWhatThereIs) {
   try {
     find_deployment("dmeo", places);
     FAIL();
-  } catch (const std::runtime_error& error) {
+  } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find(" demo"), std::string::npos);
   }
 }

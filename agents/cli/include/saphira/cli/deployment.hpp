@@ -63,8 +63,8 @@ struct Places {
 /// `run` is left empty. std::runtime_error when there is no config.
 Places find_places();
 
-/// The file that a person means by "demo", "demo.yaml" or a path. std::runtime_error that lists
-/// what there is.
+/// The file that a person means by "demo", "demo.yaml" or a path. std::invalid_argument that
+/// lists what there is.
 std::string find_deployment(const std::string& name, const Places& places);
 
 /// The command lines of a deployment: ${name} replaced by the settings, ${config}, ${run} and

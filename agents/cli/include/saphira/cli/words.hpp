@@ -32,8 +32,8 @@ inline constexpr double kLostAge = 3.0;
 /// The table of processes, sorted by name.
 std::string status_table(std::vector<SeenProcess> processes);
 
-/// "services behaviors and intentions" : which of the services that make a robot go are not among
-/// these, in words; empty where all are there and alive.
+/// Which of the services that make a robot go are not among these, in words such as "behaviors and
+/// intentions"; empty where all are there and alive.
 std::string missing_services(const std::vector<SeenProcess>& processes);
 
 }  // namespace saphira::cli

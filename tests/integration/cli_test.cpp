@@ -1,0 +1,403 @@
+// The command line as a person uses it, against a scripted node in the place of the services.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "process.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/node.hpp"
+
+namespace saphira {
+namespace {
+
+using std::chrono::milliseconds;
+namespace topics = bus::topics;
+
+/// A bridge that stands still and an intentions service that answers each goal by its functor: in
+/// a thread, until the object goes.
+class Scripted {
+ public:
+  explicit Scripted(const std::string& robot) : options_(make_options(robot)) {
+    thread_ = std::thread([this] { run(); });
+    while (!up_)
+      std::this_thread::yield();
+  }
+  ~Scripted() {
+    stop_.request();
+    thread_.join();
+  }
+  Scripted(const Scripted&) = delete;
+  Scripted& operator=(const Scripted&) = delete;
+
+  const bus::NodeOptions& options() const { return options_; }
+  std::vector<v1::MotorCommand> teleop() {
+    const std::scoped_lock lock(mutex_);
+    return teleop_;
+  }
+  int withdrawn() const { return withdrawn_; }
+
+ private:
+  static bus::NodeOptions make_options(const std::string& robot) {
+    bus::NodeOptions options;
+    options.name = "bridge";
+    options.robot = robot;
+    options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
+    return options;
+  }
+
+  void run() {
+    bus::Node node(options_);
+    auto robots = node.writer(topics::kRobotState);
+    auto grants = node.writer(topics::kGrant);
+    auto statuses = node.writer(topics::kGoalStatus);
+    auto goals = node.reader(topics::kGoals);
+    auto commands = node.reader(topics::kDriveTeleop);
+    up_ = true;
+    v1::Stamp stamp;
+    stamp.epoch(7);
+    while (!stop_.requested()) {
+      node.wait(milliseconds(20), &stop_);
+      stamp.cycle(stamp.cycle() + 1);
+      v1::RobotState robot;
+      robot.stamp(stamp);
+      robot.battery(12.5);
+      robots.write(robot);
+      v1::Grant grant;
+      grant.stamp(stamp);
+      grant.reason("nobody asked");
+      grants.write(grant);
+      node.status().state(v1::SERVICE_RUNNING);
+      node.status().stamp(stamp);
+      node.publish_status();
+      for (const auto& sample : goals.take())
+        answer(sample, stamp, statuses);
+      const std::scoped_lock lock(mutex_);
+      for (const auto& sample : commands.take())
+        if (!sample.info.disposed)
+          teleop_.push_back(sample.data);
+    }
+  }
+
+  void answer(const bus::Sample<v1::Goal>& goal, const v1::Stamp& stamp,
+              bus::Writer<v1::GoalStatus>& statuses) {
+    v1::GoalStatus status;
+    status.id(goal.data.id());
+    status.stamp(stamp);
+    status.functor(goal.data.functor());
+    status.state(v1::GOAL_UNDERWAY);
+    status.step("on the way");
+    if (goal.info.disposed) {
+      ++withdrawn_;
+      status.state(v1::GOAL_CANCELED);
+      status.reason("withdrawn by the scripted service");
+    } else if (goal.data.functor() == "go_to") {
+      statuses.write(status);
+      status.state(v1::GOAL_SUCCEEDED);
+      status.reason("it is there");
+    } else if (goal.data.functor() == "fly") {
+      status.state(v1::GOAL_REFUSED);
+      status.reason("no wings");
+    }
+    statuses.write(status);
+  }
+
+  bus::NodeOptions options_;
+  bus::Stop stop_;
+  std::atomic<bool> up_{false};
+  std::atomic<int> withdrawn_{0};
+  std::mutex mutex_;
+  std::vector<v1::MotorCommand> teleop_;
+  std::thread thread_;
+};
+
+struct Outcome {
+  int code = -1;
+  std::string text;
+};
+
+/// `saphira` on the bus of this test.
+class CliTest : public testing::Test {
+ protected:
+  std::vector<std::string> command(const std::vector<std::string>& words) const {
+    std::vector<std::string> argv{"saphira", "--robot", robot_, "--domain", test::domain()};
+    argv.insert(argv.end(), words.begin(), words.end());
+    return argv;
+  }
+  Outcome run(const std::vector<std::string>& words) {
+    const std::string file = folder_.path("output" + std::to_string(++runs_));
+    test::Process process(command(words), file);
+    Outcome outcome;
+    outcome.code = process.wait().value_or(-1);
+    outcome.text = process.output();
+    return outcome;
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_.path(name)) << text;
+    return folder_.path(name);
+  }
+
+  const std::string robot_ = test::unique_robot();
+  const test::TempDir folder_;
+  int runs_ = 0;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(CliTest, WithoutArgumentsItHelps) {
+  const Outcome outcome = run({});
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* name : {"demo", "up", "status", "list", "echo", "log", "goal", "drive", "bench"})
+    EXPECT_TRUE(has(outcome.text, name)) << name;
+}
+
+TEST_F(CliTest, WhatIsWrongIsAUsageError) {
+  const std::vector<std::vector<std::string>> wrong{
+      {"fly"},        {"demo", "--seed", "x"}, {"demo", "--goal", "1"},       {"up"},
+      {"up", "dmeo"}, {"echo", "robot/stat"},  {"goal", "go", "1"},           {"bench", "nothing"},
+      {"drive"},      {"goal", "cancel", "x"}, {"demo", "--time-limit", "-1"}};
+  for (const auto& words : wrong) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 2) << testing::PrintToString(words) << outcome.text;
+    EXPECT_FALSE(outcome.text.empty());
+  }
+}
+
+TEST_F(CliTest, StatusOfAnEmptyBusSaysSo) {
+  const Outcome outcome = run({"status"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(has(outcome.text, "no program is on the bus (robot " + robot_)) << outcome.text;
+}
+
+TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
+  const Scripted scripted(robot_);
+  const Outcome outcome = run({"status"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_TRUE(has(outcome.text, "bridge")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "running")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, std::to_string(getpid()))) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "drive: nobody drives: nobody asked")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "not on the bus: behaviors and intentions")) << outcome.text;
+}
+
+TEST_F(CliTest, WatchShowsWhoIsLost) {
+  const std::string file = folder_.path("watch");
+  test::Process watch(command({"status", "--watch"}), file);
+  // A process that ends without a word: it is killed.
+  const pid_t child = fork();
+  if (child == 0) {
+    // A fresh program: DDS does not survive a fork.
+    const std::string program = test::program("saphira-behaviors");
+    execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
+          test::domain().c_str(), "--log-level", "error", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  EXPECT_TRUE(test::wait_until([&] { return has(watch.output(), "behaviors  "); }))
+      << watch.output();
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(test::wait_until([&] { return has(watch.output(), " lost "); })) << watch.output();
+  watch.signal(SIGINT);
+  EXPECT_EQ(watch.wait(), 0);
+}
+
+TEST_F(CliTest, EchoPrintsSamplesAsJsonLines) {
+  const Scripted scripted(robot_);
+  const Outcome outcome = run({"echo", "robot/state", "-n", "2"});
+  EXPECT_EQ(outcome.code, 0);
+  std::istringstream lines(outcome.text);
+  std::vector<std::uint64_t> cycles;
+  for (std::string line; std::getline(lines, line);) {
+    const auto json = nlohmann::json::parse(line);
+    EXPECT_EQ(json.at("stamp").at("epoch"), 7);
+    EXPECT_DOUBLE_EQ(json.at("battery"), 12.5);
+    cycles.push_back(json.at("stamp").at("cycle"));
+  }
+  ASSERT_EQ(cycles.size(), 2U);
+  EXPECT_LT(cycles[0], cycles[1]);
+}
+
+TEST_F(CliTest, ListShowsEndpointsAndMismatches) {
+  const Scripted scripted(robot_);
+  Outcome outcome = run({"list"});
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "robot/state  saphira::v1::RobotState  (cyclic)\n  writer  bridge"))
+      << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "reliable transient_local")) << outcome.text;
+
+  // Somebody who expects lockstep asks for more than a live bridge offers.
+  bus::NodeOptions strict = scripted.options();
+  strict.name = "strict";
+  strict.lockstep = true;
+  bus::Node node(strict);
+  const auto reader = node.reader(topics::kRobotState);
+  outcome = run({"list"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(has(outcome.text, "MISMATCH on robot/state")) << outcome.text;
+}
+
+TEST_F(CliTest, LogShowsWhatAProgramSays) {
+  bus::NodeOptions options;
+  options.name = "speaker";
+  options.robot = robot_;
+  options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
+  bus::Node node(options);
+  node.warn("the kettle boils");
+  const Outcome outcome = run({"log", "-n", "1"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_TRUE(has(outcome.text, "warning  speaker  the kettle boils")) << outcome.text;
+}
+
+TEST_F(CliTest, AGoalIsFollowedToItsEnd) {
+  const Scripted scripted(robot_);
+  const Outcome done = run({"goal", "go", "-3", "1"});
+  EXPECT_EQ(done.code, 0) << done.text;
+  EXPECT_TRUE(has(done.text, "go_to(position=(-3, 1) in odom)")) << done.text;
+  EXPECT_TRUE(has(done.text, "succeeded: it is there")) << done.text;
+  const Outcome refused = run({"goal", "fly", "height=2"});
+  EXPECT_EQ(refused.code, 1) << refused.text;
+  EXPECT_TRUE(has(refused.text, "refused: no wings")) << refused.text;
+}
+
+TEST_F(CliTest, CtrlCWithdrawsTheGoal) {
+  const Scripted scripted(robot_);
+  test::Process goal(command({"goal", "drive", "0.2"}), folder_.path("goal"));
+  ASSERT_TRUE(test::wait_until([&] { return has(goal.output(), "underway"); })) << goal.output();
+  goal.signal(SIGINT);
+  EXPECT_EQ(goal.wait(), 1);
+  EXPECT_TRUE(has(goal.output(), "canceled: withdrawn by the scripted service")) << goal.output();
+  EXPECT_EQ(scripted.withdrawn(), 1);
+}
+
+TEST_F(CliTest, AGoalThatNobodyAnswersSaysWhoIsMissing) {
+  test::Process goal(command({"goal", "stop"}), folder_.path("goal"));
+  EXPECT_TRUE(test::wait_until([&] { return has(goal.output(), "no program is on the bus"); }))
+      << goal.output();
+  goal.signal(SIGINT);
+  EXPECT_EQ(goal.wait(), 1);
+}
+
+TEST_F(CliTest, DriveIsADeadMan) {
+  Scripted scripted(robot_);
+  int terminal = -1;
+  winsize size{24, 100, 0, 0};
+  const pid_t pid = forkpty(&terminal, nullptr, nullptr, &size);
+  ASSERT_GE(pid, 0);
+  if (pid == 0) {
+    const std::string program = test::program("saphira");
+    execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
+          test::domain().c_str(), "drive", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  // What it draws has to be read, or it blocks.
+  std::atomic<bool> end{false};
+  std::string drawn;
+  std::thread reader([&] {
+    std::array<char, 4096> buffer{};
+    while (!end) {
+      const ssize_t n = read(terminal, buffer.data(), buffer.size());
+      if (n <= 0)
+        break;
+      drawn.append(buffer.data(), static_cast<std::size_t>(n));
+    }
+  });
+  const auto press = [&](char key) { EXPECT_EQ(::write(terminal, &key, 1), 1); };
+  const auto newest = [&] {
+    const auto all = scripted.teleop();
+    return all.empty() ? v1::MotorCommand() : all.back();
+  };
+  // Until its first command is heard: it comes up and is discovered meanwhile.
+  EXPECT_TRUE(test::wait_until([&] {
+    press('i');
+    std::this_thread::sleep_for(milliseconds(50));
+    return newest().active() && newest().velocity() > 0.0;
+  }));
+  EXPECT_EQ(newest().stamp().epoch(), 7U);
+  EXPECT_GT(newest().stamp().cycle(), 0U);
+  // Without keys it gives the robot back, and stops.
+  EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
+  EXPECT_EQ(newest().velocity(), 0.0);
+  // No number comes twice.
+  std::uint64_t last = 0;
+  for (const v1::MotorCommand& command : scripted.teleop()) {
+    EXPECT_GT(command.number(), last);
+    last = command.number();
+  }
+  press('k');
+  EXPECT_TRUE(test::wait_until([&] { return newest().active() && newest().velocity() == 0.0; }));
+  press('q');
+  int status = 0;
+  EXPECT_EQ(waitpid(pid, &status, 0), pid);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
+  // The terminal is as it was.
+  termios after{};
+  EXPECT_EQ(tcgetattr(terminal, &after), 0);
+  EXPECT_NE(after.c_lflag & ICANON, 0U);
+  EXPECT_NE(after.c_lflag & ECHO, 0U);
+  end = true;
+  close(terminal);
+  reader.join();
+  EXPECT_TRUE(has(drawn, "12.5 V")) << drawn;
+}
+
+TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
+  const std::string file =
+      write("two.yaml",
+            "programs:\n"
+            "  - {name: a, program: sh, bus: false,\n"
+            "     arguments: [-c, \"echo pid $$; exec sleep 600\"]}\n"
+            "  - {name: b, program: sh, bus: false,\n"
+            "     arguments: [-c, \"echo robot $SAPHIRA_ROBOT; exec sleep 600\"]}\n");
+  test::Process up(command({"up", file}), folder_.path("up"));
+  ASSERT_TRUE(test::wait_until([&] {
+    return has(up.output(), "a       | pid ") && has(up.output(), "b       | robot " + robot_);
+  })) << up.output();
+  const std::string text = up.output();
+  const int pid = std::stoi(text.substr(text.find("| pid ") + 6));
+  kill(pid, SIGKILL);
+  EXPECT_TRUE(test::wait_until([&] { return has(up.output(), "a started again"); })) << up.output();
+  // Twice at once would share sockets and memory.
+  const Outcome again = run({"up", file});
+  EXPECT_NE(again.code, 0);
+  EXPECT_TRUE(has(again.text, "running already")) << again.text;
+  up.signal(SIGTERM);
+  EXPECT_EQ(up.wait(), 0);
+  EXPECT_TRUE(has(up.output(), "all stopped")) << up.output();
+}
+
+TEST_F(CliTest, UpNamesTheMistakeInADeployment) {
+  const std::string file = write("bad.yaml", "programs:\n  - program: sh\n    argments: []\n");
+  const Outcome outcome = run({"up", file});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(has(outcome.text, "bad.yaml:3:5: unknown key \"argments\"")) << outcome.text;
+}
+
+TEST_F(CliTest, UpEndsWhenAProgramDoesNotTakeItsOptions) {
+  const std::string file =
+      write("misused.yaml",
+            "programs:\n"
+            "  - {name: other, program: sh, bus: false, arguments: [-c, exec sleep 600]}\n"
+            "  - {program: saphira-bridge, arguments: [--no-such-option]}\n");
+  const Outcome outcome = run({"up", file});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(has(outcome.text, "bridge does not take what")) << outcome.text;
+}
+
+}  // namespace
+}  // namespace saphira
