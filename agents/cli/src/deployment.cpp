@@ -66,8 +66,6 @@ class Parser {
                 {"programs", [this](const auto& n) { programs(n); }}});
     if (deployment_.programs.empty())
       fail(root.Mark(), "expected programs: with at least one program");
-    if (deployment_.bus.profile == "wan" && deployment_.bus.peers.empty())
-      fail(root["profile"].Mark(), "profile wan has no multicast: expected peers: as well");
     return std::move(deployment_);
   }
 

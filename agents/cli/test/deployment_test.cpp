@@ -133,7 +133,6 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"domain: 233\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 232"},
         Broken{"domain: -1\nprograms: [{program: sh}]\n", 1, 9, "between 0 and 232"},
         Broken{"profile: wifi\nprograms: [{program: sh}]\n", 1, 10, "host, lan or wan"},
-        Broken{"profile: wan\nprograms: [{program: sh}]\n", 1, 10, "expected peers:"},
         Broken{"robot: \"*\"\nprograms: [{program: sh}]\n", 1, 8, "one robot's name"},
         Broken{"settings: [a]\nprograms: [{program: sh}]\n", 1, 11, "expected settings"},
         Broken{"settings: {run: a}\nprograms: [{program: sh}]\n", 1, 12, "built in"},
