@@ -59,36 +59,37 @@ if ! ip link add va netns "$ns_a" type veth peer name vb netns "$ns_b" 2>/dev/nu
   echo "two_hosts.sh: skipped, this kernel has no veth"
   exit 77
 fi
-ip -n "$ns_a" addr add 10.77.0.1/24 dev va
-ip -n "$ns_b" addr add 10.77.0.2/24 dev vb
+# nsenter, since "ip -n" and "ip netns exec" remount /, which a chroot does not allow.
+nsenter --net=/run/netns/"$ns_a" ip addr add 10.77.0.1/24 dev va
+nsenter --net=/run/netns/"$ns_b" ip addr add 10.77.0.2/24 dev vb
 for side in a b; do
-  ip -n "saphira-$side-$$" link set lo up
-  ip -n "saphira-$side-$$" link set "v$side" up
+  nsenter --net=/run/netns/"saphira-$side-$$" ip link set lo up
+  nsenter --net=/run/netns/"saphira-$side-$$" ip link set "v$side" up
 done
 # The link has a carrier a moment later; until then its address is not to be had.
 for side in a b; do
   for _ in $(seq 100); do
-    ip -n "saphira-$side-$$" link show "v$side" | grep -q "state UP" && break
+    nsenter --net=/run/netns/"saphira-$side-$$" ip link show "v$side" | grep -q "state UP" && break
     sleep 0.05
   done
 done
 
 export SAPHIRA_PROFILE=$profile
 set -m  # each background command is a process group of its own
-SAPHIRA_INTERFACE=10.77.0.1 SAPHIRA_PEERS= ip netns exec "$ns_a" bash -c "$a" &
+SAPHIRA_INTERFACE=10.77.0.1 SAPHIRA_PEERS= nsenter --net="/run/netns/$ns_a" bash -c "$a" &
 pids+=($!)
 peer=
 [ "$profile" = wan ] && peer=10.77.0.1
-SAPHIRA_INTERFACE=10.77.0.2 SAPHIRA_PEERS=$peer ip netns exec "$ns_b" bash -c "$b" &
+SAPHIRA_INTERFACE=10.77.0.2 SAPHIRA_PEERS=$peer nsenter --net="/run/netns/$ns_b" bash -c "$b" &
 b_pid=$!
 pids+=("$b_pid")
 if [ -n "$cut" ]; then
   (
     sleep "${cut%,*}"
-    ip -n "$ns_a" link set va down
+    nsenter --net=/run/netns/"$ns_a" ip link set va down
     echo "link down"
     sleep "${cut#*,}"
-    ip -n "$ns_a" link set va up
+    nsenter --net=/run/netns/"$ns_a" ip link set va up
     echo "link up"
   ) &
   pids+=($!)
