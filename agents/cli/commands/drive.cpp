@@ -24,6 +24,8 @@ constexpr milliseconds kPeriod{50};  ///< of the commands; the bridge's lease is
 constexpr int kReleases = 4;
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
+constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
+
 /// The terminal as a keyboard: keys come at once and are not echoed. Restored with the object, and
 /// by the signals that end or stop a process without its destructors.
 class RawTerminal {
@@ -53,7 +55,6 @@ class RawTerminal {
  private:
   static void restore_and_raise(int number) {
     tcsetattr(STDIN_FILENO, TCSANOW, &saved);
-    constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
     [[maybe_unused]] const auto written =
         write(STDOUT_FILENO, kShowCursor.data(), kShowCursor.size());
     std::signal(number, SIG_DFL);

@@ -11,6 +11,7 @@
 #include "run_folder.hpp"
 #include "saphira/cli/deployment.hpp"
 #include "saphira/cli/supervisor.hpp"
+#include "watch.hpp"
 
 namespace saphira::cli {
 
@@ -18,13 +19,12 @@ namespace {
 
 /// The bus options that were given to us, for children whose deployment does not state them.
 std::map<std::string, std::string> as_environment(const bus::NodeOptions& options) {
-  static constexpr const char* kProfiles[] = {"host", "lan", "wan"};
   std::string peers;
   for (const std::string& peer : options.peers)
     peers += (peers.empty() ? "" : ",") + peer;
   return {{"SAPHIRA_ROBOT", options.robot},
           {"SAPHIRA_DOMAIN", std::to_string(options.domain)},
-          {"SAPHIRA_PROFILE", kProfiles[static_cast<int>(options.profile)]},
+          {"SAPHIRA_PROFILE", name_of(options.profile)},
           {"SAPHIRA_PEERS", peers},
           {"SAPHIRA_INTERFACE", options.interface}};
 }

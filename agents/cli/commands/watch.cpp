@@ -28,12 +28,23 @@ std::uint64_t Processes::late_cycles() const {
   return sum;
 }
 
+const char* name_of(bus::Profile profile) {
+  switch (profile) {
+    case bus::Profile::host:
+      return "host";
+    case bus::Profile::lan:
+      return "lan";
+    case bus::Profile::wan:
+      return "wan";
+  }
+  return "?";
+}
+
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes) {
-  static constexpr const char* kProfiles[] = {"host", "lan", "wan"};
   const auto all = processes.all();
   const std::string where = "robot " + options.robot + ", domain " +
                             std::to_string(options.domain) + ", profile " +
-                            kProfiles[static_cast<int>(options.profile)];
+                            name_of(options.profile);
   if (all.empty())
     return "no program is on the bus (" + where +
            "): is it up (saphira up demo), and are these the same on both sides?";

@@ -37,6 +37,9 @@ class Processes {
   std::map<std::uint64_t, Entry> entries_;
 };
 
+/// The profile's word: host, lan, wan.
+const char* name_of(bus::Profile profile);
+
 /// What is there to hear us, in words, for when nobody answers.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
 

@@ -124,7 +124,7 @@ class Parser {
   }
 
   std::string robot(const YAML::Node& node) const {
-    const std::string name = word(node, "the robot's name");
+    std::string name = word(node, "the robot's name");
     if (name.find_first_of("*?[]") != std::string::npos)
       fail(node.Mark(), "expected one robot's name, found the pattern \"" + name + "\"");
     return name;
@@ -138,7 +138,7 @@ class Parser {
   }
 
   std::string profile(const YAML::Node& node) const {
-    const std::string name = word(node, "a network profile: host, lan or wan");
+    std::string name = word(node, "a network profile: host, lan or wan");
     if (name != "host" && name != "lan" && name != "wan")
       fail(node.Mark(), "expected a network profile: host, lan or wan, found \"" + name + "\"");
     return name;
@@ -230,10 +230,10 @@ std::string replaced(const Deployment& deployment, const Placed& at,
     const std::string name = at.text.substr(begin + 2, end - begin - 2);
     const auto value = values.find(name);
     if (value == values.end()) {
-      std::string names;
+      std::string message = "unknown ${" + name + "}: expected one of";
       for (const auto& [known, _] : values)
-        names += (names.empty() ? "" : ", ") + known;
-      fail_at(deployment, at, "unknown ${" + name + "}: expected one of " + names);
+        message.append(" ").append(known);
+      fail_at(deployment, at, message);
     }
     out += value->second;
     from = end + 1;
@@ -326,7 +326,7 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
     if (equals == std::string::npos || setting == settings.end()) {
       std::string names;
       for (const auto& [known, value] : settings)
-        names += " " + known + "=" + value;
+        names.append(" ").append(known).append("=").append(value);
       throw std::invalid_argument("\"" + word + "\" sets nothing: " + deployment.file + " has" +
                                   (names.empty() ? " no settings" : names));
     }

@@ -36,6 +36,9 @@ Look look(Layer layer) {
   return {"", ' '};
 }
 
+/// The order of the dots in a Braille character: Unicode, block 2800.
+constexpr std::array<unsigned, 8> kBits{0x01, 0x02, 0x04, 0x40, 0x08, 0x10, 0x20, 0x80};
+
 /// Characters of 2 x 4 dots.
 class Canvas {
  public:
@@ -47,10 +50,8 @@ class Canvas {
   void dot(int u, int v, Layer layer) {
     if (u < 0 || v < 0 || u >= 2 * columns_ || v >= 4 * rows_)
       return;
-    // The order of the dots in a Braille character: Unicode, block 2800.
-    static constexpr std::array<unsigned, 8> kBits{0x01, 0x02, 0x04, 0x40, 0x08, 0x10, 0x20, 0x80};
-    Cell& cell = cells_[static_cast<std::size_t>((v / 4) * columns_ + u / 2)];
-    cell.bits |= kBits[static_cast<std::size_t>((u % 2) * 4 + v % 4)];
+    Cell& cell = cells_[index(u / 2, v / 4)];
+    cell.bits |= kBits[static_cast<std::size_t>(u % 2) * 4 + static_cast<std::size_t>(v % 4)];
     cell.layer = std::max(cell.layer, layer);
   }
 
@@ -60,7 +61,7 @@ class Canvas {
       std::string line;
       Layer last = Layer::none;
       for (int column = 0; column < columns_; ++column) {
-        const Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+        const Cell& cell = cells_[index(column, row)];
         if (cell.layer != last && cell.layer != Layer::none) {
           line += look(cell.layer).color;
           last = cell.layer;
@@ -84,6 +85,12 @@ class Canvas {
     unsigned bits = 0;
     Layer layer = Layer::none;
   };
+
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
   int columns_;
   int rows_;
   std::vector<Cell> cells_;
@@ -153,10 +160,13 @@ std::vector<std::string> Picture::draw(int columns, int rows, bool utf8) const {
     }
   }
   const double radius = std::max(radius_, 2 * scale);
-  for (double angle = 0.0; angle < 2 * kPi; angle += 0.5 * scale / radius)
+  const int around = static_cast<int>(4 * kPi * radius / scale);
+  for (int i = 0; i < around; ++i) {
+    const double angle = 2 * kPi * i / around;
     dot(robot_.position() + radius * Vec2(std::cos(angle), std::sin(angle)), Layer::robot);
-  for (double along = 0.0; along < 2 * radius; along += scale)
-    dot(robot_.position() + along * robot_.direction(), Layer::robot);
+  }
+  for (int i = 0; i * scale < 2 * radius; ++i)
+    dot(robot_.position() + i * scale * robot_.direction(), Layer::robot);
   return canvas.lines(utf8);
 }
 

@@ -43,12 +43,13 @@ std::vector<std::string> merged_environment(const std::map<std::string, std::str
       all.push_back(text);
   }
   for (const auto& [name, value] : added)
-    all.push_back(name + "=" + value);
+    all.emplace_back(name).append("=").append(value);
   return all;
 }
 
 std::vector<char*> pointers(std::vector<std::string>& words) {
   std::vector<char*> all;
+  all.reserve(words.size() + 1);
   for (std::string& word : words)
     all.push_back(word.data());
   all.push_back(nullptr);
@@ -217,7 +218,7 @@ void Supervisor::stop(milliseconds limit) {
   const Clock::time_point end = Clock::now() + limit;
   for (Slot& slot : slots_)
     slot.due.reset();
-  const auto running = [this](const Slot& slot) { return slot.pid != 0; };
+  const auto running = [](const Slot& slot) { return slot.pid != 0; };
   for (std::size_t i = slots_.size(); i-- > 0;) {
     if (slots_[i].pid == 0)
       continue;

@@ -65,6 +65,7 @@ TEST(GoalWords, AWholeGoal) {
   EXPECT_THROW(parse_goal("go_to", {"speed=1", "speed=2"}), std::invalid_argument);
   EXPECT_THROW(parse_goal("speed=1", {}), std::invalid_argument);
   std::vector<std::string> many;
+  many.reserve(17);
   for (int i = 0; i < 17; ++i)
     many.push_back("a" + std::to_string(i) + "=1");
   EXPECT_THROW(parse_goal("go_to", many), std::invalid_argument);

@@ -55,7 +55,8 @@ TEST(KeyDrive, AHeldKeyBridgesTheDelayBeforeItsFirstRepeat) {
   drive.press(DriveKey::faster, 0.0);
   EXPECT_TRUE(drive.setpoint(0.66).active);
   double now = 0.66;
-  for (; now < 3.0; now += 0.033) {
+  for (int i = 0; i < 70; ++i) {
+    now += 0.033;
     drive.press(DriveKey::faster, now);
     EXPECT_TRUE(drive.setpoint(now + 0.03).active);
   }
@@ -65,8 +66,8 @@ TEST(KeyDrive, AHeldKeyBridgesTheDelayBeforeItsFirstRepeat) {
 TEST(KeyDrive, LettingGoOfAHeldKeyStopsSoon) {
   KeyDrive drive;
   drive.press(DriveKey::keep, 0.0);
-  for (double now = 0.5; now <= 0.9; now += 0.05)
-    drive.press(DriveKey::keep, now);
+  for (int i = 0; i <= 8; ++i)
+    drive.press(DriveKey::keep, 0.5 + 0.05 * i);
   EXPECT_TRUE(drive.setpoint(1.1).active);
   EXPECT_FALSE(drive.setpoint(1.25).active);
 }

@@ -84,8 +84,10 @@ TEST(Trace, AnEmptyOneHasNoClearance) {
 TEST(Trace, WhatIsNoTraceIsRefusedWithItsPlace) {
   for (const std::string bad : {"1,2,3\n", "a,1,1,1,1,1,1,1,1,1,1\n", "1,1,1,1,1,1,1,1,1,1,1,1\n",
                                 "1,1,1,1,1,1,1,1,1,1,\n", "\n"}) {
+    std::string text = kHeader + kFirst;
+    text += bad;
     try {
-      evaluate_trace(kHeader + kFirst + bad, 9, "t.csv");
+      evaluate_trace(text, 9, "t.csv");
       FAIL() << bad;
     } catch (const FileError& error) {
       EXPECT_EQ(error.line(), 3);
