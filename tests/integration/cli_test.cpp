@@ -399,5 +399,20 @@ TEST_F(CliTest, UpEndsWhenAProgramDoesNotTakeItsOptions) {
   EXPECT_TRUE(has(outcome.text, "bridge does not take what")) << outcome.text;
 }
 
+TEST_F(CliTest, TheDemoSaysWhatIsWrongWithAWorld) {
+  const std::string file = write("bad.wld", "wdith 3\n");
+  const Outcome outcome = run({"demo", "--headless", "--world", file});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(has(outcome.text, "bad.wld:1:1: expected")) << outcome.text;
+}
+
+TEST_F(CliTest, AClosedTerminalEndsTheDemoInGoodOrder) {
+  test::Process demo(command({"demo", "--headless"}), folder_.path("demo"));
+  ASSERT_TRUE(test::wait_until([&] { return has(demo.output(), "m to go"); })) << demo.output();
+  demo.signal(SIGHUP);
+  EXPECT_EQ(demo.wait(), 1);
+  EXPECT_TRUE(has(demo.output(), "did not arrive: interrupted")) << demo.output();
+}
+
 }  // namespace
 }  // namespace saphira

@@ -402,13 +402,15 @@ class Demo {
     summary.speed_factor = wall_ > 0.0 ? summary.time / wall_ : 0.0;
 
     std::string outcome = status_ ? bus::describe(*status_) : "the goal got no answer";
-    if (const auto misused = supervisor_.misused())
-      trouble_ = *misused + " could not be started as the demo needs it";
+    const auto misused = supervisor_.misused();
+    if (misused)
+      trouble_ = *misused + " does not take what it is given";
     if (interrupted)
       outcome = "interrupted; " + outcome;
     std::FILE* out = options_.json ? stderr : stdout;
-    std::fprintf(out, "%s: %s\n%s", summary.arrived ? "arrived" : "did not arrive", outcome.c_str(),
-                 to_text(summary).c_str());
+    std::fprintf(out, "%s: %s\n", summary.arrived ? "arrived" : "did not arrive", outcome.c_str());
+    if (summary.track.cycles > 0)
+      std::fputs(to_text(summary).c_str(), out);
     if (!trouble_.empty())
       std::fprintf(stderr, "saphira: %s\n", trouble_.c_str());
     if (!summary.arrived && !interrupted && !options_.verbose) {
@@ -419,6 +421,8 @@ class Demo {
     if (options_.json)
       std::printf("%s\n", to_json(summary).c_str());
     std::fflush(stdout);
+    if (misused)
+      return bus::kExitUsage;
     return summary.arrived ? bus::kExitOk : bus::kExitFailed;
   }
 

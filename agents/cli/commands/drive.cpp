@@ -34,7 +34,7 @@ class RawTerminal {
     if (tcgetattr(STDIN_FILENO, &before_) != 0)
       throw std::runtime_error("drive needs a terminal for its keys");
     saved = before_;
-    for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGHUP, SIGQUIT, SIGTSTP})
+    for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGQUIT, SIGTSTP})
       std::signal(number, restore_and_raise);
     termios raw = before_;
     raw.c_lflag &= static_cast<tcflag_t>(~(ICANON | ECHO | ISIG));
@@ -146,6 +146,8 @@ class Teleop {
         break;
     }
     note_.clear();
+    if (!robot_)
+      return;  // nobody drives what he has not seen
     end_constant();
     keys_.press(key, now());
     send();  // at once: a stop does not wait for the period

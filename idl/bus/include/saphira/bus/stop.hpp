@@ -4,7 +4,7 @@
 
 namespace saphira::bus {
 
-/// Ends a program's loops: by request() from any thread, or by SIGINT and SIGTERM after
+/// Ends a program's loops: by request() from any thread, or by signals after
 /// stop_on_signals().
 class Stop {
  public:
@@ -22,7 +22,7 @@ class Stop {
   std::atomic<bool> requested_{false};
 };
 
-/// SIGINT and SIGTERM request this stop, which must outlive the signals. One a process.
+/// SIGINT, SIGTERM and SIGHUP request this stop, which must outlive the signals. One a process.
 void stop_on_signals(Stop& stop);
 
 }  // namespace saphira::bus
