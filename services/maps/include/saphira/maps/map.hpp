@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/lps/artifact.hpp"
+
+namespace saphira::maps {
+
+/// One line of a map: an artifact with its place in the frame `map`.
+struct Feature {
+  lps::PointType type = lps::PointType::position;
+  /// Positive and unique in its map; 0 for a wall, which has none (manual 6.9.1).
+  std::uint32_t id = 0;
+  /// The middle. The heading is along a corridor, lane, wall, junction, office or object; of a door
+  /// or break it is the normal, from the room out into the corridor.
+  Pose pose_in_map;
+  double length = 0.0;  ///< [m] along the heading; 0 where the type has none
+  double width = 0.0;   ///< [m] across the heading; 0 where the type has none
+  std::string name;     ///< of a room, and of its doors; empty: none
+
+  bool operator==(const Feature&) const = default;
+};
+
+/// A map file (manual 6.9.1) in SI units.
+struct Map {
+  std::vector<Feature> features;  ///< in the order of the file
+
+  bool operator==(const Map&) const = default;
+};
+
+/// Reads the text of a map file; `file` names it in errors. FileError where it is wrong.
+Map parse_map(std::string_view text, const std::string& file);
+
+/// The same from a file.
+Map load_map(const std::string& path);
+
+/// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.
+/// std::invalid_argument where no file could hold it: an id twice, a size that is not positive, a
+/// name with a quotation mark or a line break.
+std::string to_text(const Map& map);
+
+/// The feature of that id; nullptr where there is none.
+const Feature* find(const Map& map, std::uint32_t id);
+
+/// Every feature of that type and name, in the order of the file.
+std::vector<const Feature*> named(const Map& map, lps::PointType type, std::string_view name);
+
+/// Whether a position lies in the rectangle of a corridor, lane, junction, office or object.
+bool contains(const Feature& feature, const Vec2& position_in_map);
+
+}  // namespace saphira::maps

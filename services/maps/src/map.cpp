@@ -1,0 +1,305 @@
+#include "saphira/maps/map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::maps {
+
+namespace {
+
+using lps::PointType;
+
+constexpr double kMillimetre = 0.001;
+constexpr double kMax = 1e7;        // [mm] 10 km: more is a slip of the pen
+constexpr double kMaxAngle = 3600;  // [deg]
+constexpr double kMaxId = 2147483647;
+
+// What stands on a line of each type. CORRIDOR, DOOR and WALL are the manual's; the others have the
+// names of its point types (6.6.3.1) and are written in the same way.
+struct Form {
+  std::string_view word;
+  PointType type;
+  bool id;
+  bool length;
+  bool width;
+};
+constexpr std::array<Form, 9> kForms{{
+    {"CORRIDOR", PointType::corridor, true, true, true},
+    {"DOOR", PointType::door, true, false, true},
+    {"WALL", PointType::wall, false, true, false},
+    {"LANE", PointType::lane, true, true, true},
+    {"JUNCTION", PointType::junction, true, true, true},
+    {"OFFICE", PointType::office, true, true, true},
+    {"BREAK", PointType::breach, true, false, true},
+    {"OBJECT", PointType::object, true, true, true},
+    {"POS", PointType::position, true, false, false},
+}};
+
+bool blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+// Reads one line: words and numbers between blanks, commas and parentheses.
+class Scanner {
+ public:
+  Scanner(const std::string& file, std::string_view line, int number)
+      : file_(file), line_(line), number_(number) {
+    if (!line_.empty() && line_.back() == '\r')
+      line_.remove_suffix(1);
+  }
+
+  /// Only blanks and comment are left.
+  bool at_end() {
+    while (at_ < line_.size() && blank(line_[at_]))
+      ++at_;
+    return at_ == line_.size() || line_[at_] == ';';
+  }
+
+  /// The next word; empty at the end of the line.
+  std::string_view word() {
+    if (at_end())
+      return token(0);
+    std::size_t end = at_;
+    while (end < line_.size() && !blank(line_[end]) &&
+           std::string_view(",();\"").find(line_[end]) == std::string_view::npos)
+      ++end;
+    return token(std::max<std::size_t>(end - at_, 1));
+  }
+
+  /// Takes the character if it is the next one.
+  bool take(char c) {
+    if (at_end() || line_[at_] != c)
+      return false;
+    token(1);
+    return true;
+  }
+
+  double number(std::string_view what, double low, double high) {
+    const std::string_view text = word();
+    if (text.empty())
+      fail("expected " + std::string(what) + ", found the end of the line");
+    double value = 0.0;
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+      fail("expected a number (" + std::string(what) + "), found \"" + std::string(text) + "\"");
+    if (value < low || value > high)
+      fail("expected " + std::string(what) + " between " + plain(low) + " and " + plain(high) +
+           ", found " + std::string(text));
+    return value;
+  }
+
+  /// "..." up to the closing mark, which has been seen to be next.
+  std::string quoted() {
+    const std::size_t end = line_.find('"', at_ + 1);
+    if (end == std::string_view::npos) {
+      token(1);
+      fail("expected a closing \" on the same line");
+    }
+    const std::string_view text = token(end + 1 - at_);
+    if (text.size() == 2)
+      fail("expected a name between the quotation marks");
+    return std::string(text.substr(1, text.size() - 2));
+  }
+  bool at_quote() { return !at_end() && line_[at_] == '"'; }
+
+  /// At the token read last.
+  [[noreturn]] void fail(const std::string& message) const {
+    throw FileError(file_, number_, static_cast<int>(began_) + 1, message, line_);
+  }
+
+  static std::string plain(double value) {
+    std::array<char, 32> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                   std::chars_format::fixed, 0);
+    return {buffer.data(), end.ptr};
+  }
+
+ private:
+  std::string_view token(std::size_t length) {
+    began_ = at_;
+    at_ += length;
+    return line_.substr(began_, length);
+  }
+
+  const std::string& file_;
+  std::string_view line_;
+  int number_;
+  std::size_t at_ = 0;
+  std::size_t began_ = 0;
+};
+
+const Form* form_of(std::string_view word) {
+  std::string upper(word);
+  for (char& c : upper)
+    c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  const auto* form =
+      std::find_if(kForms.begin(), kForms.end(), [&](const Form& f) { return f.word == upper; });
+  return form == kForms.end() ? nullptr : form;
+}
+
+const Form& form_of(PointType type) {
+  for (const Form& form : kForms)
+    if (form.type == type)
+      return form;
+  throw std::invalid_argument("a map does not hold artifacts of this type");
+}
+
+Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int number) {
+  const std::string_view word = in.word();
+  const Form* form = form_of(word);
+  if (form == nullptr) {
+    std::string words;
+    for (const Form& f : kForms)
+      words.append(words.empty() ? "" : &f == &kForms.back() ? " or " : ", ").append(f.word);
+    in.fail("expected " + words + ", found \"" + std::string(word) + "\"");
+  }
+  Feature feature;
+  feature.type = form->type;
+  if (in.take('(')) {
+    if (!form->id)
+      in.fail("expected x: a " + std::string(form->word) + " has no id");
+    const double id = in.number("the id", 1, kMaxId);
+    if (id != std::floor(id))
+      in.fail("expected a whole number (the id)");
+    feature.id = static_cast<std::uint32_t>(id);
+    const auto [known, is_new] = lines_of_ids.emplace(feature.id, number);
+    if (!is_new)
+      in.fail("expected an id of its own: line " + std::to_string(known->second) + " has " +
+              std::to_string(feature.id));
+    if (!in.take(')')) {
+      in.word();
+      in.fail("expected a closing parenthesis behind the id");
+    }
+  } else if (form->id) {
+    in.word();
+    in.fail("expected the id of the " + std::string(form->word) + " in parentheses");
+  }
+
+  // Commas as in the manual, or blanks.
+  const auto next = [&](std::string_view what, double low, double high) {
+    in.take(',');
+    return in.number(what, low, high);
+  };
+  feature.pose_in_map.x = in.number("x in mm", -kMax, kMax) * kMillimetre;
+  feature.pose_in_map.y = next("y in mm", -kMax, kMax) * kMillimetre;
+  feature.pose_in_map.th = norm2_angle(radians(next("theta in degrees", -kMaxAngle, kMaxAngle)));
+  if (form->length)
+    feature.length = next("the length in mm", 1, kMax) * kMillimetre;
+  if (form->width)
+    feature.width = next("the width in mm", 1, kMax) * kMillimetre;
+  if (in.at_quote())
+    feature.name = in.quoted();
+  if (!in.at_end()) {
+    const std::string_view extra = in.word();
+    in.fail("expected " +
+            std::string(feature.name.empty() ? "a name in quotation marks or the end of the line"
+                                             : "the end of the line") +
+            ", found \"" + std::string(extra) + "\"");
+  }
+  return feature;
+}
+
+// Without an exponent, without zeros at the end.
+std::string number(double value, int digits) {
+  std::array<char, 64> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::fixed, digits);
+  std::string text(buffer.data(), end.ptr);
+  while (text.back() == '0')
+    text.pop_back();
+  if (text.back() == '.')
+    text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string millimetres(double metres, double low) {
+  const double value = metres / kMillimetre;
+  // Written with three digits behind the point, so what counts is what these say.
+  if (!(std::round(value * 1000.0) / 1000.0 >= low && value <= kMax))
+    throw std::invalid_argument("a place or size that a map file does not hold");
+  return number(value, 3);
+}
+
+std::string line_of(const Feature& feature) {
+  const Form& form = form_of(feature.type);
+  if (form.id != (feature.id != 0) || feature.id > kMaxId)
+    throw std::invalid_argument("a feature without an id, or a wall with one");
+  if (!std::isfinite(feature.pose_in_map.th))
+    throw std::invalid_argument("a heading that is not a number");
+  if (feature.name.find_first_of("\"\n\r") != std::string::npos)
+    throw std::invalid_argument("a name with a quotation mark or a line break");
+  std::string out(form.word);
+  if (form.id)
+    out += " (" + std::to_string(feature.id) + ")";
+  out += " " + millimetres(feature.pose_in_map.x, -kMax) + ", " +
+         millimetres(feature.pose_in_map.y, -kMax) + ", " +
+         number(degrees(norm2_angle(feature.pose_in_map.th)), 6);
+  if (form.length)
+    out += ", " + millimetres(feature.length, 1);
+  if (form.width)
+    out += ", " + millimetres(feature.width, 1);
+  if (!feature.name.empty())
+    out += " \"" + feature.name + "\"";
+  return out + "\n";
+}
+
+}  // namespace
+
+Map parse_map(std::string_view text, const std::string& file) {
+  Map map;
+  std::map<std::uint32_t, int> lines_of_ids;
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    Scanner in(file, text.substr(0, end), number);
+    text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+    if (!in.at_end())
+      map.features.push_back(parse_line(in, lines_of_ids, number));
+  }
+  return map;
+}
+
+Map load_map(const std::string& path) {
+  return parse_map(read_file(path), path);
+}
+
+std::string to_text(const Map& map) {
+  std::string out;
+  std::vector<std::uint32_t> ids;
+  for (const Feature& feature : map.features) {
+    out += line_of(feature);
+    if (feature.id != 0)
+      ids.push_back(feature.id);
+  }
+  std::sort(ids.begin(), ids.end());
+  if (std::adjacent_find(ids.begin(), ids.end()) != ids.end())
+    throw std::invalid_argument("an id twice");
+  return out;
+}
+
+const Feature* find(const Map& map, std::uint32_t id) {
+  const auto found = std::find_if(map.features.begin(), map.features.end(),
+                                  [&](const Feature& f) { return f.id == id && id != 0; });
+  return found == map.features.end() ? nullptr : &*found;
+}
+
+std::vector<const Feature*> named(const Map& map, PointType type, std::string_view name) {
+  std::vector<const Feature*> found;
+  for (const Feature& feature : map.features)
+    if (feature.type == type && feature.name == name)
+      found.push_back(&feature);
+  return found;
+}
+
+bool contains(const Feature& feature, const Vec2& position_in_map) {
+  const Vec2 inside = to_frame(feature.pose_in_map, position_in_map);
+  return std::abs(inside.x()) <= feature.length / 2 && std::abs(inside.y()) <= feature.width / 2;
+}
+
+}  // namespace saphira::maps

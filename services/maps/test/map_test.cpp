@@ -1,0 +1,175 @@
+#include "saphira/maps/map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "saphira/base/random.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::maps {
+namespace {
+
+using lps::PointType;
+
+// Manual 6.9.1 as it is printed.
+constexpr const char* kManualsExample =
+    ";;\n"
+    ";; Map of a small portion of the SRI AIC\n"
+    ";;\n"
+    "CORRIDOR (1) 0, 0, 0, 10000, 2000\n"
+    "CORRIDOR (2) 0, 0, 90, 10000, 2000\n"
+    "DOOR (3) 3000, 1000, 90, 1000\n"
+    "WALL 1000, 1000, 0, 3000\n";
+
+TEST(Map, TheManualsExampleLoads) {
+  const Map map = parse_map(kManualsExample, "aic.map");
+  ASSERT_EQ(map.features.size(), 4U);
+  EXPECT_EQ(map.features[0],
+            (Feature{PointType::corridor, 1, {0.0, 0.0, 0.0}, 10.0, 2.0, std::string()}));
+  EXPECT_EQ(map.features[1],
+            (Feature{PointType::corridor, 2, {0.0, 0.0, kPi / 2}, 10.0, 2.0, std::string()}));
+  EXPECT_EQ(map.features[2],
+            (Feature{PointType::door, 3, {3.0, 1.0, kPi / 2}, 0.0, 1.0, std::string()}));
+  EXPECT_EQ(map.features[3],
+            (Feature{PointType::wall, 0, {1.0, 1.0, 0.0}, 3.0, 0.0, std::string()}));
+}
+
+TEST(Map, BlanksCommasCaseAndLineEnds) {
+  const Map map = parse_map(
+      "office (7) 1000 2000 -270 4000 3000 \"EJ-231; south\" ; the comment\r\n"
+      "  POS ( 8 ) +1e3,2000 , 0;x\n"
+      "\n"
+      "BREAK(9)0,0,180,2500",
+      "m");
+  ASSERT_EQ(map.features.size(), 3U);
+  EXPECT_EQ(map.features[0].name, "EJ-231; south");
+  EXPECT_NEAR(map.features[0].pose_in_map.th, kPi / 2, 1e-12);
+  EXPECT_EQ(map.features[1].pose_in_map, (Pose{1.0, 2.0, 0.0}));
+  EXPECT_EQ(map.features[2].id, 9U);
+  EXPECT_DOUBLE_EQ(map.features[2].width, 2.5);
+}
+
+TEST(Map, FindsByIdAndName) {
+  const Map map = parse_map(
+      "WALL 0, 0, 0, 1000\nOFFICE (1) 0,0,90,4000,2000 \"EJ-231\"\nDOOR (2) 0,0,0,900 \"EJ-231\"",
+      "m");
+  ASSERT_NE(find(map, 2), nullptr);
+  EXPECT_EQ(find(map, 2)->type, PointType::door);
+  EXPECT_EQ(find(map, 3), nullptr);
+  EXPECT_EQ(find(map, 0), nullptr);
+  ASSERT_EQ(named(map, PointType::office, "EJ-231").size(), 1U);
+  EXPECT_TRUE(named(map, PointType::office, "EJ-233").empty());
+  // 4 m along y, 2 m along x.
+  EXPECT_TRUE(contains(map.features[1], {0.9, 1.9}));
+  EXPECT_FALSE(contains(map.features[1], {1.1, 0.0}));
+}
+
+TEST(Map, WhatIsWrittenIsReadAgain) {
+  Random random(3);
+  Map map;
+  const PointType types[] = {PointType::corridor, PointType::door,     PointType::wall,
+                             PointType::lane,     PointType::junction, PointType::office,
+                             PointType::breach,   PointType::object,   PointType::position};
+  for (std::uint32_t i = 0; i < 900; ++i) {
+    Feature feature;
+    feature.type = types[i % 9];
+    feature.id = feature.type == PointType::wall ? 0 : i + 1;
+    feature.pose_in_map = {random.uniform(-1e4, 1e4), random.uniform(-50.0, 50.0),
+                           random.uniform(-kPi, kPi)};
+    feature.length = random.uniform(0.001, 100.0);
+    feature.width = random.uniform(0.001, 100.0);
+    if (i % 3 == 0)
+      feature.name = "room " + std::to_string(i);
+    map.features.push_back(feature);
+  }
+  const std::string text = to_text(map);
+  const Map again = parse_map(text, "written.map");
+  ASSERT_EQ(again.features.size(), map.features.size());
+  for (std::size_t i = 0; i < map.features.size(); ++i) {
+    const Feature& a = map.features[i];
+    const Feature& b = again.features[i];
+    EXPECT_EQ(a.type, b.type);
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_NEAR((a.pose_in_map.position() - b.pose_in_map.position()).norm(), 0.0, 1e-6);
+    EXPECT_NEAR(sub2_angle(a.pose_in_map.th, b.pose_in_map.th), 0.0, 1e-7);
+    if (b.length != 0.0) {
+      EXPECT_NEAR(a.length, b.length, 1e-6);
+    }
+  }
+  // What a file can hold is kept for good.
+  EXPECT_EQ(to_text(again), text);
+  EXPECT_EQ(parse_map(to_text(again), "m"), again);
+  EXPECT_EQ(to_text(parse_map(kManualsExample, "m")),
+            std::string(kManualsExample).substr(std::string(kManualsExample).find("CORR")));
+}
+
+TEST(Map, WhatNoFileHoldsIsNotWritten) {
+  const Feature door{PointType::door, 1, {}, 0.0, 0.9, "EJ-231"};
+  EXPECT_NO_THROW(to_text({{door}}));
+  EXPECT_THROW(to_text({{door, door}}), std::invalid_argument);
+  Feature wrong = door;
+  wrong.id = 0;
+  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
+  wrong = door;
+  wrong.width = 0.0;
+  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
+  wrong = door;
+  wrong.name = "\"";
+  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
+  wrong = door;
+  wrong.pose_in_map.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
+  wrong = door;
+  wrong.type = PointType::invalid;
+  EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
+}
+
+struct Broken {
+  const char* text;
+  int line;
+  int column;
+  const char* expected;
+};
+
+class BrokenMap : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenMap, SaysWhereAndWhatWasExpected) {
+  try {
+    parse_map(GetParam().text, "broken.map");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.line(), GetParam().line) << error.what();
+    EXPECT_EQ(error.column(), GetParam().column) << error.what();
+    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos)
+        << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, BrokenMap,
+    ::testing::Values(
+        Broken{"\nHALL (1) 0, 0, 0, 1000, 2000\n", 2, 1, "POS, found \"HALL\""},
+        Broken{"DOOR 0, 0, 0, 900\n", 1, 6, "the id of the DOOR in parentheses"},
+        Broken{"DOOR\n", 1, 5, "the id of the DOOR in parentheses"},
+        Broken{"WALL (1) 0, 0, 0, 900\n", 1, 6, "a WALL has no id"},
+        Broken{"DOOR (0) 0, 0, 0, 900\n", 1, 7, "between 1 and"},
+        Broken{"DOOR (1.5) 0, 0, 0, 900\n", 1, 7, "whole number"},
+        Broken{"DOOR (1 0, 0, 0, 900\n", 1, 9, "closing parenthesis"},
+        Broken{"DOOR (1) 0, 0, 0, 900\nDOOR (1) 5, 5, 0, 900\n", 2, 7, "line 1 has 1"},
+        Broken{"DOOR (1) 0, 0, 0\n", 1, 17, "the width in mm, found the end"},
+        Broken{"DOOR (1) 0, 0, 0, ; 900\n", 1, 19, "the width in mm, found the end"},
+        Broken{"DOOR (1) 0, zero, 0, 900\n", 1, 13, "y in mm"},
+        Broken{"DOOR (1) 0,, 0, 900\n", 1, 12, "y in mm"},
+        Broken{"DOOR (1) 0, 0, 0, -900\n", 1, 19, "between 1 and"},
+        Broken{"WALL 0, 0, 4000, 900\n", 1, 12, "theta in degrees between -3600"},
+        Broken{"WALL 0, 0, 0, 900, 5\n", 1, 18, "a name in quotation marks or the end"},
+        Broken{"POS (1) 0, 0, 0 \"a\" \"b\"\n", 1, 21, "the end of the line"},
+        Broken{"POS (1) 0, 0, 0 \"a\n", 1, 17, "closing \""},
+        Broken{"POS (1) 0, 0, 0 \"\"\n", 1, 17, "a name between"},
+        Broken{"POS (1) 0, 0, nan\n", 1, 15, "a number (theta"}));
+
+}  // namespace
+}  // namespace saphira::maps
