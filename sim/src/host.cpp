@@ -24,7 +24,7 @@
 #include <utility>
 
 #include "saphira/base/text.hpp"
-#include "saphira/sim/server.hpp"
+#include "saphira/sim/simulation.hpp"
 
 namespace saphira::sim {
 
@@ -237,7 +237,8 @@ class Host {
   Host(const HostOptions& options, const World& world, const protocol::RobotParameters& parameters,
        const Pose& start, const ServerOptions& server_options)
       : log_(options.log),
-        server_(world, parameters, start, server_options),
+        simulation_(world),
+        server_(simulation_.server(simulation_.add(parameters, start, server_options))),
         pace_(options.rate),
         trace_(options.trace),
         listener_(options) {
@@ -282,11 +283,11 @@ class Host {
 
   // Wakes up when the next information packet is due, or to look for an end of silence.
   void schedule() {
-    if (server_.runs()) {
+    if (simulation_.runs()) {
       if (!running_)
         pace_.restart();
       running_ = true;
-      timer_.set(pace_.seconds_until(server_.ticks_to_packet()));
+      timer_.set(pace_.seconds_until(simulation_.ticks_to_packet()));
       timed_ = true;
       return;
     }
@@ -307,9 +308,9 @@ class Host {
     }
     // Time first, so that what has come acts now and not when the packet before it was due.
     if (running_)
-      server_.advance(pace_.due());
+      simulation_.advance(pace_.due());
     else if (timer_ready && !client_ready)
-      server_.gap();
+      simulation_.gap(0);
     if (client_ready)
       read_client();
     write_client();
@@ -338,7 +339,7 @@ class Host {
     std::array<std::uint8_t, 4096> buffer{};
     const ssize_t size = ::read(client_.get(), buffer.data(), buffer.size());
     if (size > 0) {
-      server_.receive({buffer.data(), static_cast<std::size_t>(size)});
+      simulation_.receive(0, {buffer.data(), static_cast<std::size_t>(size)});
     } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
       hang_up("the client has gone");
       trace_.write(server_.take_trace());
@@ -371,12 +372,13 @@ class Host {
     if (!client_)
       return;
     client_.reset();
-    server_.disconnect();
+    simulation_.disconnect(0);
     log(why);
   }
 
   std::function<void(const std::string&)> log_;
-  Server server_;
+  Simulation simulation_;
+  Server& server_;
   Pace pace_;
   Timer timer_;
   TraceFile trace_;

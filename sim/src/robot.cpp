@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/sim/scene.hpp"
+
 namespace saphira::sim {
 
 namespace {
 
 // The heading servo is content within this.
 constexpr double kHeadingDeadband = 0.001;  // [rad]
+
+// How far from its hull the robot looks for what it might touch.
+constexpr double kLookout = 1.0;  // [m]
 
 // A contact is over when the hull is this far away.
 constexpr double kContactEnds = 0.005;  // [m]
@@ -27,10 +32,11 @@ double approach(double value, double target, double up, double down) {
 
 }  // namespace
 
-Robot::Robot(const World& world, const protocol::RobotParameters& parameters,
+Robot::Robot(Scene& scene, std::size_t number, const protocol::RobotParameters& parameters,
              const Pose& start_in_world, std::uint64_t seed)
-    : world_(&world),
-      near_(world, parameters.radius + 1.0),
+    : scene_(&scene),
+      number_(number),
+      near_(scene.world(), parameters.radius + kLookout),
       radius_(parameters.radius),
       max_velocity_(parameters.max_velocity),
       max_rotation_velocity_(parameters.max_rotation_velocity),
@@ -108,7 +114,7 @@ double Robot::target_rotation_velocity() const {
 }
 
 double Robot::clearance() const {
-  return distance(world_->segments, pose_in_world_.position()) - radius_;
+  return scene_->distance(pose_in_world_.position(), number_) - radius_;
 }
 
 double Robot::wanted_rotation_velocity() const {
@@ -130,27 +136,38 @@ void Robot::tick() {
   velocity_ = approach(velocity_, target_velocity(), acceleration_ * kTick, deceleration_ * kTick);
   rotation_velocity_ = approach(rotation_velocity_, wanted_rotation_velocity(),
                                 rotation_acceleration_ * kTick, rotation_deceleration_ * kTick);
+  // The others may have come nearer.
+  if (scene_->has_movable(number_))
+    free_way_ -= scene_->fastest() * kTick;
   if (moving())
     move(velocity_ * kTick, rotation_velocity_ * kTick);
 }
 
+// What the robot might touch.
+const Things& Robot::around() {
+  const Vec2 at = pose_in_world_.position();
+  around_.segments = near_.around(at);
+  around_.discs.clear();
+  scene_->add_movable(at, radius_ + kLookout, number_, around_);
+  return around_;
+}
+
 // The part of a straight way that the robot can go before it touches; moving off from where it
 // touches is free.
-double Robot::free_part(const Vec2& way, double& clearance_after) {
+double Robot::free_part(const Things& things, const Vec2& way, double& clearance_after) {
   const Vec2 at = pose_in_world_.position();
-  const std::vector<Segment>& segments = near_.around(at);
-  const double now = distance(segments, at) - radius_;
+  const double now = distance(things, at) - radius_;
   const double limit = std::min(0.0, now);
-  clearance_after = distance(segments, at + way) - radius_;
+  clearance_after = distance(things, at + way) - radius_;
   if (clearance_after >= limit)
     return 1.0;
   double low = 0.0;
   double high = 1.0;
   for (int i = 0; i < 30; ++i) {
     const double middle = (low + high) / 2.0;
-    (distance(segments, at + middle * way) - radius_ >= limit ? low : high) = middle;
+    (distance(things, at + middle * way) - radius_ >= limit ? low : high) = middle;
   }
-  clearance_after = distance(segments, at + low * way) - radius_;
+  clearance_after = distance(things, at + low * way) - radius_;
   return low;
 }
 
@@ -159,11 +176,11 @@ void Robot::move(double way, double turn) {
   const Vec2 along(std::cos(middle), std::sin(middle));
   free_way_ -= std::abs(way);
   if (way != 0.0 && free_way_ <= 0.0) {
+    const Things& things = around();
     double clearance_after = 0.0;
-    const double part = free_part(way * along, clearance_after);
+    const double part = free_part(things, way * along, clearance_after);
     if (part < 1.0) {
-      const auto touched =
-          nearest_point(near_.around(pose_in_world_.position()), pose_in_world_.position());
+      const auto touched = nearest_point(things, pose_in_world_.position());
       // A contact ahead stalls both motors, one at the side that side's (manual 6.3.1).
       const Vec2 offset = *touched - pose_in_world_.position();
       const double bearing =
@@ -184,6 +201,7 @@ void Robot::move(double way, double turn) {
   pose_in_world_.x += way * along.x();
   pose_in_world_.y += way * along.y();
   pose_in_world_.th = norm2_angle(pose_in_world_.th + turn);
+  scene_->moved(number_);
 
   double measured_way = way;
   double measured_turn = turn + drift_ * way;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 namespace saphira::sim {
@@ -41,19 +40,14 @@ std::uint16_t to_range(const SonarEcho& echo, double unit) {
 
 }  // namespace
 
-Server::Server(const World& world, const RobotParameters& parameters, const Pose& start_in_world,
+Server::Server(Scene& scene, const RobotParameters& parameters, const Pose& start_in_world,
                const ServerOptions& options)
     : parameters_(parameters),
       options_(options),
-      robot_(world, parameters, start_in_world, options.seed),
-      sonars_(world, parameters, options.sonar, options.seed),
-      single_step_(options.single_step) {
-  if (robot_.clearance() < 0.0)
-    throw std::invalid_argument("the robot would stand in a wall: the nearest one is " +
-                                std::to_string(robot_.clearance() + parameters.radius) +
-                                " m from its middle, its radius is " +
-                                std::to_string(parameters.radius) + " m");
-}
+      scene_(scene),
+      robot_(scene.add_robot(parameters, start_in_world, options.seed)),
+      sonars_(scene, robot_.number(), parameters, options.sonar, options.seed),
+      single_step_(options.single_step) {}
 
 void Server::receive(ByteView bytes) {
   quiet_ticks_ = 0;
@@ -67,14 +61,30 @@ void Server::gap() {
 }
 
 void Server::drain() {
-  while (const auto body = parser_.next())
+  while (!step_asked_) {
+    const auto body = parser_.next();
+    if (!body)
+      return;
     handle(*body);
+    if (step_asked_ && options_.keeps_time)
+      step();
+  }
+}
+
+void Server::step() {
+  for (int i = 0; i < kTicksPerPacket; ++i)
+    tick();
+  step_asked_ = false;
+}
+
+void Server::end_step() {
+  step_asked_ = false;
+  drain();
 }
 
 void Server::advance(int ticks) {
   for (int i = 0; i < ticks && runs(); ++i) {
-    if (++quiet_ticks_ == kGapTicks && parser_.pending())
-      gap();
+    quiet_tick();
     tick();
   }
 }
@@ -178,10 +188,9 @@ void Server::act(const Command& command) {
                  },
                  [this, opened](const Step&) {
                    single_step_ = true;
-                   for (int i = 0; opened && i < kTicksPerPacket; ++i)
-                     tick();
+                   step_asked_ = opened;
                  },
-                 [this](const Unknown&) { ++counters_.unknown_commands; },
+                 [this](const auto&) { ++counters_.unknown_commands; },
              },
              command);
 }
@@ -194,6 +203,7 @@ void Server::open() {
   phase_ = 0;
   first_row_ = true;
   silent_ticks_ = 0;
+  rest_asked_ = false;
   readings_.clear();
   robot_.stop();
   robot_.brake(false);
@@ -206,18 +216,33 @@ void Server::close() {
   robot_.stop();
   sonars_.set_default_polling();
   // Nobody will say STEP any more: the robot comes to rest now.
-  while (single_step_ && runs())
+  step_asked_ = false;
+  rest_asked_ = single_step_;
+  while (options_.keeps_time && rest_asked())
     tick();
   single_step_ = options_.single_step;
 }
 
 void Server::tick() {
+  begin_tick();
+  scene_.tick();
+  end_tick();
+}
+
+void Server::quiet_tick() {
+  if (++quiet_ticks_ == kGapTicks && parser_.pending())
+    gap();
+}
+
+void Server::begin_tick() {
   if (is_open() && ++silent_ticks_ == kWatchdogTicks) {
     watchdog_ = true;
     ++counters_.watchdog_stops;
     robot_.brake(true);
   }
-  robot_.tick();
+}
+
+void Server::end_tick() {
   if (is_open()) {
     if (const auto echo = sonars_.tick(robot_.pose_in_world()))
       readings_.push_back({echo->number, to_range(*echo, parameters_.range_unit)});

@@ -18,12 +18,15 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
 
 }  // namespace
 
-Sonars::Sonars(const World& world, const protocol::RobotParameters& parameters,
+Sonars::Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
                const SonarModel& model, std::uint64_t seed)
-    : units_(parameters.sonars),
+    : scene_(&scene),
+      self_(self),
+      units_(parameters.sonars),
       model_(model),
-      near_(world, model.max_range + farthest(units_)),
-      random_(seed, 2) {
+      near_(scene.world(), model.max_range + farthest(units_)),
+      random_(seed, 2),
+      reach_(model.max_range + farthest(units_)) {
   set_default_polling();
 }
 
@@ -63,10 +66,12 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   // Only segments that reach into the half-plane ahead, and into the beam's circle.
   const Vec2 ahead = at.direction();
   const Vec2 origin = at.position();
-  in_beam_.clear();
+  in_beam_.segments.clear();
+  in_beam_.discs.clear();
+  scene_->add_movable(robot_in_world.position(), reach_, self_, in_beam_);
   for (const Segment& segment : near_.around(robot_in_world.position())) {
     if ((segment.from - origin).dot(ahead) > 0.0 || (segment.to - origin).dot(ahead) > 0.0)
-      in_beam_.push_back(segment);
+      in_beam_.segments.push_back(segment);
   }
 
   std::optional<double> nearest;

@@ -134,6 +134,27 @@ double distance(const std::vector<Segment>& segments, const Vec2& point) {
   return std::sqrt(best);
 }
 
+std::optional<Vec2> nearest_point(const Things& things, const Vec2& point) {
+  auto best = nearest_point(things.segments, point);
+  double best_distance = best ? (*best - point).norm() : std::numeric_limits<double>::infinity();
+  for (const Disc& disc : things.discs) {
+    const Vec2 from_centre = point - disc.centre;
+    const double length = from_centre.norm();
+    if (length - disc.radius >= best_distance)
+      continue;
+    best_distance = length - disc.radius;
+    best = disc.centre + (length > 0.0 ? Vec2(from_centre / length) : Vec2(1.0, 0.0)) * disc.radius;
+  }
+  return best;
+}
+
+double distance(const Things& things, const Vec2& point) {
+  double best = distance(things.segments, point);
+  for (const Disc& disc : things.discs)
+    best = std::min(best, (disc.centre - point).norm() - disc.radius);
+  return best;
+}
+
 std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
                             const Vec2& direction, double range) {
   double best = range;
@@ -163,6 +184,23 @@ std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& or
   const Vec2 along = (hit->to - hit->from).normalized();
   const double sine = std::min(1.0, std::abs(direction.dot(along)));
   return Hit{best, std::asin(sine)};
+}
+
+std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
+                            double range) {
+  auto best = cast_ray(things.segments, origin, direction, range);
+  for (const Disc& disc : things.discs) {
+    const Vec2 to_centre = disc.centre - origin;
+    const double along = to_centre.dot(direction);
+    const double aside = to_centre.x() * direction.y() - to_centre.y() * direction.x();
+    const double inside = disc.radius * disc.radius - aside * aside;
+    if (along < 0.0 || inside <= 0.0)
+      continue;
+    const double hit = along - std::sqrt(inside);
+    if (hit >= 0.0 && hit < (best ? best->range : range))
+      best = Hit{hit, std::asin(std::min(1.0, std::abs(aside) / disc.radius))};
+  }
+  return best;
 }
 
 const std::vector<Segment>& Neighbourhood::around(const Vec2& point) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "saphira/sim/scene.hpp"
+
 namespace saphira::sim {
 namespace {
 
@@ -28,7 +30,8 @@ void run(Robot& robot, int ticks) {
 TEST(Robot, AcceleratesAtAConstantRate) {
   const World world = empty();
   RobotParameters parameters;  // 0.5 m/s2, 2 m/s2, at most 0.4 m/s
-  Robot robot(world, parameters, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(parameters, {}, 1);
   robot.set_velocity(0.3);
   run(robot, 30);
   EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
@@ -50,7 +53,8 @@ TEST(Robot, AcceleratesAtAConstantRate) {
 TEST(Robot, TurnsByATrapezoid) {
   const World world = empty();
   RobotParameters parameters;
-  Robot robot(world, parameters, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(parameters, {}, 1);
   robot.set_heading(radians(170.0));
   std::vector<double> speeds;
   for (int i = 0; i < 400; ++i) {
@@ -73,7 +77,8 @@ TEST(Robot, TurnsByATrapezoid) {
 
 TEST(Robot, TurnsTheShortWayRound) {
   const World world = empty();
-  Robot robot(world, RobotParameters{}, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(RobotParameters{}, {}, 1);
   robot.set_heading(radians(350.0));
   run(robot, 100);
   EXPECT_NEAR(robot.pose_in_odom().th, radians(-10.0), 0.002);
@@ -85,7 +90,8 @@ TEST(Robot, TurnsTheShortWayRound) {
 TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
   const World world = empty();
   RobotParameters parameters;
-  Robot robot(world, parameters, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(parameters, {}, 1);
   robot.set_heading(radians(90.0));
   run(robot, 50);
   robot.set_heading(radians(-90.0));
@@ -103,7 +109,8 @@ TEST(Robot, ANewHeadingInTheMiddleOfATurnIsTakenUpSmoothly) {
 TEST(Robot, WheelVelocities) {
   const World world = empty();
   RobotParameters parameters;
-  Robot robot(world, parameters, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(parameters, {}, 1);
   robot.set_wheel_velocities(0.1, 0.2);
   run(robot, 100);
   EXPECT_NEAR(robot.left_velocity(), 0.1, 1e-9);
@@ -119,7 +126,8 @@ TEST(Robot, WheelVelocities) {
 
 TEST(Robot, BrakingKeepsTheVelocityForLater) {
   const World world = empty();
-  Robot robot(world, RobotParameters{}, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(RobotParameters{}, {}, 1);
   robot.set_velocity(0.3);
   robot.set_rotation_velocity(0.5);
   run(robot, 100);
@@ -137,7 +145,8 @@ TEST(Robot, StopsAtAWallAndNeverBehindIt) {
   const World world = walled();
   for (const double th : {0.0, 20.0, -20.0, 60.0, -60.0, 80.0}) {
     RobotParameters parameters;
-    Robot robot(world, parameters, {1.0, 0.0, radians(th)}, 1);
+    Scene scene(world);
+    Robot& robot = scene.add_robot(parameters, {1.0, 0.0, radians(th)}, 1);
     robot.set_velocity(0.4);
     for (int i = 0; i < 2000; ++i) {
       robot.tick();
@@ -154,7 +163,8 @@ TEST(Robot, StopsAtAWallAndNeverBehindIt) {
 
 TEST(Robot, BacksIntoAWallTheSameWay) {
   const World world = walled();
-  Robot robot(world, RobotParameters{}, {1.0, 0.0, radians(180.0 - 60.0)}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(RobotParameters{}, {1.0, 0.0, radians(180.0 - 60.0)}, 1);
   robot.set_velocity(-0.4);
   run(robot, 2000);
   EXPECT_GE(robot.clearance(), -1e-12);
@@ -166,7 +176,8 @@ TEST(Robot, BacksIntoAWallTheSameWay) {
 
 TEST(Robot, DrivesOffAWallAndCountsTheNextContact) {
   const World world = walled();
-  Robot robot(world, RobotParameters{}, {1.5, 0.0, 0.0}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(RobotParameters{}, {1.5, 0.0, 0.0}, 1);
   for (int i = 1; i <= 3; ++i) {
     robot.set_velocity(0.2);
     run(robot, 400);
@@ -182,7 +193,8 @@ TEST(Robot, DrivesOffAWallAndCountsTheNextContact) {
 TEST(Robot, WithoutErrorsDeadReckoningIsTheTruth) {
   const World world = empty();
   const Pose start{3.0, 4.0, 1.0};
-  Robot robot(world, RobotParameters{}, start, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(RobotParameters{}, start, 1);
   robot.set_velocity(0.4);
   robot.set_rotation_velocity(0.3);
   run(robot, 3000);
@@ -195,7 +207,8 @@ TEST(Robot, WithoutErrorsDeadReckoningIsTheTruth) {
 
 TEST(Robot, SettingTheOriginKeepsTheDirectionThatWasSet) {
   const World world = empty();
-  Robot robot(world, RobotParameters{}, {}, 1);
+  Scene scene(world);
+  Robot& robot = scene.add_robot(RobotParameters{}, {}, 1);
   robot.set_heading(1.0);
   run(robot, 20);
   robot.set_origin();
@@ -215,7 +228,8 @@ TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
   double squares_turn = 0.0;
   int left = 0;
   for (int i = 0; i < kRobots; ++i) {
-    Robot robot(world, parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i));
+    Scene scene(world);
+    Robot& robot = scene.add_robot(parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i));
     robot.set_velocity(0.4);
     run(robot, 1080);  // 4.16 m
     const double way = robot.pose_in_world().x - 50.0;
@@ -245,7 +259,8 @@ TEST(Robot, OneSeedOneTrajectory) {
   parameters.encode_jitter = 0.01;
   parameters.angle_jitter = 0.02;
   const auto trajectory = [&](std::uint64_t seed) {
-    Robot robot(world, parameters, {}, seed);
+    Scene scene(world);
+    Robot& robot = scene.add_robot(parameters, {}, seed);
     robot.set_velocity(0.3);
     robot.set_heading(2.0);
     run(robot, 1000);

@@ -26,7 +26,8 @@ class Fixture : public ::testing::Test {
   explicit Fixture(ServerOptions options = traced())
       : world_(load_world(source("config/worlds/office.wld"))),
         parameters_(protocol::load_parameters(source("config/robots/pioneer.p"))),
-        server_(world_, parameters_, *world_.start, options) {}
+        scene_(world_),
+        server_(scene_, parameters_, *world_.start, options) {}
 
   static ServerOptions traced() {
     ServerOptions options;
@@ -61,6 +62,7 @@ class Fixture : public ::testing::Test {
 
   World world_;
   protocol::RobotParameters parameters_;
+  Scene scene_;
   Server server_;
   protocol::PacketParser parser_;
 };
@@ -276,7 +278,8 @@ TEST_F(ServerTest, AFalseHeaderHoldsNothingBackForLong) {
 TEST_F(ServerTest, StepsAreTheSamePhysicsAsLive) {
   ServerOptions options = traced();
   options.single_step = true;
-  Server stepped(world_, parameters_, *world_.start, options);
+  Scene scene(world_);
+  Server stepped(scene, parameters_, *world_.start, options);
   for (int i = 0; i < 3; ++i)
     stepped.receive(protocol::encode_sync(i));
   stepped.receive(encode(protocol::Open{}));
@@ -324,7 +327,8 @@ TEST_F(ServerTest, TheFirstStepEndsLiveMode) {
 }
 
 TEST_F(ServerTest, RefusesToStandInAWall) {
-  EXPECT_THROW(Server(world_, parameters_, {1.5, 6.1, 0.0}, {}), std::invalid_argument);
+  Scene scene(world_);
+  EXPECT_THROW(Server(scene, parameters_, {1.5, 6.1, 0.0}, {}), std::invalid_argument);
 }
 
 TEST(Trace, SurvivesTheFile) {
@@ -359,7 +363,8 @@ TEST_F(ServerTest, TheOfficesWayNeedsNoPlan) {
     ServerOptions options;
     options.seed = seed;
     options.single_step = true;
-    Server server(world_, parameters_, *world_.start, options);
+    Scene scene(world_);
+    Server server(scene, parameters_, *world_.start, options);
     for (int i = 0; i < 3; ++i)
       server.receive(protocol::encode_sync(i));
     server.receive(encode(protocol::Open{}));

@@ -29,7 +29,8 @@ World wall_at(double millimetres) {
 
 TEST(Sonars, RangeIsFromTheTransducer) {
   const World world = wall_at(2000);
-  Sonars sonars(world, one_sonar(0.13), exact(), 1);
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, one_sonar(0.13), exact(), 1);
   const auto echo = sonars.fire(0, {0.5, 1.0, 0.0});
   ASSERT_TRUE(echo.range);
   EXPECT_NEAR(*echo.range, 1.37, 1e-9);
@@ -37,7 +38,8 @@ TEST(Sonars, RangeIsFromTheTransducer) {
 
 TEST(Sonars, TheNearestInTheConeCounts) {
   const World world = wall_at(2000);
-  Sonars sonars(world, one_sonar(), exact(), 1);
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   // Turned by 10 degrees, the wall's foot is still within the half cone of 12.5: of nine rays the
   // nearest is less than 1.6 degrees beside it.
   const auto echo = sonars.fire(0, {0.0, 0.0, radians(10.0)});
@@ -50,7 +52,8 @@ TEST(Sonars, TheNearestInTheConeCounts) {
 
 TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
   const World world = wall_at(6000);
-  Sonars sonars(world, one_sonar(), exact(), 1);
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   EXPECT_FALSE(sonars.fire(0, {0.0, 0.0, 0.0}).range);
   EXPECT_TRUE(sonars.fire(0, {1.5, 0.0, 0.0}).range);
   EXPECT_FALSE(sonars.fire(0, {1.5, 0.0, kPi}).range);
@@ -58,7 +61,8 @@ TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
 
 TEST(Sonars, GlancingSurfacesAreLostAtTimes) {
   const World world = wall_at(1000);
-  Sonars sonars(world, one_sonar(), exact(), 1);
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   int glancing = 0;
   int steep = 0;
   constexpr int kFirings = 2000;
@@ -75,7 +79,8 @@ TEST(Sonars, NoiseAndDropouts) {
   const World world = wall_at(2000);
   SonarModel model;
   model.dropout = 0.1;
-  Sonars sonars(world, one_sonar(), model, 1);
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, one_sonar(), model, 1);
   constexpr int kFirings = 20000;
   int heard = 0;
   double sum = 0.0;
@@ -98,7 +103,8 @@ TEST(Sonars, FireByThePollingSequenceEvery40Milliseconds) {
   RobotParameters parameters;
   for (std::uint8_t i = 0; i < 7; ++i)
     parameters.sonars.push_back({i, {}});
-  Sonars sonars(world, parameters, exact(), 1);
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, parameters, exact(), 1);
   const auto fired = [&](int ticks) {
     std::vector<int> numbers;
     for (int i = 0; i < ticks; ++i)

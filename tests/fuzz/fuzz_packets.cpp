@@ -46,7 +46,8 @@ void serve(protocol::ByteView bytes) {
       sim::parse_world("width 4000 height 4000 0 0 4000 0 4000 0 4000 4000", "fuzz.wld");
   protocol::RobotParameters parameters;
   parameters.sonars.resize(1);
-  sim::Server server(world, parameters, {2.0, 2.0, 0.0}, {});
+  sim::Scene scene(world);
+  sim::Server server(scene, parameters, {2.0, 2.0, 0.0}, {});
   for (int i = 0; i < 3; ++i)
     server.receive(protocol::encode_sync(i));
   server.receive(protocol::encode(protocol::Open{}));

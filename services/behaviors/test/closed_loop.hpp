@@ -11,6 +11,7 @@
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/robot.hpp"
+#include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
 #include "saphira/sim/world.hpp"
 
@@ -70,8 +71,9 @@ inline std::vector<Intended> go_to(const Vec2& goal_in_odom, double speed = 0.3,
 
 inline DriveResult drive(const sim::World& world, const protocol::RobotParameters& parameters,
                          const Pose& start_in_world, const Drive& what, const Watch& watch = {}) {
-  sim::Robot robot(world, parameters, start_in_world, what.seed);
-  sim::Sonars sonars(world, parameters, what.sonar, what.seed);
+  sim::Scene scene(world);
+  sim::Robot& robot = scene.add_robot(parameters, start_in_world, what.seed);
+  sim::Sonars sonars(scene, robot.number(), parameters, what.sonar, what.seed);
   Executive executive(predefined(), model_of(parameters));
   DriveResult run;
   std::vector<lps::SonarReading> readings;

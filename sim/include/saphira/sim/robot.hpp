@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -9,11 +10,13 @@
 
 namespace saphira::sim {
 
+class Scene;
+
 /// The time step of the dynamics. Live and single-step both move in these, so their physics is the
 /// same.
 inline constexpr double kTick = 0.010;  // [s]
 
-/// A differential drive in a world: a disc that is stopped by walls.
+/// A differential drive in a scene: a disc that is stopped by walls and by other robots.
 ///
 /// Translation accelerates at a constant rate to the velocity that was set; a heading is reached by
 /// a trapezoidal velocity function that is computed anew in every tick, so a new heading in the
@@ -31,10 +34,10 @@ inline constexpr double kTick = 0.010;  // [s]
 /// or the other.
 class Robot {
  public:
-  /// The world outlives the robot. start_in_world is the true pose at power-up; dead reckoning
-  /// begins at (0, 0, 0).
-  Robot(const World& world, const protocol::RobotParameters& parameters, const Pose& start_in_world,
-        std::uint64_t seed);
+  /// Made by Scene::add_robot. start_in_world is the true pose at power-up; dead reckoning begins
+  /// at (0, 0, 0).
+  Robot(Scene& scene, std::size_t number, const protocol::RobotParameters& parameters,
+        const Pose& start_in_world, std::uint64_t seed);
 
   // ---- Setpoints. The mode of control follows the command (manual 5.4.6, Table 5-8).
 
@@ -76,17 +79,24 @@ class Robot {
   /// How often the robot has run into something. Pushing on, or sliding along, is the same time.
   int contacts() const { return contacts_; }
 
-  /// From the robot's hull to the nearest segment [m]; infinite in an empty world.
+  /// From the robot's hull to the nearest thing [m]; infinite in an empty world.
   double clearance() const;
+
+  std::size_t number() const { return number_; }    ///< in its scene
+  double radius() const { return radius_; }         ///< [m]
+  double fastest() const { return max_velocity_; }  ///< [m/s] that its hull ever moves
 
  private:
   enum class Rotation { kVelocity, kHeading };
 
   double wanted_rotation_velocity() const;
   void move(double way, double turn);
-  double free_part(const Vec2& way, double& clearance_after);
+  const Things& around();
+  double free_part(const Things& things, const Vec2& way, double& clearance_after);
 
-  const World* world_;
+  Scene* scene_;
+  std::size_t number_;
+  Things around_;
   Neighbourhood near_;
   double radius_;
   double max_velocity_, max_rotation_velocity_;
@@ -111,7 +121,7 @@ class Robot {
   bool right_stalled_ = false;
   bool in_contact_ = false;
   int contacts_ = 0;
-  double free_way_ = 0.0;  // [m] the robot may go so far anywhere without touching
+  double free_way_ = 0.0;  // [m] robot and others together may go so far without touching
 };
 
 }  // namespace saphira::sim

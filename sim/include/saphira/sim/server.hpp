@@ -8,6 +8,7 @@
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/sim/robot.hpp"
+#include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
 #include "saphira/sim/trace.hpp"
 #include "saphira/sim/world.hpp"
@@ -25,6 +26,9 @@ struct ServerOptions {
   std::string name = "Simulator";  ///< Table 5-7
   bool trace = false;              ///< whether rows are kept for take_trace()
   SonarModel sonar;
+  /// Whether this server alone lets the scene's time pass, in advance() and by STEP. With several
+  /// servers on one scene a Simulation does that.
+  bool keeps_time = true;
 };
 
 /// What the client has sent, since the simulator started.
@@ -43,9 +47,10 @@ struct ServerCounters {
 /// In single step, time passes in receive(), 100 ms a STEP, and advance() does nothing.
 class Server {
  public:
-  /// The world outlives the server. std::invalid_argument where the robot would stand in a wall.
-  Server(const World& world, const protocol::RobotParameters& parameters,
-         const Pose& start_in_world, const ServerOptions& options);
+  /// Adds its robot to the scene, which outlives it. std::invalid_argument where the robot would
+  /// stand in a wall.
+  Server(Scene& scene, const protocol::RobotParameters& parameters, const Pose& start_in_world,
+         const ServerOptions& options);
 
   /// Bytes from the client.
   void receive(protocol::ByteView bytes);
@@ -57,6 +62,19 @@ class Server {
   /// The line has been silent longer than bytes of one packet are apart; see PacketParser::gap. In
   /// live mode advance() does this itself.
   void gap();
+
+  // ---- For who keeps the time of several servers: Scene::tick() between the first two.
+
+  void begin_tick();
+  void end_tick();
+  /// A tick of live time in which nothing has come; see gap().
+  void quiet_tick();
+  /// The client has said STEP and waits; what it has sent since waits with it.
+  bool step_asked() const { return step_asked_; }
+  /// The step has been made.
+  void end_step();
+  /// The connection has been closed in single step: the robot shall come to rest at once.
+  bool rest_asked() const { return rest_asked_ && runs(); }
 
   /// What goes to the client.
   protocol::Bytes take_output();
@@ -88,13 +106,15 @@ class Server {
   void open();
   void close();
   void tick();
+  void step();
   void finish_cycle();
   protocol::InformationPacket information() const;
   void send(const protocol::Bytes& packet);
 
   protocol::RobotParameters parameters_;
   ServerOptions options_;
-  Robot robot_;
+  Scene& scene_;
+  Robot& robot_;
   Sonars sonars_;
   protocol::PacketParser parser_;
   protocol::Bytes output_;
@@ -102,6 +122,8 @@ class Server {
 
   State state_ = State::kSync0;
   bool single_step_;
+  bool step_asked_ = false;
+  bool rest_asked_ = false;
   std::uint64_t cycle_ = 0;
   int phase_ = 0;         // ticks since the last packet
   int silent_ticks_ = 0;  // since the last good packet came

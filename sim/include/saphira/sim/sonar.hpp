@@ -6,6 +6,7 @@
 
 #include "saphira/base/random.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/scene.hpp"
 #include "saphira/sim/world.hpp"
 
 namespace saphira::sim {
@@ -36,8 +37,9 @@ class Sonars {
   /// Between two firings: 25 a second, as a Pioneer 1 does.
   static constexpr int kTicksBetween = 4;
 
-  Sonars(const World& world, const protocol::RobotParameters& parameters, const SonarModel& model,
-         std::uint64_t seed);
+  /// Of the robot `self`, which they do not see. The scene outlives them.
+  Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
+         const SonarModel& model, std::uint64_t seed);
 
   /// Which sonars fire, over and over; those that the robot does not have are left out.
   void set_polling(const std::vector<std::uint8_t>& sequence);
@@ -51,6 +53,8 @@ class Sonars {
   SonarEcho fire(std::uint8_t number, const Pose& robot_in_world);
 
  private:
+  const Scene* scene_;
+  RobotNumber self_;
   std::vector<protocol::SonarUnit> units_;
   SonarModel model_;
   Neighbourhood near_;
@@ -58,7 +62,8 @@ class Sonars {
   std::vector<std::uint8_t> sequence_;
   std::size_t next_ = 0;
   int wait_ = kTicksBetween;
-  std::vector<Segment> in_beam_;
+  double reach_;  // [m] from the robot's middle
+  Things in_beam_;
 };
 
 }  // namespace saphira::sim

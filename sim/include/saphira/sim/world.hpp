@@ -15,6 +15,18 @@ struct Segment {
   Vec2 to{0.0, 0.0};
 };
 
+/// A round thing, as high as the sonars look: a robot, a person.
+struct Disc {
+  Vec2 centre{0.0, 0.0};  ///< [m] in the world
+  double radius = 0.0;    ///< [m]
+};
+
+/// What stands somewhere.
+struct Things {
+  std::vector<Segment> segments;
+  std::vector<Disc> discs;
+};
+
 /// What a ray meets.
 struct Hit {
   double range = 0.0;      ///< [m]
@@ -48,9 +60,20 @@ std::optional<Vec2> nearest_point(const std::vector<Segment>& segments, const Ve
 /// The distance to the nearest of the segments; infinite where there are none.
 double distance(const std::vector<Segment>& segments, const Vec2& point);
 
+/// The nearest point on any of the things; nothing where there are none. Of a disc that the point
+/// is in, the way out.
+std::optional<Vec2> nearest_point(const Things& things, const Vec2& point);
+
+/// The distance to the nearest of the things, negative in a disc; infinite where there are none.
+double distance(const Things& things, const Vec2& point);
+
 /// The first segment that a ray meets within `range`. `direction` is a unit vector.
 std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
                             const Vec2& direction, double range);
+
+/// The first thing that a ray meets within `range`. A ray from within a disc does not meet it.
+std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
+                            double range);
 
 /// The segments of a world that are near a moving point: the same answers as from all of them, at
 /// the cost of those that matter.
