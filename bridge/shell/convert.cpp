@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace saphira::bridge {
 
@@ -230,48 +231,101 @@ authority::Command to_command(const v1::MotorCommand& command, authority::Role r
   return out;
 }
 
-std::optional<protocol::Command> to_device(const v1::DeviceCommand& command, std::string& why) {
-  const auto within = [&](long low, long high) {
-    if (command.value() >= low && command.value() <= high)
-      return true;
-    why = "value " + std::to_string(command.value()) + " is not within " + std::to_string(low) +
-          ".." + std::to_string(high);
-    return false;
-  };
-  const long value = command.value();
-  switch (command.kind()) {
-    case v1::DEVICE_DIGITAL_OUTPUT:
-      if (within(0, 255))
-        return protocol::DigitalOutput{static_cast<std::uint8_t>(value)};
-      return std::nullopt;
-    case v1::DEVICE_TIMER:
-      if (within(0, 7))
-        return protocol::Timer{static_cast<std::uint8_t>(value)};
-      return std::nullopt;
-    case v1::DEVICE_GRIPPER:
-      if (within(0, 255))
-        return protocol::Gripper{static_cast<std::uint16_t>(value)};
-      return std::nullopt;
-    case v1::DEVICE_PTU:
-      if (within(0, 0xFFFF))
-        return protocol::Ptu{static_cast<std::uint16_t>(value)};
-      return std::nullopt;
-    case v1::DEVICE_POLLING: {
-      protocol::Polling polling;
-      for (const std::uint8_t sonar : command.polling()) {
-        if (sonar >= 255) {
-          why = "sonar 255 cannot be polled";
-          return std::nullopt;
-        }
-        polling.sonars.push_back(sonar);
-      }
-      return polling;
-    }
-    case v1::DEVICE_SET_ORIGIN:
-      return protocol::SetOrigin{};
+reflector::Wish to_wish(const v1::ServoCommand& command) {
+  return reflector::ServoWish{command.servo(), command.width()};
+}
+
+reflector::Wish to_wish(const v1::GripperCommand& command) {
+  if (command.action() > v1::GRIPPER_NUMBER)
+    throw std::invalid_argument("unknown gripper action");
+  return reflector::GripperWish{static_cast<reflector::GripperAction>(command.action()),
+                                command.value()};
+}
+
+reflector::Wish to_wish(const v1::DigitalOutputCommand& command) {
+  return reflector::OutputWish{command.mask(), command.bits()};
+}
+
+reflector::Wish to_wish(const v1::AnalogCommand& command) {
+  return reflector::AnalogWish{command.port()};
+}
+
+reflector::Wish to_wish(const v1::TimerCommand& command) {
+  return reflector::TimerWish{command.pin()};
+}
+
+reflector::Wish to_wish(const v1::SonarCommand& command) {
+  if (command.polling().size() > 12)
+    throw std::invalid_argument("expected at most 12 sonars in the polling sequence");
+  return reflector::SonarWish{command.on(), command.polling()};
+}
+
+reflector::Wish to_wish(const v1::SoundCommand& command) {
+  reflector::SoundWish out;
+  out.stored = command.stored();
+  if (command.tones().size() > 20)
+    throw std::invalid_argument("expected at most 20 tones");
+  for (const v1::Tone& tone : command.tones()) {
+    const double steps = std::round(tone.duration() / 0.02);
+    if (!(steps >= 1.0 && steps <= 255.0))
+      throw std::invalid_argument("expected a tone of 0.02 to 5.1 s");
+    out.tones.push_back({static_cast<std::uint8_t>(steps), tone.pitch()});
   }
-  why = "unknown kind of device";
-  return std::nullopt;
+  return out;
+}
+
+reflector::Wish to_wish(const v1::ServerCommand& command) {
+  if (command.action() > v1::SERVER_REPORT_GRIPPER)
+    throw std::invalid_argument("unknown server action");
+  const auto action = static_cast<reflector::ServerAction>(command.action());
+  long high = 0;
+  switch (action) {
+    case reflector::ServerAction::set_origin:
+    case reflector::ServerAction::configuration:
+      return reflector::ServerWish{action, 0};
+    case reflector::ServerAction::motors:
+      high = 1;
+      break;
+    case reflector::ServerAction::bump_stall:
+      high = 3;
+      break;
+    case reflector::ServerAction::encoders:
+    case reflector::ServerAction::io:
+    case reflector::ServerAction::gripper:
+      high = 2;
+      break;
+  }
+  if (command.value() < 0 || command.value() > high)
+    throw std::invalid_argument("value " + std::to_string(command.value()) + " is not within 0.." +
+                                std::to_string(high));
+  return reflector::ServerWish{action, command.value()};
+}
+
+reflector::Wish to_wish(const v1::SerialCommand& command) {
+  if (command.port() < 1 || command.port() > 3)
+    throw std::invalid_argument("expected a serial port in 1..3");
+  if (command.data().size() > 180)
+    throw std::invalid_argument("expected at most 180 bytes");
+  return reflector::SerialWish{command.port(), command.data(), command.answer()};
+}
+
+v1::Devices to_bus(const std::vector<reflector::Request>& requests, const v1::Stamp& stamp) {
+  v1::Devices out;
+  out.stamp(stamp);
+  for (const reflector::Request& request : requests) {
+    if (out.requests().size() == 64)
+      break;
+    v1::DeviceRequest r;
+    r.device(static_cast<v1::Device>(request.device));
+    r.source(request.source);
+    r.request(request.number);
+    r.text(request.text);
+    r.state(static_cast<v1::RequestState>(request.state));
+    r.reason(request.reason);
+    r.sent(request.sent);
+    out.requests().push_back(r);
+  }
+  return out;
 }
 
 void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,

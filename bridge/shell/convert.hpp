@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "device.h"
 #include "motion.h"
 #include "robot.h"
 #include "saphira/authority/arbiter.hpp"
@@ -35,8 +36,18 @@ reflector::Motion to_motion(const v1::MotorCommand& command);
 authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
                               const authority::WriterId& writer, double received);
 
-/// The protocol's command; nothing, and why, where the value is out of range.
-std::optional<protocol::Command> to_device(const v1::DeviceCommand& command, std::string& why);
+/// What is asked of a device; std::invalid_argument says what was expected.
+reflector::Wish to_wish(const v1::ServoCommand& command);
+reflector::Wish to_wish(const v1::GripperCommand& command);
+reflector::Wish to_wish(const v1::DigitalOutputCommand& command);
+reflector::Wish to_wish(const v1::AnalogCommand& command);
+reflector::Wish to_wish(const v1::TimerCommand& command);
+reflector::Wish to_wish(const v1::SonarCommand& command);
+reflector::Wish to_wish(const v1::SoundCommand& command);
+reflector::Wish to_wish(const v1::ServerCommand& command);
+reflector::Wish to_wish(const v1::SerialCommand& command);
+
+v1::Devices to_bus(const std::vector<reflector::Request>& requests, const v1::Stamp& stamp);
 
 /// The readings of a packet for the guard: those with an echo, and the sonars that fired without.
 void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,

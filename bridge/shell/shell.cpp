@@ -84,7 +84,16 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       state_writer_(node_.writer(bus::topics::kRobotState)),
       description_writer_(node_.writer(bus::topics::kRobotDescription)),
       grant_writer_(node_.writer(bus::topics::kGrant)),
-      devices_(node_.reader(bus::topics::kDevice)),
+      devices_writer_(node_.writer(bus::topics::kDevices)),
+      servo_(node_.reader(bus::topics::kServo)),
+      gripper_(node_.reader(bus::topics::kGripper)),
+      output_(node_.reader(bus::topics::kDigitalOutput)),
+      analog_(node_.reader(bus::topics::kAnalog)),
+      timer_(node_.reader(bus::topics::kTimer)),
+      sonar_(node_.reader(bus::topics::kSonar)),
+      sound_(node_.reader(bus::topics::kSound)),
+      server_(node_.reader(bus::topics::kServer)),
+      serial_(node_.reader(bus::topics::kSerial)),
       permits_(node_.reader(bus::topics::kStepPermit)),
       link_(transport::parse_address(options_.robot_port)),
       arbiter_({options_.lease, options_.quiet, 3}) {
@@ -371,8 +380,7 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   std::vector<int> silent;
   to_guard(state, reflector_.parameters(), echoes, silent);
   echoes_.update(stamp_.cycle(), echoes, silent);
-  if (const auto trouble = reflector_.take_trouble())
-    node_.warn(*trouble);
+  publish_devices();
 
   if (lockstep_) {
     remember();
@@ -408,6 +416,8 @@ void Shell::lost(const std::string& why, double now) {
   guarded_ = {};
   if (epoch_ != 0)
     publish_grant();
+  reflector_.devices().connect();
+  publish_devices();
   epoch_ = 0;
   stamp_ = {};
   flush_at_ = 0.0;
@@ -494,23 +504,48 @@ bool Shell::take_drive(Drive& drive, double now) {
   return driver;
 }
 
-void Shell::take_devices() {
-  for (const auto& sample : devices_.take()) {
+template <class T>
+void Shell::take_device(bus::Reader<T>& reader, v1::Device device) {
+  for (const auto& sample : reader.take()) {
     if (sample.info.disposed)
       continue;
-    std::string why = "no robot is connected";
-    const auto command = epoch_ == 0 ? std::nullopt : to_device(sample.data, why);
     const std::string who = sample.data.source().substr(0, 255);
-    if (command) {
-      node_.info("device command of " + who);
-      reflector_.request(*command);
-    } else {
-      ++malformed_;
-      std::string text = "device command of ";
-      text.append(who).append(" refused: ").append(why);
-      node_.warn(text);
+    reflector::Devices& devices = reflector_.devices();
+    std::string why = "no robot is connected";
+    if (epoch_ != 0) {
+      try {
+        const reflector::Wish wish = to_wish(sample.data);
+        reflector_.request(who, sample.data.request(), wish);
+        node_.info(text(wish) + ", asked for by " + who);
+        continue;
+      } catch (const std::invalid_argument& error) {
+        why = error.what();
+      }
     }
+    ++malformed_;
+    devices.refuse(device, who, sample.data.request(), "", why);
   }
+}
+
+void Shell::take_devices() {
+  take_device(servo_, v1::DEVICE_SERVO);
+  take_device(gripper_, v1::DEVICE_GRIPPER);
+  take_device(output_, v1::DEVICE_DIGITAL_OUTPUT);
+  take_device(analog_, v1::DEVICE_ANALOG);
+  take_device(timer_, v1::DEVICE_TIMER);
+  take_device(sonar_, v1::DEVICE_SONAR);
+  take_device(sound_, v1::DEVICE_SOUND);
+  take_device(server_, v1::DEVICE_SERVER);
+  take_device(serial_, v1::DEVICE_SERIAL);
+  publish_devices();
+}
+
+void Shell::publish_devices() {
+  if (!reflector_.devices().take_changed())
+    return;
+  devices_writer_.write(to_bus(reflector_.devices().requests(), stamp_));
+  for (const std::string& trouble : reflector_.devices().take_troubles())
+    node_.warn(trouble);
 }
 
 // ---- Between the two.

@@ -62,6 +62,9 @@ class Shell {
   struct Drive;
   bool take_drive(Drive& drive, double now);
   void take_devices();
+  template <class T>
+  void take_device(bus::Reader<T>& reader, v1::Device device);
+  void publish_devices();
 
   // Between the two.
   void decide();
@@ -86,7 +89,16 @@ class Shell {
     bool follows_cycles = false;  ///< the same: answers each packet
   };
   std::vector<Drive> drives_;
-  bus::Reader<v1::DeviceCommand> devices_;
+  bus::Writer<v1::Devices> devices_writer_;
+  bus::Reader<v1::ServoCommand> servo_;
+  bus::Reader<v1::GripperCommand> gripper_;
+  bus::Reader<v1::DigitalOutputCommand> output_;
+  bus::Reader<v1::AnalogCommand> analog_;
+  bus::Reader<v1::TimerCommand> timer_;
+  bus::Reader<v1::SonarCommand> sonar_;
+  bus::Reader<v1::SoundCommand> sound_;
+  bus::Reader<v1::ServerCommand> server_;
+  bus::Reader<v1::SerialCommand> serial_;
   bus::Reader<v1::StepPermit> permits_;
 
   transport::Link link_;

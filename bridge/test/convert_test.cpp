@@ -121,31 +121,70 @@ TEST(Convert, MotorCommands) {
   EXPECT_NE(trouble(in), "");
 }
 
+template <class T>
+std::string refused(const T& command) {
+  try {
+    to_wish(command);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
 TEST(Convert, DeviceCommandsAreChecked) {
-  const auto make = [](v1::DeviceKind kind, int value) {
-    v1::DeviceCommand out;
-    out.kind(kind);
-    out.value(value);
-    return out;
-  };
-  std::string why;
-  EXPECT_EQ(to_device(make(v1::DEVICE_DIGITAL_OUTPUT, 255), why),
-            protocol::Command(protocol::DigitalOutput{255}));
-  EXPECT_EQ(to_device(make(v1::DEVICE_TIMER, 7), why), protocol::Command(protocol::Timer{7}));
-  EXPECT_EQ(to_device(make(v1::DEVICE_GRIPPER, 4), why), protocol::Command(protocol::Gripper{4}));
-  EXPECT_EQ(to_device(make(v1::DEVICE_PTU, 1500), why), protocol::Command(protocol::Ptu{1500}));
-  EXPECT_EQ(to_device(make(v1::DEVICE_SET_ORIGIN, 0), why),
-            protocol::Command(protocol::SetOrigin{}));
-  v1::DeviceCommand polling = make(v1::DEVICE_POLLING, 0);
-  polling.polling({0, 1, 0, 5});
-  EXPECT_EQ(to_device(polling, why), protocol::Command(protocol::Polling{{0, 1, 0, 5}}));
-  EXPECT_EQ(why, "");
-  EXPECT_FALSE(to_device(make(v1::DEVICE_TIMER, 8), why));
-  EXPECT_EQ(why, "value 8 is not within 0..7");
-  EXPECT_FALSE(to_device(make(v1::DEVICE_DIGITAL_OUTPUT, -1), why));
-  EXPECT_FALSE(to_device(make(v1::DEVICE_PTU, 70000), why));
-  EXPECT_FALSE(to_device(make(static_cast<v1::DeviceKind>(50), 0), why));
-  EXPECT_EQ(why, "unknown kind of device");
+  v1::GripperCommand gripper;
+  for (int i = 0; i <= static_cast<int>(v1::GRIPPER_NUMBER); ++i) {
+    gripper.action(static_cast<v1::GripperAction>(i));
+    EXPECT_EQ(static_cast<int>(std::get<reflector::GripperWish>(to_wish(gripper)).action), i);
+  }
+  gripper.action(static_cast<v1::GripperAction>(99));
+  EXPECT_EQ(refused(gripper), "unknown gripper action");
+
+  v1::SonarCommand sonar;
+  sonar.on(true);
+  sonar.polling({0, 1, 0, 5});
+  EXPECT_EQ(std::get<reflector::SonarWish>(to_wish(sonar)).polling,
+            (std::vector<std::uint8_t>{0, 1, 0, 5}));
+  sonar.polling(std::vector<std::uint8_t>(13));
+  EXPECT_NE(refused(sonar), "");
+
+  v1::SoundCommand sound;
+  sound.tones(std::vector<v1::Tone>(1));
+  sound.tones()[0].duration(0.5);
+  sound.tones()[0].pitch(60);
+  EXPECT_EQ(std::get<reflector::SoundWish>(to_wish(sound)).tones.at(0).duration, 25);
+  for (const double wrong : {0.0, -1.0, 6.0, std::numeric_limits<double>::quiet_NaN()}) {
+    sound.tones()[0].duration(wrong);
+    EXPECT_NE(refused(sound), "") << wrong;
+  }
+
+  v1::ServerCommand server;
+  server.action(v1::SERVER_MOTORS);
+  server.value(1);
+  EXPECT_EQ(std::get<reflector::ServerWish>(to_wish(server)).action,
+            reflector::ServerAction::motors);
+  server.value(2);
+  EXPECT_EQ(refused(server), "value 2 is not within 0..1");
+  server.action(v1::SERVER_REPORT_IO);
+  EXPECT_EQ(refused(server), "");
+  server.action(static_cast<v1::ServerAction>(99));
+  EXPECT_EQ(refused(server), "unknown server action");
+
+  v1::SerialCommand serial;
+  EXPECT_NE(refused(serial), "") << "port 0";
+  serial.port(3);
+  EXPECT_EQ(refused(serial), "");
+}
+
+TEST(Convert, RequestsOfDevices) {
+  const v1::Devices out = to_bus(
+      {{7, "me", 5, "motors 1", reflector::RequestState::given_up, "because", 25}}, stamp(1, 2));
+  ASSERT_EQ(out.requests().size(), 1U);
+  EXPECT_EQ(out.requests()[0].device(), v1::DEVICE_SERVER);
+  EXPECT_EQ(out.requests()[0].state(), v1::REQUEST_GIVEN_UP);
+  EXPECT_EQ(out.requests()[0].request(), 5U);
+  EXPECT_EQ(out.requests()[0].sent(), 25U);
+  EXPECT_EQ(out.requests()[0].reason(), "because");
 }
 
 TEST(Convert, GrantAndGuard) {

@@ -100,40 +100,6 @@ TEST(Reflector, ALostOdomFrameStopsTheMotionThatWasMeantInIt) {
   EXPECT_EQ(r.motion().setpoints(), Setpoints{});
 }
 
-TEST(Reflector, DevicesAreSentUntilShown) {
-  Reflector r = open_reflector();
-  r.due(0.0);
-  r.request(protocol::DigitalOutput{5});
-  r.request(protocol::DigitalOutput{6});
-  r.request(protocol::Timer{2});
-  InformationPacket packet;
-  int output = 0;
-  int timer = 0;
-  for (int cycle = 1; cycle <= 20; ++cycle) {
-    if (cycle == 10)
-      packet.digital_output = 6;
-    r.packet(packet, 0.1 * cycle, 2);
-    for (const protocol::Command& command : r.due(0.1 * cycle)) {
-      if (command == protocol::Command(protocol::DigitalOutput{6}))
-        ++output;
-      EXPECT_NE(command, protocol::Command(protocol::DigitalOutput{5})) << "was replaced";
-      if (std::holds_alternative<protocol::Timer>(command))
-        ++timer;
-    }
-  }
-  EXPECT_EQ(output, 5);
-  EXPECT_EQ(timer, 1);
-  EXPECT_FALSE(r.take_trouble());
-  r.request(protocol::Ptu{1500});
-  for (int cycle = 21; cycle <= 100; ++cycle) {
-    r.packet(packet, 0.1 * cycle, 2);
-    r.due(0.1 * cycle);
-  }
-  const auto trouble = r.take_trouble();
-  ASSERT_TRUE(trouble);
-  EXPECT_NE(trouble->find("position servo"), std::string::npos);
-}
-
 TEST(Reflector, TheWatchdogHearsSomethingAtLeastTwiceASecond) {
   Reflector r = open_reflector();
   double last = 0.0;

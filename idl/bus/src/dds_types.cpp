@@ -3,6 +3,7 @@
 #include <mutex>
 
 #include "behaviorPubSubTypes.h"
+#include "devicePubSubTypes.h"
 #include "intentionPubSubTypes.h"
 #include "motionPubSubTypes.h"
 #include "robotPubSubTypes.h"
@@ -41,10 +42,14 @@ std::vector<eprosima::fastdds::dds::TypeSupport> make() {
 }  // namespace
 
 std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
-  return make<v1::RobotStatePubSubType, v1::RobotDescriptionPubSubType, v1::DeviceCommandPubSubType,
-              v1::MotorCommandPubSubType, v1::GrantPubSubType, v1::StepPermitPubSubType,
-              v1::BehaviorsPubSubType, v1::IntentionsPubSubType, v1::GoalPubSubType,
-              v1::GoalStatusPubSubType, v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
+  return make<v1::RobotStatePubSubType, v1::RobotDescriptionPubSubType, v1::DevicesPubSubType,
+              v1::SerialDataPubSubType, v1::ServoCommandPubSubType, v1::GripperCommandPubSubType,
+              v1::DigitalOutputCommandPubSubType, v1::AnalogCommandPubSubType,
+              v1::TimerCommandPubSubType, v1::SonarCommandPubSubType, v1::SoundCommandPubSubType,
+              v1::ServerCommandPubSubType, v1::SerialCommandPubSubType, v1::MotorCommandPubSubType,
+              v1::GrantPubSubType, v1::StepPermitPubSubType, v1::BehaviorsPubSubType,
+              v1::IntentionsPubSubType, v1::GoalPubSubType, v1::GoalStatusPubSubType,
+              v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
 }
 
 }  // namespace saphira::bus::internal

@@ -162,19 +162,19 @@ TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
 
 TEST_P(Bus, CommandsAreNotForLateReaders) {
   auto a = node("a");
-  auto writer = a->writer(topics::kDevice);
-  v1::DeviceCommand command;
-  command.value(1);
+  auto writer = a->writer(topics::kTimer);
+  v1::TimerCommand command;
+  command.pin(1);
   writer.write(command);
   auto b = node("b");
-  auto reader = b->reader(topics::kDevice);
+  auto reader = b->reader(topics::kTimer);
   ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
   ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
-  command.value(2);
+  command.pin(2);
   writer.write(command);
   const auto samples = take_at_least(*b, reader, 1);
   ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.value(), 2);
+  EXPECT_EQ(samples[0].data.pin(), 2);
 }
 
 TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {

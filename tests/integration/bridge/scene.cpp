@@ -28,7 +28,8 @@ Scene::Scene(bool lockstep)
       states_(node.reader(bus::topics::kRobotState)),
       descriptions_(node.reader(bus::topics::kRobotDescription)),
       grants_(node.reader(bus::topics::kGrant)),
-      statuses_(node.reader(bus::topics::kStatus)) {
+      statuses_(node.reader(bus::topics::kStatus)),
+      devices_(node.reader(bus::topics::kDevices)) {
   robot_port = folder.path("robot");
   use(bus::topics::kDriveDirect);
   command.source("test");
@@ -90,6 +91,8 @@ void Scene::take() {
     grant = sample.data;
     grants.push_back(grant);
   }
+  if (const auto newest = devices_.take_newest())
+    devices = *newest;
   for (const auto& sample : statuses_.take()) {
     if (!sample.info.disposed && sample.data.name() == "bridge")
       status = sample.data;

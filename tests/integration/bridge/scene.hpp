@@ -43,6 +43,7 @@ class Scene {
   v1::Grant grant;
   std::optional<v1::RobotDescription> description;
   v1::ServiceStatus status;  ///< the bridge's
+  v1::Devices devices;
   std::vector<v1::Grant> grants;
   std::vector<v1::RobotState> states;
 
@@ -69,6 +70,7 @@ class Scene {
   bus::Reader<v1::RobotDescription> descriptions_;
   bus::Reader<v1::Grant> grants_;
   bus::Reader<v1::ServiceStatus> statuses_;
+  bus::Reader<v1::Devices> devices_;
   std::optional<bus::Writer<v1::MotorCommand>> driver_;
   std::chrono::steady_clock::time_point published_;
 };

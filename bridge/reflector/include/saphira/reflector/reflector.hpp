@@ -57,13 +57,16 @@ class Reflector {
 
   /// The setpoints that the server is to hold, after whatever the guard made of motion().
   void hold(const Setpoints& setpoints);
-  void request(const protocol::Command& device) { devices_.request(device); }
+  /// The devices: what is asked of them, and what became of it.
+  void request(const std::string& source, std::uint64_t number, const Wish& wish) {
+    devices_.request(source, number, wish, parameters_);
+  }
+  Devices& devices() { return devices_; }
 
   /// What is to be sent now. Includes a PULSE where nothing else was said for half a second.
   std::vector<protocol::Command> due(double now);
   bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }
   double sent_velocity() const { return channels_.sent_velocity(); }
-  std::optional<std::string> take_trouble() { return devices_.take_trouble(); }
 
  private:
   protocol::RobotParameters parameters_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "behavior.h"
+#include "device.h"
 #include "intention.h"
 #include "motion.h"
 #include "robot.h"
@@ -21,7 +22,17 @@ namespace topics {
 
 inline constexpr Topic<v1::RobotState> kRobotState{"robot/state", Qos::cyclic};
 inline constexpr Topic<v1::RobotDescription> kRobotDescription{"robot/description", Qos::latched};
-inline constexpr Topic<v1::DeviceCommand> kDevice{"robot/device", Qos::command};
+inline constexpr Topic<v1::Devices> kDevices{"robot/devices", Qos::latched};
+inline constexpr Topic<v1::SerialData> kSerialData{"robot/serial", Qos::event};
+inline constexpr Topic<v1::ServoCommand> kServo{"device/servo", Qos::command};
+inline constexpr Topic<v1::GripperCommand> kGripper{"device/gripper", Qos::command};
+inline constexpr Topic<v1::DigitalOutputCommand> kDigitalOutput{"device/output", Qos::command};
+inline constexpr Topic<v1::AnalogCommand> kAnalog{"device/analog", Qos::command};
+inline constexpr Topic<v1::TimerCommand> kTimer{"device/timer", Qos::command};
+inline constexpr Topic<v1::SonarCommand> kSonar{"device/sonar", Qos::command};
+inline constexpr Topic<v1::SoundCommand> kSound{"device/sound", Qos::command};
+inline constexpr Topic<v1::ServerCommand> kServer{"device/server", Qos::command};
+inline constexpr Topic<v1::SerialCommand> kSerial{"device/serial", Qos::command};
 inline constexpr Topic<v1::MotorCommand> kDriveEstop{"drive/estop", Qos::motion};
 inline constexpr Topic<v1::MotorCommand> kDriveTeleop{"drive/teleop", Qos::motion};
 inline constexpr Topic<v1::MotorCommand> kDriveDirect{"drive/direct", Qos::motion};
@@ -43,7 +54,17 @@ void for_each_topic(F&& f) {
   using namespace topics;
   f(kRobotState);
   f(kRobotDescription);
-  f(kDevice);
+  f(kDevices);
+  f(kSerialData);
+  f(kServo);
+  f(kGripper);
+  f(kDigitalOutput);
+  f(kAnalog);
+  f(kTimer);
+  f(kSonar);
+  f(kSound);
+  f(kServer);
+  f(kSerial);
   f(kDriveEstop);
   f(kDriveTeleop);
   f(kDriveDirect);

@@ -1,0 +1,127 @@
+#include "saphira/reflector/devices.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::reflector {
+namespace {
+
+using protocol::Command;
+using protocol::InformationPacket;
+
+/// A robot that is asked things, cycle by cycle.
+struct Bench {
+  explicit Bench(protocol::RobotParameters p = {}) : parameters(std::move(p)) { devices.connect(); }
+  void ask(const Wish& wish) { devices.request("test", ++number, wish, parameters); }
+  /// One cycle; how often this command was sent in it.
+  int cycle(const Command& command) {
+    devices.reflect(packet, origin);
+    now += 0.1;
+    int count = 0;
+    for (const Command& each : devices.due(now))
+      count += each == command;
+    return count;
+  }
+  int cycles(int n, const Command& command) {
+    int count = 0;
+    for (int i = 0; i < n; ++i)
+      count += cycle(command);
+    return count;
+  }
+  Request only() const {
+    EXPECT_EQ(devices.requests().size(), 1U);
+    return devices.requests().at(0);
+  }
+
+  protocol::RobotParameters parameters;
+  Devices devices;
+  InformationPacket packet;
+  bool origin = false;
+  double now = 0.0;
+  std::uint64_t number = 0;
+};
+
+TEST(Devices, AreSentUntilShown) {
+  Bench b;
+  b.ask(OutputWish{0xFF, 5});
+  b.ask(OutputWish{0xFF, 6});
+  EXPECT_EQ(b.cycle(protocol::DigitalOutput{5}), 0) << "a newer one took its place";
+  EXPECT_EQ(b.only().state, RequestState::sending);
+  EXPECT_EQ(b.cycles(10, protocol::DigitalOutput{6}), 5) << "every 0.2 s";
+  b.packet.digital_output = 6;
+  EXPECT_EQ(b.cycles(10, protocol::DigitalOutput{6}), 0);
+  EXPECT_EQ(b.only().state, RequestState::shown);
+  EXPECT_EQ(b.only().number, 2U);
+  EXPECT_EQ(b.only().text, "output 0x06");
+  EXPECT_TRUE(b.devices.take_changed());
+  EXPECT_FALSE(b.devices.take_changed());
+  EXPECT_TRUE(b.devices.take_troubles().empty());
+}
+
+TEST(Devices, AMaskLeavesTheOtherBits) {
+  Bench b;
+  b.packet.digital_output = 0xA5;
+  b.cycle(Command{});
+  b.ask(OutputWish{0x0F, 0xFA});
+  EXPECT_EQ(b.cycle(protocol::DigitalOutput{0xAA}), 1);
+  b.packet.digital_output = 0x0A;
+  b.cycle(Command{});
+  EXPECT_EQ(b.only().state, RequestState::shown) << "the other bits are not what was asked for";
+}
+
+TEST(Devices, AreGivenUpAfterFiveSeconds) {
+  Bench b;
+  b.ask(ServoWish{0, 1500});
+  EXPECT_EQ(b.cycles(80, protocol::Ptu{1500}), 25);
+  EXPECT_EQ(b.only().state, RequestState::given_up);
+  EXPECT_EQ(b.devices.take_troubles(),
+            std::vector<std::string>{"servo 1500 us of test: the robot does not show it"});
+  EXPECT_TRUE(b.devices.take_troubles().empty());
+}
+
+TEST(Devices, WhatNoPacketShowsIsSentThriceOrOnce) {
+  Bench b;
+  b.ask(TimerWish{2});
+  EXPECT_EQ(b.cycles(20, protocol::Timer{2}), 1) << "a second one would begin it again";
+  EXPECT_EQ(b.only().state, RequestState::sent);
+  b.ask(GripperWish{GripperAction::close, 0});
+  EXPECT_EQ(b.cycles(20, protocol::Gripper{2}), 3);
+  b.ask(GripperWish{GripperAction::number, 5});
+  EXPECT_EQ(b.cycles(20, protocol::Gripper{5}), 3);
+}
+
+TEST(Devices, TheOriginIsShownByThePosition) {
+  Bench b;
+  b.ask(ServerWish{ServerAction::set_origin, 0});
+  EXPECT_EQ(b.cycles(4, protocol::SetOrigin{}), 2);
+  b.origin = true;
+  b.cycle(Command{});
+  EXPECT_EQ(b.only().state, RequestState::shown);
+}
+
+TEST(Devices, PollingNamesSonarsThatThereAre) {
+  protocol::RobotParameters parameters;
+  parameters.sonars = {{0, {}}, {1, {}}, {2, {}}};
+  Bench b(parameters);
+  b.ask(SonarWish{true, {2, 0, 2}});
+  EXPECT_EQ(b.cycles(20, protocol::Polling{{2, 0, 2}}), 3);
+  b.ask(SonarWish{true, {}});
+  EXPECT_EQ(b.cycles(20, protocol::Polling{{0, 1, 2}}), 3);
+  b.ask(SonarWish{false, {}});
+  EXPECT_EQ(b.cycles(20, protocol::Polling{}), 3);
+  b.ask(SonarWish{true, {3}});
+  EXPECT_EQ(b.only().state, RequestState::refused);
+  EXPECT_EQ(b.only().reason, "the robot has no sonar 3");
+  EXPECT_TRUE(b.devices.due(1000.0).empty());
+}
+
+TEST(Devices, ALostConnectionEndsWhatWasUnderWay) {
+  Bench b;
+  b.ask(ServoWish{0, 1500});
+  b.cycle(Command{});
+  b.devices.connect();
+  EXPECT_EQ(b.only().state, RequestState::lost);
+  EXPECT_EQ(b.cycles(50, protocol::Ptu{1500}), 0) << "the robot was perhaps switched off";
+}
+
+}  // namespace
+}  // namespace saphira::reflector
