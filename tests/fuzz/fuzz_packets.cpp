@@ -8,6 +8,7 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/packet.hpp"
+#include "saphira/protocol/server_packet.hpp"
 #include "saphira/sim/server.hpp"
 
 namespace {
@@ -28,7 +29,14 @@ void decode_everything(const protocol::Bytes& body) {
       protocol::decode_command(protocol::ByteView(again).subspan(3, again.size() - 5)).index() ==
           command.index());
   protocol::decode_sync2_reply(body);
-  if (const auto packet = protocol::decode_information(body)) {
+  protocol::PacketCounters().count(body);
+  std::visit(
+      [](const auto& packet) {
+        const protocol::Bytes bytes = protocol::encode(packet);
+        protocol::decode_packet(protocol::ByteView(bytes).subspan(3, bytes.size() - 5));
+      },
+      protocol::decode_packet(body));
+  if (auto packet = protocol::decode_information(body)) {
     const protocol::RobotParameters parameters;
     protocol::interpret(*packet, parameters);
     protocol::DeadReckoning().update(*packet, parameters);
@@ -36,6 +44,7 @@ void decode_everything(const protocol::Bytes& body) {
     const auto back =
         protocol::decode_information(protocol::ByteView(copy).subspan(3, copy.size() - 5));
     require(back.has_value());
+    packet->unknown_bytes = 0;  // not written
     if (packet->sonars.size() <= protocol::kMaxSonarsInPacket)
       require(*back == *packet);
   }

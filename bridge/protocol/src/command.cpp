@@ -1,10 +1,13 @@
 #include "saphira/protocol/command.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "saphira/geometry/pose.hpp"
+#include "saphira/protocol/parameters.hpp"
 
 namespace saphira::protocol {
 
@@ -61,7 +64,9 @@ struct Argument {
   Bytes text;
 };
 
-Argument read_argument(ByteView body) {
+// A counted string may end in a NUL of its own, and one that ends with NUL may begin with its own
+// count; which is meant depends on what the command's clients do.
+Argument read_argument(ByteView body, bool counted) {
   if (body.size() <= 2)
     return {};
   const ByteView data = body.subspan(2);
@@ -78,6 +83,8 @@ Argument read_argument(ByteView body) {
       return {Argument::Kind::kInt, size > 0x7FFF ? size - 0x10000 : -size, {}};
     }
     case kArgString: {
+      if (counted && data[0] == data.size() - 1)
+        return {Argument::Kind::kString, 0, Bytes(data.begin() + 1, data.end())};
       // A string of the manual ends with NUL and has none inside; so a final NUL decides.
       if (data.back() == 0) {
         const auto end = std::find(data.begin(), data.end(), 0);
@@ -90,6 +97,101 @@ Argument read_argument(ByteView body) {
     default:
       return {Argument::Kind::kBroken, 0, {}};
   }
+}
+
+void put32(Bytes& out, int value) {
+  for (unsigned shift = 0; shift < 32; shift += 8)
+    out.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(value) >> shift & 0xFFU));
+}
+
+// MobileSim: three 32-bit integers behind a type byte that says nothing.
+Bytes with_pose(Number number, const Pose& pose) {
+  Bytes body{static_cast<std::uint8_t>(number), kArgInt};
+  put32(body, rounded(pose.x * 1000.0, -2'000'000'000, 2'000'000'000));
+  put32(body, rounded(pose.y * 1000.0, -2'000'000'000, 2'000'000'000));
+  put32(body, std::isfinite(pose.th) ? rounded(degrees(norm2_angle(pose.th)), -180, 180) : 0);
+  return frame(body);
+}
+
+std::optional<Pose> read_pose(ByteView body) {
+  if (body.size() < 14)
+    return std::nullopt;
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      word |= static_cast<std::uint32_t>(body[2 + 4 * i + k]) << 8U * k;
+    values[i] = static_cast<std::int32_t>(word);
+  }
+  return Pose{values[0] / 1000.0, values[1] / 1000.0, norm2_angle(radians(values[2]))};
+}
+
+// ---- The commands whose argument is all that there is to say of them.
+
+template <class T>
+inline constexpr bool kIsInt = false;
+template <Number N>
+inline constexpr bool kIsInt<IntCommand<N>> = true;
+template <class T>
+inline constexpr bool kIsText = false;
+template <Number N>
+inline constexpr bool kIsText<TextCommand<N>> = true;
+
+template <Number N>
+Bytes encode_plain(const BareCommand<N>&) {
+  return bare(N);
+}
+template <Number N>
+Bytes encode_plain(const IntCommand<N>& c) {
+  return with_int(N, std::clamp(c.value, -32767, 65535));
+}
+template <Number N>
+Bytes encode_plain(const TextCommand<N>& c) {
+  const std::size_t size = std::min(c.text.size(), kMaxBody - 3);
+  return with_string(N, Bytes(c.text.begin(), c.text.begin() + static_cast<std::ptrdiff_t>(size)),
+                     StringForm::kLengthPrefixed);
+}
+template <Number N>
+Bytes encode_plain(const RawCommand<N>& c) {
+  Bytes body{static_cast<std::uint8_t>(N)};
+  const std::size_t size = std::min(c.argument.size(), kMaxBody - 1);
+  body.insert(body.end(), c.argument.begin(),
+              c.argument.begin() + static_cast<std::ptrdiff_t>(size));
+  return frame(body);
+}
+
+// Fills `out` where T is a plain command of that number and its argument can be read.
+template <class T>
+bool decode_plain(ByteView body, Command& out) {
+  if constexpr (requires { T::kNumber; }) {
+    if (body[0] != static_cast<std::uint8_t>(T::kNumber))
+      return false;
+    if constexpr (kIsInt<T>) {
+      const Argument argument = read_argument(body, false);
+      if (argument.kind != Argument::Kind::kInt && argument.kind != Argument::Kind::kNone)
+        return false;
+      out = T{argument.value};
+    } else if constexpr (kIsText<T>) {
+      const Argument argument = read_argument(body, true);
+      if (argument.kind != Argument::Kind::kString && argument.kind != Argument::Kind::kNone)
+        return false;
+      out = T{argument.text};
+    } else if constexpr (requires { T::argument; }) {
+      out = T{Bytes(body.begin() + 1, body.end())};
+    } else {
+      out = T{};
+    }
+    return true;
+  } else {
+    return false;
+  }
+}
+
+template <std::size_t... I>
+Command decode_any_plain(ByteView body, std::index_sequence<I...>) {
+  Command out = Unknown{body[0]};
+  (decode_plain<std::variant_alternative_t<I, Command>>(body, out) || ...);
+  return out;
 }
 
 }  // namespace
@@ -132,11 +234,44 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
                              static_cast<std::uint8_t>(left & 0xFF)};
             return frame(body);
           },
-          [](const DigitalOutput& c) { return with_int(Number::kDigitalOutput, c.bits); },
+          [](const DigitalOutput& c) {
+            return with_int(Number::kDigitalOutput, c.bits | c.mask << 8);
+          },
           [](const Timer& c) { return with_int(Number::kTimer, c.pin); },
           [](const Gripper& c) { return with_int(Number::kGripper, c.state); },
           [](const Ptu& c) { return with_int(Number::kPtu, c.width); },
           [](const Step&) { return bare(Number::kStep); },
+          [](const Enable& c) { return with_int(Number::kEnable, c.on ? 1 : 0); },
+          [](const Acceleration& c) {
+            return with_int(Number::kAcceleration, rounded(c.acceleration * 1000.0, -32767, 32767));
+          },
+          [](const MaxVelocity& c) {
+            return with_int(Number::kMaxVelocity, rounded(c.velocity * 1000.0, 0, 32767));
+          },
+          [](const Move& c) {
+            return with_int(Number::kMove, rounded(c.distance * 1000.0, -32767, 32767));
+          },
+          [](const Rotate& c) {
+            return with_int(Number::kRotate, rounded(degrees(c.velocity), -32767, 32767));
+          },
+          [](const MaxRotationVelocity& c) {
+            return with_int(Number::kMaxRotationVelocity, rounded(degrees(c.velocity), 0, 32767));
+          },
+          [](const RotationAcceleration& c) {
+            return with_int(Number::kRotationAcceleration,
+                            rounded(degrees(c.acceleration), -32767, 32767));
+          },
+          [](const DeltaSetpoint& c) {
+            return with_int(Number::kDeltaSetpoint, rounded(degrees(c.delta), -32767, 32767));
+          },
+          [](const SonarSwitch& c) {
+            return with_int(Number::kSonar, (c.on ? 1 : 0) | c.array << 1);
+          },
+          [](const LateralVelocity& c) {
+            return with_int(Number::kLateralVelocity, rounded(c.velocity * 1000.0, -32767, 32767));
+          },
+          [](const TruePose& c) { return with_pose(Number::kTruePose, c.pose_in_world); },
+          [](const auto& c) { return encode_plain(c); },
           [](const Unknown& c) {
             const Bytes body{c.number};
             return frame(body);
@@ -145,11 +280,17 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
       command);
 }
 
+Bytes encode(const Command& command, const RobotParameters& parameters) {
+  return encode(command, parameters.vel2_unit,
+                parameters.protocol == Protocol::kPsos ? StringForm::kNulTerminated
+                                                       : StringForm::kLengthPrefixed);
+}
+
 Command decode_command(ByteView body, double vel2_unit) {
   if (body.empty())
     return Unknown{};
   const Unknown unknown{body[0]};
-  const Argument argument = read_argument(body);
+  const Argument argument = read_argument(body, false);
   const bool is_string = argument.kind == Argument::Kind::kString;
   const auto number = static_cast<Number>(body[0]);
   switch (number) {  // those for which an argument says nothing, whatever it is
@@ -163,9 +304,17 @@ Command decode_command(ByteView body, double vel2_unit) {
       return SetOrigin{};
     case Number::kStep:
       return Step{};
+    case Number::kTruePose: {
+      const auto pose = read_pose(body);
+      return pose ? Command{TruePose{*pose}} : Command{unknown};
+    }
     default:
       break;
   }
+  if (Command plain =
+          decode_any_plain(body, std::make_index_sequence<std::variant_size_v<Command>>());
+      !std::holds_alternative<Unknown>(plain))
+    return plain;
   if (argument.kind == Argument::Kind::kBroken)
     return unknown;
   if (number == Number::kPolling) {
@@ -199,13 +348,34 @@ Command decode_command(ByteView body, double vel2_unit) {
       return WheelVelocities{left * vel2_unit, right * vel2_unit};
     }
     case Number::kDigitalOutput:
-      return DigitalOutput{static_cast<std::uint8_t>(word & 0xFFU)};
+      return DigitalOutput{static_cast<std::uint8_t>(word & 0xFFU),
+                           static_cast<std::uint8_t>(word >> 8U)};
     case Number::kTimer:
       return word < 8 ? Command{Timer{static_cast<std::uint8_t>(word)}} : Command{unknown};
     case Number::kGripper:
       return Gripper{word};
     case Number::kPtu:
       return Ptu{word};
+    case Number::kEnable:
+      return Enable{value != 0};
+    case Number::kAcceleration:
+      return Acceleration{value / 1000.0};
+    case Number::kMaxVelocity:
+      return MaxVelocity{std::abs(value) / 1000.0};
+    case Number::kMove:
+      return Move{value / 1000.0};
+    case Number::kRotate:
+      return Rotate{radians(value)};
+    case Number::kMaxRotationVelocity:
+      return MaxRotationVelocity{radians(std::abs(value))};
+    case Number::kRotationAcceleration:
+      return RotationAcceleration{radians(value)};
+    case Number::kDeltaSetpoint:
+      return DeltaSetpoint{radians(value)};
+    case Number::kSonar:
+      return SonarSwitch{(word & 1U) != 0, static_cast<std::uint8_t>(word >> 1U & 0x7FU)};
+    case Number::kLateralVelocity:
+      return LateralVelocity{value / 1000.0};
     default:
       return unknown;
   }

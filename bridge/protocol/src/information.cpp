@@ -2,71 +2,134 @@
 
 #include <algorithm>
 
+#include "fields.hpp"
+
 namespace saphira::protocol {
 
 namespace {
 
 constexpr unsigned kPositionMask = 0x7FFF;
+constexpr std::size_t kMinBody = 25;  // without sonars and trailing fields
 
-void put16(Bytes& out, unsigned value) {
-  out.push_back(static_cast<std::uint8_t>(value & 0xFFU));
-  out.push_back(static_cast<std::uint8_t>(value >> 8U & 0xFFU));
+// In order, up to the first that is missing.
+void put_trailing(Bytes& body, const TrailingFields& more) {
+  if (!more.battery)
+    return;
+  put16(body, unsigned{*more.battery});
+  if (!more.charge_state)
+    return;
+  put8(body, *more.charge_state);
+  if (!more.rotation)
+    return;
+  put16(body, *more.rotation);
+  if (!more.faults)
+    return;
+  put16(body, unsigned{*more.faults});
+  if (!more.lateral)
+    return;
+  put16(body, *more.lateral);
+  if (!more.temperature)
+    return;
+  put8(body, static_cast<std::uint8_t>(*more.temperature));
+  if (!more.state_of_charge)
+    return;
+  put8(body, *more.state_of_charge);
+  if (!more.time)
+    return;
+  put32(body, *more.time);
+  if (!more.flags3)
+    return;
+  put32(body, *more.flags3);
 }
 
-// Little-endian fields one after the other; zero and a mark where the packet has ended.
-class Fields {
- public:
-  explicit Fields(ByteView bytes) : bytes_(bytes) {}
+TrailingFields read_trailing(Fields& in) {
+  TrailingFields more;
+  if (in.left() >= 2)
+    more.battery = in.u16();
+  if (more.battery && in.left() >= 1)
+    more.charge_state = in.u8();
+  if (more.charge_state && in.left() >= 2)
+    more.rotation = in.i16();
+  if (more.rotation && in.left() >= 2)
+    more.faults = in.u16();
+  if (more.faults && in.left() >= 2)
+    more.lateral = in.i16();
+  if (more.lateral && in.left() >= 1)
+    more.temperature = in.i8();
+  if (more.temperature && in.left() >= 1)
+    more.state_of_charge = in.u8();
+  if (more.state_of_charge && in.left() >= 4)
+    more.time = in.u32();
+  if (more.time && in.left() >= 4)
+    more.flags3 = in.u32();
+  return more;
+}
 
-  std::uint8_t u8() {
-    if (at_ >= bytes_.size()) {
-      ended_ = true;
-      return 0;
-    }
-    return bytes_[at_++];
-  }
-  std::uint16_t u16() {
-    const unsigned low = u8();
-    const unsigned high = u8();
-    // Half a field is none.
-    return ended_ ? std::uint16_t{0} : static_cast<std::uint16_t>(low | high << 8U);
-  }
-  std::int16_t i16() { return static_cast<std::int16_t>(u16()); }
-  bool ended() const { return ended_; }
+// Switches from the left, bit 0 the first.
+std::uint8_t bumper_bits(unsigned stall_byte, int count) {
+  return static_cast<std::uint8_t>(stall_byte >> 1U & ((1U << static_cast<unsigned>(count)) - 1U));
+}
 
- private:
-  ByteView bytes_;
-  std::size_t at_ = 0;
-  bool ended_ = false;
-};
+void interpret_later(const InformationPacket& packet, const RobotParameters& parameters,
+                     Information& out) {
+  out.front_bumpers = bumper_bits(packet.right_stall, parameters.front_bumpers);
+  out.rear_bumpers = bumper_bits(packet.left_stall, parameters.rear_bumpers);
+  out.gripper_bits = static_cast<std::uint8_t>(packet.timer >> 8U);
+  if (parameters.compass)
+    out.compass = norm2_angle(radians(2.0 * packet.say));
+  if (parameters.protocol != Protocol::kArcos)
+    return;
+  out.motors_on = (packet.ptu & kFlagMotors) != 0;
+  out.emergency_stop = (packet.ptu & kFlagEmergencyStop) != 0;
+  if (!*out.motors_on)
+    out.motors = Motors::kNoPower;
+  out.ptu = 0;
+  const TrailingFields& more = packet.trailing;
+  if (more.battery && *more.battery > 0)
+    out.battery = *more.battery / 10.0;
+  out.charge_state = more.charge_state;
+  if (more.rotation)
+    out.rotation_velocity = radians(*more.rotation / 10.0);
+  out.faults = more.faults;
+  if (more.lateral)
+    out.lateral_velocity = *more.lateral / 1000.0;
+  if (more.temperature && *more.temperature > -127)
+    out.temperature = *more.temperature;
+  if (more.state_of_charge && *more.state_of_charge > 0)
+    out.state_of_charge = std::min(*more.state_of_charge / 100.0, 1.0);
+}
 
 }  // namespace
 
 Bytes encode(const InformationPacket& packet) {
   Bytes body;
-  body.reserve(25 + 3 * packet.sonars.size());
+  body.reserve(kMinBody + 3 * packet.sonars.size());
   body.push_back(static_cast<std::uint8_t>(0x30U | static_cast<unsigned>(packet.motors)));
   put16(body, packet.x & kPositionMask);
   put16(body, packet.y & kPositionMask);
-  put16(body, static_cast<std::uint16_t>(packet.th));
-  put16(body, static_cast<std::uint16_t>(packet.left_velocity));
-  put16(body, static_cast<std::uint16_t>(packet.right_velocity));
+  put16(body, packet.th);
+  put16(body, packet.left_velocity);
+  put16(body, packet.right_velocity);
   body.push_back(packet.battery);
   body.push_back(packet.left_stall);
   body.push_back(packet.right_stall);
-  put16(body, static_cast<std::uint16_t>(packet.control));
-  put16(body, packet.ptu);
+  put16(body, packet.control);
+  put16(body, unsigned{packet.ptu});
   body.push_back(packet.say);
-  const std::size_t count = std::min(packet.sonars.size(), kMaxSonarsInPacket);
+  Bytes trailing;
+  put_trailing(trailing, packet.trailing);
+  const std::size_t count =
+      std::min(packet.sonars.size(), (kMaxBody - kMinBody - trailing.size()) / 3);
   body.push_back(static_cast<std::uint8_t>(count));
   for (std::size_t i = 0; i < count; ++i) {
     body.push_back(packet.sonars[i].number);
-    put16(body, packet.sonars[i].range);
+    put16(body, unsigned{packet.sonars[i].range});
   }
-  put16(body, packet.timer);
+  put16(body, unsigned{packet.timer});
   body.push_back(packet.analog);
   body.push_back(packet.digital_input);
   body.push_back(packet.digital_output);
+  body.insert(body.end(), trailing.begin(), trailing.end());
   return frame(body);
 }
 
@@ -109,6 +172,8 @@ std::optional<InformationPacket> decode_information(ByteView body) {
   packet.analog = in.u8();
   packet.digital_input = in.u8();
   packet.digital_output = in.u8();
+  packet.trailing = read_trailing(in);
+  packet.unknown_bytes = in.left();
   return packet;
 }
 
@@ -125,8 +190,7 @@ Information interpret(const InformationPacket& packet, const RobotParameters& pa
   // The other bits are the bumpers of later robots.
   out.left_stalled = (packet.left_stall & 1U) != 0;
   out.right_stalled = (packet.right_stall & 1U) != 0;
-  out.bumpers = static_cast<std::uint16_t>(packet.left_stall |
-                                           static_cast<unsigned>(packet.right_stall) << 8U);
+  out.bumpers = (packet.left_stall | static_cast<unsigned>(packet.right_stall) << 8U);
   out.control = norm2_angle(packet.control * parameters.angle_unit);
   out.ptu = packet.ptu;
   out.say = packet.say;
@@ -140,6 +204,8 @@ Information interpret(const InformationPacket& packet, const RobotParameters& pa
   out.analog = packet.analog;
   out.digital_input = packet.digital_input;
   out.digital_output = packet.digital_output;
+  if (parameters.protocol != Protocol::kPsos)
+    interpret_later(packet, parameters, out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "saphira/base/text.hpp"
 
@@ -62,8 +63,42 @@ constexpr std::array kNumbers{
     NumberKeyword{"EncodeJitter", &P::encode_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleJitter", &P::angle_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleDrift", &P::angle_drift, 1.0, 0.0, 1.0},
-    NumberKeyword{"Battery", &P::battery, 1.0, 0.0, 25.5},
+    NumberKeyword{"Battery", &P::battery, 1.0, 0.0, 100.0},
+    NumberKeyword{"RobotLength", &P::length, kMillimetre, 1.0, 10000.0},
+    NumberKeyword{"RobotWidth", &P::width, kMillimetre, 1.0, 10000.0},
+    NumberKeyword{"Watchdog", &P::watchdog, kMillimetre, 0.0, 60000.0},
+    NumberKeyword{"LowBattery", &P::low_battery, 1.0, 0.0, 100.0},
+    NumberKeyword{"ShutdownVolts", &P::shutdown_voltage, 1.0, 0.0, 100.0},
+    NumberKeyword{"SonarPeriod", &P::sonar_period, kMillimetre, 1.0, 1000.0},
     NumberKeyword{"FrontMaxRange", &P::front_max_range, kMillimetre, 0.0, 100000.0},
+};
+
+struct FlagKeyword {
+  std::string_view name;
+  bool RobotParameters::*field;
+};
+constexpr std::array kFlags{
+    FlagKeyword{"HasMoveCommand", &P::move_command},
+    FlagKeyword{"SettableVelMaxes", &P::settable_velocities},
+    FlagKeyword{"SettableAccsDecs", &P::settable_accelerations},
+    FlagKeyword{"HasGripper", &P::gripper},
+    FlagKeyword{"HasCompass", &P::compass},
+    FlagKeyword{"HasGyro", &P::gyro},
+    FlagKeyword{"HasCharger", &P::charger},
+};
+
+struct CountKeyword {
+  std::string_view name;
+  int RobotParameters::*field;
+  int low;
+  int high;
+};
+constexpr std::array kCounts{
+    CountKeyword{"NumFrontBumpers", &P::front_bumpers, 0, 7},
+    CountKeyword{"NumRearBumpers", &P::rear_bumpers, 0, 7},
+    CountKeyword{"SonarArrays", &P::sonar_arrays, 1, 8},
+    CountKeyword{"FrontBuffer", &P::front_buffer, 1, 200},  // CBUF_LEN of 6.6.1
+    CountKeyword{"SideBuffer", &P::side_buffer, 1, 200},
 };
 
 class Parser {
@@ -79,6 +114,7 @@ class Parser {
       in.expect_end();
     }
     finish_sonars();
+    finish_protocol();
     return std::move(parameters_);
   }
 
@@ -100,6 +136,19 @@ class Parser {
       parameters_.*k.field = in.number(k.name, k.low, k.high) * k.unit;
       return;
     }
+    for (const FlagKeyword& k : kFlags) {
+      if (lower(k.name) != name)
+        continue;
+      parameters_.*k.field = flag(in, k.name);
+      return;
+    }
+    for (const CountKeyword& k : kCounts) {
+      if (lower(k.name) != name)
+        continue;
+      to_value(in);
+      parameters_.*k.field = static_cast<int>(in.integer(k.name, k.low, k.high));
+      return;
+    }
     if (name == "name" || name == "class" || name == "subclass") {
       std::string& field = name == "name"    ? parameters_.name
                            : name == "class" ? parameters_.robot_class
@@ -110,13 +159,58 @@ class Parser {
       sonar_count_.emplace(in);
       sonar_count_number_ = in.integer("number of sonars", 0, kMaxSonars);
       *sonar_count_ = in;
-    } else if (name == "frontbuffer" || name == "sidebuffer") {
+    } else if (name == "protocol") {
+      protocol(in);
+    } else if (name == "switchtobaudrate") {
       to_value(in);
-      int& field = name == "frontbuffer" ? parameters_.front_buffer : parameters_.side_buffer;
-      field = static_cast<int>(in.integer("number of readings", 1, 200));  // CBUF_LEN of 6.6.1
+      baud(in);
+    } else if (name == "encodertickspermm") {
+      to_value(in);
+      parameters_.encoder_unit = kMillimetre / in.number("EncoderTicksPerMM", 0.1, 10000.0);
     } else {
       in.fail("expected a keyword of a robot parameter file (such as RobotRadius or SonarUnit)");
     }
+  }
+
+  static bool flag(LineReader& in, std::string_view name) {
+    const std::string value = lower(in.word("true or false behind " + std::string(name)));
+    if (value != "true" && value != "false")
+      in.fail("expected true or false");
+    return value == "true";
+  }
+
+  void protocol(LineReader& in) {
+    const std::string value = lower(in.word("psos, p2os or arcos"));
+    if (value == "psos")
+      parameters_.protocol = Protocol::kPsos;
+    else if (value == "p2os")
+      parameters_.protocol = Protocol::kP2os;
+    else if (value == "arcos")
+      parameters_.protocol = Protocol::kArcos;
+    else
+      in.fail("expected psos, p2os or arcos");
+  }
+
+  void baud(LineReader& in) {
+    constexpr std::array kRates{0L, 9600L, 19200L, 38400L, 57600L, 115200L};  // of HOSTBAUD
+    const long rate = in.integer("baud rate", 0, kRates.back());
+    if (std::find(kRates.begin(), kRates.end(), rate) == kRates.end())
+      in.fail("expected 0 (never), 9600, 19200, 38400, 57600 or 115200");
+    parameters_.switch_to_baud = static_cast<int>(rate);
+  }
+
+  // What a file does not say follows from the generation of its server.
+  void finish_protocol() {
+    const bool later = parameters_.protocol != Protocol::kPsos;
+    for (const auto& [name, field] : {std::pair{"hasmovecommand", &P::move_command},
+                                      std::pair{"settablevelmaxes", &P::settable_velocities},
+                                      std::pair{"settableaccsdecs", &P::settable_accelerations}})
+      if (!seen_.contains(name))
+        parameters_.*field = later;
+    if (parameters_.length == 0.0)
+      parameters_.length = 2.0 * parameters_.radius;
+    if (parameters_.width == 0.0)
+      parameters_.width = 2.0 * parameters_.radius;
   }
 
   // Steps to the line behind where the value stands there.

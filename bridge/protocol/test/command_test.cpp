@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "saphira/geometry/pose.hpp"
+#include "saphira/protocol/parameters.hpp"
 
 namespace saphira::protocol {
 namespace {
@@ -106,13 +109,94 @@ TEST(Command, WhatCannotBeReadIsUnknown) {
   EXPECT_EQ(decode_command(Bytes{3, 0x3B, 1, 0}), Command(Unknown{3}));     // an int
   EXPECT_EQ(decode_command(Bytes{3, 0x2B, 9, 1, 2}), Command(Unknown{3}));  // neither form
   EXPECT_EQ(decode_command(Bytes{31, 0x3B, 8, 0}), Command(Unknown{31}));   // no such pin
-  EXPECT_EQ(decode_command(Bytes{62, 0x3B, 1, 0}), Command(Unknown{62}));
+  EXPECT_EQ(decode_command(Bytes{14, 0x3B, 1, 0}), Command(Unknown{14}));   // no such command
+  EXPECT_EQ(decode_command(Bytes{62, 0x2B, 1, 65}), Command(Unknown{62}));  // a string
+  EXPECT_EQ(decode_command(Bytes{224, 0x3B, 1, 0}), Command(Unknown{224}));
 }
 
 // ARIA sends HEAD from -180 to 180; some clients send two's complement as a positive integer.
 TEST(Command, NegativeIntegersOfEitherKind) {
   EXPECT_EQ(decode_command(Bytes{12, 0x1B, 90, 0}), Command(Heading{radians(-90)}));
   EXPECT_EQ(decode_command(Bytes{11, 0x3B, 0x9C, 0xFF}), Command(Velocity{-0.1}));
+}
+
+// The later servers' commands, as their clients send them.
+TEST(Command, BytesOfTheLaterServers) {
+  EXPECT_EQ(body(Enable{true}), (Bytes{4, 0x3B, 1, 0}));
+  EXPECT_EQ(body(Acceleration{0.3}), (Bytes{5, 0x3B, 44, 1}));
+  EXPECT_EQ(body(Acceleration{-0.3}), (Bytes{5, 0x1B, 44, 1}));
+  EXPECT_EQ(body(MaxVelocity{0.75}), (Bytes{6, 0x3B, 0xEE, 2}));
+  EXPECT_EQ(body(Move{-1.0}), (Bytes{8, 0x1B, 0xE8, 3}));
+  EXPECT_EQ(body(Rotate{radians(-40)}), (Bytes{9, 0x1B, 40, 0}));
+  EXPECT_EQ(body(MaxRotationVelocity{radians(100)}), (Bytes{10, 0x3B, 100, 0}));
+  EXPECT_EQ(body(RotationAcceleration{radians(-100)}), (Bytes{23, 0x1B, 100, 0}));
+  EXPECT_EQ(body(ConfigRequest{1}), (Bytes{18, 0x3B, 1, 0}));
+  EXPECT_EQ(body(SonarSwitch{true, 0}), (Bytes{28, 0x3B, 1, 0}));
+  EXPECT_EQ(body(SonarSwitch{false, 2}), (Bytes{28, 0x3B, 4, 0}));
+  EXPECT_EQ(body(Stop{}), (Bytes{29}));
+  EXPECT_EQ(body(EmergencyStop{}), (Bytes{55}));
+  EXPECT_EQ(body(DigitalOutput{0x01, 0x81}), (Bytes{30, 0x3B, 0x01, 0x81}));
+  EXPECT_EQ(body(Say{{25, 30}}), (Bytes{15, 0x2B, 2, 25, 30}));
+  EXPECT_EQ(body(Aux1Send{{0, 1, 0}}), (Bytes{42, 0x2B, 3, 0, 1, 0}));
+  EXPECT_EQ(body(BatteryRequest{1}), (Bytes{62, 0x3B, 1, 0}));
+  EXPECT_EQ(body(TruePose{{1.0, -0.002, radians(90)}}),
+            (Bytes{224, 0x3B, 0xE8, 3, 0, 0, 0xFE, 0xFF, 0xFF, 0xFF, 90, 0, 0, 0}));
+  // Counted strings may end with NUL and still be counted.
+  EXPECT_EQ(decode_command(Bytes{42, 0x2B, 3, 0, 1, 0}), Command(Aux1Send{{0, 1, 0}}));
+  EXPECT_EQ(decode_command(Bytes{42, 0x2B, 65, 66, 0}), Command(Aux1Send{{65, 66}}));
+  // An argument's type without an argument, as one client sends SETO.
+  EXPECT_EQ(decode_command(Bytes{7, 0x3B}), Command(SetOrigin{}));
+  EXPECT_EQ(decode_command(Bytes{4, 0x3B}), Command(Enable{false}));
+  EXPECT_EQ(decode_command(Bytes{29, 0x3B, 1, 0}), Command(Stop{}));
+}
+
+TEST(Command, StringsTakeTheFormOfTheGeneration) {
+  RobotParameters parameters;
+  EXPECT_EQ(body_of(encode(Polling{{0}}, parameters)), (Bytes{3, 0x2B, 1, 0}));
+  parameters.protocol = Protocol::kP2os;
+  EXPECT_EQ(body_of(encode(Polling{{0}}, parameters)), (Bytes{3, 0x2B, 1, 1}));
+}
+
+template <std::size_t... I>
+std::vector<Command> one_of_each(std::index_sequence<I...>) {
+  return {Command{std::in_place_index<I>}...};
+}
+
+// Every command there is: its number is in the table, under the form that encode writes.
+TEST(Command, EveryCommandIsInTheTable) {
+  std::set<int> seen;
+  for (const Command& command :
+       one_of_each(std::make_index_sequence<std::variant_size_v<Command>>())) {
+    if (std::holds_alternative<Unknown>(command))
+      continue;
+    const Bytes bytes = body(command);
+    const CommandRule* found = rule(bytes[0]);
+    ASSERT_NE(found, nullptr) << int{bytes[0]};
+    seen.insert(bytes[0]);
+    EXPECT_EQ(decode_command(bytes), command) << found->name;
+    switch (found->form) {
+      case ArgumentForm::kNone:
+        EXPECT_EQ(bytes.size(), 1U) << found->name;
+        break;
+      case ArgumentForm::kOptional:
+        EXPECT_TRUE(bytes.size() == 1 || bytes.size() == 4) << found->name;
+        break;
+      case ArgumentForm::kInteger:
+      case ArgumentForm::kPair:
+        ASSERT_EQ(bytes.size(), 4U) << found->name;
+        EXPECT_EQ(bytes[1], 0x3B) << found->name;
+        break;
+      case ArgumentForm::kString:
+        ASSERT_GE(bytes.size(), 3U) << found->name;
+        EXPECT_EQ(bytes[1], 0x2B) << found->name;
+        break;
+      case ArgumentForm::kRaw:
+        break;
+    }
+  }
+  EXPECT_EQ(seen.size(), rules().size());
+  EXPECT_EQ(rule(14), nullptr);
+  EXPECT_EQ(rule(11)->name, "VEL");
 }
 
 TEST(Sync, PacketsAndStrings) {

@@ -56,10 +56,84 @@ TEST(Information, SurvivesTheWire) {
   }
 }
 
-TEST(Information, AppendedFieldsAreSkipped) {
-  Bytes body = body_of(encode(sample()));
+InformationPacket arcos_sample() {
+  InformationPacket packet = sample();
+  packet.trailing = {122, 3, -450, 0x8001, 20, 31, 80, 0x01020304, 7};
+  return packet;
+}
+
+TEST(Information, AppendedFieldsAreSkippedAndCounted) {
+  Bytes body = body_of(encode(arcos_sample()));
   body.insert(body.end(), {1, 2, 3, 4, 5});
-  EXPECT_EQ(decode_information(body), sample());
+  auto packet = decode_information(body);
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(packet->unknown_bytes, 5U);
+  packet->unknown_bytes = 0;
+  EXPECT_EQ(packet, arcos_sample());
+}
+
+// Order and size of what ARCOS appends; a packet may end anywhere in it.
+TEST(Information, EachTrailingFieldMayBeMissing) {
+  const Bytes body = body_of(encode(arcos_sample()));
+  const std::size_t start = body_of(encode(sample())).size();
+  const Bytes expected{122, 0, 3, 0x3E, 0xFE, 1, 0x80, 20, 0, 31, 80, 4, 3, 2, 1, 7, 0, 0, 0};
+  EXPECT_EQ(Bytes(body.begin() + static_cast<std::ptrdiff_t>(start), body.end()), expected);
+  const std::size_t ends[] = {0, 2, 3, 5, 7, 9, 10, 11, 15, 19};
+  for (std::size_t size = 0; size <= expected.size(); ++size) {
+    const auto packet = decode_information(ByteView(body).first(start + size));
+    ASSERT_TRUE(packet) << size;
+    const TrailingFields& t = packet->trailing;
+    const std::size_t present =
+        std::size_t{t.battery.has_value()} + std::size_t{t.charge_state.has_value()} +
+        std::size_t{t.rotation.has_value()} + std::size_t{t.faults.has_value()} +
+        std::size_t{t.lateral.has_value()} + std::size_t{t.temperature.has_value()} +
+        std::size_t{t.state_of_charge.has_value()} + std::size_t{t.time.has_value()} +
+        std::size_t{t.flags3.has_value()};
+    std::size_t fit = 0;
+    while (fit + 1 < std::size(ends) && ends[fit + 1] <= size)
+      ++fit;
+    EXPECT_EQ(present, fit) << size;
+    EXPECT_EQ(packet->unknown_bytes, size - ends[fit]) << size;
+  }
+}
+
+TEST(Information, MeaningByGeneration) {
+  InformationPacket packet = arcos_sample();
+  packet.left_stall = 0b00010101;   // stalled; rear switches 2 and 4
+  packet.right_stall = 0b00000010;  // front switch 1
+  packet.ptu = kFlagMotors | kFlagEmergencyStop;
+  packet.say = 45;
+  RobotParameters p;
+  Information psos = interpret(packet, p);
+  EXPECT_EQ(psos.front_bumpers, 0);
+  EXPECT_FALSE(psos.motors_on);
+  EXPECT_EQ(psos.ptu, packet.ptu);
+  EXPECT_NEAR(psos.battery, packet.battery / 10.0, 1e-12);
+
+  p.protocol = Protocol::kP2os;
+  p.front_bumpers = 5;
+  p.rear_bumpers = 4;
+  p.compass = true;
+  const Information p2os = interpret(packet, p);
+  EXPECT_TRUE(p2os.left_stalled);
+  EXPECT_FALSE(p2os.right_stalled);
+  EXPECT_EQ(p2os.front_bumpers, 0b00001);
+  EXPECT_EQ(p2os.rear_bumpers, 0b1010);
+  EXPECT_NEAR(p2os.compass.value(), radians(90), 1e-12);
+  EXPECT_FALSE(p2os.motors_on);
+
+  p.protocol = Protocol::kArcos;
+  const Information arcos = interpret(packet, p);
+  EXPECT_TRUE(arcos.motors_on.value());
+  EXPECT_TRUE(arcos.emergency_stop.value());
+  EXPECT_NEAR(arcos.battery, 12.2, 1e-12);
+  EXPECT_NEAR(arcos.rotation_velocity, radians(-45), 1e-12);
+  EXPECT_NEAR(arcos.temperature.value(), 31.0, 1e-12);
+  EXPECT_NEAR(arcos.state_of_charge.value(), 0.8, 1e-12);
+  packet.trailing.temperature = -128;
+  packet.ptu = 0;
+  EXPECT_FALSE(interpret(packet, p).temperature);
+  EXPECT_EQ(interpret(packet, p).motors, Motors::kNoPower);
 }
 
 TEST(Information, EverythingBehindTheSonarsMayBeMissing) {

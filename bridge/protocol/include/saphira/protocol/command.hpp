@@ -2,34 +2,133 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "saphira/geometry/pose.hpp"
 #include "saphira/protocol/packet.hpp"
 
 namespace saphira::protocol {
 
+struct RobotParameters;
+
 // ---- What the client asks of the robot server: manual Table 5-4. SI units and radians here; the
 // ---- packet's millimetres and degrees are made and read in this file alone.
 
-/// The command's number, the first byte of its body.
+/// The command's number, the first byte of its body. Those of the manual's Table 5-4 (0-3, 7,
+/// 11-13, 21, 30-33, 41, 64) keep its names; the others are of the servers since (P2OS, AROS,
+/// ARCOS) and of the simulators. A number that has meant two things is the robots' one here: 62
+/// ended the old simulator and asks a robot for its battery.
 enum class Number : std::uint8_t {
   kPulse = 0,
   kOpen = 1,
   kClose = 2,
   kPolling = 3,
+  kEnable = 4,
+  kAcceleration = 5,
+  kMaxVelocity = 6,
   kSetOrigin = 7,
+  kMove = 8,
+  kRotate = 9,
+  kMaxRotationVelocity = 10,
   kVelocity = 11,
   kHeading = 12,
   kDeltaHeading = 13,
+  kSay = 15,
+  kJoystickRequest = 17,
+  kConfigRequest = 18,
+  kEncoderRequest = 19,
   kRotationVelocity = 21,
+  kDeltaSetpoint = 22,
+  kRotationAcceleration = 23,
+  kImuRequest = 26,
+  kSonar = 28,
+  kStop = 29,
   kDigitalOutput = 30,
   kTimer = 31,
   kWheelVelocities = 32,
   kGripper = 33,
+  kAnalogSelect = 35,
+  kGripperValue = 36,
+  kGripperRequest = 37,
+  kLaserIncrement = 38,
+  kIoRequest = 40,
   kPtu = 41,
+  kAux1Send = 42,
+  kAux1Read = 43,
+  kBumpStall = 44,
+  kCompass = 45,
+  kJoyDrive = 47,
+  kMovingBlink = 49,
+  kHostBaud = 50,
+  kAux1Baud = 51,
+  kAux2Baud = 52,
+  kVision = 53,  ///< ours: the manual names VISION_COM and not its number
+  kEmergencyStop = 55,
+  kStallEmergencyStop = 56,
+  kEmergencyStop2 = 57,
+  kGyroRequest = 58,
+  kAux3Send = 60,
+  kAux3Read = 61,
+  kBatteryRequest = 62,
+  kLoadWorld = 63,
   kStep = 64,
+  kCompassCalibration = 65,
+  kAux2Send = 66,
+  kAux2Read = 67,
+  kTrueHeading = 68,
+  kTrueOrigin = 69,
+  kArmInfo = 70,
+  kArmStatus = 71,
+  kArmInit = 72,
+  kArmCheck = 73,
+  kArmPower = 74,
+  kArmHome = 75,
+  kArmPark = 76,
+  kArmPosition = 77,
+  kArmSpeed = 78,
+  kArmStop = 79,
+  kArmAutoPark = 80,
+  kArmGripperPark = 81,
+  kRotationKp = 82,
+  kRotationKv = 83,
+  kRotationKi = 84,
+  kTranslationKp = 85,
+  kTranslationKv = 86,
+  kTranslationKi = 87,
+  kSound = 90,
+  kPlaylist = 91,
+  kSoundToggle = 92,
+  kPower95 = 95,
+  kPower96 = 96,
+  kPower97 = 97,
+  kPower98 = 98,
+  kLateralVelocity = 110,
+  kLateralAcceleration = 113,
+  kPower125 = 125,
+  kPower126 = 126,
+  kPower127 = 127,
+  kPower128 = 128,
+  kPower129 = 129,
+  kTruePose = 224,
+  kSimReset = 225,
+  kSimModel = 226,
+  kSimLaser = 230,
+  kSimLaserStart = 231,
+  kSimLaserEnd = 232,
+  kSimLaserResolution = 233,
+  kSimControl = 236,
+  kSimStatus = 237,
+  kSimMessage = 238,
+  kSimExit = 239,
+  kBatteryTest = 250,
+  kTemperatureTest1 = 251,
+  kTemperatureTest2 = 252,
+  kReset = 253,
+  kMaintenance = 255,
 };
 
 /// sfCOMPULSE: says that the client is alive.
@@ -80,9 +179,11 @@ struct WheelVelocities {
   double right = 0.0;  ///< [m/s]
   bool operator==(const WheelVelocities&) const = default;
 };
-/// sfCOMDIGOUT.
+/// sfCOMDIGOUT. Servers since P2OS change only the bits that the mask (the argument's high byte)
+/// has; PSOS has no mask and sets all.
 struct DigitalOutput {
   std::uint8_t bits = 0;
+  std::uint8_t mask = 0;
   bool operator==(const DigitalOutput&) const = default;
 };
 /// sfCOMTIMER: starts the user input timer, which the pin stops.
@@ -90,7 +191,7 @@ struct Timer {
   std::uint8_t pin = 0;  ///< 0..7
   bool operator==(const Timer&) const = default;
 };
-/// sfCOMGRIPPER: 0, 1, 4 or 5; what they do is the robot's.
+/// sfCOMGRIPPER: 0, 1, 4 or 5; what they do is the robot's. Servers since P2OS: see GripperAction.
 struct Gripper {
   std::uint16_t state = 0;
   bool operator==(const Gripper&) const = default;
@@ -104,18 +205,255 @@ struct Ptu {
 struct Step {
   bool operator==(const Step&) const = default;
 };
+// ---- The servers since: P2OS, AROS, ARCOS; and simulators. In these files a "later server".
+
+/// ENABLE: motors on or off.
+struct Enable {
+  bool on = false;
+  bool operator==(const Enable&) const = default;
+};
+/// SETA: the acceleration of translation, or the deceleration where it is negative. Whole mm/s2.
+struct Acceleration {
+  double acceleration = 0.0;  ///< [m/s2]
+  bool operator==(const Acceleration&) const = default;
+};
+/// SETV: the largest velocity of a MOVE and of what else is not told one. Whole mm/s.
+struct MaxVelocity {
+  double velocity = 0.0;  ///< [m/s]
+  bool operator==(const MaxVelocity&) const = default;
+};
+/// MOVE: translate by. Whole mm; ARIA keeps to 5 m.
+struct Move {
+  double distance = 0.0;  ///< [m] forward positive
+  bool operator==(const Move&) const = default;
+};
+/// ROTATE: the later name of RVEL. Whole deg/s.
+struct Rotate {
+  double velocity = 0.0;  ///< [rad/s] left positive
+  bool operator==(const Rotate&) const = default;
+};
+/// SETRV: the largest velocity of a turn to a heading. Whole deg/s.
+struct MaxRotationVelocity {
+  double velocity = 0.0;  ///< [rad/s]
+  bool operator==(const MaxRotationVelocity&) const = default;
+};
+/// SETRA: the acceleration of rotation, or the deceleration where it is negative. Whole deg/s2.
+struct RotationAcceleration {
+  double acceleration = 0.0;  ///< [rad/s2]
+  bool operator==(const RotationAcceleration&) const = default;
+};
+/// DCHEAD: turn by, counted from the heading that was set last. Whole degrees.
+struct DeltaSetpoint {
+  double delta = 0.0;  ///< [rad] left positive
+  bool operator==(const DeltaSetpoint&) const = default;
+};
+/// SONAR: arrays on or off. Bit 0 of the argument is on; the bits above it choose an array.
+struct SonarSwitch {
+  bool on = false;
+  std::uint8_t array = 0;  ///< from 1; 0: all of them
+  bool operator==(const SonarSwitch&) const = default;
+};
+/// LATVEL: sideways, for robots that can. Whole mm/s.
+struct LateralVelocity {
+  double velocity = 0.0;  ///< [m/s] left positive
+  bool operator==(const LateralVelocity&) const = default;
+};
+/// MobileSim's SET_POSE: where the robot really is; dead reckoning does not notice. Whole mm,
+/// degrees.
+struct TruePose {
+  Pose pose_in_world;
+  bool operator==(const TruePose&) const = default;
+};
+
+/// What the argument of GRIPPER says to a later server.
+enum class GripperAction : std::uint8_t {
+  kOpen = 1,
+  kClose = 2,
+  kStop = 3,
+  kLiftUp = 4,
+  kLiftDown = 5,
+  kLiftStop = 6,
+  kStore = 7,
+  kDeploy = 8,
+  kHalt = 15,
+  kPressure = 16,
+  kCarry = 17,
+};
+
+/// A command without an argument.
+template <Number N>
+struct BareCommand {
+  static constexpr Number kNumber = N;
+  bool operator==(const BareCommand&) const = default;
+};
+/// A command with an integer whose meaning is the robot's; its unit stands in rule().
+template <Number N>
+struct IntCommand {
+  static constexpr Number kNumber = N;
+  int value = 0;
+  bool operator==(const IntCommand&) const = default;
+};
+/// A command with bytes, counted (never NUL-terminated: a NUL may be one of them).
+template <Number N>
+struct TextCommand {
+  static constexpr Number kNumber = N;
+  Bytes text;
+  bool operator==(const TextCommand&) const = default;
+};
+/// A command whose argument has a form of its own: all that stands behind the number.
+template <Number N>
+struct RawCommand {
+  static constexpr Number kNumber = N;
+  Bytes argument;
+  bool operator==(const RawCommand&) const = default;
+};
+
+using Stop = BareCommand<Number::kStop>;
+using EmergencyStop = BareCommand<Number::kEmergencyStop>;
+using EmergencyStop2 = BareCommand<Number::kEmergencyStop2>;
+using TrueOrigin = BareCommand<Number::kTrueOrigin>;
+using SimReset = BareCommand<Number::kSimReset>;
+using Reset = BareCommand<Number::kReset>;
+using Maintenance = BareCommand<Number::kMaintenance>;
+
+// 0: no more of these packets, 1: one, 2: one with every information packet.
+using JoystickRequest = IntCommand<Number::kJoystickRequest>;
+using ConfigRequest = IntCommand<Number::kConfigRequest>;
+using EncoderRequest = IntCommand<Number::kEncoderRequest>;
+using ImuRequest = IntCommand<Number::kImuRequest>;
+using GripperRequest = IntCommand<Number::kGripperRequest>;
+using IoRequest = IntCommand<Number::kIoRequest>;
+using GyroRequest = IntCommand<Number::kGyroRequest>;
+using BatteryRequest = IntCommand<Number::kBatteryRequest>;
+using SimStatus = IntCommand<Number::kSimStatus>;
+
+using AnalogSelect = IntCommand<Number::kAnalogSelect>;
+using GripperValue = IntCommand<Number::kGripperValue>;
+using LaserIncrement = IntCommand<Number::kLaserIncrement>;
+using Aux1Read = IntCommand<Number::kAux1Read>;
+using Aux2Read = IntCommand<Number::kAux2Read>;
+using Aux3Read = IntCommand<Number::kAux3Read>;
+using BumpStall = IntCommand<Number::kBumpStall>;
+using Compass = IntCommand<Number::kCompass>;
+using JoyDrive = IntCommand<Number::kJoyDrive>;
+using MovingBlink = IntCommand<Number::kMovingBlink>;
+using HostBaud = IntCommand<Number::kHostBaud>;
+using Aux1Baud = IntCommand<Number::kAux1Baud>;
+using Aux2Baud = IntCommand<Number::kAux2Baud>;
+using StallEmergencyStop = IntCommand<Number::kStallEmergencyStop>;
+using CompassCalibration = IntCommand<Number::kCompassCalibration>;
+using TrueHeading = IntCommand<Number::kTrueHeading>;
+using ArmInfo = IntCommand<Number::kArmInfo>;
+using ArmStatus = IntCommand<Number::kArmStatus>;
+using ArmInit = IntCommand<Number::kArmInit>;
+using ArmCheck = IntCommand<Number::kArmCheck>;
+using ArmPower = IntCommand<Number::kArmPower>;
+using ArmHome = IntCommand<Number::kArmHome>;
+using ArmPark = IntCommand<Number::kArmPark>;
+using ArmPosition = IntCommand<Number::kArmPosition>;
+using ArmSpeed = IntCommand<Number::kArmSpeed>;
+using ArmStop = IntCommand<Number::kArmStop>;
+using ArmAutoPark = IntCommand<Number::kArmAutoPark>;
+using ArmGripperPark = IntCommand<Number::kArmGripperPark>;
+using RotationKp = IntCommand<Number::kRotationKp>;
+using RotationKv = IntCommand<Number::kRotationKv>;
+using RotationKi = IntCommand<Number::kRotationKi>;
+using TranslationKp = IntCommand<Number::kTranslationKp>;
+using TranslationKv = IntCommand<Number::kTranslationKv>;
+using TranslationKi = IntCommand<Number::kTranslationKi>;
+using Sound = IntCommand<Number::kSound>;
+using Playlist = IntCommand<Number::kPlaylist>;
+using SoundToggle = IntCommand<Number::kSoundToggle>;
+using Power95 = IntCommand<Number::kPower95>;
+using Power96 = IntCommand<Number::kPower96>;
+using Power97 = IntCommand<Number::kPower97>;
+using Power98 = IntCommand<Number::kPower98>;
+using Power125 = IntCommand<Number::kPower125>;
+using Power126 = IntCommand<Number::kPower126>;
+using Power127 = IntCommand<Number::kPower127>;
+using Power128 = IntCommand<Number::kPower128>;
+using Power129 = IntCommand<Number::kPower129>;
+using LateralAcceleration = IntCommand<Number::kLateralAcceleration>;
+using SimLaser = IntCommand<Number::kSimLaser>;
+using SimLaserStart = IntCommand<Number::kSimLaserStart>;
+using SimLaserEnd = IntCommand<Number::kSimLaserEnd>;
+using SimLaserResolution = IntCommand<Number::kSimLaserResolution>;
+using SimExit = IntCommand<Number::kSimExit>;
+using BatteryTest = IntCommand<Number::kBatteryTest>;
+using TemperatureTest1 = IntCommand<Number::kTemperatureTest1>;
+using TemperatureTest2 = IntCommand<Number::kTemperatureTest2>;
+
+/// SAY: pairs of duration [20 ms] and half-cycle of the tone.
+using Say = TextCommand<Number::kSay>;
+using Aux1Send = TextCommand<Number::kAux1Send>;
+using Aux2Send = TextCommand<Number::kAux2Send>;
+using Aux3Send = TextCommand<Number::kAux3Send>;
+/// VISION_COM of manual 9.1: "pioneer_X_mode=N" and the line parameters.
+using VisionCommand = TextCommand<Number::kVision>;
+using LoadWorld = TextCommand<Number::kLoadWorld>;
+using SimMessage = TextCommand<Number::kSimMessage>;
+
+using SimModel = RawCommand<Number::kSimModel>;
+using SimControl = RawCommand<Number::kSimControl>;
+
 /// A command that is not in the table, or one whose argument cannot be read.
 struct Unknown {
   std::uint8_t number = 0;
   bool operator==(const Unknown&) const = default;
 };
 
-using Command = std::variant<Pulse, Open, Close, Polling, SetOrigin, Velocity, Heading,
-                             DeltaHeading, RotationVelocity, WheelVelocities, DigitalOutput, Timer,
-                             Gripper, Ptu, Step, Unknown>;
+using Command = std::variant<
+    Pulse, Open, Close, Polling, SetOrigin, Velocity, Heading, DeltaHeading, RotationVelocity,
+    WheelVelocities, DigitalOutput, Timer, Gripper, Ptu, Step, Unknown, Enable, Acceleration,
+    MaxVelocity, Move, Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
+    SonarSwitch, LateralVelocity, TruePose, Stop, EmergencyStop, EmergencyStop2, TrueOrigin,
+    SimReset, Reset, Maintenance, JoystickRequest, ConfigRequest, EncoderRequest, ImuRequest,
+    GripperRequest, IoRequest, GyroRequest, BatteryRequest, SimStatus, AnalogSelect, GripperValue,
+    LaserIncrement, Aux1Read, Aux2Read, Aux3Read, BumpStall, Compass, JoyDrive, MovingBlink,
+    HostBaud, Aux1Baud, Aux2Baud, StallEmergencyStop, CompassCalibration, TrueHeading, ArmInfo,
+    ArmStatus, ArmInit, ArmCheck, ArmPower, ArmHome, ArmPark, ArmPosition, ArmSpeed, ArmStop,
+    ArmAutoPark, ArmGripperPark, RotationKp, RotationKv, RotationKi, TranslationKp, TranslationKv,
+    TranslationKi, Sound, Playlist, SoundToggle, Power95, Power96, Power97, Power98, Power125,
+    Power126, Power127, Power128, Power129, LateralAcceleration, SimLaser, SimLaserStart,
+    SimLaserEnd, SimLaserResolution, SimExit, BatteryTest, TemperatureTest1, TemperatureTest2, Say,
+    Aux1Send, Aux2Send, Aux3Send, VisionCommand, LoadWorld, SimMessage, SimModel, SimControl>;
 
-/// How a string argument is written. The manual's Table 5-3 says NUL-terminated; clients and robots
-/// since have used a length byte. decode_command takes both.
+// ---- The table of all that.
+
+enum class ArgumentForm : std::uint8_t {
+  kNone,      ///< the number alone; an argument does no harm
+  kInteger,   ///< 3B or 1B and two bytes
+  kOptional,  ///< an integer, which may be missing
+  kPair,      ///< 3B and two signed bytes
+  kString,    ///< 2B and bytes, NUL-terminated or counted
+  kRaw,       ///< a form of its own
+};
+
+/// Whose command it is.
+enum class Origin : std::uint8_t {
+  kManual,     ///< Table 5-4
+  kLater,      ///< P2OS, AROS, ARCOS
+  kSimulator,  ///< simulators only
+};
+
+/// One line of the table.
+struct CommandRule {
+  Number number;
+  std::string_view name;  ///< as the manual and the robots' header files call it
+  ArgumentForm form;
+  Origin origin;
+  int low = 0;  ///< of an integer, in the unit of the packet
+  int high = 0;
+  std::string_view unit;
+};
+
+/// The line of a number, or null.
+const CommandRule* rule(std::uint8_t number);
+/// All lines, by number.
+std::span<const CommandRule> rules();
+
+/// How the string of POLLING is written. The manual's Table 5-3 says NUL-terminated; clients and
+/// robots since have used a length byte. decode_command takes both.
 enum class StringForm { kNulTerminated, kLengthPrefixed };
 
 /// The wheel velocities' unit where the parameter file says nothing: 4 mm/s (Table 5-4).
@@ -125,6 +463,9 @@ inline constexpr double kVel2Unit = 0.004;
 /// it can say; NaN becomes 0. vel2_unit [m/s] is RobotParameters::vel2_unit.
 Bytes encode(const Command& command, double vel2_unit = kVel2Unit,
              StringForm form = StringForm::kNulTerminated);
+
+/// The same with the unit and the form of strings that this robot's server wants.
+Bytes encode(const Command& command, const RobotParameters& parameters);
 
 /// Reads a packet's body. An argument that is missing counts as 0 (OPEN, SETO and others are sent
 /// with, without, and with an argument type alone); an integer where a string is needed, or a

@@ -22,6 +22,20 @@ struct RawSonar {
   bool operator==(const RawSonar&) const = default;
 };
 
+/// What ARCOS appends. A packet may end behind any of them: those behind are missing then.
+struct TrailingFields {
+  std::optional<std::uint16_t> battery;         ///< [0.1 V]
+  std::optional<std::uint8_t> charge_state;     ///< the charger's; 0: not charging
+  std::optional<std::int16_t> rotation;         ///< [0.1 deg/s]
+  std::optional<std::uint16_t> faults;          ///< bits, the robot's
+  std::optional<std::int16_t> lateral;          ///< [mm/s] sideways
+  std::optional<std::int8_t> temperature;       ///< [deg C]; -127 and -128: unknown
+  std::optional<std::uint8_t> state_of_charge;  ///< [%]; 0: unknown
+  std::optional<std::uint32_t> time;            ///< [us] of the controller, rolls over
+  std::optional<std::uint32_t> flags3;
+  bool operator==(const TrailingFields&) const = default;
+};
+
 /// The information packet of manual Table 5-5 in the units of the packet. (The table's second
 /// "Bumpers" row is not a field: every client and server has one stall field of two bytes.)
 struct InformationPacket {
@@ -31,30 +45,38 @@ struct InformationPacket {
   std::int16_t th = 0;
   std::int16_t left_velocity = 0;
   std::int16_t right_velocity = 0;
-  std::uint8_t battery = 0;  ///< [0.1 V]
-  std::uint8_t left_stall = 0;
-  std::uint8_t right_stall = 0;
-  std::int16_t control = 0;  ///< the server's heading setpoint
-  std::uint16_t ptu = 0;
-  std::uint8_t say = 0;
+  std::uint8_t battery = 0;      ///< [0.1 V]
+  std::uint8_t left_stall = 0;   ///< P2OS, ARCOS: bit 0 the stall, the others the rear bumpers
+  std::uint8_t right_stall = 0;  ///< likewise, the front bumpers
+  std::int16_t control = 0;      ///< the server's heading setpoint
+  std::uint16_t ptu = 0;         ///< ARCOS: flags; see kFlagMotors and the others
+  std::uint8_t say = 0;          ///< P2OS, ARCOS: the compass [2 deg]
   std::vector<RawSonar> sonars;  ///< the new readings, in the order of firing
   // Everything behind the sonars is missing in the packets of some servers: 0 then.
-  std::uint16_t timer = 0;
+  std::uint16_t timer = 0;  ///< P2OS, ARCOS: the gripper's bits in the high byte
   std::uint8_t analog = 0;
   std::uint8_t digital_input = 0;
   std::uint8_t digital_output = 0;
+  TrailingFields trailing;
+  std::size_t unknown_bytes = 0;  ///< behind all that; not written by encode
 
   bool operator==(const InformationPacket&) const = default;
 };
 
-/// Sonar readings beyond this many do not fit into a packet; encode leaves them out.
+// Bits of ARCOS' flags, in the place of `ptu`.
+inline constexpr unsigned kFlagMotors = 1U << 0U;
+inline constexpr unsigned kFlagSonars = 0xFU << 1U;  ///< a bit for each array
+inline constexpr unsigned kFlagEmergencyStop = 1U << 5U;
+
+/// Sonar readings beyond this many do not fit into a packet; encode leaves them out. With trailing
+/// fields, six fewer at the most.
 inline constexpr std::size_t kMaxSonarsInPacket = (kMaxBody - 25) / 3;
 
 /// The whole packet (frame included).
 Bytes encode(const InformationPacket& packet);
 
-/// Reads a packet's body. Fields that later servers append are skipped. Nothing if it is another
-/// packet, or ends before its sonar readings do.
+/// Reads a packet's body. Bytes behind the fields that are known are counted and skipped. Nothing
+/// if it is another packet, or ends before its sonar readings do.
 std::optional<InformationPacket> decode_information(ByteView body);
 
 struct Sonar {
@@ -83,6 +105,19 @@ struct Information {
   std::uint8_t analog = 0;
   std::uint8_t digital_input = 0;
   std::uint8_t digital_output = 0;
+
+  // Servers since the manual's; nothing where the robot's does not say.
+  std::uint8_t front_bumpers = 0;  ///< bit 0 the first switch from the left
+  std::uint8_t rear_bumpers = 0;   ///< likewise
+  std::optional<bool> motors_on;
+  std::optional<bool> emergency_stop;
+  std::optional<double> compass;  ///< [rad] (-pi, pi], as the compass counts
+  std::uint8_t gripper_bits = 0;  ///< clients disagree on what they mean; as they came
+  std::optional<std::uint8_t> charge_state;
+  std::optional<double> state_of_charge;   ///< [1] 0 to 1
+  std::optional<double> lateral_velocity;  ///< [m/s]
+  std::optional<double> temperature;       ///< [deg C]
+  std::optional<std::uint16_t> faults;
 };
 
 /// Everything but the position, which rolls over: see DeadReckoning.

@@ -14,6 +14,14 @@ struct SonarUnit {
   Pose pose_in_robot;  ///< of the transducer, looking along its heading
 };
 
+/// Which generation of server the robot runs; it says what packets look like and which commands
+/// there are.
+enum class Protocol {
+  kPsos,   ///< Pioneer 1 and AT, and what the manual describes
+  kP2os,   ///< P2OS and AROS: Pioneer 2 and 3, AmigoBot, PeopleBot
+  kArcos,  ///< ARCOS: subclasses "...-sh"
+};
+
 /// What a robot parameter file says (manual 3.2 and 10), in SI units. The defaults are the Pioneer
 /// 1's, except that there are no sonars.
 struct RobotParameters {
@@ -32,6 +40,31 @@ struct RobotParameters {
   /// [m/s] Vel2Divisor: the unit of the command VEL2.
   double vel2_unit = 0.004;
 
+  // What the server's generation can do.
+  Protocol protocol = Protocol::kPsos;  ///< Protocol: psos, p2os or arcos
+  bool move_command = false;            ///< HasMoveCommand; true by itself from p2os on
+  bool settable_velocities = false;     ///< SettableVelMaxes; likewise
+  bool settable_accelerations = false;  ///< SettableAccsDecs; likewise
+  int switch_to_baud = 0;               ///< [baud] SwitchToBaudRate: by HOSTBAUD; 0: never
+  double watchdog = 2.0;                ///< [s] Watchdog (manual 5.4.4)
+
+  // Equipment.
+  int front_bumpers = 0;  ///< NumFrontBumpers: switches, the left one first
+  int rear_bumpers = 0;   ///< NumRearBumpers: likewise, the left one first
+  bool gripper = false;   ///< HasGripper
+  bool compass = false;   ///< HasCompass
+  bool gyro = false;      ///< HasGyro
+  bool charger = false;   ///< HasCharger
+  /// [m] EncoderTicksPerMM: the way of one count of an encoder packet; 0: the server has none.
+  double encoder_unit = 0.0;
+  double low_battery = 11.5;       ///< [V] LowBattery: the server complains
+  double shutdown_voltage = 11.0;  ///< [V] ShutdownVolts
+
+  int sonar_arrays = 1;         ///< SonarArrays: arrays fire at the same time, each sonar in turn
+  double sonar_period = 0.040;  ///< [s] SonarPeriod: from one firing of an array to its next
+
+  double length = 0.0;      ///< [m] RobotLength; 0: the diameter
+  double width = 0.0;       ///< [m] RobotWidth; likewise
   double radius = 0.220;    ///< [m] RobotRadius
   double diagonal = 0.090;  ///< [m] RobotDiagonal: half-height to the diagonal of the octagon
 
