@@ -6,6 +6,7 @@
 
 Class     Pioneer
 Subclass  psos43m           ; the version of the robot's own PSOS
+Protocol  psos
 
 ;; One unit of the information packet
 AngleConvFactor  0.0061359   ; rad (2 pi / 1024)
@@ -38,11 +39,13 @@ SideBuffer       40          ; readings of each side
 FrontMaxRange    2500        ; mm
 
 SonarNum 7
-;;        #    x     y    th    mm, mm, degrees
-SonarUnit 0  100   100    90
-SonarUnit 1  120    80    30
-SonarUnit 2  130    40    15
-SonarUnit 3  130     0     0
-SonarUnit 4  130   -40   -15
-SonarUnit 5  120   -80   -30
-SonarUnit 6  100  -100   -90
+SonarArrays 1
+SonarPeriod 40  ; ms from one firing to the next
+;;         #    x     y    th    mm, mm, degrees
+SonarUnit  0  100   100    90
+SonarUnit  1  120    80    30
+SonarUnit  2  130    40    15
+SonarUnit  3  130     0     0
+SonarUnit  4  130   -40   -15
+SonarUnit  5  120   -80   -30
+SonarUnit  6  100  -100   -90

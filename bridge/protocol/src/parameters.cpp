@@ -70,6 +70,7 @@ constexpr std::array kNumbers{
     NumberKeyword{"LowBattery", &P::low_battery, 1.0, 0.0, 100.0},
     NumberKeyword{"ShutdownVolts", &P::shutdown_voltage, 1.0, 0.0, 100.0},
     NumberKeyword{"SonarPeriod", &P::sonar_period, kMillimetre, 1.0, 1000.0},
+    NumberKeyword{"SonarMaxRange", &P::sonar_max_range, kMillimetre, 1.0, 100000.0},
     NumberKeyword{"FrontMaxRange", &P::front_max_range, kMillimetre, 0.0, 100000.0},
 };
 

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 #include "saphira/base/text.hpp"
 
@@ -44,6 +47,247 @@ TEST(Parameters, EveryShippedFileLoads) {
     ++count;
   }
   EXPECT_GT(count, 0);
+}
+
+// What ARIA's and Player's parameters say of each subclass: a robot of it connects with our file.
+struct Subclass {
+  const char* name;
+  double angle, distance, velocity, range, difference, vel2;
+  double max_velocity, max_rotation_velocity;
+  std::size_t sonars;
+  double radius;
+};
+
+class EverySubclass : public ::testing::TestWithParam<Subclass> {};
+
+TEST_P(EverySubclass, HasItsFile) {
+  const Subclass& s = GetParam();
+  const auto names = parameter_file_names("Pioneer", s.name);
+  const auto p = load_parameters(source("config/robots/" + names.at(0)));
+  EXPECT_EQ(p.robot_class, "Pioneer");
+  EXPECT_EQ(p.subclass, s.name);
+  EXPECT_NEAR(p.angle_unit, s.angle, 1e-6);
+  EXPECT_DOUBLE_EQ(p.distance_unit, s.distance * 1e-3);
+  EXPECT_DOUBLE_EQ(p.velocity_unit, s.velocity * 1e-3);
+  EXPECT_DOUBLE_EQ(p.range_unit, s.range * 1e-3);
+  EXPECT_NEAR(p.rotation_per_difference, s.difference * 1e3, 1e-9);
+  EXPECT_DOUBLE_EQ(p.vel2_unit, s.vel2 * 1e-3);
+  EXPECT_DOUBLE_EQ(p.max_velocity, s.max_velocity * 1e-3);
+  EXPECT_DOUBLE_EQ(p.max_rotation_velocity, radians(s.max_rotation_velocity));
+  EXPECT_EQ(p.sonars.size(), s.sonars);
+  EXPECT_DOUBLE_EQ(p.radius, s.radius * 1e-3);
+  const std::string_view name = s.name;
+  EXPECT_EQ(p.protocol, name.ends_with("-sh")                                  ? Protocol::kArcos
+                        : name.starts_with("psos") || name.starts_with("pion") ? Protocol::kPsos
+                                                                               : Protocol::kP2os);
+  EXPECT_EQ(p.move_command, p.protocol != Protocol::kPsos);
+}
+
+// GoogleTest's names have letters and digits only.
+std::string printable(const ::testing::TestParamInfo<Subclass>& subclass) {
+  std::string name = subclass.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  std::replace(name.begin(), name.end(), '+', 'p');
+  return name;
+}
+
+constexpr double kP2Angle = 2.0 * kPi / 4096.0;
+INSTANTIATE_TEST_SUITE_P(
+    Robots, EverySubclass,
+    ::testing::Values(
+        Subclass{"pion1m", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
+        Subclass{"pion1x", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
+        Subclass{"psos1m", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
+        Subclass{"psos1x", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
+        Subclass{"psos43m", 0.0061359, 0.05066, 2.5332, 0.1734, 0.00333333, 4, 400, 100, 7, 220},
+        Subclass{"pionat", 0.0061359, 0.07, 2.5332, 0.1734, 0.00333333, 4, 500, 100, 7, 330},
+        Subclass{"p2dx", kP2Angle, 0.84, 1, 0.268, 0.0056, 20, 2200, 500, 16, 250},
+        Subclass{"p2de", kP2Angle, 0.969, 1, 0.268, 0.0056, 20, 2200, 500, 16, 250},
+        Subclass{"p2ce", kP2Angle, 0.826, 1, 0.268, 0.0057, 20, 2200, 500, 16, 250},
+        Subclass{"p2df", kP2Angle, 0.485, 1, 0.268, 0.006, 20, 2200, 500, 16, 250},
+        Subclass{"p2d8", kP2Angle, 0.485, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
+        Subclass{"p2d8+", kP2Angle, 0.485, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
+        Subclass{"p2at", kP2Angle, 1.32, 1, 0.268, 0.0034, 20, 1200, 300, 16, 500},
+        Subclass{"p2at8", kP2Angle, 1.32, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
+        Subclass{"p2at8+", kP2Angle, 0.465, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
+        Subclass{"p3dx", kP2Angle, 0.485, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
+        Subclass{"p3dx-sh", kP2Angle, 1, 1, 1, 0.0056, 20, 2200, 500, 16, 250},
+        Subclass{"p3at", kP2Angle, 0.465, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
+        Subclass{"p3at-sh", kP2Angle, 1, 1, 1, 0.0034, 20, 1200, 300, 16, 500},
+        Subclass{"amigo", kP2Angle, 0.5083, 0.6154, 1, 0.011, 20, 1000, 300, 8, 180},
+        Subclass{"amigo-sh", kP2Angle, 1, 1, 1, 0.011, 20, 1000, 300, 8, 180},
+        Subclass{"p2pb", kP2Angle, 0.424, 1, 0.268, 0.0056, 20, 2200, 500, 24, 300},
+        Subclass{"p2pp", kP2Angle, 0.485, 1, 0.268, 0.006, 20, 2200, 500, 24, 300},
+        Subclass{"perfpb", kP2Angle, 0.485, 1, 1, 0.006, 20, 2200, 500, 32, 340},
+        Subclass{"perfpb+", kP2Angle, 0.485, 1, 1, 0.006, 20, 2200, 500, 32, 340},
+        Subclass{"peoplebot-sh", kP2Angle, 1, 1, 1, 0.006, 20, 2200, 500, 32, 340},
+        Subclass{"powerbot", kP2Angle, 0.5813, 1, 1, 0.00373, 20, 2000, 360, 32, 550},
+        Subclass{"powerbot-sh", kP2Angle, 1, 1, 1, 0.00373, 20, 2000, 360, 32, 550},
+        Subclass{"patrolbot-sh", kP2Angle, 1, 1, 1, 0.0056, 20, 2200, 500, 16, 250}),
+    printable);
+
+// The classes whose servers send no subclass (Table 5-7), and others by their class.
+TEST(Parameters, ClassesWithoutSubclass) {
+  for (const std::string robot_class : {"B14", "B21", "Khepera", "Erratic", "Flakey"}) {
+    const auto names = parameter_file_names(robot_class, "");
+    const auto p = load_parameters(source("config/robots/" + names.at(0)));
+    EXPECT_EQ(p.robot_class, robot_class);
+    EXPECT_GE(p.sonars.size(), 8U);
+  }
+}
+
+// Sonars stand on or in the hull and look away from the middle.
+TEST(Parameters, SonarsOfEveryFileLookOutward) {
+  for (const auto& entry : std::filesystem::directory_iterator(source("config/robots"))) {
+    if (entry.path().extension() != ".p")
+      continue;
+    const auto p = load_parameters(entry.path().string());
+    for (const SonarUnit& unit : p.sonars) {
+      EXPECT_LE(unit.pose_in_robot.position().norm(), p.radius + 0.1)
+          << entry.path() << " " << int{unit.number};
+      EXPECT_GT(unit.pose_in_robot.position().dot(unit.pose_in_robot.direction()), 0.0)
+          << entry.path() << " " << int{unit.number};
+    }
+  }
+}
+
+// Each shipped file, broken in each of these ways, gives the error at the right place.
+struct Breakage {
+  const char* name;
+  // Changes the lines; where the error must be.
+  std::pair<int, int> (*apply)(std::vector<std::string>& lines);
+  const char* expected;
+};
+
+int line_with(const std::vector<std::string>& lines, const std::string& keyword) {
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].starts_with(keyword))
+      return static_cast<int>(i);
+  ADD_FAILURE() << keyword << " is missing";
+  return 0;
+}
+
+using Lines = std::vector<std::string>;
+const Breakage kBreakages[] = {
+    {"a word for a number",
+     [](Lines& l) {
+       const int i = line_with(l, "RobotRadius");
+       l[static_cast<std::size_t>(i)] = "RobotRadius  wide";
+       return std::pair{i + 1, 14};
+     },
+     "expected a number (RobotRadius)"},
+    {"a number with a unit",
+     [](Lines& l) {
+       const int i = line_with(l, "MaxVelocity");
+       l[static_cast<std::size_t>(i)] = "MaxVelocity 400mm/s";
+       return std::pair{i + 1, 13};
+     },
+     "expected a number"},
+    {"an unknown keyword",
+     [](Lines& l) {
+       const int i = line_with(l, "Battery");
+       l[static_cast<std::size_t>(i)] = "  Batery 12";
+       return std::pair{i + 1, 3};
+     },
+     "expected a keyword"},
+    {"a keyword twice",
+     [](Lines& l) {
+       l.push_back("EncodeJitter 0.01");
+       return std::pair{static_cast<int>(l.size()), 1};
+     },
+     "once"},
+    {"no value",
+     [](Lines& l) {
+       const int i = line_with(l, "DiffConvFactor");
+       l[static_cast<std::size_t>(i)] = "DiffConvFactor";
+       return std::pair{i + 1, 15};
+     },
+     "expected DiffConvFactor"},
+    {"out of range",
+     [](Lines& l) {
+       const int i = line_with(l, "AngleConvFactor");
+       l[static_cast<std::size_t>(i)] = "AngleConvFactor -0.001";
+       return std::pair{i + 1, 17};
+     },
+     "between"},
+    {"one word too many",
+     [](Lines& l) {
+       const int i = line_with(l, "DistConvFactor");
+       l[static_cast<std::size_t>(i)] = "DistConvFactor 0.5 mm";
+       return std::pair{i + 1, 20};
+     },
+     "end of"},
+    {"a decimal comma",
+     [](Lines& l) {
+       const int i = line_with(l, "VelConvFactor");
+       l[static_cast<std::size_t>(i)] = "VelConvFactor 2,5";
+       return std::pair{i + 1, 15};
+     },
+     "expected a number"},
+    {"a sonar too few",
+     [](Lines& l) {
+       const int i = line_with(l, "SonarUnit  3");
+       l.erase(l.begin() + i);
+       return std::pair{line_with(l, "SonarNum") + 1, 10};
+     },
+     "SonarUnit 3 is missing"},
+    {"a sonar twice",
+     [](Lines& l) {
+       const int i = line_with(l, "SonarUnit  2");
+       l[static_cast<std::size_t>(i)] = "SonarUnit 1 100 100 90";
+       return std::pair{i + 1, 11};
+     },
+     "once"},
+    {"a sonar without bearing",
+     [](Lines& l) {
+       const int i = line_with(l, "SonarUnit  2");
+       l[static_cast<std::size_t>(i)] = "SonarUnit 2 100 100";
+       return std::pair{i + 1, 20};
+     },
+     "bearing"},
+    {"an unknown generation",
+     [](Lines& l) {
+       const int i = line_with(l, "Protocol");
+       l[static_cast<std::size_t>(i)] = "Protocol psos5";
+       return std::pair{i + 1, 10};
+     },
+     "expected psos, p2os or arcos"},
+    {"half a sonar",
+     [](Lines& l) {
+       const int i = line_with(l, "SonarNum");
+       l[static_cast<std::size_t>(i)] = "SonarNum 7.5";
+       return std::pair{i + 1, 10};
+     },
+     "whole number"},
+};
+
+TEST(BrokenFiles, OfEveryShippedRobotSayWhere) {
+  for (const auto& entry : std::filesystem::directory_iterator(source("config/robots"))) {
+    if (entry.path().extension() != ".p")
+      continue;
+    const std::string text = read_file(entry.path().string());
+    for (const Breakage& breakage : kBreakages) {
+      Lines lines;
+      for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        lines.push_back(text.substr(at, end - at));
+        at = end + 1;
+      }
+      const auto [line, column] = breakage.apply(lines);
+      std::string broken;
+      for (const std::string& l : lines)
+        broken += l + "\n";
+      try {
+        parse_parameters(broken, "broken.p");
+        ADD_FAILURE() << entry.path() << ": " << breakage.name << ": no error";
+      } catch (const FileError& error) {
+        EXPECT_EQ(error.line(), line) << entry.path() << ": " << error.what();
+        EXPECT_EQ(error.column(), column) << entry.path() << ": " << error.what();
+        EXPECT_NE(std::string(error.what()).find(breakage.expected), std::string::npos)
+            << entry.path() << ": " << error.what();
+      }
+    }
+  }
 }
 
 TEST(Parameters, ThePioneer) {
@@ -115,6 +359,11 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"SonarNum 1\nSonarUnit 0 1 2\n", 2, 16, "bearing"},
         Broken{"SonarNum 1\nSonarUnit 0 1 2 3\nSonarUnit 0 1 2 3\n", 3, 11, "once"},
         Broken{"Class\n", 1, 6, "a word"}, Broken{"DistConvFactor 0\n", 1, 16, "between"},
+        Broken{"HasGripper maybe\n", 1, 12, "true or false"},
+        Broken{"HasGripper\n", 1, 11, "true or false"},
+        Broken{"SwitchToBaudRate 12345\n", 1, 18, "38400"},
+        Broken{"NumFrontBumpers 8\n", 1, 17, "between"},
+        Broken{"Protocol\n", 1, 9, "psos, p2os or arcos"},
         Broken{"FrontBuffer 201\n", 1, 13, "between"}));
 
 TEST(Parameters, AMissingFileIsNamed) {

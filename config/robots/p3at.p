@@ -1,0 +1,69 @@
+;; Parameters of the Pioneer 3 AT with the H8S controller.
+;;
+;; Conversion factors, limits, radius and the places of the sonars are those that ARIA and Player use
+;; for this subclass. Accelerations, batteries, encoders and errors are ours: settings that such a
+;; robot may have. Keywords: README.md.
+
+Class     Pioneer
+Subclass  p3at
+Protocol  p2os
+
+;; One unit of the packets
+AngleConvFactor  0.00153398 ; rad
+DistConvFactor   0.465      ; mm
+VelConvFactor    1          ; mm/s
+RangeConvFactor  1          ; mm
+DiffConvFactor   0.0034     ; rad of turn per mm of half the difference of the wheels
+Vel2Divisor      20         ; mm/s
+
+RobotRadius      500        ; mm
+RobotDiagonal    120        ; mm, half-height to the diagonal of the octagon
+RobotWidth       505        ; mm
+RobotLength      626        ; mm
+
+MaxVelocity      1200       ; mm/s
+MaxRVelocity     300        ; deg/s
+Acceleration     300        ; mm/s2
+Deceleration     300        ; mm/s2
+RotAcceleration  100        ; deg/s2
+RotDeceleration  100        ; deg/s2
+
+;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+EncodeJitter     0.01
+AngleJitter      0.01
+AngleDrift       0.001
+
+;; Equipment
+Battery           12.8      ; V
+LowBattery        11.5      ; V
+ShutdownVolts     11.0      ; V
+EncoderTicksPerMM 128       ; counts
+NumFrontBumpers   5
+NumRearBumpers    5
+SwitchToBaudRate  38400     ; baud
+
+;; The sonar buffers of the LPS
+FrontBuffer      30         ; readings
+SideBuffer       40         ; readings of each side
+FrontMaxRange    2500       ; mm
+
+SonarNum 16
+SonarArrays 2   ; that fire at the same time
+SonarPeriod 40  ; ms from one firing of an array to its next
+;;         #     x     y    th    mm, mm, degrees
+SonarUnit  0   147   136    90
+SonarUnit  1   193   119    50
+SonarUnit  2   227    79    30
+SonarUnit  3   245    27    10
+SonarUnit  4   245   -27   -10
+SonarUnit  5   227   -79   -30
+SonarUnit  6   193  -119   -50
+SonarUnit  7   147  -136   -90
+SonarUnit  8  -144  -136   -90
+SonarUnit  9  -189  -119  -130
+SonarUnit 10  -223   -79  -150
+SonarUnit 11  -241   -27  -170
+SonarUnit 12  -241    27   170
+SonarUnit 13  -223    79   150
+SonarUnit 14  -189   119   130
+SonarUnit 15  -144   136    90

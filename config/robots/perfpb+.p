@@ -1,0 +1,85 @@
+;; Parameters of the Performance PeopleBot Plus.
+;;
+;; Conversion factors, limits, radius and the places of the sonars are those that ARIA and Player use
+;; for this subclass. Accelerations, batteries, encoders and errors are ours: settings that such a
+;; robot may have. Keywords: README.md.
+
+Class     Pioneer
+Subclass  perfpb+
+Protocol  p2os
+
+;; One unit of the packets
+AngleConvFactor  0.00153398 ; rad
+DistConvFactor   0.485      ; mm
+VelConvFactor    1          ; mm/s
+RangeConvFactor  1          ; mm
+DiffConvFactor   0.006      ; rad of turn per mm of half the difference of the wheels
+Vel2Divisor      20         ; mm/s
+
+RobotRadius      340        ; mm
+RobotDiagonal    120        ; mm, half-height to the diagonal of the octagon
+RobotWidth       425        ; mm
+RobotLength      513        ; mm
+
+MaxVelocity      2200       ; mm/s
+MaxRVelocity     500        ; deg/s
+Acceleration     300        ; mm/s2
+Deceleration     300        ; mm/s2
+RotAcceleration  100        ; deg/s2
+RotDeceleration  100        ; deg/s2
+
+;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+EncodeJitter     0.01
+AngleJitter      0.01
+AngleDrift       0.001
+
+;; Equipment
+Battery           12.8      ; V
+LowBattery        11.5      ; V
+ShutdownVolts     11.0      ; V
+EncoderTicksPerMM 128       ; counts
+NumFrontBumpers   5
+NumRearBumpers    5
+HasGripper        true
+
+;; The sonar buffers of the LPS
+FrontBuffer      30         ; readings
+SideBuffer       40         ; readings of each side
+FrontMaxRange    2500       ; mm
+
+SonarNum 32
+SonarArrays 4   ; that fire at the same time
+SonarPeriod 40  ; ms from one firing of an array to its next
+;;         #     x     y    th    mm, mm, degrees
+SonarUnit  0    69   136    90
+SonarUnit  1   114   119    50
+SonarUnit  2   148    78    30
+SonarUnit  3   166    27    10
+SonarUnit  4   166   -27   -10
+SonarUnit  5   148   -78   -30
+SonarUnit  6   114  -119   -50
+SonarUnit  7    69  -136   -90
+SonarUnit  8  -157  -136   -90
+SonarUnit  9  -203  -119  -130
+SonarUnit 10  -237   -78  -150
+SonarUnit 11  -255   -27  -170
+SonarUnit 12  -255    27   170
+SonarUnit 13  -237    78   150
+SonarUnit 14  -203   119   130
+SonarUnit 15  -157   136    90
+SonarUnit 16   -20   136    90
+SonarUnit 17    24   119    50
+SonarUnit 18    58    78    30
+SonarUnit 19    77    27    10
+SonarUnit 20    77   -27   -10
+SonarUnit 21    58   -78   -30
+SonarUnit 22    24  -119   -50
+SonarUnit 23   -20  -136   -90
+SonarUnit 24  -191  -136   -90
+SonarUnit 25  -237  -119  -130
+SonarUnit 26  -271   -78  -150
+SonarUnit 27  -290   -27  -170
+SonarUnit 28  -290    27   170
+SonarUnit 29  -271    78   150
+SonarUnit 30  -237   119   130
+SonarUnit 31  -191   136    90
