@@ -11,12 +11,45 @@ namespace {
 
 // The heading servo is content within this.
 constexpr double kHeadingDeadband = 0.001;  // [rad]
+constexpr double kWayDeadband = 0.0005;     // [m]
+
+// What rubber holds on a floor: four tenths of its weight.
+constexpr double kGrip = 4.0;  // [m/s2]
+
+// The motors' short circuit.
+constexpr double kEmergencyDeceleration = 6.0;  // [m/s2]
+
+// The share of the wheels' way that the encoders still count where the robot cannot go.
+constexpr double kPushSlip = 0.2;
+
+// Nearer things press a bumper.
+constexpr double kBumperGap = 0.005;  // [m]
+
+// A lead-acid battery falls nearly evenly by this share of its voltage until it is empty, and by
+// that of the sag while the motors run.
+constexpr double kBatteryFall = 0.13;
+constexpr double kBatterySag = 0.01;
+// From full to empty at rest, and how much faster with the motors running.
+constexpr double kBatteryLife = 4.0 * 3600.0;  // [s]
+constexpr double kMotorLoad = 2.5;
 
 // How far from its hull the robot looks for what it might touch.
 constexpr double kLookout = 1.0;  // [m]
 
 // A contact is over when the hull is this far away.
 constexpr double kContactEnds = 0.005;  // [m]
+
+// What a client may set.
+constexpr double kLeastAcceleration = 0.001;  // [m/s2]
+constexpr double kMostAcceleration = 10.0;
+constexpr double kLeastRotationAcceleration = 0.01;  // [rad/s2]
+constexpr double kMostRotationAcceleration = 50.0;
+
+// The falling side of a trapezoid: the largest speed from which, after one more tick at it, one can
+// still stop at the setpoint.
+double falling_speed(double left, double deceleration) {
+  return deceleration * (std::sqrt(kTick * kTick + 2.0 * left / deceleration) - kTick);
+}
 
 // Towards the target: away from zero by `up`, towards zero by `down`, and not through zero within
 // one step.
@@ -40,6 +73,8 @@ Robot::Robot(Scene& scene, std::size_t number, const protocol::RobotParameters& 
       radius_(parameters.radius),
       max_velocity_(parameters.max_velocity),
       max_rotation_velocity_(parameters.max_rotation_velocity),
+      move_velocity_(max_velocity_),
+      turn_velocity_(max_rotation_velocity_),
       acceleration_(parameters.acceleration),
       deceleration_(parameters.deceleration),
       rotation_acceleration_(parameters.rotation_acceleration),
@@ -49,13 +84,21 @@ Robot::Robot(Scene& scene, std::size_t number, const protocol::RobotParameters& 
       angle_jitter_(parameters.angle_jitter),
       drift_(parameters.angle_drift),
       random_(seed, 1),
-      pose_in_world_(start_in_world) {
+      pose_in_world_(start_in_world),
+      full_voltage_(parameters.battery) {
   if (random_.chance(0.5))
     drift_ = -drift_;
 }
 
 void Robot::set_velocity(double velocity) {
+  translation_ = Translation::kVelocity;
   velocity_setpoint_ = std::clamp(velocity, -max_velocity_, max_velocity_);
+}
+
+void Robot::move_by(double way) {
+  translation_ = Translation::kWay;
+  way_setpoint_ = way_ + way;
+  velocity_setpoint_ = 0.0;
 }
 
 void Robot::set_heading(double heading_in_odom) {
@@ -87,22 +130,71 @@ void Robot::stop() {
   set_rotation_velocity(0.0);
 }
 
+void Robot::emergency_stop() {
+  stop();
+  emergency_ = true;
+}
+
 void Robot::brake(bool on) {
   if (on && !braked_)
     set_rotation_velocity(0.0);
   braked_ = on;
 }
 
+void Robot::enable(bool on) {
+  if (!on && enabled_)
+    set_rotation_velocity(0.0);
+  enabled_ = on;
+}
+
+void Robot::set_max_velocity(double velocity) {
+  move_velocity_ = std::clamp(velocity, 0.001, max_velocity_);
+}
+
+void Robot::set_acceleration(double acceleration) {
+  acceleration_ = std::clamp(acceleration, kLeastAcceleration, kMostAcceleration);
+}
+
+void Robot::set_deceleration(double deceleration) {
+  deceleration_ = std::clamp(deceleration, kLeastAcceleration, kMostAcceleration);
+}
+
+void Robot::set_max_rotation_velocity(double velocity) {
+  turn_velocity_ = std::clamp(velocity, 0.001, max_rotation_velocity_);
+}
+
+void Robot::set_rotation_acceleration(double acceleration) {
+  rotation_acceleration_ =
+      std::clamp(acceleration, kLeastRotationAcceleration, kMostRotationAcceleration);
+}
+
+void Robot::set_rotation_deceleration(double deceleration) {
+  rotation_deceleration_ =
+      std::clamp(deceleration, kLeastRotationAcceleration, kMostRotationAcceleration);
+}
+
+bool Robot::place(const Pose& pose_in_world) {
+  if (scene_->distance(pose_in_world.position(), number_) < radius_)
+    return false;
+  pose_in_world_ = {pose_in_world.x, pose_in_world.y, norm2_angle(pose_in_world.th)};
+  in_contact_ = false;
+  free_way_ = 0.0;
+  scene_->moved(number_);
+  return true;
+}
+
 double Robot::left_velocity() const {
-  return velocity_ - rotation_velocity_ / rotation_per_difference_;
+  return wheel_velocity_ - rotation_velocity_ / rotation_per_difference_;
 }
 
 double Robot::right_velocity() const {
-  return velocity_ + rotation_velocity_ / rotation_per_difference_;
+  return wheel_velocity_ + rotation_velocity_ / rotation_per_difference_;
 }
 
 double Robot::target_velocity() const {
-  return braked_ ? 0.0 : velocity_setpoint_;
+  if (!powered())
+    return 0.0;
+  return translation_ == Translation::kWay ? wanted_velocity() : velocity_setpoint_;
 }
 
 double Robot::target_heading() const {
@@ -110,37 +202,52 @@ double Robot::target_heading() const {
 }
 
 double Robot::target_rotation_velocity() const {
-  return rotation_ == Rotation::kHeading || braked_ ? 0.0 : rotation_setpoint_;
+  return rotation_ == Rotation::kHeading || !powered() ? 0.0 : rotation_setpoint_;
 }
 
 double Robot::clearance() const {
   return scene_->distance(pose_in_world_.position(), number_) - radius_;
 }
 
+double Robot::wanted_velocity() const {
+  const double left = way_setpoint_ - way_;
+  const double size = std::abs(left);
+  if (size < kWayDeadband)
+    return 0.0;
+  return std::copysign(std::min({falling_speed(size, deceleration_), move_velocity_, size / kTick}),
+                       left);
+}
+
 double Robot::wanted_rotation_velocity() const {
-  if (rotation_ == Rotation::kVelocity)
+  if (rotation_ == Rotation::kVelocity || !powered())
     return target_rotation_velocity();
   const double error = norm2_angle(heading_setpoint_ - pose_in_odom_.th);
   const double size = std::abs(error);
   if (size < kHeadingDeadband)
     return 0.0;
-  // The falling side of the trapezoid: the largest speed from which the robot, after one more tick
-  // at it, can still stop at the setpoint.
-  const double a = rotation_deceleration_;
-  const double falling = a * (std::sqrt(kTick * kTick + 2.0 * size / a) - kTick);
-  const double speed = std::min({falling, max_rotation_velocity_, size / kTick});
+  const double speed =
+      std::min({falling_speed(size, rotation_deceleration_), turn_velocity_, size / kTick});
   return std::copysign(speed, error);
 }
 
 void Robot::tick() {
-  velocity_ = approach(velocity_, target_velocity(), acceleration_ * kTick, deceleration_ * kTick);
+  const double deceleration =
+      emergency_ ? std::max(deceleration_, kEmergencyDeceleration) : deceleration_;
+  wheel_velocity_ =
+      approach(wheel_velocity_, target_velocity(), acceleration_ * kTick, deceleration * kTick);
+  const double pull = wheel_velocity_ - velocity_;
+  velocity_ = std::abs(pull) <= kGrip * kTick ? wheel_velocity_
+                                              : velocity_ + std::copysign(kGrip * kTick, pull);
   rotation_velocity_ = approach(rotation_velocity_, wanted_rotation_velocity(),
                                 rotation_acceleration_ * kTick, rotation_deceleration_ * kTick);
   // The others may have come nearer.
   if (scene_->has_movable(number_))
     free_way_ -= scene_->fastest() * kTick;
+  charge_ = std::max(0.0, charge_ - (moving() ? kMotorLoad : 1.0) * kTick / kBatteryLife);
   if (moving())
     move(velocity_ * kTick, rotation_velocity_ * kTick);
+  else
+    emergency_ = false;
 }
 
 // What the robot might touch.
@@ -172,6 +279,7 @@ double Robot::free_part(const Things& things, const Vec2& way, double& clearance
 }
 
 void Robot::move(double way, double turn) {
+  double slip = (wheel_velocity_ - velocity_) * kTick;
   const double middle = pose_in_world_.th + turn / 2.0;
   const Vec2 along(std::cos(middle), std::sin(middle));
   free_way_ -= std::abs(way);
@@ -191,7 +299,8 @@ void Robot::move(double way, double turn) {
       if (!in_contact_)
         ++contacts_;
       in_contact_ = true;
-      velocity_ = 0.0;
+      velocity_ = wheel_velocity_ = 0.0;
+      slip += kPushSlip * (1.0 - part) * way;
       way *= part;
     } else if (clearance_after > kContactEnds) {
       in_contact_ = false;
@@ -203,16 +312,56 @@ void Robot::move(double way, double turn) {
   pose_in_world_.th = norm2_angle(pose_in_world_.th + turn);
   scene_->moved(number_);
 
-  double measured_way = way;
+  double measured_way = way + slip;
   double measured_turn = turn + drift_ * way;
   if (encode_jitter_ > 0.0 && way != 0.0)
     measured_way += random_.normal(0.0, encode_jitter_ * std::sqrt(std::abs(way)));
   if (angle_jitter_ > 0.0 && turn != 0.0)
     measured_turn += random_.normal(0.0, angle_jitter_ * std::sqrt(std::abs(turn)));
+  way_ += measured_way;
+  turned_ += measured_turn;
   const double measured_middle = pose_in_odom_.th + measured_turn / 2.0;
   pose_in_odom_.x += measured_way * std::cos(measured_middle);
   pose_in_odom_.y += measured_way * std::sin(measured_middle);
   pose_in_odom_.th = norm2_angle(pose_in_odom_.th + measured_turn);
+}
+
+std::uint8_t Robot::bumpers(int switches, bool rear) {
+  switches = std::min(switches, 8);
+  if (switches <= 0)
+    return 0;
+  const Vec2 at = pose_in_world_.position();
+  const Things& things = around();
+  std::uint8_t bits = 0;
+  const auto touch = [&](const Vec2& point) {
+    const Vec2 offset = point - at;
+    if (offset.norm() > radius_ + kBumperGap)
+      return;
+    const double bearing =
+        norm2_angle(std::atan2(offset.y(), offset.x()) - pose_in_world_.th + (rear ? kPi : 0.0));
+    if (std::abs(bearing) > kPi / 2.0)
+      return;
+    // From the left: a rear bumper's left is at a negative bearing from the back.
+    const double from_left = kPi / 2.0 - (rear ? -bearing : bearing);
+    const int number = std::min(switches - 1, static_cast<int>(from_left / kPi * switches));
+    bits = static_cast<std::uint8_t>(bits | (1U << static_cast<unsigned>(number)));
+  };
+  for (const Segment& segment : things.segments)
+    touch(nearest_point(segment, at));
+  for (const Disc& disc : things.discs)
+    touch(disc.centre + (at - disc.centre).normalized() * disc.radius);
+  return bits;
+}
+
+double Robot::battery() const {
+  const double sag = moving() ? kBatterySag : 0.0;
+  return full_voltage_ * (1.0 - kBatteryFall * (1.0 - charge_) - sag);
+}
+
+void Robot::set_battery(double voltage) {
+  charge_ = full_voltage_ > 0.0
+                ? std::clamp(1.0 - (1.0 - voltage / full_voltage_) / kBatteryFall, 0.0, 1.0)
+                : 1.0;
 }
 
 }  // namespace saphira::sim

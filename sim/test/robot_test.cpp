@@ -253,6 +253,173 @@ TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
   EXPECT_NEAR(left, kRobots / 2, 40);
 }
 
+// Table 3-1 with the Pioneer's values, as a person would measure it: 10 m by dead reckoning, and
+// one revolution by dead reckoning, against the truth. The figures are those of sim/README.md.
+TEST(Robot, TenMetresAndOneRevolution) {
+  const World world = empty();
+  RobotParameters parameters;
+  parameters.encode_jitter = 0.01;
+  parameters.angle_jitter = 0.02;
+  parameters.angle_drift = 0.003;
+  constexpr int kRobots = 1000;
+  double along = 0.0;
+  double along_squares = 0.0;
+  double aside = 0.0;
+  double heading = 0.0;
+  double turned = 0.0;
+  double turned_squares = 0.0;
+  for (int i = 0; i < kRobots; ++i) {
+    Scene scene(world);
+    Robot& robot =
+        scene.add_robot(parameters, {50.0, 50.0, 0.0}, static_cast<std::uint64_t>(i) + 1);
+    robot.set_heading(0.0);
+    robot.move_by(10.0);
+    run(robot, 2700);
+    ASSERT_FALSE(robot.moving());
+    ASSERT_NEAR(robot.left_way() + robot.right_way(), 20.0, 0.01);
+    along += robot.pose_in_world().x - 60.0;
+    along_squares += std::pow(robot.pose_in_world().x - 60.0, 2);
+    aside += std::abs(robot.pose_in_world().y - 50.0);
+    // The heading servo holds what dead reckoning takes for straight on, within its deadband.
+    heading += std::abs(robot.pose_in_world().th);
+    const double before = norm2_angle(robot.pose_in_world().th - robot.pose_in_odom().th);
+    for (const double target : {120.0, 240.0, 360.0}) {
+      robot.set_heading(radians(target));
+      run(robot, 250);
+    }
+    const double error = norm2_angle(robot.pose_in_world().th - robot.pose_in_odom().th - before);
+    turned += error;
+    turned_squares += error * error;
+  }
+  EXPECT_NEAR(along / kRobots, 0.0, 0.005);
+  EXPECT_NEAR(std::sqrt(along_squares / kRobots), 0.01 * std::sqrt(10.0), 0.003);  // 32 mm
+  EXPECT_NEAR(aside / kRobots, 0.5 * 0.003 * 10.0 * 10.0, 0.010);                  // 15 cm
+  EXPECT_NEAR(heading / kRobots, 0.03, 0.002);
+  EXPECT_NEAR(turned / kRobots, 0.0, 0.006);
+  RecordProperty("along_mm", static_cast<int>(1000.0 * std::sqrt(along_squares / kRobots)));
+  RecordProperty("aside_mm", static_cast<int>(1000.0 * aside / kRobots));
+  RecordProperty("turn_mdeg",
+                 static_cast<int>(1000.0 * degrees(std::sqrt(turned_squares / kRobots))));
+  EXPECT_NEAR(std::sqrt(turned_squares / kRobots), 0.02 * std::sqrt(2.0 * kPi), 0.005);  // 2.9 deg
+}
+
+TEST(Robot, MovesAWayByATrapezoid) {
+  const World world = empty();
+  Scene scene(world);
+  Robot& robot = scene.add_robot({}, {}, 1);
+  robot.move_by(1.0);
+  double top = 0.0;
+  double last = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    robot.tick();
+    top = std::max(top, robot.velocity());
+    ASSERT_LE(robot.velocity() - last, 0.5 * kTick + 1e-9);
+    ASSERT_LE(last - robot.velocity(), 2.0 * kTick + 1e-9);
+    last = robot.velocity();
+    ASSERT_LE(robot.pose_in_odom().x, 1.0005);
+  }
+  EXPECT_NEAR(robot.pose_in_odom().x, 1.0, 0.001);
+  EXPECT_DOUBLE_EQ(top, 0.4);
+  EXPECT_FALSE(robot.moving());
+  robot.set_max_velocity(0.1);
+  robot.set_acceleration(0.1);
+  robot.set_deceleration(0.1);
+  robot.move_by(-0.5);
+  run(robot, 100);
+  EXPECT_NEAR(robot.velocity(), -0.1, 1e-9);
+  run(robot, 600);
+  EXPECT_NEAR(robot.pose_in_odom().x, 0.5, 0.001);
+  robot.move_by(5.0);
+  run(robot, 50);
+  robot.set_velocity(0.0);  // another command leaves the mode
+  run(robot, 200);
+  EXPECT_FALSE(robot.moving());
+  EXPECT_LT(robot.pose_in_odom().x, 0.6);
+}
+
+TEST(Robot, WheelsSlipInAnEmergencyStop) {
+  const World world = empty();
+  Scene scene(world);
+  RobotParameters parameters;
+  parameters.max_velocity = 2.0;
+  Robot& robot = scene.add_robot(parameters, {}, 1);
+  robot.set_velocity(2.0);
+  run(robot, 400);
+  EXPECT_EQ(robot.pose_in_odom().x, robot.pose_in_world().x);
+  const double from = robot.pose_in_world().x;
+  robot.emergency_stop();
+  run(robot, 100);
+  EXPECT_FALSE(robot.moving());
+  // v^2 / 2a, by what the motors do and by what the floor holds.
+  EXPECT_NEAR(robot.pose_in_world().x - from, 0.5, 0.02);
+  EXPECT_NEAR(robot.pose_in_odom().x - from, 4.0 / 12.0, 0.02);
+}
+
+TEST(Robot, WithoutPowerItStands) {
+  const World world = empty();
+  Scene scene(world);
+  Robot& robot = scene.add_robot({}, {}, 1);
+  robot.enable(false);
+  robot.set_velocity(0.3);
+  robot.set_heading(1.0);
+  run(robot, 100);
+  EXPECT_FALSE(robot.moving());
+  robot.enable(true);
+  run(robot, 300);
+  EXPECT_NEAR(robot.velocity(), 0.3, 1e-12);
+  EXPECT_NEAR(robot.pose_in_odom().th, 1.0, 0.002);
+}
+
+TEST(Robot, BumpersSayWhereItTouches) {
+  const World world = walled();
+  const auto touched = [&](double th, bool rear, int switches) {
+    Scene scene(world);
+    Robot& robot = scene.add_robot({}, {1.7, 0.0, radians(th)}, 1);
+    EXPECT_EQ(robot.bumpers(switches, rear), 0);
+    robot.set_velocity(std::abs(th) < 90.0 ? 0.2 : -0.2);
+    run(robot, 500);
+    return static_cast<int>(robot.bumpers(switches, rear));
+  };
+  // Five in front: 36 degrees each, the leftmost first.
+  EXPECT_EQ(touched(0.0, false, 5), 0b00100);
+  EXPECT_EQ(touched(-40.0, false, 5), 0b00010);  // the wall is at its left
+  EXPECT_EQ(touched(40.0, false, 5), 0b01000);
+  EXPECT_EQ(touched(0.0, true, 5), 0);
+  EXPECT_EQ(touched(180.0, true, 5), 0b00100);
+  EXPECT_EQ(touched(180.0, false, 5), 0);
+  EXPECT_EQ(touched(140.0, true, 5), 0b01000);  // behind it and to its right
+  EXPECT_EQ(touched(0.0, false, 0), 0);
+}
+
+TEST(Robot, TheBatteryRunsDown) {
+  const World world = empty();
+  Scene scene(world);
+  Robot& robot = scene.add_robot({}, {}, 1);
+  EXPECT_DOUBLE_EQ(robot.battery(), 12.6);
+  run(robot, 360000);  // an hour
+  const double rest = 12.6 - robot.battery();
+  EXPECT_NEAR(rest, 12.6 * 0.13 / 4.0, 0.01);
+  robot.set_rotation_velocity(0.5);
+  run(robot, 100);
+  EXPECT_LT(robot.battery(), 12.6 - rest - 0.1) << "sags under load";
+  run(robot, 359900);
+  robot.stop();
+  run(robot, 100);
+  EXPECT_NEAR(12.6 - rest - robot.battery(), 2.5 * rest, 0.01);
+  robot.set_battery(11.5);
+  EXPECT_NEAR(robot.battery(), 11.5, 1e-9);
+}
+
+TEST(Robot, IsPlacedWhereThereIsRoom) {
+  const World world = walled();
+  Scene scene(world);
+  Robot& robot = scene.add_robot({}, {1.0, 0.0, 0.0}, 1);
+  EXPECT_FALSE(robot.place({1.9, 0.0, 0.0}));
+  EXPECT_TRUE(robot.place({2.5, 1.0, 4.0}));
+  EXPECT_EQ(robot.pose_in_world().x, 2.5);
+  EXPECT_EQ(robot.pose_in_odom(), Pose{});
+}
+
 TEST(Robot, OneSeedOneTrajectory) {
   const World world = walled();
   RobotParameters parameters;

@@ -20,10 +20,13 @@ inline constexpr double kTick = 0.010;  // [s]
 ///
 /// Translation accelerates at a constant rate to the velocity that was set; a heading is reached by
 /// a trapezoidal velocity function that is computed anew in every tick, so a new heading in the
-/// middle of a turn is taken up smoothly (manual 5.5, Figure 5-2). The wheels do what the motors
-/// want but for contact: errors are in what the encoders say. Per tick, with the true way ds and
-/// the true turn dth, dead reckoning measures (manual Table 3-1 names the parameters and does not
-/// define them):
+/// middle of a turn is taken up smoothly (manual 5.5, Figure 5-2).
+///
+/// The wheels do what the motors want. The robot does what the wheels do, but that it changes its
+/// speed by no more than tyres can hold, so that they slip when it stops in an emergency, and that
+/// they slip while it pushes against what does not give. Other errors are in what the encoders say.
+/// Per tick, with the true way ds and the true turn dth, dead reckoning measures (manual Table 3-1
+/// names the parameters and does not define them):
 ///
 ///     way  = ds  + N(0, EncodeJitter * sqrt(|ds| * 1 m))
 ///     turn = dth + N(0, AngleJitter * sqrt(|dth| * 1 rad)) + drift * ds
@@ -41,7 +44,9 @@ class Robot {
 
   // ---- Setpoints. The mode of control follows the command (manual 5.4.6, Table 5-8).
 
-  void set_velocity(double velocity);                    ///< [m/s]
+  void set_velocity(double velocity);  ///< [m/s]
+  /// Translates by a way [m] of dead reckoning, by a trapezoid as turns are made.
+  void move_by(double way);
   void set_heading(double heading_in_odom);              ///< [rad]
   void turn_by(double angle);                            ///< [rad] from the heading now
   void set_rotation_velocity(double velocity);           ///< [rad/s]
@@ -50,11 +55,30 @@ class Robot {
   void set_origin();
   /// Stops and forgets all setpoints.
   void stop();
+  /// The same as hard as the motors can; the wheels may slip.
+  void emergency_stop();
+  /// Motors without power (later robots' ENABLE): the robot brakes and takes setpoints up again
+  /// when they have it, as after brake().
+  void enable(bool on);
   /// Motors off and on again. While off the robot brakes; on again it takes up the velocity that
   /// was set last, at the heading that it then has (manual 5.4.4).
   void brake(bool on);
 
+  // ---- What later robots let the client set; the parameter file's at first. Sizes, clamped to
+  // what
+  // ---- a robot can do at all.
+
+  void set_max_velocity(double velocity);               ///< [m/s] of move_by
+  void set_acceleration(double acceleration);           ///< [m/s2]
+  void set_deceleration(double deceleration);           ///< [m/s2]
+  void set_max_rotation_velocity(double velocity);      ///< [rad/s] of turns to a heading
+  void set_rotation_acceleration(double acceleration);  ///< [rad/s2]
+  void set_rotation_deceleration(double deceleration);  ///< [rad/s2]
+
   void tick();
+
+  /// A hand lifts the robot to elsewhere; dead reckoning does not notice. Whether there was room.
+  bool place(const Pose& pose_in_world);
 
   // ---- State.
 
@@ -62,11 +86,17 @@ class Robot {
   const Pose& pose_in_odom() const { return pose_in_odom_; }       ///< dead reckoning
   double velocity() const { return velocity_; }                    ///< [m/s]
   double rotation_velocity() const { return rotation_velocity_; }  ///< [rad/s]
-  double left_velocity() const;
-  double right_velocity() const;
-  bool moving() const { return velocity_ != 0.0 || rotation_velocity_ != 0.0; }
+  double left_velocity() const;                                    ///< [m/s] of the wheel
+  double right_velocity() const;                                   ///< [m/s] of the wheel
+  /// Ways of the wheels [m] as the encoders have counted them since power-up.
+  double left_way() const { return way_ - turned_ / rotation_per_difference_; }
+  double right_way() const { return way_ + turned_ / rotation_per_difference_; }
+  bool moving() const {
+    return velocity_ != 0.0 || wheel_velocity_ != 0.0 || rotation_velocity_ != 0.0;
+  }
+  bool enabled() const { return enabled_; }
 
-  double target_velocity() const;  ///< [m/s] in force: 0 while braked
+  double target_velocity() const;  ///< [m/s] in force: 0 while braked or without power
   bool controls_heading() const { return rotation_ == Rotation::kHeading; }
   /// [rad] in odom: the heading that was set, or the heading now while none is controlled.
   double target_heading() const;
@@ -79,6 +109,14 @@ class Robot {
   /// How often the robot has run into something. Pushing on, or sliding along, is the same time.
   int contacts() const { return contacts_; }
 
+  /// Which of `switches` bumpers, that share the front (or rear) half of the hull, touch something:
+  /// a bit each, the lowest the leftmost as the robot looks ahead.
+  std::uint8_t bumpers(int switches, bool rear);
+
+  double battery() const;  ///< [V]
+  /// As if it had been charged, or drained, to that voltage at rest.
+  void set_battery(double voltage);
+
   /// From the robot's hull to the nearest thing [m]; infinite in an empty world.
   double clearance() const;
 
@@ -87,8 +125,11 @@ class Robot {
   double fastest() const { return max_velocity_; }  ///< [m/s] that its hull ever moves
 
  private:
+  enum class Translation { kVelocity, kWay };
   enum class Rotation { kVelocity, kHeading };
 
+  bool powered() const { return enabled_ && !braked_; }
+  double wanted_velocity() const;
   double wanted_rotation_velocity() const;
   void move(double way, double turn);
   const Things& around();
@@ -99,7 +140,8 @@ class Robot {
   Things around_;
   Neighbourhood near_;
   double radius_;
-  double max_velocity_, max_rotation_velocity_;
+  double max_velocity_, max_rotation_velocity_;  // what the motors can
+  double move_velocity_, turn_velocity_;         // what moves and turns use
   double acceleration_, deceleration_;
   double rotation_acceleration_, rotation_deceleration_;
   double rotation_per_difference_;
@@ -108,14 +150,24 @@ class Robot {
 
   Pose pose_in_world_;
   Pose pose_in_odom_;
-  double velocity_ = 0.0;
+  double velocity_ = 0.0;        // of the robot
+  double wheel_velocity_ = 0.0;  // of the wheels' middle; another one while they slip
   double rotation_velocity_ = 0.0;
+  double way_ = 0.0;     // [m] counted
+  double turned_ = 0.0;  // [rad] counted
 
+  Translation translation_ = Translation::kVelocity;
   double velocity_setpoint_ = 0.0;
+  double way_setpoint_ = 0.0;
   Rotation rotation_ = Rotation::kVelocity;
   double rotation_setpoint_ = 0.0;
   double heading_setpoint_ = 0.0;
   bool braked_ = false;
+  bool enabled_ = true;
+  bool emergency_ = false;  // until it stands
+
+  double full_voltage_;
+  double charge_ = 1.0;  // of the battery
 
   bool left_stalled_ = false;
   bool right_stalled_ = false;
