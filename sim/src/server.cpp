@@ -14,6 +14,8 @@ namespace {
 // A packet's bytes come within a few milliseconds of each other on any line that we serve.
 constexpr int kGapTicks = 5;
 
+constexpr int kSonarsInArray = 8;
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 template <class... Ts>
@@ -47,7 +49,13 @@ Server::Server(Scene& scene, const RobotParameters& parameters, const Pose& star
       scene_(scene),
       robot_(scene.add_robot(parameters, start_in_world, options.seed)),
       sonars_(scene, robot_.number(), parameters, options.sonar, options.seed),
-      single_step_(options.single_step) {}
+      single_step_(options.single_step),
+      devices_(parameters, options.name),
+      start_in_world_(start_in_world),
+      watchdog_ticks_(static_cast<int>(std::lround(parameters.watchdog / kTick))),
+      later_(parameters.protocol != Protocol::kPsos) {
+  set_default_polling();
+}
 
 void Server::receive(ByteView bytes) {
   quiet_ticks_ = 0;
@@ -155,44 +163,215 @@ bool Server::synchronize(const Bytes& body) {
 }
 
 void Server::act(const Command& command) {
-  const bool opened = is_open();
-  std::visit(Overloaded{
-                 [](const Pulse&) {},
-                 [this](const Open&) { open(); },
-                 [this](const Close&) { close(); },
-                 [this](const SetOrigin&) { robot_.set_origin(); },
-                 [this](const Polling& c) { sonars_.set_polling(c.sonars); },
-                 [this](const DigitalOutput& c) { digital_output_ = c.bits; },
-                 [](const Timer&) {},  // no pin ever triggers: the reading stays 0
-                 [this](const Gripper& c) { gripper_ = c.state; },
-                 [this](const Ptu& c) { ptu_ = c.width; },
-                 [this, opened](const Velocity& c) {
-                   if (opened)
-                     robot_.set_velocity(c.velocity);
-                 },
-                 [this, opened](const Heading& c) {
-                   if (opened)
-                     robot_.set_heading(c.heading);
-                 },
-                 [this, opened](const DeltaHeading& c) {
-                   if (opened)
-                     robot_.turn_by(c.delta);
-                 },
-                 [this, opened](const RotationVelocity& c) {
-                   if (opened)
-                     robot_.set_rotation_velocity(c.velocity);
-                 },
-                 [this, opened](const WheelVelocities& c) {
-                   if (opened)
-                     robot_.set_wheel_velocities(c.left, c.right);
-                 },
-                 [this, opened](const Step&) {
-                   single_step_ = true;
-                   step_asked_ = opened;
-                 },
-                 [this](const auto&) { ++counters_.unknown_commands; },
-             },
-             command);
+  if (std::holds_alternative<Unknown>(command)) {
+    ++counters_.unknown_commands;
+    return;
+  }
+  if (drive(command) || simulate(command))
+    return;
+  const bool session = std::visit(
+      Overloaded{
+          [](const Pulse&) { return true; },
+          [this](const Open&) {
+            open();
+            return true;
+          },
+          [this](const Close&) {
+            close();
+            return true;
+          },
+          // The controller starts anew; a client has to synchronize again.
+          [this](const Reset&) {
+            close();
+            return later_;
+          },
+          [this](const Maintenance&) {
+            close();
+            return later_;
+          },
+          [this](const Step&) {
+            single_step_ = true;
+            step_asked_ = is_open();
+            return true;
+          },
+          [this](const Polling& c) {
+            polling_ = c.sonars;
+            set_sonars();
+            return true;
+          },
+          [this](const SonarSwitch& c) {
+            const auto bits =
+                static_cast<std::uint8_t>(c.array == 0 ? 0xFFU : 1U << ((c.array - 1U) & 7U));
+            sonar_arrays_on_ = static_cast<std::uint8_t>(c.on ? sonar_arrays_on_ | bits
+                                                              : sonar_arrays_on_ & ~bits);
+            set_sonars();
+            return later_;
+          },
+          [](const auto&) { return false; },
+      },
+      command);
+  if (!session && devices_.act(command, robot_, output_) != Devices::Answer::kTaken)
+    ++counters_.unsupported_commands;
+}
+
+// The commands that move the robot or say how it moves; whether this was one that it has.
+bool Server::drive(const Command& command) {
+  const RobotParameters& p = parameters_;
+  // A robot that nobody has opened does not move.
+  Robot* robot = is_open() ? &robot_ : nullptr;
+  const auto move = [this, robot](const auto& how) {
+    emergency_ = false;
+    if (robot != nullptr)
+      how(*robot);
+    return true;
+  };
+  const auto set = [](bool settable, const auto& how) {
+    if (settable)
+      how();
+    return settable;
+  };
+  return std::visit(
+      Overloaded{
+          [&](const Velocity& c) { return move([&](Robot& r) { r.set_velocity(c.velocity); }); },
+          [&](const Heading& c) { return move([&](Robot& r) { r.set_heading(c.heading); }); },
+          [&](const DeltaHeading& c) { return move([&](Robot& r) { r.turn_by(c.delta); }); },
+          [&](const RotationVelocity& c) {
+            return move([&](Robot& r) { r.set_rotation_velocity(c.velocity); });
+          },
+          [&](const WheelVelocities& c) {
+            return move([&](Robot& r) { r.set_wheel_velocities(c.left, c.right); });
+          },
+          [&](const SetOrigin&) {
+            robot_.set_origin();
+            return true;
+          },
+          [&](const Rotate& c) {
+            return later_ && move([&](Robot& r) { r.set_rotation_velocity(c.velocity); });
+          },
+          [&](const DeltaSetpoint& c) {
+            return later_ && move([&](Robot& r) { r.set_heading(r.target_heading() + c.delta); });
+          },
+          [&](const Move& c) {
+            return p.move_command && move([&](Robot& r) { r.move_by(c.distance); });
+          },
+          [&](const Stop&) {
+            return move([](Robot& r) {
+              r.set_velocity(0.0);
+              r.set_rotation_velocity(0.0);
+            });
+          },
+          [&](const EmergencyStop&) {
+            robot_.emergency_stop();
+            emergency_ = true;
+            return true;
+          },
+          [&](const EmergencyStop2&) {
+            robot_.emergency_stop();
+            emergency_ = true;
+            return true;
+          },
+          [&](const Enable& c) {
+            robot_.enable(c.on);
+            return true;
+          },
+          [&](const MaxVelocity& c) {
+            return set(p.settable_velocities, [&] { robot_.set_max_velocity(c.velocity); });
+          },
+          [&](const MaxRotationVelocity& c) {
+            return set(p.settable_velocities,
+                       [&] { robot_.set_max_rotation_velocity(c.velocity); });
+          },
+          [&](const Acceleration& c) {
+            return set(p.settable_accelerations, [&] {
+              if (c.acceleration >= 0.0)
+                robot_.set_acceleration(c.acceleration);
+              else
+                robot_.set_deceleration(-c.acceleration);
+            });
+          },
+          [&](const RotationAcceleration& c) {
+            return set(p.settable_accelerations, [&] {
+              if (c.acceleration >= 0.0)
+                robot_.set_rotation_acceleration(c.acceleration);
+              else
+                robot_.set_rotation_deceleration(-c.acceleration);
+            });
+          },
+          [](const auto&) { return false; },
+      },
+      command);
+}
+
+// The commands that only simulators have.
+bool Server::simulate(const Command& command) {
+  return std::visit(Overloaded{
+                        [this](const TruePose& c) {
+                          robot_.place(c.pose_in_world);
+                          return true;
+                        },
+                        [this](const TrueHeading& c) {
+                          const Vec2 at = robot_.pose_in_world().position();
+                          robot_.place({at.x(), at.y(), norm2_angle(radians(c.value))});
+                          return true;
+                        },
+                        [this](const TrueOrigin&) {
+                          robot_.place(start_in_world_);
+                          return true;
+                        },
+                        [this](const SimReset&) {
+                          robot_.place(start_in_world_);
+                          robot_.set_origin();
+                          return true;
+                        },
+                        [this](const SimStatus& c) {
+                          sim_status_with_each_ = c.value == 2;
+                          if (c.value == 1)
+                            send(encode(sim_status()));
+                          return true;
+                        },
+                        [](const SimMessage&) { return true; },
+                        [this](const BatteryTest& c) {
+                          robot_.set_battery(c.value / 10.0);
+                          return true;
+                        },
+                        [](const auto&) { return false; },
+                    },
+                    command);
+}
+
+// What fires: the polling sequence without the arrays that are off.
+void Server::set_sonars() {
+  std::vector<std::uint8_t> sequence;
+  for (const std::uint8_t number : polling_)
+    if ((sonar_arrays_on_ >> std::min(number / kSonarsInArray, 7) & 1) != 0)
+      sequence.push_back(number);
+  sonars_.set_polling(sequence);
+}
+
+void Server::set_default_polling() {
+  polling_.clear();
+  for (const SonarUnit& unit : parameters_.sonars)
+    polling_.push_back(unit.number);
+  sonar_arrays_on_ = 0xFF;
+  set_sonars();
+}
+
+SimStatusPacket Server::sim_status() const {
+  const auto millimetres = [](double value) {
+    return static_cast<std::int32_t>(std::lround(value * 1000.0));
+  };
+  const Pose& at = robot_.pose_in_world();
+  const Pose odom_in_world = compose(start_in_world_, robot_.pose_in_odom());
+  SimStatusPacket packet;
+  packet.sim_interval = packet.real_interval = packet.last_interval = 100;
+  packet.true_x = millimetres(at.x);
+  packet.true_y = millimetres(at.y);
+  packet.true_th = static_cast<std::int32_t>(std::lround(degrees(at.th)));
+  packet.odometry_error_x = millimetres(odom_in_world.x - at.x);
+  packet.odometry_error_y = millimetres(odom_in_world.y - at.y);
+  packet.odometry_error_th =
+      static_cast<std::int32_t>(std::lround(degrees(norm2_angle(odom_in_world.th - at.th))));
+  return packet;
 }
 
 void Server::open() {
@@ -207,6 +386,7 @@ void Server::open() {
   readings_.clear();
   robot_.stop();
   robot_.brake(false);
+  robot_.enable(!later_);
 }
 
 void Server::close() {
@@ -214,7 +394,10 @@ void Server::close() {
   watchdog_ = false;
   readings_.clear();
   robot_.stop();
-  sonars_.set_default_polling();
+  set_default_polling();
+  devices_.disconnect();
+  sim_status_with_each_ = false;
+  emergency_ = false;
   // Nobody will say STEP any more: the robot comes to rest now.
   step_asked_ = false;
   rest_asked_ = single_step_;
@@ -235,7 +418,7 @@ void Server::quiet_tick() {
 }
 
 void Server::begin_tick() {
-  if (is_open() && ++silent_ticks_ == kWatchdogTicks) {
+  if (is_open() && ++silent_ticks_ == watchdog_ticks_) {
     watchdog_ = true;
     ++counters_.watchdog_stops;
     robot_.brake(true);
@@ -255,7 +438,11 @@ void Server::finish_cycle() {
   phase_ = 0;
   ++cycle_;
   if (is_open()) {
+    devices_.cycle();
     send(encode(information()));
+    devices_.add_packets(robot_, output_);
+    if (sim_status_with_each_)
+      send(encode(sim_status()));
     readings_.clear();
   }
   robot_.clear_stalls();
@@ -278,14 +465,58 @@ InformationPacket Server::information() const {
   packet.th = to_word(robot_.pose_in_odom().th / p.angle_unit);
   packet.left_velocity = to_word(robot_.left_velocity() / p.velocity_unit);
   packet.right_velocity = to_word(robot_.right_velocity() / p.velocity_unit);
-  packet.battery = static_cast<std::uint8_t>(std::lround(p.battery * 10.0));
+  const double decivolts = std::round(robot_.battery() * 10.0);
+  packet.battery = static_cast<std::uint8_t>(std::clamp(decivolts, 0.0, 255.0));
   packet.left_stall = robot_.left_stalled() ? 1 : 0;
   packet.right_stall = robot_.right_stalled() ? 1 : 0;
   packet.control = to_word(robot_.target_heading() / p.angle_unit);
-  packet.ptu = ptu_;
   packet.sonars = readings_;
-  packet.digital_output = digital_output_;
+  devices_.reflect(packet);
+  if (later_)
+    add_later_fields(packet);
   return packet;
+}
+
+// What the packets of P2OS and ARCOS say besides.
+void Server::add_later_fields(InformationPacket& packet) const {
+  const RobotParameters& p = parameters_;
+  const unsigned front = robot_.bumpers(p.front_bumpers, false);
+  const unsigned rear = robot_.bumpers(p.rear_bumpers, true);
+  const auto stalls = static_cast<unsigned>(devices_.bump_stall());
+  const unsigned bumped = ((stalls & 1U) != 0 && front != 0) || ((stalls & 2U) != 0 && rear != 0);
+  packet.left_stall = static_cast<std::uint8_t>(packet.left_stall | bumped | rear << 1U);
+  packet.right_stall = static_cast<std::uint8_t>(packet.right_stall | bumped | front << 1U);
+
+  unsigned flags = 0;
+  if (robot_.enabled())
+    flags |= kFlagMotors;
+  if (emergency_)
+    flags |= kFlagEmergencyStop;
+  for (int array = 0; array < std::min(p.sonar_arrays, 4); ++array)
+    if ((sonar_arrays_on_ >> array & 1) != 0)
+      flags |= 1U << static_cast<unsigned>(array + 1);
+  packet.ptu = static_cast<std::uint16_t>(flags);
+
+  if (p.compass) {
+    // 0 is along the world's x; the reading counts two degrees.
+    const double bearing = degrees(norm_angle(robot_.pose_in_world().th));
+    packet.say = static_cast<std::uint8_t>(std::lround(bearing / 2.0) % 180);
+  }
+  if (p.protocol != Protocol::kArcos)
+    return;
+  TrailingFields& more = packet.trailing;
+  const double voltage = robot_.battery();
+  more.battery = static_cast<std::uint16_t>(std::lround(std::clamp(voltage, 0.0, 6000.0) * 10.0));
+  more.charge_state = 0;
+  more.rotation = to_word(degrees(robot_.rotation_velocity()) * 10.0);
+  more.faults = 0;
+  more.lateral = 0;
+  more.temperature = -128;
+  const double charge =
+      (voltage - p.shutdown_voltage) / std::max(p.battery - p.shutdown_voltage, 0.1) * 100.0;
+  more.state_of_charge = static_cast<std::uint8_t>(std::lround(std::clamp(charge, 1.0, 100.0)));
+  more.time = static_cast<std::uint32_t>(cycle_ * 100'000U);
+  more.flags3 = 0;
 }
 
 }  // namespace saphira::sim

@@ -181,7 +181,7 @@ TEST_F(ServerTest, DevicesAreReflected) {
   const auto got = packets();
   EXPECT_EQ(got.back().digital_output, 0x5A);
   EXPECT_EQ(got.back().ptu, 1500);
-  EXPECT_EQ(server_.gripper(), 4);
+  EXPECT_EQ(server_.devices().gripper().action(), 4);
   for (const auto& sonar : got.back().sonars)
     EXPECT_EQ(sonar.number, 3);
   send(protocol::Polling{});
@@ -191,9 +191,15 @@ TEST_F(ServerTest, DevicesAreReflected) {
 
 TEST_F(ServerTest, UnknownCommandsAreIgnoredAndCounted) {
   open();
-  send(protocol::Unknown{62});
+  send(protocol::Unknown{14});
   server_.receive(protocol::frame(Bytes{11, 0x2B, 'x', 0}));
   EXPECT_EQ(server_.counters().unknown_commands, 2U);
+  send(protocol::BatteryRequest{1});  // a later robot's; and it ends no simulator
+  send(protocol::Move{1.0});
+  EXPECT_EQ(server_.counters().unsupported_commands, 2U);
+  server_.advance(100);
+  EXPECT_TRUE(server_.is_open());
+  EXPECT_FALSE(server_.robot().moving());
   Bytes bad = encode(protocol::Velocity{0.3});
   bad[5] ^= 1U;
   server_.receive(bad);

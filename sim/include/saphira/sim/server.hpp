@@ -7,6 +7,7 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/packet.hpp"
+#include "saphira/sim/devices.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
@@ -17,7 +18,8 @@ namespace saphira::sim {
 
 /// Ticks from one information packet to the next: 100 ms (manual 5.3).
 inline constexpr int kTicksPerPacket = 10;
-/// Ticks without a packet from the client after which the motors stop: two seconds (manual 5.4.4).
+/// Ticks without a packet from the client after which the motors stop: two seconds (manual 5.4.4),
+/// unless the robot's file says otherwise.
 inline constexpr int kWatchdogTicks = 200;
 
 struct ServerOptions {
@@ -34,12 +36,16 @@ struct ServerOptions {
 /// What the client has sent, since the simulator started.
 struct ServerCounters {
   std::uint64_t commands = 0;
-  std::uint64_t unknown_commands = 0;  ///< ignored
+  std::uint64_t unknown_commands = 0;  ///< of no known number, or not to be read; ignored
+  /// Known ones that a robot of this generation, or this simulator, does not have; ignored.
+  std::uint64_t unsupported_commands = 0;
   std::uint64_t watchdog_stops = 0;
   std::uint64_t bad_packets = 0;  ///< ignored, manual 5.1.3
 };
 
-/// A robot server without the line that it talks on: bytes in, ticks of time in, bytes out.
+/// A robot server without the line that it talks on: bytes in, ticks of time in, bytes out. It
+/// answers as the generation that the robot's file names: PSOS as the manual says; P2OS and ARCOS
+/// with their commands, bumpers, flags and packets. Their motors wait for ENABLE after OPEN.
 ///
 /// States (manual 5.4): waiting for SYNC0, SYNC1, SYNC2; synchronized; open. A closed or lost
 /// connection stops the robot and goes back to waiting; dead reckoning goes on from where it was.
@@ -93,8 +99,8 @@ class Server {
   const Robot& robot() const { return robot_; }
   std::uint64_t cycle() const { return cycle_; }
   ServerCounters counters() const;
-  std::uint8_t digital_output() const { return digital_output_; }
-  std::uint16_t gripper() const { return gripper_; }
+  const Devices& devices() const { return devices_; }
+  Devices& devices() { return devices_; }
 
  private:
   enum class State { kSync0, kSync1, kSync2, kSynchronized, kOpen };
@@ -103,12 +109,18 @@ class Server {
   void handle(const protocol::Bytes& body);
   bool synchronize(const protocol::Bytes& body);
   void act(const protocol::Command& command);
+  bool drive(const protocol::Command& command);
+  bool simulate(const protocol::Command& command);
+  void set_sonars();
+  void set_default_polling();
+  protocol::SimStatusPacket sim_status() const;
   void open();
   void close();
   void tick();
   void step();
   void finish_cycle();
   protocol::InformationPacket information() const;
+  void add_later_fields(protocol::InformationPacket& packet) const;
   void send(const protocol::Bytes& packet);
 
   protocol::RobotParameters parameters_;
@@ -133,9 +145,14 @@ class Server {
   std::vector<protocol::RawSonar> readings_;
   ServerCounters counters_;
 
-  std::uint8_t digital_output_ = 0;
-  std::uint16_t gripper_ = 0;
-  std::uint16_t ptu_ = 0;
+  Devices devices_;
+  Pose start_in_world_;
+  int watchdog_ticks_;
+  bool later_;                         // than PSOS
+  std::vector<std::uint8_t> polling_;  // the sequence without what SONAR has switched off
+  std::uint8_t sonar_arrays_on_ = 0xFF;
+  bool sim_status_with_each_ = false;
+  bool emergency_ = false;  // since the last motion command
 };
 
 }  // namespace saphira::sim

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/protocol/server_packet.hpp"
+#include "saphira/sim/robot.hpp"
+
+namespace saphira::sim {
+
+/// A gripper with paddles that open and close and a lift, each taking its time.
+class Gripper {
+ public:
+  void act(int action);  ///< protocol::GripperAction; others do nothing
+  void cycle();          ///< 100 ms
+
+  /// The byte of the information packet, as Player reads it: bit 0 open, 1 closed, 2 paddles
+  /// moving, 4 lift up, 5 lift down, 6 lift moving.
+  std::uint8_t bits() const;
+  int action() const { return action_; }  ///< the last command
+
+ private:
+  /// Something between two end stops.
+  struct Axis {
+    double position = 0.0;  // 0 to 1
+    int direction = 0;
+    void cycle(double step);
+  };
+  Axis paddles_{1.0, 0};  // 1: open
+  Axis lift_;             // 1: up
+  int action_ = 0;
+};
+
+/// What a robot has besides wheels and sonars, and the packets about it that clients ask for:
+/// configuration, encoders, I/O, gripper, gyro, joystick, battery. A request says 0 (no more), 1
+/// (one, at once) or 2 (one with each information packet).
+class Devices {
+ public:
+  Devices(const protocol::RobotParameters& parameters, const std::string& name);
+
+  enum class Answer {
+    kTaken,
+    kMissing,  ///< a device's command, and this robot has no such device
+    kNotMine,
+  };
+  /// Takes a command if it is a device's. What it asks for at once is added to `out`.
+  Answer act(const protocol::Command& command, const Robot& robot, protocol::Bytes& out);
+
+  void cycle();  ///< 100 ms
+  /// What was asked for with each information packet.
+  void add_packets(const Robot& robot, protocol::Bytes& out) const;
+  /// Fills in its fields of the information packet.
+  void reflect(protocol::InformationPacket& packet) const;
+  /// The connection has been closed: nobody asks for anything.
+  void disconnect();
+
+  std::uint8_t digital_output() const { return digital_output_; }
+  const Gripper& gripper() const { return gripper_; }
+  int bump_stall() const { return bump_stall_; }  ///< bit 0: the front bumpers stall, 1: the rear
+  /// [20 ms] that its sounds still take.
+  int sounding() const { return sounding_; }
+
+  // What the world does to it.
+  void set_digital_input(std::uint8_t bits) { digital_input_ = bits; }
+  void set_analog(std::uint8_t value) { analog_ = value; }  ///< [5 V / 255]
+
+ private:
+  enum Request { kConfig, kEncoder, kIo, kGripper, kGyro, kJoystick, kBattery, kRequests };
+
+  bool has(Request request) const;
+  Answer ask(Request request, int mode, const Robot& robot, protocol::Bytes& out);
+  protocol::Bytes packet(Request request, const Robot& robot) const;
+
+  protocol::RobotParameters parameters_;
+  std::string name_;
+  bool later_;  // than PSOS
+  std::array<bool, kRequests> with_each_{};
+  Gripper gripper_;
+  std::uint8_t digital_output_ = 0;
+  std::uint8_t digital_input_ = 0;
+  std::uint8_t analog_ = 0;
+  std::uint8_t analog_port_ = 0;
+  std::uint16_t ptu_ = 0;
+  int bump_stall_ = 0;
+  int sounding_ = 0;
+};
+
+}  // namespace saphira::sim

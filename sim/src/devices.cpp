@@ -1,0 +1,240 @@
+#include "saphira/sim/devices.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::sim {
+
+using namespace protocol;
+
+namespace {
+
+// The paddles take 1.5 s from stop to stop, the lift 3 s: about what the Pioneers' gripper needs.
+constexpr double kPaddleStep = 0.1 / 1.5;
+constexpr double kLiftStep = 0.1 / 3.0;
+constexpr int kSoundUnitsInCycle = 5;  // of 20 ms
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+}  // namespace
+
+void Gripper::Axis::cycle(double step) {
+  position = std::clamp(position + direction * step, 0.0, 1.0);
+  if (position == 0.0 || position == 1.0)
+    direction = 0;
+}
+
+void Gripper::act(int action) {
+  action_ = action;
+  switch (static_cast<GripperAction>(action)) {
+    case GripperAction::kOpen:
+      paddles_.direction = 1;
+      break;
+    case GripperAction::kClose:
+      paddles_.direction = -1;
+      break;
+    case GripperAction::kStop:
+      paddles_.direction = 0;
+      break;
+    case GripperAction::kLiftUp:
+      lift_.direction = 1;
+      break;
+    case GripperAction::kLiftDown:
+      lift_.direction = -1;
+      break;
+    case GripperAction::kLiftStop:
+      lift_.direction = 0;
+      break;
+    case GripperAction::kStore:
+      paddles_.direction = -1;
+      lift_.direction = 1;
+      break;
+    case GripperAction::kDeploy:
+      paddles_.direction = 1;
+      lift_.direction = -1;
+      break;
+    case GripperAction::kHalt:
+      paddles_.direction = lift_.direction = 0;
+      break;
+    case GripperAction::kPressure:
+    case GripperAction::kCarry:
+      break;
+  }
+}
+
+void Gripper::cycle() {
+  paddles_.cycle(kPaddleStep);
+  lift_.cycle(kLiftStep);
+}
+
+std::uint8_t Gripper::bits() const {
+  const auto bit = [](bool on, unsigned place) { return on ? 1U << place : 0U; };
+  return static_cast<std::uint8_t>(bit(paddles_.position == 1.0, 0) |
+                                   bit(paddles_.position == 0.0, 1) |
+                                   bit(paddles_.direction != 0, 2) | bit(lift_.position == 1.0, 4) |
+                                   bit(lift_.position == 0.0, 5) | bit(lift_.direction != 0, 6));
+}
+
+Devices::Devices(const RobotParameters& parameters, const std::string& name)
+    : parameters_(parameters), name_(name), later_(parameters.protocol != Protocol::kPsos) {}
+
+Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& out) {
+  const auto taken = [](bool have) { return have ? Answer::kTaken : Answer::kMissing; };
+  return std::visit(
+      Overloaded{
+          [&](const DigitalOutput& c) {
+            // PSOS has no mask; a client of that time says none, and means all bits.
+            const std::uint8_t mask = later_ && c.mask != 0 ? c.mask : std::uint8_t{0xFF};
+            digital_output_ =
+                static_cast<std::uint8_t>((digital_output_ & ~mask) | (c.bits & mask));
+            return Answer::kTaken;
+          },
+          // No pin ever triggers: the reading stays 0.
+          [](const protocol::Timer&) { return Answer::kTaken; },
+          [&](const protocol::Gripper& c) {
+            gripper_.act(c.state);
+            return taken(!later_ || parameters_.gripper);
+          },
+          [&](const GripperValue&) { return taken(parameters_.gripper); },
+          [&](const Ptu& c) {
+            ptu_ = c.width;
+            return Answer::kTaken;
+          },
+          [&](const Say& c) {
+            sounding_ = 0;
+            for (std::size_t i = 0; i < c.text.size(); i += 2)
+              sounding_ += c.text[i];
+            return Answer::kTaken;
+          },
+          [&](const AnalogSelect& c) {
+            analog_port_ = static_cast<std::uint8_t>(c.value & 0xFF);
+            return taken(later_);
+          },
+          [&](const BumpStall& c) {
+            bump_stall_ = c.value & 3;
+            return taken(later_);
+          },
+          [&](const ConfigRequest&) { return ask(kConfig, 1, robot, out); },
+          [&](const EncoderRequest& c) { return ask(kEncoder, c.value, robot, out); },
+          [&](const IoRequest& c) { return ask(kIo, c.value, robot, out); },
+          [&](const GripperRequest& c) { return ask(Request::kGripper, c.value, robot, out); },
+          [&](const GyroRequest& c) {
+            // 1 is "from now on" here.
+            return ask(kGyro, c.value != 0 ? 2 : 0, robot, out);
+          },
+          [&](const JoystickRequest& c) { return ask(kJoystick, c.value, robot, out); },
+          [&](const BatteryRequest& c) { return ask(kBattery, c.value, robot, out); },
+          [&](const HostBaud&) { return taken(later_); },
+          [](const auto&) { return Answer::kNotMine; },
+      },
+      command);
+}
+
+bool Devices::has(Request request) const {
+  switch (request) {
+    case kEncoder:
+      return parameters_.encoder_unit > 0.0;
+    case kGyro:
+      return parameters_.gyro;
+    case kConfig:
+    case kIo:
+    case Request::kGripper:
+    case kJoystick:
+    case kBattery:
+    case kRequests:
+      break;
+  }
+  return later_;
+}
+
+Devices::Answer Devices::ask(Request request, int mode, const Robot& robot, Bytes& out) {
+  if (!has(request))
+    return Answer::kMissing;
+  with_each_[request] = mode == 2;
+  if (mode == 1) {
+    const Bytes bytes = packet(request, robot);
+    out.insert(out.end(), bytes.begin(), bytes.end());
+  }
+  return Answer::kTaken;
+}
+
+Bytes Devices::packet(Request request, const Robot& robot) const {
+  const auto count = [this](double way) {
+    // Rolls over as the controller's register does.
+    return static_cast<std::int32_t>(
+        static_cast<std::uint32_t>(std::llround(way / parameters_.encoder_unit)));
+  };
+  switch (request) {
+    case kConfig:
+      return encode(config_of(parameters_, name_, "0"));
+    case kEncoder:
+      return encode(EncoderPacket{count(robot.left_way()), count(robot.right_way())});
+    case kIo:
+      return encode(IoPacket{
+          {digital_input_}, {digital_output_}, {static_cast<std::uint16_t>(analog_ << 2U)}});
+    case Request::kGripper:
+      return encode(
+          GripperPacket{static_cast<std::uint8_t>(parameters_.gripper ? 2 : 0),
+                        static_cast<std::uint8_t>(parameters_.gripper ? gripper_.bits() : 0), 0});
+    case kGyro: {
+      // Full scale of the 10-bit reading is 300 degrees a second to either side.
+      const double rate = 512.0 + degrees(robot.rotation_velocity()) * 512.0 / 300.0;
+      const auto counts = static_cast<std::uint16_t>(std::lround(std::clamp(rate, 0.0, 1023.0)));
+      return encode(GyroPacket{{{counts, 128}}});
+    }
+    case kJoystick:
+      return encode(JoystickPacket{});
+    case kBattery: {
+      const auto decivolts =
+          static_cast<unsigned>(std::lround(std::max(0.0, robot.battery() * 10.0)));
+      return encode(BatteryPacket{1,
+                                  2,
+                                  {static_cast<std::uint8_t>(decivolts & 0xFFU),
+                                   static_cast<std::uint8_t>(decivolts >> 8U & 0xFFU)}});
+    }
+    case kRequests:
+      break;
+  }
+  return {};
+}
+
+void Devices::cycle() {
+  gripper_.cycle();
+  sounding_ = std::max(0, sounding_ - kSoundUnitsInCycle);
+}
+
+void Devices::add_packets(const Robot& robot, Bytes& out) const {
+  for (int i = 0; i < kRequests; ++i) {
+    const auto request = static_cast<Request>(i);
+    if (!with_each_[request])
+      continue;
+    const Bytes bytes = packet(request, robot);
+    out.insert(out.end(), bytes.begin(), bytes.end());
+  }
+}
+
+void Devices::reflect(InformationPacket& packet) const {
+  packet.digital_input = digital_input_;
+  packet.digital_output = digital_output_;
+  packet.analog = analog_;
+  if (!later_) {
+    packet.ptu = ptu_;
+    packet.say = sounding_ > 0 ? 1 : 0;
+    return;
+  }
+  const unsigned gripper = parameters_.gripper ? gripper_.bits() : 0U;
+  const unsigned low = parameters_.protocol == Protocol::kArcos ? analog_port_ : 0U;
+  packet.timer = static_cast<std::uint16_t>(gripper << 8U | low);
+}
+
+void Devices::disconnect() {
+  with_each_ = {};
+  sounding_ = 0;
+}
+
+}  // namespace saphira::sim
