@@ -7,6 +7,7 @@
 #include <sys/signalfd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 
@@ -43,6 +44,22 @@ saphira::Pose parse_position(const std::string& text) {
   return {x, y, saphira::norm2_angle(th)};
 }
 
+/// The first robot and the others; a robot without a file of its own is as the last that has one.
+void set_robots(saphira::sim::HostOptions& options, const std::vector<std::string>& files,
+                const std::vector<std::string>& positions, std::size_t count) {
+  const std::size_t robots = std::max({files.size(), positions.size(), count});
+  options.robot = files.front();
+  for (std::size_t i = 0; i < robots; ++i) {
+    std::optional<saphira::Pose> position;
+    if (i < positions.size())
+      position = parse_position(positions[i]);
+    if (i == 0)
+      options.position = position;
+    else
+      options.more.push_back({files[std::min(i, files.size() - 1)], position});
+  }
+}
+
 void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions& options) {
   const auto world = saphira::sim::load_world(options.world);
   const auto robot = saphira::protocol::load_parameters(options.robot);
@@ -58,10 +75,19 @@ void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions
 int main(int argc, char** argv) {
   CLI::App app{"A simulated robot: a robot server as the Saphira manual describes it"};
   saphira::sim::HostOptions options;
-  std::string position;
+  std::vector<std::string> robots;
+  std::vector<std::string> positions;
+  std::size_t count = 1;
+  std::string rate = "1";
   std::vector<std::string> plot_files;
   app.add_option("--world", options.world, "World file")->required();
-  app.add_option("--robot,--robot-file", options.robot, "Robot parameter file")->required();
+  app.add_option("--robot,--robot-file", robots,
+                 "Robot parameter file; again for each further robot, which listens on the next "
+                 "port, or on the socket with \"-2\" (\"-3\"...) behind it")
+      ->required()
+      ->allow_extra_args(false);
+  app.add_option("--robots", count, "How many robots; those without a file are as the last one")
+      ->check(CLI::Range(1, 1000));
   auto* socket = app.add_option("--socket", options.socket,
                                 "Local socket to listen on (default: $ROBOT_SOCKET, otherwise "
                                 "/tmp/saphira-robot-<uid>)");
@@ -72,10 +98,17 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of all that is random")->capture_default_str();
   app.add_flag("--step", options.step, "Single-step from the start: time passes by command 64");
-  app.add_option("--rate", options.rate, "Times real time")->capture_default_str();
+  app.add_option("--rate", rate,
+                 "Times real time; max: as fast as the clients take what is sent to them")
+      ->capture_default_str()
+      ->check([](const std::string& text) {
+        return text == "max" ? std::string() : CLI::Range(1e-6, 1000.0)(text);
+      });
   app.add_option("--trace", options.trace, "File for the true state of every cycle, CSV");
-  app.add_option("--position", position,
-                 "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's");
+  app.add_option("--position", positions,
+                 "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's; again "
+                 "for each further robot")
+      ->allow_extra_args(false);
   app.add_option("--plot", plot_files, "Draw a trace into a picture (SVG), and end")
       ->expected(2)
       ->type_name("TRACE.csv OUT.svg");
@@ -86,8 +119,8 @@ int main(int argc, char** argv) {
   }
 
   try {
-    if (!position.empty())
-      options.position = parse_position(position);
+    set_robots(options, robots, positions, count);
+    options.rate = rate == "max" ? saphira::sim::kMaxRate : std::stod(rate);
     if (!plot_files.empty()) {
       plot(plot_files, options);
       return 0;

@@ -80,11 +80,16 @@ sockaddr_un local_address(const std::string& path) {
 // The socket that is listened on; a local one is removed at the end.
 class Listener {
  public:
-  explicit Listener(const HostOptions& options) {
-    if (options.tcp)
-      listen_tcp(options.tcp_address, *options.tcp);
-    else
-      listen_local(options.socket.value_or(default_socket()));
+  /// `number` of the robot, from 1.
+  Listener(const HostOptions& options, std::size_t number) {
+    if (options.tcp) {
+      const std::size_t port = *options.tcp == 0 ? 0 : *options.tcp + number - 1;
+      if (port > 65535)
+        throw std::runtime_error("port " + std::to_string(port) + ": expected at most 65535");
+      listen_tcp(options.tcp_address, static_cast<std::uint16_t>(port));
+    } else {
+      listen_local(numbered(options.socket.value_or(default_socket()), number));
+    }
   }
   ~Listener() {
     // Unless another simulator has put its own there meanwhile.
@@ -232,94 +237,29 @@ class Timer {
   Fd fd_;
 };
 
-class Host {
+// One robot's line: who listens, who talks, what waits to be sent, what is written down.
+class Station {
  public:
-  Host(const HostOptions& options, const World& world, const protocol::RobotParameters& parameters,
-       const Pose& start, const ServerOptions& server_options)
+  Station(const HostOptions& options, Simulation& simulation, RobotNumber number)
       : log_(options.log),
-        simulation_(world),
-        server_(simulation_.server(simulation_.add(parameters, start, server_options))),
-        pace_(options.rate),
-        trace_(options.trace),
-        listener_(options) {
+        prefix_(options.more.empty() ? "" : "robot " + std::to_string(number + 1) + ": "),
+        patient_(options.rate == kMaxRate),
+        simulation_(simulation),
+        number_(number),
+        trace_(options.trace.empty() ? "" : numbered(options.trace, number + 1)),
+        listener_(options, number + 1) {
     log("listening on " + listener_.name() + (options.step ? ", single-step" : ""));
   }
 
-  void run(int stop_fd) {
-    while (true) {
-      schedule();
-      // In that order: stop, client, timer, listener. poll leaves out those below zero.
-      std::array<pollfd, 4> fds{{{stop_fd, POLLIN, 0},
-                                 {client_.get(), POLLIN, 0},
-                                 {timer_.fd(), POLLIN, 0},
-                                 {listener_.fd(), POLLIN, 0}}};
-      if (!output_.empty())
-        fds[1].events |= POLLOUT;
-      if (::poll(fds.data(), fds.size(), -1) < 0) {
-        if (errno == EINTR)
-          continue;
-        fail("poll");
-      }
-      if (fds[0].revents != 0)
-        break;
-      step(fds[1].revents != 0, fds[2].revents != 0);
-      if (fds[3].revents != 0)
-        accept();
-    }
-    hang_up("stopped");
-    trace_.write(server_.take_trace());
-    trace_.flush();
-    const ServerCounters counters = server_.counters();
-    log("stopped; " + std::to_string(server_.robot().contacts()) + " contacts, " +
-        std::to_string(counters.bad_packets) + " bad packets, " +
-        std::to_string(counters.unknown_commands) + " unknown commands");
+  void add_to(std::vector<pollfd>& fds) const {
+    const auto events = static_cast<short>(output_.empty() ? POLLIN : POLLIN | POLLOUT);
+    fds.push_back({client_.get(), events, 0});  // poll leaves out those below zero
+    fds.push_back({listener_.fd(), POLLIN, 0});
   }
+  bool packet_pending() const { return server().packet_pending(); }
+  bool sending() const { return !output_.empty(); }
 
- private:
-  void log(const std::string& text) const {
-    if (log_)
-      log_(text);
-  }
-
-  // Wakes up when the next information packet is due, or to look for an end of silence.
-  void schedule() {
-    if (simulation_.runs()) {
-      if (!running_)
-        pace_.restart();
-      running_ = true;
-      timer_.set(pace_.seconds_until(simulation_.ticks_to_packet()));
-      timed_ = true;
-      return;
-    }
-    running_ = false;
-    if (server_.packet_pending()) {
-      timer_.set(kGap);
-      timed_ = true;
-    } else if (timed_) {
-      timer_.clear();
-      timed_ = false;
-    }
-  }
-
-  void step(bool client_ready, bool timer_ready) {
-    if (timer_ready) {
-      std::uint64_t count = 0;
-      [[maybe_unused]] const auto size = ::read(timer_.fd(), &count, sizeof count);
-    }
-    // Time first, so that what has come acts now and not when the packet before it was due.
-    if (running_)
-      simulation_.advance(pace_.due());
-    else if (timer_ready && !client_ready)
-      simulation_.gap(0);
-    if (client_ready)
-      read_client();
-    write_client();
-    const auto rows = server_.take_trace();
-    trace_.write(rows);
-    // Live, somebody may be watching the file.
-    if (running_ && !rows.empty())
-      trace_.flush();
-  }
+  void gap() { simulation_.gap(number_); }
 
   void accept() {
     Fd fd(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
@@ -331,6 +271,10 @@ class Host {
     }
     const int yes = 1;  // fails on a local socket, where it is not needed
     ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    // Or time would run far ahead of a client before it is felt.
+    const int size = 4096;
+    if (patient_)
+      ::setsockopt(fd.get(), SOL_SOCKET, SO_SNDBUF, &size, sizeof size);
     client_ = std::move(fd);
     log("a client has connected");
   }
@@ -339,18 +283,42 @@ class Host {
     std::array<std::uint8_t, 4096> buffer{};
     const ssize_t size = ::read(client_.get(), buffer.data(), buffer.size());
     if (size > 0) {
-      simulation_.receive(0, {buffer.data(), static_cast<std::size_t>(size)});
+      simulation_.receive(number_, {buffer.data(), static_cast<std::size_t>(size)});
     } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
       hang_up("the client has gone");
-      trace_.write(server_.take_trace());
-      trace_.flush();
     }
   }
 
-  void write_client() {
-    const protocol::Bytes fresh = server_.take_output();
-    if (!client_)
-      return;
+  /// Sends what there is to send, and writes down what there is to write down.
+  void write(bool live) {
+    const protocol::Bytes fresh = server().take_output();
+    if (client_)
+      send(fresh);
+    const auto rows = server().take_trace();
+    trace_.write(rows);
+    // Live, somebody may be watching the file.
+    if (!rows.empty() && (live || !client_))
+      trace_.flush();
+  }
+
+  void end() {
+    hang_up("stopped");
+    trace_.write(server().take_trace());
+    trace_.flush();
+    const ServerCounters counters = server().counters();
+    log("stopped; " + std::to_string(server().robot().contacts()) + " contacts, " +
+        std::to_string(counters.bad_packets) + " bad packets, " +
+        std::to_string(counters.unknown_commands) + " unknown commands");
+  }
+
+ private:
+  void log(const std::string& text) const {
+    if (log_)
+      log_(prefix_ + text);
+  }
+  Server& server() const { return simulation_.server(number_); }
+
+  void send(const protocol::Bytes& fresh) {
     if (output_.size() + fresh.size() <= kMost)
       output_.insert(output_.end(), fresh.begin(), fresh.end());
     while (!output_.empty()) {
@@ -372,20 +340,120 @@ class Host {
     if (!client_)
       return;
     client_.reset();
-    simulation_.disconnect(0);
+    simulation_.disconnect(number_);
     log(why);
   }
 
   std::function<void(const std::string&)> log_;
-  Simulation simulation_;
-  Server& server_;
-  Pace pace_;
-  Timer timer_;
+  std::string prefix_;
+  bool patient_;
+  Simulation& simulation_;
+  RobotNumber number_;
   TraceFile trace_;
   Listener listener_;
   Fd client_;
   protocol::Bytes output_;
+};
+
+class Host {
+ public:
+  Host(const HostOptions& options, Simulation& simulation)
+      : simulation_(simulation), unpaced_(options.rate == kMaxRate), pace_(options.rate) {
+    for (RobotNumber i = 0; i < simulation.size(); ++i)
+      stations_.push_back(std::make_unique<Station>(options, simulation, i));
+  }
+
+  void run(int stop_fd) {
+    std::vector<pollfd> fds;
+    while (true) {
+      const int timeout = schedule();
+      // In that order: stop, timer, then each robot's client and listener.
+      fds.clear();
+      fds.push_back({stop_fd, POLLIN, 0});
+      fds.push_back({timer_.fd(), POLLIN, 0});
+      for (const auto& station : stations_)
+        station->add_to(fds);
+      if (::poll(fds.data(), fds.size(), timeout) < 0) {
+        if (errno == EINTR)
+          continue;
+        fail("poll");
+      }
+      if (fds[0].revents != 0)
+        break;
+      step(fds);
+    }
+    for (const auto& station : stations_)
+      station->end();
+  }
+
+ private:
+  static bool client_ready(const std::vector<pollfd>& fds, std::size_t station) {
+    return fds[2 + 2 * station].revents != 0;
+  }
+  static bool listener_ready(const std::vector<pollfd>& fds, std::size_t station) {
+    return fds[3 + 2 * station].revents != 0;
+  }
+
+  // Wakes up when the next information packet is due, or to look for an end of silence. How long
+  // poll shall wait [ms], without end below zero.
+  int schedule() {
+    const bool ran = running_;
+    running_ = simulation_.runs();
+    if (running_ && unpaced_) {
+      waits_ = std::any_of(stations_.begin(), stations_.end(),
+                           [](const auto& station) { return station->sending(); });
+      return waits_ ? -1 : 0;
+    }
+    if (running_) {
+      if (!ran)
+        pace_.restart();
+      timer_.set(pace_.seconds_until(simulation_.ticks_to_packet()));
+      timed_ = true;
+      return -1;
+    }
+    const bool pending = std::any_of(stations_.begin(), stations_.end(),
+                                     [](const auto& station) { return station->packet_pending(); });
+    if (pending) {
+      timer_.set(kGap);
+      timed_ = true;
+    } else if (timed_) {
+      timer_.clear();
+      timed_ = false;
+    }
+    return -1;
+  }
+
+  void step(const std::vector<pollfd>& fds) {
+    const bool timer_ready = fds[1].revents != 0;
+    if (timer_ready) {
+      std::uint64_t count = 0;
+      [[maybe_unused]] const auto size = ::read(timer_.fd(), &count, sizeof count);
+    }
+    // Time first, so that what has come acts now and not when the packet before it was due.
+    if (running_ && !unpaced_)
+      simulation_.advance(pace_.due());
+    for (std::size_t i = 0; i < stations_.size(); ++i) {
+      if (client_ready(fds, i))
+        stations_[i]->read_client();
+      else if (timer_ready && !running_)
+        stations_[i]->gap();
+    }
+    if (running_ && unpaced_ && !waits_)
+      simulation_.advance(kTicksPerPacket);
+    for (const auto& station : stations_)
+      station->write(running_);
+    for (std::size_t i = 0; i < stations_.size(); ++i)
+      if (listener_ready(fds, i))
+        stations_[i]->accept();
+  }
+
+  Simulation& simulation_;
+  bool unpaced_;
+  Pace pace_;
+  Timer timer_;
+  std::vector<std::unique_ptr<Station>> stations_;
   bool running_ = false;
+  bool waits_ = false;  // for a client to take what is sent
   bool timed_ = false;
 };
 
@@ -397,27 +465,49 @@ std::string default_socket() {
   return "/tmp/saphira-robot-" + std::to_string(::getuid());
 }
 
+std::string numbered(const std::string& path, std::size_t number) {
+  if (number <= 1)
+    return path;
+  const std::size_t dot = path.find_last_of("./");
+  const std::string text = "-" + std::to_string(number);
+  // A name that begins with a dot has no ending.
+  if (dot == std::string::npos || path[dot] == '/' || dot == 0 || path[dot - 1] == '/')
+    return path + text;
+  return path.substr(0, dot) + text + path.substr(dot);
+}
+
 void run(const HostOptions& options, int stop_fd) {
-  if (!(options.rate > 0.0 && options.rate <= 1000.0))
-    throw std::runtime_error("rate: expected more than 0 and at most 1000 times real time");
+  if (!((options.rate > 0.0 && options.rate <= 1000.0) || options.rate == kMaxRate))
+    throw std::runtime_error(
+        "rate: expected more than 0 and at most 1000 times real time, or \"max\"");
   const World world = load_world(options.world);
-  const protocol::RobotParameters parameters = protocol::load_parameters(options.robot);
-  if (options.log)
-    for (const std::string& warning : parameters.warnings)
-      options.log(warning);
-  const std::optional<Pose> start = options.position ? options.position : world.start;
-  if (!start)
-    throw std::runtime_error(options.world +
-                             ": expected a position directive, or a position among the options");
-  ServerOptions server_options;
-  server_options.seed = options.seed;
-  server_options.single_step = options.step;
-  server_options.trace = !options.trace.empty();
-  try {
-    Host(options, world, parameters, *start, server_options).run(stop_fd);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(options.world + ": " + error.what());
+  Simulation simulation(world);
+  const auto add = [&](const std::string& file, const std::optional<Pose>& start,
+                       std::size_t number) {
+    const protocol::RobotParameters parameters = protocol::load_parameters(file);
+    if (options.log)
+      for (const std::string& warning : parameters.warnings)
+        options.log(warning);
+    if (!start)
+      throw std::runtime_error(options.world + ": expected a position directive" +
+                               (number == 0 ? "" : " for each robot") +
+                               ", or a position among the options");
+    ServerOptions server_options;
+    server_options.seed = options.seed + number;
+    server_options.single_step = options.step;
+    server_options.trace = !options.trace.empty();
+    try {
+      simulation.add(parameters, *start, server_options);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(options.world + ": " + error.what());
+    }
+  };
+  add(options.robot, options.position ? options.position : world.start, 0);
+  for (std::size_t i = 0; i < options.more.size(); ++i) {
+    const RobotOptions& robot = options.more[i];
+    add(robot.robot.empty() ? options.robot : robot.robot, robot.position, i + 1);
   }
+  Host(options, simulation).run(stop_fd);
 }
 
 }  // namespace saphira::sim

@@ -321,6 +321,81 @@ TEST_F(HostTest, RefusesWhatItCannotServe) {
   EXPECT_NE(message(options_).find("another simulator"), std::string::npos);
 }
 
+// A client that sends nothing more than it must: what is measured is that time does not wait, and
+// that it does not run away from a client either.
+TEST_F(HostTest, RunsAsFastAsItsClientReads) {
+  options_.rate = kMaxRate;
+  options_.trace.clear();
+  start();
+  Client client(*options_.socket);
+  client.open();
+  protocol::DeadReckoning reckoning;
+  const protocol::RobotParameters parameters = protocol::load_parameters(options_.robot);
+  const auto begin = std::chrono::steady_clock::now();
+  client.send(encode(protocol::RotationVelocity{0.5}));
+  double turned = 0.0;
+  double last = 0.0;
+  constexpr int kPackets = 2000;
+  for (int i = 0; i < kPackets; ++i) {
+    const double th = reckoning.update(client.information(), parameters).th;
+    turned += norm2_angle(th - last);
+    last = th;
+    client.send(encode(protocol::Pulse{}));
+  }
+  const double took =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_LT(took, 0.1 * kPackets / 10.0);
+  // No packet was lost on the way, and the watchdog saw every pulse in time.
+  EXPECT_NEAR(turned, 0.5 * 0.1 * kPackets, 2.0);
+}
+
+TEST_F(HostTest, ServesSeveralRobotsInOneWorld) {
+  options_.step = true;
+  options_.position = Pose{2.0, 7.0, 0.0};
+  options_.more.push_back({{}, Pose{4.0, 7.0, kPi}});
+  options_.more.push_back({source("config/robots/pioneer.p"), Pose{6.0, 7.0, 0.0}});
+  start();
+  Client one(*options_.socket);
+  Client two(*options_.socket + "-2");
+  Client three(*options_.socket + "-3");
+  for (Client* client : {&one, &two, &three})
+    client->open();
+  one.send(encode(protocol::Velocity{0.4}));
+  for (int i = 0; i < 100; ++i) {
+    for (Client* client : {&three, &one, &two})
+      client->send(encode(protocol::Step{}));
+    for (Client* client : {&one, &two, &three})
+      client->information();
+  }
+  EXPECT_TRUE(logs("robot 3: listening on "));
+  stop();
+  const auto rows = trace();
+  ASSERT_EQ(rows.size(), 100U);
+  EXPECT_EQ(rows.back().contacts, 1);
+  EXPECT_NEAR(rows.back().pose_in_world.x, 4.0 - 0.44, 1e-3);
+  const std::string third = directory_ + "/trace-3.csv";
+  EXPECT_EQ(parse_trace(read_file(third), third).back().pose_in_world, (Pose{6.0, 7.0, 0.0}));
+  EXPECT_FALSE(std::filesystem::exists(*options_.socket + "-3"));
+}
+
+TEST_F(HostTest, SeveralRobotsNeedSeveralPlaces) {
+  options_.more.push_back({});
+  try {
+    run(options_, stop_);
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("position"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Host, NumbersNames) {
+  EXPECT_EQ(numbered("run.csv", 1), "run.csv");
+  EXPECT_EQ(numbered("run.csv", 2), "run-2.csv");
+  EXPECT_EQ(numbered("a.b/robot", 12), "a.b/robot-12");
+  EXPECT_EQ(numbered("/tmp/.robot", 3), "/tmp/.robot-3");
+  EXPECT_EQ(numbered(".robot", 3), ".robot-3");
+}
+
 TEST(Host, DefaultSocket) {
   ::unsetenv("ROBOT_SOCKET");
   EXPECT_EQ(default_socket(), "/tmp/saphira-robot-" + std::to_string(::getuid()));

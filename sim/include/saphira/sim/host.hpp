@@ -2,12 +2,23 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::sim {
+
+/// Times real time that is no limit at all; see HostOptions::rate.
+inline constexpr double kMaxRate = std::numeric_limits<double>::infinity();
+
+/// One more robot in the same world.
+struct RobotOptions {
+  std::string robot;             ///< path of a robot parameter file; empty: as the first robot
+  std::optional<Pose> position;  ///< start_in_world; otherwise the world file's next one
+};
 
 /// Where a simulated robot stands and who may talk to it.
 struct HostOptions {
@@ -21,10 +32,15 @@ struct HostOptions {
   /// port drives the robot.
   std::string tcp_address = "127.0.0.1";
   std::uint64_t seed = 1;
-  bool step = false;             ///< single-step from the start
-  double rate = 1.0;             ///< times real time, in (0, 1000]; in single step it says nothing
+  bool step = false;  ///< single-step from the start
+  /// Times real time, in (0, 1000], or kMaxRate: as fast as the machine computes and the clients
+  /// take what is sent to them. In single step it says nothing.
+  double rate = 1.0;
   std::string trace;             ///< path of the trace file; empty: none
   std::optional<Pose> position;  ///< start_in_world; otherwise the world file's
+  /// The second robot, the third, ... Number n listens on the next port but n - 2, or on the socket
+  /// with "-n" behind it, and its trace is written likewise: run-2.csv.
+  std::vector<RobotOptions> more;
   /// Takes lines for the log; may be empty. Called in the thread of run().
   std::function<void(const std::string&)> log;
 };
@@ -32,7 +48,10 @@ struct HostOptions {
 /// $ROBOT_SOCKET, otherwise /tmp/saphira-robot-<uid> (manual 3.1).
 std::string default_socket();
 
-/// Serves a simulated robot until stop_fd is readable (it is not read). One client at a time: a
+/// The name of a file or socket for robot `number`, which counts from 1: "run.csv", "run-2.csv".
+std::string numbered(const std::string& path, std::size_t number);
+
+/// Serves simulated robots until stop_fd is readable (it is not read). One client each at a time: a
 /// second one's connection is closed at once, and logged. May run in a thread beside others: no
 /// signals, no globals but the files named.
 ///
