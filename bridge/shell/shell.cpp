@@ -334,7 +334,7 @@ void Shell::opened(double now) {
   stamp_.cycle(0);
   body_ = to_body(reflector_.parameters());
   echoes_.clear();
-  reflector_.open(time(), memory_, std::max(epoch_, last_odom_ + 1));
+  reflector_.open(time(), memory_, std::max(epoch_, last_odom_ + 1), slack_);
   arbiter_.connect(epoch_);
   grant_ = {};
   guarded_ = {};
@@ -404,8 +404,10 @@ void Shell::lost(const std::string& why, double now) {
   if (epoch_ != 0) {
     node_.log(node_.status().state() == v1::SERVICE_STOPPING ? v1::LOG_INFO : v1::LOG_WARNING,
               "connection to the robot ended: " + why);
-    if (stamp_.cycle() > 0)
+    if (stamp_.cycle() > 0) {
       memory_ = reflector_.odometry();
+      slack_ = reflector_.slack();
+    }
   }
   if (keeper_)
     keeper_->unwatch();

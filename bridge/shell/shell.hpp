@@ -114,6 +114,7 @@ class Shell {
   std::uint64_t last_epoch_ = 0;
   std::uint64_t last_odom_ = 0;
   std::optional<reflector::OdometryMemory> memory_;
+  reflector::Slack slack_;
   int state_fd_ = -1;
   v1::Stamp stamp_;
   authority::Grant grant_;

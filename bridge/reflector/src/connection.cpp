@@ -77,7 +77,7 @@ std::string Connection::waiting_for() const {
       return "";
     default:
       return "the robot to answer SYNC" + std::to_string(sync_of(state_)) +
-             (state_ == State::sync0 ? " (is it switched on?)" : "");
+             (state_ == State::sync0 ? " (is it switched on, and the cable in?)" : "");
   }
 }
 

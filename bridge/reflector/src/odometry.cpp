@@ -1,5 +1,6 @@
 #include "saphira/reflector/odometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -39,10 +40,12 @@ std::optional<OdometryMemory> from_text(const std::string& text) {
   return m;
 }
 
-void Odometry::connect(std::optional<OdometryMemory> memory, std::uint64_t fresh) {
+void Odometry::connect(std::optional<OdometryMemory> memory, std::uint64_t fresh,
+                       const Slack& slack) {
   first_ = true;
   remembered_ = memory;
   fresh_ = fresh;
+  slack_ = slack;
 }
 
 void Odometry::begin(const RawPose& raw, std::uint64_t odom) {
@@ -65,8 +68,11 @@ bool Odometry::update(const RawPose& raw, double dt, std::uint64_t fresh) {
       return true;
     }
     memory_ = *remembered_;
-    allowed = settings_.near_distance;
-    if (std::abs(norm2_angle(raw.th - memory_.raw.th)) > settings_.near_angle) {
+    // Half of what the counters can tell apart is a way the other way round.
+    constexpr double kCounts = 32768.0;
+    allowed = std::min(settings_.near_distance + slack_.distance,
+                       std::max(settings_.near_distance, 0.4 * kCounts * settings_.distance_unit));
+    if (std::abs(norm2_angle(raw.th - memory_.raw.th)) > settings_.near_angle + slack_.angle) {
       begin(raw, fresh_);
       return true;
     }

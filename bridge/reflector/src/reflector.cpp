@@ -10,7 +10,8 @@ namespace {
 constexpr double kTick = 1e-6;
 // A position is ended more gently than the server stops: the server's own way of braking is not
 // known exactly, and passengers like it.
-constexpr double kGentle = 0.5;  // [m/s2]
+constexpr double kGentle = 0.5;   // [m/s2]
+constexpr double kBraking = 0.5;  // [s] and the line's delay
 
 }  // namespace
 
@@ -24,9 +25,16 @@ void Reflector::configure(const protocol::RobotParameters& parameters) {
                      std::min(kGentle, parameters.deceleration)});
 }
 
-void Reflector::open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh) {
+Slack Reflector::slack() const {
+  const double time = parameters_.watchdog + kBraking;
+  return {std::abs(state_.information.velocity) * time,
+          std::abs(state_.information.rotation_velocity) * time};
+}
+
+void Reflector::open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh,
+                     const Slack& slack) {
   state_ = {};
-  odometry_.connect(memory, fresh);
+  odometry_.connect(memory, fresh, slack);
   motion_.stop();
   channels_.connect();
   devices_.connect();

@@ -94,6 +94,31 @@ TEST(Odometry, BeginsAnewWhereTheRobotWasCarriedOrSwitchedOff) {
   }
 }
 
+TEST(Odometry, ARobotThatDroveOnWhileItWasNotHeardWasNotCarried) {
+  Odometry odometry(settings());
+  odometry.connect({}, 1);
+  odometry.update(raw_of({0.1, 0.1, 0.0}), 0.0, 9);
+  const OdometryMemory memory = odometry.memory();
+  const Slack slack{0.5, 0.5};
+  const struct {
+    Pose pose;
+    bool fresh;
+  } cases[] = {{{0.75, 0.1, 0.0}, false},
+               {{1.0, 0.1, 0.0}, true},
+               {{0.1, 0.1, 0.8}, false},
+               {{0.1, 0.1, 0.9}, true},
+               {{0.0, 0.0, 0.0}, true}};
+  for (const auto& c : cases) {
+    Odometry again(settings());
+    again.connect(memory, 2, slack);
+    EXPECT_EQ(again.update(raw_of(c.pose), 0.0, 9), c.fresh) << c.pose.x << " " << c.pose.th;
+  }
+  Odometry far(settings());
+  far.connect(memory, 2, {5.0, 0.0});
+  EXPECT_TRUE(far.update(raw_of({0.1 + 0.45 * 32768 * kUnit, 0.1, 0.0}), 0.0, 9))
+      << "more than the counters can tell from a way back";
+}
+
 TEST(Odometry, AJumpOfTheCountersIsNoMotion) {
   Odometry odometry(settings());
   odometry.connect({}, 1);

@@ -22,12 +22,49 @@ int number(const std::string& text, const std::string& whole, const char* what) 
   return value;
 }
 
+void parse_serial(const std::string& text, Address& address) {
+  std::string rest = text.substr(text.starts_with("serial:") ? 7 : 0);
+  const std::size_t at = rest.find('@');
+  address.name = rest.substr(0, at);
+  if (address.name.empty() || address.name.front() != '/')
+    throw std::invalid_argument("\"" + text + "\": expected serial:/path[@baud]");
+  rest = at == std::string::npos ? "" : rest.substr(at + 1);
+  const std::size_t comma = rest.find(',');
+  if (at != std::string::npos)
+    address.baud = number(rest.substr(0, comma), text, "a baud rate");
+  if (!speed_of(address.baud))
+    throw std::invalid_argument("\"" + text +
+                                "\": expected a baud rate of 1200, 2400, 4800, 9600, 19200, "
+                                "38400, 57600, 115200 or 230400");
+  rest = comma == std::string::npos ? "" : rest.substr(comma);
+  while (!rest.empty()) {
+    const std::size_t end = rest.find(',', 1);
+    const std::string word = rest.substr(1, end == std::string::npos ? end : end - 1);
+    rest = end == std::string::npos ? "" : rest.substr(end);
+    if (word == "rtscts") {
+      address.flow_control = true;
+    } else if (word.size() == 3 && word[0] == '8' &&
+               (word[1] == 'N' || word[1] == 'E' || word[1] == 'O') &&
+               (word[2] == '1' || word[2] == '2')) {
+      address.parity = word[1];
+      address.stop_bits = word[2] - '0';
+    } else {
+      throw std::invalid_argument(
+          "\"" + text + "\": expected 8N1, 8E1, 8O1, 8N2 or rtscts, found \"" + word + "\"");
+    }
+  }
+}
+
 }  // namespace
 
 std::string Address::text() const {
   switch (kind) {
     case Kind::serial:
-      return name + "@" + std::to_string(baud);
+      return (name.starts_with("/dev/") ? "" : "serial:") + name + "@" + std::to_string(baud) +
+             (parity == 'N' && stop_bits == 1
+                  ? ""
+                  : std::string(",8") + parity + std::to_string(stop_bits)) +
+             (flow_control ? ",rtscts" : "");
     case Kind::local:
       return "unix:" + name;
     case Kind::tcp:
@@ -52,16 +89,9 @@ Address parse_address(const std::string& text) {
       throw std::invalid_argument("\"" + text + "\": expected a port in 1..65535");
     return address;
   }
-  if (text.starts_with("/dev/")) {
+  if (text.starts_with("/dev/") || text.starts_with("serial:")) {
     address.kind = Address::Kind::serial;
-    const std::size_t at = text.find('@');
-    address.name = text.substr(0, at);
-    if (at != std::string::npos)
-      address.baud = number(text.substr(at + 1), text, "a baud rate");
-    if (!speed_of(address.baud))
-      throw std::invalid_argument("\"" + text +
-                                  "\": expected a baud rate of 1200, 2400, 4800, 9600, 19200, "
-                                  "38400, 57600, 115200 or 230400");
+    parse_serial(text, address);
     return address;
   }
   address.kind = Address::Kind::local;
@@ -69,7 +99,8 @@ Address parse_address(const std::string& text) {
   if (address.name.empty() || (!text.starts_with("unix:") && text.front() != '/'))
     throw std::invalid_argument(
         "\"" + text +
-        "\": expected a robot's address: /dev/tty...[@baud], unix:/path or tcp:host:port");
+        "\": expected a robot's address: /dev/tty...[@baud], serial:/path[@baud], unix:/path or "
+        "tcp:host:port");
   if (address.name.size() >= sizeof(sockaddr_un::sun_path))
     throw std::invalid_argument("\"" + text + "\": the path of a local socket has at most " +
                                 std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");

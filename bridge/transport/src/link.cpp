@@ -5,7 +5,10 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <termios.h>
 #include <unistd.h>
@@ -13,7 +16,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "baud.hpp"
 
@@ -31,18 +36,50 @@ std::string error_text() {
   return std::strerror(errno);
 }
 
-/// Raw bytes, 8N1, no flow control, as the manual's RS-232 link (5.4).
-bool make_raw(int fd, int baud) {
+/// Raw bytes; 8N1 without flow control is the manual's RS-232 link (5.4).
+bool make_raw(int fd, const Address& address) {
   termios line{};
   if (tcgetattr(fd, &line) != 0)
     return false;
   cfmakeraw(&line);
   line.c_cflag |= CLOCAL | CREAD;
-  line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-  const auto speed = speed_of(baud);
+  line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS | PARENB | PARODD);
+  if (address.parity != 'N')
+    line.c_cflag |= PARENB;
+  if (address.parity == 'O')
+    line.c_cflag |= PARODD;
+  if (address.stop_bits == 2)
+    line.c_cflag |= CSTOPB;
+  if (address.flow_control)
+    line.c_cflag |= CRTSCTS;
+  const auto speed = speed_of(address.baud);
   if (!speed || cfsetispeed(&line, *speed) != 0 || cfsetospeed(&line, *speed) != 0)
     return false;
   return tcsetattr(fd, TCSANOW, &line) == 0 && tcflush(fd, TCIOFLUSH) == 0;
+}
+
+/// Who holds the lock on a file, in words; from /proc/locks, lines such as
+/// "1: FLOCK  ADVISORY  WRITE 1234 00:18:5 0 EOF".
+std::string holder(int fd) {
+  struct stat about {};
+  ::fstat(fd, &about);
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number;
+    std::string kind;
+    std::string mode;
+    std::string access;
+    std::string pid;
+    std::string file;
+    words >> number >> kind >> mode >> access >> pid >> file;
+    if (kind != "FLOCK" || !file.ends_with(":" + std::to_string(about.st_ino)))
+      continue;
+    std::string name;
+    std::getline(std::ifstream("/proc/" + pid + "/comm") >> std::ws, name);
+    return "process " + pid + (name.empty() ? "" : " (" + name + ")");
+  }
+  return "another program";
 }
 
 }  // namespace
@@ -63,8 +100,12 @@ double Link::due() const {
 void Link::close(const std::string& why, double now) {
   if (fd_ >= 0) {
     // Another process may hold a copy of the descriptor; the other side shall know at once.
-    if (address_.kind != Address::Kind::serial)
+    if (address_.kind != Address::Kind::serial) {
       ::shutdown(fd_, SHUT_RDWR);
+    } else if (state_ == State::open) {
+      ::ioctl(fd_, TIOCNXCL);
+      ::flock(fd_, LOCK_UN);
+    }
     ::close(fd_);
   }
   fd_ = -1;
@@ -77,6 +118,7 @@ void Link::close(const std::string& why, double now) {
 
 void Link::opened() {
   state_ = State::open;
+  heard_ = false;
   trouble_.clear();
 }
 
@@ -84,8 +126,19 @@ void Link::open(double now) {
   const auto fail = [&](const std::string& what) { close(what + ": " + error_text(), now); };
   if (address_.kind == Address::Kind::serial) {
     fd_ = ::open(address_.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (fd_ < 0 || !make_raw(fd_, address_.baud))
+    if (fd_ < 0 && errno == ENOENT)
+      return close(address_.name + ": there is no such line (is it plugged in?)", now);
+    if (fd_ < 0 && errno == EACCES)
+      return close(address_.name + ": no permission (are you in the group dialout?)", now);
+    if (fd_ < 0 && errno == EBUSY)
+      return close(address_.name + ": in use by another program", now);
+    // Two programs on one line would each hear half of the robot, and drive it both. The lock is
+    // for other bridges, the exclusive mode for whatever else.
+    if (fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      return close(address_.name + ": in use by " + holder(fd_), now);
+    if (fd_ < 0 || !make_raw(fd_, address_))
       return fail(address_.name);
+    ::ioctl(fd_, TIOCEXCL);
     return opened();
   }
   if (address_.kind == Address::Kind::local) {
@@ -143,6 +196,15 @@ void Link::advance(double now) {
     flush(now);
 }
 
+std::string Link::hung_up() const {
+  return heard_ ? "closed by the robot"
+                : "closed by the robot before it said anything (has it another client?)";
+}
+
+std::string Link::failure() const {
+  return errno == EPIPE || errno == ECONNRESET ? hung_up() : error_text();
+}
+
 bool Link::read(std::vector<std::uint8_t>& out, double now) {
   if (state_ != State::open)
     return state_ == State::connecting;
@@ -150,6 +212,7 @@ bool Link::read(std::vector<std::uint8_t>& out, double now) {
   while (true) {
     const ssize_t n = ::read(fd_, buffer, sizeof buffer);
     if (n > 0) {
+      heard_ = true;
       backoff_ = 0.0;  // a server that talks is worth a quick second try
       out.insert(out.end(), buffer, buffer + n);
       if (static_cast<std::size_t>(n) < sizeof buffer)
@@ -162,9 +225,7 @@ bool Link::read(std::vector<std::uint8_t>& out, double now) {
     if ((n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) ||
         (n == 0 && address_.kind == Address::Kind::serial && ::isatty(fd_) == 1))
       return true;
-    close(
-        n == 0 ? address_.text() + ": closed by the robot" : address_.text() + ": " + error_text(),
-        now);
+    close(address_.text() + ": " + (n == 0 ? hung_up() : failure()), now);
     return false;
   }
 }
@@ -172,7 +233,10 @@ bool Link::read(std::vector<std::uint8_t>& out, double now) {
 bool Link::write(std::span<const std::uint8_t> bytes, double now) {
   if (state_ != State::open)
     return false;
-  if (waiting_.size() + bytes.size() > kMaxWaiting) {
+  int in_kernel = 0;  // a terminal's own queue is longer than what we want to wait for
+  if (address_.kind == Address::Kind::serial && ::ioctl(fd_, TIOCOUTQ, &in_kernel) != 0)
+    in_kernel = 0;
+  if (waiting_.size() + static_cast<std::size_t>(in_kernel) + bytes.size() > kMaxWaiting) {
     close(address_.text() + ": does not take commands", now);
     return false;
   }
@@ -194,7 +258,7 @@ bool Link::flush(double now) {
       continue;
     if (n == 0 || errno == EAGAIN || errno == EWOULDBLOCK)
       return true;
-    close(address_.text() + ": " + error_text(), now);
+    close(address_.text() + ": " + failure(), now);
     return false;
   }
   return true;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <numeric>
@@ -18,6 +19,14 @@ namespace {
 TEST(Address, IsReadInEveryForm) {
   EXPECT_EQ(parse_address("/dev/ttyS0").text(), "/dev/ttyS0@9600");
   EXPECT_EQ(parse_address("/dev/ttyUSB0@19200").baud, 19200);
+  EXPECT_EQ(parse_address("serial:/tmp/line").text(), "serial:/tmp/line@9600");
+  const Address full = parse_address("serial:/tmp/line@38400,8E2,rtscts");
+  EXPECT_EQ(full.kind, Address::Kind::serial);
+  EXPECT_EQ(full.baud, 38400);
+  EXPECT_EQ(full.parity, 'E');
+  EXPECT_EQ(full.stop_bits, 2);
+  EXPECT_TRUE(full.flow_control);
+  EXPECT_EQ(full.text(), "serial:/tmp/line@38400,8E2,rtscts");
   EXPECT_EQ(parse_address("unix:/tmp/robot").text(), "unix:/tmp/robot");
   EXPECT_EQ(parse_address("/tmp/robot").kind, Address::Kind::local);
   EXPECT_EQ(parse_address("tcp:lab:8101").text(), "tcp:lab:8101");
@@ -25,8 +34,10 @@ TEST(Address, IsReadInEveryForm) {
 }
 
 TEST(Address, SaysWhatWasExpected) {
-  for (const char* bad : {"", "robot", "unix:", "tcp:", "tcp:host", "tcp::1", "tcp:host:x",
-                          "tcp:host:70000", "/dev/ttyS0@fast", "/dev/ttyS0@12345"}) {
+  for (const char* bad :
+       {"", "robot", "unix:", "tcp:", "tcp:host", "tcp::1", "tcp:host:x", "tcp:host:70000",
+        "/dev/ttyS0@fast", "/dev/ttyS0@12345", "serial:", "serial:line", "/dev/ttyS0@9600,7N1",
+        "/dev/ttyS0@9600,xonxoff", "/dev/ttyS0@9600,"}) {
     try {
       parse_address(bad);
       ADD_FAILURE() << bad;
@@ -180,6 +191,59 @@ TEST(Link, SpeaksOverATerminalLineWithoutChangingABit) {
   ::close(master);
   ASSERT_TRUE(readable(link.fd()));
   EXPECT_FALSE(link.read(in, 1.0)) << "the line was pulled";
+}
+
+/// A pseudo-terminal in place of a serial line.
+struct Terminal {
+  Terminal() {
+    EXPECT_GE(master, 0);
+    EXPECT_EQ(::grantpt(master), 0);
+    EXPECT_EQ(::unlockpt(master), 0);
+  }
+  ~Terminal() { ::close(master); }
+  std::string device() const { return ::ptsname(master); }
+  int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+};
+
+TEST(Link, OneProgramALine) {
+  const Terminal terminal;
+  Link first(parse_address(terminal.device()));
+  first.advance(1.0);
+  ASSERT_EQ(first.state(), Link::State::open) << first.trouble();
+  Link second(parse_address(terminal.device()));
+  second.advance(1.0);
+  EXPECT_EQ(second.state(), Link::State::closed);
+  // The exclusive mode does not hold for root; the lock then says who it is.
+  EXPECT_NE(second.trouble().find(": in use by "), std::string::npos) << second.trouble();
+  if (::getuid() == 0) {
+    EXPECT_NE(second.trouble().find(std::to_string(::getpid())), std::string::npos)
+        << second.trouble();
+  }
+  first.close("done", 1.0);
+  second.advance(second.due());
+  EXPECT_EQ(second.state(), Link::State::open) << second.trouble();
+}
+
+TEST(Link, SaysWhatIsWrongWithALine) {
+  Link missing(parse_address("/dev/no-such-line"));
+  missing.advance(1.0);
+  EXPECT_EQ(missing.trouble(), "/dev/no-such-line: there is no such line (is it plugged in?)");
+  Link file(parse_address("serial:/dev/null"));
+  file.advance(1.0);
+  EXPECT_EQ(file.state(), Link::State::closed);
+  EXPECT_NE(file.trouble().find("/dev/null: "), std::string::npos) << file.trouble();
+}
+
+TEST(Link, SetsTheLine) {
+  const Terminal terminal;
+  Link link(parse_address(terminal.device() + "@19200,8O2"));
+  link.advance(1.0);
+  ASSERT_EQ(link.state(), Link::State::open) << link.trouble();
+  termios line{};
+  ASSERT_EQ(tcgetattr(link.fd(), &line), 0);
+  EXPECT_EQ(cfgetospeed(&line), speed_t{B19200});
+  EXPECT_NE(line.c_cflag & CSTOPB, 0U);
+  EXPECT_EQ(line.c_lflag & (ECHO | ICANON | ISIG), 0U);
 }
 
 }  // namespace

@@ -25,6 +25,12 @@ struct OdometryMemory {
   Pose server_in_odom;     ///< where the server's frame stands in odom
 };
 
+/// How far a robot may have gone by itself while it was not heard.
+struct Slack {
+  double distance = 0.0;  ///< [m]
+  double angle = 0.0;     ///< [rad]
+};
+
 /// One line of text, for a small file; and back, nothing where the text is not one.
 std::string to_text(const OdometryMemory& memory);
 std::optional<OdometryMemory> from_text(const std::string& text);
@@ -45,8 +51,8 @@ class Odometry {
 
   /// A connection begins. The first packet after it goes on with the remembered frame when its raw
   /// pose is near the remembered one, and is not the exact (0, 0, 0) of a power-up; otherwise it
-  /// begins frame `fresh` at (0, 0, 0).
-  void connect(std::optional<OdometryMemory> memory, std::uint64_t fresh);
+  /// begins frame `fresh` at (0, 0, 0). `slack` makes "near" wider, as far as the counters allow.
+  void connect(std::optional<OdometryMemory> memory, std::uint64_t fresh, const Slack& slack = {});
   /// A packet, `dt` seconds after the last. A jump that no robot makes begins frame `fresh`.
   /// Returns whether a frame began.
   bool update(const RawPose& raw, double dt, std::uint64_t fresh);
@@ -66,6 +72,7 @@ class Odometry {
   bool first_ = true;
   std::optional<OdometryMemory> remembered_;
   std::uint64_t fresh_ = 0;
+  Slack slack_;
   OdometryMemory memory_;
   Pose pose_;
   double advance_ = 0.0;

@@ -37,7 +37,10 @@ class Reflector {
 
   /// The server was opened. `memory`: of the odom frame before, if any; `fresh`: the number of the
   /// frame that begins otherwise. Zero setpoints are due at once.
-  void open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh);
+  void open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh,
+            const Slack& slack = {});
+  /// How far the robot may go when it is not heard from now on: until its own watchdog stops it.
+  Slack slack() const;
 
   /// A packet. `fresh`: the number of the odom frame that begins where continuity is lost.
   const State& packet(const protocol::InformationPacket& packet, double now, std::uint64_t fresh);

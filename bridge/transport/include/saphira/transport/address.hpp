@@ -5,7 +5,8 @@
 namespace saphira::transport {
 
 /// Where a robot server is to be found (manual Table 5-6), as people write it:
-///   /dev/ttyS0, /dev/ttyUSB0@19200   a serial line [9600 baud]
+///   /dev/ttyS0, /dev/ttyUSB0@19200   a serial line, or a pseudo-terminal [9600 baud, 8N1]
+///   serial:/path@38400,8E1,rtscts    the same elsewhere, with all its settings
 ///   unix:/path, or a path elsewhere  a local socket (the simulator's)
 ///   tcp:host:port                    a network
 struct Address {
@@ -13,6 +14,9 @@ struct Address {
   Kind kind = Kind::local;
   std::string name;  ///< device, path, or host
   int baud = 9600;
+  char parity = 'N';          ///< N, E, O
+  int stop_bits = 1;          ///< 1, 2
+  bool flow_control = false;  ///< by RTS and CTS
   int port = 0;
 
   std::string text() const;

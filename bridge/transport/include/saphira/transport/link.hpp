@@ -46,6 +46,8 @@ class Link {
   void open(double now);
   void opened();
   bool flush(double now);
+  std::string hung_up() const;
+  std::string failure() const;  ///< of errno
 
   Address address_;
   State state_ = State::closed;
@@ -54,6 +56,7 @@ class Link {
   double next_try_ = 0.0;
   double give_up_ = 0.0;
   double backoff_ = 0.0;
+  bool heard_ = false;  ///< something came since it was opened
   std::vector<std::uint8_t> waiting_;
 };
 

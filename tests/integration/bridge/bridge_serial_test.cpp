@@ -1,0 +1,227 @@
+// The robot behind a serial line at 9600 baud: what happens to the line, and what the user sees.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+
+#include "scene.hpp"
+#include "serial_line.hpp"
+
+namespace saphira::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+void forward(v1::MotorCommand& command, double velocity) {
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.velocity(velocity);
+  command.rotation(v1::ROTATION_VELOCITY);
+}
+
+/// A scene with a line between bridge and robot.
+struct LineScene : Scene {
+  LineScene() { robot_port = "serial:" + folder.path("tty") + "@9600"; }
+  /// Until the robot drives at 0.3 m/s.
+  void drive_off() {
+    start_simulator();
+    start_bridge();
+    forward(command, 0.3);
+    drives = true;
+    ASSERT_TRUE(until([&] { return state.velocity() > 0.28; })) << bridge_log();
+  }
+  bool says(const std::string& text) {
+    return until([&] { return status.reason().find(text) != std::string::npos; });
+  }
+  /// Cycles of the trace from `cycle` to the standstill; -1 where it did not come.
+  int cycles_to_stand(std::uint64_t cycle) {
+    if (!until([&] { return stood_still(trace(), cycle) != 0; }))
+      return -1;
+    return static_cast<int>(stood_still(trace(), cycle) - cycle);
+  }
+  SerialLine line{folder.path("tty"), folder.path("robot"), 9600};
+};
+
+TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
+  LineScene scene;
+  scene.drive_off();
+  const std::size_t before = scene.states.size();
+  const auto bytes = scene.line.from_robot();
+  const auto began = std::chrono::steady_clock::now();
+  scene.watch(milliseconds(3000));
+  const double time =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  // Every packet comes: the line takes what the robot says in 100 ms in less than that.
+  EXPECT_GE(scene.states.size() - before, static_cast<std::size_t>(time * 10.0) - 3);
+  const double rate = static_cast<double>(scene.line.from_robot() - bytes) / time;
+  EXPECT_GT(rate, 300.0);
+  EXPECT_LT(rate, 960.0 * 1.01) << "faster than the line";
+  EXPECT_LT(scene.line.waited_to_robot(), 60U) << "commands that wait are old";
+  EXPECT_EQ(scene.state.bad_packets(), 0U);
+  EXPECT_EQ(scene.status.reason(), "");
+  // Release, and the robot stands: 0.3 m/s at 2 m/s2, and the line's own time.
+  scene.drives = false;
+  scene.command.active(false);
+  const std::uint64_t released = scene.trace().back().cycle;
+  scene.publish();
+  const int cycles = scene.cycles_to_stand(released);
+  std::printf("%.0f bytes/s from the robot; stood still %d cycles after the release\n", rate,
+              cycles);
+  EXPECT_GE(cycles, 0);
+  EXPECT_LE(cycles, 5);
+}
+
+TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
+  LineScene scene;
+  scene.drive_off();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  const std::uint64_t odom = scene.state.odom();
+  scene.line.cut(true);
+  const std::uint64_t cut = scene.trace().back().cycle;
+  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
+  EXPECT_EQ(scene.status.state(), v1::SERVICE_WAITING);
+  // The robot's own watchdog stops it: nobody else can.
+  const int cycles = scene.cycles_to_stand(cut);
+  std::printf("stood still %d cycles after the cable was pulled\n", cycles);
+  EXPECT_GE(cycles, 0);
+  EXPECT_LE(cycles, 20 + 6);
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  scene.line.cut(false);
+  ASSERT_TRUE(scene.until([&] {
+    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
+  })) << scene.bridge_log();
+  EXPECT_EQ(scene.state.odom(), odom) << "the robot counted on";
+  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+}
+
+TEST(BridgeSerial, ACableThatIsOutForAMoment) {
+  LineScene scene;
+  scene.drive_off();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  scene.line.cut(true);
+  scene.watch(milliseconds(250));
+  scene.line.cut(false);
+  const std::uint64_t cycle = scene.state.stamp().cycle();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
+  EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the session goes on";
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; }));
+}
+
+TEST(BridgeSerial, AnAdapterThatIsPulledAndPutBack) {
+  LineScene scene;
+  scene.drive_off();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  scene.line.remove();
+  ASSERT_TRUE(scene.says("there is no such line (is it plugged in?)")) << scene.status.reason();
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
+  scene.line.put_back();
+  ASSERT_TRUE(scene.until([&] {
+    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
+  })) << scene.bridge_log();
+}
+
+TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
+  LineScene scene;
+  scene.drive_off();
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.5; }));
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  const std::uint64_t odom = scene.state.odom();
+  auto servos = scene.node.writer(bus::topics::kServo);
+  scene.simulator->signal(SIGKILL);
+  ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  // What is asked for meanwhile is refused, and does not happen later.
+  ASSERT_TRUE(scene.until([&] { return servos.matched() > 0; }));
+  v1::ServoCommand servo;
+  servo.source("test");
+  servo.request(7);
+  servo.width(1800);
+  servos.write(servo);
+  ASSERT_TRUE(scene.until([&] {
+    return !scene.devices.requests().empty() && scene.devices.requests()[0].request() == 7;
+  }));
+  EXPECT_EQ(scene.devices.requests()[0].reason(), "no robot is connected");
+  scene.drives = false;
+  scene.start_simulator();
+  ASSERT_TRUE(scene.until([&] {
+    return scene.state.stamp().epoch() > epoch && scene.state.stamp().cycle() > 10;
+  })) << scene.bridge_log();
+  EXPECT_NE(scene.state.odom(), odom) << "its position began anew";
+  EXPECT_EQ(scene.state.ptu(), 0);
+  for (const sim::TraceRow& row : scene.trace())
+    ASSERT_EQ(row.set_velocity, 0.0) << "nobody told it to drive";
+}
+
+TEST(BridgeSerial, Noise) {
+  LineScene scene;
+  scene.drive_off();
+  scene.line.hurt_one_in(100);
+  const std::size_t before = scene.states.size();
+  scene.watch(milliseconds(4000));
+  scene.line.hurt_one_in(0);
+  EXPECT_GT(scene.line.hurt(), 10U);
+  EXPECT_GT(scene.state.bad_packets(), 3U) << "the user sees how bad the line is";
+  EXPECT_GT(scene.states.size() - before, 10U) << "whole packets still come through";
+  for (const sim::TraceRow& row : scene.whole_trace()) {
+    const bool asked = row.set_velocity == 0.0 || std::abs(row.set_velocity - 0.3) < 1e-9;
+    ASSERT_TRUE(asked) << row.set_velocity;
+  }
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
+}
+
+TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
+  LineScene scene;
+  scene.drive_off();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  // Of another robot's name, so that its status is not taken for the first one's.
+  Process second({"saphira-bridge", "--robot", scene.robot + "x", "--domain", domain(),
+                  "--robot-port", scene.robot_port, "--robots", scene.robots_folder},
+                 scene.folder.path("second.log"));
+  bus::NodeOptions options = scene.node.options();
+  options.robot = scene.robot + "x";
+  bus::Node node(options);
+  auto statuses = node.reader(bus::topics::kStatus);
+  std::string reason;
+  ASSERT_TRUE(scene.until([&] {
+    for (const auto& sample : statuses.take())
+      reason = sample.data.reason();
+    return reason.find("in use by ") != std::string::npos;
+  })) << reason;
+  EXPECT_NE(reason.find("process " + std::to_string(scene.bridge->pid()) + " (saphira-bridge)"),
+            std::string::npos)
+      << reason;
+  const std::uint64_t cycle = scene.state.stamp().cycle();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
+  EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the first one is not disturbed";
+  EXPECT_GT(scene.state.velocity(), 0.28);
+  // When the first one ends, the second has the robot.
+  scene.bridge->signal(SIGTERM);
+  auto states = node.reader(bus::topics::kRobotState);
+  EXPECT_TRUE(scene.until([&] { return states.take_newest().has_value(); })) << second.output();
+}
+
+TEST(BridgeSerial, ASecondClientOfTheSimulatorSaysSo) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  Process second({"saphira-bridge", "--robot", scene.robot + "x", "--domain", domain(),
+                  "--robot-port", scene.robot_port, "--robots", scene.robots_folder},
+                 scene.folder.path("second.log"));
+  bus::NodeOptions options = scene.node.options();
+  options.robot = scene.robot + "x";
+  bus::Node node(options);
+  auto statuses = node.reader(bus::topics::kStatus);
+  std::string reason;
+  ASSERT_TRUE(scene.until([&] {
+    for (const auto& sample : statuses.take())
+      reason = sample.data.reason();
+    return reason.find("has it another client?") != std::string::npos;
+  })) << reason;
+  const std::uint64_t cycle = scene.state.stamp().cycle();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
+  EXPECT_EQ(scene.state.stamp().epoch(), epoch);
+}
+
+}  // namespace
+}  // namespace saphira::test

@@ -1,0 +1,168 @@
+#include "serial_line.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <vector>
+
+namespace saphira::test {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick{1};
+constexpr milliseconds kRetry{50};  // to find the robot
+
+int connect_to(const std::string& path) {
+  const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  path.copy(name.sun_path, sizeof name.sun_path - 1);
+  if (::connect(fd, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0)
+    return fd;
+  ::close(fd);
+  return -1;
+}
+
+}  // namespace
+
+SerialLine::SerialLine(std::string device, std::string robot_socket, int baud)
+    : device_(std::move(device)),
+      socket_(std::move(robot_socket)),
+      byte_(baud > 0 ? 10'000'000'000LL / baud : 0) {
+  open_device();
+  thread_ = std::thread([this] { run(); });
+}
+
+SerialLine::~SerialLine() {
+  stop_ = true;
+  thread_.join();
+  close_device();
+  ::close(robot_);
+}
+
+void SerialLine::open_device() {
+  master_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+  std::array<char, 64> name{};
+  if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
+      ::ptsname_r(master_, name.data(), name.size()) != 0)
+    throw std::runtime_error("no pseudo-terminal");
+  ::unlink(device_.c_str());
+  if (::symlink(name.data(), device_.c_str()) != 0)
+    throw std::runtime_error(device_ + ": cannot be made");
+}
+
+void SerialLine::close_device() {
+  ::unlink(device_.c_str());
+  ::close(master_);
+  master_ = -1;
+}
+
+void SerialLine::remove() {
+  const std::scoped_lock lock(mutex_);
+  close_device();
+  for (Direction& direction : directions_)
+    direction.waiting.clear();
+}
+
+void SerialLine::put_back() {
+  const std::scoped_lock lock(mutex_);
+  open_device();
+}
+
+/// False where the other end is gone.
+bool SerialLine::take(int fd, int direction) {
+  Direction& d = directions_[direction];
+  std::array<std::uint8_t, 512> buffer{};
+  const ssize_t n = ::read(fd, buffer.data(), buffer.size());
+  if (n <= 0)
+    return n < 0 && (errno == EAGAIN || errno == EINTR);
+  if (cut_)
+    return true;
+  if (d.waiting.empty())
+    d.due = Clock::now() + byte_;
+  for (ssize_t i = 0; i < n; ++i) {
+    std::uint8_t byte = buffer.at(static_cast<std::size_t>(i));
+    random_ = random_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    const unsigned one_in = hurt_one_in_;
+    if (one_in != 0 && (random_ >> 33U) % one_in == 0) {
+      ++hurt_;
+      const auto how = (random_ >> 20U) % 3;
+      if (how == 0)
+        continue;
+      if (how == 1)
+        byte = static_cast<std::uint8_t>(random_ >> 24U);
+      else
+        d.waiting.push_back(byte);
+    }
+    d.waiting.push_back(byte);
+  }
+  waited_[direction] = std::max<std::uint64_t>(waited_[direction], d.waiting.size());
+  return true;
+}
+
+bool SerialLine::give(int fd, int direction) {
+  Direction& d = directions_[direction];
+  const auto now = Clock::now();
+  std::vector<std::uint8_t> out;
+  while (!d.waiting.empty() && d.due <= now) {
+    out.push_back(d.waiting.front());
+    d.waiting.pop_front();
+    d.due += byte_;
+  }
+  if (out.empty() || fd < 0 || cut_)
+    return true;
+  bytes_[direction] += out.size();
+  // What nobody takes is lost, as in a receiver that is not read.
+  const ssize_t n = direction == 0 ? ::send(fd, out.data(), out.size(), MSG_NOSIGNAL)
+                                   : ::write(fd, out.data(), out.size());
+  return n >= 0 || errno == EAGAIN || errno == EINTR;
+}
+
+void SerialLine::run() {
+  auto next_try = Clock::now();
+  while (!stop_) {
+    std::array<pollfd, 2> fds{{{-1, POLLIN, 0}, {-1, POLLIN, 0}}};
+    bool busy = false;
+    {
+      const std::scoped_lock lock(mutex_);
+      if (robot_ < 0 && Clock::now() >= next_try) {
+        robot_ = connect_to(socket_);
+        next_try = Clock::now() + kRetry;
+      }
+      fds[0].fd = master_;
+      fds[1].fd = robot_;
+      busy = !directions_[0].waiting.empty() || !directions_[1].waiting.empty();
+    }
+    if (!listened_)
+      fds[0].events = 0;  // the hang-up is told all the same
+    ::poll(fds.data(), fds.size(), static_cast<int>((busy ? kTick : kRetry / 2).count()));
+    const std::scoped_lock lock(mutex_);
+    listened_ = fds[0].fd >= 0 && (fds[0].revents & POLLHUP) == 0;
+    if (!listened_)
+      std::this_thread::sleep_for(kTick);  // a poll of what has hung up waits for nothing
+    if (listened_ && (fds[0].revents & POLLIN) != 0 && fds[0].fd == master_)
+      take(master_, 0);
+    bool robot_is_there = true;
+    if (fds[1].revents != 0 && robot_ >= 0)
+      robot_is_there = take(robot_, 1);
+    robot_is_there = give(robot_, 0) && robot_is_there;
+    // A terminal that nobody has open would send back what is written to it.
+    give(listened_ ? master_ : -1, 1);
+    if (!robot_is_there && robot_ >= 0) {
+      ::close(robot_);
+      robot_ = -1;
+    }
+  }
+}
+
+}  // namespace saphira::test
