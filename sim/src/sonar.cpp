@@ -16,6 +16,9 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
   return far;
 }
 
+// A corner is hidden by what is nearer than this before it [m]: not by the walls that make it.
+constexpr double kBefore = 0.01;
+
 }  // namespace
 
 Sonars::Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
@@ -61,6 +64,7 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   // Always the same draws, so that one reading's fate does not shift those of the next.
   const bool dropped = random_.chance(model_.dropout);
   const bool glancing_lost = random_.chance(model_.specular_loss);
+  const bool corners_lost = random_.chance(model_.corner_loss);
   const double noise = random_.normal();
 
   // Only segments that reach into the half-plane ahead, and into the beam's circle.
@@ -69,6 +73,7 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   in_beam_.segments.clear();
   in_beam_.discs.clear();
   scene_->add_movable(robot_in_world.position(), reach_, self_, in_beam_);
+  const std::size_t movable = in_beam_.segments.size();
   for (const Segment& segment : near_.around(robot_in_world.position())) {
     if ((segment.from - origin).dot(ahead) > 0.0 || (segment.to - origin).dot(ahead) > 0.0)
       in_beam_.segments.push_back(segment);
@@ -85,12 +90,33 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
     if (!nearest || hit->range < *nearest)
       nearest = hit->range;
   }
+  if (!corners_lost) {
+    for (const Corner* corner : near_.corners_around(robot_in_world.position()))
+      if (is_sharp_from(*corner, origin))
+        hear_corner(corner->point, origin, ahead, nearest);
+    for (std::size_t i = 0; i < movable; ++i) {
+      hear_corner(in_beam_.segments[i].from, origin, ahead, nearest);
+      hear_corner(in_beam_.segments[i].to, origin, ahead, nearest);
+    }
+  }
   if (!nearest || dropped)
     return {number, std::nullopt};
   const double range = *nearest + noise * (model_.noise + model_.relative_noise * *nearest);
   if (range >= model_.max_range)
     return {number, std::nullopt};
   return {number, std::max(range, model_.min_range)};
+}
+
+// Takes the corner for the nearest echo, if it is one.
+void Sonars::hear_corner(const Vec2& corner, const Vec2& origin, const Vec2& ahead,
+                         std::optional<double>& nearest) const {
+  const Vec2 way = corner - origin;
+  const double range = way.norm();
+  if (range < kBefore || range > nearest.value_or(model_.max_range) ||
+      way.dot(ahead) < range * std::cos(model_.corner_cone / 2))
+    return;
+  if (!cast_ray(in_beam_, origin, way / range, range - kBefore))
+    nearest = range;
 }
 
 }  // namespace saphira::sim

@@ -32,6 +32,7 @@ class Parser {
     if (!has_width_ || !has_height_)
       throw FileError(world_.file, lines_.empty() ? 1 : lines_.back().number, 1,
                       has_width_ ? "expected height" : "expected width");
+    world_.corners = find_corners(world_.segments);
     return std::move(world_);
   }
 
@@ -204,16 +205,29 @@ std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2
 }
 
 const std::vector<Segment>& Neighbourhood::around(const Vec2& point) {
-  if (!known_ || (point - centre_).squaredNorm() > kSlack * kSlack) {
-    known_ = true;
-    centre_ = point;
-    segments_.clear();
-    const double squared = (reach_ + kSlack) * (reach_ + kSlack);
-    for (const Segment& segment : world_->segments)
-      if ((nearest_point(segment, point) - point).squaredNorm() <= squared)
-        segments_.push_back(segment);
-  }
+  gather(point);
   return segments_;
+}
+
+const std::vector<const Corner*>& Neighbourhood::corners_around(const Vec2& point) {
+  gather(point);
+  return corners_;
+}
+
+void Neighbourhood::gather(const Vec2& point) {
+  if (known_ && (point - centre_).squaredNorm() <= kSlack * kSlack)
+    return;
+  known_ = true;
+  centre_ = point;
+  segments_.clear();
+  corners_.clear();
+  const double squared = (reach_ + kSlack) * (reach_ + kSlack);
+  for (const Segment& segment : world_->segments)
+    if ((nearest_point(segment, point) - point).squaredNorm() <= squared)
+      segments_.push_back(segment);
+  for (const Corner& corner : world_->corners)
+    if ((corner.point - point).squaredNorm() <= squared)
+      corners_.push_back(&corner);
 }
 
 }  // namespace saphira::sim

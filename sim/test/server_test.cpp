@@ -362,8 +362,9 @@ TEST_F(ServerTest, ThePictureHasTheWorldAndTheWay) {
   EXPECT_TRUE(plot_svg(world_, {}, 0.22).ends_with("</svg>\n"));
 }
 
-// A driver with no plan: towards the goal, away from what the front sonars see. The shipped office
-// promises that its suggested way needs no more.
+// A driver with no plan: towards the goal, away from what the front sonars hear or, since a smooth
+// wall is not heard from everywhere, have just heard. The shipped office promises that its
+// suggested way needs no more.
 TEST_F(ServerTest, TheOfficesWayNeedsNoPlan) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ServerOptions options;
@@ -389,7 +390,7 @@ TEST_F(ServerTest, TheOfficesWayNeedsNoPlan) {
       ASSERT_TRUE(packet);
       const auto in = protocol::interpret(*packet, parameters_);
       for (const auto& sonar : in.sonars)
-        ranges[sonar.number] = sonar.echo ? sonar.range : 5.0;
+        ranges[sonar.number] = sonar.echo ? sonar.range : std::min(5.0, ranges[sonar.number] + 0.3);
       const Pose pose = reckoning.update(*packet, parameters_);
       const Vec2 to_goal = goal - pose.position();
       left = to_goal.norm();

@@ -45,9 +45,9 @@ TEST(Sonars, TheNearestInTheConeCounts) {
   const auto echo = sonars.fire(0, {0.0, 0.0, radians(10.0)});
   ASSERT_TRUE(echo.range);
   EXPECT_NEAR(*echo.range, 2.0, 2.0 * (1.0 / std::cos(radians(1.6)) - 1.0) + 1e-9);
-  const auto aside = sonars.fire(0, {0.0, 0.0, radians(40.0)});
+  const auto aside = sonars.fire(0, {0.0, 0.0, radians(25.0)});
   ASSERT_TRUE(aside.range);
-  EXPECT_NEAR(*aside.range, 2.0 / std::cos(radians(27.5)), 1e-9);
+  EXPECT_NEAR(*aside.range, 2.0 / std::cos(radians(12.5)), 1e-9);
 }
 
 TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
@@ -59,20 +59,46 @@ TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
   EXPECT_FALSE(sonars.fire(0, {1.5, 0.0, kPi}).range);
 }
 
-TEST(Sonars, GlancingSurfacesAreLostAtTimes) {
+// The rays of the cone reach 12.5 degrees to the wall's side of where the sonar points to.
+TEST(Sonars, GlancingSurfacesAreLost) {
   const World world = wall_at(1000);
   const Scene scene(world);
-  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
+  SonarModel model = exact();
+  model.specular_loss = 0.9;
+  Sonars sonars(scene, kNobody, one_sonar(), model, 1);
   int glancing = 0;
   int steep = 0;
   constexpr int kFirings = 2000;
   for (int i = 0; i < kFirings; ++i) {
-    // The cone's nearest ray meets the wall at 12.5 degrees less.
-    glancing += sonars.fire(0, {0.0, 0.0, radians(75.0)}).range ? 1 : 0;
-    steep += sonars.fire(0, {0.0, 0.0, radians(70.0)}).range ? 1 : 0;
+    glancing += sonars.fire(0, {0.0, 0.0, radians(28.0)}).range ? 1 : 0;
+    steep += sonars.fire(0, {0.0, 0.0, radians(26.0)}).range ? 1 : 0;
   }
-  EXPECT_NEAR(static_cast<double>(glancing) / kFirings, 0.7, 0.05);
+  EXPECT_NEAR(static_cast<double>(glancing) / kFirings, 0.1, 0.03);
   EXPECT_EQ(steep, kFirings);
+}
+
+// What a sonar hears of a corridor's wall that it looks along is its door posts.
+TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
+  // A wall along y = 1 with a door in it, and a partition that meets it from behind at x = 5.
+  const World world = parse_world(
+      "width 9000 height 9000\n0 1000 2000 1000 2900 1000 9000 1000 5000 1000 5000 2000",
+      "door.wld");
+  const Scene scene(world);
+  SonarModel model = exact();
+  model.specular_loss = 1.0;
+  model.corner_loss = 0.0;
+  Sonars sonars(scene, kNobody, one_sonar(), model, 1);
+  const auto post = sonars.fire(0, {1.0, 0.0, radians(45.0)});
+  ASSERT_TRUE(post.range);
+  EXPECT_NEAR(*post.range, std::sqrt(2.0), 1e-9);
+  EXPECT_TRUE(sonars.fire(0, {1.0, 0.0, radians(54.0)}).range);
+  EXPECT_FALSE(sonars.fire(0, {1.0, 0.0, radians(56.0)}).range);
+  // Towards where the partition is, the wall is smooth, and it hides the partition's end.
+  EXPECT_FALSE(sonars.fire(0, {4.0, 0.0, radians(45.0)}).range);
+  EXPECT_FALSE(sonars.fire(0, {6.0, 0.0, radians(125.0)}).range);
+  model.corner_loss = 1.0;
+  Sonars deaf(scene, kNobody, one_sonar(), model, 1);
+  EXPECT_FALSE(deaf.fire(0, {1.0, 0.0, radians(45.0)}).range);
 }
 
 TEST(Sonars, NoiseAndDropouts) {

@@ -11,7 +11,9 @@
 
 namespace saphira::sim {
 
-/// How a sonar sees.
+/// How a sonar sees. A smooth wall is a mirror to it: heard where the beam meets it nearly head-on,
+/// and otherwise not at all; what is heard of it from aside is its corners (README, "Against real
+/// sonars").
 struct SonarModel {
   double cone = radians(25.0);    ///< [rad] full width of the beam
   int rays = 9;                   ///< over the cone; the nearest echo counts
@@ -22,8 +24,10 @@ struct SonarModel {
   double dropout = 0.005;         ///< probability that an echo is not heard
   /// [rad] A surface that is met at more than this from its normal throws the sound off: its echo
   /// is lost with probability specular_loss (one decision a firing).
-  double critical_angle = radians(60.0);
-  double specular_loss = 0.3;
+  double critical_angle = radians(14.0);
+  double specular_loss = 0.98;
+  double corner_cone = radians(20.0);  ///< [rad] full width of the beam in which corners are heard
+  double corner_loss = 0.04;           ///< probability that none is (one decision a firing)
 };
 
 struct SonarEcho {
@@ -53,6 +57,9 @@ class Sonars {
   SonarEcho fire(std::uint8_t number, const Pose& robot_in_world);
 
  private:
+  void hear_corner(const Vec2& corner, const Vec2& origin, const Vec2& ahead,
+                   std::optional<double>& nearest) const;
+
   const Scene* scene_;
   RobotNumber self_;
   std::vector<protocol::SonarUnit> units_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
+#include "saphira/sim/corners.hpp"
 
 namespace saphira::sim {
 
@@ -40,7 +41,8 @@ struct World {
   double width = 0.0;   ///< [m]
   double height = 0.0;  ///< [m]
   std::vector<Segment> segments;
-  std::optional<Pose> start;  ///< directive position: the robot's start_in_world
+  std::vector<Corner> corners;  ///< of the segments
+  std::optional<Pose> start;    ///< directive position: the robot's start_in_world
 };
 
 /// Reads the text of a world file; `file` names it in errors. Width and height come first. Several
@@ -84,13 +86,18 @@ class Neighbourhood {
 
   /// Every segment within the reach of `point`, and some that are not.
   const std::vector<Segment>& around(const Vec2& point);
+  /// The same of the world's corners.
+  const std::vector<const Corner*>& corners_around(const Vec2& point);
 
  private:
+  void gather(const Vec2& point);
+
   const World* world_;
   double reach_;
   bool known_ = false;
   Vec2 centre_{0.0, 0.0};
   std::vector<Segment> segments_;
+  std::vector<const Corner*> corners_;
 };
 
 }  // namespace saphira::sim

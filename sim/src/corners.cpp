@@ -1,0 +1,91 @@
+#include "saphira/sim/corners.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saphira/sim/world.hpp"
+
+namespace saphira::sim {
+
+namespace {
+
+constexpr double kSame = 0.002;            // [m]
+constexpr double kFlat = radians(5.0);     // a wall that turns by less goes straight on
+constexpr double kSameArm = radians(1.0);  // walls that lie upon each other
+
+bool before(const Vec2& a, const Vec2& b) {
+  return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+}
+
+// The first corner whose x is not below.
+std::vector<Corner>::iterator first_from(std::vector<Corner>& corners, double x) {
+  return std::lower_bound(corners.begin(), corners.end(), x,
+                          [](const Corner& corner, double low) { return corner.point.x() < low; });
+}
+
+void add_arm(Corner& corner, const Vec2& towards) {
+  corner.arms.push_back(
+      norm_angle(std::atan2(towards.y() - corner.point.y(), towards.x() - corner.point.x())));
+}
+
+void tidy(std::vector<double>& arms) {
+  std::sort(arms.begin(), arms.end());
+  std::vector<double> kept;
+  for (const double arm : arms)
+    if (kept.empty() || arm - kept.back() > kSameArm)
+      kept.push_back(arm);
+  if (kept.size() > 1 && kept.front() + 2.0 * kPi - kept.back() <= kSameArm)
+    kept.pop_back();
+  arms = std::move(kept);
+}
+
+bool is_flat(double sector) {
+  return std::abs(sector - kPi) < kFlat;
+}
+
+}  // namespace
+
+std::vector<Corner> find_corners(const std::vector<Segment>& segments) {
+  std::vector<Vec2> ends;
+  for (const Segment& segment : segments) {
+    ends.push_back(segment.from);
+    ends.push_back(segment.to);
+  }
+  std::sort(ends.begin(), ends.end(), before);
+  std::vector<Corner> corners;  // by x
+  for (const Vec2& end : ends) {
+    const auto near = [&](const Corner& c) { return (c.point - end).norm() <= kSame; };
+    if (std::none_of(first_from(corners, end.x() - kSame), corners.end(), near))
+      corners.push_back({end, {}});
+  }
+  for (const Segment& segment : segments) {
+    const auto [low, high] = std::minmax(segment.from.x(), segment.to.x());
+    for (auto corner = first_from(corners, low - kSame);
+         corner != corners.end() && corner->point.x() <= high + kSame; ++corner) {
+      if ((nearest_point(segment, corner->point) - corner->point).norm() > kSame)
+        continue;
+      for (const Vec2& end : {segment.from, segment.to})
+        if ((end - corner->point).norm() > kSame)
+          add_arm(*corner, end);
+    }
+  }
+  for (Corner& corner : corners)
+    tidy(corner.arms);
+  std::erase_if(corners, [](const Corner& c) {
+    return c.arms.empty() || (c.arms.size() == 2 && is_flat(c.arms[1] - c.arms[0]));
+  });
+  return corners;
+}
+
+bool is_sharp_from(const Corner& corner, const Vec2& viewer) {
+  const Vec2 away = viewer - corner.point;
+  const double at = norm_angle(std::atan2(away.y(), away.x()));
+  // The sector between the two arms that the viewer stands between.
+  const auto next = std::upper_bound(corner.arms.begin(), corner.arms.end(), at);
+  const bool wraps = next == corner.arms.begin() || next == corner.arms.end();
+  const double sector =
+      wraps ? corner.arms.front() + 2.0 * kPi - corner.arms.back() : *next - *std::prev(next);
+  return !is_flat(sector);
+}
+
+}  // namespace saphira::sim
