@@ -489,8 +489,8 @@ void run(const HostOptions& options, int stop_fd) {
       for (const std::string& warning : parameters.warnings)
         options.log(warning);
     if (!start)
-      throw std::runtime_error(options.world + ": expected a position directive" +
-                               (number == 0 ? "" : " for each robot") +
+      throw std::runtime_error(options.world + ": expected a directive " +
+                               (number == 0 ? "position" : "robot for each further robot") +
                                ", or a position among the options");
     ServerOptions server_options;
     server_options.seed = options.seed + number;
@@ -505,7 +505,10 @@ void run(const HostOptions& options, int stop_fd) {
   add(options.robot, options.position ? options.position : world.start, 0);
   for (std::size_t i = 0; i < options.more.size(); ++i) {
     const RobotOptions& robot = options.more[i];
-    add(robot.robot.empty() ? options.robot : robot.robot, robot.position, i + 1);
+    std::optional<Pose> start = robot.position;
+    if (!start && i < world.movable.robots.size())
+      start = world.movable.robots[i];
+    add(robot.robot.empty() ? options.robot : robot.robot, start, i + 1);
   }
   Host(options, simulation).run(stop_fd);
 }

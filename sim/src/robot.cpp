@@ -22,6 +22,8 @@ constexpr double kEmergencyDeceleration = 6.0;  // [m/s2]
 // The share of the wheels' way that the encoders still count where the robot cannot go.
 constexpr double kPushSlip = 0.2;
 
+constexpr int kPushes = 4;
+
 // Nearer things press a bumper.
 constexpr double kBumperGap = 0.005;  // [m]
 
@@ -284,13 +286,23 @@ void Robot::move(double way, double turn) {
   const Vec2 along(std::cos(middle), std::sin(middle));
   free_way_ -= std::abs(way);
   if (way != 0.0 && free_way_ <= 0.0) {
-    const Things& things = around();
+    const Vec2 at = pose_in_world_.position();
     double clearance_after = 0.0;
-    const double part = free_part(things, way * along, clearance_after);
-    if (part < 1.0) {
-      const auto touched = nearest_point(things, pose_in_world_.position());
+    double part = free_part(around(), way * along, clearance_after);
+    // A box that turns as it gives way may need another push.
+    bool pushed = false;
+    for (int i = 0; i < kPushes && part < 1.0; ++i) {
+      if (!scene_->push(number_, at + part * way * along, (1.0 - part) * way * along))
+        break;
+      pushed = true;
+      part = free_part(around(), way * along, clearance_after);
+    }
+    if (pushed) {
+      way *= part;
+    } else if (part < 1.0) {
+      const auto touched = nearest_point(around(), at);
       // A contact ahead stalls both motors, one at the side that side's (manual 6.3.1).
-      const Vec2 offset = *touched - pose_in_world_.position();
+      const Vec2 offset = *touched - at;
       const double bearing =
           norm2_angle(std::atan2(offset.y(), offset.x()) - middle + (way < 0.0 ? kPi : 0.0));
       const double side = way < 0.0 ? -bearing : bearing;

@@ -1,10 +1,83 @@
 #include "saphira/sim/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace saphira::sim {
+
+namespace {
+
+// Nobody walks nearer to a robot than this, if it is he who walks.
+constexpr double kManners = 0.10;  // [m]
+
+constexpr double kDoorSpeed = kPi / 2.0;  // [rad/s]
+
+// A robot of the class that we have moves what does not hold faster than its own tyres.
+constexpr double kMostPushed = 10.0;  // [kg]
+
+// How much a box gives way beyond what it must, so that the next look finds it out of the way.
+constexpr double kGiven = 1e-7;  // [m]
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+bool intersect(const Segment& a, const Segment& b) {
+  const Vec2 along_a = a.to - a.from;
+  const Vec2 along_b = b.to - b.from;
+  const double b_from = cross(along_a, b.from - a.from);
+  const double b_to = cross(along_a, b.to - a.from);
+  const double a_from = cross(along_b, a.from - b.from);
+  const double a_to = cross(along_b, a.to - b.from);
+  return b_from * b_to <= 0.0 && a_from * a_to <= 0.0 && (b_from != b_to || a_from != a_to);
+}
+
+double distance_to(const Segment& segment, const Vec2& point) {
+  return (nearest_point(segment, point) - point).norm();
+}
+
+}  // namespace
+
+Scene::Scene(const World& world) : world_(&world) {
+  const MovablePlans& plans = world.movable;
+  for (const PersonPlan& plan : plans.persons) {
+    persons_.push_back({&plan, plan.at});
+    for (const PersonPlan::Leg& leg : plan.script)
+      fastest_ = std::max(fastest_, leg.speed);
+  }
+  for (const DoorPlan& plan : plans.doors) {
+    doors_.push_back({&plan});
+    segments_.push_back(leaf(doors_.back()));
+    fastest_ = std::max(fastest_, (plan.end - plan.hinge).norm() * kDoorSpeed);
+  }
+  for (const BoxPlan& plan : plans.boxes) {
+    boxes_.push_back({&plan, plan.pose_in_world});
+    for (const Segment& side : outline(boxes_.back(), plan.pose_in_world))
+      segments_.push_back(side);
+  }
+  for (const PostPlan& plan : plans.posts)
+    posts_.push_back({plan.at, plan.radius});
+}
+
+Segment Scene::leaf(const Door& door, double angle) {
+  const DoorPlan& plan = *door.plan;
+  return {plan.hinge,
+          transform(Pose{plan.hinge.x(), plan.hinge.y(), angle}, Vec2(plan.end - plan.hinge))};
+}
+
+std::array<Segment, 4> Scene::outline(const Box& box, const Pose& pose_in_world) {
+  const double x = box.plan->length / 2.0;
+  const double y = box.plan->width / 2.0;
+  const std::array<Vec2, 4> corners{
+      transform(pose_in_world, Vec2(x, y)), transform(pose_in_world, Vec2(-x, y)),
+      transform(pose_in_world, Vec2(-x, -y)), transform(pose_in_world, Vec2(x, -y))};
+  return {{{corners[0], corners[1]},
+           {corners[1], corners[2]},
+           {corners[2], corners[3]},
+           {corners[3], corners[0]}}};
+}
 
 Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose& start_in_world,
                         std::uint64_t seed) {
@@ -16,12 +89,17 @@ Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose&
   hulls_.push_back({start_in_world.position(), parameters.radius});
   robots_.push_back(
       std::make_unique<Robot>(*this, robots_.size(), parameters, start_in_world, seed));
-  fastest_ = std::max(fastest_, robots_.back()->fastest());
+  // A box turns as it is pushed, and its far end may move faster than the robot.
+  fastest_ = std::max(fastest_, robots_.back()->fastest() * (boxes_.empty() ? 1.0 : 4.0));
   return *robots_.back();
 }
 
 void Scene::tick() {
   ++ticks_;
+  for (Person& person : persons_)
+    walk(person);
+  for (std::size_t i = 0; i < doors_.size(); ++i)
+    turn(i);
   for (const auto& robot : robots_)
     robot->tick();
 }
@@ -30,12 +108,189 @@ void Scene::moved(RobotNumber number) {
   hulls_[number].centre = robots_[number]->pose_in_world().position();
 }
 
+bool Scene::set_door(std::string_view name, bool open) {
+  for (Door& door : doors_) {
+    if (door.plan->look.name != name)
+      continue;
+    door.opens = open;
+    return true;
+  }
+  return false;
+}
+
+void Scene::walk(Person& person) {
+  const std::vector<PersonPlan::Leg>& script = person.plan->script;
+  if (person.leg >= script.size())
+    return;
+  const PersonPlan::Leg& leg = script[person.leg];
+  bool done = false;
+  if (leg.speed == 0.0) {
+    person.waited += kTick;
+    done = person.waited > leg.wait - kTick / 2.0;
+  } else {
+    const Vec2 way = leg.to - person.at;
+    const double step = leg.speed * kTick;
+    const double left = way.norm();
+    const Vec2 to = left <= step ? leg.to : Vec2(person.at + way * (step / left));
+    if (!lets_pass(person, to))
+      return;
+    person.at = to;
+    done = left <= step;
+  }
+  if (!done)
+    return;
+  person.waited = 0.0;
+  ++person.leg;
+  if (person.leg == script.size() && person.plan->repeats)
+    person.leg = 0;
+}
+
+// Whether nothing is in his way that was not already behind him.
+bool Scene::lets_pass(const Person& person, const Vec2& to) {
+  const double radius = person.plan->radius;
+  for (const Disc& hull : hulls_) {
+    const double after = (hull.centre - to).norm();
+    if (after < radius + hull.radius + kManners && after < (hull.centre - person.at).norm())
+      return false;
+  }
+  bool free = true;
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    const double after = distance_to(segments_[i], to);
+    if (after >= radius || after >= distance_to(segments_[i], person.at))
+      continue;
+    free = false;
+    if (i < doors_.size())
+      doors_[i].opens = true;
+  }
+  return free;
+}
+
+void Scene::turn(std::size_t number) {
+  Door& door = doors_[number];
+  const DoorPlan& plan = *door.plan;
+  const double now = static_cast<double>(ticks_) * kTick;
+  if (plan.period > 0.0 && now >= door.since + plan.period) {
+    door.since += plan.period;
+    door.event = 0;
+  }
+  while (door.event < plan.schedule.size() &&
+         now >= door.since + plan.schedule[door.event].time - kTick / 2.0)
+    door.opens = plan.schedule[door.event++].open;
+  const double target = door.opens ? plan.swing : 0.0;
+  if (door.angle == target)
+    return;
+  const double angle =
+      std::clamp(target, door.angle - kDoorSpeed * kTick, door.angle + kDoorSpeed * kTick);
+  const Segment before = segments_[number];
+  const Segment after = leaf(door, angle);
+  const auto hits = [&](const Disc& disc) {
+    const double left = distance_to(after, disc.centre);
+    return left < disc.radius && left < distance_to(before, disc.centre);
+  };
+  for (const Disc& hull : hulls_)
+    if (hits(hull))
+      return;
+  for (const Person& person : persons_)
+    if (hits({person.at, person.plan->radius}))
+      return;
+  for (std::size_t i = doors_.size(); i < segments_.size(); ++i)
+    if (intersect(after, segments_[i]) && !intersect(before, segments_[i]))
+      return;
+  door.angle = angle;
+  segments_[number] = after;
+}
+
+bool Scene::is_free(std::size_t number, const Pose& pose_in_world, RobotNumber pusher) const {
+  const Box& box = boxes_[number];
+  const auto sides = outline(box, pose_in_world);
+  const auto contains = [&, inside_of = ToFrame(pose_in_world)](const Vec2& point) {
+    const Vec2 inside = inside_of(point);
+    return std::abs(inside.x()) < box.plan->length / 2.0 &&
+           std::abs(inside.y()) < box.plan->width / 2.0;
+  };
+  const auto hits_segment = [&](const Segment& segment) {
+    return contains(segment.from) ||
+           std::any_of(sides.begin(), sides.end(),
+                       [&](const Segment& side) { return intersect(side, segment); });
+  };
+  const auto hits_disc = [&](const Disc& disc) {
+    return contains(disc.centre) ||
+           std::any_of(sides.begin(), sides.end(), [&](const Segment& side) {
+             return distance_to(side, disc.centre) < disc.radius;
+           });
+  };
+  const std::size_t own = doors_.size() + 4 * number;
+  for (std::size_t i = 0; i < segments_.size(); ++i)
+    if ((i < own || i >= own + 4) && hits_segment(segments_[i]))
+      return false;
+  for (RobotNumber i = 0; i < hulls_.size(); ++i)
+    if (i != pusher && hits_disc(hulls_[i]))
+      return false;
+  for (const Person& person : persons_)
+    if (hits_disc({person.at, person.plan->radius}))
+      return false;
+  return std::none_of(posts_.begin(), posts_.end(), hits_disc) &&
+         std::none_of(world_->segments.begin(), world_->segments.end(), hits_segment);
+}
+
+bool Scene::push(RobotNumber number, const Vec2& centre, const Vec2& way) {
+  std::size_t nearest = boxes_.size();
+  double best = hulls_[number].radius + 1e-4;
+  Vec2 contact = centre;
+  for (std::size_t i = 0; i < boxes_.size(); ++i)
+    for (std::size_t side = 0; side < 4; ++side) {
+      const Vec2 point = nearest_point(segments_[doors_.size() + 4 * i + side], centre);
+      const double far = (point - centre).norm();
+      if (far < best) {
+        best = far;
+        nearest = i;
+        contact = point;
+      }
+    }
+  if (nearest == boxes_.size() || boxes_[nearest].plan->mass > kMostPushed)
+    return false;
+  Box& box = boxes_[nearest];
+  const Vec2 normal = (contact - centre).normalized();
+  const double depth = way.dot(normal);
+  if (depth <= 0.0)
+    return false;
+  // A box that is pushed slowly moves as the friction beneath it has it: with an ellipsoidal limit
+  // surface, a force along the normal gives a motion along it and a turn in proportion to its
+  // lever.
+  const double lever = cross(contact - box.pose_in_world.position(), normal);
+  const double size =
+      (box.plan->length * box.plan->length + box.plan->width * box.plan->width) / 12.0;
+  const double share = (depth + kGiven) / (1.0 + lever * lever / size);
+  const Pose moved{box.pose_in_world.x + share * normal.x(),
+                   box.pose_in_world.y + share * normal.y(),
+                   norm2_angle(box.pose_in_world.th + share * lever / size)};
+  if (!is_free(nearest, moved, number))
+    return false;
+  box.pose_in_world = moved;
+  const auto sides = outline(box, moved);
+  std::copy(sides.begin(), sides.end(),
+            segments_.begin() + static_cast<std::ptrdiff_t>(doors_.size() + 4 * nearest));
+  return true;
+}
+
 void Scene::add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const {
   for (std::size_t i = 0; i < hulls_.size(); ++i) {
     const double far = reach + hulls_[i].radius;
     if (i != but && (hulls_[i].centre - point).squaredNorm() <= far * far)
       things.discs.push_back(hulls_[i]);
   }
+  const auto add = [&](const Disc& disc) {
+    const double far = reach + disc.radius;
+    if ((disc.centre - point).squaredNorm() <= far * far)
+      things.discs.push_back(disc);
+  };
+  for (const Person& person : persons_)
+    add({person.at, person.plan->radius});
+  for (const Disc& post : posts_)
+    add(post);
+  for (const Segment& segment : segments_)
+    if ((nearest_point(segment, point) - point).squaredNorm() <= reach * reach)
+      things.segments.push_back(segment);
 }
 
 double Scene::distance(const Vec2& point, RobotNumber but) const {
@@ -43,7 +298,11 @@ double Scene::distance(const Vec2& point, RobotNumber but) const {
   for (std::size_t i = 0; i < hulls_.size(); ++i)
     if (i != but)
       best = std::min(best, (hulls_[i].centre - point).norm() - hulls_[i].radius);
-  return best;
+  for (const Person& person : persons_)
+    best = std::min(best, (person.at - point).norm() - person.plan->radius);
+  for (const Disc& post : posts_)
+    best = std::min(best, (post.centre - point).norm() - post.radius);
+  return std::min(best, sim::distance(segments_, point));
 }
 
 }  // namespace saphira::sim

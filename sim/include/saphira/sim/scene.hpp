@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/movable.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/world.hpp"
 
@@ -16,12 +19,34 @@ namespace saphira::sim {
 using RobotNumber = std::size_t;
 inline constexpr RobotNumber kNobody = std::numeric_limits<RobotNumber>::max();
 
-/// A world and what moves in it. One tick() moves everything by one tick of time, always in the
-/// same order, so that a scene is the same to the last bit in every run.
+struct Person {
+  const PersonPlan* plan = nullptr;
+  Vec2 at{0.0, 0.0};
+  std::size_t leg = 0;  ///< of the script
+  double waited = 0.0;  ///< [s] in this leg
+};
+
+struct Door {
+  const DoorPlan* plan = nullptr;
+  double angle = 0.0;     ///< [rad] 0: closed
+  bool opens = false;     ///< or is open
+  std::size_t event = 0;  ///< the next one of the schedule
+  double since = 0.0;     ///< [s] when this round of the schedule began
+};
+
+struct Box {
+  const BoxPlan* plan = nullptr;
+  Pose pose_in_world;
+};
+
+/// A world and what moves in it: people who walk by their scripts and wait where a robot, a door or
+/// a box is in their way (they push a door open that is closed); doors, which stop where somebody
+/// stands in their way; boxes, which robots push; robots. One tick() moves everything by one tick
+/// of time, always in the same order, so that a scene is the same to the last bit in every run.
 class Scene {
  public:
   /// The world outlives the scene.
-  explicit Scene(const World& world) : world_(&world) {}
+  explicit Scene(const World& world);
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
@@ -38,11 +63,21 @@ class Scene {
   const Robot& robot(RobotNumber number) const { return *robots_[number]; }
   Robot& robot(RobotNumber number) { return *robots_[number]; }
 
-  /// Adds the movable things within `reach` of `point`, and some that are not, to `things`; not the
-  /// robot `but`.
+  const std::vector<Person>& persons() const { return persons_; }
+  const std::vector<Door>& doors() const { return doors_; }
+  const std::vector<Box>& boxes() const { return boxes_; }
+  Segment leaf(const Door& door) const { return leaf(door, door.angle); }
+  /// Opens or closes a door; its schedule goes on. False where there is no such door.
+  bool set_door(std::string_view name, bool open);
+
+  /// Adds the movable things (and posts) within `reach` of `point`, and some that are not, to
+  /// `things`; not the robot `but`.
   void add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const;
   /// Whether there is anything movable but the robot `but`.
-  bool has_movable(RobotNumber but) const { return robots_.size() > (but == kNobody ? 0U : 1U); }
+  bool has_movable(RobotNumber but) const {
+    return !segments_.empty() || !persons_.empty() || !posts_.empty() ||
+           robots_.size() > (but == kNobody ? 0U : 1U);
+  }
   /// No point of anything movable moves faster [m/s].
   double fastest() const { return fastest_; }
 
@@ -52,10 +87,24 @@ class Scene {
  private:
   friend class Robot;
   void moved(RobotNumber number);
+  /// A robot's hull at `centre` presses forward by `way`: whether a box has given way.
+  bool push(RobotNumber number, const Vec2& centre, const Vec2& way);
+
+  void walk(Person& person);
+  bool lets_pass(const Person& person, const Vec2& to);
+  void turn(std::size_t door);
+  bool is_free(std::size_t box, const Pose& pose_in_world, RobotNumber pusher) const;
+  static Segment leaf(const Door& door, double angle);
+  static std::array<Segment, 4> outline(const Box& box, const Pose& pose_in_world);
 
   const World* world_;
   std::vector<std::unique_ptr<Robot>> robots_;
   std::vector<Disc> hulls_;  // of the robots, by number
+  std::vector<Person> persons_;
+  std::vector<Door> doors_;
+  std::vector<Box> boxes_;
+  std::vector<Disc> posts_;
+  std::vector<Segment> segments_;  // each door's leaf, then the four sides of each box
   double fastest_ = 0.0;
   std::uint64_t ticks_ = 0;
 };

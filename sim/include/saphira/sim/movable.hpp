@@ -1,0 +1,100 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/base/text.hpp"
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::sim {
+
+// What a world file says of things that are no walls; README, "Worlds". Positions in the world.
+
+/// How high they are without the directive tall [m].
+inline constexpr double kPersonHeight = 1.75;
+inline constexpr double kDoorHeight = 2.0;
+inline constexpr double kBoxHeight = 0.5;
+inline constexpr double kPostHeight = 0.5;
+/// Walls, which have no such directive.
+inline constexpr double kWallHeight = 2.5;
+
+/// What vision knows a thing by.
+struct Look {
+  std::string name;
+  std::string color;    ///< directive color; empty: none that anybody looks for
+  double height = 0.0;  ///< [m]
+};
+
+/// Somebody who walks by a script.
+struct PersonPlan {
+  struct Leg {
+    Vec2 to{0.0, 0.0};   ///< where to, unless speed is 0
+    double speed = 0.0;  ///< [m/s]; 0: waits
+    double wait = 0.0;   ///< [s]
+  };
+  Look look;
+  Vec2 at{0.0, 0.0};
+  double radius = 0.25;  ///< [m]
+  std::vector<Leg> script;
+  bool repeats = false;
+};
+
+/// A door that turns about its hinge.
+struct DoorPlan {
+  struct Event {
+    double time = 0.0;  ///< [s]
+    bool open = false;
+  };
+  Look look;
+  Vec2 hinge{0.0, 0.0};
+  Vec2 end{0.0, 0.0};  ///< the other one, while it is closed
+  double swing = 0.0;  ///< [rad] how far it opens, positive to the left
+  std::vector<Event> schedule;
+  double period = 0.0;  ///< [s] after which the schedule begins again; 0: never
+};
+
+/// A box on the floor that a robot can push.
+struct BoxPlan {
+  Look look;
+  Pose pose_in_world;   ///< of its middle
+  double length = 0.0;  ///< [m] along its x
+  double width = 0.0;   ///< [m]
+  double mass = 0.0;    ///< [kg]
+};
+
+/// A round thing that stands fast: a bin, a ball, a coloured can.
+struct PostPlan {
+  Look look;
+  Vec2 at{0.0, 0.0};
+  double radius = 0.0;  ///< [m]
+};
+
+struct MovablePlans {
+  std::vector<PersonPlan> persons;
+  std::vector<DoorPlan> doors;
+  std::vector<BoxPlan> boxes;
+  std::vector<PostPlan> posts;
+  std::vector<Pose> robots;  ///< directive robot: starts of the second robot, the third, ...
+};
+
+/// Reads directives of a world file into plans.
+class MovableReader {
+ public:
+  /// Reads the rest of the directive `word`, whose coordinates are relative to `frame_in_world`.
+  /// False where it is none of these. FileError where it is wrong.
+  bool read(std::string_view word, LineReader& in, const Pose& frame_in_world);
+
+  const MovablePlans& plans() const { return plans_; }
+
+ private:
+  enum class Last { kNone, kPerson, kDoor, kBox, kPost };
+
+  Look read_look(LineReader& in, double height);
+  Look& last_look(LineReader& in, std::string_view word);
+
+  MovablePlans plans_;
+  Last last_ = Last::kNone;
+};
+
+}  // namespace saphira::sim

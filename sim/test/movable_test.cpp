@@ -1,0 +1,259 @@
+#include "saphira/sim/movable.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "saphira/base/text.hpp"
+#include "saphira/sim/scene.hpp"
+
+namespace saphira::sim {
+namespace {
+
+using protocol::RobotParameters;
+
+World world(const std::string& things) {
+  return parse_world(
+      "width 10000 height 10000 0 0 10000 0 10000 0 10000 10000 10000 10000 0 10000 0 10000 0 0\n" +
+          things,
+      "things.wld");
+}
+
+void run(Scene& scene, double seconds) {
+  for (int i = 0; i < std::lround(seconds / kTick); ++i)
+    scene.tick();
+}
+
+TEST(Movable, IsReadInItsFrame) {
+  const World it = world(
+      "push 1000 2000 90\n"
+      "person ann 500 0 tall 1600 color red walk 1500 0 800 wait 2.5 repeat\n"
+      "door d1 0 0 900 0 -90 open 5 close 10 period 20\n"
+      "box crate 1000 -1000 0 600 400 5\n"
+      "post ball 2000 0 100 color orange\n"
+      "pop robot 3000 4000 180");
+  ASSERT_EQ(it.movable.persons.size(), 1U);
+  const PersonPlan& ann = it.movable.persons[0];
+  EXPECT_EQ(ann.look.name, "ann");
+  EXPECT_EQ(ann.look.color, "red");
+  EXPECT_DOUBLE_EQ(ann.look.height, 1.6);
+  EXPECT_NEAR((ann.at - Vec2(1.0, 2.5)).norm(), 0.0, 1e-12);
+  ASSERT_EQ(ann.script.size(), 2U);
+  EXPECT_NEAR((ann.script[0].to - Vec2(1.0, 3.5)).norm(), 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(ann.script[0].speed, 0.8);
+  EXPECT_DOUBLE_EQ(ann.script[1].wait, 2.5);
+  EXPECT_TRUE(ann.repeats);
+  const DoorPlan& door = it.movable.doors.at(0);
+  EXPECT_NEAR((door.end - Vec2(1.0, 2.9)).norm(), 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(door.swing, -kPi / 2);
+  EXPECT_EQ(door.schedule.size(), 2U);
+  EXPECT_DOUBLE_EQ(door.period, 20.0);
+  const BoxPlan& box = it.movable.boxes.at(0);
+  EXPECT_NEAR((box.pose_in_world.position() - Vec2(2.0, 3.0)).norm(), 0.0, 1e-12);
+  EXPECT_DOUBLE_EQ(box.pose_in_world.th, kPi / 2);
+  EXPECT_DOUBLE_EQ(box.look.height, kBoxHeight);
+  EXPECT_EQ(it.movable.posts.at(0).look.color, "orange");
+  EXPECT_EQ(it.movable.robots.at(0), (Pose{3.0, 4.0, kPi}));
+}
+
+struct Broken {
+  const char* text;
+  int column;
+  const char* expected;
+};
+
+class BrokenThing : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenThing, SaysWhereAndWhatWasExpected) {
+  try {
+    world(GetParam().text);
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.line(), 2) << error.what();
+    EXPECT_EQ(error.column(), GetParam().column) << error.what();
+    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos)
+        << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Files, BrokenThing,
+    ::testing::Values(
+        Broken{"person", 7, "a name"}, Broken{"person ann x 0", 12, "x of the person"},
+        Broken{"walk 0 0 800", 1, "person before this walk"},
+        Broken{"person ann 0 0 walk 1 1 0", 25, "speed"},
+        Broken{"person ann 0 0 repeat", 16, "walk or wait"},
+        Broken{"person ann 0 0 person ann 1 1", 23, "another name"},
+        Broken{"door d 0 0 5 0 90", 14, "wider"}, Broken{"door d 0 0 900 0 200", 18, "swing"},
+        Broken{"door d 0 0 900 0 90 open 5 close 4", 34, "in order"},
+        Broken{"door d 0 0 900 0 90 period 5", 21, "open or close"},
+        Broken{"door d 0 0 900 0 90 open 5 period 4", 35, "no shorter"},
+        Broken{"box b 0 0 0 600", 16, "width"}, Broken{"box b 0 0 0 600 0 5", 17, "width"},
+        Broken{"post p 0 0", 11, "radius"}, Broken{"color red", 1, "before this color"},
+        Broken{"robot 0 0", 10, "theta"}, Broken{"tall 5", 1, "before this tall"}));
+
+TEST(Movable, PeopleWalkByTheirScripts) {
+  const World it =
+      world("person ann 1000 1000 walk 3000 1000 1000 wait 1 walk 1000 1000 500 repeat");
+  Scene scene(it);
+  run(scene, 1.0);
+  EXPECT_NEAR(scene.persons()[0].at.x(), 2.0, 0.011);
+  run(scene, 1.5);
+  EXPECT_NEAR(scene.persons()[0].at.x(), 3.0, 1e-9);  // waits
+  run(scene, 2.5);
+  EXPECT_NEAR(scene.persons()[0].at.x(), 2.0, 0.011);
+  run(scene, 3.0);
+  EXPECT_NEAR(scene.persons()[0].at.x(), 2.0, 0.04);  // and again
+}
+
+TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
+  const World it = world("person ann 1000 5000 walk 8000 5000 1000");
+  Scene scene(it);
+  Robot& robot = scene.add_robot({}, {4.0, 5.0, kPi}, 1);
+  run(scene, 5.0);
+  EXPECT_NEAR(scene.persons()[0].at.x(), 4.0 - 0.22 - 0.25 - 0.1, 0.011);
+  EXPECT_GT(robot.clearance(), 0.09);
+  robot.set_velocity(0.3);
+  run(scene, 2.0);
+  EXPECT_EQ(robot.contacts(), 1);
+  EXPECT_NEAR(robot.clearance(), 0.0, 1e-6);
+  robot.set_velocity(-0.3);
+  run(scene, 3.0);
+  EXPECT_GT(scene.persons()[0].at.x(), 3.9) << "walks on when the way is free";
+}
+
+TEST(Movable, DoorsKeepTheirSchedule) {
+  const World it = world("door d 5000 5000 5900 5000 90 open 1 close 4 period 10");
+  Scene scene(it);
+  const auto end = [&] { return scene.leaf(scene.doors()[0]).to; };
+  EXPECT_NEAR((end() - Vec2(5.9, 5.0)).norm(), 0.0, 1e-9);
+  for (int round = 0; round < 3; ++round) {
+    run(scene, 1.5);
+    EXPECT_NEAR((end() - Vec2(5.0, 5.0)).norm(), 0.9, 1e-9);
+    EXPECT_NEAR(scene.doors()[0].angle, kPi / 4, 0.02) << round;
+    run(scene, 1.0);
+    EXPECT_NEAR((end() - Vec2(5.0, 5.9)).norm(), 0.0, 1e-9) << round;
+    run(scene, 3.0);
+    EXPECT_NEAR((end() - Vec2(5.9, 5.0)).norm(), 0.0, 1e-9) << round;
+    run(scene, 4.5);
+  }
+  EXPECT_TRUE(scene.set_door("d", true));
+  EXPECT_FALSE(scene.set_door("e", true));
+  run(scene, 0.9);
+  EXPECT_GT(scene.doors()[0].angle, 1.0);
+}
+
+TEST(Movable, ADoorStopsAtARobot) {
+  const World it = world("door d 5000 5000 5900 5000 90");
+  Scene scene(it);
+  Robot& robot = scene.add_robot({}, {5.5, 5.6, 0.0}, 1);
+  scene.set_door("d", true);
+  run(scene, 5.0);
+  EXPECT_GT(scene.doors()[0].angle, 0.1);
+  EXPECT_LT(scene.doors()[0].angle, 1.0);
+  EXPECT_GE(robot.clearance(), -1e-9);
+  robot.set_velocity(-0.4);
+  run(scene, 5.0);
+  EXPECT_NEAR(scene.doors()[0].angle, kPi / 2, 1e-9);
+}
+
+TEST(Movable, PeopleOpenDoors) {
+  const World it = world(
+      "5000 0 5000 4500 5000 5500 5000 10000\n"
+      "door d 5000 4500 5000 5500 -90 person ann 3000 5000 walk 8000 5000 1000");
+  Scene scene(it);
+  run(scene, 10.0);
+  EXPECT_NEAR(scene.persons()[0].at.x(), 8.0, 1e-9);
+  EXPECT_TRUE(scene.doors()[0].opens);
+}
+
+TEST(Movable, RobotsPushBoxes) {
+  const World it = world("box b 5000 5000 0 400 600 5");
+  Scene scene(it);
+  Robot& robot = scene.add_robot({}, {4.0, 5.0, 0.0}, 1);
+  robot.set_velocity(0.3);
+  for (int i = 0; i < 1000; ++i) {
+    scene.tick();
+    ASSERT_GE(robot.clearance(), -1e-9) << i;
+  }
+  const Pose box = scene.boxes()[0].pose_in_world;
+  EXPECT_NEAR(box.x, robot.pose_in_world().x + 0.22 + 0.2, 1e-3);
+  EXPECT_GT(box.x, 6.0);
+  EXPECT_NEAR(box.y, 5.0, 1e-6);
+  EXPECT_NEAR(box.th, 0.0, 1e-6);
+  EXPECT_EQ(robot.contacts(), 0);
+  // Against the wall it holds.
+  run(scene, 30.0);
+  EXPECT_NEAR(scene.boxes()[0].pose_in_world.x, 9.8, 0.01);
+  EXPECT_EQ(robot.contacts(), 1);
+  EXPECT_TRUE(robot.left_stalled());
+  EXPECT_EQ(robot.velocity(), 0.0);
+}
+
+TEST(Movable, ABoxThatIsPushedAsideTurns) {
+  const World it = world("box b 5000 5000 0 400 600 5");
+  Scene scene(it);
+  Robot& robot = scene.add_robot({}, {4.0, 5.2, 0.0}, 1);
+  robot.set_velocity(0.3);
+  for (int i = 0; i < 300; ++i) {
+    scene.tick();
+    ASSERT_GE(robot.clearance(), -1e-9) << i;
+  }
+  EXPECT_LT(scene.boxes()[0].pose_in_world.th, -0.2);
+  EXPECT_GT(scene.boxes()[0].pose_in_world.x, 5.02);
+}
+
+TEST(Movable, HeavyBoxesStand) {
+  const World it = world("box b 5000 5000 0 400 600 50");
+  Scene scene(it);
+  Robot& robot = scene.add_robot({}, {4.0, 5.0, 0.0}, 1);
+  robot.set_velocity(0.3);
+  run(scene, 10.0);
+  EXPECT_EQ(scene.boxes()[0].pose_in_world, (Pose{5.0, 5.0, 0.0}));
+  EXPECT_EQ(robot.contacts(), 1);
+}
+
+// Everything at once, ten minutes, twice.
+TEST(Movable, OneSceneOneCourse) {
+  const World it = world(
+      "person ann 1000 1000 walk 9000 1000 900 walk 9000 9000 1200 walk 1000 1000 700 repeat\n"
+      "person bob 9000 8000 walk 1000 8000 900 wait 3 walk 9000 8000 900 repeat\n"
+      "door d 5000 4500 5000 5500 -90 open 5 close 15 period 20\n"
+      "box b 3000 3000 20 400 600 5 box c 7000 3000 60 500 500 2 post p 6000 7000 200");
+  const auto course = [&] {
+    Scene scene(it);
+    RobotParameters parameters;
+    parameters.encode_jitter = parameters.angle_jitter = 0.02;
+    Random random(5);
+    for (int i = 0; i < 6; ++i)
+      scene.add_robot(parameters, {2.0 + i, 2.0, 1.0 * i}, static_cast<std::uint64_t>(i + 1));
+    std::vector<double> out;
+    for (int i = 0; i < 60000; ++i) {
+      if (i % 100 == 0) {
+        Robot& robot = scene.robot(random.next() % 6U);
+        robot.set_velocity(random.uniform(-0.2, 0.4));
+        robot.set_rotation_velocity(random.uniform(-1.0, 1.0));
+      }
+      scene.tick();
+      for (RobotNumber r = 0; i % 10 == 0 && r < 6; ++r)
+        EXPECT_GE(scene.robot(r).clearance(), -0.002) << i;
+      if (testing::Test::HasFailure())
+        break;
+    }
+    for (RobotNumber r = 0; r < 6; ++r) {
+      out.push_back(scene.robot(r).pose_in_odom().x);
+      out.push_back(scene.robot(r).contacts());
+    }
+    for (const Box& box : scene.boxes())
+      out.push_back(box.pose_in_world.x + box.pose_in_world.th);
+    for (const Person& person : scene.persons())
+      out.push_back(person.at.x());
+    return out;
+  };
+  const auto one = course();
+  EXPECT_EQ(one, course());
+  EXPECT_NE(one[12], 3.0 + radians(20.0)) << "nobody has pushed the box";
+}
+
+}  // namespace
+}  // namespace saphira::sim
