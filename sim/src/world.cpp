@@ -11,21 +11,20 @@ namespace saphira::sim {
 namespace {
 
 constexpr double kMillimetre = 0.001;
-constexpr double kMax = 1e7; // [mm] 10 km: more is a slip of the pen
+constexpr double kMax = 1e7;  // [mm] 10 km: more is a slip of the pen
 constexpr std::size_t kMaxNesting = 100;
 
 // How far the point may move before the neighbourhood is gathered again.
-constexpr double kSlack = 1.0; // [m]
+constexpr double kSlack = 1.0;  // [m]
 
 class Parser {
-public:
-  Parser(std::string_view text, const std::string &file)
-      : lines_(split_lines(text)) {
+ public:
+  Parser(std::string_view text, const std::string& file) : lines_(split_lines(text)) {
     world_.file = file;
   }
 
   World parse() {
-    for (const Line &line : lines_) {
+    for (const Line& line : lines_) {
       LineReader in(world_.file, line);
       while (!in.at_end())
         directive(in);
@@ -33,22 +32,22 @@ public:
     if (!has_width_ || !has_height_)
       throw FileError(world_.file, lines_.empty() ? 1 : lines_.back().number, 1,
                       has_width_ ? "expected height" : "expected width");
+    world_.corners = find_corners(world_.segments);
     world_.movable = movable_.plans();
     return std::move(world_);
   }
 
-private:
-  void directive(LineReader &in) {
-    LineReader number(in); // to read the same word as a number
+ private:
+  void directive(LineReader& in) {
+    LineReader number(in);  // to read the same word as a number
     const std::string_view word = in.word("a directive");
     if (word == "width" || word == "height") {
-      bool &has = word == "width" ? has_width_ : has_height_;
+      bool& has = word == "width" ? has_width_ : has_height_;
       if (has)
         in.fail("expected " + std::string(word) + " once");
       has = true;
       (word == "width" ? world_.width : world_.height) =
-          in.number(std::string(word) + " of the world in mm", 1.0, kMax) *
-          kMillimetre;
+          in.number(std::string(word) + " of the world in mm", 1.0, kMax) * kMillimetre;
       return;
     }
     if (!has_width_ || !has_height_)
@@ -70,65 +69,59 @@ private:
       in = number;
       segment(in);
     } else if (!movable_.read(word, in, frames_.back())) {
-      in.fail("expected a segment (x y x y), width, height, push, pop, "
-              "position, robot, person, "
-              "walk, wait, repeat, door, open, close, period, box, post, color "
-              "or tall, found \"" +
-              std::string(word) + "\"");
+      in.fail(
+          "expected a segment (x y x y), width, height, push, pop, position, robot, person, "
+          "walk, wait, repeat, door, open, close, period, box, post, color or tall, found \"" +
+          std::string(word) + "\"");
     }
   }
 
-  static Pose pose(LineReader &in) {
+  static Pose pose(LineReader& in) {
     const double x = in.number("x in mm", -kMax, kMax) * kMillimetre;
     const double y = in.number("y in mm", -kMax, kMax) * kMillimetre;
     const double th = radians(in.number("theta in degrees", -3600, 3600));
     return {x, y, norm2_angle(th)};
   }
 
-  void segment(LineReader &in) {
-    const double x1 =
-        in.number("x of the first point in mm", -kMax, kMax) * kMillimetre;
-    const double y1 =
-        in.number("y of the first point in mm", -kMax, kMax) * kMillimetre;
-    const double x2 =
-        in.number("x of the second point in mm", -kMax, kMax) * kMillimetre;
-    const double y2 =
-        in.number("y of the second point in mm", -kMax, kMax) * kMillimetre;
+  void segment(LineReader& in) {
+    const double x1 = in.number("x of the first point in mm", -kMax, kMax) * kMillimetre;
+    const double y1 = in.number("y of the first point in mm", -kMax, kMax) * kMillimetre;
+    const double x2 = in.number("x of the second point in mm", -kMax, kMax) * kMillimetre;
+    const double y2 = in.number("y of the second point in mm", -kMax, kMax) * kMillimetre;
     if (std::hypot(x2 - x1, y2 - y1) < 0.5 * kMillimetre)
       in.fail("expected two different points for a segment");
-    world_.segments.push_back({transform(frames_.back(), {x1, y1}),
-                               transform(frames_.back(), {x2, y2})});
+    world_.segments.push_back(
+        {transform(frames_.back(), {x1, y1}), transform(frames_.back(), {x2, y2})});
   }
 
   std::vector<Line> lines_;
   World world_;
   MovableReader movable_;
-  std::vector<Pose> frames_{Pose{}}; // frame_in_world; the last one is in force
+  std::vector<Pose> frames_{Pose{}};  // frame_in_world; the last one is in force
   bool has_width_ = false;
   bool has_height_ = false;
 };
 
-} // namespace
+}  // namespace
 
-World parse_world(std::string_view text, const std::string &file) {
+World parse_world(std::string_view text, const std::string& file) {
   return Parser(text, file).parse();
 }
 
-World load_world(const std::string &path) {
+World load_world(const std::string& path) {
   return parse_world(read_file(path), path);
 }
 
-Vec2 nearest_point(const Segment &segment, const Vec2 &point) {
+Vec2 nearest_point(const Segment& segment, const Vec2& point) {
   const Vec2 along = segment.to - segment.from;
   const double t = (point - segment.from).dot(along) / along.squaredNorm();
   return segment.from + std::clamp(t, 0.0, 1.0) * along;
 }
 
-std::optional<Vec2> nearest_point(const std::vector<Segment> &segments,
-                                  const Vec2 &point) {
+std::optional<Vec2> nearest_point(const std::vector<Segment>& segments, const Vec2& point) {
   std::optional<Vec2> best;
   double best_squared = std::numeric_limits<double>::infinity();
-  for (const Segment &segment : segments) {
+  for (const Segment& segment : segments) {
     const Vec2 near = nearest_point(segment, point);
     const double squared = (near - point).squaredNorm();
     if (squared < best_squared) {
@@ -139,63 +132,54 @@ std::optional<Vec2> nearest_point(const std::vector<Segment> &segments,
   return best;
 }
 
-double distance(const std::vector<Segment> &segments, const Vec2 &point) {
+double distance(const std::vector<Segment>& segments, const Vec2& point) {
   double best = std::numeric_limits<double>::infinity();
-  for (const Segment &segment : segments)
-    best =
-        std::min(best, (nearest_point(segment, point) - point).squaredNorm());
+  for (const Segment& segment : segments)
+    best = std::min(best, (nearest_point(segment, point) - point).squaredNorm());
   return std::sqrt(best);
 }
 
-std::optional<Vec2> nearest_point(const Things &things, const Vec2 &point) {
+std::optional<Vec2> nearest_point(const Things& things, const Vec2& point) {
   auto best = nearest_point(things.segments, point);
-  double best_distance =
-      best ? (*best - point).norm() : std::numeric_limits<double>::infinity();
-  for (const Disc &disc : things.discs) {
+  double best_distance = best ? (*best - point).norm() : std::numeric_limits<double>::infinity();
+  for (const Disc& disc : things.discs) {
     const Vec2 from_centre = point - disc.centre;
     const double length = from_centre.norm();
     if (length - disc.radius >= best_distance)
       continue;
     best_distance = length - disc.radius;
-    best = disc.centre +
-           (length > 0.0 ? Vec2(from_centre / length) : Vec2(1.0, 0.0)) *
-               disc.radius;
+    best = disc.centre + (length > 0.0 ? Vec2(from_centre / length) : Vec2(1.0, 0.0)) * disc.radius;
   }
   return best;
 }
 
-double distance(const Things &things, const Vec2 &point) {
+double distance(const Things& things, const Vec2& point) {
   double best = distance(things.segments, point);
-  for (const Disc &disc : things.discs)
+  for (const Disc& disc : things.discs)
     best = std::min(best, (disc.centre - point).norm() - disc.radius);
   return best;
 }
 
-std::optional<Hit> cast_ray(const std::vector<Segment> &segments,
-                            const Vec2 &origin, const Vec2 &direction,
-                            double range) {
+std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
+                            const Vec2& direction, double range) {
   double best = range;
-  const Segment *hit = nullptr;
-  for (const Segment &segment : segments) {
+  const Segment* hit = nullptr;
+  for (const Segment& segment : segments) {
     const Vec2 along = segment.to - segment.from;
     const Vec2 to_from = segment.from - origin;
     const double cross = direction.x() * along.y() - direction.y() * along.x();
-    // Where on the segment (0 to 1 times cross) and how far on the ray, both
-    // still times cross: most segments are ruled out before the division.
-    const double on_segment =
-        to_from.x() * direction.y() - to_from.y() * direction.x();
+    // Where on the segment (0 to 1 times cross) and how far on the ray, both still times cross:
+    // most segments are ruled out before the division.
+    const double on_segment = to_from.x() * direction.y() - to_from.y() * direction.x();
     const double on_ray = to_from.x() * along.y() - to_from.y() * along.x();
     if (cross > 0.0) {
-      if (on_segment < 0.0 || on_segment > cross || on_ray < 0.0 ||
-          on_ray > best * cross)
+      if (on_segment < 0.0 || on_segment > cross || on_ray < 0.0 || on_ray > best * cross)
         continue;
     } else if (cross < 0.0) {
-      if (on_segment > 0.0 || on_segment < cross || on_ray > 0.0 ||
-          on_ray < best * cross)
+      if (on_segment > 0.0 || on_segment < cross || on_ray > 0.0 || on_ray < best * cross)
         continue;
     } else {
-      continue; // parallel: its ends belong to other segments, or are too thin
-                // to see
+      continue;  // parallel: its ends belong to other segments, or are too thin to see
     }
     best = on_ray / cross;
     hit = &segment;
@@ -207,14 +191,13 @@ std::optional<Hit> cast_ray(const std::vector<Segment> &segments,
   return Hit{best, std::asin(sine)};
 }
 
-std::optional<Hit> cast_ray(const Things &things, const Vec2 &origin,
-                            const Vec2 &direction, double range) {
+std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
+                            double range) {
   auto best = cast_ray(things.segments, origin, direction, range);
-  for (const Disc &disc : things.discs) {
+  for (const Disc& disc : things.discs) {
     const Vec2 to_centre = disc.centre - origin;
     const double along = to_centre.dot(direction);
-    const double aside =
-        to_centre.x() * direction.y() - to_centre.y() * direction.x();
+    const double aside = to_centre.x() * direction.y() - to_centre.y() * direction.x();
     const double inside = disc.radius * disc.radius - aside * aside;
     if (along < 0.0 || inside <= 0.0)
       continue;
@@ -225,17 +208,30 @@ std::optional<Hit> cast_ray(const Things &things, const Vec2 &origin,
   return best;
 }
 
-const std::vector<Segment> &Neighbourhood::around(const Vec2 &point) {
-  if (!known_ || (point - centre_).squaredNorm() > kSlack * kSlack) {
-    known_ = true;
-    centre_ = point;
-    segments_.clear();
-    const double squared = (reach_ + kSlack) * (reach_ + kSlack);
-    for (const Segment &segment : world_->segments)
-      if ((nearest_point(segment, point) - point).squaredNorm() <= squared)
-        segments_.push_back(segment);
-  }
+const std::vector<Segment>& Neighbourhood::around(const Vec2& point) {
+  gather(point);
   return segments_;
 }
 
-} // namespace saphira::sim
+const std::vector<const Corner*>& Neighbourhood::corners_around(const Vec2& point) {
+  gather(point);
+  return corners_;
+}
+
+void Neighbourhood::gather(const Vec2& point) {
+  if (known_ && (point - centre_).squaredNorm() <= kSlack * kSlack)
+    return;
+  known_ = true;
+  centre_ = point;
+  segments_.clear();
+  corners_.clear();
+  const double squared = (reach_ + kSlack) * (reach_ + kSlack);
+  for (const Segment& segment : world_->segments)
+    if ((nearest_point(segment, point) - point).squaredNorm() <= squared)
+      segments_.push_back(segment);
+  for (const Corner& corner : world_->corners)
+    if ((corner.point - point).squaredNorm() <= squared)
+      corners_.push_back(&corner);
+}
+
+}  // namespace saphira::sim

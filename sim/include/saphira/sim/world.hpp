@@ -6,20 +6,21 @@
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
+#include "saphira/sim/corners.hpp"
 #include "saphira/sim/movable.hpp"
 
 namespace saphira::sim {
 
 /// A wall, or a side of a thing: as high as the sonars look, without thickness.
 struct Segment {
-  Vec2 from{0.0, 0.0}; ///< [m] in the world
+  Vec2 from{0.0, 0.0};  ///< [m] in the world
   Vec2 to{0.0, 0.0};
 };
 
 /// A round thing, as high as the sonars look: a robot, a person.
 struct Disc {
-  Vec2 centre{0.0, 0.0}; ///< [m] in the world
-  double radius = 0.0;   ///< [m]
+  Vec2 centre{0.0, 0.0};  ///< [m] in the world
+  double radius = 0.0;    ///< [m]
 };
 
 /// What stands somewhere.
@@ -30,77 +31,75 @@ struct Things {
 
 /// What a ray meets.
 struct Hit {
-  double range = 0.0; ///< [m]
-  double incidence =
-      0.0; ///< [rad] 0: along the normal of the segment, pi/2: grazing
+  double range = 0.0;      ///< [m]
+  double incidence = 0.0;  ///< [rad] 0: along the normal of the segment, pi/2: grazing
 };
 
-/// A world description file (manual 3.3 and 11) in SI units; its frame `world`
-/// has its origin in the lower left corner.
+/// A world description file (manual 3.3 and 11) in SI units; its frame `world` has its origin in
+/// the lower left corner.
 struct World {
   std::string file;
-  double width = 0.0;  ///< [m]
-  double height = 0.0; ///< [m]
+  double width = 0.0;   ///< [m]
+  double height = 0.0;  ///< [m]
   std::vector<Segment> segments;
-  std::optional<Pose> start; ///< directive position: the robot's start_in_world
-  MovablePlans movable;      ///< what is no wall
+  std::vector<Corner> corners;  ///< of the segments
+  std::optional<Pose> start;    ///< directive position: the robot's start_in_world
+  MovablePlans movable;         ///< what is no wall
 };
 
-/// Reads the text of a world file; `file` names it in errors. Width and height
-/// come first. Several directives may stand on one line. A position is
-/// absolute, whatever has been pushed (the manual gives relative coordinates to
-/// segments only). FileError where it is wrong.
-World parse_world(std::string_view text, const std::string &file);
+/// Reads the text of a world file; `file` names it in errors. Width and height come first. Several
+/// directives may stand on one line. A position (and a robot) is absolute, whatever has been pushed
+/// (the manual gives relative coordinates to segments only). FileError where it is wrong.
+World parse_world(std::string_view text, const std::string& file);
 
 /// The same from a file.
-World load_world(const std::string &path);
+World load_world(const std::string& path);
 
 /// The point of the segment that is nearest to `point`.
-Vec2 nearest_point(const Segment &segment, const Vec2 &point);
+Vec2 nearest_point(const Segment& segment, const Vec2& point);
 
 /// The nearest point on any of the segments; nothing where there are none.
-std::optional<Vec2> nearest_point(const std::vector<Segment> &segments,
-                                  const Vec2 &point);
+std::optional<Vec2> nearest_point(const std::vector<Segment>& segments, const Vec2& point);
 
 /// The distance to the nearest of the segments; infinite where there are none.
-double distance(const std::vector<Segment> &segments, const Vec2 &point);
+double distance(const std::vector<Segment>& segments, const Vec2& point);
 
-/// The nearest point on any of the things; nothing where there are none. Of a
-/// disc that the point is in, the way out.
-std::optional<Vec2> nearest_point(const Things &things, const Vec2 &point);
+/// The nearest point on any of the things; nothing where there are none. Of a disc that the point
+/// is in, the way out.
+std::optional<Vec2> nearest_point(const Things& things, const Vec2& point);
 
-/// The distance to the nearest of the things, negative in a disc; infinite
-/// where there are none.
-double distance(const Things &things, const Vec2 &point);
+/// The distance to the nearest of the things, negative in a disc; infinite where there are none.
+double distance(const Things& things, const Vec2& point);
 
-/// The first segment that a ray meets within `range`. `direction` is a unit
-/// vector.
-std::optional<Hit> cast_ray(const std::vector<Segment> &segments,
-                            const Vec2 &origin, const Vec2 &direction,
+/// The first segment that a ray meets within `range`. `direction` is a unit vector.
+std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
+                            const Vec2& direction, double range);
+
+/// The first thing that a ray meets within `range`. A ray from within a disc does not meet it.
+std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
                             double range);
 
-/// The first thing that a ray meets within `range`. A ray from within a disc
-/// does not meet it.
-std::optional<Hit> cast_ray(const Things &things, const Vec2 &origin,
-                            const Vec2 &direction, double range);
-
-/// The segments of a world that are near a moving point: the same answers as
-/// from all of them, at the cost of those that matter.
+/// The segments of a world that are near a moving point: the same answers as from all of them, at
+/// the cost of those that matter.
 class Neighbourhood {
-public:
+ public:
   /// `reach` [m]: how far segments matter. The world outlives this object.
-  Neighbourhood(const World &world, double reach)
-      : world_(&world), reach_(reach) {}
+  Neighbourhood(const World& world, double reach) : world_(&world), reach_(reach) {}
 
   /// Every segment within the reach of `point`, and some that are not.
-  const std::vector<Segment> &around(const Vec2 &point);
+  const std::vector<Segment>& around(const Vec2& point);
+  /// The same of the world's corners.
+  const std::vector<const Corner*>& corners_around(const Vec2& point);
 
-private:
-  const World *world_;
+ private:
+  void gather(const Vec2& point);
+
+  const World* world_;
   double reach_;
   bool known_ = false;
   Vec2 centre_{0.0, 0.0};
   std::vector<Segment> segments_;
+  std::vector<const Corner*> corners_;
 };
 
-} // namespace saphira::sim
+}  // namespace saphira::sim
