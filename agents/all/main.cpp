@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -17,6 +16,7 @@
 #include "behaviors/shell/shell.hpp"
 #include "bridge/shell/shell.hpp"
 #include "intentions/shell/shell.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/sim/host.hpp"
 
@@ -58,16 +58,6 @@ class Crew {
   std::vector<std::jthread> threads_;
 };
 
-/// Where the parameter files are: installed beside the program, or in the source tree.
-std::string robots_folder() {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path installed =
-      fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/saphira/robots";
-  return fs::is_directory(installed, error) ? installed.lexically_normal().string()
-                                            : SAPHIRA_SOURCE_CONFIG "/robots";
-}
-
 /// The same options under the name of one service.
 bus::NodeOptions named(bus::NodeOptions options, const char* name) {
   options.name = name;
@@ -79,7 +69,7 @@ bus::NodeOptions named(bus::NodeOptions options, const char* name) {
 int main(int argc, char** argv) {
   sim::HostOptions robot;
   bridge::BridgeOptions link;
-  link.robots_folder = robots_folder();
+  link.robots_folder = config_folder() + "/robots";
   // The keeper needs a process with one thread. Here the robot dies with whoever drives it.
   link.keeper = false;
   intentions::ShellOptions goals;

@@ -1,31 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <stdexcept>
 
+#include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
 #include "shell.hpp"
 
-namespace {
-
-/// Where the parameter files are: installed beside the program, or in the source tree.
-std::string robots_folder() {
-  namespace fs = std::filesystem;
-  std::error_code none;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", none).parent_path();
-  for (const fs::path& folder :
-       {bin / "../share/saphira/robots", fs::path(SAPHIRA_SOURCE_CONFIG "/robots")}) {
-    if (fs::is_directory(folder))
-      return folder.lexically_normal().string();
-  }
-  return "config/robots";
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
   saphira::bridge::BridgeOptions options;
-  options.robots_folder = robots_folder();
+  options.robots_folder = saphira::config_folder() + "/robots";
   double lease_ms = options.lease * 1000.0;
   double quiet_ms = options.quiet * 1000.0;
   bool no_guard = false;

@@ -14,21 +14,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "saphira/base/places.hpp"
+
 namespace saphira::bench {
 
 namespace fs = std::filesystem;
-
-std::string bin_dir() {
-  return fs::read_symlink("/proc/self/exe").parent_path().string();
-}
-
-std::string config(const std::string& path) {
-  const fs::path bin = bin_dir();
-  for (const fs::path& root : {bin / "../share/saphira", fs::path(SAPHIRA_SOURCE_CONFIG)})
-    if (fs::exists(root / path))
-      return fs::canonical(root / path).string();
-  throw std::runtime_error("config/" + path + " not found beside " + bin.string());
-}
 
 double percentile(std::vector<double> values, double p) {
   if (values.empty())
@@ -43,7 +33,7 @@ namespace {
 /// Starts argv; stdout goes to `out`, or nowhere.
 pid_t start(std::vector<std::string> argv, int out) {
   if (argv.at(0).find('/') == std::string::npos)
-    argv[0] = bin_dir() + "/" + argv[0];
+    argv[0] = program_folder() + "/" + argv[0];
   std::vector<char*> pointers;
   pointers.reserve(argv.size() + 1);
   for (std::string& word : argv)

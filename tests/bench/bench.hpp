@@ -8,11 +8,6 @@
 /// What the benchmark programs share.
 namespace saphira::bench {
 
-/// The folder of the running program, where the other programs are, too.
-std::string bin_dir();
-/// A file or folder of config/, in the source tree or the installed one.
-std::string config(const std::string& path);
-
 double percentile(std::vector<double> values, double p);
 
 /// A child with its output dropped; terminated with the object.

@@ -21,6 +21,7 @@
 #include <variant>
 
 #include "bench.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/protocol/command.hpp"
@@ -203,7 +204,7 @@ int main(int argc, char** argv) {
     const std::string socket = "/tmp/saphira-" + name;
     ScriptedRobot robot(socket);
     const bench::Child bridge({"saphira-bridge", "--robot-port", "unix:" + socket, "--robots",
-                               bench::config("robots"), "--robot", name, "--domain", domain});
+                               config_folder() + "/robots", "--robot", name, "--domain", domain});
     const bench::Child behaviors({"saphira-behaviors", "--robot", name, "--domain", domain});
     robot.connect();
 

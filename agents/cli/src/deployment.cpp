@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/cli/supervisor.hpp"
 
@@ -281,35 +282,11 @@ Deployment load_deployment(const std::string& file) {
 }
 
 Places find_places() {
-  const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();
-  // Installed: bin/ and share/saphira/ are siblings. Built: build/<preset>/bin in the source tree.
-  for (const fs::path& config :
-       {bin / "../share/saphira", bin / "../../../config", fs::path(SAPHIRA_SOURCE_CONFIG)}) {
-    std::error_code error;
-    if (fs::is_directory(config / "deployments", error))
-      return {bin.string(), fs::canonical(config).string(), {}};
-  }
-  throw std::runtime_error("no configuration: expected " + (bin / "../share/saphira").string() +
-                           " (installed) or the source tree's config/");
+  return {program_folder(), config_folder(), {}};
 }
 
 std::string find_deployment(const std::string& name, const Places& places) {
-  const fs::path shipped = fs::path(places.config) / "deployments";
-  for (const fs::path& path : {fs::path(name), shipped / name, shipped / (name + ".yaml")}) {
-    std::error_code error;
-    if (fs::is_regular_file(path, error))
-      return path.string();
-  }
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(shipped))
-    if (entry.path().extension() == ".yaml")
-      names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  std::string list;
-  for (const std::string& known : names)
-    list += " " + known;
-  throw std::invalid_argument("no deployment \"" + name +
-                              "\": expected a file, or one of those that are shipped:" + list);
+  return find_file(places.config + "/deployments", name, ".yaml");
 }
 
 std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places& places,

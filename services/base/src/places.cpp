@@ -1,0 +1,49 @@
+#include "saphira/base/places.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace saphira {
+
+namespace fs = std::filesystem;
+
+std::string program_folder() {
+  return fs::read_symlink("/proc/self/exe").parent_path().string();
+}
+
+std::string config_folder() {
+  const fs::path bin = program_folder();
+  // Installed: bin/ and share/saphira/ are siblings. Built: build/<preset>/bin in the source tree.
+  for (const fs::path& config :
+       {bin / "../share/saphira", bin / "../../../config", fs::path(SAPHIRA_SOURCE_CONFIG)}) {
+    std::error_code error;
+    if (fs::is_directory(config / "robots", error))
+      return fs::canonical(config).string();
+  }
+  throw std::runtime_error("no configuration: expected " + (bin / "../share/saphira").string() +
+                           " (installed) or the source tree's config/");
+}
+
+std::string find_file(const std::string& folder, const std::string& name,
+                      const std::string& extension) {
+  std::error_code error;
+  if (fs::is_regular_file(name, error))
+    return name;
+  for (const fs::path& path : {fs::path(folder) / name, fs::path(folder) / (name + extension)})
+    if (fs::is_regular_file(path, error))
+      return path.string();
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == extension)
+      names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const std::string& known : names)
+    list += " " + known;
+  throw std::invalid_argument("no \"" + name + "\" in " + folder +
+                              ": expected a file, or one of those that are shipped:" + list);
+}
+
+}  // namespace saphira
