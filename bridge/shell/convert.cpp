@@ -58,6 +58,12 @@ T short_of(unsigned value) {
   return static_cast<T>(std::min<unsigned>(value, std::numeric_limits<T>::max()));
 }
 
+template <class T>
+std::vector<T> first(std::vector<T> values, std::size_t count) {
+  values.resize(std::min(values.size(), count));
+  return values;
+}
+
 }  // namespace
 
 v1::Pose2 to_bus(const Pose& pose) {
@@ -232,7 +238,7 @@ authority::Command to_command(const v1::MotorCommand& command, authority::Role r
 }
 
 reflector::Wish to_wish(const v1::ServoCommand& command) {
-  return reflector::ServoWish{command.servo(), command.width()};
+  return reflector::ServoWish{command.width()};
 }
 
 reflector::Wish to_wish(const v1::GripperCommand& command) {
@@ -309,7 +315,9 @@ reflector::Wish to_wish(const v1::SerialCommand& command) {
   return reflector::SerialWish{command.port(), command.data(), command.answer()};
 }
 
-v1::Devices to_bus(const std::vector<reflector::Request>& requests, const v1::Stamp& stamp) {
+v1::Devices to_bus(const std::vector<reflector::Request>& requests,
+                   const reflector::Devices::Reports& reports,
+                   const protocol::Information& information, const v1::Stamp& stamp) {
   v1::Devices out;
   out.stamp(stamp);
   for (const reflector::Request& request : requests) {
@@ -324,6 +332,52 @@ v1::Devices to_bus(const std::vector<reflector::Request>& requests, const v1::St
     r.reason(request.reason);
     r.sent(request.sent);
     out.requests().push_back(r);
+  }
+  out.front_bumpers(information.front_bumpers);
+  out.rear_bumpers(information.rear_bumpers);
+  out.has_flags(information.motors_on.has_value());
+  out.motors_on(information.motors_on.value_or(false));
+  out.emergency_stop(information.emergency_stop.value_or(false));
+  out.faults(information.faults.value_or(0));
+  out.charging(information.charge_state.value_or(0));
+  out.has_compass(information.compass.has_value());
+  out.compass(information.compass.value_or(0.0));
+  out.has_charge(information.state_of_charge.has_value());
+  out.charge(information.state_of_charge.value_or(0.0));
+  out.has_temperature(information.temperature.has_value());
+  out.temperature(information.temperature.value_or(0.0));
+  out.gripper_state(information.gripper_bits);
+  if (const auto& configuration = reports.configuration) {
+    out.has_configuration(true);
+    out.serial_number(configuration->serial);
+    out.firmware(configuration->firmware);
+    out.information_period(configuration->cycle);
+    out.watchdog(configuration->watchdog);
+  }
+  if (const auto& encoders = reports.encoders) {
+    out.has_encoders(true);
+    out.left_encoder(encoders->left);
+    out.right_encoder(encoders->right);
+  }
+  if (const auto& io = reports.io) {
+    out.has_io(true);
+    out.digital_inputs(first(io->digital_inputs, 16));
+    out.digital_outputs(first(io->digital_outputs, 16));
+    out.analog_inputs(first(io->analogs, 32));
+  }
+  if (const auto& gripper = reports.gripper) {
+    out.has_gripper(true);
+    out.gripper_kind(gripper->kind);
+    out.gripper_state(gripper->state);
+    out.grasp_time(gripper->grasp_time);
+  }
+  for (const auto& [type, count] : reports.unread) {
+    if (out.unread_packets().size() == 64)
+      break;
+    v1::PacketCount packets;
+    packets.type(type);
+    packets.count(count);
+    out.unread_packets().push_back(packets);
   }
   return out;
 }

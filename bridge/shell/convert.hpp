@@ -47,7 +47,9 @@ reflector::Wish to_wish(const v1::SoundCommand& command);
 reflector::Wish to_wish(const v1::ServerCommand& command);
 reflector::Wish to_wish(const v1::SerialCommand& command);
 
-v1::Devices to_bus(const std::vector<reflector::Request>& requests, const v1::Stamp& stamp);
+v1::Devices to_bus(const std::vector<reflector::Request>& requests,
+                   const reflector::Devices::Reports& reports,
+                   const protocol::Information& information, const v1::Stamp& stamp);
 
 /// The readings of a packet for the guard: those with an echo, and the sonars that fired without.
 void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,

@@ -32,7 +32,8 @@ constexpr std::chrono::microseconds kSpin{500};
 constexpr double kBeat = 0.05;         // [s] of the keeper
 constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
 constexpr double kHoldOff = 2.0;       // [s] until a robot that could not be served is tried again
-constexpr double kCycle = 0.1;         // [s] manual 2.1.1
+constexpr std::uint64_t kMotorsCycles = 10;  // then the motors should be on
+constexpr double kCycle = 0.1;               // [s] manual 2.1.1
 
 double steady() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -85,6 +86,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       description_writer_(node_.writer(bus::topics::kRobotDescription)),
       grant_writer_(node_.writer(bus::topics::kGrant)),
       devices_writer_(node_.writer(bus::topics::kDevices)),
+      serial_data_writer_(node_.writer(bus::topics::kSerialData)),
       servo_(node_.reader(bus::topics::kServo)),
       gripper_(node_.reader(bus::topics::kGripper)),
       output_(node_.reader(bus::topics::kDigitalOutput)),
@@ -284,8 +286,41 @@ void Shell::packet(const protocol::Bytes& body, double now) {
   }
   if (epoch_ == 0)
     return;
-  if (const auto in = protocol::decode_information(body))
+  const protocol::ServerPacket any = protocol::decode_packet(body);
+  if (const auto* in = std::get_if<protocol::InformationPacket>(&any))
     information(*in, now);
+  else
+    other(any, body, now);
+}
+
+void Shell::other(const protocol::ServerPacket& any, protocol::ByteView body, double now) {
+  const auto type = static_cast<protocol::PacketType>(body[0]);
+  if (type == protocol::PacketType::kReset1 || type == protocol::PacketType::kReset2)
+    return lost("the robot's controller was reset", now);
+  if (const auto* aux = std::get_if<protocol::AuxPacket>(&any)) {
+    v1::SerialData data;
+    data.stamp(stamp_);
+    data.port(aux->line);
+    data.data(aux->bytes);
+    serial_data_writer_.write(data);
+    return;
+  }
+  const bool is_configuration = std::holds_alternative<protocol::ConfigPacket>(any);
+  if (is_configuration && !reflector_.devices().reports().configuration)
+    told(std::get<protocol::ConfigPacket>(any));
+  if (is_configuration || std::holds_alternative<protocol::EncoderPacket>(any) ||
+      std::holds_alternative<protocol::IoPacket>(any) ||
+      std::holds_alternative<protocol::GripperPacket>(any))
+    reflector_.devices().reflect(any);
+  else
+    reflector_.devices().unread(body[0]);
+}
+
+void Shell::told(const protocol::ConfigPacket& robot) {
+  node_.info("the robot's serial number is " + robot.serial + ", its firmware " + robot.firmware);
+  if (robot.cycle != 0 && robot.cycle != 100)
+    node_.warn("the robot sends its packets every " + std::to_string(robot.cycle) +
+               " ms; a cycle here is 100 ms: set its SInfoCycle to 100");
 }
 
 bool Shell::send(const protocol::Bytes& packet, double now) {
@@ -543,9 +578,16 @@ void Shell::take_devices() {
 }
 
 void Shell::publish_devices() {
-  if (!reflector_.devices().take_changed())
+  const protocol::Information& in = reflector_.state().information;
+  const Shown now{in.front_bumpers, in.rear_bumpers, in.motors_on,       in.emergency_stop,
+                  in.faults,        in.charge_state, in.state_of_charge, in.compass,
+                  in.gripper_bits,  in.temperature};
+  const bool changed = reflector_.devices().take_changed();
+  if (!changed && now == shown_)
     return;
-  devices_writer_.write(to_bus(reflector_.devices().requests(), stamp_));
+  shown_ = now;
+  devices_writer_.write(
+      to_bus(reflector_.devices().requests(), reflector_.devices().reports(), in, stamp_));
   for (const std::string& trouble : reflector_.devices().take_troubles())
     node_.warn(trouble);
 }
@@ -594,7 +636,7 @@ void Shell::flush(double now) {
   flush_at_ = 0.0;
   bool sent = false;
   for (const protocol::Command& command : reflector_.due(time())) {
-    if (!send(protocol::encode(command, reflector_.parameters().vel2_unit), now))
+    if (!send(protocol::encode(command, reflector_.parameters()), now))
       return;  // the link is closed now: the loop sees it
     sent = true;
   }
@@ -634,6 +676,11 @@ void Shell::publish_grant() {
   grant_writer_.write(to_bus(grant_, guarded_, arbiter_.take_refused(), stamp_));
 }
 
+bool Shell::motors_off() const {
+  const protocol::Information& in = reflector_.state().information;
+  return !in.motors_on.value_or(in.motors != protocol::Motors::kNoPower);
+}
+
 void Shell::publish_status(double now) {
   if (now - status_at_ < kCycle)
     return;
@@ -660,6 +707,12 @@ void Shell::publish_status(double now) {
     reason = stepped_ || stamp_.cycle() == 0
                  ? "waits for a permit to step"
                  : "waits for the behaviors' command for cycle " + std::to_string(stamp_.cycle());
+  } else if (epoch_ != 0 && reflector_.state().information.emergency_stop.value_or(false)) {
+    state = v1::SERVICE_DEGRADED;
+    reason = "the robot's own emergency stop is pressed";
+  } else if (epoch_ != 0 && stamp_.cycle() > kMotorsCycles && motors_off()) {
+    state = v1::SERVICE_DEGRADED;
+    reason = "the robot's motors are off (its own button, or: saphira device motors on)";
   } else if (keeper_ && !keeper_->alive()) {
     state = v1::SERVICE_DEGRADED;
     reason = "the keeper is gone: nobody stops the robot when the bridge hangs";

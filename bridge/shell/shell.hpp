@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/protocol/packet.hpp"
+#include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/connection.hpp"
 #include "saphira/reflector/reflector.hpp"
 #include "saphira/transport/keeper.hpp"
@@ -52,6 +54,9 @@ class Shell {
   void packet(const protocol::Bytes& body, double now);
   void opened(double now);
   void information(const protocol::InformationPacket& packet, double now);
+  void other(const protocol::ServerPacket& any, protocol::ByteView body, double now);
+  void told(const protocol::ConfigPacket& robot);
+  bool motors_off() const;
   bool send(const protocol::Bytes& packet, double now);
   void lost(const std::string& why, double now);
   /// Whether the loop was heard in time; if not, all that was received before counts as old.
@@ -90,6 +95,7 @@ class Shell {
   };
   std::vector<Drive> drives_;
   bus::Writer<v1::Devices> devices_writer_;
+  bus::Writer<v1::SerialData> serial_data_writer_;
   bus::Reader<v1::ServoCommand> servo_;
   bus::Reader<v1::GripperCommand> gripper_;
   bus::Reader<v1::DigitalOutputCommand> output_;
@@ -120,6 +126,12 @@ class Shell {
   authority::Grant grant_;
   authority::Guarded guarded_;
   std::vector<std::uint8_t> input_;
+  /// Of the information packet, what robot/devices shows; it is written when this changes.
+  using Shown =
+      std::tuple<std::uint8_t, std::uint8_t, std::optional<bool>, std::optional<bool>,
+                 std::optional<std::uint16_t>, std::optional<std::uint8_t>, std::optional<double>,
+                 std::optional<double>, std::uint8_t, std::optional<double>>;
+  Shown shown_;
 
   // Steady seconds.
   double last_loop_ = 0.0;

@@ -176,15 +176,42 @@ TEST(Convert, DeviceCommandsAreChecked) {
   EXPECT_EQ(refused(serial), "");
 }
 
-TEST(Convert, RequestsOfDevices) {
-  const v1::Devices out = to_bus(
-      {{7, "me", 5, "motors 1", reflector::RequestState::given_up, "because", 25}}, stamp(1, 2));
+TEST(Convert, Devices) {
+  reflector::Devices::Reports reports;
+  protocol::Information information;
+  const std::vector<reflector::Request> requests{
+      {7, "me", 5, "motors 1", reflector::RequestState::given_up, "because", 25}};
+  v1::Devices out = to_bus(requests, reports, information, stamp(1, 2));
   ASSERT_EQ(out.requests().size(), 1U);
   EXPECT_EQ(out.requests()[0].device(), v1::DEVICE_SERVER);
   EXPECT_EQ(out.requests()[0].state(), v1::REQUEST_GIVEN_UP);
   EXPECT_EQ(out.requests()[0].request(), 5U);
   EXPECT_EQ(out.requests()[0].sent(), 25U);
   EXPECT_EQ(out.requests()[0].reason(), "because");
+  EXPECT_FALSE(out.has_flags() || out.has_io() || out.has_gripper() || out.has_encoders() ||
+               out.has_charge() || out.has_temperature() || out.has_configuration());
+
+  reports.configuration.emplace().firmware = "2.1";
+  reports.encoders = {-5, 6};
+  reports.io = {{1, 2}, {3}, {1023}};
+  reports.gripper = {2, 0x12, 9};
+  reports.unread = {{0x9A, 3}};
+  information.motors_on = true;
+  information.emergency_stop = true;
+  information.state_of_charge = 0.5;
+  information.temperature = -3.0;
+  information.compass = 1.0;
+  out = to_bus(requests, reports, information, stamp(1, 2));
+  EXPECT_EQ(out.firmware(), "2.1");
+  EXPECT_EQ(out.left_encoder(), -5);
+  EXPECT_EQ(out.digital_inputs(), (std::vector<std::uint8_t>{1, 2}));
+  EXPECT_EQ(out.analog_inputs().at(0), 1023);
+  EXPECT_EQ(out.gripper_state(), 0x12);
+  EXPECT_EQ(out.unread_packets().at(0).count(), 3U);
+  EXPECT_TRUE(out.has_flags() && out.motors_on() && out.emergency_stop());
+  EXPECT_EQ(out.charge(), 0.5);
+  EXPECT_EQ(out.temperature(), -3.0);
+  EXPECT_EQ(out.compass(), 1.0);
 }
 
 TEST(Convert, GrantAndGuard) {

@@ -33,8 +33,6 @@ std::string hex(std::uint8_t value) {
 
 /// Which of a device's settings it is: each is asked for, and shown, by itself.
 int action_of(const Wish& wish) {
-  if (const auto* servo = std::get_if<ServoWish>(&wish))
-    return servo->servo;
   if (const auto* server = std::get_if<ServerWish>(&wish))
     return static_cast<int>(server->action);
   if (const auto* serial = std::get_if<SerialWish>(&wish))
@@ -51,10 +49,7 @@ bool ended(RequestState state) {
 std::string text(const Wish& wish) {
   return std::visit(
       Overloaded{
-          [](const ServoWish& w) {
-            return (w.servo == 0 ? "servo " : "servo " + std::to_string(w.servo) + " ") +
-                   std::to_string(w.width) + " us";
-          },
+          [](const ServoWish& w) { return "servo " + std::to_string(w.width) + " us"; },
           [](const GripperWish& w) {
             std::string out =
                 std::string("gripper ") + kGripperWords.at(static_cast<std::size_t>(w.action));
@@ -93,65 +88,141 @@ std::string text(const Wish& wish) {
 
 void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters& parameters,
                    std::uint8_t digital_output) {
+  using protocol::PacketType;
+  const bool later = parameters.protocol != protocol::Protocol::kPsos;
+  const bool arcos = parameters.protocol == protocol::Protocol::kArcos;
   const auto refuse = [&](const std::string& why) {
     item.request.state = RequestState::refused;
     item.request.reason = why;
   };
-  std::visit(Overloaded{
-                 [&](const ServoWish& w) {
-                   if (w.servo != 0)
-                     return refuse("this robot has one servo, number 0");
-                   item.commands = {protocol::Ptu{w.width}};
-                   item.proof = Proof::servo;
-                   item.value = w.width;
-                 },
-                 [&](const GripperWish& w) {
-                   const std::uint16_t code =
-                       w.action == GripperAction::number
-                           ? w.value
-                           : kGripperNumbers.at(static_cast<std::size_t>(w.action));
-                   item.commands = {protocol::Gripper{code}};
-                   item.proof = Proof::thrice;
-                 },
-                 [&](const OutputWish& w) {
-                   const auto bits =
-                       static_cast<std::uint8_t>((digital_output & ~w.mask) | (w.bits & w.mask));
-                   item.commands = {protocol::DigitalOutput{bits}};
-                   item.proof = Proof::output;
-                   item.value = w.bits & w.mask;
-                   item.mask = w.mask;
-                 },
-                 [&](const AnalogWish&) { refuse("this robot has one analog input"); },
-                 [&](const TimerWish& w) {
-                   if (w.pin > 7)
-                     return refuse("expected a pin in 0..7");
-                   item.commands = {protocol::Timer{w.pin}};
-                   item.proof = Proof::once;
-                 },
-                 [&](const SonarWish& w) {
-                   protocol::Polling polling{w.polling};
-                   if (!w.on)
-                     polling.sonars.clear();
-                   else if (polling.sonars.empty())
-                     for (const protocol::SonarUnit& unit : parameters.sonars)
-                       polling.sonars.push_back(unit.number);
-                   for (const std::uint8_t sonar : polling.sonars)
-                     if (std::none_of(parameters.sonars.begin(), parameters.sonars.end(),
-                                      [&](const auto& unit) { return unit.number == sonar; }))
-                       return refuse("the robot has no sonar " + std::to_string(sonar));
-                   item.commands = {polling};
-                   item.proof = Proof::thrice;
-                 },
-                 [&](const SoundWish&) { refuse("this robot plays no sounds"); },
-                 [&](const ServerWish& w) {
-                   if (w.action != ServerAction::set_origin)
-                     return refuse("this robot has no such thing");
-                   item.commands = {protocol::SetOrigin{}};
-                   item.proof = Proof::origin;
-                 },
-                 [&](const SerialWish&) { refuse("this robot has no serial ports"); },
-             },
-             wish);
+  const auto send = [&](std::vector<protocol::Command> commands, Proof proof, int value = 0,
+                        int mask = 0) {
+    item.commands = std::move(commands);
+    item.proof = proof;
+    item.value = value;
+    item.mask = mask;
+  };
+  const auto report = [&](protocol::Command command, int value, PacketType type) {
+    send({std::move(command)}, value == 0 ? Proof::thrice : Proof::packet, static_cast<int>(type));
+  };
+  const std::string not_in_psos = "a server of this robot's generation (PSOS) has no such command";
+  std::visit(
+      Overloaded{
+          [&](const ServoWish& w) {
+            send({protocol::Ptu{w.width}}, later ? Proof::thrice : Proof::servo, w.width);
+          },
+          [&](const GripperWish& w) {
+            if (w.action == GripperAction::number)
+              return send({protocol::Gripper{w.value}}, Proof::thrice);
+            if (!later)
+              return refuse("a robot of this generation (PSOS) takes numbers: 0, 1, 4, 5");
+            const protocol::Gripper gripper{kGripperNumbers.at(static_cast<std::size_t>(w.action))};
+            if (w.action == GripperAction::pressure || w.action == GripperAction::carry)
+              return send({gripper, protocol::GripperValue{w.value}}, Proof::once);
+            send({gripper}, Proof::thrice);
+          },
+          [&](const OutputWish& w) {
+            const auto bits =
+                static_cast<std::uint8_t>((digital_output & ~w.mask) | (w.bits & w.mask));
+            send({protocol::DigitalOutput{bits, later ? w.mask : std::uint8_t{0}}}, Proof::output,
+                 w.bits & w.mask, w.mask);
+          },
+          [&](const AnalogWish& w) {
+            if (!later)
+              return refuse("this robot has one analog input");
+            send({protocol::AnalogSelect{w.port}}, arcos ? Proof::analog : Proof::thrice, w.port);
+          },
+          [&](const TimerWish& w) {
+            if (w.pin > 7)
+              return refuse("expected a pin in 0..7");
+            send({protocol::Timer{w.pin}}, Proof::once);
+          },
+          [&](const SonarWish& w) {
+            protocol::Polling polling{w.polling};
+            for (const std::uint8_t sonar : polling.sonars)
+              if (std::none_of(parameters.sonars.begin(), parameters.sonars.end(),
+                               [&](const auto& unit) { return unit.number == sonar; }))
+                return refuse("the robot has no sonar " + std::to_string(sonar));
+            if (later) {
+              std::vector<protocol::Command> commands{protocol::SonarSwitch{w.on, 0}};
+              if (w.on && !polling.sonars.empty())
+                commands.emplace_back(polling);
+              return send(std::move(commands), arcos ? Proof::sonar : Proof::thrice, w.on ? 1 : 0);
+            }
+            if (!w.on)
+              polling.sonars.clear();
+            else if (polling.sonars.empty())
+              for (const protocol::SonarUnit& unit : parameters.sonars)
+                polling.sonars.push_back(unit.number);
+            send({polling}, Proof::thrice);
+          },
+          [&](const SoundWish& w) {
+            if (!later)
+              return refuse(not_in_psos);
+            if (w.tones.empty())
+              return send({protocol::Sound{w.stored}}, Proof::once);
+            protocol::Say say;
+            for (const Tone& tone : w.tones) {
+              say.text.push_back(tone.duration);
+              say.text.push_back(tone.pitch);
+            }
+            send({say}, Proof::once);
+          },
+          [&](const ServerWish& w) {
+            if (w.action == ServerAction::set_origin)
+              return send({protocol::SetOrigin{}}, Proof::origin);
+            if (!later)
+              return refuse(not_in_psos);
+            switch (w.action) {
+              case ServerAction::set_origin:
+                break;
+              case ServerAction::motors:
+                return send({protocol::Enable{w.value != 0}}, arcos ? Proof::motors : Proof::thrice,
+                            w.value);
+              case ServerAction::bump_stall:
+                return send({protocol::BumpStall{w.value}}, Proof::thrice);
+              case ServerAction::configuration:
+                return report(protocol::ConfigRequest{1}, 1, PacketType::kConfig);
+              case ServerAction::encoders:
+                return report(protocol::EncoderRequest{w.value}, w.value, PacketType::kEncoder);
+              case ServerAction::io:
+                return report(protocol::IoRequest{w.value}, w.value, PacketType::kIo);
+              case ServerAction::gripper:
+                return report(protocol::GripperRequest{w.value}, w.value, PacketType::kGripper);
+            }
+          },
+          [&](const SerialWish& w) {
+            if (!later)
+              return refuse(not_in_psos);
+            std::vector<protocol::Command> commands;
+            const auto add = [&](auto write, auto read) {
+              write.text = w.data;
+              read.value = w.answer;
+              if (!w.data.empty())
+                commands.emplace_back(write);
+              if (w.answer > 0)
+                commands.emplace_back(read);
+            };
+            if (w.port == 1)
+              add(protocol::Aux1Send{}, protocol::Aux1Read{});
+            else if (w.port == 2)
+              add(protocol::Aux2Send{}, protocol::Aux2Read{});
+            else
+              add(protocol::Aux3Send{}, protocol::Aux3Read{});
+            send(std::move(commands), Proof::once);
+          },
+      },
+      wish);
+}
+
+void Devices::begin(const protocol::RobotParameters& parameters) {
+  if (parameters.protocol == protocol::Protocol::kPsos)
+    return;
+  for (const ServerWish wish :
+       {ServerWish{ServerAction::motors, 1}, ServerWish{ServerAction::configuration, 0}}) {
+    request("bridge", 0, wish, parameters);
+    items_.at({Wish(wish).index(), action_of(wish)}).quiet = true;
+  }
 }
 
 void Devices::connect() {
@@ -159,6 +230,7 @@ void Devices::connect() {
     if (!ended(item.request.state))
       end(item, RequestState::lost, "the connection to the robot ended");
   digital_output_ = 0;
+  reports_ = {};
 }
 
 void Devices::request(const std::string& source, std::uint64_t number, const Wish& wish,
@@ -181,7 +253,10 @@ void Devices::end(Item& item, RequestState state, const std::string& reason) {
   item.request.state = state;
   item.request.reason = reason;
   item.commands.clear();
-  note(item.request);
+  if (item.quiet)
+    changed_ = true;
+  else
+    note(item.request);
 }
 
 void Devices::note(const Request& request) {
@@ -194,25 +269,61 @@ void Devices::note(const Request& request) {
                       request.reason);
 }
 
-void Devices::reflect(const protocol::InformationPacket& packet, bool origin) {
-  digital_output_ = packet.digital_output;
-  for (auto& [key, item] : items_) {
-    if (ended(item.request.state) || item.request.sent == 0)
-      continue;
-    const bool shown =
-        (item.proof == Proof::output && (packet.digital_output & item.mask) == item.value) ||
-        (item.proof == Proof::servo && packet.ptu == item.value) ||
-        (item.proof == Proof::origin && origin);
-    if (shown)
-      end(item, RequestState::shown);
+bool Devices::shown(const Item& item, const protocol::InformationPacket& packet,
+                    const protocol::Information& information, bool origin) const {
+  switch (item.proof) {
+    case Proof::output:
+      return (packet.digital_output & item.mask) == item.value;
+    case Proof::servo:
+      return packet.ptu == item.value;
+    case Proof::origin:
+      return origin;
+    case Proof::motors:
+      return information.motors_on == (item.value != 0);
+    case Proof::sonar:  // ARCOS has its flags where the servo's width was
+      return ((packet.ptu & protocol::kFlagSonars) != 0) == (item.value != 0);
+    case Proof::analog:  // and the chosen port in the timer's low byte
+      return (packet.timer & 0xFFU) == static_cast<unsigned>(item.value);
+    case Proof::once:
+    case Proof::thrice:
+    case Proof::packet:
+      break;
   }
+  return false;
 }
 
-void Devices::reflect(std::uint8_t type) {
+void Devices::reflect(const protocol::InformationPacket& packet,
+                      const protocol::Information& information, bool origin) {
+  digital_output_ = packet.digital_output;
   for (auto& [key, item] : items_)
-    if (!ended(item.request.state) && item.request.sent > 0 && item.proof == Proof::packet &&
-        item.value == type)
+    if (!ended(item.request.state) && item.request.sent > 0 &&
+        shown(item, packet, information, origin))
       end(item, RequestState::shown);
+}
+
+void Devices::reflect(const protocol::ServerPacket& packet) {
+  using protocol::PacketType;
+  const auto take = [&](auto& kept, const auto& came, PacketType type) {
+    changed_ = changed_ || kept != came;
+    kept = came;
+    for (auto& [key, item] : items_)
+      if (!ended(item.request.state) && item.request.sent > 0 && item.proof == Proof::packet &&
+          item.value == static_cast<int>(type))
+        end(item, RequestState::shown);
+  };
+  if (const auto* configuration = std::get_if<protocol::ConfigPacket>(&packet))
+    take(reports_.configuration, *configuration, PacketType::kConfig);
+  else if (const auto* encoders = std::get_if<protocol::EncoderPacket>(&packet))
+    take(reports_.encoders, *encoders, PacketType::kEncoder);
+  else if (const auto* io = std::get_if<protocol::IoPacket>(&packet))
+    take(reports_.io, *io, PacketType::kIo);
+  else if (const auto* gripper = std::get_if<protocol::GripperPacket>(&packet))
+    take(reports_.gripper, *gripper, PacketType::kGripper);
+}
+
+void Devices::unread(std::uint8_t type) {
+  // News when it is the first of its type; the number of them alone is none.
+  changed_ = ++reports_.unread[type] == 1 || changed_;
 }
 
 bool Devices::pending(double now) const {
@@ -228,7 +339,7 @@ std::vector<protocol::Command> Devices::due(double now) {
   for (auto& [key, item] : items_) {
     if (ended(item.request.state) || (item.request.sent != 0 && now - item.at < kRetry - kTick))
       continue;
-    if (item.request.sent >= kTries) {
+    if (item.request.sent >= (item.quiet ? 3 : kTries)) {
       end(item, RequestState::given_up, "the robot does not show it");
       continue;
     }

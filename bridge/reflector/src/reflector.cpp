@@ -38,6 +38,7 @@ void Reflector::open(double now, std::optional<OdometryMemory> memory, std::uint
   motion_.stop();
   channels_.connect();
   devices_.connect();
+  devices_.begin(parameters_);
   last_packet_ = now;
   last_sent_ = now;
   packet_times_.clear();
@@ -58,7 +59,7 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
     motion_.stop();  // a heading or a way that was meant in the old frame means nothing now
   else
     motion_.moved(odometry_.advance());
-  devices_.reflect(packet, origin);
+  devices_.reflect(packet, state_.information, origin);
   last_packet_ = now;
 
   ++state_.cycle;

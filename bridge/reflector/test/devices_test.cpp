@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace saphira::reflector {
 namespace {
 
@@ -14,7 +16,7 @@ struct Bench {
   void ask(const Wish& wish) { devices.request("test", ++number, wish, parameters); }
   /// One cycle; how often this command was sent in it.
   int cycle(const Command& command) {
-    devices.reflect(packet, origin);
+    devices.reflect(packet, protocol::interpret(packet, parameters), origin);
     now += 0.1;
     int count = 0;
     for (const Command& each : devices.due(now))
@@ -70,7 +72,7 @@ TEST(Devices, AMaskLeavesTheOtherBits) {
 
 TEST(Devices, AreGivenUpAfterFiveSeconds) {
   Bench b;
-  b.ask(ServoWish{0, 1500});
+  b.ask(ServoWish{1500});
   EXPECT_EQ(b.cycles(80, protocol::Ptu{1500}), 25);
   EXPECT_EQ(b.only().state, RequestState::given_up);
   EXPECT_EQ(b.devices.take_troubles(),
@@ -83,8 +85,6 @@ TEST(Devices, WhatNoPacketShowsIsSentThriceOrOnce) {
   b.ask(TimerWish{2});
   EXPECT_EQ(b.cycles(20, protocol::Timer{2}), 1) << "a second one would begin it again";
   EXPECT_EQ(b.only().state, RequestState::sent);
-  b.ask(GripperWish{GripperAction::close, 0});
-  EXPECT_EQ(b.cycles(20, protocol::Gripper{2}), 3);
   b.ask(GripperWish{GripperAction::number, 5});
   EXPECT_EQ(b.cycles(20, protocol::Gripper{5}), 3);
 }
@@ -116,11 +116,100 @@ TEST(Devices, PollingNamesSonarsThatThereAre) {
 
 TEST(Devices, ALostConnectionEndsWhatWasUnderWay) {
   Bench b;
-  b.ask(ServoWish{0, 1500});
+  b.ask(ServoWish{1500});
   b.cycle(Command{});
   b.devices.connect();
   EXPECT_EQ(b.only().state, RequestState::lost);
   EXPECT_EQ(b.cycles(50, protocol::Ptu{1500}), 0) << "the robot was perhaps switched off";
+}
+
+protocol::RobotParameters of(protocol::Protocol generation) {
+  protocol::RobotParameters parameters;
+  parameters.protocol = generation;
+  parameters.sonars = {{0, {}}, {1, {}}};
+  return parameters;
+}
+
+TEST(Devices, APioneerOneIsNotAskedForWhatCameLater) {
+  Bench b(of(protocol::Protocol::kPsos));
+  b.devices.begin(b.parameters);
+  EXPECT_TRUE(b.devices.requests().empty());
+  for (const Wish& wish :
+       {Wish(SoundWish{{{5, 60}}, 0}), Wish(AnalogWish{1}), Wish(SerialWish{1, {7}, 0}),
+        Wish(ServerWish{ServerAction::motors, 1}), Wish(GripperWish{GripperAction::open, 0})}) {
+    b.ask(wish);
+    EXPECT_TRUE(b.devices.due(b.now).empty()) << text(wish);
+    EXPECT_FALSE(b.devices.take_troubles().empty()) << text(wish);
+  }
+}
+
+TEST(Devices, ALaterRobotIsSwitchedOnAndAskedWhatItIsLike) {
+  Bench b(of(protocol::Protocol::kP2os));
+  b.devices.begin(b.parameters);
+  int on = 0;
+  int asked = 0;
+  for (int i = 0; i < 30; ++i) {
+    for (const Command& command : b.devices.due(b.now += 0.1)) {
+      on += command == Command(protocol::Enable{true});
+      asked += command == Command(protocol::ConfigRequest{1});
+    }
+  }
+  EXPECT_EQ(on, 3);
+  EXPECT_EQ(asked, 3) << "no answer is tolerated";
+  EXPECT_TRUE(b.devices.take_troubles().empty());
+  protocol::ConfigPacket configuration;
+  configuration.firmware = "1.9";
+  b.ask(ServerWish{ServerAction::configuration, 0});
+  b.cycle(Command{});
+  b.devices.take_changed();
+  b.devices.reflect(protocol::ServerPacket(configuration));
+  EXPECT_TRUE(b.devices.take_changed());
+  EXPECT_EQ(b.devices.reports().configuration->firmware, "1.9");
+  EXPECT_EQ(b.devices.requests().back().state, RequestState::shown);
+}
+
+TEST(Devices, FlagsOfArcosShowMotorsSonarsAndTheAnalogPort) {
+  Bench b(of(protocol::Protocol::kArcos));
+  b.packet.ptu = protocol::kFlagSonars;
+  b.ask(ServerWish{ServerAction::motors, 1});
+  EXPECT_EQ(b.cycles(10, protocol::Enable{true}), 5);
+  b.packet.ptu |= protocol::kFlagMotors;
+  EXPECT_EQ(b.cycles(10, protocol::Enable{true}), 0);
+  EXPECT_EQ(b.only().state, RequestState::shown);
+  b.ask(SonarWish{false, {}});
+  EXPECT_EQ(b.cycles(10, protocol::SonarSwitch{false, 0}), 5);
+  b.packet.ptu = protocol::kFlagMotors;
+  EXPECT_EQ(b.cycles(10, protocol::SonarSwitch{false, 0}), 0);
+  b.ask(AnalogWish{3});
+  EXPECT_EQ(b.cycles(4, protocol::AnalogSelect{3}), 2);
+  b.packet.timer = 3;
+  EXPECT_EQ(b.cycles(10, protocol::AnalogSelect{3}), 0);
+  for (const Request& request : b.devices.requests())
+    EXPECT_EQ(request.state, RequestState::shown) << request.text;
+}
+
+TEST(Devices, LaterRobotsHaveMasksTonesAndSerialPorts) {
+  Bench b(of(protocol::Protocol::kP2os));
+  b.ask(OutputWish{0x0F, 0x05});
+  EXPECT_EQ(b.cycle(protocol::DigitalOutput{0x05, 0x0F}), 1);
+  b.ask(SoundWish{{{25, 60}, {5, 0}}, 0});
+  EXPECT_EQ(b.cycles(10, protocol::Say{{25, 60, 5, 0}}), 1) << "said once";
+  b.ask(GripperWish{GripperAction::lift_up, 0});
+  EXPECT_EQ(b.cycles(10, protocol::Gripper{4}), 3);
+  b.ask(SerialWish{2, {1, 2, 3}, 9});
+  const std::vector<Command> sent = b.devices.due(b.now + 0.1);
+  EXPECT_NE(std::find(sent.begin(), sent.end(), Command(protocol::Aux2Send{{1, 2, 3}})),
+            sent.end());
+  EXPECT_NE(std::find(sent.begin(), sent.end(), Command(protocol::Aux2Read{9})), sent.end());
+}
+
+TEST(Devices, PacketsThatNobodyReadsAreCounted) {
+  Bench b;
+  b.devices.unread(0x9A);
+  EXPECT_TRUE(b.devices.take_changed());
+  b.devices.unread(0x9A);
+  EXPECT_FALSE(b.devices.take_changed());
+  EXPECT_EQ(b.devices.reports().unread.at(0x9A), 2U);
 }
 
 }  // namespace

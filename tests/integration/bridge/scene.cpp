@@ -46,7 +46,7 @@ void Scene::start_simulator() {
                                 "--world",
                                 folder.path("test.wld"),
                                 "--robot",
-                                source("config/robots/pioneer.p"),
+                                source("config/robots/" + robot_file),
                                 "--socket",
                                 folder.path("robot"),
                                 "--trace",

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -10,13 +11,13 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/protocol/server_packet.hpp"
 
 namespace saphira::reflector {
 
 // ---- What may be asked of the robot's devices. SI units, but where a number is the robot's own.
 
 struct ServoWish {
-  std::uint8_t servo = 0;   ///< 0: the robot's only one; else the port
   std::uint16_t width = 0;  ///< [us]
 };
 enum class GripperAction {
@@ -35,7 +36,7 @@ enum class GripperAction {
 };
 struct GripperWish {
   GripperAction action = GripperAction::stop;
-  std::uint16_t value = 0;  ///< [10 ms] of pressure and carry; the robot's own number
+  std::uint16_t value = 0;  ///< of pressure, carry and number, in the robot's own units
 };
 struct OutputWish {
   std::uint8_t mask = 0;
@@ -106,35 +107,53 @@ class Devices {
   /// One that is not to be sent.
   void refuse(std::size_t device, const std::string& source, std::uint64_t number,
               const std::string& text, const std::string& reason);
+  /// What a session begins with: a robot since P2OS switches its motors on when it is told, and
+  /// says what it is like. No answer does no harm.
+  void begin(const protocol::RobotParameters& parameters);
   /// An information packet came. `origin`: its raw pose is (0, 0, 0) within what a moving robot
   /// makes of it.
-  void reflect(const protocol::InformationPacket& packet, bool origin);
-  /// Another packet came, of this type.
-  void reflect(std::uint8_t type);
+  void reflect(const protocol::InformationPacket& packet, const protocol::Information& information,
+               bool origin);
+  /// Another packet came.
+  void reflect(const protocol::ServerPacket& packet);
+  /// A packet came that nobody here reads.
+  void unread(std::uint8_t type);
   std::vector<protocol::Command> due(double now);
   bool pending(double now) const;
 
   /// The newest of each device and action, in the order of the devices.
   std::vector<Request> requests() const;
-  /// Whether requests() says something new since the last call.
+  /// What the packets besides the information packet said last, in this session.
+  struct Reports {
+    std::optional<protocol::ConfigPacket> configuration;
+    std::optional<protocol::EncoderPacket> encoders;
+    std::optional<protocol::IoPacket> io;
+    std::optional<protocol::GripperPacket> gripper;
+    std::map<std::uint8_t, std::uint32_t> unread;  ///< packets of types that nobody reads, by type
+  };
+  const Reports& reports() const { return reports_; }
+  /// Whether requests() or reports() say something new since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
   /// Requests that came to a bad end since the last call, in words.
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }
 
  private:
   /// What shows that a request was heard.
-  enum class Proof { once, thrice, output, servo, origin, motors, sonar_on, packet };
+  enum class Proof { once, thrice, output, servo, origin, motors, sonar, analog, packet };
   struct Item {
     Request request;
     std::vector<protocol::Command> commands;
     Proof proof = Proof::once;
     int value = 0;  ///< what is to be shown
     int mask = 0;
+    bool quiet = false;  ///< asked for by nobody: no words where it comes to nothing
     double at = 0.0;
   };
   using Key = std::pair<std::size_t, int>;  ///< device, action
 
   void note(const Request& request);
+  bool shown(const Item& item, const protocol::InformationPacket& packet,
+             const protocol::Information& information, bool origin) const;
 
   void end(Item& item, RequestState state, const std::string& reason = {});
   static void plan(Item& item, const Wish& wish, const protocol::RobotParameters& parameters,
@@ -142,6 +161,7 @@ class Devices {
 
   std::map<Key, Item> items_;
   std::uint8_t digital_output_ = 0;  ///< as the robot shows it
+  Reports reports_;
   bool changed_ = false;
   std::vector<std::string> troubles_;
 };

@@ -1,0 +1,159 @@
+// Robots of every generation behind the bridge: it takes the parameter file that each one names,
+// drives it to where it says it is, hears its sonars, and uses what it carries.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "scene.hpp"
+
+namespace saphira::test {
+namespace {
+
+class BridgeRobots : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
+  Scene scene;
+  scene.robot_file = std::string(GetParam()) + ".p";
+  scene.world =
+      "width 20000 height 20000\nposition 10000 10000 0\n8000 8500 12000 8500\n"
+      "8000 11500 12000 11500\n";
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
+      << scene.bridge_log();
+  EXPECT_TRUE(scene.description->parameter_file().ends_with("/" + scene.robot_file))
+      << scene.description->parameter_file();
+
+  // A third of a metre and a quarter turn, by the robot's own count and in truth. Slowly: the
+  // smallest of them does 0.1 m/s.
+  const double speed = std::min(0.25, 0.8 * scene.description->max_velocity());
+  std::set<int> heard;
+  scene.command.translation(v1::TRANSLATION_POSITION);
+  scene.command.distance(0.33);
+  scene.command.velocity(speed);
+  scene.command.move(1);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] {
+    for (const v1::SonarReading& reading : scene.state.sonars())
+      heard.insert(reading.sonar());
+    return scene.state.pose_in_odom().x() > 0.3 && scene.rests();
+  })) << scene.bridge_log();
+  EXPECT_NEAR(scene.state.pose_in_odom().x(), 0.33, 0.03);
+  EXPECT_NEAR(scene.trace().back().pose_in_world.x - 10.0, 0.33, 0.05);
+  scene.command.translation(v1::TRANSLATION_NONE);
+  scene.command.rotation(v1::ROTATION_HEADING);
+  scene.command.heading(kPi / 2);
+  ASSERT_TRUE(scene.until([&] {
+    for (const v1::SonarReading& reading : scene.state.sonars())
+      heard.insert(reading.sonar());
+    return std::abs(scene.state.pose_in_odom().th() - kPi / 2) < radians(3.0) && scene.rests();
+  })) << scene.state.pose_in_odom().th();
+  EXPECT_NEAR(scene.trace().back().pose_in_world.th, kPi / 2, radians(6.0));
+  EXPECT_EQ(heard.size(), scene.description->sonars().size()) << "every sonar fires";
+  EXPECT_EQ(scene.state.bad_packets(), 0U);
+  EXPECT_GT(scene.state.battery(), 4.0);
+  EXPECT_TRUE(scene.devices.unread_packets().empty());
+  EXPECT_EQ(scene.status.state(), v1::SERVICE_RUNNING) << scene.status.reason();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BridgeRobots,
+                         ::testing::Values("psos43m", "pionat", "p2dx", "p2at8+", "p3dx", "p3dx-sh",
+                                           "p3at-sh", "amigo", "amigo-sh", "peoplebot-sh",
+                                           "powerbot-sh", "b14", "b21", "khepera"),
+                         [](const auto& each) {
+                           std::string name = each.param;
+                           for (char& c : name)
+                             c = c == '-' ? '_' : c == '+' ? 'p' : c;
+                           return name;
+                         });
+
+TEST(BridgeDevices, OfALaterRobot) {
+  Scene scene;
+  scene.robot_file = "p3dx-sh.p";
+  auto servers = scene.node.writer(bus::topics::kServer);
+  auto outputs = scene.node.writer(bus::topics::kDigitalOutput);
+  auto sonars = scene.node.writer(bus::topics::kSonar);
+  auto sounds = scene.node.writer(bus::topics::kSound);
+  scene.start_simulator();
+  scene.start_bridge();
+  std::uint64_t number = 0;
+  const auto outcome = [&](std::uint64_t of) -> const v1::DeviceRequest* {
+    for (const v1::DeviceRequest& request : scene.devices.requests())
+      if (request.source() == "test" && request.request() == of &&
+          request.state() != v1::REQUEST_SENDING)
+        return &request;
+    return nullptr;
+  };
+  const auto server = [&](v1::ServerAction action, int value) {
+    v1::ServerCommand command;
+    command.source("test");
+    command.request(++number);
+    command.action(action);
+    command.value(value);
+    servers.write(command);
+    EXPECT_TRUE(scene.until([&] { return outcome(number) != nullptr; })) << scene.bridge_log();
+    const v1::DeviceRequest* request = outcome(number);
+    return request == nullptr ? v1::REQUEST_SENDING : request->state();
+  };
+  ASSERT_TRUE(scene.until([&] {
+    return scene.connected() && scene.devices.has_configuration() && scene.devices.motors_on() &&
+           servers.matched() > 0 && outputs.matched() > 0 && sonars.matched() > 0 &&
+           sounds.matched() > 0;
+  })) << scene.bridge_log();
+  EXPECT_EQ(scene.devices.information_period(), 100);
+  EXPECT_FALSE(scene.devices.serial_number().empty());
+
+  EXPECT_EQ(server(v1::SERVER_REPORT_ENCODERS, v1::REPORT_ALWAYS), v1::REQUEST_SHOWN);
+  EXPECT_TRUE(scene.devices.has_encoders());
+  EXPECT_EQ(server(v1::SERVER_REPORT_ENCODERS, v1::REPORT_OFF), v1::REQUEST_SENT);
+  EXPECT_EQ(server(v1::SERVER_REPORT_IO, v1::REPORT_ONCE), v1::REQUEST_SHOWN);
+  EXPECT_TRUE(scene.devices.has_io());
+  EXPECT_EQ(server(v1::SERVER_REPORT_GRIPPER, v1::REPORT_ONCE), v1::REQUEST_SHOWN);
+  EXPECT_TRUE(scene.devices.has_gripper());
+
+  v1::DigitalOutputCommand output;
+  output.source("test");
+  output.request(++number);
+  output.mask(0x0F);
+  output.bits(0x05);
+  outputs.write(output);
+  ASSERT_TRUE(scene.until([&] { return outcome(number) != nullptr; }));
+  EXPECT_EQ(outcome(number)->state(), v1::REQUEST_SHOWN);
+  EXPECT_EQ(scene.state.digital_output() & 0x0F, 0x05);
+
+  v1::SonarCommand sonar;
+  sonar.source("test");
+  sonar.request(++number);
+  sonar.on(false);
+  sonars.write(sonar);
+  ASSERT_TRUE(scene.until([&] { return outcome(number) != nullptr; }));
+  EXPECT_EQ(outcome(number)->state(), v1::REQUEST_SHOWN);
+  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s() == 0; }));
+  sonar.request(++number);
+  sonar.on(true);
+  sonars.write(sonar);
+  EXPECT_TRUE(scene.until([&] { return scene.state.sonar_readings_per_s() > 0; }));
+
+  v1::SoundCommand sound;
+  sound.source("test");
+  sound.request(++number);
+  sound.tones(std::vector<v1::Tone>(2));
+  for (v1::Tone& tone : sound.tones())
+    tone.duration(0.1);
+  sounds.write(sound);
+  ASSERT_TRUE(scene.until([&] { return outcome(number) != nullptr; }));
+  EXPECT_EQ(outcome(number)->state(), v1::REQUEST_SENT);
+
+  // The motors off: the user is told, and the robot does not drive until they are on again.
+  EXPECT_EQ(server(v1::SERVER_MOTORS, 0), v1::REQUEST_SHOWN);
+  ASSERT_TRUE(scene.until([&] {
+    return scene.status.state() == v1::SERVICE_DEGRADED &&
+           scene.status.reason().find("motors are off") != std::string::npos;
+  })) << scene.status.reason();
+  EXPECT_EQ(server(v1::SERVER_MOTORS, 1), v1::REQUEST_SHOWN);
+  EXPECT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+}
+
+}  // namespace
+}  // namespace saphira::test
