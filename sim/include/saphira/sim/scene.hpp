@@ -67,6 +67,7 @@ class Scene {
   const std::vector<Door>& doors() const { return doors_; }
   const std::vector<Box>& boxes() const { return boxes_; }
   Segment leaf(const Door& door) const { return leaf(door, door.angle); }
+  std::array<Segment, 4> sides(const Box& box) const { return outline(box, box.pose_in_world); }
   /// Opens or closes a door; its schedule goes on. False where there is no such door.
   bool set_door(std::string_view name, bool open);
 
