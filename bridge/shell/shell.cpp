@@ -317,7 +317,8 @@ void Shell::other(const protocol::ServerPacket& any, protocol::ByteView body, do
 }
 
 void Shell::told(const protocol::ConfigPacket& robot) {
-  node_.info("the robot's serial number is " + robot.serial + ", its firmware " + robot.firmware);
+  node_.info("the robot's serial number is " + robot.serial +
+             (robot.firmware.empty() ? "" : ", its firmware " + robot.firmware));
   if (robot.cycle != 0 && robot.cycle != 100)
     node_.warn("the robot sends its packets every " + std::to_string(robot.cycle) +
                " ms; a cycle here is 100 ms: set its SInfoCycle to 100");

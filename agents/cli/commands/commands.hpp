@@ -22,6 +22,7 @@ void add_list(CLI::App& app, Chosen& chosen);
 void add_echo(CLI::App& app, Chosen& chosen);
 void add_log(CLI::App& app, Chosen& chosen);
 void add_goal(CLI::App& app, Chosen& chosen);
+void add_device(CLI::App& app, Chosen& chosen);
 void add_drive(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
 

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
         cli::add_status(app, chosen);
         cli::add_goal(app, chosen);
         cli::add_drive(app, chosen);
+        cli::add_device(app, chosen);
         cli::add_list(app, chosen);
         cli::add_echo(app, chosen);
         cli::add_log(app, chosen);

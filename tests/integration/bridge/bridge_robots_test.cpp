@@ -155,5 +155,30 @@ TEST(BridgeDevices, OfALaterRobot) {
   EXPECT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
 }
 
+TEST(BridgeDevices, FromTheCommandLine) {
+  Scene scene;
+  scene.robot_file = "p3dx-sh.p";
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  int runs = 0;
+  const auto run = [&](const std::vector<std::string>& words, int code) {
+    std::vector<std::string> argv{"saphira",  "--robot", scene.robot,
+                                  "--domain", domain(),  "device"};
+    argv.insert(argv.end(), words.begin(), words.end());
+    Process process(argv, scene.folder.path("device" + std::to_string(++runs)));
+    EXPECT_EQ(process.wait(), code) << process.output();
+    return process.output();
+  };
+  EXPECT_NE(run({"output", "0x21"}, 0).find("output 0x21: the robot shows it"), std::string::npos);
+  EXPECT_NE(run({"timer", "3"}, 0).find("timer 3: sent"), std::string::npos);
+  EXPECT_NE(run({"sonar", "on", "63"}, 1).find("refused; the robot has no sonar 63"),
+            std::string::npos);
+  EXPECT_NE(run({"motors", "maybe"}, 2).find("expected on or off"), std::string::npos);
+  const std::string all = run({}, 0);
+  EXPECT_NE(all.find("0b00100001"), std::string::npos) << all;
+  EXPECT_NE(all.find("timer 3: sent"), std::string::npos) << all;
+}
+
 }  // namespace
 }  // namespace saphira::test

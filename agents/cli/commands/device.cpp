@@ -1,0 +1,213 @@
+// What a robot carries besides wheels: what it shows, and what is asked of it.
+#include <cstdio>
+#include <iostream>
+#include <random>
+#include <set>
+
+#include "commands.hpp"
+#include "saphira/cli/device_words.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kPatience = 10.0;   ///< [s] a request is given up by the bridge after 5
+constexpr double kAnswerTime = 1.0;  ///< [s] for what hangs on a serial port
+
+/// The robot's devices as they are on the bus.
+class Watch {
+ public:
+  explicit Watch(const bus::NodeOptions& options)
+      : node(options),
+        processes(node),
+        robots_(node.reader(bus::topics::kRobotState)),
+        devices_(node.reader(bus::topics::kDevices)) {}
+
+  void poll() {
+    processes.poll();
+    if (auto newest = robots_.take_newest())
+      robot = std::move(newest);
+    if (auto newest = devices_.take_newest())
+      devices = std::move(newest);
+  }
+
+  bus::Node node;
+  Processes processes;
+  std::optional<v1::RobotState> robot;
+  std::optional<v1::Devices> devices;
+
+ private:
+  bus::Reader<v1::RobotState> robots_;
+  bus::Reader<v1::Devices> devices_;
+};
+
+int nobody(const bus::NodeOptions& options, const Watch& watch) {
+  std::cerr << "saphira: no robot: " << who_is_there(options, watch.processes) << '\n';
+  return bus::kExitFailed;
+}
+
+int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+  Watch watch(options);
+  const auto began = Clock::now();
+  // The devices are latched: they come with the discovery, as the state does.
+  while (!stop.requested() && seconds_since(began) < 3.0 && !(watch.robot && watch.devices)) {
+    watch.node.wait(milliseconds(100), &stop);
+    watch.poll();
+  }
+  if (!watch.robot)
+    return nobody(options, watch);
+  std::fputs(table(device_rows(*watch.robot, watch.devices)).c_str(), stdout);
+  return bus::kExitOk;
+}
+
+/// Each line of the list, whenever it changes.
+int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
+  Watch watch(options);
+  std::set<std::vector<std::string>> shown;
+  auto said = Clock::now();
+  while (!stop.requested()) {
+    watch.node.wait(milliseconds(500), &stop);
+    watch.poll();
+    if (!watch.robot) {
+      if (seconds_since(said) > 3.0) {
+        nobody(options, watch);
+        said = Clock::now();
+      }
+      continue;
+    }
+    const auto rows = device_rows(*watch.robot, watch.devices);
+    const std::set<std::vector<std::string>> now(rows.begin() + 1, rows.end());
+    for (const auto& row : rows)
+      if (now.contains(row) && !shown.contains(row))
+        std::printf("%8.1f s  %-14s  %s\n", 0.1 * static_cast<double>(watch.robot->stamp().cycle()),
+                    row[0].c_str(), row[1].c_str());
+    std::fflush(stdout);
+    if (std::ferror(stdout) != 0)
+      return bus::kExitOk;  // who read our output has left
+    shown = now;
+  }
+  return bus::kExitOk;
+}
+
+template <class Command>
+const bus::Topic<Command>& topic_of();
+#define SAPHIRA_DEVICE(Type, name)                   \
+  template <>                                        \
+  const bus::Topic<v1::Type>& topic_of<v1::Type>() { \
+    return bus::topics::name;                        \
+  }
+SAPHIRA_DEVICE(ServoCommand, kServo)
+SAPHIRA_DEVICE(GripperCommand, kGripper)
+SAPHIRA_DEVICE(DigitalOutputCommand, kDigitalOutput)
+SAPHIRA_DEVICE(AnalogCommand, kAnalog)
+SAPHIRA_DEVICE(TimerCommand, kTimer)
+SAPHIRA_DEVICE(SonarCommand, kSonar)
+SAPHIRA_DEVICE(SoundCommand, kSound)
+SAPHIRA_DEVICE(ServerCommand, kServer)
+SAPHIRA_DEVICE(SerialCommand, kSerial)
+#undef SAPHIRA_DEVICE
+
+std::uint64_t random_number() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32U) | device();
+}
+
+void print_serial(const v1::SerialData& data) {
+  std::string hex;
+  std::string text;
+  for (const std::uint8_t byte : data.data()) {
+    std::array<char, 8> out{};
+    std::snprintf(out.data(), out.size(), "%02x ", byte);
+    hex += out.data();
+    text += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '.';
+  }
+  std::printf("port %d  %s |%s|\n", data.port(), hex.c_str(), text.c_str());
+}
+
+/// Writes the command once somebody hears it, and waits for what becomes of it.
+template <class Command>
+int ask(Command command, const bus::NodeOptions& options, const bus::Stop& stop) {
+  Watch watch(options);
+  auto answers = watch.node.reader(bus::topics::kSerialData);
+  auto writer = watch.node.writer(topic_of<Command>());
+  command.source("saphira device");
+  command.request(random_number());
+  bool written = false;
+  const auto began = Clock::now();
+  while (!stop.requested() && seconds_since(began) < kPatience) {
+    if (!written && writer.matched() > 0 && watch.devices.has_value())
+      written = writer.write(command);
+    watch.node.wait(milliseconds(50), &stop);
+    watch.poll();
+    if (!written && seconds_since(began) > 3.0) {
+      if (writer.matched() == 0)
+        return nobody(options, watch);
+      written = writer.write(command);  // a bridge that has never had a robot shows no devices
+    }
+    if (!watch.devices)
+      continue;
+    for (const v1::DeviceRequest& request : watch.devices->requests()) {
+      if (request.request() != command.request() || request.state() == v1::REQUEST_SENDING)
+        continue;
+      std::printf("%s\n", describe(request).c_str());
+      if (request.state() != v1::REQUEST_SHOWN && request.state() != v1::REQUEST_SENT)
+        return bus::kExitFailed;
+      if constexpr (std::is_same_v<Command, v1::SerialCommand>) {
+        const auto sent = Clock::now();
+        while (command.answer() > 0 && !stop.requested() && seconds_since(sent) < kAnswerTime) {
+          watch.node.wait(milliseconds(50), &stop);
+          for (const auto& sample : answers.take())
+            if (sample.data.port() == command.port())
+              print_serial(sample.data);
+        }
+      }
+      return bus::kExitOk;
+    }
+  }
+  std::cerr << "saphira: nothing was heard of the request; "
+            << who_is_there(options, watch.processes) << '\n';
+  return bus::kExitFailed;
+}
+
+int device(const std::vector<std::string>& words, const bus::NodeOptions& options,
+           const bus::Stop& stop) {
+  if (words.empty() || words == std::vector<std::string>{"list"})
+    return list(options, stop);
+  if (words == std::vector<std::string>{"follow"})
+    return follow(options, stop);
+  try {
+    return std::visit([&](const auto& command) { return ask(command, options, stop); },
+                      parse_device(words));
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "saphira: " << error.what() << '\n';
+    return bus::kExitUsage;
+  }
+}
+
+}  // namespace
+
+void add_device(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<std::vector<std::string>>();
+  auto answer = std::make_shared<int>(0);
+  CLI::App* command =
+      app.add_subcommand("device", "What the robot carries: list it, follow it, use it");
+  command->add_option("words", *words, "list | follow | DEVICE what-it-is-to-do, as below");
+  command->add_option("--answer", *answer, "serial: so many bytes are asked for afterwards");
+  command->footer(std::string(kDeviceWords) +
+                  "Exit code 0: the robot shows it, or no packet would; 1: it does not.");
+  command->callback([words, answer, &chosen] {
+    chosen.run = [words, answer](const bus::NodeOptions& node, const bus::Stop& stop) {
+      std::vector<std::string> all = *words;
+      if (*answer > 0) {
+        all.emplace_back("--answer");
+        all.push_back(std::to_string(*answer));
+      }
+      return device(all, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli
