@@ -100,39 +100,54 @@ Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& 
             gripper_.act(c.state);
             return taken(!later_ || parameters_.gripper);
           },
-          [&](const GripperValue&) { return taken(parameters_.gripper); },
           [&](const Ptu& c) {
             ptu_ = c.width;
             return Answer::kTaken;
           },
-          [&](const Say& c) {
+          [&](const Text& c) {
+            if (c.number != Number::kSay)
+              return Answer::kNotMine;
             sounding_ = 0;
             for (std::size_t i = 0; i < c.text.size(); i += 2)
               sounding_ += c.text[i];
             return Answer::kTaken;
           },
-          [&](const AnalogSelect& c) {
-            analog_port_ = static_cast<std::uint8_t>(c.value & 0xFF);
-            return taken(later_);
-          },
-          [&](const BumpStall& c) {
-            bump_stall_ = c.value & 3;
-            return taken(later_);
-          },
-          [&](const ConfigRequest&) { return ask(kConfig, 1, robot, out); },
-          [&](const EncoderRequest& c) { return ask(kEncoder, c.value, robot, out); },
-          [&](const IoRequest& c) { return ask(kIo, c.value, robot, out); },
-          [&](const GripperRequest& c) { return ask(Request::kGripper, c.value, robot, out); },
-          [&](const GyroRequest& c) {
-            // 1 is "from now on" here.
-            return ask(kGyro, c.value != 0 ? 2 : 0, robot, out);
-          },
-          [&](const JoystickRequest& c) { return ask(kJoystick, c.value, robot, out); },
-          [&](const BatteryRequest& c) { return ask(kBattery, c.value, robot, out); },
-          [&](const HostBaud&) { return taken(later_); },
+          [&](const Integer& c) { return act(c, robot, out); },
           [](const auto&) { return Answer::kNotMine; },
       },
       command);
+}
+
+Devices::Answer Devices::act(const Integer& c, const Robot& robot, Bytes& out) {
+  const auto taken = [](bool have) { return have ? Answer::kTaken : Answer::kMissing; };
+  switch (c.number) {
+    case Number::kGripperValue:
+      return taken(parameters_.gripper);
+    case Number::kAnalogSelect:
+      analog_port_ = static_cast<std::uint8_t>(c.value & 0xFF);
+      return taken(later_);
+    case Number::kBumpStall:
+      bump_stall_ = c.value & 3;
+      return taken(later_);
+    case Number::kHostBaud:
+      return taken(later_);
+    case Number::kConfigRequest:
+      return ask(kConfig, 1, robot, out);
+    case Number::kEncoderRequest:
+      return ask(kEncoder, c.value, robot, out);
+    case Number::kIoRequest:
+      return ask(kIo, c.value, robot, out);
+    case Number::kGripperRequest:
+      return ask(Request::kGripper, c.value, robot, out);
+    case Number::kGyroRequest:
+      return ask(kGyro, c.value != 0 ? 2 : 0, robot, out);  // 1 is "from now on" here
+    case Number::kJoystickRequest:
+      return ask(kJoystick, c.value, robot, out);
+    case Number::kBatteryRequest:
+      return ask(kBattery, c.value, robot, out);
+    default:
+      return Answer::kNotMine;
+  }
 }
 
 bool Devices::has(Request request) const {

@@ -180,13 +180,10 @@ void Server::act(const Command& command) {
             close();
             return true;
           },
-          // The controller starts anew; a client has to synchronize again.
-          [this](const Reset&) {
-            close();
-            return later_;
-          },
-          [this](const Maintenance&) {
-            close();
+          [this](const Bare& c) {
+            if (c.number != Number::kReset && c.number != Number::kMaintenance)
+              return false;
+            close();  // the controller starts anew; a client has to synchronize again
             return later_;
           },
           [this](const Step&) {
@@ -254,21 +251,21 @@ bool Server::drive(const Command& command) {
           [&](const Move& c) {
             return p.move_command && move([&](Robot& r) { r.move_by(c.distance); });
           },
-          [&](const Stop&) {
-            return move([](Robot& r) {
-              r.set_velocity(0.0);
-              r.set_rotation_velocity(0.0);
-            });
-          },
-          [&](const EmergencyStop&) {
-            robot_.emergency_stop();
-            emergency_ = true;
-            return true;
-          },
-          [&](const EmergencyStop2&) {
-            robot_.emergency_stop();
-            emergency_ = true;
-            return true;
+          [&](const Bare& c) {
+            switch (c.number) {
+              case Number::kStop:
+                return move([](Robot& r) {
+                  r.set_velocity(0.0);
+                  r.set_rotation_velocity(0.0);
+                });
+              case Number::kEmergencyStop:
+              case Number::kEmergencyStop2:
+                robot_.emergency_stop();
+                emergency_ = true;
+                return true;
+              default:
+                return false;
+            }
           },
           [&](const Enable& c) {
             robot_.enable(c.on);
@@ -309,31 +306,34 @@ bool Server::simulate(const Command& command) {
                           robot_.place(c.pose_in_world);
                           return true;
                         },
-                        [this](const TrueHeading& c) {
-                          const Vec2 at = robot_.pose_in_world().position();
-                          robot_.place({at.x(), at.y(), norm2_angle(radians(c.value))});
-                          return true;
-                        },
-                        [this](const TrueOrigin&) {
+                        [this](const Bare& c) {
+                          if (c.number != Number::kTrueOrigin && c.number != Number::kSimReset)
+                            return false;
                           robot_.place(start_in_world_);
+                          if (c.number == Number::kSimReset)
+                            robot_.set_origin();
                           return true;
                         },
-                        [this](const SimReset&) {
-                          robot_.place(start_in_world_);
-                          robot_.set_origin();
-                          return true;
+                        [this](const Integer& c) {
+                          switch (c.number) {
+                            case Number::kTrueHeading: {
+                              const Vec2 at = robot_.pose_in_world().position();
+                              robot_.place({at.x(), at.y(), norm2_angle(radians(c.value))});
+                              return true;
+                            }
+                            case Number::kSimStatus:
+                              sim_status_with_each_ = c.value == 2;
+                              if (c.value == 1)
+                                send(encode(sim_status()));
+                              return true;
+                            case Number::kBatteryTest:
+                              robot_.set_battery(c.value / 10.0);
+                              return true;
+                            default:
+                              return false;
+                          }
                         },
-                        [this](const SimStatus& c) {
-                          sim_status_with_each_ = c.value == 2;
-                          if (c.value == 1)
-                            send(encode(sim_status()));
-                          return true;
-                        },
-                        [](const SimMessage&) { return true; },
-                        [this](const BatteryTest& c) {
-                          robot_.set_battery(c.value / 10.0);
-                          return true;
-                        },
+                        [](const Text& c) { return c.number == Number::kSimMessage; },
                         [](const auto&) { return false; },
                     },
                     command);

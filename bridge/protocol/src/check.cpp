@@ -278,26 +278,38 @@ void Checker::remember(const Command& command) {
     state_ = State::kOpen;
   } else if (std::holds_alternative<Close>(command)) {
     close();
-  } else if (std::holds_alternative<SetOrigin>(command) ||
-             std::holds_alternative<SimReset>(command)) {
+  } else if (std::holds_alternative<SetOrigin>(command) || command == Command(SimReset{})) {
     last_.reset();
-  } else if (const auto* c = std::get_if<ConfigRequest>(&command)) {
-    ask(PacketType::kConfig, 1);
-    (void)c;
-  } else if (const auto* encoder = std::get_if<EncoderRequest>(&command)) {
-    ask(PacketType::kEncoder, encoder->value);
-  } else if (const auto* io = std::get_if<IoRequest>(&command)) {
-    ask(PacketType::kIo, io->value);
-  } else if (const auto* gripper = std::get_if<GripperRequest>(&command)) {
-    ask(PacketType::kGripper, gripper->value);
-  } else if (const auto* battery = std::get_if<BatteryRequest>(&command)) {
-    ask(PacketType::kBattery, battery->value);
-  } else if (const auto* joystick = std::get_if<JoystickRequest>(&command)) {
-    ask(PacketType::kJoystick, joystick->value);
-  } else if (const auto* gyro = std::get_if<GyroRequest>(&command)) {
-    ask(PacketType::kGyro, gyro->value != 0 ? 2 : 0);
-  } else if (const auto* status = std::get_if<SimStatus>(&command)) {
-    ask(PacketType::kSimStatus, status->value);
+  } else if (const auto* integer = std::get_if<Integer>(&command)) {
+    const int value = integer->value;
+    switch (integer->number) {
+      case Number::kConfigRequest:
+        ask(PacketType::kConfig, 1);
+        break;
+      case Number::kEncoderRequest:
+        ask(PacketType::kEncoder, value);
+        break;
+      case Number::kIoRequest:
+        ask(PacketType::kIo, value);
+        break;
+      case Number::kGripperRequest:
+        ask(PacketType::kGripper, value);
+        break;
+      case Number::kBatteryRequest:
+        ask(PacketType::kBattery, value);
+        break;
+      case Number::kJoystickRequest:
+        ask(PacketType::kJoystick, value);
+        break;
+      case Number::kGyroRequest:
+        ask(PacketType::kGyro, value != 0 ? 2 : 0);
+        break;
+      case Number::kSimStatus:
+        ask(PacketType::kSimStatus, value);
+        break;
+      default:
+        break;
+    }
   }
 }
 

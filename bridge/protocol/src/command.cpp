@@ -126,72 +126,63 @@ std::optional<Pose> read_pose(ByteView body) {
   return Pose{values[0] / 1000.0, values[1] / 1000.0, norm2_angle(radians(values[2]))};
 }
 
-// ---- The commands whose argument is all that there is to say of them.
-
-template <class T>
-inline constexpr bool kIsInt = false;
-template <Number N>
-inline constexpr bool kIsInt<IntCommand<N>> = true;
-template <class T>
-inline constexpr bool kIsText = false;
-template <Number N>
-inline constexpr bool kIsText<TextCommand<N>> = true;
-
-template <Number N>
-Bytes encode_plain(const BareCommand<N>&) {
-  return bare(N);
-}
-template <Number N>
-Bytes encode_plain(const IntCommand<N>& c) {
-  return with_int(N, std::clamp(c.value, -32767, 65535));
-}
-template <Number N>
-Bytes encode_plain(const TextCommand<N>& c) {
-  const std::size_t size = std::min(c.text.size(), kMaxBody - 3);
-  return with_string(N, Bytes(c.text.begin(), c.text.begin() + static_cast<std::ptrdiff_t>(size)),
-                     StringForm::kLengthPrefixed);
-}
-template <Number N>
-Bytes encode_plain(const RawCommand<N>& c) {
-  Bytes body{static_cast<std::uint8_t>(N)};
-  const std::size_t size = std::min(c.argument.size(), kMaxBody - 1);
-  body.insert(body.end(), c.argument.begin(),
-              c.argument.begin() + static_cast<std::ptrdiff_t>(size));
-  return frame(body);
-}
-
-// Fills `out` where T is a plain command of that number and its argument can be read.
-template <class T>
-bool decode_plain(ByteView body, Command& out) {
-  if constexpr (requires { T::kNumber; }) {
-    if (body[0] != static_cast<std::uint8_t>(T::kNumber))
+// Whether a command has a type of its own.
+bool is_typed(Number number) {
+  switch (number) {
+    case Number::kPolling:
+    case Number::kVelocity:
+    case Number::kHeading:
+    case Number::kDeltaHeading:
+    case Number::kRotationVelocity:
+    case Number::kWheelVelocities:
+    case Number::kDigitalOutput:
+    case Number::kTimer:
+    case Number::kGripper:
+    case Number::kPtu:
+    case Number::kEnable:
+    case Number::kAcceleration:
+    case Number::kMaxVelocity:
+    case Number::kMove:
+    case Number::kRotate:
+    case Number::kMaxRotationVelocity:
+    case Number::kRotationAcceleration:
+    case Number::kDeltaSetpoint:
+    case Number::kSonar:
+    case Number::kLateralVelocity:
+      return true;
+    default:
       return false;
-    if constexpr (kIsInt<T>) {
-      const Argument argument = read_argument(body, false);
-      if (argument.kind != Argument::Kind::kInt && argument.kind != Argument::Kind::kNone)
-        return false;
-      out = T{argument.value};
-    } else if constexpr (kIsText<T>) {
-      const Argument argument = read_argument(body, true);
-      if (argument.kind != Argument::Kind::kString && argument.kind != Argument::Kind::kNone)
-        return false;
-      out = T{argument.text};
-    } else if constexpr (requires { T::argument; }) {
-      out = T{Bytes(body.begin() + 1, body.end())};
-    } else {
-      out = T{};
-    }
-    return true;
-  } else {
-    return false;
   }
 }
 
-template <std::size_t... I>
-Command decode_any_plain(ByteView body, std::index_sequence<I...>) {
-  Command out = Unknown{body[0]};
-  (decode_plain<std::variant_alternative_t<I, Command>>(body, out) || ...);
-  return out;
+// A command that is a number and an argument.
+Command decode_plain(ByteView body) {
+  const CommandRule* found = rule(body[0]);
+  if (found == nullptr)
+    return Unknown{body[0]};
+  const Number number = found->number;
+  switch (number) {
+    case Number::kStop:
+    case Number::kEmergencyStop:
+    case Number::kEmergencyStop2:
+    case Number::kTrueOrigin:
+    case Number::kSimReset:
+    case Number::kReset:
+    case Number::kMaintenance:
+      return Bare{number};
+    default:
+      break;
+  }
+  if (found->form == ArgumentForm::kRaw)
+    return Raw{number, Bytes(body.begin() + 1, body.end())};
+  const bool text = found->form == ArgumentForm::kString;
+  const Argument argument = read_argument(body, text);
+  const bool none = argument.kind == Argument::Kind::kNone;
+  if (text && (none || argument.kind == Argument::Kind::kString))
+    return Text{number, argument.text};
+  if (!text && (none || argument.kind == Argument::Kind::kInt))
+    return Integer{number, argument.value};
+  return Unknown{body[0]};
 }
 
 }  // namespace
@@ -271,7 +262,20 @@ Bytes encode(const Command& command, double vel2_unit, StringForm form) {
             return with_int(Number::kLateralVelocity, rounded(c.velocity * 1000.0, -32767, 32767));
           },
           [](const TruePose& c) { return with_pose(Number::kTruePose, c.pose_in_world); },
-          [](const auto& c) { return encode_plain(c); },
+          [](const Bare& c) { return bare(c.number); },
+          [](const Integer& c) { return with_int(c.number, std::clamp(c.value, -32767, 65535)); },
+          [](const Text& c) {
+            const std::size_t size = std::min(c.text.size(), kMaxBody - 3);
+            const Bytes text(c.text.begin(), c.text.begin() + static_cast<std::ptrdiff_t>(size));
+            return with_string(c.number, text, StringForm::kLengthPrefixed);
+          },
+          [](const Raw& c) {
+            Bytes body{static_cast<std::uint8_t>(c.number)};
+            const std::size_t size = std::min(c.argument.size(), kMaxBody - 1);
+            body.insert(body.end(), c.argument.begin(),
+                        c.argument.begin() + static_cast<std::ptrdiff_t>(size));
+            return frame(body);
+          },
           [](const Unknown& c) {
             const Bytes body{c.number};
             return frame(body);
@@ -311,10 +315,8 @@ Command decode_command(ByteView body, double vel2_unit) {
     default:
       break;
   }
-  if (Command plain =
-          decode_any_plain(body, std::make_index_sequence<std::variant_size_v<Command>>());
-      !std::holds_alternative<Unknown>(plain))
-    return plain;
+  if (!is_typed(number))
+    return decode_plain(body);
   if (argument.kind == Argument::Kind::kBroken)
     return unknown;
   if (number == Number::kPolling) {

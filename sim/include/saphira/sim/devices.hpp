@@ -72,6 +72,7 @@ class Devices {
  private:
   enum Request { kConfig, kEncoder, kIo, kGripper, kGyro, kJoystick, kBattery, kRequests };
 
+  Answer act(const protocol::Integer& command, const Robot& robot, protocol::Bytes& out);
   bool has(Request request) const;
   Answer ask(Request request, int mode, const Robot& robot, protocol::Bytes& out);
   protocol::Bytes packet(Request request, const Robot& robot) const;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -280,32 +281,48 @@ enum class GripperAction : std::uint8_t {
   kCarry = 17,
 };
 
-/// A command without an argument.
-template <Number N>
-struct BareCommand {
-  static constexpr Number kNumber = N;
-  bool operator==(const BareCommand&) const = default;
+// Most commands of the later servers are a number and an argument whose meaning is the robot's.
+// They are held by the form of the argument, and made by a name of their own: Command(IoRequest{2})
+// is Command(Integer{Number::kIoRequest, 2}). rule() says the argument's unit and range.
+
+/// No argument.
+struct Bare {
+  Number number = Number::kStop;
+  bool operator==(const Bare&) const = default;
 };
-/// A command with an integer whose meaning is the robot's; its unit stands in rule().
-template <Number N>
-struct IntCommand {
-  static constexpr Number kNumber = N;
+struct Integer {
+  Number number = Number::kConfigRequest;
   int value = 0;
-  bool operator==(const IntCommand&) const = default;
+  bool operator==(const Integer&) const = default;
 };
-/// A command with bytes, counted (never NUL-terminated: a NUL may be one of them).
-template <Number N>
-struct TextCommand {
-  static constexpr Number kNumber = N;
+/// Bytes, counted (never NUL-terminated: a NUL may be one of them).
+struct Text {
+  Number number = Number::kSay;
   Bytes text;
-  bool operator==(const TextCommand&) const = default;
+  bool operator==(const Text&) const = default;
 };
-/// A command whose argument has a form of its own: all that stands behind the number.
-template <Number N>
-struct RawCommand {
-  static constexpr Number kNumber = N;
+/// An argument of its own form: all that stands behind the number.
+struct Raw {
+  Number number = Number::kSimControl;
   Bytes argument;
-  bool operator==(const RawCommand&) const = default;
+  bool operator==(const Raw&) const = default;
+};
+
+template <Number N>
+struct BareCommand : Bare {
+  BareCommand() : Bare{N} {}
+};
+template <Number N>
+struct IntCommand : Integer {
+  explicit IntCommand(int argument = 0) : Integer{N, argument} {}
+};
+template <Number N>
+struct TextCommand : Text {
+  explicit TextCommand(Bytes bytes = {}) : Text{N, std::move(bytes)} {}
+};
+template <Number N>
+struct RawCommand : Raw {
+  explicit RawCommand(Bytes bytes = {}) : Raw{N, std::move(bytes)} {}
 };
 
 using Stop = BareCommand<Number::kStop>;
@@ -402,21 +419,11 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-using Command = std::variant<
-    Pulse, Open, Close, Polling, SetOrigin, Velocity, Heading, DeltaHeading, RotationVelocity,
-    WheelVelocities, DigitalOutput, Timer, Gripper, Ptu, Step, Unknown, Enable, Acceleration,
-    MaxVelocity, Move, Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
-    SonarSwitch, LateralVelocity, TruePose, Stop, EmergencyStop, EmergencyStop2, TrueOrigin,
-    SimReset, Reset, Maintenance, JoystickRequest, ConfigRequest, EncoderRequest, ImuRequest,
-    GripperRequest, IoRequest, GyroRequest, BatteryRequest, SimStatus, AnalogSelect, GripperValue,
-    LaserIncrement, Aux1Read, Aux2Read, Aux3Read, BumpStall, Compass, JoyDrive, MovingBlink,
-    HostBaud, Aux1Baud, Aux2Baud, StallEmergencyStop, CompassCalibration, TrueHeading, ArmInfo,
-    ArmStatus, ArmInit, ArmCheck, ArmPower, ArmHome, ArmPark, ArmPosition, ArmSpeed, ArmStop,
-    ArmAutoPark, ArmGripperPark, RotationKp, RotationKv, RotationKi, TranslationKp, TranslationKv,
-    TranslationKi, Sound, Playlist, SoundToggle, Power95, Power96, Power97, Power98, Power125,
-    Power126, Power127, Power128, Power129, LateralAcceleration, SimLaser, SimLaserStart,
-    SimLaserEnd, SimLaserResolution, SimExit, BatteryTest, TemperatureTest1, TemperatureTest2, Say,
-    Aux1Send, Aux2Send, Aux3Send, VisionCommand, LoadWorld, SimMessage, SimModel, SimControl>;
+using Command = std::variant<Pulse, Open, Close, Polling, SetOrigin, Velocity, Heading,
+                             DeltaHeading, RotationVelocity, WheelVelocities, DigitalOutput, Timer,
+                             Gripper, Ptu, Step, Unknown, Enable, Acceleration, MaxVelocity, Move,
+                             Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
+                             SonarSwitch, LateralVelocity, TruePose, Bare, Integer, Text, Raw>;
 
 // ---- The table of all that.
 
