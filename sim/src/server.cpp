@@ -349,9 +349,7 @@ void Server::set_sonars() {
 }
 
 void Server::set_default_polling() {
-  polling_.clear();
-  for (const SonarUnit& unit : parameters_.sonars)
-    polling_.push_back(unit.number);
+  polling_ = default_polling(parameters_.sonars.size(), parameters_.sonar_arrays);
   sonar_arrays_on_ = 0xFF;
   set_sonars();
 }

@@ -19,17 +19,34 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
 // A corner is hidden by what is nearer than this before it [m]: not by the walls that make it.
 constexpr double kBefore = 0.01;
 
+SonarModel with_range(SonarModel model, double range) {
+  model.max_range = std::min(model.max_range, range);
+  return model;
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> default_polling(std::size_t sonars, int arrays) {
+  const auto count = static_cast<std::size_t>(std::max(arrays, 1));
+  const std::size_t each = (sonars + count - 1) / count;
+  std::vector<std::uint8_t> sequence;
+  for (std::size_t i = 0; i < each; ++i)
+    for (std::size_t number = i; number < sonars; number += each)
+      sequence.push_back(static_cast<std::uint8_t>(number));
+  return sequence;
+}
 
 Sonars::Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
                const SonarModel& model, std::uint64_t seed)
     : scene_(&scene),
       self_(self),
       units_(parameters.sonars),
-      model_(model),
-      near_(scene.world(), model.max_range + farthest(units_)),
+      model_(with_range(model, parameters.sonar_max_range)),
+      near_(scene.world(), model_.max_range + farthest(units_)),
       random_(seed, 2),
-      reach_(model.max_range + farthest(units_)) {
+      period_(std::max(1, static_cast<int>(std::lround(parameters.sonar_period / kTick)))),
+      arrays_(std::clamp(parameters.sonar_arrays, 1, period_)),
+      reach_(model_.max_range + farthest(units_)) {
   set_default_polling();
 }
 
@@ -42,16 +59,14 @@ void Sonars::set_polling(const std::vector<std::uint8_t>& sequence) {
 }
 
 void Sonars::set_default_polling() {
-  std::vector<std::uint8_t> all;
-  for (const auto& unit : units_)
-    all.push_back(unit.number);
-  set_polling(all);
+  set_polling(default_polling(units_.size(), arrays_));
 }
 
 std::optional<SonarEcho> Sonars::tick(const Pose& robot_in_world) {
-  if (--wait_ > 0)
+  progress_ += arrays_;
+  if (progress_ < period_)
     return std::nullopt;
-  wait_ = kTicksBetween;
+  progress_ -= period_;
   if (sequence_.empty())
     return std::nullopt;
   const std::uint8_t number = sequence_[next_];

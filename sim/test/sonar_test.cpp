@@ -148,5 +148,28 @@ TEST(Sonars, FireByThePollingSequenceEvery40Milliseconds) {
   EXPECT_EQ(fired(1000).size(), 250U);  // 25 a second
 }
 
+// A Pioneer 2 fires two arrays of eight at the same time: 50 readings a second.
+TEST(Sonars, ArraysTakeTurns) {
+  const World world = wall_at(2000);
+  RobotParameters parameters;
+  for (std::uint8_t i = 0; i < 16; ++i)
+    parameters.sonars.push_back({i, {}});
+  parameters.sonar_arrays = 2;
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, parameters, exact(), 1);
+  std::vector<int> numbers;
+  for (int i = 0; i < 100; ++i)
+    if (const auto echo = sonars.tick({}))
+      numbers.push_back(echo->number);
+  ASSERT_EQ(numbers.size(), 50U);
+  EXPECT_EQ(std::vector<int>(numbers.begin(), numbers.begin() + 6),
+            (std::vector<int>{0, 8, 1, 9, 2, 10}));
+  EXPECT_EQ(default_polling(7, 1), (std::vector<std::uint8_t>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(default_polling(24, 3).size(), 24U);
+  parameters.sonar_max_range = 1.0;
+  Sonars near_sighted(scene, kNobody, parameters, exact(), 1);
+  EXPECT_FALSE(near_sighted.fire(0, {}).range);
+}
+
 }  // namespace
 }  // namespace saphira::sim

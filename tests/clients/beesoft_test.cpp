@@ -87,7 +87,8 @@ TEST_P(Bee, EveryPacketObeys) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, Bee,
-                         ::testing::Values(Robot{"psos43m", 2, 3}, Robot{"pionat", 2, 3}),
+                         ::testing::Values(Robot{"psos43m", 2, 3}, Robot{"pionat", 2, 3},
+                                           Robot{"p2dx", 4, 6}, Robot{"p2at", 4, 6}),
                          [](const auto& robot) { return std::string(robot.param.subclass); });
 
 }  // namespace

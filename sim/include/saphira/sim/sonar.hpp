@@ -35,19 +35,21 @@ struct SonarEcho {
   std::optional<double> range;  ///< [m]; nothing: no echo
 };
 
-/// The sonars of a robot, fired one at a time in the polling sequence.
+/// The order in which they fire until a client says another: by number within each of so many equal
+/// arrays, the arrays taking turns.
+std::vector<std::uint8_t> default_polling(std::size_t sonars, int arrays);
+
+/// The sonars of a robot, fired in the polling sequence. Arrays that a robot fires at the same time
+/// take turns here, within the period of one: so many readings a second come as from the robot.
 class Sonars {
  public:
-  /// Between two firings: 25 a second, as a Pioneer 1 does.
-  static constexpr int kTicksBetween = 4;
-
   /// Of the robot `self`, which they do not see. The scene outlives them.
   Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
          const SonarModel& model, std::uint64_t seed);
 
   /// Which sonars fire, over and over; those that the robot does not have are left out.
   void set_polling(const std::vector<std::uint8_t>& sequence);
-  /// All of them in order.
+  /// All of them, in order in each array.
   void set_default_polling();
 
   /// One tick of time; a reading if one was made in it.
@@ -68,8 +70,10 @@ class Sonars {
   Random random_;
   std::vector<std::uint8_t> sequence_;
   std::size_t next_ = 0;
-  int wait_ = kTicksBetween;
-  double reach_;  // [m] from the robot's middle
+  int period_;        // [ticks] of one array
+  int arrays_;        // firings in a period
+  int progress_ = 0;  // to the next firing, when it has come to a period
+  double reach_;      // [m] from the robot's middle
   Things in_beam_;
 };
 
