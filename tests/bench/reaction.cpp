@@ -1,7 +1,8 @@
 // Reaction time: from an information packet at the bridge's socket to the command packet that
 // answers it, with bridge and behaviors in processes of their own; beside it, at the same time, a
 // raw Fast DDS two-hop ping with payloads of the same size. The program plays the robot server and
-// the intentions.
+// the intentions. With --serial, bridge and robot have a serial line between them, as slow as a
+// real one, and the bound is the time that the line takes for the two packets.
 #include <poll.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -26,6 +27,7 @@
 #include "saphira/bus/node.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
+#include "serial_line.hpp"
 
 using namespace saphira;
 using Clock = std::chrono::steady_clock;
@@ -143,18 +145,19 @@ v1::Intentions intentions(const v1::Stamp& stamp) {
 
 class Reaction {
  public:
-  Reaction(bus::Node& node, ScriptedRobot& robot)
+  Reaction(bus::Node& node, ScriptedRobot& robot, double limit_us)
       : robot_(robot),
+        limit_us_(limit_us),
         states_(std::in_place, node.reader(bus::topics::kRobotState)),
         intend_(node.writer(bus::topics::kIntentions)) {}
 
-  /// One cycle: what the answer took [us]; nothing where none came in 50 ms.
+  /// One cycle: what the answer took [us]; nothing where none came in time.
   std::optional<double> cycle() {
     const protocol::Bytes packet = protocol::encode(information(++n_));
     const auto start = Clock::now();
     robot_.send(packet);
     std::optional<double> took;
-    while (us_since(start) < 50000.0) {
+    while (us_since(start) < limit_us_) {
       const protocol::Bytes body = robot_.packet(10);
       if (body.empty())
         continue;
@@ -180,12 +183,35 @@ class Reaction {
 
  private:
   ScriptedRobot& robot_;
+  double limit_us_;
   std::optional<bus::Reader<v1::RobotState>> states_;
   bus::Writer<v1::Intentions> intend_;
   v1::Stamp stamp_;
   long n_ = 0;
   double last_heading_ = -1.0;
 };
+
+int report_serial(const std::vector<double>& ours, int unanswered, int baud, bool json) {
+  // Ten bits a byte, the longest packet first.
+  const std::size_t bytes =
+      protocol::encode(information(0)).size() + protocol::encode(protocol::Heading{1.0}).size();
+  const double bound = static_cast<double>(bytes) * 1e7 / baud;
+  const double p50 = bench::percentile(ours, 0.5);
+  const double p99 = bench::percentile(ours, 0.99);
+  std::printf("%zu reactions over %d baud, %d without an answer\n", ours.size(), baud, unanswered);
+  std::printf("packet to command   p50 %6.1f ms   p99 %6.1f ms\n", p50 / 1000.0, p99 / 1000.0);
+  std::printf("the line alone          %6.1f ms   (%zu bytes)\n", bound / 1000.0, bytes);
+  if (json)
+    std::printf("%s\n", nlohmann::json{{"baud", baud},
+                                       {"p50_us", p50},
+                                       {"p99_us", p99},
+                                       {"line_us", bound},
+                                       {"ratio_p50", p50 / bound},
+                                       {"unanswered", unanswered}}
+                            .dump()
+                            .c_str());
+  return 0;
+}
 
 }  // namespace
 
@@ -196,14 +222,23 @@ int main(int argc, char** argv) {
   int count = 300;
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--hz", hz, "information packets a second")->check(CLI::Range(1.0, 50.0));
+  int baud = 0;
   app.add_option("--count", count, "samples")->check(CLI::Range(10, 100000));
+  app.add_option("--serial", baud, "a serial line of this baud rate between robot and bridge")
+      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}));
   CLI11_PARSE(app, argc, argv);
   try {
     const std::string domain = "198";
     const std::string name = "bench" + std::to_string(getpid());
     const std::string socket = "/tmp/saphira-" + name;
     ScriptedRobot robot(socket);
-    const bench::Child bridge({"saphira-bridge", "--robot-port", "unix:" + socket, "--robots",
+    const std::string device = "/tmp/saphira-" + name + "-tty";
+    std::optional<test::SerialLine> line;
+    if (baud != 0)
+      line.emplace(device, socket, baud);
+    const std::string port =
+        line ? "serial:" + device + "@" + std::to_string(baud) : "unix:" + socket;
+    const bench::Child bridge({"saphira-bridge", "--robot-port", port, "--robots",
                                config_folder() + "/robots", "--robot", name, "--domain", domain});
     const bench::Child behaviors({"saphira-behaviors", "--robot", name, "--domain", domain});
     robot.connect();
@@ -213,7 +248,7 @@ int main(int argc, char** argv) {
     options.robot = name;
     options.domain = static_cast<std::uint32_t>(std::stoul(domain));
     bus::Node node(options);
-    Reaction reaction(node, robot);
+    Reaction reaction(node, robot, line ? 95000.0 : 50000.0);
 
     const auto period = std::chrono::duration<double>(1.0 / hz);
     const auto paced = [&](const std::function<void()>& each, int times) {
@@ -232,12 +267,6 @@ int main(int argc, char** argv) {
       throw std::runtime_error("no answers: bridge or behaviors do not run");
     reaction.stop_reading();
 
-    // Both at once, out of phase: the same machine at the same time. (A robot server must not fall
-    // silent meanwhile.)
-    std::future<std::string> ping = std::async(std::launch::async, [&] {
-      return bench::output_of({"saphira-bench-raw-ping", "--hz", std::to_string(hz), "--count",
-                               std::to_string(count), "--json"});
-    });
     std::vector<double> ours;
     int unanswered = 0;
     const auto take = [&] {
@@ -246,6 +275,17 @@ int main(int argc, char** argv) {
       else
         ++unanswered;
     };
+    if (line) {
+      paced(take, count);
+      return report_serial(ours, unanswered, baud, json);
+    }
+
+    // Both at once, out of phase: the same machine at the same time. (A robot server must not fall
+    // silent meanwhile.)
+    std::future<std::string> ping = std::async(std::launch::async, [&] {
+      return bench::output_of({"saphira-bench-raw-ping", "--hz", std::to_string(hz), "--count",
+                               std::to_string(count), "--json"});
+    });
     while (ping.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
       paced(take, 1);
     const auto raw = nlohmann::json::parse(ping.get()).at("us").get<std::vector<double>>();
