@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "saphira/base/text.hpp"
+#include "saphira/sim/scene.hpp"
 #include "saphira/sim/trace.hpp"
 #include "saphira/sim/world.hpp"
 
@@ -20,6 +21,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (std::isnan(nearest) || (hit && hit->range < nearest - 1e-3))
       std::abort();
     saphira::sim::plot_svg(world, {}, 0.2);
+    // And it can go about its business.
+    saphira::sim::Scene scene(world);
+    for (int i = 0; i < 20; ++i)
+      scene.tick();
+    if (std::isnan(scene.distance({1.0, 1.0})))
+      std::abort();
   } catch (const saphira::FileError& error) {
     if (error.line() < 1 || error.column() < 1)
       std::abort();
