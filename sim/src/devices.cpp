@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace saphira::sim {
 
@@ -78,6 +79,57 @@ std::uint8_t Gripper::bits() const {
                                    bit(paddles_.position == 0.0, 1) |
                                    bit(paddles_.direction != 0, 2) | bit(lift_.position == 1.0, 4) |
                                    bit(lift_.position == 0.0, 5) | bit(lift_.direction != 0, 6));
+}
+
+bool FastTrack::act(const std::string& text) {
+  on_ = true;
+  constexpr std::string_view kPrefix = "pioneer_";
+  if (text.starts_with("line_"))
+    return true;
+  if (!text.starts_with(kPrefix) || text.size() < kPrefix.size() + 2)
+    return false;
+  const char letter = text[kPrefix.size()];
+  if (letter < 'a' || letter > 'c')
+    return false;
+  Channel& channel = channels_.at(static_cast<std::size_t>(letter - 'a'));
+  const std::string rest = text.substr(kPrefix.size() + 1);
+  if (rest == "_mode=0" || rest == "_mode=1" || rest == "_mode=2") {
+    channel.mode = static_cast<VisionChannel::Mode>(rest.back() - '0');
+    return true;
+  }
+  constexpr std::string_view kColor = "_color=";
+  if (!rest.starts_with(kColor))
+    return false;
+  channel.color = rest.substr(kColor.size());
+  return true;
+}
+
+VisionPacket FastTrack::look(const Scene& scene, RobotNumber robot) const {
+  const Camera camera;
+  VisionPacket packet;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Channel& from = channels_[i];
+    VisionChannel& channel = packet.channels[i];
+    channel.mode = from.mode;
+    const auto blob = see_blob(scene, robot, camera, from.color);
+    if (!blob)
+      continue;
+    channel.x = static_cast<std::int16_t>(blob->x);
+    if (from.mode == VisionChannel::Mode::kLine) {
+      // Rows count from the bottom of the picture.
+      const int bottom = blob->y - blob->height / 2 + camera.rows / 2;
+      channel.first = static_cast<std::uint16_t>(std::max(bottom, 0));
+      channel.count = static_cast<std::uint16_t>(blob->height);
+      continue;
+    }
+    channel.y = static_cast<std::int16_t>(blob->y);
+    channel.area = static_cast<std::uint16_t>(blob->area);
+    if (from.mode == VisionChannel::Mode::kBlobWithBox) {
+      channel.height = static_cast<std::uint16_t>(blob->height);
+      channel.width = static_cast<std::uint16_t>(blob->width);
+    }
+  }
+  return packet;
 }
 
 Devices::Devices(const RobotParameters& parameters, const std::string& name)

@@ -204,6 +204,10 @@ void Server::act(const Command& command) {
             set_sonars();
             return later_;
           },
+          [this](const Text& c) {
+            return c.number == Number::kVision &&
+                   vision_.act(std::string(c.text.begin(), c.text.end()));
+          },
           [](const auto&) { return false; },
       },
       command);
@@ -394,6 +398,7 @@ void Server::close() {
   robot_.stop();
   set_default_polling();
   devices_.disconnect();
+  vision_.disconnect();
   sim_status_with_each_ = false;
   emergency_ = false;
   // Nobody will say STEP any more: the robot comes to rest now.
@@ -439,6 +444,8 @@ void Server::finish_cycle() {
     devices_.cycle();
     send(encode(information()));
     devices_.add_packets(robot_, output_);
+    if (vision_.on())
+      send(encode(vision_.look(scene_, robot_.number())));
     if (sim_status_with_each_)
       send(encode(sim_status()));
     readings_.clear();

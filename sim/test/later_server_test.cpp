@@ -266,6 +266,55 @@ TEST(LaterServer, TrailingFieldsOfArcosAlone) {
   }
 }
 
+// Manual 9.1 and 9.2: channels, modes, ten packets a second.
+TEST(FastTrackTest, SendsWhatTheCameraSees) {
+  const World world = parse_world(
+      "width 20000 height 20000 post can 12000 10000 100 color red tall 700 "
+      "post box 12000 10500 100 color green tall 700",
+      "colors.wld");
+  const auto parameters = protocol::load_parameters(source("config/robots/pioneer.p"));
+  Scene scene(world);
+  Server server(scene, parameters, {10.0, 10.0, 0.0}, {});
+  protocol::PacketParser parser;
+  const auto seen = [&](int cycles) {
+    server.advance(cycles * kTicksPerPacket);
+    parser.feed(server.take_output());
+    std::vector<protocol::VisionPacket> out;
+    while (auto body = parser.next())
+      if (const ServerPacket packet = protocol::decode_packet(*body);
+          std::holds_alternative<protocol::VisionPacket>(packet))
+        out.push_back(std::get<protocol::VisionPacket>(packet));
+    return out;
+  };
+  const auto say = [&](const std::string& text) {
+    server.receive(protocol::encode(protocol::VisionCommand(Bytes(text.begin(), text.end()))));
+  };
+  for (int i = 0; i < 3; ++i)
+    server.receive(protocol::encode_sync(i));
+  server.receive(protocol::encode(protocol::Open{}));
+  EXPECT_TRUE(seen(3).empty()) << "nobody has asked";
+  say("pioneer_a_mode=2");
+  say("pioneer_b_mode=1");
+  const auto packets = seen(10);
+  ASSERT_EQ(packets.size(), 10U);
+  const auto& [a, b, c] = packets.back().channels;
+  EXPECT_EQ(a.mode, protocol::VisionChannel::Mode::kBlobWithBox);
+  EXPECT_NEAR(a.x, 0, 1);
+  EXPECT_GT(a.area, 100);
+  EXPECT_GT(a.height, a.width);
+  EXPECT_EQ(b.mode, protocol::VisionChannel::Mode::kLine);
+  EXPECT_NEAR(std::abs(b.x), degrees(std::atan2(0.5, 1.85)) * protocol::kPixelsPerDegree, 3.0);
+  EXPECT_GT(b.count, 10);
+  EXPECT_EQ(c.area, 0) << "nothing is blue";
+  say("pioneer_c_color=red");
+  EXPECT_NEAR(seen(1).back().channels[2].area, a.area, 5);
+  EXPECT_EQ(server.counters().unsupported_commands, 0U);
+  say("pioneer_d_mode=0");
+  EXPECT_EQ(server.counters().unsupported_commands, 1U);
+  server.receive(protocol::encode(protocol::Close{}));
+  EXPECT_TRUE(seen(3).empty());
+}
+
 // MobileSim's and the old simulator's commands for where the robot really is.
 TEST(LaterServer, AHandPutsTheRobotElsewhere) {
   Bench b("p3dx-sh");

@@ -10,6 +10,8 @@
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/sim/robot.hpp"
+#include "saphira/sim/scene.hpp"
+#include "saphira/sim/vision.hpp"
 
 namespace saphira::sim {
 
@@ -34,6 +36,28 @@ class Gripper {
   Axis paddles_{1.0, 0};  // 1: open
   Axis lift_;             // 1: up
   int action_ = 0;
+};
+
+/// The Fast Track Vision System (manual 9): three channels, each of which looks for the things of
+/// one color. It sends packets from the first VISION_COM of a connection on.
+class FastTrack {
+ public:
+  /// "pioneer_X_mode=N" with X a, b or c, and N 0 (blob), 1 (line) or 2 (blob with its box);
+  /// "pioneer_X_color=NAME", which stands for the training of a channel; the line parameters
+  /// ("line_..."), which change nothing here. Whether it was one of those.
+  bool act(const std::string& text);
+  void disconnect() { *this = {}; }
+
+  bool on() const { return on_; }
+  protocol::VisionPacket look(const Scene& scene, RobotNumber robot) const;
+
+ private:
+  struct Channel {
+    protocol::VisionChannel::Mode mode = protocol::VisionChannel::Mode::kBlob;
+    std::string color;
+  };
+  bool on_ = false;
+  std::array<Channel, 3> channels_{{{{}, "red"}, {{}, "green"}, {{}, "blue"}}};
 };
 
 /// What a robot has besides wheels and sonars, and the packets about it that clients ask for:

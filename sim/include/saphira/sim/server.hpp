@@ -146,6 +146,7 @@ class Server {
   ServerCounters counters_;
 
   Devices devices_;
+  FastTrack vision_;
   Pose start_in_world_;
   int watchdog_ticks_;
   bool later_;                         // than PSOS
