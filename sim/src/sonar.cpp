@@ -16,7 +16,7 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
   return far;
 }
 
-// A corner is hidden by what is nearer than this before it [m]: not by the walls that make it.
+// What stands nearer than this before a thing hides it [m]: not its own sides.
 constexpr double kBefore = 0.01;
 
 SonarModel with_range(SonarModel model, double range) {
@@ -76,62 +76,93 @@ std::optional<SonarEcho> Sonars::tick(const Pose& robot_in_world) {
 
 SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   const Pose at = compose(robot_in_world, units_[number].pose_in_robot);
+  Firing firing{at.position(), at.direction(), 0.0, std::nullopt};
   // Always the same draws, so that one reading's fate does not shift those of the next.
   const bool dropped = random_.chance(model_.dropout);
-  const bool glancing_lost = random_.chance(model_.specular_loss);
+  const bool rough = random_.chance(model_.roughness);
   const bool corners_lost = random_.chance(model_.corner_loss);
+  firing.aside = random_.uniform();
   const double noise = random_.normal();
 
   // Only segments that reach into the half-plane ahead, and into the beam's circle.
-  const Vec2 ahead = at.direction();
-  const Vec2 origin = at.position();
   in_beam_.segments.clear();
   in_beam_.discs.clear();
   scene_->add_movable(robot_in_world.position(), reach_, self_, in_beam_);
   const std::size_t movable = in_beam_.segments.size();
   for (const Segment& segment : near_.around(robot_in_world.position())) {
-    if ((segment.from - origin).dot(ahead) > 0.0 || (segment.to - origin).dot(ahead) > 0.0)
+    if ((segment.from - firing.origin).dot(firing.ahead) > 0.0 ||
+        (segment.to - firing.origin).dot(firing.ahead) > 0.0)
       in_beam_.segments.push_back(segment);
   }
 
-  std::optional<double> nearest;
-  for (int i = 0; i < model_.rays; ++i) {
-    const double offset =
-        model_.rays == 1 ? 0.0 : model_.cone * (static_cast<double>(i) / (model_.rays - 1) - 0.5);
-    const Vec2 direction(std::cos(at.th + offset), std::sin(at.th + offset));
-    const auto hit = cast_ray(in_beam_, origin, direction, model_.max_range);
-    if (!hit || (glancing_lost && hit->incidence > model_.critical_angle))
-      continue;
-    if (!nearest || hit->range < *nearest)
-      nearest = hit->range;
-  }
+  hear_surfaces(firing);
   if (!corners_lost) {
     for (const Corner* corner : near_.corners_around(robot_in_world.position()))
-      if (is_sharp_from(*corner, origin))
-        hear_corner(corner->point, origin, ahead, nearest);
+      if (is_sharp_from(*corner, firing.origin))
+        hear_corner(corner->point, 0.0, firing);
     for (std::size_t i = 0; i < movable; ++i) {
-      hear_corner(in_beam_.segments[i].from, origin, ahead, nearest);
-      hear_corner(in_beam_.segments[i].to, origin, ahead, nearest);
+      hear_corner(in_beam_.segments[i].from, 0.0, firing);
+      hear_corner(in_beam_.segments[i].to, 0.0, firing);
     }
+    for (const Disc& disc : in_beam_.discs)
+      hear_corner(disc.centre, disc.radius, firing);
   }
-  if (!nearest || dropped)
+  if (rough)
+    hear_rough(at, firing);
+
+  if (!firing.nearest || dropped)
     return {number, std::nullopt};
-  const double range = *nearest + noise * (model_.noise + model_.relative_noise * *nearest);
+  const double range =
+      *firing.nearest + noise * (model_.noise + model_.relative_noise * *firing.nearest);
   if (range >= model_.max_range)
     return {number, std::nullopt};
   return {number, std::max(range, model_.min_range)};
 }
 
-// Takes the corner for the nearest echo, if it is one.
-void Sonars::hear_corner(const Vec2& corner, const Vec2& origin, const Vec2& ahead,
-                         std::optional<double>& nearest) const {
-  const Vec2 way = corner - origin;
-  const double range = way.norm();
-  if (range < kBefore || range > nearest.value_or(model_.max_range) ||
-      way.dot(ahead) < range * std::cos(model_.corner_cone / 2))
-    return;
-  if (!cast_ray(in_beam_, origin, way / range, range - kBefore))
-    nearest = range;
+bool Sonars::is_first(const Firing& firing, const Vec2& way, double range) const {
+  return range < firing.nearest.value_or(model_.max_range) &&
+         (range < kBefore || !cast_ray(in_beam_, firing.origin, way.normalized(), range - kBefore));
+}
+
+// Every surface where it is met at a right angle.
+void Sonars::hear_surfaces(Firing& firing) const {
+  const double sure = model_.critical_angle;
+  for (const Segment& segment : in_beam_.segments) {
+    const Vec2 along = segment.to - segment.from;
+    const double t = (firing.origin - segment.from).dot(along) / along.squaredNorm();
+    if (t < 0.0 || t > 1.0)
+      continue;
+    const Vec2 way = segment.from + t * along - firing.origin;
+    const double range = way.norm();
+    if (range >= firing.nearest.value_or(model_.max_range))
+      continue;
+    const double lost = std::max(sure, model_.lost_angle - model_.lost_per_metre * range);
+    const double off = sure + firing.aside * (lost - sure);
+    if (way.dot(firing.ahead) >= range * std::cos(off) && is_first(firing, way, range))
+      firing.nearest = range;
+  }
+}
+
+// A corner, or a round thing about it.
+void Sonars::hear_corner(const Vec2& corner, double radius, Firing& firing) const {
+  const Vec2 way = corner - firing.origin;
+  const double middle = way.norm();
+  const double range = middle - radius;
+  if (range > 0.0 && way.dot(firing.ahead) >= middle * std::cos(model_.corner_cone / 2) &&
+      is_first(firing, way, range))
+    firing.nearest = range;
+}
+
+void Sonars::hear_rough(const Pose& at, Firing& firing) const {
+  for (int i = 0; i < model_.rays; ++i) {
+    const double offset =
+        model_.rays == 1 ? 0.0 : model_.cone * (static_cast<double>(i) / (model_.rays - 1) - 0.5);
+    const Vec2 direction(std::cos(at.th + offset), std::sin(at.th + offset));
+    const auto hit =
+        cast_ray(in_beam_, firing.origin, direction, firing.nearest.value_or(model_.max_range));
+    if (hit)
+      firing.nearest = hit->range;
+  }
 }
 
 }  // namespace saphira::sim

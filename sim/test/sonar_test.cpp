@@ -17,7 +17,7 @@ RobotParameters one_sonar(double x = 0.0, double th = 0.0) {
 
 SonarModel exact() {
   SonarModel model;
-  model.noise = model.relative_noise = model.dropout = 0.0;
+  model.noise = model.relative_noise = model.dropout = model.roughness = model.corner_loss = 0.0;
   return model;
 }
 
@@ -36,18 +36,25 @@ TEST(Sonars, RangeIsFromTheTransducer) {
   EXPECT_NEAR(*echo.range, 1.37, 1e-9);
 }
 
-TEST(Sonars, TheNearestInTheConeCounts) {
+TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
   const World world = wall_at(2000);
   const Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
-  // Turned by 10 degrees, the wall's foot is still within the half cone of 12.5: of nine rays the
-  // nearest is less than 1.6 degrees beside it.
-  const auto echo = sonars.fire(0, {0.0, 0.0, radians(10.0)});
-  ASSERT_TRUE(echo.range);
-  EXPECT_NEAR(*echo.range, 2.0, 2.0 * (1.0 / std::cos(radians(1.6)) - 1.0) + 1e-9);
-  const auto aside = sonars.fire(0, {0.0, 0.0, radians(25.0)});
-  ASSERT_TRUE(aside.range);
-  EXPECT_NEAR(*aside.range, 2.0 / std::cos(radians(12.5)), 1e-9);
+  for (const double off : {0.0, 10.0, -14.0}) {
+    const auto echo = sonars.fire(0, {0.0, 0.0, radians(off)});
+    ASSERT_TRUE(echo.range) << off;
+    EXPECT_NEAR(*echo.range, 2.0, 1e-9) << off;
+  }
+}
+
+TEST(Sonars, TheNearestCounts) {
+  const World world = parse_world(
+      "width 9000 height 9000\n2000 -1000 2000 1000  3000 -4000 3000 4000  500 2000 700 2000", "w");
+  const Scene scene(world);
+  Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
+  EXPECT_NEAR(*sonars.fire(0, {0.0, 0.0, 0.0}).range, 2.0, 1e-9);
+  // The far wall is met behind the near one's end; the end itself is 14 degrees aside.
+  EXPECT_NEAR(*sonars.fire(0, {0.0, 1.5, radians(0.0)}).range, 3.0, 1e-9);
 }
 
 TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
@@ -59,22 +66,36 @@ TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
   EXPECT_FALSE(sonars.fire(0, {1.5, 0.0, kPi}).range);
 }
 
-// The rays of the cone reach 12.5 degrees to the wall's side of where the sonar points to.
+// Off by more than 17 degrees a wall is heard less and less, and the farther away the sooner not.
 TEST(Sonars, GlancingSurfacesAreLost) {
+  const auto share = [](double distance_mm, double off) {
+    const World world = wall_at(distance_mm);
+    const Scene scene(world);
+    Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
+    constexpr int kFirings = 4000;
+    int heard = 0;
+    for (int i = 0; i < kFirings; ++i)
+      heard += sonars.fire(0, {0.0, 0.0, radians(off)}).range ? 1 : 0;
+    return static_cast<double>(heard) / kFirings;
+  };
+  EXPECT_EQ(share(500, 16.9), 1.0);
+  EXPECT_NEAR(share(500, 30.0), 1.0 - 13.0 / 55.5, 0.03);  // of 17 to 95 - 45 * 0.5 degrees
+  EXPECT_EQ(share(500, 73.0), 0.0);
+  EXPECT_NEAR(share(1500, 20.0), 1.0 - 3.0 / 10.5, 0.03);
+  EXPECT_EQ(share(1500, 28.0), 0.0);
+  EXPECT_EQ(share(4000, 16.9), 1.0);
+  EXPECT_EQ(share(4000, 17.1), 0.0);
+}
+
+TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
   const World world = wall_at(1000);
   const Scene scene(world);
   SonarModel model = exact();
-  model.specular_loss = 0.9;
+  model.roughness = 1.0;
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
-  int glancing = 0;
-  int steep = 0;
-  constexpr int kFirings = 2000;
-  for (int i = 0; i < kFirings; ++i) {
-    glancing += sonars.fire(0, {0.0, 0.0, radians(28.0)}).range ? 1 : 0;
-    steep += sonars.fire(0, {0.0, 0.0, radians(26.0)}).range ? 1 : 0;
-  }
-  EXPECT_NEAR(static_cast<double>(glancing) / kFirings, 0.1, 0.03);
-  EXPECT_EQ(steep, kFirings);
+  const auto echo = sonars.fire(0, {0.0, 0.0, radians(70.0)});
+  ASSERT_TRUE(echo.range);
+  EXPECT_NEAR(*echo.range, 1.0 / std::cos(radians(57.5)), 1e-9);
 }
 
 // What a sonar hears of a corridor's wall that it looks along is its door posts.
@@ -85,8 +106,7 @@ TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
       "door.wld");
   const Scene scene(world);
   SonarModel model = exact();
-  model.specular_loss = 1.0;
-  model.corner_loss = 0.0;
+  model.lost_angle = model.critical_angle;
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
   const auto post = sonars.fire(0, {1.0, 0.0, radians(45.0)});
   ASSERT_TRUE(post.range);

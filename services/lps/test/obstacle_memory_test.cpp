@@ -80,13 +80,24 @@ TEST(ObstacleMemory, AnEchoFromBehindDisproves) {
 TEST(ObstacleMemory, SilenceDisprovesMoreSlowly) {
   ObstacleMemory memory;
   memory.move_to(kOrigin);
-  memory.echo(kOrigin, 1.0);
+  memory.echo(kOrigin, 0.8);
+  memory.silence(kOrigin);
   memory.silence(kOrigin);
   memory.collect(kOrigin);
-  EXPECT_LT(nearest(memory, {1.0, 0.0}), 0.06);
+  EXPECT_LT(nearest(memory, {0.8, 0.0}), 0.06);
   memory.silence(kOrigin);
   memory.collect(kOrigin);
-  EXPECT_GT(nearest(memory, {1.0, 0.0}), 0.15);
+  EXPECT_GT(nearest(memory, {0.8, 0.0}), 0.1);
+}
+
+TEST(ObstacleMemory, SilenceFromFarAwaySaysNothing) {
+  ObstacleMemory memory;
+  memory.move_to(kOrigin);
+  memory.echo(kOrigin, 1.2);
+  for (int i = 0; i < 9; ++i)
+    memory.silence(kOrigin);
+  memory.collect(kOrigin);
+  EXPECT_LT(nearest(memory, {1.2, 0.0}), 0.06);
 }
 
 TEST(ObstacleMemory, BeamsBesideItSayNothing) {

@@ -11,23 +11,29 @@
 
 namespace saphira::sim {
 
-/// How a sonar sees. A smooth wall is a mirror to it: heard where the beam meets it nearly head-on,
-/// and otherwise not at all; what is heard of it from aside is its corners (README, "Against real
-/// sonars").
+/// How a sonar hears. A smooth surface is a mirror to it: its echo comes from the point where it is
+/// met at a right angle, however the sonar points, or not at all. From aside, what is heard of a
+/// wall is its corners. The figures are from real sonars (README, "Against real sonars").
 struct SonarModel {
-  double cone = radians(25.0);    ///< [rad] full width of the beam
-  int rays = 9;                   ///< over the cone; the nearest echo counts
   double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
   double min_range = 0.05;        ///< [m] nearer things read as this
   double noise = 0.003;           ///< [m] standard deviation of a range...
   double relative_noise = 0.003;  ///< ...plus this share of it
   double dropout = 0.005;         ///< probability that an echo is not heard
-  /// [rad] A surface that is met at more than this from its normal throws the sound off: its echo
-  /// is lost with probability specular_loss (one decision a firing).
-  double critical_angle = radians(14.0);
-  double specular_loss = 0.98;
-  double corner_cone = radians(20.0);  ///< [rad] full width of the beam in which corners are heard
-  double corner_loss = 0.04;           ///< probability that none is (one decision a firing)
+  /// [rad] A surface whose normal is not more than this off the sonar's axis is always heard...
+  double critical_angle = radians(17.0);
+  /// ...and one that is off by more less and less, down to never at lost_angle for the nearest
+  /// ones, and at so much less for each metre that they are away.
+  double lost_angle = radians(95.0);
+  double lost_per_metre = radians(45.0);
+  double corner_cone =
+      radians(20.0);          ///< [rad] full width of the beam for corners and round things
+  double corner_loss = 0.04;  ///< probability that none of them is heard
+  /// Probability that a surface sends back sound that it is met by at whatever angle: then the
+  /// nearest of `rays` over `cone` counts.
+  double roughness = 0.02;
+  double cone = radians(25.0);  ///< [rad] full width
+  int rays = 9;
 };
 
 struct SonarEcho {
@@ -59,8 +65,18 @@ class Sonars {
   SonarEcho fire(std::uint8_t number, const Pose& robot_in_world);
 
  private:
-  void hear_corner(const Vec2& corner, const Vec2& origin, const Vec2& ahead,
-                   std::optional<double>& nearest) const;
+  // Where it fires from, how far aside it hears smooth surfaces, and what it has heard.
+  struct Firing {
+    Vec2 origin;
+    Vec2 ahead;
+    double aside = 0.0;             // [0, 1) from the critical angle to the lost one
+    std::optional<double> nearest;  // [m]
+  };
+  void hear_rough(const Pose& at, Firing& firing) const;
+  void hear_surfaces(Firing& firing) const;
+  void hear_corner(const Vec2& corner, double radius, Firing& firing) const;
+  // Whether nothing stands before that, and it is nearer than what has been heard.
+  bool is_first(const Firing& firing, const Vec2& way, double range) const;
 
   const Scene* scene_;
   RobotNumber self_;

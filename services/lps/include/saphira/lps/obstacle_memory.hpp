@@ -12,15 +12,15 @@ struct MemorySettings {
   double cell = 0.05;           ///< [m]
   int cells = 120;              ///< along each side; the robot is near the middle
   double beam = radians(12.5);  ///< [rad] half angle of a sonar's cone
-  double sure = radians(9.0);   ///< [rad] within which it would surely have seen something
+  double sure = radians(4.0);   ///< [rad] within which it would surely have seen something
   double thickness = 0.05;      ///< [m] an echo may be off by so much
   double seen = 1.5;            ///< added where an echo comes from
-  double passed = 1.2;          ///< taken away where a beam with an echo has passed
-  double silent = 0.6;          ///< taken away where a beam without an echo has passed
-  double silent_range = 1.5;    ///< [m] up to which silence means something
+  double passed = 0.6;          ///< taken away where a beam with an echo has passed
+  double silent = 0.4;          ///< taken away where a beam without an echo has passed
+  double silent_range = 1.0;    ///< [m] up to which silence means something
   double most = 4.0;            ///< a belief stays within this of 0
   double obstacle = 0.6;        ///< belief from which on there is one
-  double fading = 0.99;         ///< of all beliefs, a cycle: 4 are forgotten in 19 s
+  double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
 
 /// What the sonars have seen around the robot, for as long as nothing speaks against it.
@@ -31,8 +31,9 @@ struct MemorySettings {
 /// comes from somewhere on the arc across: a gap of a metre looks closed from a metre off. Here
 /// each beam speaks for the whole of its cone, in a grid that goes with the robot: the cone up to
 /// the arc is free, and the obstacle is on the arc, more likely where it was likely before (Moravec
-/// and Elfes 1985). Silence says less than an echo from behind, since a smooth wall that is met at
-/// a slant is silent too.
+/// and Elfes 1985). Silence says less than an echo from behind, and nothing from far away, since a
+/// smooth wall that is met at a slant is silent too; and an echo from behind says little of the rim
+/// of its cone, since it may be a corner's, heard along such a wall.
 class ObstacleMemory {
  public:
   explicit ObstacleMemory(MemorySettings settings = {});
