@@ -67,9 +67,12 @@ bus::NodeOptions named(bus::NodeOptions options, const char* name) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::string config = config_folder();
   sim::HostOptions robot;
+  robot.world = "office";
+  robot.robot = "pioneer";
   bridge::BridgeOptions link;
-  link.robots_folder = config_folder() + "/robots";
+  link.robots_folder = config + "/robots";
   // The keeper needs a process with one thread. Here the robot dies with whoever drives it.
   link.keeper = false;
   intentions::ShellOptions goals;
@@ -77,9 +80,12 @@ int main(int argc, char** argv) {
   return bus::run_program(
       argc, argv, "all", "A simulated robot and all services in one process",
       [&](CLI::App& app) {
-        app.add_option("--world", robot.world, "world file of the simulator")->required();
-        app.add_option("--robot-file", robot.robot, "parameter file of the simulated robot")
-            ->required();
+        app.add_option("--world", robot.world,
+                       "world file of the simulator, or the name of one that is shipped")
+            ->capture_default_str();
+        app.add_option("--robot-file", robot.robot,
+                       "parameter file of the simulated robot, or the name of one that is shipped")
+            ->capture_default_str();
         app.add_option("--seed", robot.seed, "of all that is random")->capture_default_str();
         app.add_flag("--step", robot.step, "single-step from the start");
         app.add_option("--rate", robot.rate, "times real time")->capture_default_str();
@@ -96,6 +102,8 @@ int main(int argc, char** argv) {
                        "file that remembers ended goals over a restart");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
+        robot.world = find_file(config + "/worlds", robot.world, ".wld");
+        robot.robot = find_file(config + "/robots", robot.robot, ".p");
         robot.socket = socket;
         link.robot_port = "unix:" + socket;
         robot.log = [](const std::string& line) {

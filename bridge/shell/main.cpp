@@ -1,6 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <stdexcept>
 
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
@@ -36,12 +34,6 @@ int main(int argc, char** argv) {
         options.quiet = quiet_ms / 1000.0;
         options.guard = !no_guard;
         options.keeper = !no_keeper;
-        try {
-          saphira::bridge::Shell shell(node, options);
-          return shell.run(stop);
-        } catch (const std::invalid_argument& error) {
-          std::fprintf(stderr, "saphira-bridge: %s\n", error.what());
-          return static_cast<int>(saphira::bus::kExitUsage);
-        }
+        return saphira::bridge::Shell(node, options).run(stop);
       });
 }

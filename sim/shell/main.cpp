@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/host.hpp"
@@ -80,11 +81,13 @@ int main(int argc, char** argv) {
   std::size_t count = 1;
   std::string rate = "1";
   std::vector<std::string> plot_files;
-  app.add_option("--world", options.world, "World file")->required();
+  options.world = "office";
+  app.add_option("--world", options.world, "World file, or the name of one that is shipped")
+      ->capture_default_str();
   app.add_option("--robot,--robot-file", robots,
-                 "Robot parameter file; again for each further robot, which listens on the next "
-                 "port, or on the socket with \"-2\" (\"-3\"...) behind it")
-      ->required()
+                 "Robot parameter file, or the name of one that is shipped (default: pioneer); "
+                 "again for each further robot, which listens on the next port, or on the socket "
+                 "with \"-2\" (\"-3\"...) behind it")
       ->allow_extra_args(false);
   app.add_option("--robots", count, "How many robots; those without a file are as the last one")
       ->check(CLI::Range(1, 1000));
@@ -119,6 +122,12 @@ int main(int argc, char** argv) {
   }
 
   try {
+    if (robots.empty())
+      robots.emplace_back("pioneer");
+    const std::string config = saphira::config_folder();
+    for (std::string& file : robots)
+      file = saphira::find_file(config + "/robots", file, ".p");
+    options.world = saphira::find_file(config + "/worlds", options.world, ".wld");
     set_robots(options, robots, positions, count);
     options.rate = rate == "max" ? saphira::sim::kMaxRate : std::stod(rate);
     if (!plot_files.empty()) {

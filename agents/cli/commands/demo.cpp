@@ -48,6 +48,7 @@ struct Options {
   std::uint64_t seed = 1;
   double time_limit = kTimeLimit;
   std::string world;
+  std::string base;
   std::vector<double> goal{kGoalX, kGoalY};
   std::string trace;
 };
@@ -83,6 +84,8 @@ std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& 
   std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
   if (!options.world.empty())
     set.push_back("world=" + options.world);
+  if (!options.base.empty())
+    set.push_back("base=" + options.base);
   const std::vector<std::string> more = options.lockstep
                                             ? std::vector<std::string>{"--trace", trace, "--step"}
                                             : std::vector<std::string>{"--trace", trace};
@@ -453,7 +456,10 @@ void add_demo(CLI::App& app, Chosen& chosen) {
   command->add_option("--time-limit", options->time_limit, "[s] of robot time")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--world", options->world, "a world file in place of the office");
+  command->add_option("--world", options->world,
+                      "in place of the office: a name of config/worlds, or a file");
+  command->add_option("--base", options->base,
+                      "in place of the Pioneer 1: a name of config/robots, or a file");
   command->add_option("--goal", options->goal, "X Y [m], seen from where the robot starts")
       ->expected(2)
       ->capture_default_str();

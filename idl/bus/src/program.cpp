@@ -61,6 +61,9 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   } catch (const FileError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitUsage;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "saphira-%s: %s\n", options.name.c_str(), error.what());
+    return kExitUsage;
   } catch (const std::exception& error) {
     internal::write_log(v1::LOG_ERROR, options.name + ": " + error.what());
     return kExitBroken;
