@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace saphira::test {
+
+/// A robot server that is not ours, after AMRISim's ways with a Pioneer 3 DX: it listens on a TCP
+/// port, says 0x32 whether it moves or not, sends all sixteen sonars in every packet of 89 bytes,
+/// has no watchdog, accepts one client, and ignores the commands that it does not know. It drives
+/// on an empty plane.
+class ForeignRobot {
+ public:
+  ForeignRobot();
+  ~ForeignRobot();
+  ForeignRobot(const ForeignRobot&) = delete;
+  ForeignRobot& operator=(const ForeignRobot&) = delete;
+
+  int port() const { return port_; }
+  double velocity() const { return velocity_; }  ///< [mm/s]
+  double rotation() const { return rotation_; }  ///< [deg/s]
+  double x() const { return x_; }                ///< [mm]
+  double th() const { return th_; }              ///< [deg]
+  bool motors() const { return motors_; }
+  bool connected() const { return open_; }
+  /// How often each command has come.
+  std::map<int, int> commands() const;
+  std::string trouble() const;  ///< bytes that were no packet
+
+ private:
+  void run();
+  void handle(const std::vector<std::uint8_t>& body);
+  std::vector<std::uint8_t> information() const;
+
+  int listener_ = -1;
+  int client_ = -1;
+  int port_ = 0;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> open_{false};
+  std::atomic<bool> motors_{false};
+  std::atomic<double> velocity_{0.0};
+  std::atomic<double> rotation_{0.0};
+  std::atomic<double> x_{0.0};
+  std::atomic<double> th_{0.0};
+  double y_ = 0.0;
+  double heading_ = 0.0;
+  bool heads_ = false;
+  int syncs_ = 0;
+  mutable std::mutex mutex_;
+  std::map<int, int> commands_;
+  std::string trouble_;
+  std::thread thread_;
+};
+
+}  // namespace saphira::test

@@ -1,0 +1,108 @@
+// Our bridge with robots that are strict with it: a simulator that is not ours, and ours under the
+// protocol checker.
+
+#include "foreign_robot.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "saphira/geometry/pose.hpp"
+#include "scene.hpp"
+
+namespace saphira::test {
+namespace {
+
+using std::chrono::seconds;
+
+void drive(v1::MotorCommand& command, double velocity, double rotation) {
+  command.active(true);
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.velocity(velocity);
+  command.rotation(v1::ROTATION_VELOCITY);
+  command.rotation_velocity(rotation);
+}
+
+TEST(ForeignRobotTest, IsDrivenByOurBridge) {
+  ForeignRobot robot;
+  Scene scene;
+  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
+      << scene.bridge_log();
+  EXPECT_EQ(scene.description->robot_class(), "Pioneer");
+  EXPECT_TRUE(scene.description->parameter_file().ends_with("/p3dx.p"));
+  ASSERT_TRUE(scene.until([&] { return scene.state.sonars().size() == 16; }));
+  EXPECT_NEAR(scene.state.sonars()[5].range(), 3.05, 0.01);
+  EXPECT_NEAR(scene.state.battery(), 13.0, 1e-6);
+
+  drive(scene.command, 0.25, 0.0);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return robot.velocity() == 250.0; })) << scene.bridge_log();
+  EXPECT_TRUE(robot.motors());
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 1.0; }));
+  EXPECT_NEAR(scene.state.pose_in_odom().x(), robot.x() / 1000.0, 0.1);
+  drive(scene.command, 0.0, radians(30.0));
+  ASSERT_TRUE(scene.until([&] { return scene.state.rotation_velocity() > radians(25.0); }));
+  EXPECT_NEAR(robot.rotation(), 30.0, 1.0);
+
+  // It has no watchdog: only the bridge stops it.
+  scene.drives = false;
+  ASSERT_TRUE(scene.until([&] { return robot.velocity() == 0.0 && robot.rotation() == 0.0; }))
+      << scene.bridge_log();
+  EXPECT_EQ(robot.trouble(), "");
+  EXPECT_EQ(scene.state.bad_packets(), 0U);
+}
+
+TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
+  ForeignRobot robot;
+  Scene scene;
+  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
+  scene.start_bridge();
+  drive(scene.command, 0.2, 0.0);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << scene.bridge_log();
+  scene.bridge->signal(SIGKILL);
+  EXPECT_TRUE(scene.until([&] { return robot.velocity() == 0.0; }, seconds(5)));
+}
+
+class UnderTheChecker : public ::testing::TestWithParam<const char*> {};
+
+// Everything that bridge and simulator say to each other, from the synchronization to the end.
+TEST_P(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
+  Scene scene;
+  scene.robot_file = std::string(GetParam()) + ".p";
+  scene.start_simulator();
+  ASSERT_TRUE(wait_until([&] { return ::access(scene.folder.path("robot").c_str(), F_OK) == 0; }));
+  Process checker({"saphira-protocol-check", "--listen", scene.folder.path("watched"), "--server",
+                   scene.folder.path("robot"), "--robots", source("config/robots")},
+                  scene.folder.path("checker.log"));
+  scene.robot_port = scene.folder.path("watched");
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  drive(scene.command, 0.15, 0.2);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.3; }))
+      << scene.bridge_log();
+  scene.drives = false;
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  scene.bridge->signal(SIGTERM);
+  scene.bridge->wait();
+  checker.signal(SIGTERM);
+  EXPECT_EQ(checker.wait(), 0) << checker.output();
+  EXPECT_NE(checker.output().find("x VEL (11)"), std::string::npos) << checker.output();
+  EXPECT_NE(checker.output().find("0 violations"), std::string::npos) << checker.output();
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, UnderTheChecker, ::testing::Values("psos43m", "p2dx", "p3dx-sh"),
+                         [](const auto& robot) {
+                           std::string name = robot.param;
+                           for (char& c : name)
+                             if (c == '-')
+                               c = '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace saphira::test
