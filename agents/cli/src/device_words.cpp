@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
-#include <string_view>
+#include <utility>
 
 #include "saphira/geometry/pose.hpp"
 
@@ -251,15 +251,17 @@ std::string list(const std::vector<T>& values, bool as_bits) {
   return out.empty() ? "none" : out;
 }
 
+// Of the gripper's state (idl/device.idl).
+constexpr std::array<std::pair<unsigned, const char*>, 6> kGripperBits{{{0U, "open"},
+                                                                        {1U, "closed"},
+                                                                        {2U, "paddles move"},
+                                                                        {4U, "lift up"},
+                                                                        {5U, "lift down"},
+                                                                        {6U, "lift moves"}}};
+
 std::string gripper_words(unsigned state) {
-  constexpr std::array<std::pair<unsigned, const char*>, 6> kBits{{{0U, "open"},
-                                                                   {1U, "closed"},
-                                                                   {2U, "paddles move"},
-                                                                   {4U, "lift up"},
-                                                                   {5U, "lift down"},
-                                                                   {6U, "lift moves"}}};
   std::string out;
-  for (const auto& [bit, word] : kBits)
+  for (const auto& [bit, word] : kGripperBits)
     if ((state >> bit & 1U) != 0)
       out += (out.empty() ? "" : ", ") + std::string(word);
   return bits(state) + (out.empty() ? "" : " (" + out + ")");

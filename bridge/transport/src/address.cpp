@@ -22,6 +22,16 @@ int number(const std::string& text, const std::string& whole, const char* what) 
   return value;
 }
 
+std::string serial_text(const Address& address) {
+  std::string out = address.name.starts_with("/dev/") ? "" : "serial:";
+  out.append(address.name).append("@").append(std::to_string(address.baud));
+  if (address.parity != 'N' || address.stop_bits != 1)
+    out.append(",8").append(1, address.parity).append(std::to_string(address.stop_bits));
+  if (address.flow_control)
+    out.append(",rtscts");
+  return out;
+}
+
 void parse_serial(const std::string& text, Address& address) {
   std::string rest = text.substr(text.starts_with("serial:") ? 7 : 0);
   const std::size_t at = rest.find('@');
@@ -60,11 +70,7 @@ void parse_serial(const std::string& text, Address& address) {
 std::string Address::text() const {
   switch (kind) {
     case Kind::serial:
-      return (name.starts_with("/dev/") ? "" : "serial:") + name + "@" + std::to_string(baud) +
-             (parity == 'N' && stop_bits == 1
-                  ? ""
-                  : std::string(",8") + parity + std::to_string(stop_bits)) +
-             (flow_control ? ",rtscts" : "");
+      return serial_text(*this);
     case Kind::local:
       return "unix:" + name;
     case Kind::tcp:
