@@ -13,6 +13,8 @@ namespace {
 // The paddles take 1.5 s from stop to stop, the lift 3 s: about what the Pioneers' gripper needs.
 constexpr double kPaddleStep = 0.1 / 1.5;
 constexpr double kLiftStep = 0.1 / 3.0;
+constexpr std::string_view kChannel = "pioneer_";
+constexpr std::string_view kColorIs = "_color=";
 constexpr int kSoundUnitsInCycle = 5;  // of 20 ms
 
 template <class... Ts>
@@ -83,24 +85,22 @@ std::uint8_t Gripper::bits() const {
 
 bool FastTrack::act(const std::string& text) {
   on_ = true;
-  constexpr std::string_view kPrefix = "pioneer_";
   if (text.starts_with("line_"))
     return true;
-  if (!text.starts_with(kPrefix) || text.size() < kPrefix.size() + 2)
+  if (!text.starts_with(kChannel) || text.size() < kChannel.size() + 2)
     return false;
-  const char letter = text[kPrefix.size()];
+  const char letter = text[kChannel.size()];
   if (letter < 'a' || letter > 'c')
     return false;
   Channel& channel = channels_.at(static_cast<std::size_t>(letter - 'a'));
-  const std::string rest = text.substr(kPrefix.size() + 1);
+  const std::string rest = text.substr(kChannel.size() + 1);
   if (rest == "_mode=0" || rest == "_mode=1" || rest == "_mode=2") {
     channel.mode = static_cast<VisionChannel::Mode>(rest.back() - '0');
     return true;
   }
-  constexpr std::string_view kColor = "_color=";
-  if (!rest.starts_with(kColor))
+  if (!rest.starts_with(kColorIs))
     return false;
-  channel.color = rest.substr(kColor.size());
+  channel.color = rest.substr(kColorIs.size());
   return true;
 }
 

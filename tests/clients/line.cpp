@@ -79,8 +79,7 @@ std::optional<Wire> Line::next() {
       received_.erase(received_.begin());
       continue;
     }
-    const Wire body(received_.begin() + 3,
-                    received_.begin() + static_cast<std::ptrdiff_t>(size - 2));
+    Wire body(received_.begin() + 3, received_.begin() + static_cast<std::ptrdiff_t>(size - 2));
     const Wire whole(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(size));
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(size));
     if (packet(body) == whole)
@@ -109,10 +108,13 @@ std::string Line::violations() const {
   return out;
 }
 
+namespace {
+constexpr double kP1 = 2.0 * kPi / 1024.0;  // [rad] of one unit of heading
+constexpr double kP2 = 2.0 * kPi / 4096.0;
+}  // namespace
+
 // From ARIA's and Player's tables.
 const std::vector<KnownRobot>& all_known() {
-  constexpr double kP1 = 2.0 * kPi / 1024.0;
-  constexpr double kP2 = 2.0 * kPi / 4096.0;
   static const std::vector<KnownRobot> robots{
       {"pion1m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},
       {"pion1x", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},

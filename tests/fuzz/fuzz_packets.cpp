@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "saphira/protocol/check.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/packet.hpp"
@@ -50,16 +51,47 @@ void decode_everything(const protocol::Bytes& body) {
   }
 }
 
+// The checker bears with anything, from either side.
+void check(protocol::ByteView bytes) {
+  protocol::Checker checker;
+  for (int i = 0; i < 2; ++i) {
+    checker.feed(protocol::Side::kClient, protocol::encode_sync(i));
+    checker.feed(protocol::Side::kServer, protocol::encode_sync(i));
+  }
+  checker.feed(protocol::Side::kClient, protocol::encode_sync(2));
+  checker.feed(protocol::Side::kServer, protocol::encode_sync2_reply({"a", "b", "c"}));
+  checker.feed(protocol::Side::kClient, protocol::encode(protocol::Open{}));
+  require(checker.violations() == 0);
+  const std::size_t half = bytes.size() / 2;
+  checker.feed(protocol::Side::kClient, bytes.first(half));
+  checker.feed(protocol::Side::kServer, bytes.subspan(half));
+  if (!bytes.empty()) {
+    const auto body = bytes.first(std::min(bytes.size(), protocol::kMaxBody));
+    checker.feed(protocol::Side::kClient, protocol::frame(body));
+    checker.feed(protocol::Side::kServer, protocol::frame(body));
+  }
+  checker.disconnect();
+  checker.summary();
+}
+
 void serve(protocol::ByteView bytes) {
   static const sim::World world =
       sim::parse_world("width 4000 height 4000 0 0 4000 0 4000 0 4000 4000", "fuzz.wld");
   protocol::RobotParameters parameters;
   parameters.sonars.resize(1);
+  if (!bytes.empty()) {
+    parameters.protocol = static_cast<protocol::Protocol>(bytes[0] % 3);
+    parameters.gripper = parameters.gyro = parameters.move_command = (bytes[0] & 4U) != 0;
+    parameters.settable_accelerations = parameters.settable_velocities = (bytes[0] & 8U) != 0;
+    parameters.encoder_unit = 1e-5;
+    parameters.front_bumpers = 5;
+  }
   sim::Scene scene(world);
   sim::Server server(scene, parameters, {2.0, 2.0, 0.0}, {});
   for (int i = 0; i < 3; ++i)
     server.receive(protocol::encode_sync(i));
   server.receive(protocol::encode(protocol::Open{}));
+  server.receive(protocol::encode(protocol::Enable{true}));
   server.receive(bytes);
   // And once more with a frame around it, so that commands with damaged bodies arrive.
   if (!bytes.empty())
@@ -101,6 +133,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     decode_everything(protocol::Bytes(
         input.begin(),
         input.begin() + static_cast<std::ptrdiff_t>(std::min(size, protocol::kMaxBody))));
+  check(input);
   serve(input);
   return 0;
 }

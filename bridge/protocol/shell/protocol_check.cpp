@@ -96,8 +96,9 @@ class Proxy {
                      -> std::optional<protocol::RobotParameters> {
           for (const std::string& name :
                protocol::parameter_file_names(identity.robot_class, identity.subclass))
-            if (std::filesystem::exists(robots + "/" + name))
-              return protocol::load_parameters(robots + "/" + name);
+            if (const auto path = std::filesystem::path(robots) / name;
+                std::filesystem::exists(path))
+              return protocol::load_parameters(path);
           return std::nullopt;
         }) {}
   ~Proxy() { ::close(listener_); }

@@ -190,7 +190,8 @@ Information interpret(const InformationPacket& packet, const RobotParameters& pa
   // The other bits are the bumpers of later robots.
   out.left_stalled = (packet.left_stall & 1U) != 0;
   out.right_stalled = (packet.right_stall & 1U) != 0;
-  out.bumpers = (packet.left_stall | static_cast<unsigned>(packet.right_stall) << 8U);
+  out.bumpers = static_cast<std::uint16_t>(packet.left_stall |
+                                           static_cast<unsigned>(packet.right_stall) << 8U);
   out.control = norm2_angle(packet.control * parameters.angle_unit);
   out.ptu = packet.ptu;
   out.say = packet.say;

@@ -193,9 +193,9 @@ class Parser {
   }
 
   void baud(LineReader& in) {
-    constexpr std::array kRates{0L, 9600L, 19200L, 38400L, 57600L, 115200L};  // of HOSTBAUD
-    const long rate = in.integer("baud rate", 0, kRates.back());
-    if (std::find(kRates.begin(), kRates.end(), rate) == kRates.end())
+    constexpr std::array rates{0L, 9600L, 19200L, 38400L, 57600L, 115200L};  // of HOSTBAUD
+    const long rate = in.integer("baud rate", 0, rates.back());
+    if (std::find(rates.begin(), rates.end(), rate) == rates.end())
       in.fail("expected 0 (never), 9600, 19200, 38400, 57600 or 115200");
     parameters_.switch_to_baud = static_cast<int>(rate);
   }
