@@ -35,6 +35,11 @@ using Clock = std::chrono::steady_clock;
 // Silence after which a packet that has begun will not be completed.
 constexpr double kGap = 0.050;  // [s]
 
+// Free running, time is at most so far ahead of a client: less than the watchdog's two seconds. A
+// client that says nothing for so long by the wall clock is not waited for any more.
+constexpr int kMostAhead = 10;    // [cycles]
+constexpr double kGivenUp = 2.0;  // [s]
+
 // Bytes that may wait for a client that does not read. It then loses whole packets, the newest:
 // they are stale when it wakes.
 constexpr std::size_t kMost = 65536;
@@ -257,6 +262,15 @@ class Station {
     fds.push_back({listener_.fd(), POLLIN, 0});
   }
   bool packet_pending() const { return server().packet_pending(); }
+
+  // For free running: whether the client may still be at work on what it has been sent. It is not
+  // waited for without end.
+  bool is_behind() const { return server().is_open() && cycles_ >= kMostAhead; }
+  double seconds_until_given_up() const {
+    return kGivenUp - std::chrono::duration<double>(Clock::now() - heard_).count();
+  }
+  void count_cycle() { ++cycles_; }
+
   bool sending() const { return !output_.empty(); }
 
   void gap() { simulation_.gap(number_); }
@@ -283,6 +297,8 @@ class Station {
     std::array<std::uint8_t, 4096> buffer{};
     const ssize_t size = ::read(client_.get(), buffer.data(), buffer.size());
     if (size > 0) {
+      cycles_ = 0;
+      heard_ = Clock::now();
       simulation_.receive(number_, {buffer.data(), static_cast<std::size_t>(size)});
     } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
       hang_up("the client has gone");
@@ -353,6 +369,8 @@ class Station {
   Listener listener_;
   Fd client_;
   protocol::Bytes output_;
+  int cycles_ = 0;  // since the client was heard
+  Clock::time_point heard_ = Clock::now();
 };
 
 class Host {
@@ -399,11 +417,8 @@ class Host {
   int schedule() {
     const bool ran = running_;
     running_ = simulation_.runs();
-    if (running_ && unpaced_) {
-      waits_ = std::any_of(stations_.begin(), stations_.end(),
-                           [](const auto& station) { return station->sending(); });
-      return waits_ ? -1 : 0;
-    }
+    if (running_ && unpaced_)
+      return patience();
     if (running_) {
       if (!ran)
         pace_.restart();
@@ -423,6 +438,22 @@ class Host {
     return -1;
   }
 
+  // Free running: how long to wait for clients [ms].
+  int patience() {
+    double wait = 0.0;
+    waits_ = false;
+    for (const auto& station : stations_) {
+      if (station->sending())
+        waits_ = true;
+      else if (station->is_behind())
+        wait = std::max(wait, station->seconds_until_given_up());
+    }
+    if (waits_)
+      return -1;
+    waits_ = wait > 0.0;
+    return waits_ ? 1 + static_cast<int>(wait * 1000.0) : 0;
+  }
+
   void step(const std::vector<pollfd>& fds) {
     const bool timer_ready = fds[1].revents != 0;
     if (timer_ready) {
@@ -438,8 +469,11 @@ class Host {
       else if (timer_ready && !running_)
         stations_[i]->gap();
     }
-    if (running_ && unpaced_ && !waits_)
+    if (running_ && unpaced_ && !waits_) {
       simulation_.advance(kTicksPerPacket);
+      for (const auto& station : stations_)
+        station->count_cycle();
+    }
     for (const auto& station : stations_)
       station->write(running_);
     for (std::size_t i = 0; i < stations_.size(); ++i)

@@ -20,6 +20,9 @@ constexpr double kMostPushed = 10.0;  // [kg]
 // How much a box gives way beyond what it must, so that the next look finds it out of the way.
 constexpr double kGiven = 1e-7;  // [m]
 
+// Ticks after which a sonar's sound has passed whoever could hear it: 14 m.
+constexpr std::uint64_t kPingTicks = 4;
+
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -102,6 +105,17 @@ void Scene::tick() {
     turn(i);
   for (const auto& robot : robots_)
     robot->tick();
+}
+
+void Scene::sound(const Ping& ping) {
+  if (robots_.size() < 2 || ping.robot == kNobody)
+    return;
+  // In order of time: the oldest go first.
+  const auto fresh = std::find_if(pings_.begin(), pings_.end(), [&](const Ping& old) {
+    return old.tick + kPingTicks > ping.tick;
+  });
+  pings_.erase(pings_.begin(), fresh);
+  pings_.push_back(ping);
 }
 
 void Scene::moved(RobotNumber number) {

@@ -19,6 +19,10 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
 // What stands nearer than this before a thing hides it [m]: not its own sides.
 constexpr double kBefore = 0.01;
 
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 SonarModel with_range(SonarModel model, double range) {
   model.max_range = std::min(model.max_range, range);
   return model;
@@ -36,7 +40,7 @@ std::vector<std::uint8_t> default_polling(std::size_t sonars, int arrays) {
   return sequence;
 }
 
-Sonars::Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
+Sonars::Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
                const SonarModel& model, std::uint64_t seed)
     : scene_(&scene),
       self_(self),
@@ -44,9 +48,17 @@ Sonars::Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParame
       model_(with_range(model, parameters.sonar_max_range)),
       near_(scene.world(), model_.max_range + farthest(units_)),
       random_(seed, 2),
+      crosstalk_(seed, 3),
       period_(std::max(1, static_cast<int>(std::lround(parameters.sonar_period / kTick)))),
       arrays_(std::clamp(parameters.sonar_arrays, 1, period_)),
-      reach_(model_.max_range + farthest(units_)) {
+      // Robots that are switched on together do not fire together.
+      progress_(self == kNobody ? 0 : static_cast<int>(self % static_cast<RobotNumber>(period_))),
+      reach_(model_.max_range + farthest(units_)),
+      corner_cosine_(std::cos(model_.corner_cone / 2.0)) {
+  const double widest = std::max({model_.lost_angle, model_.corner_cone / 2.0, model_.cone / 2.0});
+  // A wider one is taken for a half-plane.
+  if (widest < radians(89.0))
+    widest_ = {std::cos(widest), std::sin(widest)};
   set_default_polling();
 }
 
@@ -77,28 +89,39 @@ std::optional<SonarEcho> Sonars::tick(const Pose& robot_in_world) {
 SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   const Pose at = compose(robot_in_world, units_[number].pose_in_robot);
   Firing firing{at.position(), at.direction(), 0.0, std::nullopt};
+  scene_->sound({self_, scene_->ticks(), firing.origin, firing.ahead});
   // Always the same draws, so that one reading's fate does not shift those of the next.
   const bool dropped = random_.chance(model_.dropout);
   const bool rough = random_.chance(model_.roughness);
   const bool corners_lost = random_.chance(model_.corner_loss);
   firing.aside = random_.uniform();
   const double noise = random_.normal();
+  const bool crosstalk = crosstalk_.chance(model_.crosstalk);
 
-  // Only segments that reach into the half-plane ahead, and into the beam's circle.
+  // Only what reaches into the widest sector that is listened to.
+  const Vec2& ahead = firing.ahead;
+  const Vec2 aside(-ahead.y() * widest_.y(), ahead.x() * widest_.y());
+  const Vec2 leftmost = widest_.x() * ahead + aside;
+  const Vec2 rightmost = widest_.x() * ahead - aside;
   in_beam_.segments.clear();
   in_beam_.discs.clear();
   scene_->add_movable(robot_in_world.position(), reach_, self_, in_beam_);
   const std::size_t movable = in_beam_.segments.size();
   for (const Segment& segment : near_.around(robot_in_world.position())) {
-    if ((segment.from - firing.origin).dot(firing.ahead) > 0.0 ||
-        (segment.to - firing.origin).dot(firing.ahead) > 0.0)
-      in_beam_.segments.push_back(segment);
+    const Vec2 from = segment.from - firing.origin;
+    const Vec2 to = segment.to - firing.origin;
+    if ((cross(leftmost, from) > 0.0 && cross(leftmost, to) > 0.0) ||
+        (cross(rightmost, from) < 0.0 && cross(rightmost, to) < 0.0) ||
+        (from.dot(ahead) < 0.0 && to.dot(ahead) < 0.0))
+      continue;
+    in_beam_.segments.push_back(segment);
   }
 
   hear_surfaces(firing);
   if (!corners_lost) {
     for (const Corner* corner : near_.corners_around(robot_in_world.position()))
-      if (is_sharp_from(*corner, firing.origin))
+      if (in_corner_cone(firing, corner->point - firing.origin) &&
+          is_sharp_from(*corner, firing.origin))
         hear_corner(corner->point, 0.0, firing);
     for (std::size_t i = 0; i < movable; ++i) {
       hear_corner(in_beam_.segments[i].from, 0.0, firing);
@@ -109,6 +132,12 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   }
   if (rough)
     hear_rough(at, firing);
+
+  const auto heard = firing.nearest;
+  if (crosstalk && arrays_ > 1 && before_ && *before_ < firing.nearest.value_or(model_.max_range))
+    firing.nearest = before_;
+  before_ = heard;
+  hear_others(firing);
 
   if (!firing.nearest || dropped)
     return {number, std::nullopt};
@@ -148,9 +177,33 @@ void Sonars::hear_corner(const Vec2& corner, double radius, Firing& firing) cons
   const Vec2 way = corner - firing.origin;
   const double middle = way.norm();
   const double range = middle - radius;
-  if (range > 0.0 && way.dot(firing.ahead) >= middle * std::cos(model_.corner_cone / 2) &&
-      is_first(firing, way, range))
+  if (range > 0.0 && in_corner_cone(firing, way) && is_first(firing, way, range))
     firing.nearest = range;
+}
+
+bool Sonars::in_corner_cone(const Firing& firing, const Vec2& way) const {
+  const double along = way.dot(firing.ahead);
+  return along >= 0.0 && along * along >= corner_cosine_ * corner_cosine_ * way.squaredNorm();
+}
+
+// What other robots send comes straight, so it is loud, and from half as far as it seems.
+void Sonars::hear_others(Firing& firing) const {
+  for (const Ping& ping : scene_->pings()) {
+    const Vec2 way = ping.origin - firing.origin;
+    if (ping.robot == self_ || !in_corner_cone(firing, way))
+      continue;
+    const double apart = way.norm();
+    // How far the sound was on its way when this sonar began to listen.
+    const double gone = static_cast<double>(scene_->ticks() - ping.tick) * kTick * kSound;
+    const double range = (apart - gone) / 2.0;
+    if (range < model_.min_range || range >= firing.nearest.value_or(model_.max_range) ||
+        -way.dot(ping.ahead) < apart * corner_cosine_)
+      continue;
+    // The other's sonar stands within its hull.
+    const double free = apart - 2.0 * scene_->robot(ping.robot).radius();
+    if (free <= 0.0 || !cast_ray(in_beam_, firing.origin, way / apart, free))
+      firing.nearest = range;
+  }
 }
 
 void Sonars::hear_rough(const Pose& at, Firing& firing) const {

@@ -61,11 +61,36 @@ TEST(Scene, RobotsSeeEachOther) {
   exact.noise = exact.relative_noise = exact.dropout = 0.0;
   for (RobotNumber i = 0; i < 2; ++i) {
     Sonars sonars(scene, i, with_sonar(), exact, 1);
+    for (int tick = 0; tick < 10; ++tick)
+      scene.tick();  // or the second would hear the first one's sound
     const auto echo = sonars.fire(0, scene.robot(i).pose_in_world());
     ASSERT_TRUE(echo.range);
     EXPECT_NEAR(*echo.range, 2.0 - 0.22, 1e-9) << i;
   }
   EXPECT_NEAR(scene.robot(0).clearance(), 2.0 - 0.44, 1e-12);
+}
+
+// Two sonars that look at each other: what the one sends the other hears, once, and straight.
+TEST(Scene, SonarsHearEachOther) {
+  const World world = arena();
+  SonarModel exact;
+  exact.noise = exact.relative_noise = exact.dropout = exact.crosstalk = 0.0;
+  const auto hears = [&](double th, int ticks_between, const Pose& other) {
+    Scene scene(world);
+    scene.add_robot(with_sonar(), {2.0, 5.0, 0.0}, 1);
+    scene.add_robot(with_sonar(), other, 2);
+    Sonars one(scene, 0, with_sonar(), exact, 1);
+    Sonars two(scene, 1, with_sonar(), exact, 1);
+    one.fire(0, {2.0, 5.0, th});
+    for (int i = 0; i < ticks_between; ++i)
+      scene.tick();
+    return two.fire(0, other).range.value_or(0.0);
+  };
+  const Pose facing{6.0, 5.0, kPi};
+  EXPECT_NEAR(hears(0.0, 0, facing), 2.0, 1e-9);                          // half of 4 m
+  EXPECT_NEAR(hears(0.0, 1, facing), (4.0 - 0.01 * kSound) / 2.0, 1e-9);  // late
+  EXPECT_NEAR(hears(0.0, 2, facing), 4.0 - 0.22, 1e-9);                   // too late: an echo
+  EXPECT_NEAR(hears(kPi / 2.0, 0, facing), 4.0 - 0.22, 1e-9);             // looks elsewhere
 }
 
 TEST(Scene, RobotsStopEachOther) {

@@ -17,7 +17,8 @@ RobotParameters one_sonar(double x = 0.0, double th = 0.0) {
 
 SonarModel exact() {
   SonarModel model;
-  model.noise = model.relative_noise = model.dropout = model.roughness = model.corner_loss = 0.0;
+  model.noise = model.relative_noise = model.dropout = model.roughness = model.corner_loss =
+      model.crosstalk = 0.0;
   return model;
 }
 
@@ -29,7 +30,7 @@ World wall_at(double millimetres) {
 
 TEST(Sonars, RangeIsFromTheTransducer) {
   const World world = wall_at(2000);
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(0.13), exact(), 1);
   const auto echo = sonars.fire(0, {0.5, 1.0, 0.0});
   ASSERT_TRUE(echo.range);
@@ -38,7 +39,7 @@ TEST(Sonars, RangeIsFromTheTransducer) {
 
 TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
   const World world = wall_at(2000);
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   for (const double off : {0.0, 10.0, -14.0}) {
     const auto echo = sonars.fire(0, {0.0, 0.0, radians(off)});
@@ -50,7 +51,7 @@ TEST(Sonars, AWallAnswersFromWhereItIsMetAtARightAngle) {
 TEST(Sonars, TheNearestCounts) {
   const World world = parse_world(
       "width 9000 height 9000\n2000 -1000 2000 1000  3000 -4000 3000 4000  500 2000 700 2000", "w");
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   EXPECT_NEAR(*sonars.fire(0, {0.0, 0.0, 0.0}).range, 2.0, 1e-9);
   // The far wall is met behind the near one's end; the end itself is 14 degrees aside.
@@ -59,7 +60,7 @@ TEST(Sonars, TheNearestCounts) {
 
 TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
   const World world = wall_at(6000);
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
   EXPECT_FALSE(sonars.fire(0, {0.0, 0.0, 0.0}).range);
   EXPECT_TRUE(sonars.fire(0, {1.5, 0.0, 0.0}).range);
@@ -70,7 +71,7 @@ TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
 TEST(Sonars, GlancingSurfacesAreLost) {
   const auto share = [](double distance_mm, double off) {
     const World world = wall_at(distance_mm);
-    const Scene scene(world);
+    Scene scene(world);
     Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);
     constexpr int kFirings = 4000;
     int heard = 0;
@@ -89,7 +90,7 @@ TEST(Sonars, GlancingSurfacesAreLost) {
 
 TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
   const World world = wall_at(1000);
-  const Scene scene(world);
+  Scene scene(world);
   SonarModel model = exact();
   model.roughness = 1.0;
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
@@ -104,7 +105,7 @@ TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
   const World world = parse_world(
       "width 9000 height 9000\n0 1000 2000 1000 2900 1000 9000 1000 5000 1000 5000 2000",
       "door.wld");
-  const Scene scene(world);
+  Scene scene(world);
   SonarModel model = exact();
   model.lost_angle = model.critical_angle;
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
@@ -125,7 +126,7 @@ TEST(Sonars, NoiseAndDropouts) {
   const World world = wall_at(2000);
   SonarModel model;
   model.dropout = 0.1;
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), model, 1);
   constexpr int kFirings = 20000;
   int heard = 0;
@@ -141,7 +142,7 @@ TEST(Sonars, NoiseAndDropouts) {
   }
   EXPECT_NEAR(static_cast<double>(heard) / kFirings, 0.9, 0.01);
   EXPECT_NEAR(sum / heard, 0.0, 0.0005);
-  EXPECT_NEAR(std::sqrt(squares / heard), 0.003 + 0.003 * 2.0, 0.0003);
+  EXPECT_NEAR(std::sqrt(squares / heard), model.noise + 2.0 * model.relative_noise, 0.0003);
 }
 
 TEST(Sonars, FireByThePollingSequenceEvery40Milliseconds) {
@@ -149,7 +150,7 @@ TEST(Sonars, FireByThePollingSequenceEvery40Milliseconds) {
   RobotParameters parameters;
   for (std::uint8_t i = 0; i < 7; ++i)
     parameters.sonars.push_back({i, {}});
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, parameters, exact(), 1);
   const auto fired = [&](int ticks) {
     std::vector<int> numbers;
@@ -175,7 +176,7 @@ TEST(Sonars, ArraysTakeTurns) {
   for (std::uint8_t i = 0; i < 16; ++i)
     parameters.sonars.push_back({i, {}});
   parameters.sonar_arrays = 2;
-  const Scene scene(world);
+  Scene scene(world);
   Sonars sonars(scene, kNobody, parameters, exact(), 1);
   std::vector<int> numbers;
   for (int i = 0; i < 100; ++i)
@@ -189,6 +190,26 @@ TEST(Sonars, ArraysTakeTurns) {
   parameters.sonar_max_range = 1.0;
   Sonars near_sighted(scene, kNobody, parameters, exact(), 1);
   EXPECT_FALSE(near_sighted.fire(0, {}).range);
+}
+
+// A near thing that the sonar before has heard, and this one hears instead of the wall.
+TEST(Sonars, TheLastFiringsEchoIsHeardNowAndThen) {
+  const World world =
+      parse_world("width 9000 height 9000 2000 -5000 2000 5000 -5000 -1000 1000 -1000", "wall.wld");
+  Scene scene(world);
+  RobotParameters parameters = one_sonar();
+  parameters.sonars.push_back({1, {0.0, 0.0, radians(-90.0)}});
+  parameters.sonar_arrays = 2;
+  SonarModel model = exact();
+  model.crosstalk = 0.1;
+  Sonars sonars(scene, kNobody, parameters, model, 1);
+  int near = 0;
+  constexpr int kFirings = 5000;
+  for (int i = 0; i < kFirings; ++i) {
+    EXPECT_NEAR(*sonars.fire(1, {}).range, 1.0, 1e-9);  // never farther
+    near += *sonars.fire(0, {}).range < 1.5 ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(near) / kFirings, 0.1, 0.02);
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ Result run(const sim::World& world, const protocol::RobotParameters& parameters,
 
   std::vector<sim::Sonars> sonars;
   for (sim::RobotNumber i = 0; i < robots; ++i)
-    sonars.emplace_back(simulation.scene(), i, parameters, sim::SonarModel{}, i);
+    sonars.emplace_back(simulation.scene(), sim::kNobody, parameters, sim::SonarModel{}, i);
   const double begin_of_sonars = seconds();
   double sum = 0.0;
   std::size_t at = 0;

@@ -34,7 +34,7 @@ struct HostOptions {
   std::uint64_t seed = 1;
   bool step = false;  ///< single-step from the start
   /// Times real time, in (0, 1000], or kMaxRate: as fast as the machine computes and the clients
-  /// take what is sent to them. In single step it says nothing.
+  /// answer. In single step it says nothing.
   double rate = 1.0;
   std::string trace;             ///< path of the trace file; empty: none
   std::optional<Pose> position;  ///< start_in_world; otherwise the world file's

@@ -39,6 +39,14 @@ struct Box {
   Pose pose_in_world;
 };
 
+/// A sonar's firing.
+struct Ping {
+  RobotNumber robot = kNobody;
+  std::uint64_t tick = 0;
+  Vec2 origin{0.0, 0.0};
+  Vec2 ahead{1.0, 0.0};
+};
+
 /// A world and what moves in it: people who walk by their scripts and wait where a robot, a door or
 /// a box is in their way (they push a door open that is closed); doors, which stop where somebody
 /// stands in their way; boxes, which robots push; robots. One tick() moves everything by one tick
@@ -70,6 +78,11 @@ class Scene {
   std::array<Segment, 4> sides(const Box& box) const { return outline(box, box.pose_in_world); }
   /// Opens or closes a door; its schedule goes on. False where there is no such door.
   bool set_door(std::string_view name, bool open);
+
+  /// A sonar has fired; what a robot alone in a scene does is not kept.
+  void sound(const Ping& ping);
+  /// The firings whose sound may still be on its way, and some that have gone.
+  const std::vector<Ping>& pings() const { return pings_; }
 
   /// Adds the movable things (and posts) within `reach` of `point`, and some that are not, to
   /// `things`; not the robot `but`.
@@ -106,6 +119,7 @@ class Scene {
   std::vector<Box> boxes_;
   std::vector<Disc> posts_;
   std::vector<Segment> segments_;  // each door's leaf, then the four sides of each box
+  std::vector<Ping> pings_;
   double fastest_ = 0.0;
   std::uint64_t ticks_ = 0;
 };

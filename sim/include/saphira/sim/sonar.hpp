@@ -17,8 +17,8 @@ namespace saphira::sim {
 struct SonarModel {
   double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
   double min_range = 0.05;        ///< [m] nearer things read as this
-  double noise = 0.003;           ///< [m] standard deviation of a range...
-  double relative_noise = 0.003;  ///< ...plus this share of it
+  double noise = 0.002;           ///< [m] standard deviation of a range...
+  double relative_noise = 0.002;  ///< ...plus this share of it
   double dropout = 0.005;         ///< probability that an echo is not heard
   /// [rad] A surface whose normal is not more than this off the sonar's axis is always heard...
   double critical_angle = radians(17.0);
@@ -29,12 +29,18 @@ struct SonarModel {
   double corner_cone =
       radians(20.0);          ///< [rad] full width of the beam for corners and round things
   double corner_loss = 0.04;  ///< probability that none of them is heard
+  /// Probability that a sonar hears, where it is nearer, the echo of what the array beside it has
+  /// sent. Firings of one array are too far apart in time for that.
+  double crosstalk = 0.01;
   /// Probability that a surface sends back sound that it is met by at whatever angle: then the
   /// nearest of `rays` over `cone` counts.
   double roughness = 0.02;
   double cone = radians(25.0);  ///< [rad] full width
   int rays = 9;
 };
+
+/// [m/s] of sound.
+inline constexpr double kSound = 343.0;
 
 struct SonarEcho {
   std::uint8_t number = 0;
@@ -47,10 +53,14 @@ std::vector<std::uint8_t> default_polling(std::size_t sonars, int arrays);
 
 /// The sonars of a robot, fired in the polling sequence. Arrays that a robot fires at the same time
 /// take turns here, within the period of one: so many readings a second come as from the robot.
+///
+/// Crosstalk: the sound of another robot's sonar that points this way is heard as if it were an
+/// echo, where it comes before the echo does; and of a robot with several arrays now and then
+/// (SonarModel::crosstalk) the echo of the sonar that fired before.
 class Sonars {
  public:
   /// Of the robot `self`, which they do not see. The scene outlives them.
-  Sonars(const Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
+  Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
          const SonarModel& model, std::uint64_t seed);
 
   /// Which sonars fire, over and over; those that the robot does not have are left out.
@@ -77,19 +87,25 @@ class Sonars {
   void hear_corner(const Vec2& corner, double radius, Firing& firing) const;
   // Whether nothing stands before that, and it is nearer than what has been heard.
   bool is_first(const Firing& firing, const Vec2& way, double range) const;
+  bool in_corner_cone(const Firing& firing, const Vec2& way) const;
+  void hear_others(Firing& firing) const;
 
-  const Scene* scene_;
+  Scene* scene_;
   RobotNumber self_;
   std::vector<protocol::SonarUnit> units_;
   SonarModel model_;
   Neighbourhood near_;
   Random random_;
+  Random crosstalk_;  // apart, so that the two can be told apart in a run
   std::vector<std::uint8_t> sequence_;
   std::size_t next_ = 0;
   int period_;        // [ticks] of one array
   int arrays_;        // firings in a period
   int progress_ = 0;  // to the next firing, when it has come to a period
   double reach_;      // [m] from the robot's middle
+  double corner_cosine_;
+  Vec2 widest_{0.0, 1.0};         // cosine and sine of the largest angle off the axis that matters
+  std::optional<double> before_;  // [m] what the last firing has heard
   Things in_beam_;
 };
 
