@@ -57,8 +57,8 @@ TEST_F(Processes, WriterThatIsKilledIsLostAfterItsLease) {
   std::vector<WriterId> lost;
   EXPECT_TRUE(eventually(*node_, [&] { return !(lost = goals.take_lost()).empty(); }));
   EXPECT_EQ(lost, std::vector<WriterId>{got[0].info.writer});
-  EXPECT_GT(seconds_since(killed), 1.5);  // a short silence is not the end
-  EXPECT_LT(seconds_since(killed), 8.0);  // the lease of 3 s, and a machine that is busy
+  EXPECT_GT(seconds_since(killed), 8.0);   // a silence of seconds is not the end
+  EXPECT_LT(seconds_since(killed), 15.0);  // the lease of 10 s, and a machine that is busy
   EXPECT_EQ(goals.matched(), 0U);
   // It was not withdrawn: what becomes of it is for its reader to say.
   EXPECT_TRUE(goals.take().empty());
