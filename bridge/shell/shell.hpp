@@ -105,6 +105,7 @@ class Shell {
   bus::Reader<v1::SoundCommand> sound_;
   bus::Reader<v1::ServerCommand> server_;
   bus::Reader<v1::SerialCommand> serial_;
+  std::size_t device_writers_ = 0;  ///< that were matched at the last look
   bus::Reader<v1::StepPermit> permits_;
 
   transport::Link link_;

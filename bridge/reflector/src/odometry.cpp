@@ -8,6 +8,12 @@
 
 namespace saphira::reflector {
 
+namespace {
+
+constexpr double kCounts = 32768.0;  // of a position, before it rolls over
+
+}  // namespace
+
 std::string to_text(const OdometryMemory& m) {
   char text[256];
   std::snprintf(text, sizeof text, "odom1 %llu %u %u %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n",
@@ -69,7 +75,6 @@ bool Odometry::update(const RawPose& raw, double dt, std::uint64_t fresh) {
     }
     memory_ = *remembered_;
     // Half of what the counters can tell apart is a way the other way round.
-    constexpr double kCounts = 32768.0;
     allowed = std::min(settings_.near_distance + slack_.distance,
                        std::max(settings_.near_distance, 0.4 * kCounts * settings_.distance_unit));
     if (std::abs(norm2_angle(raw.th - memory_.raw.th)) > settings_.near_angle + slack_.angle) {

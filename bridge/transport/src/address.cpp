@@ -59,8 +59,9 @@ void parse_serial(const std::string& text, Address& address) {
       address.parity = word[1];
       address.stop_bits = word[2] - '0';
     } else {
-      throw std::invalid_argument(
-          "\"" + text + "\": expected 8N1, 8E1, 8O1, 8N2 or rtscts, found \"" + word + "\"");
+      std::string trouble = "\"";
+      trouble.append(text).append("\": expected 8N1, 8E1, 8O1, 8N2 or rtscts, found \"");
+      throw std::invalid_argument(trouble.append(word).append("\""));
     }
   }
 }
