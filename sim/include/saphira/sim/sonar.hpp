@@ -17,8 +17,8 @@ namespace saphira::sim {
 struct SonarModel {
   double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
   double min_range = 0.05;        ///< [m] nearer things read as this
-  double noise = 0.003;           ///< [m] standard deviation of a range...
-  double relative_noise = 0.003;  ///< ...plus this share of it
+  double noise = 0.002;           ///< [m] standard deviation of a range...
+  double relative_noise = 0.002;  ///< ...plus this share of it
   double dropout = 0.005;         ///< probability that an echo is not heard
   /// [rad] A surface whose normal is not more than this off the sonar's axis is always heard...
   double critical_angle = radians(17.0);

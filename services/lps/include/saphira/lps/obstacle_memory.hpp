@@ -19,7 +19,7 @@ struct MemorySettings {
   double silent = 0.4;          ///< taken away where a beam without an echo has passed
   double silent_range = 1.0;    ///< [m] up to which silence means something
   double most = 4.0;            ///< a belief stays within this of 0
-  double obstacle = 0.6;        ///< belief from which on there is one
+  double obstacle = 0.8;        ///< belief from which on there is one
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
 
