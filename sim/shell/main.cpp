@@ -101,8 +101,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of all that is random")->capture_default_str();
   app.add_flag("--step", options.step, "Single-step from the start: time passes by command 64");
-  app.add_option("--rate", rate,
-                 "Times real time; max: as fast as the clients answer")
+  app.add_option("--rate", rate, "Times real time; max: as fast as the clients answer")
       ->capture_default_str()
       ->check([](const std::string& text) {
         return text == "max" ? std::string() : CLI::Range(1e-6, 1000.0)(text);

@@ -30,13 +30,17 @@ double seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+constexpr double kCell = 0.1;  // [m]
+
 /// Places that a robot can drive to from the world's start, in no order.
 std::vector<Vec2> reachable(const sim::World& world, double radius) {
-  constexpr double kCell = 0.1;
   const auto columns = static_cast<int>(world.width / kCell);
   const auto rows = static_cast<int>(world.height / kCell);
-  const auto index = [&](int x, int y) { return static_cast<std::size_t>(y * columns + x); };
-  std::vector<bool> seen(static_cast<std::size_t>(columns * rows));
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(x);
+  };
+  std::vector<bool> seen(index(0, rows));
   std::deque<std::pair<int, int>> open{
       {static_cast<int>(world.start->x / kCell), static_cast<int>(world.start->y / kCell)}};
   std::vector<Vec2> found;
@@ -104,7 +108,7 @@ Result run(const sim::World& world, const protocol::RobotParameters& parameters,
   sim::Simulation simulation(world);
   std::vector<Wanderer> clients;
   while (simulation.size() < robots) {
-    const Vec2 at = places[random.next() % places.size()];
+    const Vec2& at = places[random.next() % places.size()];
     if (simulation.scene().distance(at) < parameters.radius + 0.05)
       continue;
     sim::ServerOptions options;
@@ -179,6 +183,7 @@ int main(int argc, char** argv) {
     for (const std::size_t robots : {1U, 10U, 100U}) {
       const auto cycles = static_cast<int>(length * 10.0 / static_cast<double>(robots));
       std::vector<Result> results;
+      results.reserve(3);
       for (int i = 0; i < 3; ++i)
         results.push_back(run(world, parameters, places, robots, cycles));
       std::sort(results.begin(), results.end(),

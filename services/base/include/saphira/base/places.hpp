@@ -7,8 +7,8 @@ namespace saphira {
 /// The folder of the running program's file; our other programs are beside it.
 std::string program_folder();
 
-/// The folder of robots, worlds, maps and deployments: installed beside the program (share/saphira),
-/// otherwise that of the source tree. std::runtime_error where there is neither.
+/// The folder of robots, worlds, maps and deployments: installed beside the program
+/// (share/saphira), otherwise that of the source tree. std::runtime_error where there is neither.
 std::string config_folder();
 
 /// The file that a person means by `name`: a path, or a file of `folder`, with or without its
