@@ -254,10 +254,11 @@ class Discovery : public fdds::DomainParticipantListener {
     put(info.info, true, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
   }
 
-  // One of our endpoints, and a policy for which another did not match.
-  void add_incompatible(const EndpointEntry& own, fdds::QosPolicyId_t policy) {
+  // Fast DDS found an endpoint on the other side of this topic that does not match, by this policy.
+  // It says so again at each announcement, and may say so before the endpoint of ours is made.
+  void add_incompatible(const std::string& topic, bool own_writes, fdds::QosPolicyId_t policy) {
     const std::scoped_lock lock(mutex_);
-    incompatible_.push_back({own, policy_name(policy)});
+    incompatible_.insert({topic, own_writes, policy_name(policy)});
     wake_->signal();
   }
   void add_own(const EndpointEntry& own) {
@@ -282,9 +283,8 @@ class Discovery : public fdds::DomainParticipantListener {
   std::vector<std::string> take_troubles() {
     const std::scoped_lock lock(mutex_);
     std::vector<std::string> texts;
-    for (const auto& [own, policy] : incompatible_)
-      texts.push_back(describe_incompatible(own, policy));
-    incompatible_.clear();
+    for (const auto& found : std::exchange(incompatible_, {}))
+      tell_incompatible(found, texts);
     // Fast DDS says nothing where only the names of the types differ.
     if (std::exchange(type_check_due_, false)) {
       for (const auto& own : own_)
@@ -329,19 +329,34 @@ class Discovery : public fdds::DomainParticipantListener {
     return endpoint;
   }
 
-  std::string describe_incompatible(const EndpointEntry& own, const std::string& policy) {
-    for (const auto& [guid, other] : endpoints_) {
-      if (other.writer == own.writer || other.topic != own.topic ||
-          !partitions_meet(other.robot, own.robot))
+  struct Incompatible {
+    std::string topic;
+    bool own_writes = false;
+    std::string policy;
+    auto operator<=>(const Incompatible&) const = default;
+  };
+
+  // Each pair of endpoints once; where no pair explains it, the policy once.
+  void tell_incompatible(const Incompatible& found, std::vector<std::string>& texts) {
+    bool explained = false;
+    for (const auto& own : own_) {
+      if (own.topic != found.topic || own.writer != found.own_writes)
         continue;
-      const std::string why =
-          own.writer ? why_incompatible(own, other) : why_incompatible(other, own);
-      if (!why.empty() && told_.insert({own.id, other.id}).second)
-        return "topic " + own.topic + ": " + name(with_program(guid, other)) + " does not match, " +
-               why;
+      for (const auto& [guid, other] : endpoints_) {
+        if (other.writer == own.writer || other.topic != own.topic ||
+            !partitions_meet(other.robot, own.robot))
+          continue;
+        const std::string why =
+            own.writer ? why_incompatible(own, other) : why_incompatible(other, own);
+        explained = explained || !why.empty();
+        if (!why.empty() && told_.insert({own.id, other.id}).second)
+          texts.push_back("topic " + own.topic + ": " + name(with_program(guid, other)) +
+                          " does not match, " + why);
+      }
     }
-    return "topic " + own.topic + ": " + (own.writer ? "a reader" : "a writer") +
-           " does not match, " + policy;
+    if (!explained && told_.insert({found.topic, found.policy}).second)
+      texts.push_back("topic " + found.topic + ": " + (found.own_writes ? "a reader" : "a writer") +
+                      " does not match, " + found.policy);
   }
 
   template <class Proxy>
@@ -393,7 +408,7 @@ class Discovery : public fdds::DomainParticipantListener {
   std::map<rtps::GuidPrefix_t, Program> programs_;
   std::map<rtps::GUID_t, EndpointEntry> endpoints_;
   std::vector<EndpointEntry> own_;
-  std::vector<std::pair<EndpointEntry, std::string>> incompatible_;
+  std::set<Incompatible> incompatible_;
   std::set<std::pair<std::string, std::string>> told_;
   bool type_check_due_ = false;
 };
@@ -541,7 +556,7 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
   }
   void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
                                    const fdds::OfferedIncompatibleQosStatus& status) override {
-    bus_->discovery.add_incompatible(own_, status.last_policy_id);
+    bus_->discovery.add_incompatible(own_.topic, own_.writer, status.last_policy_id);
   }
 
  private:
@@ -626,7 +641,7 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
   }
   void on_requested_incompatible_qos(fdds::DataReader* /*reader*/,
                                      const fdds::RequestedIncompatibleQosStatus& status) override {
-    bus_->discovery.add_incompatible(own_, status.last_policy_id);
+    bus_->discovery.add_incompatible(own_.topic, own_.writer, status.last_policy_id);
   }
 
  private:
