@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/lps/artifact.hpp"
+
+namespace saphira::lps {
+
+/// Which side of the robot something was seen on.
+enum class Side { none, left, right };
+
+/// A sonar reading by what is on the bus: the cycle of the RobotState and the sonar's number.
+struct ReadingId {
+  std::uint64_t cycle = 0;
+  int sonar = 0;
+
+  bool operator==(const ReadingId&) const = default;
+};
+
+/// What sensor interpretation found: a feature (a stretch of wall, one end of an opening) or an
+/// object hypothesis (a door, a junction, a corridor), paper 3.2.1. It says which readings made it,
+/// how sure it is, and since when it is seen.
+///
+/// In odom, where it keeps its place for as long as dead reckoning is to be trusted.
+struct Percept {
+  std::uint32_t id = 0;  ///< stays while it is the same thing that is seen; never used again
+  /// wall: a stretch of surface. breach: one end of an opening (a wall ends here). door: an opening
+  /// of a door's width. junction: a wider one. corridor: two parallel walls.
+  PointType type = PointType::invalid;
+  Side side = Side::none;
+  /// The middle; of a breach, the end of the wall. The heading is along a wall or corridor, roughly
+  /// as the robot went when it saw it; of a door, junction or breach it is the normal of the
+  /// opening, towards the side where the robot saw it from.
+  Pose pose_in_odom;
+  double length = 0.0;  ///< [m] of walls and corridors
+  double width = 0.0;   ///< [m] of corridors, and of openings
+  /// One sigma, in the percept's own frame: along and across its heading [m], and of it [rad].
+  double sigma_along = 0.0;
+  double sigma_across = 0.0;
+  double sigma_heading = 0.0;
+  double confidence = 0.0;  ///< [0..1] that there is such a thing
+  std::uint64_t since = 0;  ///< cycle when it was seen first
+  std::uint64_t seen = 0;   ///< cycle of the newest reading that made it
+  std::vector<ReadingId> readings;
+
+  /// A hypothesis of an object, not only a feature.
+  bool is_hypothesis() const {
+    return type == PointType::door || type == PointType::junction || type == PointType::corridor;
+  }
+};
+
+}  // namespace saphira::lps

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/behaviors/executive.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/robot.hpp"
+#include "saphira/sim/scene.hpp"
+#include "saphira/sim/sonar.hpp"
+#include "saphira/sim/world.hpp"
+
+namespace saphira::test {
+
+struct DriveOptions {
+  std::string world = "office-floor";  ///< a name of config/worlds
+  std::string robot = "pioneer";       ///< a name of config/robots
+  std::uint64_t seed = 1;
+  double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
+  std::optional<Pose> start_in_world;  ///< else the world's own
+  sim::SonarModel sonar;
+};
+
+/// What one cycle brings, and the truth beside it.
+struct Seen {
+  std::uint64_t cycle = 0;
+  Pose pose_in_odom;  ///< (0, 0, 0) at the start
+  double velocity = 0.0;
+  double rotation_velocity = 0.0;
+  std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+  Pose true_pose_in_world;
+};
+
+/// A robot in a world that drives towards points with AvoidCollision, KeepOff and GoToPos, as the
+/// functor go_to does; cycle by cycle, repeatable to the last bit.
+class Drive {
+ public:
+  explicit Drive(const DriveOptions& options);
+  Drive(const Drive&) = delete;
+  Drive& operator=(const Drive&) = delete;
+
+  /// Moves the world by one cycle under what was asked for last.
+  const Seen& advance();
+
+  /// What is asked for from the next cycle on.
+  void go_to(const Vec2& goal_in_odom, double speed = 0.3, double radius = 0.15);
+  void turn_to(double heading_in_odom);
+  void stop();
+  /// By hand, without behaviors: [m/s], and the heading in odom [rad].
+  void drive(double speed, double heading_in_odom);
+
+  const Seen& seen() const { return seen_; }
+  const sim::World& world() const { return world_; }
+  const protocol::RobotParameters& parameters() const { return parameters_; }
+  std::vector<lps::SonarMount> mounts() const;
+  sim::Scene& scene() { return scene_; }
+  sim::Robot& robot() { return *robot_; }
+  int contacts() const;
+
+ private:
+  protocol::RobotParameters parameters_;
+  sim::World world_;
+  sim::Scene scene_;
+  sim::Robot* robot_;
+  sim::Sonars sonars_;
+  behaviors::Executive executive_;
+  behaviors::Intent intent_;
+  std::vector<behaviors::Intended> intended_;
+  bool by_hand_ = false;
+  double speed_ = 0.0;
+  double heading_ = 0.0;
+  Seen seen_;
+};
+
+/// Drives through points one after the other, over and over where `loop` is set: go_to each, the
+/// next one when it is nearer than `radius`. The points are in the map; the caller says each cycle
+/// where the robot believes to be, or is.
+class Tour {
+ public:
+  Tour(std::vector<Vec2> points_in_map, bool loop, double radius = 0.5, double speed = 0.3)
+      : points_(std::move(points_in_map)), loop_(loop), radius_(radius), speed_(speed) {}
+
+  /// False when the last point is reached; the robot is told to stop then.
+  bool act(Drive& drive, const Pose& pose_in_map);
+  std::size_t reached() const { return reached_; }
+  /// Gives up the present point for the next one.
+  void skip() { ++at_; }
+
+ private:
+  std::vector<Vec2> points_;
+  bool loop_;
+  double radius_;
+  double speed_;
+  std::size_t at_ = 0;
+  std::size_t reached_ = 0;
+};
+
+}  // namespace saphira::test
