@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/maps/map.hpp"
+
+namespace saphira::registration {
+
+/// A straight piece of what the map says is a wall.
+struct Surface {
+  Vec2 from{0.0, 0.0};
+  Vec2 to{0.0, 0.0};
+  double heading = 0.0;      ///< [rad] from `from` to `to`
+  double length = 0.0;       ///< [m]
+  Vec2 free{0.0, 0.0};       ///< the unit normal towards the open side; zero where both are open
+  std::size_t feature = 0;   ///< in the map: the corridor, wall, office or object that it is of
+  bool from_is_end = false;  ///< an opening begins at `from`, which is no inner corner
+  bool to_is_end = false;
+};
+
+/// Where a wall is interrupted: a door, a break, or where another corridor begins.
+struct Opening {
+  Pose pose_in_map;    ///< the middle; the heading is the normal, into the region it is seen in
+  double width = 0.0;  ///< [m]
+  std::size_t feature = 0;  ///< the door, break or junction; else the corridor that begins here
+};
+
+/// What a map's artifacts say of where sound comes back from: a corridor is its two sides and its
+/// ends, an office its four sides, without doors and breaks, and without what lies before another
+/// corridor, a junction or another part of the same office.
+class LineMap {
+ public:
+  explicit LineMap(const maps::Map& map);
+
+  const std::vector<Surface>& surfaces() const { return surfaces_; }
+  const std::vector<Opening>& openings() const { return openings_; }
+  bool empty() const { return surfaces_.empty(); }
+
+ private:
+  void add_region(const maps::Map& map, std::size_t index);
+
+  std::vector<Surface> surfaces_;
+  std::vector<Opening> openings_;
+};
+
+/// The nearest surface to any point of the map, from a grid of which is the nearest: the distance
+/// to that one is exact.
+class Field {
+ public:
+  Field(const maps::Map& map, const LineMap& lines);
+
+  struct Nearest {
+    double distance = 1e3;
+    Vec2 towards{1.0, 0.0};  ///< unit vector
+  };
+  Nearest nearest(const Vec2& position_in_map) const;
+  double distance(const Vec2& position_in_map) const { return nearest(position_in_map).distance; }
+  /// Whether the map knows what is there: the inside of a corridor, junction, lane or office. In a
+  /// map of walls alone it knows all within them.
+  bool known(const Vec2& position_in_map) const;
+  const std::vector<Vec2>& known_cells() const { return known_cells_; }  ///< their middles
+  double cell() const { return kCell; }
+
+ private:
+  static constexpr double kCell = 0.1;    // [m]
+  static constexpr double kMargin = 1.0;  // [m] beyond the outermost surface
+  static constexpr std::uint16_t kNone = 0xFFFF;
+  std::optional<std::size_t> index(const Vec2& position) const;
+
+  Vec2 corner_{0.0, 0.0};
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::uint16_t> nearest_;  // of surfaces, by rows
+  std::vector<std::uint8_t> known_;
+  std::vector<Vec2> known_cells_;
+  struct Line {
+    Vec2 from;
+    Vec2 way;  // unit vector
+    double length;
+  };
+  std::vector<Line> lines_;
+};
+
+}  // namespace saphira::registration
