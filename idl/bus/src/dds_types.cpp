@@ -5,7 +5,9 @@
 #include "behaviorPubSubTypes.h"
 #include "devicePubSubTypes.h"
 #include "intentionPubSubTypes.h"
+#include "mapPubSubTypes.h"
 #include "motionPubSubTypes.h"
+#include "perceptionPubSubTypes.h"
 #include "robotPubSubTypes.h"
 #include "systemPubSubTypes.h"
 
@@ -47,9 +49,11 @@ std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
               v1::DigitalOutputCommandPubSubType, v1::AnalogCommandPubSubType,
               v1::TimerCommandPubSubType, v1::SonarCommandPubSubType, v1::SoundCommandPubSubType,
               v1::ServerCommandPubSubType, v1::SerialCommandPubSubType, v1::MotorCommandPubSubType,
-              v1::GrantPubSubType, v1::StepPermitPubSubType, v1::BehaviorsPubSubType,
-              v1::IntentionsPubSubType, v1::GoalPubSubType, v1::GoalStatusPubSubType,
-              v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
+              v1::GrantPubSubType, v1::StepPermitPubSubType, v1::PerceptionPubSubType,
+              v1::GridTilePubSubType, v1::MapPubSubType, v1::RegistrationPubSubType,
+              v1::RegistrationRequestPubSubType, v1::RegistrationAnswerPubSubType,
+              v1::BehaviorsPubSubType, v1::IntentionsPubSubType, v1::GoalPubSubType,
+              v1::GoalStatusPubSubType, v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
 }
 
 }  // namespace saphira::bus::internal

@@ -29,7 +29,7 @@ constexpr Table<GoalState, v1::GoalState, 7> kStates = {{
     {GoalState::kFailed, v1::GOAL_FAILED},
     {GoalState::kCanceled, v1::GOAL_CANCELED},
 }};
-constexpr Table<GoalCode, v1::GoalCode, 11> kCodes = {{
+constexpr Table<GoalCode, v1::GoalCode, 12> kCodes = {{
     {GoalCode::kNone, v1::CODE_NONE},
     {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
     {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
@@ -38,6 +38,7 @@ constexpr Table<GoalCode, v1::GoalCode, 11> kCodes = {{
     {GoalCode::kDeadline, v1::CODE_DEADLINE},
     {GoalCode::kBlocked, v1::CODE_BLOCKED},
     {GoalCode::kNoRobot, v1::CODE_NO_ROBOT},
+    {GoalCode::kNoPosition, v1::CODE_NO_POSITION},
     {GoalCode::kDisposed, v1::CODE_DISPOSED},
     {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
     {GoalCode::kPreempted, v1::CODE_PREEMPTED},
@@ -247,6 +248,17 @@ std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors) {
   for (const v1::BehaviorState& behavior : behaviors.behaviors())
     result.push_back({behavior.name(), behavior.goal(), behavior.progress()});
   return result;
+}
+
+std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,
+                                         std::uint64_t odom) {
+  const bool known = registration.state() == v1::REGISTRATION_TRACKING ||
+                     registration.state() == v1::REGISTRATION_OFF;
+  if (!known || registration.odom() != odom ||
+      registration.stamp().cycle() + kRegistrationLease < cycle)
+    return std::nullopt;
+  const v1::Pose2& pose = registration.odom_in_map();
+  return Pose{pose.x(), pose.y(), pose.th()};
 }
 
 }  // namespace saphira::intentions

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "behavior.h"
 #include "intention.h"
+#include "map.h"
 #include "robot.h"
 #include "saphira/intentions/executor.hpp"
 
@@ -32,5 +35,12 @@ v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);
 std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors);
+
+/// The age [cycles] from which on a sample of registration says nothing any more.
+inline constexpr std::uint64_t kRegistrationLease = 20;
+/// Where the origin of that odom frame is on the map, for the step of `cycle`; none where
+/// registration does not know, speaks of another odom frame, or has not been heard.
+std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,
+                                         std::uint64_t odom);
 
 }  // namespace saphira::intentions

@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
         app.add_option("--memory", options.memory_file,
                        "file that remembers ended goals over a restart, so that none is done twice")
             ->check(in_a_folder);
+        app.add_flag("!--no-registration", options.registration,
+                     "there is no registration service: do not wait for it in lockstep");
       },
       [&](const bus::NodeOptions& node_options, const bus::Stop& stop) {
         bus::Node node(node_options);

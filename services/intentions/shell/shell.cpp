@@ -15,6 +15,7 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
     : node_(node),
       cycle_(node),
       behaviors_(cycle_.input(bus::topics::kBehaviors)),
+      registration_(options.registration ? &cycle_.input(bus::topics::kRegistration) : nullptr),
       goals_(node.reader(bus::topics::kGoals)),
       intentions_(node.writer(bus::topics::kIntentions)),
       statuses_(node.writer(bus::topics::kGoalStatus)),
@@ -37,6 +38,10 @@ bool Shell::step(const bus::Stop& stop) {
     inputs.behaviors = from_bus(*behaviors);
     inputs.behaviors_cycle = behaviors->stamp().cycle();
   }
+  if (const v1::Registration* const registration =
+          registration_ == nullptr ? nullptr : registration_->value())
+    inputs.robot.odom_in_map =
+        odom_in_map_from_bus(*registration, stamp_.cycle(), inputs.robot.odom);
   inputs.events = take_events();
   const Outputs outputs = executor_.step(inputs);
 

@@ -13,6 +13,9 @@ namespace saphira::intentions {
 
 struct ShellOptions {
   std::string memory_file;  ///< what outlives the service; empty: nothing does
+  /// Whether there is a registration service: in lockstep its samples are waited for. Without it,
+  /// what is on a map cannot be found.
+  bool registration = true;
 };
 
 /// The intentions service on the bus. To be made and run in one thread.
@@ -39,6 +42,7 @@ class Shell {
   bus::Node& node_;
   bus::Cycle cycle_;
   bus::Input<v1::Behaviors>& behaviors_;
+  bus::Input<v1::Registration>* registration_;  ///< null where there is no such service
   bus::Reader<v1::Goal> goals_;
   bus::Writer<v1::Intentions> intentions_;
   bus::Writer<v1::GoalStatus> statuses_;

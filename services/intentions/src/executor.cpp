@@ -39,11 +39,16 @@ bool open(const GoalStatus& status) {
   return !ended(status.state);
 }
 
+/// A point that is fixed in odom when the goal is accepted. One on the map stays where it is.
+bool to_be_placed(const Argument& argument) {
+  return argument.kind == ArgumentKind::kPoint && argument.frame != Frame::kMap;
+}
+
 /// Whether these arguments, as they were written, are what was placed.
 bool is_of(const Placement& placement, const Arguments& arguments) {
   auto point = placement.points.begin();
   for (const Argument& argument : arguments) {
-    if (argument.kind != ArgumentKind::kPoint)
+    if (!to_be_placed(argument))
       continue;
     if (point == placement.points.end() || point->name != argument.name ||
         point->given != argument.point)
@@ -221,7 +226,7 @@ void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
 bool Executor::depends_on_odom(const Entry& entry, bool placed) {
   return std::any_of(entry.arguments.begin(), entry.arguments.end(), [&](const Argument& argument) {
     if (argument.kind == ArgumentKind::kPoint)
-      return placed || argument.frame == Frame::kOdom;
+      return argument.frame == Frame::kOdom || (placed && argument.frame == Frame::kRobot);
     const auto& known = entry.schema->parameters;
     return std::any_of(known.begin(), known.end(), [&](const Parameter& parameter) {
       return parameter.in_odom && parameter.name == argument.name;
@@ -344,7 +349,7 @@ void Executor::place(Entry& entry, const Robot& robot) {
   } else {
     placement = {entry.goal.id, epoch_, cycle_, robot.odom, {}};
     for (const Argument& argument : entry.arguments) {
-      if (argument.kind == ArgumentKind::kPoint)
+      if (to_be_placed(argument))
         placement.points.push_back({argument.name, argument.point,
                                     argument.frame == Frame::kRobot
                                         ? compose(robot.pose_in_odom, argument.point)
@@ -353,7 +358,7 @@ void Executor::place(Entry& entry, const Robot& robot) {
   }
   auto point = placement.points.begin();
   for (Argument& argument : entry.arguments) {
-    if (argument.kind != ArgumentKind::kPoint)
+    if (!to_be_placed(argument))
       continue;
     argument.point = (point++)->in_odom;
     argument.frame = Frame::kOdom;

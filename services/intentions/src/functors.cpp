@@ -45,12 +45,22 @@ std::string format(const char* pattern, double a, double b = 0.0) {
   return text;
 }
 
-std::string format_point(const Pose& point) {
-  return format("(%.2f, %.2f)", point.x, point.y);
+std::string format_point(const Argument& point) {
+  return format("(%.2f, %.2f)", point.point.x, point.point.y) +
+         (point.frame == Frame::kMap ? " on the map" : "");
 }
 
 double distance(const Pose& a, const Pose& b) {
   return (a.position() - b.position()).norm();
+}
+
+/// Where a point is in odom now: one on the map is where registration says; none while it does not.
+std::optional<Pose> in_odom(const Argument& point, const Robot& robot) {
+  if (point.frame != Frame::kMap)
+    return point.point;
+  if (!robot.odom_in_map)
+    return std::nullopt;
+  return relative(*robot.odom_in_map, point.point);
 }
 
 /// Whether something that ought to shrink still does.
@@ -87,6 +97,25 @@ std::string why_not_moving(const Robot& robot) {
   return robot.has_power ? "" : "; the motors have no power";
 }
 
+/// Whether to go on: the robot stands while it does not know where it is on the map, and gives up
+/// when that lasts for longer than its patience.
+bool wait_for_position(Self& self, bool known, std::optional<Ticks>& since, double patience) {
+  if (known) {
+    since.reset();
+    return true;
+  }
+  for (const char* label : {"AvoidCollision", "KeepOff", "GoToPos", "TurnTo"})
+    self.drop_behavior(label);
+  self.intend_behavior("Stop", "Stop", kRest, {});
+  self.say("waits to know where it is on the map");
+  if (!since)
+    since = self.now();
+  if (static_cast<double>(self.now() - *since) * kTick >= patience)
+    self.fail(GoalCode::kNoPosition,
+              format("the robot has not known where it is on the map for %.0f s", patience));
+  return false;
+}
+
 /// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop for where none of them has
 /// a say. When it is there, Stop alone until it stands.
 class GoTo : public Activity {
@@ -101,7 +130,10 @@ class GoTo : public Activity {
   void step(Self& self) override {
     if (self.state() == IntentionState::kInterrupted)
       return;
-    const double left = distance(self.robot().pose_in_odom, target_);
+    const std::optional<Pose> target = in_odom(target_, self.robot());
+    if (!wait_for_position(self, target.has_value(), waiting_since_, watchdog_.patience()))
+      return;
+    const double left = distance(self.robot().pose_in_odom, *target);
     if (new_target_ || begins(self)) {
       if (new_target_)
         whole_way_ = left;
@@ -126,7 +158,7 @@ class GoTo : public Activity {
     self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
     self.intend_behavior(
         "GoToPos", "GoToPos", kTask,
-        {point("goal", target_), number("speed", speed_), number("radius", radius_)});
+        {point("goal", *target), number("speed", speed_), number("radius", radius_)});
     self.intend_behavior("Stop", "Stop", kRest, {});
     self.say("driving to " + format_point(target_));
     if (whole_way_ > 0.0)
@@ -139,14 +171,15 @@ class GoTo : public Activity {
 
  private:
   void take(const Arguments& arguments) {
-    target_ = find(arguments, "position")->point;
+    target_ = *find(arguments, "position");
     speed_ = value_of(arguments, "speed");
     radius_ = value_of(arguments, "radius");
     watchdog_.patience(value_of(arguments, "patience"));
     new_target_ = true;
   }
 
-  Pose target_;
+  Argument target_;
+  std::optional<Ticks> waiting_since_;
   double speed_ = 0.0;
   double radius_ = 0.0;
   Watchdog watchdog_;
@@ -232,8 +265,12 @@ class TurnTo : public Activity {
     // A heading is a point far away in that direction; it stays where it was first put, so that
     // the behavior is not changed every cycle.
     if (new_target_ && heading_)
-      target_ = {pose.x + kFar * std::cos(*heading_), pose.y + kFar * std::sin(*heading_), 0.0};
-    const double toward = std::atan2(target_.y - pose.y, target_.x - pose.x);
+      target_ = point("heading", {pose.x + kFar * std::cos(*heading_),
+                                  pose.y + kFar * std::sin(*heading_), 0.0});
+    const std::optional<Pose> target = in_odom(target_, self.robot());
+    if (!wait_for_position(self, target.has_value(), waiting_since_, watchdog_.patience()))
+      return;
+    const double toward = std::atan2(target->y - pose.y, target->x - pose.x);
     const double left = std::abs(norm2_angle(toward - pose.th));
     if (new_target_ || begins(self)) {
       if (new_target_)
@@ -242,7 +279,7 @@ class TurnTo : public Activity {
       watchdog_.restart(left, self.now());
     }
     self.intend_behavior("TurnTo", "TurnTo", kTask,
-                         {point("goal", target_), number("success_angle", angle_),
+                         {point("goal", *target), number("success_angle", angle_),
                           number("turn_speed", turn_speed_)});
     self.intend_behavior("Stop", "Stop", kRest, {});
     self.say(heading_ ? format("turning to %.0f degrees", degrees(*heading_))
@@ -265,7 +302,7 @@ class TurnTo : public Activity {
     if (const Argument* const heading = find(arguments, "heading"))
       heading_ = heading->number;
     else
-      target_ = find(arguments, "position")->point;
+      target_ = *find(arguments, "position");
     angle_ = value_of(arguments, "angle");
     turn_speed_ = value_of(arguments, "turn_speed");
     watchdog_.patience(value_of(arguments, "patience"));
@@ -273,7 +310,8 @@ class TurnTo : public Activity {
   }
 
   std::optional<double> heading_;  ///< [rad] in odom
-  Pose target_;
+  Argument target_;
+  std::optional<Ticks> waiting_since_;
   double angle_ = 0.0;
   double turn_speed_ = 0.0;
   Watchdog watchdog_;

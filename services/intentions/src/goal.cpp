@@ -75,6 +75,8 @@ const char* name_of(GoalCode code) {
       return "blocked";
     case GoalCode::kNoRobot:
       return "no_robot";
+    case GoalCode::kNoPosition:
+      return "no_position";
     case GoalCode::kDisposed:
       return "disposed";
     case GoalCode::kWriterLost:

@@ -13,9 +13,9 @@ namespace {
 constexpr GoalState kStates[] = {GoalState::kRefused, GoalState::kSucceeded, GoalState::kFailed,
                                  GoalState::kCanceled};
 constexpr GoalCode kCodes[] = {
-    GoalCode::kNone,     GoalCode::kUnknownFunctor, GoalCode::kBadArgument, GoalCode::kChanged,
-    GoalCode::kTooMany,  GoalCode::kDeadline,       GoalCode::kBlocked,     GoalCode::kNoRobot,
-    GoalCode::kDisposed, GoalCode::kWriterLost,     GoalCode::kPreempted};
+    GoalCode::kNone,       GoalCode::kUnknownFunctor, GoalCode::kBadArgument, GoalCode::kChanged,
+    GoalCode::kTooMany,    GoalCode::kDeadline,       GoalCode::kBlocked,     GoalCode::kNoRobot,
+    GoalCode::kNoPosition, GoalCode::kDisposed,       GoalCode::kWriterLost,  GoalCode::kPreempted};
 
 std::string exact(double value) {
   char text[40];

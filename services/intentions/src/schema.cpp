@@ -17,7 +17,7 @@ std::string expected(const Parameter& parameter) {
     case ArgumentKind::kText:
       return "a text";
     case ArgumentKind::kPoint:
-      return "a point in the odom or the robot frame, within " + plain(kFarthest) + " m";
+      return "a point, within " + plain(kFarthest) + " m";
   }
   return "?";
 }
@@ -48,8 +48,8 @@ bool fits(const Parameter& parameter, const Argument& argument) {
     case ArgumentKind::kText:
       return true;
     case ArgumentKind::kPoint:
-      return argument.frame != Frame::kMap && std::isfinite(argument.point.th) &&
-             std::abs(argument.point.x) <= kFarthest && std::abs(argument.point.y) <= kFarthest;
+      return std::isfinite(argument.point.th) && std::abs(argument.point.x) <= kFarthest &&
+             std::abs(argument.point.y) <= kFarthest;
   }
   return false;
 }

@@ -130,5 +130,24 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   EXPECT_EQ(levels[0].progress, 0.2);
 }
 
+TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
+  v1::Registration registration;
+  registration.state(v1::REGISTRATION_TRACKING);
+  registration.odom(4);
+  registration.stamp().cycle(100);
+  registration.odom_in_map().x(2.0);
+  registration.odom_in_map().th(0.5);
+  EXPECT_EQ(odom_in_map_from_bus(registration, 101, 4), (Pose{2.0, 0.0, 0.5}));
+  EXPECT_TRUE(odom_in_map_from_bus(registration, 100 + kRegistrationLease, 4));
+  EXPECT_FALSE(odom_in_map_from_bus(registration, 101 + kRegistrationLease, 4));
+  EXPECT_FALSE(odom_in_map_from_bus(registration, 101, 5));
+  registration.state(v1::REGISTRATION_LOST);
+  EXPECT_FALSE(odom_in_map_from_bus(registration, 101, 4));
+  registration.state(v1::REGISTRATION_UNPLACED);
+  EXPECT_FALSE(odom_in_map_from_bus(registration, 101, 4));
+  registration.state(v1::REGISTRATION_OFF);
+  EXPECT_TRUE(odom_in_map_from_bus(registration, 101, 4));
+}
+
 }  // namespace
 }  // namespace saphira::intentions

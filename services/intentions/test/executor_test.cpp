@@ -225,8 +225,8 @@ TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
   EXPECT_EQ(bench.state(1), GoalState::kUnderway);
   EXPECT_EQ(bench.status(1).code, GoalCode::kBadArgument);
   EXPECT_EQ(bench.status(1).reason,
-            "goes on unchanged, the change was refused: argument \"position\": expected a point in "
-            "the odom or the robot frame, within 10000 m, got 3");
+            "goes on unchanged, the change was refused: argument \"position\": expected a point, "
+            "within 10000 m, got 3");
   EXPECT_EQ(bench.out.behaviors, before);
 }
 

@@ -91,6 +91,50 @@ TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
   }
 }
 
+TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
+  Bench bench;
+  bench.world.robot.odom_in_map = Pose{10.0, 5.0, kPi / 2};
+  bench.ask(1, "go_to", {point("position", {10.0, 7.0, 0.0}, Frame::kMap)});
+  bench.step();
+  const auto goal = [&] {
+    for (const IntendedBehavior& behavior : bench.out.behaviors)
+      if (behavior.schema == "GoToPos")
+        return find(behavior.parameters, "goal")->point;
+    return Pose{};
+  };
+  EXPECT_NEAR(goal().x, 2.0, 1e-9);
+  EXPECT_NEAR(goal().y, 0.0, 1e-9);
+  // Registration corrects itself: the point moves in odom, and the way goes on.
+  bench.world.robot.odom_in_map = Pose{10.0, 5.5, kPi / 2};
+  bench.step();
+  EXPECT_NEAR(goal().x, 1.5, 1e-9);
+  for (int i = 0; i < 200 && bench.state(1) == GoalState::kUnderway; ++i)
+    bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_NEAR(bench.world.robot.pose_in_odom.x, 1.5, 0.2);
+}
+
+TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
+  Bench bench;
+  bench.world.robot.odom_in_map = Pose{};
+  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::kMap), number("patience", 3.0)});
+  bench.step();
+  EXPECT_EQ(bench.out.behaviors.size(), 4U);
+  bench.world.robot.odom_in_map.reset();
+  bench.step();
+  ASSERT_EQ(bench.out.behaviors.size(), 1U);
+  EXPECT_EQ(bench.out.behaviors.front().schema, "Stop");
+  EXPECT_EQ(bench.status(1).step, "waits to know where it is on the map");
+  bench.world.robot.odom_in_map = Pose{};
+  bench.step();
+  EXPECT_EQ(bench.out.behaviors.size(), 4U);
+  bench.world.robot.odom_in_map.reset();
+  for (int i = 0; i < 40; ++i)
+    bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kFailed);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
+}
+
 TEST(GoTo, GivesUpWhenItComesNoNearer) {
   Bench bench;
   bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});

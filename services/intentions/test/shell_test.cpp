@@ -23,7 +23,7 @@ class ShellTest : public testing::Test {
  protected:
   void start(const std::string& memory_file = {}) {
     service.emplace(named("intentions"), bus);
-    shell.emplace(*service, ShellOptions{memory_file});
+    shell.emplace(*service, ShellOptions{memory_file, false});
   }
   void kill() {
     shell.reset();

@@ -3,7 +3,9 @@
 #include "behavior.h"
 #include "device.h"
 #include "intention.h"
+#include "map.h"
 #include "motion.h"
+#include "perception.h"
 #include "robot.h"
 #include "saphira/bus/qos.hpp"
 #include "system.h"
@@ -39,6 +41,14 @@ inline constexpr Topic<v1::MotorCommand> kDriveDirect{"drive/direct", Qos::motio
 inline constexpr Topic<v1::MotorCommand> kDriveBehaviors{"drive/behaviors", Qos::motion};
 inline constexpr Topic<v1::Grant> kGrant{"drive/grant", Qos::cyclic};
 inline constexpr Topic<v1::StepPermit> kStepPermit{"lockstep/permit", Qos::latched};
+inline constexpr Topic<v1::Perception> kPerception{"perception", Qos::cyclic};
+inline constexpr Topic<v1::GridTile> kGrid{"perception/grid", Qos::latched};
+inline constexpr Topic<v1::Map> kMap{"map", Qos::latched};
+inline constexpr Topic<v1::Registration> kRegistration{"registration", Qos::cyclic};
+inline constexpr Topic<v1::RegistrationRequest> kRegistrationRequest{"registration/request",
+                                                                     Qos::command};
+inline constexpr Topic<v1::RegistrationAnswer> kRegistrationAnswer{"registration/answers",
+                                                                   Qos::event};
 inline constexpr Topic<v1::Behaviors> kBehaviors{"behaviors/state", Qos::cyclic};
 inline constexpr Topic<v1::Intentions> kIntentions{"intentions", Qos::cyclic};
 inline constexpr Topic<v1::Goal> kGoals{"goals", Qos::goal};
@@ -71,6 +81,12 @@ void for_each_topic(F&& f) {
   f(kDriveBehaviors);
   f(kGrant);
   f(kStepPermit);
+  f(kPerception);
+  f(kGrid);
+  f(kMap);
+  f(kRegistration);
+  f(kRegistrationRequest);
+  f(kRegistrationAnswer);
   f(kBehaviors);
   f(kIntentions);
   f(kGoals);

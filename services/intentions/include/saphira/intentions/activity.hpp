@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ struct Robot {
   Pose pose_in_odom{};
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
+  /// The origin of odom on the map; none while the robot does not know where it is on the map.
+  std::optional<Pose> odom_in_map{};
 };
 
 /// How far a behavior instance says it is.

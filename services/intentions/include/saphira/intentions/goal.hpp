@@ -69,6 +69,7 @@ enum class GoalCode {
   kDeadline,
   kBlocked,
   kNoRobot,
+  kNoPosition,
   kDisposed,
   kWriterLost,
   kPreempted

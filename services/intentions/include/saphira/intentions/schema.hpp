@@ -33,7 +33,7 @@ struct Schema {
   std::vector<Parameter> parameters;
   /// What the parameters together have to satisfy; the complaint, or empty. May be absent.
   std::function<std::string(const Arguments&)> check;
-  /// Makes an instance. The arguments are checked and complete, their points in odom.
+  /// Makes an instance. The arguments are checked and complete, their points in odom or on the map.
   std::function<std::unique_ptr<Activity>(const Arguments&)> make;
   /// A goal of this schema ends what is not more important, instead of waiting for it.
   bool replaces = false;
