@@ -229,8 +229,8 @@ std::string millimetres(double metres, double low) {
 
 std::string line_of(const Feature& feature) {
   const Form& form = form_of(feature.type);
-  if (form.id != (feature.id != 0) || feature.id > kMaxId)
-    throw std::invalid_argument("a feature without an id, or a wall with one");
+  if ((form.id && feature.id == 0) || feature.id > kMaxId)
+    throw std::invalid_argument("a feature without an id");
   if (!std::isfinite(feature.pose_in_map.th))
     throw std::invalid_argument("a heading that is not a number");
   if (feature.name.find_first_of("\"\n\r") != std::string::npos)

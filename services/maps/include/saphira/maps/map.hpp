@@ -13,7 +13,8 @@ namespace saphira::maps {
 /// One line of a map: an artifact with its place in the frame `map`.
 struct Feature {
   lps::PointType type = lps::PointType::position;
-  /// Positive and unique in its map; 0 for a wall, which has none (manual 6.9.1).
+  /// Positive and unique in its map; 0 for a wall that was read from a file, where it has none
+  /// (manual 6.9.1): what edits a map gives it one.
   std::uint32_t id = 0;
   /// The middle. The heading is along a corridor, lane, wall, junction, office or object; of a door
   /// or break it is the normal, from the room out into the corridor.
@@ -39,8 +40,8 @@ Map parse_map(std::string_view text, const std::string& file);
 Map load_map(const std::string& path);
 
 /// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.
-/// std::invalid_argument where no file could hold it: an id twice, a size that is not positive, a
-/// name with a quotation mark or a line break.
+/// Walls lose their ids. std::invalid_argument where no file could hold it: an id twice, a size
+/// that is not positive, a name with a quotation mark or a line break.
 std::string to_text(const Map& map);
 
 /// The feature of that id; nullptr where there is none.

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::maps {
+
+/// The way through one region: paths in Saphira are sequences of regions, and where exactly the
+/// robot drives in one is left to its behaviors (paper 3.4).
+struct Leg {
+  std::size_t region = 0;
+  std::optional<std::size_t> link;  ///< the way out of it; none in the last one
+  /// Where to drive through, in the map, up to and with the way out: along the middle of a
+  /// corridor, and straight through a door. Never empty.
+  std::vector<Vec2> points;
+};
+
+struct Route {
+  std::vector<Leg> legs;
+  double length = 0.0;  ///< [m] from point to point
+
+  /// The points of all legs.
+  std::vector<Vec2> points() const;
+};
+
+struct RouteSettings {
+  std::set<std::uint32_t> blocked;  ///< ids of doors, breaks and regions that are not to be used
+  double door_clearance = 0.7;      ///< [m] how far before and behind a door the robot is in line
+  double tolerance = 0.5;  ///< [m] how far outside of its region the robot may believe to be
+};
+
+/// A route, or why there is none, in words.
+struct RouteResult {
+  std::optional<Route> route;
+  std::string reason;
+};
+
+/// The shortest way from where the robot is to a place (Topology::place), by the lengths of the
+/// stretches between the ways out. A place without a point of its own, a room or a corridor, is
+/// reached as soon as the robot is inside.
+RouteResult find_route(const Topology& topology, const Vec2& from_in_map,
+                       std::string_view to_name_or_id, const RouteSettings& settings = {});
+RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const Place& to,
+                       const RouteSettings& settings = {});
+/// To a position.
+RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const Vec2& to_in_map,
+                       const RouteSettings& settings = {});
+/// From one place to another: from its point, or else from the middle of its first region.
+RouteResult find_route(const Topology& topology, std::string_view from_name_or_id,
+                       std::string_view to_name_or_id, const RouteSettings& settings = {});
+
+/// "corridor 2, junction 12, corridor 3, door 1265, room 265 (EJ-265)".
+std::string text(const Topology& topology, const Route& route);
+
+}  // namespace saphira::maps

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/maps/map.hpp"
+
+namespace saphira::maps {
+
+enum class RegionKind { corridor, junction, room };
+
+/// A rectangle of the floor that one can be in: of a corridor or lane, a junction, or a room. A
+/// room of several rectangles is several regions of one name.
+struct Region {
+  RegionKind kind = RegionKind::room;
+  /// The artifact. A junction that the map does not hold, where two corridors meet, has id 0.
+  Feature area;
+  std::vector<std::size_t> links;  ///< ways out, by index
+};
+
+enum class LinkKind {
+  door,
+  opening,  ///< a BREAK
+  meeting   ///< two regions touch or overlap, with nothing between
+};
+
+/// A way from one region into another.
+struct Link {
+  LinkKind kind = LinkKind::meeting;
+  std::uint32_t id = 0;  ///< of the door or break; 0 of a meeting
+  Pose pose_in_map;      ///< its middle; of doors and breaks the heading is the normal, towards `a`
+  double width = 0.0;    ///< [m] of doors and breaks
+  std::size_t a = 0;
+  std::optional<std::size_t> b;  ///< none: the map does not say what is behind it
+};
+
+/// What a person means by a name or an id.
+struct Place {
+  std::string name;                  ///< as it is called in a message
+  std::vector<std::size_t> regions;  ///< any of them will do
+  std::optional<Vec2> point;         ///< in the map; none: anywhere inside
+};
+
+/// The graph of a map: where the robot can be, and how the regions hang together. Regions and links
+/// keep the order of the map's features; it is made anew when the map changes.
+class Topology {
+ public:
+  Topology() = default;
+  explicit Topology(const Map& map);
+
+  const std::vector<Region>& regions() const { return regions_; }
+  const std::vector<Link>& links() const { return links_; }
+
+  /// Every region that the position lies in; in the order of the regions.
+  std::vector<std::size_t> at(const Vec2& position_in_map) const;
+  /// The region that a robot there is in: a junction before a corridor before a room; within
+  /// `tolerance` [m] of one where it is in none.
+  std::optional<std::size_t> region_at(const Vec2& position_in_map, double tolerance = 0.0) const;
+  /// By the id of an artifact, or by a name: of a region, of a position, of a door, in that order;
+  /// letters as they are written first, then either case.
+  std::optional<Place> place(std::string_view name_or_id) const;
+  /// "corridor 2 (central corridor)".
+  std::string text(std::size_t region) const;
+
+ private:
+  void meet(std::size_t a, std::size_t b);
+  void open(const Feature& gate, LinkKind kind);
+  void join(Link link);
+
+  std::vector<Region> regions_;
+  std::vector<Link> links_;
+  std::vector<Feature> positions_;
+};
+
+/// The four corners of a feature's rectangle, counter-clockwise, made larger by `margin` [m] on
+/// every side.
+std::vector<Vec2> corners(const Feature& feature, double margin = 0.0);
+
+/// The part of the convex polygon `a` that lies in the convex polygon `b`, both counter-clockwise;
+/// empty where they do not overlap.
+std::vector<Vec2> overlap(const std::vector<Vec2>& a, const std::vector<Vec2>& b);
+
+/// The end points of the middle line along a feature's heading.
+Vec2 begin_of(const Feature& feature);
+Vec2 end_of(const Feature& feature);
+
+/// The nearest position on the middle line of a feature, which ends `margin` [m] before its ends.
+Vec2 on_axis(const Feature& feature, const Vec2& position, double margin = 0.0);
+
+/// From a position to the feature's rectangle [m]; 0 inside.
+double distance_to(const Feature& feature, const Vec2& position);
+
+}  // namespace saphira::maps

@@ -1,0 +1,136 @@
+#include "saphira/maps/edit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace saphira::maps {
+
+namespace {
+
+using lps::PointType;
+
+bool along_a_line(PointType type) {
+  return type == PointType::wall || type == PointType::corridor || type == PointType::lane;
+}
+
+}  // namespace
+
+std::optional<std::string> problem(const Feature& feature) {
+  // A wall has no id in a file; here it may have one.
+  Feature written = feature;
+  written.id = feature.type == PointType::wall ? 0 : std::max(1U, feature.id);
+  try {
+    to_text({{written}});
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+bool same(const Feature& a, const Feature& b, const Sameness& sameness) {
+  if (a.type != b.type)
+    return false;
+  const Pose between = relative(a.pose_in_map, b.pose_in_map);
+  if (along_a_line(a.type)) {
+    // A line has no direction.
+    const double angle = std::abs(norm3_angle(between.th));
+    return angle < sameness.angle && std::abs(between.y) < sameness.distance &&
+           std::abs(between.x) < (a.length + b.length) / 2;
+  }
+  const bool directed = a.type == PointType::door || a.type == PointType::breach;
+  return std::hypot(between.x, between.y) < sameness.distance &&
+         (!directed || std::abs(between.th) < sameness.angle);
+}
+
+Editor::Editor(Map map) : map_(std::move(map)) {
+  number();
+}
+
+void Editor::number() {
+  for (const Feature& feature : map_.features)
+    last_id_ = std::max(last_id_, feature.id);
+  for (Feature& feature : map_.features)
+    if (feature.id == 0)
+      feature.id = ++last_id_;
+}
+
+std::size_t Editor::index_of(std::uint32_t id) const {
+  const auto found = std::find_if(map_.features.begin(), map_.features.end(),
+                                  [&](const Feature& f) { return f.id == id && id != 0; });
+  return static_cast<std::size_t>(found - map_.features.begin());
+}
+
+std::uint32_t Editor::add(Feature feature) {
+  if (const auto why = problem(feature))
+    throw std::invalid_argument(*why);
+  if (feature.id == 0 || feature.id <= last_id_)
+    feature.id = last_id_ + 1;
+  last_id_ = feature.id;
+  map_.features.push_back(std::move(feature));
+  ++revision_;
+  return last_id_;
+}
+
+bool Editor::change(std::uint32_t id, Feature feature) {
+  const std::size_t index = index_of(id);
+  if (index == map_.features.size())
+    return false;
+  feature.id = id;
+  if (feature.type != map_.features[index].type)
+    throw std::invalid_argument("a feature of another type under the same id");
+  if (const auto why = problem(feature))
+    throw std::invalid_argument(*why);
+  if (map_.features[index] == feature)
+    return true;
+  map_.features[index] = std::move(feature);
+  ++revision_;
+  return true;
+}
+
+bool Editor::remove(std::uint32_t id) {
+  const std::size_t index = index_of(id);
+  if (index == map_.features.size())
+    return false;
+  map_.features.erase(map_.features.begin() + static_cast<std::ptrdiff_t>(index));
+  ++revision_;
+  return true;
+}
+
+void Editor::replace(Map map) {
+  map_ = std::move(map);
+  number();
+  ++revision_;
+}
+
+Merged Editor::merge(const Map& other, const Sameness& sameness) {
+  Merged merged;
+  const std::size_t before = map_.features.size();
+  for (const Feature& feature : other.features) {
+    std::size_t match = before;
+    double nearest = 0.0;
+    for (std::size_t i = 0; i < before; ++i) {
+      const Pose between = relative(map_.features[i].pose_in_map, feature.pose_in_map);
+      const double far = std::hypot(between.x, between.y);
+      if (same(map_.features[i], feature, sameness) && (match == before || far < nearest)) {
+        match = i;
+        nearest = far;
+      }
+    }
+    if (match == before) {
+      merged.added.push_back(add(feature));
+      continue;
+    }
+    Feature changed = feature;
+    if (changed.name.empty())
+      changed.name = map_.features[match].name;
+    const std::uint32_t id = map_.features[match].id;
+    const std::uint64_t revision = revision_;
+    change(id, changed);
+    if (revision_ != revision)
+      merged.changed.push_back(id);
+  }
+  return merged;
+}
+
+}  // namespace saphira::maps

@@ -1,0 +1,88 @@
+#include "saphira/maps/edit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace saphira::maps {
+namespace {
+
+using lps::PointType;
+
+Map small() {
+  return parse_map(
+      "CORRIDOR (1) 0, 0, 0, 10000, 2000 \"hall\"\n"
+      "DOOR (7) 1000, 1000, -90, 900 \"EJ-231\"\n"
+      "WALL 0, 5000, 0, 3000\n",
+      "small.map");
+}
+
+TEST(Editor, IdsStayAndAreNotGivenAgain) {
+  Editor editor(small());
+  const std::uint32_t wall = editor.map().features[2].id;
+  EXPECT_EQ(wall, 8U) << "walls have none in the file";
+  Feature door{PointType::door, 0, {3.0, 1.0, -kPi / 2}, 0.0, 0.9, ""};
+  const std::uint32_t id = editor.add(door);
+  EXPECT_EQ(id, 9U);
+  EXPECT_TRUE(editor.remove(id));
+  EXPECT_FALSE(editor.remove(id));
+  EXPECT_EQ(editor.add(door), 10U);
+  door.id = 7;  // taken
+  EXPECT_EQ(editor.add(door), 11U);
+  door.id = 9;  // it was another one's
+  EXPECT_EQ(editor.add(door), 12U);
+  door.id = 40;
+  EXPECT_EQ(editor.add(door), 40U);
+  door.width = 1.2;
+  EXPECT_TRUE(editor.change(7, door));
+  EXPECT_EQ(find(editor.map(), 7)->width, 1.2);
+  EXPECT_FALSE(editor.change(9, door));
+  // What was removed and what was there before: the file says the same, but for the wall's id.
+  EXPECT_NO_THROW(parse_map(to_text(editor.map()), "m"));
+}
+
+TEST(Editor, RevisionsCountChanges) {
+  Editor editor(small());
+  EXPECT_EQ(editor.revision(), 0U);
+  Feature hall = *find(editor.map(), 1);
+  EXPECT_TRUE(editor.change(1, hall));
+  EXPECT_EQ(editor.revision(), 0U) << "nothing is different";
+  hall.length = 12.0;
+  editor.change(1, hall);
+  EXPECT_EQ(editor.revision(), 1U);
+  editor.replace(small());
+  EXPECT_EQ(editor.revision(), 2U);
+}
+
+TEST(Editor, WhatNoMapHoldsIsRefused) {
+  Editor editor(small());
+  Feature door{PointType::door, 0, {3.0, 1.0, 0.0}, 0.0, -1.0, ""};
+  EXPECT_THROW(editor.add(door), std::invalid_argument);
+  door.width = 0.9;
+  EXPECT_THROW(editor.change(1, door), std::invalid_argument) << "a door is no corridor";
+  door.name = "a\"b";
+  EXPECT_THROW(editor.add(door), std::invalid_argument);
+  EXPECT_EQ(editor.map().features.size(), 3U);
+  EXPECT_EQ(editor.revision(), 0U);
+}
+
+TEST(Editor, MergeKnowsWhatIsTheSame) {
+  Editor editor(small());
+  const Map other = parse_map(
+      "CORRIDOR (3) 2000, 100, 181, 12000, 2100\n"  // the hall, the other way round, and longer
+      "DOOR (4) 1100, 1000, -90, 950\n"             // EJ-231's
+      "DOOR (5) 1000, -1000, 90, 900\n"             // across the hall
+      "WALL 500, 5010, 0, 3000\n",
+      "other.map");
+  const Merged merged = editor.merge(other);
+  ASSERT_EQ(merged.added.size(), 1U);
+  EXPECT_EQ(merged.changed, (std::vector<std::uint32_t>{1, 7, 8}));
+  EXPECT_EQ(find(editor.map(), 1)->length, 12.0);
+  EXPECT_EQ(find(editor.map(), 1)->name, "hall");
+  EXPECT_EQ(find(editor.map(), 7)->name, "EJ-231");
+  EXPECT_EQ(find(editor.map(), merged.added[0])->pose_in_map.y, -1.0);
+  EXPECT_TRUE(editor.merge(editor.map()).added.empty());
+}
+
+}  // namespace
+}  // namespace saphira::maps

@@ -1,0 +1,102 @@
+#include "saphira/maps/route.hpp"
+
+#include <gtest/gtest.h>
+
+#include "saphira/base/places.hpp"
+
+namespace saphira::maps {
+namespace {
+
+const Topology& floor() {
+  static const Topology topology(load_map(config_folder() + "/maps/office-floor.map"));
+  return topology;
+}
+
+TEST(Route, ASequenceOfRegionsWithThePointsToDriveThrough) {
+  const auto [route, reason] = find_route(floor(), Vec2(17.6, 14.0), "EJ-265");
+  ASSERT_TRUE(route) << reason;
+  EXPECT_EQ(text(floor(), *route),
+            "corridor 2 (central corridor), junction 12, corridor 3 (lower corridor), door 1265, "
+            "room 265 (EJ-265)");
+  // Down to the junction, along to the door, square through it.
+  EXPECT_NEAR(route->length, 7.0 + 1.35 + 1.0 + 0.7, 0.5);
+  const auto points = route->points();
+  EXPECT_NEAR((points.back() - Vec2(16.15, 5.3)).norm(), 0.0, 1e-9);
+  for (const Leg& leg : route->legs)
+    EXPECT_FALSE(leg.points.empty());
+  // Every point is where one can stand, a door's width from the wall in the corridors.
+  for (const Vec2& point : points)
+    EXPECT_FALSE(floor().at(point).empty() && (point - Vec2(16.15, 6.0)).norm() > 1e-9)
+        << point.transpose();
+}
+
+TEST(Route, TheShortestOfSeveral) {
+  // From the upper corridor's middle to EJ-271 the east corridor is nearer than the central one.
+  const auto by_east = find_route(floor(), Vec2(22.0, 25.0), "EJ-271");
+  ASSERT_TRUE(by_east.route) << by_east.reason;
+  EXPECT_EQ(text(floor(), *by_east.route),
+            "corridor 1 (upper corridor), junction 14, corridor 4 (east corridor), junction 13, "
+            "corridor 3 (lower corridor), door 1271, room 271 (EJ-271)");
+  // Its nearer door being closed, by the other one.
+  RouteSettings settings;
+  settings.blocked = {1271};
+  const auto other = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
+  ASSERT_TRUE(other.route);
+  EXPECT_NE(text(floor(), *other.route).find("door 2271"), std::string::npos);
+  // And around where the east corridor is.
+  settings.blocked = {4};
+  const auto around = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
+  ASSERT_TRUE(around.route);
+  EXPECT_NE(text(floor(), *around.route).find("corridor 2"), std::string::npos);
+  EXPECT_GT(around.route->length, by_east.route->length);
+}
+
+TEST(Route, FromPlaceToPlaceAndToAPosition) {
+  const auto rooms = find_route(floor(), "EJ-241", "EJ-242");
+  ASSERT_TRUE(rooms.route) << rooms.reason;
+  EXPECT_EQ(text(floor(), *rooms.route),
+            "room 241 (EJ-241), door 1241, corridor 2 (central corridor), door 1242, room 242 "
+            "(EJ-242)");
+  const auto library = find_route(floor(), Vec2(6.0, 10.0), "EJ-231");
+  ASSERT_TRUE(library.route) << library.reason;
+  const auto point = find_route(floor(), Vec2(17.5, 14.0), Vec2(30.0, 7.2));
+  ASSERT_TRUE(point.route);
+  EXPECT_NEAR((point.route->points().back() - Vec2(30.0, 7.2)).norm(), 0.0, 1e-9);
+  const auto start = find_route(floor(), Vec2(17.5, 9.0), "start");
+  ASSERT_TRUE(start.route);
+  EXPECT_EQ(start.route->legs.size(), 1U);
+  EXPECT_NEAR(start.route->length, 5.0, 1e-9);
+}
+
+TEST(Route, BeingThereIsARoute) {
+  const auto there = find_route(floor(), Vec2(14.0, 22.0), "EJ-241");
+  ASSERT_TRUE(there.route);
+  EXPECT_EQ(there.route->legs.size(), 1U);
+  EXPECT_NEAR(there.route->length, 0.0, 1e-9);
+}
+
+TEST(Route, SaysWhyThereIsNone) {
+  EXPECT_EQ(find_route(floor(), Vec2(17.5, 14.0), "EJ-999").reason,
+            "the map has no place \"EJ-999\"");
+  EXPECT_EQ(find_route(floor(), Vec2(-7.0, 14.0), "EJ-231").reason,
+            "the start, (-7000, 14000) mm, is in no corridor, junction or room of the map");
+  RouteSettings closed;
+  closed.blocked = {1231};
+  EXPECT_EQ(find_route(floor(), Vec2(17.5, 14.0), "EJ-231", closed).reason,
+            "no way from corridor 2 (central corridor) to room 231 (EJ-231) that is known and not "
+            "closed");
+  EXPECT_EQ(find_route(floor(), Vec2(17.5, 14.0), Vec2(-5.0, 0.0)).reason,
+            "the goal, (-5000, 0) mm, is in no corridor, junction or room of the map");
+  EXPECT_FALSE(find_route(Topology(), Vec2(0.0, 0.0), "x").route);
+}
+
+TEST(Route, ADoorWithNothingBehindItIsAPlaceAndNoWay) {
+  const Topology t(
+      parse_map("CORRIDOR (1) 0, 0, 0, 10000, 2000\nDOOR (3) 1000, 1000, -90, 900\n", "test.map"));
+  const auto door = find_route(t, Vec2(-4.0, 0.0), "3");
+  ASSERT_TRUE(door.route) << door.reason;
+  EXPECT_NEAR((door.route->points().back() - Vec2(1.0, 0.4)).norm(), 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace saphira::maps
