@@ -1,13 +1,11 @@
 #include "behaviors/shell/convert.hpp"
 
+#include "lps/shell/convert.hpp"
+
 namespace saphira::behaviors {
 namespace {
 
 constexpr std::size_t kMostRules = 64;  // the bound of BehaviorState.rules
-
-Pose from_bus(const v1::Pose2& pose) {
-  return {pose.x(), pose.y(), pose.th()};
-}
 
 Frame from_bus(v1::Frame frame) {
   switch (frame) {
@@ -47,27 +45,19 @@ RobotModel from_bus(const v1::RobotDescription& description) {
   model.lps.front_buffer = description.front_buffer();
   model.lps.side_buffer = description.side_buffer();
   model.lps.front_max_range = description.front_max_range();
-  for (const v1::SonarPose& sonar : description.sonars())
-    model.lps.sonars.push_back({sonar.sonar(), from_bus(sonar.pose_in_robot())});
+  model.lps.sonars = lps::mounts_from_bus(description);
   return model;
 }
 
 RobotNow from_bus(const v1::RobotState& state) {
-  return {from_bus(state.pose_in_odom()), state.velocity(), state.rotation_velocity()};
-}
-
-std::vector<lps::SonarReading> sonars_from_bus(const v1::RobotState& state) {
-  std::vector<lps::SonarReading> readings;
-  readings.reserve(state.sonars().size());
-  for (const v1::SonarReading& reading : state.sonars())
-    readings.push_back({reading.sonar(), static_cast<double>(reading.range()), reading.echo()});
-  return readings;
+  return {lps::from_bus(state.pose_in_odom()), state.velocity(), state.rotation_velocity()};
 }
 
 Argument from_bus(const v1::Argument& argument) {
   switch (argument.kind()) {
     case v1::ARGUMENT_POINT:
-      return {argument.name(), PlacedPoint{from_bus(argument.point()), from_bus(argument.frame())}};
+      return {argument.name(),
+              PlacedPoint{lps::from_bus(argument.point()), from_bus(argument.frame())}};
     case v1::ARGUMENT_TEXT:
       return {argument.name(), argument.text()};
     default:

@@ -11,7 +11,6 @@ namespace saphira::behaviors {
 
 RobotModel from_bus(const v1::RobotDescription& description);
 RobotNow from_bus(const v1::RobotState& state);
-std::vector<lps::SonarReading> sonars_from_bus(const v1::RobotState& state);
 Argument from_bus(const v1::Argument& argument);
 Intent from_bus(const v1::Intentions& intentions);
 

@@ -1,6 +1,7 @@
 #include "behaviors/shell/shell.hpp"
 
 #include "behaviors/shell/convert.hpp"
+#include "lps/shell/convert.hpp"
 
 namespace saphira::behaviors {
 
@@ -8,7 +9,7 @@ Shell::Shell(bus::Node& node)
     : node_(node),
       cycle_(node),
       intentions_(cycle_.input(bus::topics::kIntentions)),
-      descriptions_(node.reader(bus::topics::kRobotDescription)),
+      robot_(node),
       commands_(node.writer(bus::topics::kDriveBehaviors)),
       behaviors_(node.writer(bus::topics::kBehaviors)) {}
 
@@ -17,7 +18,14 @@ bool Shell::step(const bus::Stop& stop) {
   if (!step)
     return false;
   Output output;
-  if (know_robot(step->robot, stop)) {
+  using Knowledge = bus::KnownRobot::Knowledge;
+  const Knowledge known = robot_.of(cycle_.stamp().epoch(), stop);
+  if (known == Knowledge::fresh) {
+    executive_.reset(from_bus(robot_.description()));
+    odom_.reset();
+    odom_since_ = 0;
+  }
+  if (known != Knowledge::none) {
     Inputs inputs;
     inputs.cycle = cycle_.stamp().cycle();
     // Another origin of the odometry: what is remembered is elsewhere, and so are the points that
@@ -28,53 +36,16 @@ bool Shell::step(const bus::Stop& stop) {
     }
     odom_ = step->robot.odom();
     inputs.robot = from_bus(step->robot);
-    inputs.sonars = sonars_from_bus(step->robot);
+    inputs.sonars = lps::sonars_from_bus(step->robot);
     std::optional<Intent> intent;
     const v1::Intentions* const sample = intentions_.value();
     if (sample != nullptr && sample->stamp().cycle() >= odom_since_)
       inputs.intent = &intent.emplace(from_bus(*sample));
     output = executive_.step(inputs);
-  } else {
-    wait_for_description();
   }
   publish(output);
   cycle_.done();
   return true;
-}
-
-void Shell::take_description() {
-  if (auto newest = descriptions_.take_newest())
-    description_ = std::move(*newest);
-}
-
-bool Shell::know_robot(const v1::RobotState& robot, const bus::Stop& stop) {
-  const std::uint64_t epoch = robot.stamp().epoch();
-  if (model_epoch_ == epoch)
-    return true;
-  take_description();
-  // The description is written before the first state, but on another topic: it may come later. In
-  // lockstep that must not show in what the robot does.
-  while (node_.options().lockstep && !stop.requested() &&
-         (!description_ || description_->stamp().epoch() != epoch)) {
-    node_.wait(std::chrono::milliseconds(500), &stop);
-    take_description();
-    wait_for_description();
-    node_.publish_status();
-  }
-  if (!description_ || description_->stamp().epoch() != epoch)
-    return false;
-  executive_.reset(from_bus(*description_));
-  model_epoch_ = epoch;
-  odom_.reset();
-  odom_since_ = 0;
-  node_.status().state() = v1::SERVICE_RUNNING;
-  node_.status().reason().clear();
-  return true;
-}
-
-void Shell::wait_for_description() {
-  node_.status().state() = v1::SERVICE_WAITING;
-  node_.status().reason() = std::string("waits for ") + bus::topics::kRobotDescription.name;
 }
 
 void Shell::publish(const Output& output) {

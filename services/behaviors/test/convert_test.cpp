@@ -44,23 +44,10 @@ TEST(Convert, State) {
   state.pose_in_odom(pose(1, 2, 3));
   state.velocity(0.25);
   state.rotation_velocity(-0.5);
-  v1::SonarReading reading;
-  reading.sonar(6);
-  reading.range(1.5F);
-  reading.echo(true);
-  state.sonars().push_back(reading);
-  reading.echo(false);
-  state.sonars().push_back(reading);
   const RobotNow now = from_bus(state);
   EXPECT_EQ(now.pose_in_odom, (Pose{1, 2, 3}));
   EXPECT_EQ(now.velocity, 0.25);
   EXPECT_EQ(now.rotation_velocity, -0.5);
-  const std::vector<lps::SonarReading> readings = sonars_from_bus(state);
-  ASSERT_EQ(readings.size(), 2U);
-  EXPECT_EQ(readings[0].sonar, 6);
-  EXPECT_EQ(readings[0].range, 1.5);
-  EXPECT_TRUE(readings[0].echo);
-  EXPECT_FALSE(readings[1].echo);
 }
 
 TEST(Convert, Intentions) {

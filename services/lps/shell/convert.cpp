@@ -1,0 +1,118 @@
+#include "lps/shell/convert.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace saphira::lps {
+namespace {
+
+constexpr std::size_t kMostReadings = 64;  // the bound of Percept.readings
+
+constexpr std::array<std::pair<PointType, v1::ArtifactType>, 10> kTypes = {{
+    {PointType::invalid, v1::ARTIFACT_INVALID},
+    {PointType::position, v1::ARTIFACT_POSITION},
+    {PointType::wall, v1::ARTIFACT_WALL},
+    {PointType::corridor, v1::ARTIFACT_CORRIDOR},
+    {PointType::lane, v1::ARTIFACT_LANE},
+    {PointType::door, v1::ARTIFACT_DOOR},
+    {PointType::junction, v1::ARTIFACT_JUNCTION},
+    {PointType::office, v1::ARTIFACT_OFFICE},
+    {PointType::breach, v1::ARTIFACT_BREAK},
+    {PointType::object, v1::ARTIFACT_OBJECT},
+}};
+
+}  // namespace
+
+Pose from_bus(const v1::Pose2& pose) {
+  return {pose.x(), pose.y(), pose.th()};
+}
+
+v1::Pose2 to_bus(const Pose& pose) {
+  v1::Pose2 result;
+  result.x(pose.x);
+  result.y(pose.y);
+  result.th(pose.th);
+  return result;
+}
+
+PointType from_bus(v1::ArtifactType type) {
+  for (const auto& [ours, theirs] : kTypes)
+    if (theirs == type)
+      return ours;
+  return PointType::invalid;
+}
+
+v1::ArtifactType to_bus(PointType type) {
+  for (const auto& [ours, theirs] : kTypes)
+    if (ours == type)
+      return theirs;
+  return v1::ARTIFACT_INVALID;
+}
+
+std::vector<SonarMount> mounts_from_bus(const v1::RobotDescription& description) {
+  std::vector<SonarMount> mounts;
+  mounts.reserve(description.sonars().size());
+  for (const v1::SonarPose& sonar : description.sonars())
+    mounts.push_back({sonar.sonar(), from_bus(sonar.pose_in_robot())});
+  return mounts;
+}
+
+std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state) {
+  std::vector<SonarReading> readings;
+  readings.reserve(state.sonars().size());
+  for (const v1::SonarReading& reading : state.sonars())
+    readings.push_back({reading.sonar(), static_cast<double>(reading.range()), reading.echo()});
+  return readings;
+}
+
+Percept from_bus(const v1::Percept& percept) {
+  Percept result;
+  result.id = percept.id();
+  result.type = from_bus(percept.type());
+  result.side = percept.side() == v1::SIDE_LEFT    ? Side::left
+                : percept.side() == v1::SIDE_RIGHT ? Side::right
+                                                   : Side::none;
+  result.pose_in_odom = from_bus(percept.pose_in_odom());
+  result.length = percept.length();
+  result.width = percept.width();
+  result.sigma_along = percept.sigma_along();
+  result.sigma_across = percept.sigma_across();
+  result.sigma_heading = percept.sigma_heading();
+  result.confidence = percept.confidence();
+  result.since = percept.since();
+  result.seen = percept.seen();
+  result.readings.reserve(percept.readings().size());
+  for (const v1::ReadingId& reading : percept.readings())
+    result.readings.push_back({reading.cycle(), reading.sonar()});
+  return result;
+}
+
+v1::Percept to_bus(const Percept& percept) {
+  v1::Percept result;
+  result.id(percept.id);
+  result.type(to_bus(percept.type));
+  result.side(percept.side == Side::left    ? v1::SIDE_LEFT
+              : percept.side == Side::right ? v1::SIDE_RIGHT
+                                            : v1::SIDE_NONE);
+  result.pose_in_odom(to_bus(percept.pose_in_odom));
+  result.length(percept.length);
+  result.width(percept.width);
+  result.sigma_along(percept.sigma_along);
+  result.sigma_across(percept.sigma_across);
+  result.sigma_heading(percept.sigma_heading);
+  result.confidence(percept.confidence);
+  result.since(percept.since);
+  result.seen(percept.seen);
+  const std::size_t count = std::min(percept.readings.size(), kMostReadings);
+  for (auto reading = percept.readings.end() - static_cast<std::ptrdiff_t>(count);
+       reading != percept.readings.end(); ++reading) {
+    v1::ReadingId id;
+    id.cycle(reading->cycle);
+    id.sonar(static_cast<std::uint8_t>(reading->sonar));
+    result.readings().push_back(id);
+  }
+  return result;
+}
+
+}  // namespace saphira::lps

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "perception.h"
+#include "robot.h"
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
+
+/// Between the types of the bus and those of the LPS, which every service has: pure functions,
+/// nothing else.
+namespace saphira::lps {
+
+Pose from_bus(const v1::Pose2& pose);
+v1::Pose2 to_bus(const Pose& pose);
+
+PointType from_bus(v1::ArtifactType type);
+v1::ArtifactType to_bus(PointType type);
+
+std::vector<SonarMount> mounts_from_bus(const v1::RobotDescription& description);
+std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state);
+
+Percept from_bus(const v1::Percept& percept);
+/// Of the readings the newest, as many as the contract takes.
+v1::Percept to_bus(const Percept& percept);
+
+}  // namespace saphira::lps
