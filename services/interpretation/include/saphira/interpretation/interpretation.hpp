@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "saphira/interpretation/side_view.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
+
+namespace saphira::interpretation {
+
+struct Settings {
+  std::vector<lps::SonarMount> sonars;
+  SideSettings side;
+  /// [rad] the directions straight to the sides, and how far a sonar that makes walls is off them
+  double side_sector = radians(31.0);
+  double steady_turn = radians(4.0);  ///< a cycle; bearings are doubtful in faster turns
+  double parallel = radians(6.0);     ///< between the two walls of a corridor
+  double min_corridor = 1.0;          ///< [m] wide
+  double max_corridor = 4.0;
+  double min_overlap = 1.2;  ///< [m] of the two walls along each other
+  double beside = 0.6;       ///< [m] a wall that ended so far back is still beside the robot
+  /// [1] Share of the way by which dead reckoning strays; adds to what percepts admit.
+  double odometry_error = 0.01;
+  double odometry_heading = radians(0.3);  ///< and its heading over the aperture
+};
+
+struct Inputs {
+  std::uint64_t cycle = 0;
+  Pose pose_in_odom;
+  std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+};
+
+struct Output {
+  /// All that stand now: what the readings of the aperture's length of travel say.
+  std::vector<lps::Percept> percepts;
+  std::optional<lps::Percept> left_wall;   ///< sfLeftWallHyp: beside the robot now
+  std::optional<lps::Percept> right_wall;  ///< sfRightWallHyp
+};
+
+/// From sonar readings to features and hypotheses (paper 3.2.1, manual 6.7): side segments by
+/// extended aperture, walls, their ends and breaks, doors, junctions and corridors.
+///
+/// A pure function of its inputs' history. When the odom frame changes, reset() it.
+class Interpretation {
+ public:
+  explicit Interpretation(Settings settings);
+
+  const Output& step(const Inputs& inputs);
+  /// Forgets everything but the settings; ids are not used again.
+  void reset();
+
+  const Settings& settings() const { return settings_; }
+  /// What is seen to the left and to the right.
+  const SideView& left() const { return sides_[0]; }
+  const SideView& right() const { return sides_[1]; }
+
+ private:
+  struct Standing {
+    lps::Percept percept;
+    bool seen = false;
+  };
+  void take(const lps::SonarReading& reading, const Pose& robot_in_odom, bool steady);
+  void interpret();
+  void find_walls(std::size_t side);
+  void find_corridors();
+  void stand(lps::Percept percept);
+  lps::Percept wall_percept(const Wall& wall, const Stretch& stretch, lps::Side side) const;
+  lps::Percept end_percept(const Wall& wall, const Stretch& stretch, bool upper,
+                           lps::Side side) const;
+  lps::Percept opening_percept(const Wall& wall, const Opening& opening, lps::Side side) const;
+  void choose_beside();
+
+  Settings settings_;
+  bool placed_ = false;
+  Pose pose_in_odom_;
+  std::uint64_t cycle_ = 0;
+  double travelled_ = 0.0;
+  std::array<SideView, 2> sides_;
+  std::array<bool, 2> changed_{false, false};
+  std::deque<Return> others_;
+  std::vector<Standing> standing_;
+  std::uint32_t last_id_ = 0;
+  Output output_;
+};
+
+}  // namespace saphira::interpretation

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "saphira/interpretation/tangent.hpp"
+#include "saphira/lps/percept.hpp"
+
+namespace saphira::interpretation {
+
+/// What is taken for a wall, and for an opening in it.
+struct SideSettings {
+  double aperture = 5.0;   ///< [m] of travel over which readings are put together
+  double turn_cost = 0.3;  ///< [m/rad] a turn counts as so much travel: it costs dead reckoning too
+  double max_range = 3.0;  ///< [m] of echoes that make walls
+  double step = 0.03;      ///< [m] a sonar that has moved less, and...
+  double turn = radians(5.0);  ///< ...turned less, says nothing new
+
+  double gate = 0.03;                ///< [m] an echo is of a line that it misses by less...
+  double relative_gate = 0.012;      ///< ...plus this share of its range
+  double noise = 0.008;              ///< [m] least deviation of an echo that is believed
+  double max_rms = 0.03;             ///< [m] of a wall
+  double incidence = radians(25.0);  ///< off the beam's axis up to which a wall is heard
+  int min_echoes = 8;                ///< of a wall
+  double min_length = 0.7;           ///< [m] of a wall, plus what one corner can seem to be
+  double run_gap = 0.35;             ///< [m] between echoes of one stretch
+
+  /// Half the width of the cone in which a corner is heard. A wall seems longer by as much.
+  double corner_cone = radians(9.5);
+  double corner_doubt = radians(3.0);  ///< one sigma of it
+  double sure = radians(12.0);  ///< off the axis up to which a wall would surely have been heard
+  double through = 0.45;        ///< [m] an echo from so far behind a line has gone through it
+  int min_through = 3;          ///< readings through an opening
+  double min_door = 0.6;        ///< [m]
+  double max_door = 1.4;        ///< [m] wider ones are junctions
+  double max_junction = 4.5;    ///< [m]
+  double end_run = 0.6;         ///< [m] of wall that a single end stands at
+};
+
+/// One end of a stretch of wall.
+struct End {
+  double u = 0.0;
+  double sigma = 0.0;
+  bool open = false;  ///< seen to end here, not only seen so far
+  std::vector<const Return*> through;
+  std::vector<const Return*> posts;  ///< echoes of its corner from other bearings
+};
+
+/// A stretch of a line without a gap.
+struct Stretch {
+  std::vector<const Return*> echoes;  ///< in order along the line
+  End from;
+  End to;
+};
+
+/// What is between two stretches, seen through.
+struct Opening {
+  std::size_t before = 0;  ///< the stretches
+  std::size_t after = 0;
+  std::vector<const Return*> through;
+};
+
+/// A wall as it is seen from one side: a line, and where it is.
+struct Wall {
+  std::uint32_t line = 0;  ///< stays while it is the same
+  LineFit fit;
+  std::vector<Stretch> stretches;
+  std::vector<Opening> openings;
+};
+
+/// The extended aperture of one side (paper 3.2.1): what its sonars heard on the last metres, and
+/// the walls in it.
+class SideView {
+ public:
+  explicit SideView(SideSettings settings) : settings_(settings) {}
+
+  /// A firing of one of the side's sonars. False where it says nothing new.
+  bool add(const Return& firing);
+  /// Forgets what is farther back than the aperture, then puts the rest together. `others` are the
+  /// echoes of the sonars that look elsewhere: they hear the posts of doors.
+  void interpret(double travelled, const std::deque<Return>& others);
+  void clear();
+
+  const std::vector<Wall>& walls() const { return walls_; }
+  const std::deque<Return>& returns() const { return returns_; }
+
+ private:
+  struct Candidate {
+    std::uint32_t id = 0;
+    LineFit fit;
+    std::vector<const Return*> echoes;
+  };
+  bool fits(const Return& firing, const Line& line) const;
+  bool is_wall(const Candidate& candidate) const;
+  void assign();
+  void seek();
+  void describe(const Candidate& candidate, const std::deque<Return>& others);
+  void place_end(const Line& line, const Stretch& stretch, bool upper,
+                 const std::vector<const Return*>& beyond, const std::deque<Return>& others,
+                 End& end) const;
+
+  SideSettings settings_;
+  std::deque<Return> returns_;
+  std::vector<Candidate> lines_;
+  std::vector<Wall> walls_;
+  std::uint32_t last_line_ = 0;
+};
+
+}  // namespace saphira::interpretation

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/lps/percept.hpp"
+
+namespace saphira::interpretation {
+
+/// One firing of a sonar, where it was made.
+struct Return {
+  Vec2 sonar{0.0, 0.0};  ///< [m] in odom
+  Vec2 axis{1.0, 0.0};   ///< of the beam, a unit vector in odom
+  double range = 0.0;    ///< [m]; meaningless without an echo
+  bool echo = false;
+  bool steady = true;  ///< the robot was not turning so fast that the bearing is doubtful
+  lps::ReadingId id;
+  double travelled = 0.0;  ///< [m] how far the robot had gone
+};
+
+/// The points p with normal * p = offset. The normal points away from where it is seen from.
+struct Line {
+  Vec2 normal{1.0, 0.0};
+  double offset = 0.0;
+
+  Vec2 along() const { return {-normal.y(), normal.x()}; }
+  Vec2 at(double u) const { return offset * normal + u * along(); }
+  /// From the sonar to the line [m], positive on the side that it is seen from.
+  double distance(const Vec2& sonar) const { return offset - normal.dot(sonar); }
+  /// Where the foot of the perpendicular is along it [m].
+  double u(const Vec2& sonar) const { return along().dot(sonar); }
+};
+
+struct LineFit {
+  Line line;
+  double rms = 0.0;            ///< [m] of the ranges about it
+  double u_mean = 0.0;         ///< [m]
+  double sigma_offset = 0.0;   ///< [m] at u_mean
+  double sigma_heading = 0.0;  ///< [rad]
+};
+
+/// The line that touches the circles of two echoes, on the side that the sonars look to. A sonar
+/// hears a smooth surface where its beam meets it at a right angle, and not on its axis: so an echo
+/// stands for a circle about the sonar, and a wall is what touches many. Nothing where one circle
+/// lies in the other.
+std::optional<Line> tangent(const Return& a, const Return& b);
+
+/// The line that touches the circles best (least squares of the normal distances), begun at one
+/// that is near. `noise` [m] is the least deviation that is believed of one echo.
+LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near, double noise);
+
+}  // namespace saphira::interpretation

@@ -1,0 +1,24 @@
+#include "interpretation/shell/convert.hpp"
+
+#include "lps/shell/convert.hpp"
+
+namespace saphira::interpretation {
+namespace {
+
+constexpr std::size_t kMostPercepts = 256;  // the bound of Perception.percepts
+
+}  // namespace
+
+v1::Perception to_bus(const Output& output) {
+  v1::Perception sample;
+  for (const lps::Percept& percept : output.percepts) {
+    if (sample.percepts().size() == kMostPercepts)
+      break;
+    sample.percepts().push_back(lps::to_bus(percept));
+  }
+  sample.left_wall(output.left_wall ? output.left_wall->id : 0);
+  sample.right_wall(output.right_wall ? output.right_wall->id : 0);
+  return sample;
+}
+
+}  // namespace saphira::interpretation

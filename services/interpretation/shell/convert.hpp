@@ -1,0 +1,12 @@
+#pragma once
+
+#include "perception.h"
+#include "saphira/interpretation/interpretation.hpp"
+
+/// Between the types of the bus and those of the library: pure functions, nothing else.
+namespace saphira::interpretation {
+
+/// The perception sample; its stamp and odom are the caller's.
+v1::Perception to_bus(const Output& output);
+
+}  // namespace saphira::interpretation

@@ -1,0 +1,336 @@
+#include "saphira/interpretation/interpretation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace saphira::interpretation {
+namespace {
+
+using lps::Percept;
+using lps::PointType;
+using lps::Side;
+
+double square(double x) {
+  return x * x;
+}
+
+void add_readings(const std::vector<const Return*>& firings, Percept& percept) {
+  for (const Return* firing : firings) {
+    percept.readings.push_back(firing->id);
+    percept.seen = std::max(percept.seen, firing->id.cycle);
+  }
+}
+
+double angle_between(double a, double b) {
+  return std::abs(norm2_angle(a - b));
+}
+
+// Whether two percepts may be the same thing, and how far apart they are then.
+std::optional<double> apart(const Percept& a, const Percept& b) {
+  if (a.type != b.type || a.side != b.side)
+    return std::nullopt;
+  const double way = (a.pose_in_odom.position() - b.pose_in_odom.position()).norm();
+  if (a.type == PointType::wall || a.type == PointType::corridor) {
+    const Pose from = relative(a.pose_in_odom, b.pose_in_odom);
+    const double turn = std::min(std::abs(from.th), kPi - std::abs(from.th));
+    if (turn > radians(15.0) || std::abs(from.y) > 0.3 ||
+        std::abs(from.x) > (a.length + b.length) / 2.0)
+      return std::nullopt;
+    return way;
+  }
+  if (way > 0.45 || angle_between(a.pose_in_odom.th, b.pose_in_odom.th) > radians(30.0))
+    return std::nullopt;
+  return way;
+}
+
+}  // namespace
+
+Interpretation::Interpretation(Settings settings)
+    : settings_(std::move(settings)), sides_{SideView(settings_.side), SideView(settings_.side)} {}
+
+void Interpretation::reset() {
+  placed_ = false;
+  travelled_ = 0.0;
+  for (SideView& side : sides_)
+    side.clear();
+  others_.clear();
+  standing_.clear();
+  output_ = {};
+}
+
+const Output& Interpretation::step(const Inputs& inputs) {
+  if (!placed_)
+    pose_in_odom_ = inputs.pose_in_odom;
+  placed_ = true;
+  cycle_ = inputs.cycle;
+  const Pose before = pose_in_odom_;
+  const Pose moved = relative(before, inputs.pose_in_odom);
+  const bool steady = std::abs(moved.th) <= settings_.steady_turn;
+  pose_in_odom_ = inputs.pose_in_odom;
+  travelled_ += std::hypot(moved.x, moved.y) + settings_.side.turn_cost * std::abs(moved.th);
+  changed_ = {false, false};
+  for (std::size_t i = 0; i < inputs.readings.size(); ++i) {
+    const double part = static_cast<double>(i + 1) / static_cast<double>(inputs.readings.size());
+    take(inputs.readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}),
+         steady);
+  }
+  while (!others_.empty() && travelled_ - others_.front().travelled > settings_.side.aperture)
+    others_.pop_front();
+  interpret();
+  return output_;
+}
+
+void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in_odom,
+                          bool steady) {
+  const auto mount =
+      std::find_if(settings_.sonars.begin(), settings_.sonars.end(),
+                   [&](const lps::SonarMount& m) { return m.sonar == reading.sonar; });
+  if (mount == settings_.sonars.end())
+    return;
+  const Pose sonar = compose(robot_in_odom, mount->in_robot);
+  const Return firing{sonar.position(), sonar.direction(),       reading.range, reading.echo,
+                      steady,           {cycle_, reading.sonar}, travelled_};
+  const double bearing = norm2_angle(mount->in_robot.th);
+  if (std::abs(std::abs(bearing) - kPi / 2.0) <= settings_.side_sector) {
+    const std::size_t side = bearing > 0.0 ? 0 : 1;
+    changed_[side] = sides_[side].add(firing) || changed_[side];
+  } else if (reading.echo) {
+    const bool moved =
+        others_.empty() || std::none_of(others_.rbegin(), others_.rend(), [&](const Return& other) {
+          return other.id.sonar == reading.sonar &&
+                 (other.sonar - firing.sonar).norm() < settings_.side.step &&
+                 other.axis.dot(firing.axis) > std::cos(settings_.side.turn);
+        });
+    if (moved)
+      others_.push_back(firing);
+  }
+}
+
+void Interpretation::interpret() {
+  for (std::size_t side = 0; side < 2; ++side)
+    if (changed_[side])
+      sides_[side].interpret(travelled_, others_);
+  if (changed_[0] || changed_[1]) {
+    for (Standing& standing : standing_)
+      standing.seen = false;
+    find_walls(0);
+    find_walls(1);
+    find_corridors();
+    std::erase_if(standing_, [](const Standing& standing) { return !standing.seen; });
+    output_.percepts.clear();
+    for (const Standing& standing : standing_)
+      output_.percepts.push_back(standing.percept);
+  }
+  choose_beside();
+}
+
+void Interpretation::find_walls(std::size_t number) {
+  const SideSettings& side_settings = settings_.side;
+  const Side side = number == 0 ? Side::left : Side::right;
+  for (const Wall& wall : sides_[number].walls()) {
+    std::vector<bool> from_taken(wall.stretches.size(), false);
+    std::vector<bool> to_taken(wall.stretches.size(), false);
+    for (const Opening& opening : wall.openings) {
+      const double width =
+          wall.stretches[opening.after].from.u - wall.stretches[opening.before].to.u;
+      if (width < side_settings.min_door || width > side_settings.max_junction)
+        continue;
+      stand(opening_percept(wall, opening, side));
+      to_taken[opening.before] = true;
+      from_taken[opening.after] = true;
+    }
+    for (std::size_t i = 0; i < wall.stretches.size(); ++i) {
+      const Stretch& stretch = wall.stretches[i];
+      const double length = stretch.to.u - stretch.from.u;
+      if (stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
+          length >= side_settings.min_length)
+        stand(wall_percept(wall, stretch, side));
+      if (length < side_settings.end_run)
+        continue;
+      const auto enough = static_cast<std::size_t>(side_settings.min_through);
+      if (!from_taken[i] && stretch.from.open && stretch.from.through.size() >= enough)
+        stand(end_percept(wall, stretch, false, side));
+      if (!to_taken[i] && stretch.to.open && stretch.to.through.size() >= enough)
+        stand(end_percept(wall, stretch, true, side));
+    }
+  }
+}
+
+void Interpretation::stand(Percept percept) {
+  Standing* same = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (Standing& standing : standing_) {
+    if (standing.seen)
+      continue;
+    const auto way = apart(standing.percept, percept);
+    if (way && *way < least) {
+      same = &standing;
+      least = *way;
+    }
+  }
+  if (same) {
+    percept.id = same->percept.id;
+    percept.since = same->percept.since;
+    *same = {std::move(percept), true};
+  } else {
+    percept.id = ++last_id_;
+    percept.since = cycle_;
+    standing_.push_back({std::move(percept), true});
+  }
+}
+
+Percept Interpretation::wall_percept(const Wall& wall, const Stretch& stretch, Side side) const {
+  const Line& line = wall.fit.line;
+  Percept percept;
+  percept.type = PointType::wall;
+  percept.side = side;
+  const double u = (stretch.from.u + stretch.to.u) / 2.0;
+  percept.length = stretch.to.u - stretch.from.u;
+  const Vec2 middle = line.at(u);
+  // Along it as the robot went: from what was heard first to what was heard last.
+  const Return* first = stretch.echoes.front();
+  const Return* last = stretch.echoes.back();
+  const Vec2 along = first->travelled <= last->travelled ? line.along() : Vec2(-line.along());
+  percept.pose_in_odom = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
+  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.odometry_heading);
+  percept.sigma_across = std::sqrt(square(wall.fit.sigma_offset) +
+                                   square(wall.fit.sigma_heading * (u - wall.fit.u_mean)) +
+                                   square(settings_.odometry_error * percept.length / 2.0));
+  percept.sigma_along = stretch.from.open && stretch.to.open
+                            ? std::hypot(stretch.from.sigma, stretch.to.sigma) / 2.0
+                            : percept.length / 2.0;
+  add_readings(stretch.echoes, percept);
+  const double n = static_cast<double>(stretch.echoes.size());
+  percept.confidence = n / (n + 1.0) * (1.0 - 0.3 * square(wall.fit.rms / settings_.side.max_rms));
+  return percept;
+}
+
+Percept Interpretation::end_percept(const Wall& wall, const Stretch& stretch, bool upper,
+                                    Side side) const {
+  const Line& line = wall.fit.line;
+  const End& end = upper ? stretch.to : stretch.from;
+  Percept percept;
+  percept.type = PointType::breach;
+  percept.side = side;
+  const Vec2 at = line.at(end.u);
+  percept.pose_in_odom = {at.x(), at.y(), std::atan2(-line.normal.y(), -line.normal.x())};
+  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.odometry_heading);
+  percept.sigma_along =
+      std::hypot(wall.fit.sigma_offset, wall.fit.sigma_heading * (end.u - wall.fit.u_mean));
+  percept.sigma_across = end.sigma;
+  add_readings(stretch.echoes, percept);
+  add_readings(end.through, percept);
+  add_readings(end.posts, percept);
+  const double n = static_cast<double>(end.through.size());
+  percept.confidence = n / (n + 1.0) * (end.posts.empty() ? 0.8 : 0.95);
+  return percept;
+}
+
+Percept Interpretation::opening_percept(const Wall& wall, const Opening& opening, Side side) const {
+  const Line& line = wall.fit.line;
+  const End& from = wall.stretches[opening.before].to;
+  const End& to = wall.stretches[opening.after].from;
+  Percept percept;
+  percept.side = side;
+  percept.width = to.u - from.u;
+  percept.type = percept.width <= settings_.side.max_door ? PointType::door : PointType::junction;
+  const double u = (from.u + to.u) / 2.0;
+  const Vec2 at = line.at(u);
+  percept.pose_in_odom = {at.x(), at.y(), std::atan2(-line.normal.y(), -line.normal.x())};
+  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.odometry_heading);
+  percept.sigma_along =
+      std::hypot(wall.fit.sigma_offset, wall.fit.sigma_heading * (u - wall.fit.u_mean));
+  percept.sigma_across = std::hypot(from.sigma, to.sigma) / 2.0;
+  add_readings(opening.through, percept);
+  add_readings(wall.stretches[opening.before].echoes, percept);
+  add_readings(wall.stretches[opening.after].echoes, percept);
+  add_readings(from.posts, percept);
+  add_readings(to.posts, percept);
+  const double n = static_cast<double>(opening.through.size());
+  percept.confidence =
+      n / (n + 1.0) * (from.posts.empty() ? 0.9 : 1.0) * (to.posts.empty() ? 0.9 : 1.0);
+  return percept;
+}
+
+void Interpretation::find_corridors() {
+  for (const Wall& left : sides_[0].walls())
+    for (const Wall& right : sides_[1].walls()) {
+      const Line& a = left.fit.line;
+      const Line& b = right.fit.line;
+      // Their normals look away from the robot, to opposite sides.
+      const double cosine = -a.normal.dot(b.normal);
+      if (cosine < std::cos(settings_.parallel))
+        continue;
+      Vec2 normal = (a.normal - b.normal).normalized();  // to the left
+      const Vec2 along(normal.y(), -normal.x());
+      const auto reach = [&](const Wall& wall) {
+        const Vec2 from = wall.fit.line.at(wall.stretches.front().from.u);
+        const Vec2 to = wall.fit.line.at(wall.stretches.back().to.u);
+        return std::minmax({along.dot(from), along.dot(to)});
+      };
+      const auto one = reach(left);
+      const auto two = reach(right);
+      const double low = std::max(one.first, two.first);
+      const double high = std::min(one.second, two.second);
+      if (high - low < settings_.min_overlap)
+        continue;
+      const double t = (low + high) / 2.0;
+      // Where the walls are at t: normal and along are nearly the lines' own.
+      const auto across = [&](const Line& line) {
+        return (line.offset - t * line.normal.dot(along)) / line.normal.dot(normal);
+      };
+      const double y_left = across(a);
+      const double y_right = across(b);
+      const double width = y_left - y_right;
+      if (width < settings_.min_corridor || width > settings_.max_corridor)
+        continue;
+      Percept percept;
+      percept.type = PointType::corridor;
+      const Vec2 middle = t * along + (y_left + y_right) / 2.0 * normal;
+      percept.pose_in_odom = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
+      percept.length = high - low;
+      percept.width = width;
+      percept.sigma_along = percept.length / 2.0;
+      percept.sigma_across = std::sqrt(square(left.fit.sigma_offset) +
+                                       square(right.fit.sigma_offset) + square(0.005)) /
+                             2.0;
+      percept.sigma_heading =
+          std::hypot(std::hypot(left.fit.sigma_heading, right.fit.sigma_heading) / 2.0,
+                     settings_.odometry_heading);
+      double n = 0.0;
+      for (const Wall* wall : {&left, &right})
+        for (const Stretch& stretch : wall->stretches) {
+          add_readings(stretch.echoes, percept);
+          n += static_cast<double>(stretch.echoes.size());
+        }
+      percept.confidence = n / (n + 2.0);
+      stand(std::move(percept));
+    }
+}
+
+void Interpretation::choose_beside() {
+  output_.left_wall.reset();
+  output_.right_wall.reset();
+  double nearest[2] = {0.0, 0.0};
+  for (const Percept& percept : output_.percepts) {
+    if (percept.type != PointType::wall)
+      continue;
+    const Pose robot = relative(percept.pose_in_odom, pose_in_odom_);
+    const bool is_left = percept.side == Side::left;
+    const double off = std::abs(robot.th);
+    if (std::abs(robot.x) > percept.length / 2.0 + settings_.beside ||
+        std::min(off, kPi - off) > radians(30.0) ||
+        is_left != (std::abs(robot.th) < kPi / 2.0 ? robot.y < 0.0 : robot.y > 0.0))
+      continue;
+    auto& chosen = is_left ? output_.left_wall : output_.right_wall;
+    double& best = nearest[is_left ? 0 : 1];
+    if (!chosen || std::abs(robot.y) < best) {
+      chosen = percept;
+      best = std::abs(robot.y);
+    }
+  }
+}
+
+}  // namespace saphira::interpretation

@@ -1,0 +1,331 @@
+#include "saphira/interpretation/side_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::interpretation {
+namespace {
+
+/// Echoes nearer together than this say too little of a line's heading [m].
+constexpr double kPair = 0.3;
+constexpr double kPairMost = 2.5;
+/// Seeks among so many of the newest echoes that are of no line.
+constexpr std::size_t kSeek = 40;
+/// An established line lives on with so many echoes.
+constexpr std::size_t kFew = 4;
+/// A single echo or silence among others is taken for a mistake.
+constexpr std::size_t kStretch = 3;
+/// Nobody looked between readings farther apart than this [m].
+constexpr double kUnseen = 0.45;
+/// A post that is heard from elsewhere is where the wall seems to end, to this [m]...
+constexpr double kPostNear = 0.2;
+/// ...and the echoes agree with each other to this [m].
+constexpr double kPostAgree = 0.06;
+
+enum class Says { wall, through, other };
+
+struct Event {
+  double u = 0.0;
+  const Return* firing = nullptr;
+  Says says = Says::other;
+};
+
+double length(const std::vector<const Return*>& echoes, const Line& line) {
+  return echoes.size() < 2 ? 0.0 : line.u(echoes.back()->sonar) - line.u(echoes.front()->sonar);
+}
+
+}  // namespace
+
+bool SideView::add(const Return& firing) {
+  for (auto it = returns_.rbegin(); it != returns_.rend(); ++it) {
+    if (it->id.sonar != firing.id.sonar)
+      continue;
+    if ((it->sonar - firing.sonar).norm() < settings_.step &&
+        it->axis.dot(firing.axis) > std::cos(settings_.turn))
+      return false;
+    break;
+  }
+  returns_.push_back(firing);
+  return true;
+}
+
+void SideView::clear() {
+  returns_.clear();
+  lines_.clear();
+  walls_.clear();
+}
+
+bool SideView::fits(const Return& firing, const Line& line) const {
+  return firing.echo && firing.range <= settings_.max_range &&
+         firing.axis.dot(line.normal) >= std::cos(settings_.incidence) &&
+         std::abs(line.distance(firing.sonar) - firing.range) <
+             settings_.gate + settings_.relative_gate * firing.range;
+}
+
+// Long enough not to be one corner, which is heard at nearly the same range over its whole cone.
+bool SideView::is_wall(const Candidate& candidate) const {
+  const Line& line = candidate.fit.line;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < candidate.echoes.size(); ++i) {
+    if (i > first && line.u(candidate.echoes[i]->sonar) - line.u(candidate.echoes[i - 1]->sonar) >
+                         settings_.run_gap)
+      first = i;
+    const double run = line.u(candidate.echoes[i]->sonar) - line.u(candidate.echoes[first]->sonar);
+    const double corner = 2.0 * candidate.echoes[i]->range * std::tan(settings_.corner_cone);
+    if (i - first + 1 >= static_cast<std::size_t>(settings_.min_echoes) &&
+        run >= settings_.min_length + corner && candidate.fit.rms <= settings_.max_rms)
+      return true;
+  }
+  return false;
+}
+
+// Every echo to the line that it misses least, and every line to its echoes.
+void SideView::assign() {
+  for (int round = 0; round < 2; ++round) {
+    for (Candidate& line : lines_)
+      line.echoes.clear();
+    for (const Return& firing : returns_) {
+      Candidate* best = nullptr;
+      double least = 0.0;
+      for (Candidate& line : lines_) {
+        if (!fits(firing, line.fit.line))
+          continue;
+        const double off = std::abs(line.fit.line.distance(firing.sonar) - firing.range);
+        if (!best || off < least) {
+          best = &line;
+          least = off;
+        }
+      }
+      if (best)
+        best->echoes.push_back(&firing);
+    }
+    for (Candidate& candidate : lines_) {
+      const Line& line = candidate.fit.line;
+      std::stable_sort(
+          candidate.echoes.begin(), candidate.echoes.end(),
+          [&](const Return* a, const Return* b) { return line.u(a->sonar) < line.u(b->sonar); });
+      if (candidate.echoes.size() >= static_cast<std::size_t>(settings_.min_echoes) &&
+          length(candidate.echoes, line) >= settings_.min_length)
+        candidate.fit = fit_line(candidate.echoes, line, settings_.noise);
+    }
+  }
+}
+
+// A new line through the newest echo, if that is of none.
+void SideView::seek() {
+  std::vector<const Return*> loose;
+  for (auto it = returns_.rbegin(); it != returns_.rend() && loose.size() < kSeek; ++it) {
+    if (!it->echo || it->range > settings_.max_range)
+      continue;
+    const bool taken = std::any_of(lines_.begin(), lines_.end(),
+                                   [&](const Candidate& line) { return fits(*it, line.fit.line); });
+    if (!taken)
+      loose.push_back(&*it);
+    else if (loose.empty())
+      return;
+  }
+  if (loose.size() < static_cast<std::size_t>(settings_.min_echoes))
+    return;
+  Candidate best;
+  for (std::size_t i = 1; i < loose.size(); ++i) {
+    const double apart = (loose[i]->sonar - loose[0]->sonar).norm();
+    if (apart < kPair || apart > kPairMost)
+      continue;
+    const auto line = tangent(*loose[0], *loose[i]);
+    if (!line)
+      continue;
+    std::vector<const Return*> echoes;
+    for (const Return* echo : loose)
+      if (fits(*echo, *line))
+        echoes.push_back(echo);
+    if (echoes.size() > best.echoes.size()) {
+      best.fit.line = *line;
+      best.echoes = echoes;
+    }
+  }
+  if (best.echoes.size() < static_cast<std::size_t>(settings_.min_echoes))
+    return;
+  best.fit = fit_line(best.echoes, best.fit.line, settings_.noise);
+  const Line& line = best.fit.line;
+  std::stable_sort(best.echoes.begin(), best.echoes.end(), [&](const Return* a, const Return* b) {
+    return line.u(a->sonar) < line.u(b->sonar);
+  });
+  if (!is_wall(best))
+    return;
+  best.id = ++last_line_;
+  lines_.push_back(best);
+  assign();
+}
+
+void SideView::interpret(double travelled, const std::deque<Return>& others) {
+  while (!returns_.empty() && travelled - returns_.front().travelled > settings_.aperture)
+    returns_.pop_front();
+  walls_.clear();
+  assign();
+  std::erase_if(lines_, [](const Candidate& line) { return line.echoes.size() < kFew; });
+  seek();
+  for (const Candidate& line : lines_)
+    if (line.echoes.size() >= kFew)
+      describe(line, others);
+}
+
+void SideView::describe(const Candidate& candidate, const std::deque<Return>& others) {
+  const Line& line = candidate.fit.line;
+  std::vector<Event> events;
+  for (const Return& firing : returns_) {
+    const double d = line.distance(firing.sonar);
+    const double cosine = firing.axis.dot(line.normal);
+    if (d <= 0.0 || d > settings_.max_range || cosine < std::cos(settings_.incidence))
+      continue;
+    Event event{line.u(firing.sonar), &firing, Says::other};
+    const bool sure = firing.steady && cosine >= std::cos(settings_.sure);
+    if (fits(firing, line))
+      event.says = Says::wall;
+    else if (!firing.echo || firing.range > d + settings_.through) {
+      if (!sure)
+        continue;
+      event.says = Says::through;
+    }
+    events.push_back(event);
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.u < b.u; });
+
+  // Stretches as ranges of events: from an echo to an echo, without a hole.
+  struct Range {
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::size_t echoes = 0;
+  };
+  std::vector<Range> ranges;
+  std::size_t gone = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events[i].says != Says::wall) {
+      gone += events[i].says == Says::through ? 1 : 0;
+      continue;
+    }
+    if (!ranges.empty() && gone < 2 &&
+        events[i].u - events[ranges.back().last].u < settings_.run_gap) {
+      ranges.back().last = i;
+      ++ranges.back().echoes;
+    } else {
+      ranges.push_back({i, i, 1});
+    }
+    gone = 0;
+  }
+  std::erase_if(ranges, [](const Range& range) { return range.echoes < kStretch; });
+  if (ranges.empty())
+    return;
+
+  Wall wall;
+  wall.line = candidate.id;
+  wall.fit = candidate.fit;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    Stretch stretch;
+    for (std::size_t i = ranges[k].first; i <= ranges[k].last; ++i)
+      if (events[i].says == Says::wall)
+        stretch.echoes.push_back(events[i].firing);
+    std::vector<const Return*> beyond;
+    const std::size_t end = k + 1 < ranges.size() ? ranges[k + 1].first : events.size();
+    for (std::size_t i = ranges[k].last + 1; i < end; ++i)
+      if (events[i].says == Says::through)
+        beyond.push_back(events[i].firing);
+    place_end(line, stretch, true, beyond, others, stretch.to);
+    beyond.clear();
+    const std::size_t begin = k > 0 ? ranges[k - 1].last + 1 : 0;
+    for (std::size_t i = ranges[k].first; i > begin; --i)
+      if (events[i - 1].says == Says::through)
+        beyond.push_back(events[i - 1].firing);
+    place_end(line, stretch, false, beyond, others, stretch.from);
+    wall.stretches.push_back(std::move(stretch));
+  }
+  // A stretch must be more than one corner.
+  const auto is_more = [&](const Stretch& stretch) {
+    return length(stretch.echoes, line) >
+           2.0 * stretch.echoes.front()->range * std::tan(settings_.corner_cone) + 0.1;
+  };
+  for (std::size_t k = 0; k + 1 < ranges.size(); ++k) {
+    Opening opening{k, k + 1, {}};
+    std::size_t other = 0;
+    double widest = 0.0;
+    double last = events[ranges[k].last].u;
+    for (std::size_t i = ranges[k].last + 1; i <= ranges[k + 1].first; ++i) {
+      widest = std::max(widest, events[i].u - last);
+      last = events[i].u;
+      if (events[i].says == Says::through)
+        opening.through.push_back(events[i].firing);
+      else if (i < ranges[k + 1].first)
+        ++other;
+    }
+    if (opening.through.size() >= static_cast<std::size_t>(settings_.min_through) &&
+        4 * other <= opening.through.size() && widest < kUnseen && wall.stretches[k].to.open &&
+        wall.stretches[k + 1].from.open && is_more(wall.stretches[k]) &&
+        is_more(wall.stretches[k + 1]))
+      wall.openings.push_back(std::move(opening));
+  }
+  walls_.push_back(std::move(wall));
+}
+
+void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
+                         const std::vector<const Return*>& beyond, const std::deque<Return>& others,
+                         End& end) const {
+  const Return& edge = *(upper ? stretch.echoes.back() : stretch.echoes.front());
+  const double side = upper ? 1.0 : -1.0;
+  const double u = line.u(edge.sonar);
+  const double d = line.distance(edge.sonar);
+  end.u = u;
+  end.sigma = d * std::tan(settings_.corner_cone);
+  if (beyond.empty())
+    return;
+  const double next = line.u(beyond.front()->sonar);
+  if (std::abs(next - u) > kUnseen)
+    return;
+  end.open = beyond.size() >= 2;
+  end.through = beyond;
+  // The corner is heard for as long as it is in the cone, which may look askew.
+  const double tilt = side * std::atan2(edge.axis.dot(line.along()), edge.axis.dot(line.normal));
+  const double past = d * std::tan(std::max(0.0, settings_.corner_cone - tilt));
+  end.u = (u + next) / 2.0 - side * past;
+  const double doubt = d * std::tan(settings_.corner_doubt);
+  const double step = next - u;
+  end.sigma = std::sqrt(step * step / 12.0 + doubt * doubt + 1e-4);
+
+  // The same corner as it was heard from elsewhere: on a circle and on the line.
+  std::vector<std::pair<double, const Return*>> posts;
+  for (const Return& other : others) {
+    const double h = line.distance(other.sonar);
+    if (!other.steady || h < 0.15 || other.range < 1.05 * h)
+      continue;
+    const double off = std::sqrt(other.range * other.range - h * h);
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec2 way = (sign * off * line.along() + h * line.normal) / other.range;
+      const double at = line.u(other.sonar) + sign * off;
+      if (way.dot(other.axis) > std::cos(settings_.sure) && std::abs(at - end.u) < kPostNear)
+        posts.emplace_back(at, &other);
+    }
+  }
+  if (posts.size() < 2)
+    return;
+  std::stable_sort(posts.begin(), posts.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  const double median = posts[posts.size() / 2].first;
+  double sum = 0.0;
+  for (const auto& [at, post] : posts)
+    if (std::abs(at - median) < kPostAgree) {
+      sum += at;
+      end.posts.push_back(post);
+    }
+  if (end.posts.size() < 2) {
+    end.posts.clear();
+    return;
+  }
+  const double count = static_cast<double>(end.posts.size());
+  const double at = sum / count;
+  const double sigma = std::max(0.02, 0.04 / std::sqrt(count));
+  const double weight = 1.0 / (sigma * sigma);
+  const double before = 1.0 / (end.sigma * end.sigma);
+  end.u = (weight * at + before * end.u) / (weight + before);
+  end.sigma = 1.0 / std::sqrt(weight + before);
+}
+
+}  // namespace saphira::interpretation

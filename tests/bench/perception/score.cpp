@@ -1,0 +1,236 @@
+#include "perception/score.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saphira/base/places.hpp"
+
+namespace saphira::test {
+namespace {
+
+using lps::PointType;
+
+constexpr double kOnWall = 0.12;    // [m] a wall may be off
+constexpr double kOnDoor = 0.3;     // [m] a door's middle may be off
+constexpr double kDoorWidth = 0.4;  // [m]
+constexpr double kOnCorner = 0.3;   // [m] one end
+constexpr double kAskew = radians(10.0);
+
+double parallel(double a, double b) {
+  const double off = std::abs(norm2_angle(a - b));
+  return std::min(off, kPi - off);
+}
+
+bool is_open(const sim::Things& things, const Vec2& from, const Vec2& to) {
+  const Vec2 way = to - from;
+  const double length = way.norm();
+  return length <= 0.0 || !sim::cast_ray(things, from, way / length, length);
+}
+
+double nearest_end(const sim::Things& things, const Vec2& at) {
+  double least = 1e9;
+  for (const sim::Segment& segment : things.segments)
+    least = std::min({least, (segment.from - at).norm(), (segment.to - at).norm()});
+  return least;
+}
+
+}  // namespace
+
+Pose Score::in_world(const lps::Percept& percept) const {
+  const std::size_t cycle =
+      std::min<std::size_t>(percept.seen, odom_in_world_.empty() ? 0 : odom_in_world_.size() - 1);
+  return compose(odom_in_world_[cycle], percept.pose_in_odom);
+}
+
+bool Score::is_surface(const sim::Things& things, const Pose& middle, double length) const {
+  constexpr int kSamples = 20;
+  int hits = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const Vec2 at = transform(middle, Vec2(((i + 0.5) / kSamples - 0.5) * length, 0.0));
+    for (const sim::Segment& segment : things.segments) {
+      const Vec2 way = segment.to - segment.from;
+      if ((sim::nearest_point(segment, at) - at).norm() <= kOnWall &&
+          parallel(std::atan2(way.y(), way.x()), middle.th) <= kAskew) {
+        ++hits;
+        break;
+      }
+    }
+  }
+  return hits >= 17;
+}
+
+const maps::Feature* Score::door_at(const Pose& at, double width) const {
+  for (const maps::Feature& feature : map_.features)
+    if (feature.type == PointType::door &&
+        (feature.pose_in_map.position() - at.position()).norm() <= kOnDoor &&
+        parallel(feature.pose_in_map.th, at.th) <= kAskew &&
+        std::abs(feature.width - width) <= kDoorWidth)
+      return &feature;
+  return nullptr;
+}
+
+bool Score::is_real(Drive& drive, const lps::Percept& percept, const Pose& at) {
+  sim::Things things{drive.world().segments, {}};
+  drive.scene().add_movable(at.position(), 12.0, drive.robot().number(), things);
+  switch (percept.type) {
+    case PointType::wall: {
+      if (!is_surface(things, at, percept.length))
+        return false;
+      double best = 1e9;
+      double heading = 0.0;
+      for (const sim::Segment& segment : things.segments) {
+        const Vec2 way = segment.to - segment.from;
+        const double th = std::atan2(way.y(), way.x());
+        const Pose from = relative({segment.from.x(), segment.from.y(), th}, at);
+        if (parallel(th, at.th) > kAskew || from.x < 0.0 || from.x > way.norm() ||
+            std::abs(from.y) > std::abs(best))
+          continue;
+        best = from.y;
+        heading = std::abs(from.th) < kPi / 2 ? from.th : norm2_angle(from.th + kPi);
+      }
+      if (best < 1.0) {
+        wall_offset.push_back(std::abs(best));
+        wall_heading.push_back(std::abs(heading));
+        wall_offset_sigmas.push_back(std::abs(best) / percept.sigma_across);
+        wall_heading_sigmas.push_back(std::abs(heading) / percept.sigma_heading);
+      }
+      return true;
+    }
+    case PointType::door: {
+      const maps::Feature* door = door_at(at, percept.width);
+      if (!door)
+        return false;
+      const double off = std::abs(relative(door->pose_in_map, at).y);
+      door_place.push_back(off);
+      door_place_sigmas.push_back(off / percept.sigma_across);
+      door_width.push_back(std::abs(door->width - percept.width));
+      return true;
+    }
+    case PointType::junction: {
+      const double half = percept.width / 2.0;
+      const Vec2 left = transform(at, Vec2(0.0, half));
+      const Vec2 right = transform(at, Vec2(0.0, -half));
+      return nearest_end(things, left) <= kOnCorner && nearest_end(things, right) <= kOnCorner &&
+             is_open(things, transform(at, Vec2(0.0, half - kOnCorner)),
+                     transform(at, Vec2(0.0, -half + kOnCorner)));
+    }
+    case PointType::breach: {
+      const double off = nearest_end(things, at.position());
+      if (off > kOnCorner)
+        return false;
+      breach_place.push_back(off);
+      breach_place_sigmas.push_back(off / percept.sigma_across);
+      return true;
+    }
+    case PointType::corridor: {
+      // Doors may interrupt its walls: half of each is there.
+      int sides = 0;
+      for (const double sign : {-1.0, 1.0}) {
+        int hits = 0;
+        for (int i = 0; i < 20; ++i) {
+          const Vec2 point =
+              transform(at, Vec2((i / 19.0 - 0.5) * percept.length, sign * percept.width / 2.0));
+          hits += sim::distance(things.segments, point) <= 0.15 ? 1 : 0;
+        }
+        sides += hits >= 8 ? 1 : 0;
+      }
+      return sides == 2;
+    }
+    default:
+      return false;
+  }
+}
+
+void Score::look(Drive& drive, const interpretation::Output& output) {
+  const Seen& seen = drive.seen();
+  const Pose back = relative(seen.pose_in_odom, Pose{});
+  odom_in_world_.resize(seen.cycle + 1);
+  odom_in_world_[seen.cycle] = compose(seen.true_pose_in_world, back);
+  for (const lps::Percept& percept : output.percepts) {
+    Known& known = known_[percept.id];
+    if (known.judged && percept.seen != seen.cycle)
+      continue;
+    known.judged = true;
+    known.type = percept.type;
+    const Pose at = in_world(percept);
+    if (!is_real(drive, percept, at)) {
+      if (known.real)
+        mistakes_.push_back({percept, at, seen.cycle});
+      known.real = false;
+    }
+  }
+  pass(output);
+}
+
+void Score::pass(const interpretation::Output& output) {
+  const Seen& seen = drive_->seen();
+  for (std::size_t i = 0; i < map_.features.size(); ++i) {
+    const maps::Feature& door = map_.features[i];
+    if (door.type != PointType::door)
+      continue;
+    // Seen from the door: x away from its wall, y along it.
+    const Pose robot = relative(door.pose_in_map, seen.true_pose_in_world);
+    Passing& passing = passing_[i];
+    const bool beside = std::abs(robot.x) > 0.3 && std::abs(robot.x) < 1.8 &&
+                        std::abs(robot.y) < 1.2 && parallel(robot.th, kPi / 2.0) < radians(25.0) &&
+                        seen.velocity > 0.05;
+    if (beside && !passing.under_way && std::abs(robot.y) > 0.9) {
+      passing.under_way = true;
+      passing.entered = robot.y;
+    } else if (passing.under_way && !beside) {
+      passing.under_way = false;
+      if (robot.y * passing.entered < 0.0 && std::abs(robot.y) > 0.9) {
+        passing.waits = true;
+        passing.until = seen.cycle + 40;
+      }
+    }
+    if ((passing.under_way || passing.waits) && !passing.found)
+      for (const lps::Percept& percept : output.percepts)
+        if (percept.type == PointType::door && door_at(in_world(percept), percept.width) == &door &&
+            seen.cycle - percept.seen < 60)
+          passing.found = true;
+    if (passing.waits && (passing.found || seen.cycle >= passing.until)) {
+      ++passed_;
+      found_ += passing.found ? 1 : 0;
+      if (!passing.found)
+        missed_.emplace_back(door.id, seen.cycle);
+      passing = {};
+    }
+  }
+}
+
+Count Score::count(PointType type) const {
+  Count count;
+  for (const auto& [id, known] : known_)
+    if (known.type == type) {
+      ++count.reported;
+      count.real += known.real ? 1 : 0;
+    }
+  return count;
+}
+
+std::vector<Vec2> patrol(const std::string& world) {
+  if (world == "office-floor")
+    return {{17.5, 7.2},  {35.5, 7.0},  {25.6, 7.0}, {25.6, 25.0}, {17.5, 25.0},
+            {11.0, 25.0}, {17.5, 25.0}, {17.5, 7.0}, {2.5, 7.0},   {17.5, 7.0}};
+  return {};
+}
+
+maps::Map map_of(const std::string& world) {
+  return maps::load_map(find_file(config_folder() + "/maps", world, ".map"));
+}
+
+interpretation::Settings settings_of(const Drive& drive) {
+  interpretation::Settings settings;
+  settings.sonars = drive.mounts();
+  return settings;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty())
+    return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+}  // namespace saphira::test

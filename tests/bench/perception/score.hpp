@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "saphira/interpretation/interpretation.hpp"
+#include "saphira/maps/map.hpp"
+
+namespace saphira::test {
+
+/// How many of one kind were reported, and how many of these are there.
+struct Count {
+  int reported = 0;
+  int real = 0;  ///< in every report
+  double precision() const {
+    return reported == 0 ? 1.0 : static_cast<double>(real) / static_cast<double>(reported);
+  }
+};
+
+struct Mistake {
+  lps::Percept percept;
+  Pose pose_in_world;
+  std::uint64_t cycle = 0;
+};
+
+/// Holds percepts against the world and its map while a robot drives: a percept is real when every
+/// report of it is. Doors count as passed where the robot goes by along their wall.
+class Score {
+ public:
+  Score(const Drive& drive, maps::Map map) : drive_(&drive), map_(std::move(map)) {}
+
+  void look(Drive& drive, const interpretation::Output& output);
+
+  Count walls() const { return count(lps::PointType::wall); }
+  Count doors() const { return count(lps::PointType::door); }
+  Count count(lps::PointType type) const;
+  int doors_passed() const { return passed_; }
+  int doors_found() const { return found_; }
+  double recall() const { return passed_ == 0 ? 1.0 : static_cast<double>(found_) / passed_; }
+  const std::vector<Mistake>& mistakes() const { return mistakes_; }
+  /// Which doors were passed and not found, by id and cycle.
+  const std::vector<std::pair<std::uint32_t, std::uint64_t>>& missed() const { return missed_; }
+
+  /// Errors of what is real, and the same in sigmas.
+  std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
+  std::vector<double> door_place, door_place_sigmas, door_width;
+  std::vector<double> breach_place, breach_place_sigmas;
+
+ private:
+  struct Known {
+    lps::PointType type{};
+    bool real = true;
+    bool judged = false;
+  };
+  struct Passing {
+    bool under_way = false;
+    bool found = false;
+    double entered = 0.0;  // along the wall
+    std::uint64_t until = 0;
+    bool waits = false;  // for a report
+  };
+  Pose in_world(const lps::Percept& percept) const;
+  bool is_real(Drive& drive, const lps::Percept& percept, const Pose& in_world);
+  bool is_surface(const sim::Things& things, const Pose& middle, double length) const;
+  const maps::Feature* door_at(const Pose& in_world, double width) const;
+  void pass(const interpretation::Output& output);
+
+  const Drive* drive_;
+  maps::Map map_;
+  std::vector<Pose> odom_in_world_;  // by cycle
+  std::map<std::uint32_t, Known> known_;
+  std::map<std::size_t, Passing> passing_;
+  int passed_ = 0;
+  int found_ = 0;
+  std::vector<Mistake> mistakes_;
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> missed_;
+};
+
+/// The points of a patrol of a world of config/worlds that goes through all its corridors.
+std::vector<Vec2> patrol(const std::string& world);
+
+maps::Map map_of(const std::string& world);
+
+interpretation::Settings settings_of(const Drive& drive);
+
+double quantile(std::vector<double> values, double share);
+
+}  // namespace saphira::test
