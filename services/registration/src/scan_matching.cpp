@@ -11,9 +11,9 @@ namespace saphira::registration {
 
 namespace {
 
-constexpr double kCell = 0.1;        // [m] of the cells that points are looked up in
-constexpr double kAgree = 0.7;       // cosine of the angle between normals that agree
-constexpr double kFieldCell = 0.05;  // [m]
+constexpr double kCell = 0.1;         // [m] of the cells that points are looked up in
+constexpr double kAgree = 0.7;        // cosine of the angle between normals that agree
+constexpr double kFieldCell = 0.05;   // [m]
 constexpr double kFieldSigma = 0.08;  // [m]
 constexpr int kFieldReach = 4;        // cells
 
@@ -185,8 +185,7 @@ Alignment align(const ScanReference& reference, const Scan& scan, const Pose& gu
         continue;
       const Vec2& line = reference.normal(*partner);
       const double off = line.dot(at - reference.point(*partner));
-      const Eigen::Vector3d j(line.x(), line.y(),
-                              line.y() * turned.x() - line.x() * turned.y());
+      const Eigen::Vector3d j(line.x(), line.y(), line.y() * turned.x() - line.x() * turned.y());
       const double weight = 1.0 / (1.0 + off * off / (width * width));
       h += weight * j * j.transpose();
       b += weight * off * j;
@@ -195,17 +194,17 @@ Alignment align(const ScanReference& reference, const Scan& scan, const Pose& gu
     }
     const double scale = 1.0 / (settings.noise * settings.noise);
     out.information = scale * h;
-    out.overlap = countable > 0 ? static_cast<double>(partners) / static_cast<double>(countable) : 0.0;
+    out.overlap =
+        countable > 0 ? static_cast<double>(partners) / static_cast<double>(countable) : 0.0;
     out.rms = partners > 0 ? std::sqrt(squares / static_cast<double>(partners)) : 0.0;
     if (partners < 10)
       return out;
     const Eigen::Vector3d from_guess(guess.x - out.pose.x, guess.y - out.pose.y,
                                      norm2_angle(guess.th - out.pose.th));
     const Eigen::Matrix3d damping = 1e-6 * scale * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d step =
-        (out.information + settings.guess_information + damping)
-            .ldlt()
-            .solve(-scale * b + settings.guess_information * from_guess);
+    const Eigen::Vector3d step = (out.information + settings.guess_information + damping)
+                                     .ldlt()
+                                     .solve(-scale * b + settings.guess_information * from_guess);
     out.pose.x += step.x();
     out.pose.y += step.y();
     out.pose.th = norm2_angle(out.pose.th + step.z());
@@ -237,8 +236,8 @@ ScanField::ScanField(const ScanReference& reference, int levels) {
   std::vector<float> kernel;
   for (int r = -kFieldReach; r <= kFieldReach; ++r)
     for (int c = -kFieldReach; c <= kFieldReach; ++c)
-      kernel.push_back(static_cast<float>(
-          std::exp(-0.5 * (r * r + c * c) * kFieldCell * kFieldCell / (kFieldSigma * kFieldSigma))));
+      kernel.push_back(static_cast<float>(std::exp(-0.5 * (r * r + c * c) * kFieldCell *
+                                                   kFieldCell / (kFieldSigma * kFieldSigma))));
   std::vector<char> done(size, 0);
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const int column = static_cast<int>((reference.point(i).x() - origin_.x()) / kFieldCell);
@@ -267,8 +266,8 @@ ScanField::ScanField(const ScanReference& reference, int levels) {
           return cc < columns_ && rr < rows_ ? finer[static_cast<std::size_t>(rr * columns_ + cc)]
                                              : 0.0F;
         };
-        coarse[static_cast<std::size_t>(r * columns_ + c)] =
-            std::max(std::max(at(c, r), at(c + half, r)), std::max(at(c, r + half), at(c + half, r + half)));
+        coarse[static_cast<std::size_t>(r * columns_ + c)] = std::max(
+            std::max(at(c, r), at(c + half, r)), std::max(at(c, r + half), at(c + half, r + half)));
       }
     levels_.push_back(std::move(coarse));
   }
@@ -296,8 +295,7 @@ double ScanField::score(const Scan& scan, const Pose& pose) const {
 }
 
 std::optional<SearchResult> ScanField::search(const Scan& scan, const Pose& guess,
-                                              const SearchWindow& window,
-                                              double at_least) const {
+                                              const SearchWindow& window, double at_least) const {
   if (levels_.empty() || scan.points.empty())
     return std::nullopt;
   struct Candidate {

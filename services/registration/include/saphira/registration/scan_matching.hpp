@@ -75,8 +75,8 @@ Alignment align(const ScanReference& reference, const Scan& scan, const Pose& gu
                 const AlignSettings& settings);
 
 struct SearchWindow {
-  double distance = 0.5;          ///< [m] to each side
-  double turn = radians(15.0);    ///< to each side
+  double distance = 0.5;        ///< [m] to each side
+  double turn = radians(15.0);  ///< to each side
   double turn_step = radians(1.0);
 };
 

@@ -1,0 +1,309 @@
+#include "saphira/registration/scan_mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace saphira::registration {
+
+namespace {
+
+Eigen::Matrix3d diagonal(double along, double across, double turn) {
+  return Eigen::Vector3d(1.0 / (along * along), 1.0 / (across * across), 1.0 / (turn * turn))
+      .asDiagonal();
+}
+
+// Information about a pose's (x, y, th) in the frame that the pose is in, in the pose's own frame.
+Eigen::Matrix3d turned(const Eigen::Matrix3d& information, double th) {
+  Eigen::Matrix3d r = Eigen::Matrix3d::Identity();
+  r.topLeftCorner<2, 2>() << std::cos(th), -std::sin(th), std::sin(th), std::cos(th);
+  return r.transpose() * information * r;
+}
+
+// Points of one scan share their errors (the same beam pattern, the same wrong partners), so their
+// information does not add up as if each were a measurement of its own.
+constexpr double kShared = 0.05;
+
+Eigen::Matrix3d matched_information(const Alignment& alignment) {
+  return turned(kShared * alignment.information, alignment.pose.th);
+}
+
+Scan thinned(const Scan& scan, std::size_t most) {
+  if (scan.points.size() <= most)
+    return scan;
+  Scan out;
+  for (std::size_t k = 0; k < most; ++k) {
+    const std::size_t i = k * scan.points.size() / most;
+    out.points.push_back(scan.points[i]);
+    out.normals.push_back(scan.normals[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+ScanReference ScanMapper::reference(const std::vector<std::size_t>& nodes,
+                                    std::size_t origin) const {
+  ScanReference out;
+  for (const std::size_t i : nodes)
+    out.add(scans_[i], relative(poses_[origin], poses_[i]));
+  out.arrange();
+  return out;
+}
+
+std::vector<std::size_t> ScanMapper::along_path(std::size_t about, double back,
+                                                double ahead) const {
+  std::vector<std::size_t> out;
+  std::size_t first = about;
+  while (first > 0 && path_[about] - path_[first - 1] <= back)
+    --first;
+  for (std::size_t i = first; i < path_.size() && path_[i] - path_[about] <= ahead; ++i)
+    out.push_back(i);
+  return out;
+}
+
+Scan ScanMapper::stretch(std::size_t node, double back) const {
+  Scan out;
+  for (const std::size_t i : along_path(node, back, 0.0)) {
+    const Pose in_node = relative(poses_[node], poses_[i]);
+    const Pose turn{0.0, 0.0, in_node.th};
+    for (std::size_t k = 0; k < scans_[i].points.size(); ++k) {
+      out.points.push_back(transform(in_node, scans_[i].points[k]));
+      out.normals.push_back(transform(turn, scans_[i].normals[k]));
+    }
+  }
+  return out;
+}
+
+Eigen::Matrix3d ScanMapper::odom_information(const Pose& step) const {
+  const double gone = std::hypot(step.x, step.y);
+  const double distance = settings_.odom_distance + settings_.odom_distance_per_metre * gone;
+  const double turn = settings_.odom_turn + settings_.odom_turn_per_metre * gone +
+                      settings_.odom_turn_per_radian * std::abs(step.th);
+  return diagonal(distance, distance, turn);
+}
+
+Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
+  ++report_.scans;
+  if (poses_.empty()) {
+    poses_.push_back({});
+    scans_.push_back(std::move(scan));
+    path_.push_back(0.0);
+    last_odom_ = node_odom_ = pose_in_odom;
+    hung_.push_back({0, {}});
+    report_.nodes = 1;
+    return {};
+  }
+  const std::size_t last = poses_.size() - 1;
+  const Pose step = relative(last_odom_, pose_in_odom);
+  last_odom_ = pose_in_odom;
+  if (std::hypot(step.x, step.y) < 0.002 && std::abs(step.th) < radians(0.2)) {
+    // The robot stands: nothing new, and nothing that could drift.
+    believed_in_node_ = compose(believed_in_node_, step);
+    hung_.push_back({last, believed_in_node_});
+    return compose(poses_[last], believed_in_node_);
+  }
+  const Pose guess = compose(believed_in_node_, step);
+
+  std::vector<std::size_t> near = along_path(last, settings_.local_path, 0.0);
+  if (near.size() > settings_.local_nodes)
+    near.erase(near.begin(), near.end() - static_cast<std::ptrdiff_t>(settings_.local_nodes));
+  const ScanReference local = reference(near, last);
+  AlignSettings settings = settings_.align;
+  // What dead reckoning says holds along bare walls only: a small share of what walls say.
+  settings.guess_information = turned(odom_information(step), -guess.th);
+  Alignment found = align(local, scan, guess, settings);
+  if (found.overlap < settings_.good_overlap) {
+    ++report_.searches;
+    const double gone = std::hypot(step.x, step.y);
+    const SearchWindow window{0.15 + 0.3 * gone,
+                              radians(6.0) + radians(20.0) * gone + 0.3 * std::abs(step.th),
+                              radians(1.0)};
+    const ScanField field(local, 4);
+    const Scan few = thinned(scan, 120);
+    if (const auto wide = field.search(few, guess, window, field.score(few, found.pose))) {
+      settings.guess_information.setZero();
+      const Alignment again = align(local, scan, wide->pose, settings);
+      if (again.overlap > found.overlap)
+        found = again;
+    }
+  }
+  Pose believed = found.pose;
+  const bool matched = found.overlap >= settings_.lost_overlap;
+  if (!matched) {
+    ++report_.unmatched;
+    believed = guess;
+  }
+
+  if (std::hypot(believed.x, believed.y) < settings_.node_distance &&
+      std::abs(believed.th) < settings_.node_turn) {
+    believed_in_node_ = believed;
+    hung_.push_back({last, believed});
+    return compose(poses_[last], believed);
+  }
+  // A node.
+  const Pose odom_step = relative(node_odom_, pose_in_odom);
+  node_odom_ = pose_in_odom;
+  if (matched)
+    chain_.push_back({last, last + 1, believed, matched_information(found), false});
+  odometry_.push_back({last, last + 1, odom_step, odom_information(odom_step), matched});
+  path_.push_back(path_[last] + std::hypot(believed.x, believed.y));
+  poses_.push_back(compose(poses_[last], believed));
+  scans_.push_back(std::move(scan));
+  believed_in_node_ = {};
+  hung_.push_back({last + 1, {}});
+  report_.nodes = poses_.size();
+  if (path_.back() - searched_at_ >= settings_.loop_every) {
+    searched_at_ = path_.back();
+    close_loops();
+  }
+  return poses_.back();
+}
+
+void ScanMapper::close_loops() {
+  const std::size_t here = poses_.size() - 1;
+  const double since = path_[here] - closed_at_;
+  const double reach = std::min(settings_.loop_reach + settings_.loop_reach_per_metre * since,
+                                settings_.loop_reach_limit);
+  // The nearest node of each earlier pass.
+  std::vector<std::size_t> passes;
+  double pass_end = -1e9;
+  for (std::size_t i = 0; i < here && path_[here] - path_[i] > settings_.loop_path; ++i) {
+    const double away = (poses_[i].position() - poses_[here].position()).norm();
+    if (away > reach)
+      continue;
+    if (path_[i] - pass_end > 3.0)
+      passes.push_back(i);
+    else if (away < (poses_[passes.back()].position() - poses_[here].position()).norm())
+      passes.back() = i;
+    pass_end = path_[i];
+  }
+  if (passes.empty())
+    return;
+  // The nearest ones are enough: they hang together already.
+  std::stable_sort(passes.begin(), passes.end(), [&](std::size_t a, std::size_t b) {
+    return (poses_[a].position() - poses_[here].position()).norm() <
+           (poses_[b].position() - poses_[here].position()).norm();
+  });
+  if (passes.size() > 3)
+    passes.resize(3);
+  const Scan query = stretch(here, 2.0);
+  const Scan few = thinned(query, 300);
+  for (const std::size_t pass : passes) {
+    std::vector<std::size_t> old = along_path(pass, 5.0, 5.0);
+    std::erase_if(
+        old, [&](std::size_t i) { return path_[here] - path_[i] < settings_.loop_path - 4.0; });
+    const ScanReference there = reference(old, pass);
+    const ScanField field(there, 7);
+    const Pose guess = relative(poses_[pass], poses_[here]);
+    const auto wide =
+        field.search(few, guess, {reach, settings_.loop_turn, radians(1.0)}, settings_.loop_score);
+    if (!wide)
+      continue;
+    AlignSettings settings = settings_.align;
+    settings.first_gate = 0.25;
+    const Alignment found = align(there, query, wide->pose, settings);
+    if (found.overlap < settings_.loop_overlap)
+      continue;
+    ++report_.loop_candidates;
+    const Closure closure{pass, here, found.pose, matched_information(found)};
+    // Two that say the same, from places apart, are believed; one alone may be a look-alike.
+    bool agreed = false;
+    for (const Closure& other : pending_) {
+      const double apart = path_[here] - path_[other.to];
+      if (apart > 8.0 || apart < 0.3)
+        continue;
+      const Pose expected =
+          compose(compose(relative(poses_[pass], poses_[other.from]), other.to_in_from),
+                  relative(poses_[other.to], poses_[here]));
+      const Pose off = relative(expected, closure.to_in_from);
+      if (std::hypot(off.x, off.y) < settings_.loop_agree_distance + 0.02 * apart &&
+          std::abs(off.th) < settings_.loop_agree_turn) {
+        agreed = true;
+        break;
+      }
+    }
+    pending_.push_back(closure);
+    if (agreed)
+      accept(closure);
+  }
+  std::erase_if(pending_, [&](const Closure& c) { return path_[here] - path_[c.to] > 8.0; });
+}
+
+void ScanMapper::accept(const Closure& closure) {
+  loops_.push_back({closure.from, closure.to, closure.to_in_from, closure.information, true});
+  ++report_.loops;
+  closed_at_ = path_.back();
+  const Pose expected = compose(poses_[closure.from], closure.to_in_from);
+  const Pose off = relative(expected, poses_[closure.to]);
+  // Where it says nothing new the graph is left alone.
+  if (std::hypot(off.x, off.y) > 0.05 || std::abs(off.th) > radians(0.5))
+    optimize(poses_, all_edges(), 15, 10.0);
+}
+
+std::vector<PoseEdge> ScanMapper::all_edges() const {
+  std::vector<PoseEdge> edges = chain_;
+  edges.insert(edges.end(), odometry_.begin(), odometry_.end());
+  edges.insert(edges.end(), loops_.begin(), loops_.end());
+  return edges;
+}
+
+void ScanMapper::refine(int rounds) {
+  if (poses_.size() < 3)
+    return;
+  optimize(poses_, all_edges(), 30, 10.0);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<PoseEdge> edges;
+    for (std::size_t i = 1; i < poses_.size(); ++i) {
+      // The nodes before, and the nearest of each other pass that looks the same way.
+      std::vector<std::size_t> partners;
+      for (std::size_t back = 1; back <= 3 && back <= i; ++back)
+        partners.push_back(i - back);
+      std::vector<std::size_t> passes;
+      double pass_end = -1e9;
+      const auto rate = [&](std::size_t j) {
+        const Pose off = relative(poses_[i], poses_[j]);
+        return std::hypot(off.x, off.y) + std::abs(off.th);
+      };
+      for (std::size_t j = 0; j + 4 < i && path_[i] - path_[j] > 1.0; ++j) {
+        const Pose off = relative(poses_[i], poses_[j]);
+        if (std::hypot(off.x, off.y) > 2.0 || std::abs(off.th) > radians(70.0))
+          continue;
+        if (path_[j] - pass_end > 1.0)
+          passes.push_back(j);
+        else if (rate(j) < rate(passes.back()))
+          passes.back() = j;
+        pass_end = path_[j];
+      }
+      std::stable_sort(passes.begin(), passes.end(),
+                       [&](std::size_t a, std::size_t b) { return rate(a) < rate(b); });
+      if (passes.size() > 6)
+        passes.resize(6);
+      partners.insert(partners.end(), passes.begin(), passes.end());
+      for (const std::size_t j : partners) {
+        ScanReference there;
+        there.add(scans_[j], {});
+        there.arrange();
+        AlignSettings settings = settings_.align;
+        settings.first_gate = round == 0 ? 0.3 : 0.15;
+        settings.last_gate = round == 0 ? 0.12 : 0.1;
+        const Alignment found = align(there, scans_[i], relative(poses_[j], poses_[i]), settings);
+        if (found.overlap < 0.4)
+          continue;
+        edges.push_back({j, i, found.pose, matched_information(found), true});
+      }
+    }
+    edges.insert(edges.end(), odometry_.begin(), odometry_.end());
+    optimize(poses_, edges, 30, 5.0);
+  }
+}
+
+std::vector<Pose> ScanMapper::trajectory() const {
+  std::vector<Pose> out;
+  out.reserve(hung_.size());
+  for (const Hung& h : hung_)
+    out.push_back(compose(poses_[h.node], h.in_node));
+  return out;
+}
+
+}  // namespace saphira::registration

@@ -1,0 +1,118 @@
+#include "stamps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace saphira::bench {
+
+namespace {
+
+using Key = std::vector<int>;
+
+Key key_of(const LaserScan& scan) {
+  Key key;
+  key.reserve(scan.ranges.size());
+  for (const double range : scan.ranges)
+    key.push_back(static_cast<int>(std::lround(std::min(range, 1000.0) * 100.0)));
+  return key;
+}
+
+// Scans of the corrected file that the raw log holds too: index there by index here, in order.
+std::vector<std::optional<std::size_t>> common(const CarmenLog& raw, const CarmenLog& corrected) {
+  std::map<Key, std::vector<std::size_t>> by_ranges;
+  for (std::size_t i = 0; i < raw.scans.size(); ++i)
+    by_ranges[key_of(raw.scans[i])].push_back(i);
+  std::vector<std::optional<std::size_t>> out;
+  std::size_t last = 0;
+  for (const LaserScan& scan : corrected.scans) {
+    out.emplace_back();
+    const auto found = by_ranges.find(key_of(scan));
+    if (found == by_ranges.end())
+      continue;
+    const auto next = std::lower_bound(found->second.begin(), found->second.end(), last);
+    if (next == found->second.end())
+      continue;
+    last = *next;
+    out.back() = *next;
+  }
+  return out;
+}
+
+}  // namespace
+
+double time_of(const Stamps& stamps, Clock clock) {
+  return clock == Clock::ipc ? stamps.ipc : stamps.logger;
+}
+
+TimeBase time_base(const CarmenLog& raw, Clock clock) {
+  std::vector<StampedPose> poses;
+  for (const LaserScan& scan : raw.scans)
+    poses.push_back({time_of(scan.time, clock), scan.pose});
+  for (const OdomRecord& record : raw.odometry)
+    poses.push_back({time_of(record.time, clock), record.pose});
+  return {Trajectory(std::move(poses)), 0};
+}
+
+std::optional<double> clock_offset(const CarmenLog& raw, Clock clock, const CarmenLog& corrected) {
+  const auto pairs = common(raw, corrected);
+  std::vector<double> offsets;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (pairs[k])
+      offsets.push_back(time_of(raw.scans[*pairs[k]].time, clock) - corrected.scans[k].time.ipc);
+  if (offsets.empty())
+    return std::nullopt;
+  return spread_of(offsets).median;
+}
+
+TimeBase mend_stamps(CarmenLog& raw, const CarmenLog& corrected) {
+  const auto pairs = common(raw, corrected);
+  const double offset = clock_offset(raw, Clock::ipc, corrected).value_or(0.0);
+  std::vector<StampedPose> track;
+  std::vector<char> original(raw.scans.size(), 0);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (!pairs[k])
+      continue;
+    original[*pairs[k]] = 1;
+    track.push_back({raw.scans[*pairs[k]].time.ipc, raw.scans[*pairs[k]].pose});
+  }
+  for (const OdomRecord& record : corrected.odometry) {
+    if (record.scans_before == 0 || !pairs[record.scans_before - 1])
+      continue;
+    const LaserScan& before = corrected.scans[record.scans_before - 1];
+    // The first line after a scan repeats it, with no stamp.
+    if (record.time.ipc <= before.time.ipc)
+      continue;
+    track.push_back(
+        {record.time.ipc + offset, compose(raw.scans[*pairs[record.scans_before - 1]].pose,
+                                           relative(before.pose, record.pose))});
+  }
+  Trajectory odometry(std::move(track));
+  std::size_t mended = 0;
+  for (std::size_t i = 0; i < raw.scans.size(); ++i) {
+    if (original[i] != 0)
+      continue;
+    LaserScan& scan = raw.scans[i];
+    const double stamp = scan.time.ipc;
+    double best = 1e9;
+    for (double t = stamp - 1.2; t <= stamp + 1.2; t += 0.02) {
+      const auto pose = odometry.at(t);
+      if (!pose)
+        continue;
+      const Pose off = relative(*pose, scan.pose);
+      // Where the robot stood, the stamp itself is as good as any.
+      const double cost =
+          std::hypot(off.x, off.y) + 0.5 * std::abs(off.th) + 0.002 * std::abs(t - stamp);
+      if (cost < best) {
+        best = cost;
+        scan.time.ipc = scan.time.logger = t;
+      }
+    }
+    ++mended;
+  }
+  std::stable_sort(raw.scans.begin(), raw.scans.end(),
+                   [](const LaserScan& a, const LaserScan& b) { return a.time.ipc < b.time.ipc; });
+  return {std::move(odometry), mended};
+}
+
+}  // namespace saphira::bench
