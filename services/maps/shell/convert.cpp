@@ -1,0 +1,45 @@
+#include "maps/shell/convert.hpp"
+
+#include "lps/shell/convert.hpp"
+
+namespace saphira::maps {
+
+Feature from_bus(const v1::MapArtifact& artifact) {
+  Feature feature;
+  feature.type = lps::from_bus(artifact.type());
+  feature.id = artifact.id();
+  feature.pose_in_map = lps::from_bus(artifact.pose_in_map());
+  feature.length = artifact.length();
+  feature.width = artifact.width();
+  feature.name = artifact.name();
+  return feature;
+}
+
+v1::MapArtifact to_bus(const Feature& feature) {
+  v1::MapArtifact artifact;
+  artifact.type(lps::to_bus(feature.type));
+  artifact.id(feature.id);
+  artifact.pose_in_map(lps::to_bus(feature.pose_in_map));
+  artifact.length(feature.length);
+  artifact.width(feature.width);
+  artifact.name(feature.name);
+  return artifact;
+}
+
+Map from_bus(const v1::Map& map) {
+  Map result;
+  result.features.reserve(map.artifacts().size());
+  for (const v1::MapArtifact& artifact : map.artifacts())
+    result.features.push_back(from_bus(artifact));
+  return result;
+}
+
+v1::Map to_bus(const Map& map) {
+  v1::Map result;
+  result.artifacts().reserve(map.features.size());
+  for (const Feature& feature : map.features)
+    result.artifacts().push_back(to_bus(feature));
+  return result;
+}
+
+}  // namespace saphira::maps

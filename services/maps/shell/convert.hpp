@@ -1,0 +1,15 @@
+#pragma once
+
+#include "map.h"
+#include "saphira/maps/map.hpp"
+
+/// Between maps on the bus and those of the library: pure functions, nothing else.
+namespace saphira::maps {
+
+Feature from_bus(const v1::MapArtifact& artifact);
+v1::MapArtifact to_bus(const Feature& feature);
+Map from_bus(const v1::Map& map);
+/// The artifacts; stamp, revision and source are the caller's.
+v1::Map to_bus(const Map& map);
+
+}  // namespace saphira::maps

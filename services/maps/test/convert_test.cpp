@@ -1,0 +1,18 @@
+#include "maps/shell/convert.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::maps {
+namespace {
+
+TEST(Convert, MapsRoundTrip) {
+  Map map;
+  map.features = {{lps::PointType::corridor, 1, {1.0, 2.0, 0.5}, 10.0, 2.0, "upper"},
+                  {lps::PointType::door, 3, {3.0, 1.0, 1.5}, 0.0, 0.9, "EJ-231"},
+                  {lps::PointType::wall, 0, {-1.0, 0.0, 0.0}, 3.0, 0.0, ""},
+                  {lps::PointType::position, 90, {17.5, 14.0, -1.5}, 0.0, 0.0, "start"}};
+  EXPECT_EQ(from_bus(to_bus(map)), map);
+}
+
+}  // namespace
+}  // namespace saphira::maps
