@@ -23,6 +23,7 @@ void add_echo(CLI::App& app, Chosen& chosen);
 void add_log(CLI::App& app, Chosen& chosen);
 void add_goal(CLI::App& app, Chosen& chosen);
 void add_device(CLI::App& app, Chosen& chosen);
+void add_map(CLI::App& app, Chosen& chosen);
 void add_drive(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
 

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
         cli::add_up(app, chosen);
         cli::add_status(app, chosen);
         cli::add_goal(app, chosen);
+        cli::add_map(app, chosen);
         cli::add_drive(app, chosen);
         cli::add_device(app, chosen);
         cli::add_list(app, chosen);

@@ -1,0 +1,397 @@
+// The map and where the robot is on it: looked at, drawn, changed, and driven by.
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <random>
+
+#include "commands.hpp"
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/cli/map_words.hpp"
+#include "saphira/maps/drawing.hpp"
+#include "saphira/maps/route.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kPatience = 5.0;  ///< [s] for the map, and for an answer
+
+/// The map and the robot on it as they are on the bus.
+class View {
+ public:
+  explicit View(const bus::NodeOptions& options)
+      : node(options),
+        processes(node),
+        options_(options),
+        maps_(node.reader(bus::topics::kMap)),
+        registrations_(node.reader(bus::topics::kRegistration)) {}
+
+  /// True where a new sample of registration came.
+  bool poll() {
+    processes.poll();
+    if (auto newest = maps_.take_newest()) {
+      sample = std::move(newest);
+      map = maps::from_bus(*sample);
+    }
+    if (auto newest = registrations_.take_newest()) {
+      registration = std::move(newest);
+      return true;
+    }
+    return false;
+  }
+
+  /// Waits until the map is there, and the registration where it is asked for.
+  bool wait_for_map(const bus::Stop& stop, bool and_registration = true) {
+    const auto began = Clock::now();
+    while (!stop.requested() && seconds_since(began) < kPatience) {
+      poll();
+      if (sample && (registration || !and_registration))
+        return true;
+      node.wait(milliseconds(100), &stop);
+    }
+    std::cerr << "saphira: no map: registration is not heard; " << who_is_there(options_, processes)
+              << '\n';
+    return false;
+  }
+
+  bool tracking() const {
+    return registration && registration->state() == v1::REGISTRATION_TRACKING;
+  }
+  Vec2 position() const {
+    return {registration->pose_in_map().x(), registration->pose_in_map().y()};
+  }
+
+  bus::Node node;
+  Processes processes;
+  std::optional<v1::Map> sample;
+  maps::Map map;
+  std::optional<v1::Registration> registration;
+
+ private:
+  bus::NodeOptions options_;
+  bus::Reader<v1::Map> maps_;
+  bus::Reader<v1::Registration> registrations_;
+};
+
+int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
+  View view(options);
+  if (!view.wait_for_map(stop))
+    return bus::kExitFailed;
+  std::printf("map %s%s: %zu artifacts\n",
+              view.sample->source().empty() ? "from nothing" : view.sample->source().c_str(),
+              view.sample->changed() ? ", changed" : "", view.map.features.size());
+  auto told = Clock::now() - std::chrono::seconds(1);
+  do {
+    if (view.registration && seconds_since(told) >= 1.0) {
+      std::printf("%8.1f s  %s\n", 0.1 * static_cast<double>(view.registration->stamp().cycle()),
+                  describe(*view.registration, view.map).c_str());
+      std::fflush(stdout);
+      told = Clock::now();
+    }
+    if (follow)
+      view.node.wait(milliseconds(100), &stop);
+    view.poll();
+  } while (follow && !stop.requested() && std::ferror(stdout) == 0);
+  return bus::kExitOk;
+}
+
+/// The file, or standard output for "-".
+int write_out(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    std::fputs(text.c_str(), stdout);
+    return bus::kExitOk;
+  }
+  std::ofstream file(path, std::ios::trunc);
+  if (!(file << text) || !file.flush()) {
+    std::cerr << "saphira: " << path << ": cannot be written\n";
+    return bus::kExitFailed;
+  }
+  std::printf("written to %s\n", path.c_str());
+  return bus::kExitOk;
+}
+
+int save(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
+  View view(options);
+  if (!view.wait_for_map(stop, false))
+    return bus::kExitFailed;
+  return write_out(path, maps::to_text(view.map));
+}
+
+/// The grid's tiles put together, in the map.
+std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
+                                      const v1::Registration& registration) {
+  std::optional<maps::Raster> raster;
+  int left = 0;
+  int low = 0;
+  int right = 0;
+  int high = 0;
+  const v1::GridTile* first = nullptr;
+  for (const v1::GridTile& tile : tiles) {
+    if (tile.odom() != registration.odom() || tile.side() == 0)
+      continue;
+    left = first == nullptr ? tile.column() : std::min<int>(left, tile.column());
+    right = first == nullptr ? tile.column() : std::max<int>(right, tile.column());
+    low = first == nullptr ? tile.row() : std::min<int>(low, tile.row());
+    high = first == nullptr ? tile.row() : std::max<int>(high, tile.row());
+    first = first == nullptr ? &tile : first;
+  }
+  if (first == nullptr)
+    return raster;
+  const int side = static_cast<int>(first->side());
+  const double edge = side * first->resolution();
+  raster.emplace();
+  raster->cell = first->resolution();
+  raster->width = (right - left + 1) * side;
+  raster->height = (high - low + 1) * side;
+  raster->lower_left_in_map =
+      compose(lps::from_bus(registration.odom_in_map()), {left * edge, low * edge, 0.0});
+  raster->occupied.assign(static_cast<std::size_t>(raster->width * raster->height), -1.0F);
+  for (const v1::GridTile& tile : tiles) {
+    if (tile.odom() != registration.odom() || static_cast<int>(tile.side()) != side)
+      continue;
+    for (std::size_t i = 0; i < tile.cells().size(); ++i) {
+      const int x = (tile.column() - left) * side + static_cast<int>(i) % side;
+      const int y = (tile.row() - low) * side + static_cast<int>(i) / side;
+      if (tile.cells()[i] <= 200 && y < raster->height)
+        raster->occupied[static_cast<std::size_t>(y * raster->width + x)] =
+            static_cast<float>(tile.cells()[i]) / 200.0F;
+    }
+  }
+  return raster;
+}
+
+int show(const std::string& path, double seconds, const bus::NodeOptions& options,
+         const bus::Stop& stop) {
+  View view(options);
+  auto grid = view.node.reader(bus::topics::kGrid);
+  auto perceptions = view.node.reader(bus::topics::kPerception);
+  if (!view.wait_for_map(stop))
+    return bus::kExitFailed;
+  maps::Drawing drawing;
+  maps::Trajectory way{"where the robot believes to be", {}};
+  std::map<std::pair<std::int32_t, std::int32_t>, v1::GridTile> tiles;
+  std::map<std::uint32_t, Pose> percepts;
+  const auto began = Clock::now();
+  do {
+    for (const auto& tile : grid.take()) {
+      const std::pair key{tile.data.column(), tile.data.row()};
+      if (tile.info.disposed)
+        tiles.erase(key);
+      else
+        tiles[key] = tile.data;
+    }
+    if (const auto seen = perceptions.take_newest())
+      for (const v1::Percept& percept : seen->percepts())
+        percepts[percept.id()] = lps::from_bus(percept.pose_in_odom());
+    if (view.poll() && view.tracking()) {
+      way.points_in_map.push_back(view.position());
+      for (const v1::Match& match : view.registration->matches()) {
+        const auto percept = percepts.find(match.percept());
+        const maps::Feature* const artifact =
+            match.artifact() == 0 ? nullptr : maps::find(view.map, match.artifact());
+        if (percept != percepts.end() && artifact != nullptr)
+          drawing.matches.push_back({transform(lps::from_bus(view.registration->odom_in_map()),
+                                               percept->second.position()),
+                                     artifact->pose_in_map.position(), match.accepted()});
+      }
+    }
+    view.node.wait(milliseconds(100), &stop);
+  } while (!stop.requested() && seconds_since(began) < seconds);
+  std::vector<v1::GridTile> all;
+  all.reserve(tiles.size());
+  for (auto& [key, tile] : tiles)
+    all.push_back(std::move(tile));
+  drawing.map = view.map;
+  drawing.title = describe(*view.registration, view.map);
+  drawing.raster = raster_of(all, *view.registration);
+  if (!way.points_in_map.empty())
+    drawing.trajectories.push_back(std::move(way));
+  const v1::Covariance2& c = view.registration->covariance();
+  drawing.robot = maps::DrawnRobot{lps::from_bus(view.registration->pose_in_map()), 0.22, c.xx(),
+                                   c.yy(), c.xy()};
+  return write_out(path, maps::to_svg(drawing));
+}
+
+int request(const std::vector<std::string>& words, const bus::NodeOptions& options,
+            const bus::Stop& stop) {
+  View view(options);
+  auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
+  auto writer = view.node.writer(bus::topics::kRegistrationRequest);
+  // Names of places are those of the map that is there.
+  if (!view.wait_for_map(stop, false))
+    return bus::kExitFailed;
+  v1::RegistrationRequest asked = parse_map_request(words, view.map);
+  std::random_device random;
+  asked.request((static_cast<std::uint64_t>(random()) << 32U) | random());
+  asked.source("saphira map");
+  bool written = false;
+  const auto began = Clock::now();
+  while (!stop.requested() && seconds_since(began) < kPatience) {
+    if (!written && writer.matched() > 0 && answers.matched() > 0)
+      written = writer.write(asked);
+    for (const auto& answer : answers.take()) {
+      if (answer.data.request() != asked.request())
+        continue;
+      if (!answer.data.done()) {
+        std::cerr << "saphira: " << answer.data.reason() << '\n';
+        return bus::kExitFailed;
+      }
+      if (answer.data.artifact() != 0)
+        std::printf("artifact %u\n", answer.data.artifact());
+      return bus::kExitOk;
+    }
+    view.node.wait(milliseconds(50), &stop);
+    view.poll();
+  }
+  std::cerr << "saphira: registration did not answer; " << who_is_there(options, view.processes)
+            << '\n';
+  return bus::kExitFailed;
+}
+
+/// Drives by a route: one goal, whose point is moved on before the robot gets there, so that it
+/// does not stop in between. A way that proves blocked is left out of the next route.
+int go(const std::string& place, bool only_say, const bus::NodeOptions& options,
+       const bus::Stop& stop) {
+  constexpr double kNear = 0.6;  // [m]
+  View view(options);
+  if (!view.wait_for_map(stop))
+    return bus::kExitFailed;
+  bus::GoalClient goals(view.node, "saphira map go");
+  maps::RouteSettings settings;
+  while (true) {
+    const maps::Topology topology(view.map);
+    const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
+    if (!found.route) {
+      std::cerr << "saphira: " << found.reason << '\n';
+      return bus::kExitFailed;
+    }
+    std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
+    std::fflush(stdout);
+    if (only_say)
+      return bus::kExitOk;
+    const std::vector<Vec2> points = found.route->points();
+    std::size_t at = 0;
+    const auto goal_at = [&] {
+      v1::Goal goal;
+      goal.functor("go_to");
+      goal.arguments({bus::point("position", points[at].x(), points[at].y(), 0.0, v1::FRAME_MAP),
+                      bus::number("radius", at + 1 < points.size() ? 0.3 : 0.2)});
+      return goal;
+    };
+    const v1::GoalId id = goals.ask(goal_at());
+    std::string last;
+    bool ended = false;
+    while (!ended) {
+      view.node.wait(milliseconds(100), &stop);
+      view.poll();
+      goals.poll();
+      if (stop.requested()) {
+        goals.cancel(id);
+        goals.delivered(1000);
+        return bus::kExitFailed;
+      }
+      if (at + 1 < points.size() && (view.position() - points[at]).norm() < kNear) {
+        ++at;
+        goals.change(id, goal_at());
+      }
+      const auto status = goals.status(id);
+      if (!status)
+        continue;
+      ended = bus::ended(status->state());
+      const std::string now = ended ? bus::describe(*status) : status->step();
+      if (now != last) {
+        std::printf("%8.1f s  %s\n", status->elapsed(), now.c_str());
+        std::fflush(stdout);
+        last = now;
+      }
+      if (status->state() == v1::GOAL_SUCCEEDED && at + 1 >= points.size())
+        return bus::kExitOk;
+      if (ended && status->state() != v1::GOAL_SUCCEEDED && status->code() != v1::CODE_BLOCKED)
+        return bus::kExitFailed;
+    }
+    // Blocked: the way out of the leg that the point is of is not to be had.
+    std::size_t passed = 0;
+    bool other_way = false;
+    for (const maps::Leg& leg : found.route->legs) {
+      passed += leg.points.size();
+      if (at >= passed || !leg.link)
+        continue;
+      const std::uint32_t gate = topology.links()[*leg.link].id;
+      other_way = gate != 0 && settings.blocked.insert(gate).second;
+      break;
+    }
+    if (!other_way)
+      return bus::kExitFailed;
+  }
+}
+
+int map(const std::vector<std::string>& words, double seconds, const bus::NodeOptions& options,
+        const bus::Stop& stop) {
+  const std::string verb = words.empty() ? "" : words.front();
+  const std::string rest = words.size() == 2 ? words[1] : "";
+  try {
+    if (words.empty() || (verb == "follow" && words.size() == 1))
+      return look(options, stop, verb == "follow");
+    if (verb == "list" && words.size() == 1)
+      return save("-", options, stop);
+    if (verb == "save" && !rest.empty())
+      return save(rest, options, stop);
+    if (verb == "show" && words.size() <= 2)
+      return show(rest.empty() ? "map.svg" : rest, seconds, options, stop);
+    if ((verb == "go" || verb == "route") && !rest.empty())
+      return go(rest, verb == "route", options, stop);
+    return request(words, options, stop);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "saphira: map: " << error.what() << '\n';
+    return bus::kExitUsage;
+  } catch (const std::runtime_error& error) {
+    std::cerr << "saphira: " << error.what() << '\n';
+    return bus::kExitUsage;
+  }
+}
+
+constexpr const char* kMapWords = R"(
+  saphira map                    the map's source, and where the robot is on it
+  saphira map follow             the same, a line a second
+  saphira map list               the map as the text of a map file
+  saphira map save FILE          the same into a file
+  saphira map show [FILE.svg]    a picture of map, grid, matches and the way, of --seconds
+  saphira map load FILE          this map instead of the one that is there
+  saphira map delete             no map
+  saphira map put "DOOR (3) 3000, 1000, 90, 900"   adds an artifact, or changes the one of this id
+  saphira map remove ID          removes it
+  saphira map place X Y TH       the robot is there [m, rad]; or NAME of a POS of the map
+  saphira map find               the robot may be anywhere: find it
+  saphira map on | off           registration (manual 6.9.2)
+  saphira map features on | off  whether what is seen and not on the map is added to it
+  saphira map snap on | off      whether what is added is aligned on right angles
+  saphira map route PLACE        the way to a room, a corridor or a POS, by name or id
+  saphira map go PLACE           drives there
+)";
+
+}  // namespace
+
+void add_map(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<std::vector<std::string>>();
+  auto seconds = std::make_shared<double>(2.0);
+  CLI::App* command =
+      app.add_subcommand("map", "The map: look at it, draw it, change it, drive by it");
+  command->add_option("words", *words, "what to do, as below");
+  command->add_option("--seconds", *seconds, "show: how long the way is followed")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command->footer(kMapWords);
+  command->callback([words, seconds, &chosen] {
+    chosen.run = [words, seconds](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return map(*words, *seconds, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

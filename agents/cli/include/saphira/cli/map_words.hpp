@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "map.h"
+#include "saphira/maps/map.hpp"
+
+namespace saphira::cli {
+
+/// What is asked of registration by the words after `saphira map`; its source and number are the
+/// caller's. A map file is read here, so that it may be on another machine than the service.
+/// std::invalid_argument that says what was expected; FileError or std::runtime_error of a file.
+v1::RegistrationRequest parse_map_request(const std::vector<std::string>& words,
+                                          const maps::Map& map);
+
+/// Enumerators as people read them.
+const char* name_of(v1::RegistrationState state);
+
+/// One line: the state, where the robot is, how sure that is, and in what it is.
+std::string describe(const v1::Registration& registration, const maps::Map& map);
+
+/// "corridor 3 (lower corridor)", "door 1265 (EJ-265)".
+std::string describe(const maps::Feature& feature);
+
+}  // namespace saphira::cli

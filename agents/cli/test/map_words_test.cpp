@@ -1,0 +1,77 @@
+#include "saphira/cli/map_words.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::cli {
+namespace {
+
+maps::Map a_map() {
+  return maps::parse_map(
+      "CORRIDOR (1) 0, 0, 0, 10000, 2000 \"hall\"\nPOS (9) 1000, 2000, 90 \"start\"\n", "a.map");
+}
+
+v1::RegistrationRequest parse(const std::vector<std::string>& words) {
+  return parse_map_request(words, a_map());
+}
+
+std::string complaint(const std::vector<std::string>& words) {
+  try {
+    parse(words);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  } catch (const FileError& error) {
+    return std::string("file: ") + error.what();
+  }
+  return "nothing";
+}
+
+TEST(MapWords, AreRequests) {
+  EXPECT_EQ(parse({"delete"}).action(), v1::REGISTRATION_DELETE);
+  EXPECT_EQ(parse({"find"}).action(), v1::REGISTRATION_FIND);
+  EXPECT_TRUE(parse({"on"}).on());
+  EXPECT_FALSE(parse({"off"}).on());
+  EXPECT_EQ(parse({"features", "on"}).action(), v1::REGISTRATION_ADD_FEATURES);
+  EXPECT_EQ(parse({"snap", "off"}).action(), v1::REGISTRATION_SNAP);
+  EXPECT_EQ(parse({"remove", "12"}).artifact().id(), 12U);
+  const auto placed = parse({"place", "1.5", "-2", "0.5"});
+  EXPECT_EQ(placed.action(), v1::REGISTRATION_PLACE);
+  EXPECT_EQ(placed.pose_in_map().y(), -2.0);
+  const auto named = parse({"place", "start"});
+  EXPECT_EQ(named.pose_in_map().x(), 1.0);
+  EXPECT_NEAR(named.pose_in_map().th(), std::numbers::pi / 2, 1e-12);
+  const auto put = parse({"put", "DOOR (3) 3000, 1000, 90, 900 \"EJ-231\""});
+  EXPECT_EQ(put.action(), v1::REGISTRATION_PUT);
+  EXPECT_EQ(put.artifact().id(), 3U);
+  EXPECT_EQ(put.artifact().type(), v1::ARTIFACT_DOOR);
+  EXPECT_EQ(put.artifact().name(), "EJ-231");
+}
+
+TEST(MapWords, SayWhatWasExpected) {
+  EXPECT_NE(complaint({"sing"}).find("expected load FILE"), std::string::npos);
+  EXPECT_EQ(complaint({"remove", "-1"}), "expected the id of an artifact, found \"-1\"");
+  EXPECT_EQ(complaint({"place", "nowhere"}), "the map has no POS \"nowhere\"");
+  EXPECT_EQ(complaint({"place", "1", "x", "0"}), "expected y [m], found \"x\"");
+  EXPECT_EQ(complaint({"features", "maybe"}), "expected on or off, found \"maybe\"");
+  EXPECT_NE(complaint({"put", "DOR (3) 1, 2, 3, 4"}).find("the line:1:1"), std::string::npos);
+  EXPECT_NE(complaint({"put", ""}).find("expected one artifact"), std::string::npos);
+}
+
+TEST(MapWords, DescribeWhereTheRobotIs) {
+  v1::Registration registration;
+  registration.state(v1::REGISTRATION_TRACKING);
+  registration.pose_in_map().x(1.0);
+  registration.pose_in_map().y(2.0);
+  registration.covariance().xx(0.01);
+  registration.confidence(0.9);
+  registration.environment(1);
+  EXPECT_EQ(describe(registration, a_map()),
+            "tracking (1.00, 2.00, 0 deg) +-0.10 m, 0.0 deg, 90 % sure, in corridor 1 (hall)");
+}
+
+}  // namespace
+}  // namespace saphira::cli
