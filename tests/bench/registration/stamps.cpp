@@ -39,6 +39,56 @@ std::vector<std::optional<std::size_t>> common(const CarmenLog& raw, const Carme
   return out;
 }
 
+// Gives the scans, which are in order, the stamps at which dead reckoning was where they say: the
+// best of all assignments that keep the order.
+void put_in_time(const std::vector<LaserScan*>& scans, const Trajectory& odometry) {
+  constexpr double kTick = 0.02;        // [s]
+  constexpr int kReach = 60;            // ticks to each side of the stamp
+  constexpr double kPerSecond = 0.002;  // where the robot stood, the stamp itself is as good as any
+  if (scans.empty())
+    return;
+  struct Row {
+    int first = 0;             // tick of the first candidate
+    std::vector<double> cost;  // of all scans up to this one, this one at the candidate's tick
+    std::vector<int> best;     // the candidate up to which it is cheapest
+  };
+  const double start = scans.front()->time.ipc;
+  std::vector<Row> rows;
+  for (const LaserScan* scan : scans) {
+    Row row;
+    row.first = static_cast<int>(std::lround((scan->time.ipc - start) / kTick)) - kReach;
+    for (int k = 0; k <= 2 * kReach; ++k) {
+      const double time = start + kTick * (row.first + k);
+      double cost = 10.0;
+      if (const auto pose = odometry.at(time)) {
+        const Pose off = relative(*pose, scan->pose);
+        cost = std::hypot(off.x, off.y) + 0.5 * std::abs(off.th) +
+               kPerSecond * std::abs(time - scan->time.ipc);
+      }
+      if (!rows.empty()) {
+        const Row& before = rows.back();
+        const int last = std::min(row.first + k - before.first, 2 * kReach);
+        cost +=
+            last < 0
+                ? 1e6
+                : before
+                      .cost[static_cast<std::size_t>(before.best[static_cast<std::size_t>(last)])];
+      }
+      row.cost.push_back(cost);
+      const bool better = k == 0 || cost < row.cost[static_cast<std::size_t>(row.best.back())];
+      row.best.push_back(better ? k : row.best.back());
+    }
+    rows.push_back(std::move(row));
+  }
+  int limit = rows.back().first + 2 * kReach;
+  for (std::size_t i = scans.size(); i-- > 0;) {
+    const Row& row = rows[i];
+    const int last = std::clamp(limit - row.first, 0, 2 * kReach);
+    limit = row.first + row.best[static_cast<std::size_t>(last)];
+    scans[i]->time.ipc = scans[i]->time.logger = start + kTick * limit;
+  }
+}
+
 }  // namespace
 
 double time_of(const Stamps& stamps, Clock clock) {
@@ -88,28 +138,12 @@ TimeBase mend_stamps(CarmenLog& raw, const CarmenLog& corrected) {
                                            relative(before.pose, record.pose))});
   }
   Trajectory odometry(std::move(track));
-  std::size_t mended = 0;
-  for (std::size_t i = 0; i < raw.scans.size(); ++i) {
-    if (original[i] != 0)
-      continue;
-    LaserScan& scan = raw.scans[i];
-    const double stamp = scan.time.ipc;
-    double best = 1e9;
-    for (double t = stamp - 1.2; t <= stamp + 1.2; t += 0.02) {
-      const auto pose = odometry.at(t);
-      if (!pose)
-        continue;
-      const Pose off = relative(*pose, scan.pose);
-      // Where the robot stood, the stamp itself is as good as any.
-      const double cost =
-          std::hypot(off.x, off.y) + 0.5 * std::abs(off.th) + 0.002 * std::abs(t - stamp);
-      if (cost < best) {
-        best = cost;
-        scan.time.ipc = scan.time.logger = t;
-      }
-    }
-    ++mended;
-  }
+  std::vector<LaserScan*> lost;
+  for (std::size_t i = 0; i < raw.scans.size(); ++i)
+    if (original[i] == 0)
+      lost.push_back(&raw.scans[i]);
+  put_in_time(lost, odometry);
+  const std::size_t mended = lost.size();
   std::stable_sort(raw.scans.begin(), raw.scans.end(),
                    [](const LaserScan& a, const LaserScan& b) { return a.time.ipc < b.time.ipc; });
   return {std::move(odometry), mended};

@@ -64,10 +64,11 @@ struct AlignSettings {
 };
 
 struct Alignment {
-  Pose pose;                    ///< of the scan in the frame of the reference
-  Eigen::Matrix3d information;  ///< of (x, y, th), from the surfaces alone
-  double overlap = 0.0;         ///< share of the scan's points with a partner
-  double rms = 0.0;             ///< [m] of these across the surface
+  Pose pose;  ///< of the scan in the frame of the reference
+  /// Of (x, y, th), from the surfaces alone.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double overlap = 0.0;  ///< share of the scan's points with a partner
+  double rms = 0.0;      ///< [m] of these across the surface
 };
 
 /// Point to line registration (iterated closest point with robust weights) from a guess.
