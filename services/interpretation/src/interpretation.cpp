@@ -23,6 +23,16 @@ void add_readings(const std::vector<const Return*>& firings, Percept& percept) {
   }
 }
 
+/// The echoes of a stretch that bear witness to one of its ends [m].
+constexpr double kWitness = 0.8;
+
+void add_witnesses(const Line& line, const Stretch& stretch, bool upper, Percept& percept) {
+  const double end = upper ? stretch.to.u : stretch.from.u;
+  for (const Return* firing : stretch.echoes)
+    if (std::abs(line.u(firing->sonar) - end) < kWitness)
+      add_readings({firing}, percept);
+}
+
 double angle_between(double a, double b) {
   return std::abs(norm2_angle(a - b));
 }
@@ -53,6 +63,7 @@ Interpretation::Interpretation(Settings settings)
 void Interpretation::reset() {
   placed_ = false;
   travelled_ = 0.0;
+  turned_ = 0.0;
   for (SideView& side : sides_)
     side.clear();
   others_.clear();
@@ -69,6 +80,7 @@ const Output& Interpretation::step(const Inputs& inputs) {
   const Pose moved = relative(before, inputs.pose_in_odom);
   const bool steady = std::abs(moved.th) <= settings_.steady_turn;
   pose_in_odom_ = inputs.pose_in_odom;
+  turned_ += std::abs(moved.th);
   travelled_ += std::hypot(moved.x, moved.y) + settings_.side.turn_cost * std::abs(moved.th);
   changed_ = {false, false};
   for (std::size_t i = 0; i < inputs.readings.size(); ++i) {
@@ -91,7 +103,7 @@ void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in
     return;
   const Pose sonar = compose(robot_in_odom, mount->in_robot);
   const Return firing{sonar.position(), sonar.direction(),       reading.range, reading.echo,
-                      steady,           {cycle_, reading.sonar}, travelled_};
+                      steady,           {cycle_, reading.sonar}, travelled_,    turned_};
   const double bearing = norm2_angle(mount->in_robot.th);
   if (std::abs(std::abs(bearing) - kPi / 2.0) <= settings_.side_sector) {
     const std::size_t side = bearing > 0.0 ? 0 : 1;
@@ -130,6 +142,10 @@ void Interpretation::find_walls(std::size_t number) {
   const SideSettings& side_settings = settings_.side;
   const Side side = number == 0 ? Side::left : Side::right;
   for (const Wall& wall : sides_[number].walls()) {
+    // Lines of the two sides are numbered apart.
+    const Lines lines{2 * wall.line + static_cast<std::uint32_t>(number), 0};
+    if (holds_back(wall, lines[0]))
+      continue;
     std::vector<bool> from_taken(wall.stretches.size(), false);
     std::vector<bool> to_taken(wall.stretches.size(), false);
     for (const Opening& opening : wall.openings) {
@@ -137,7 +153,7 @@ void Interpretation::find_walls(std::size_t number) {
           wall.stretches[opening.after].from.u - wall.stretches[opening.before].to.u;
       if (width < side_settings.min_door || width > side_settings.max_junction)
         continue;
-      stand(opening_percept(wall, opening, side));
+      stand(opening_percept(wall, opening, side), lines);
       to_taken[opening.before] = true;
       from_taken[opening.after] = true;
     }
@@ -146,19 +162,30 @@ void Interpretation::find_walls(std::size_t number) {
       const double length = stretch.to.u - stretch.from.u;
       if (stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
           length >= side_settings.min_length)
-        stand(wall_percept(wall, stretch, side));
+        stand(wall_percept(wall, stretch, side), lines);
       if (length < side_settings.end_run)
         continue;
       const auto enough = static_cast<std::size_t>(side_settings.min_through);
       if (!from_taken[i] && stretch.from.open && stretch.from.through.size() >= enough)
-        stand(end_percept(wall, stretch, false, side));
+        stand(end_percept(wall, stretch, false, side), lines);
       if (!to_taken[i] && stretch.to.open && stretch.to.through.size() >= enough)
-        stand(end_percept(wall, stretch, true, side));
+        stand(end_percept(wall, stretch, true, side), lines);
     }
   }
 }
 
-void Interpretation::stand(Percept percept) {
+// A wall whose heading is doubtful, since the robot has just turned: what was said of it stands.
+bool Interpretation::holds_back(const Wall& wall, std::uint32_t line) {
+  if (wall.fit.sigma_heading <= settings_.max_heading)
+    return false;
+  for (Standing& standing : standing_)
+    if ((standing.lines[0] == line || standing.lines[1] == line) &&
+        travelled_ - standing.travelled <= settings_.side.aperture)
+      standing.seen = true;
+  return true;
+}
+
+void Interpretation::stand(Percept percept, const Lines& lines) {
   Standing* same = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (Standing& standing : standing_) {
@@ -173,12 +200,34 @@ void Interpretation::stand(Percept percept) {
   if (same) {
     percept.id = same->percept.id;
     percept.since = same->percept.since;
-    *same = {std::move(percept), true};
+    // Only what has been seen anew is placed anew.
+    const bool news = percept.seen != same->percept.seen;
+    *same = {std::move(percept), true, lines, news ? travelled_ : same->travelled};
   } else {
     percept.id = ++last_id_;
     percept.since = cycle_;
-    standing_.push_back({std::move(percept), true});
+    standing_.push_back({std::move(percept), true, lines, travelled_});
   }
+}
+
+double Interpretation::across_sigma(const Wall& wall, double u) const {
+  return std::sqrt(square(wall.fit.sigma_offset) + square(settings_.least_offset) +
+                   square(wall.fit.sigma_heading * (u - wall.fit.u_mean)));
+}
+
+// By how much dead reckoning may have carried an opening along its wall since it was seen.
+double Interpretation::carried(const Line& line, const std::vector<const Return*>& through,
+                               const Stretch& stretch) const {
+  double way = 0.0;
+  double turn = 0.0;
+  for (const Return* echo : stretch.echoes) {
+    way = std::max(way, std::abs(echo->travelled - through.front()->travelled));
+    turn = std::max(turn, std::abs(echo->turned - through.front()->turned));
+  }
+  way = std::min(way, 2.0);
+  const double aside = line.distance(through.front()->sonar);
+  return std::sqrt(square(settings_.encoder) * way +
+                   square(aside) * settings_.side.error.heading_variance(way, turn));
 }
 
 Percept Interpretation::wall_percept(const Wall& wall, const Stretch& stretch, Side side) const {
@@ -194,10 +243,8 @@ Percept Interpretation::wall_percept(const Wall& wall, const Stretch& stretch, S
   const Return* last = stretch.echoes.back();
   const Vec2 along = first->travelled <= last->travelled ? line.along() : Vec2(-line.along());
   percept.pose_in_odom = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
-  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.odometry_heading);
-  percept.sigma_across = std::sqrt(square(wall.fit.sigma_offset) +
-                                   square(wall.fit.sigma_heading * (u - wall.fit.u_mean)) +
-                                   square(settings_.odometry_error * percept.length / 2.0));
+  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.least_heading);
+  percept.sigma_across = across_sigma(wall, u);
   percept.sigma_along = stretch.from.open && stretch.to.open
                             ? std::hypot(stretch.from.sigma, stretch.to.sigma) / 2.0
                             : percept.length / 2.0;
@@ -216,13 +263,14 @@ Percept Interpretation::end_percept(const Wall& wall, const Stretch& stretch, bo
   percept.side = side;
   const Vec2 at = line.at(end.u);
   percept.pose_in_odom = {at.x(), at.y(), std::atan2(-line.normal.y(), -line.normal.x())};
-  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.odometry_heading);
-  percept.sigma_along =
-      std::hypot(wall.fit.sigma_offset, wall.fit.sigma_heading * (end.u - wall.fit.u_mean));
-  percept.sigma_across = end.sigma;
-  add_readings(stretch.echoes, percept);
-  add_readings(end.through, percept);
+  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.least_heading);
+  percept.sigma_along = across_sigma(wall, end.u);
+  add_witnesses(line, stretch, upper, percept);
+  for (const Return* firing : end.through)
+    if (std::abs(line.u(firing->sonar) - end.u) < kWitness)
+      add_readings({firing}, percept);
   add_readings(end.posts, percept);
+  percept.sigma_across = std::hypot(end.sigma, carried(line, end.through, stretch));
   const double n = static_cast<double>(end.through.size());
   percept.confidence = n / (n + 1.0) * (end.posts.empty() ? 0.8 : 0.95);
   return percept;
@@ -239,15 +287,17 @@ Percept Interpretation::opening_percept(const Wall& wall, const Opening& opening
   const double u = (from.u + to.u) / 2.0;
   const Vec2 at = line.at(u);
   percept.pose_in_odom = {at.x(), at.y(), std::atan2(-line.normal.y(), -line.normal.x())};
-  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.odometry_heading);
-  percept.sigma_along =
-      std::hypot(wall.fit.sigma_offset, wall.fit.sigma_heading * (u - wall.fit.u_mean));
-  percept.sigma_across = std::hypot(from.sigma, to.sigma) / 2.0;
+  percept.sigma_heading = std::hypot(wall.fit.sigma_heading, settings_.least_heading);
+  percept.sigma_along = across_sigma(wall, u);
   add_readings(opening.through, percept);
-  add_readings(wall.stretches[opening.before].echoes, percept);
-  add_readings(wall.stretches[opening.after].echoes, percept);
+  add_witnesses(line, wall.stretches[opening.before], true, percept);
+  add_witnesses(line, wall.stretches[opening.after], false, percept);
   add_readings(from.posts, percept);
   add_readings(to.posts, percept);
+  percept.sigma_across =
+      std::hypot(std::hypot(from.sigma, to.sigma) / 2.0,
+                 std::max(carried(line, opening.through, wall.stretches[opening.before]),
+                          carried(line, opening.through, wall.stretches[opening.after])));
   const double n = static_cast<double>(opening.through.size());
   percept.confidence =
       n / (n + 1.0) * (from.posts.empty() ? 0.9 : 1.0) * (to.posts.empty() ? 0.9 : 1.0);
@@ -261,6 +311,9 @@ void Interpretation::find_corridors() {
       const Line& b = right.fit.line;
       // Their normals look away from the robot, to opposite sides.
       const double cosine = -a.normal.dot(b.normal);
+      if (left.fit.sigma_heading > settings_.max_heading ||
+          right.fit.sigma_heading > settings_.max_heading)
+        continue;
       if (cosine < std::cos(settings_.parallel))
         continue;
       Vec2 normal = (a.normal - b.normal).normalized();  // to the left
@@ -293,12 +346,10 @@ void Interpretation::find_corridors() {
       percept.length = high - low;
       percept.width = width;
       percept.sigma_along = percept.length / 2.0;
-      percept.sigma_across = std::sqrt(square(left.fit.sigma_offset) +
-                                       square(right.fit.sigma_offset) + square(0.005)) /
-                             2.0;
-      percept.sigma_heading =
-          std::hypot(std::hypot(left.fit.sigma_heading, right.fit.sigma_heading) / 2.0,
-                     settings_.odometry_heading);
+      percept.sigma_across =
+          std::max(across_sigma(left, a.u(middle)), across_sigma(right, b.u(middle)));
+      percept.sigma_heading = std::hypot(std::max(left.fit.sigma_heading, right.fit.sigma_heading),
+                                         settings_.least_heading);
       double n = 0.0;
       for (const Wall* wall : {&left, &right})
         for (const Stretch& stretch : wall->stretches) {
@@ -306,7 +357,7 @@ void Interpretation::find_corridors() {
           n += static_cast<double>(stretch.echoes.size());
         }
       percept.confidence = n / (n + 2.0);
-      stand(std::move(percept));
+      stand(std::move(percept), {2 * left.line, 2 * right.line + 1});
     }
 }
 

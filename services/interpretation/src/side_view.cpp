@@ -21,6 +21,9 @@ constexpr double kUnseen = 0.45;
 constexpr double kPostNear = 0.2;
 /// ...and the echoes agree with each other to this [m].
 constexpr double kPostAgree = 0.06;
+/// They were heard so shortly before or after, by travel [m] and turns [rad].
+constexpr double kPostWay = 4.0;
+constexpr double kPostTurn = 0.6;
 
 enum class Says { wall, through, other };
 
@@ -55,11 +58,18 @@ void SideView::clear() {
   walls_.clear();
 }
 
-bool SideView::fits(const Return& firing, const Line& line) const {
-  return firing.echo && firing.range <= settings_.max_range &&
-         firing.axis.dot(line.normal) >= std::cos(settings_.incidence) &&
-         std::abs(line.distance(firing.sonar) - firing.range) <
-             settings_.gate + settings_.relative_gate * firing.range;
+std::optional<double> SideView::misses(const Return& firing, const Line& line, double newest,
+                                       double turned) const {
+  if (!firing.echo || firing.range > settings_.max_range ||
+      firing.axis.dot(line.normal) < std::cos(settings_.incidence))
+    return std::nullopt;
+  const double off = std::abs(line.distance(firing.sonar) - firing.range);
+  const double way = newest - firing.travelled;
+  const double strayed =
+      way * std::sqrt(settings_.error.heading_variance(way, std::max(0.0, turned - firing.turned)));
+  if (off >= settings_.gate + settings_.relative_gate * firing.range + strayed)
+    return std::nullopt;
+  return off;
 }
 
 // Long enough not to be one corner, which is heard at nearly the same range over its whole cone.
@@ -88,12 +98,10 @@ void SideView::assign() {
       Candidate* best = nullptr;
       double least = 0.0;
       for (Candidate& line : lines_) {
-        if (!fits(firing, line.fit.line))
-          continue;
-        const double off = std::abs(line.fit.line.distance(firing.sonar) - firing.range);
-        if (!best || off < least) {
+        const auto off = misses(firing, line.fit.line, line.newest, line.turned);
+        if (off && (!best || *off < least)) {
           best = &line;
-          least = off;
+          least = *off;
         }
       }
       if (best)
@@ -101,12 +109,16 @@ void SideView::assign() {
     }
     for (Candidate& candidate : lines_) {
       const Line& line = candidate.fit.line;
+      if (!candidate.echoes.empty()) {
+        candidate.newest = candidate.echoes.back()->travelled;
+        candidate.turned = candidate.echoes.back()->turned;
+      }
       std::stable_sort(
           candidate.echoes.begin(), candidate.echoes.end(),
           [&](const Return* a, const Return* b) { return line.u(a->sonar) < line.u(b->sonar); });
       if (candidate.echoes.size() >= static_cast<std::size_t>(settings_.min_echoes) &&
           length(candidate.echoes, line) >= settings_.min_length)
-        candidate.fit = fit_line(candidate.echoes, line, settings_.noise);
+        candidate.fit = fit_line(candidate.echoes, line, settings_.error);
     }
   }
 }
@@ -117,8 +129,9 @@ void SideView::seek() {
   for (auto it = returns_.rbegin(); it != returns_.rend() && loose.size() < kSeek; ++it) {
     if (!it->echo || it->range > settings_.max_range)
       continue;
-    const bool taken = std::any_of(lines_.begin(), lines_.end(),
-                                   [&](const Candidate& line) { return fits(*it, line.fit.line); });
+    const bool taken = std::any_of(lines_.begin(), lines_.end(), [&](const Candidate& line) {
+      return misses(*it, line.fit.line, line.newest, line.turned).has_value();
+    });
     if (!taken)
       loose.push_back(&*it);
     else if (loose.empty())
@@ -136,7 +149,7 @@ void SideView::seek() {
       continue;
     std::vector<const Return*> echoes;
     for (const Return* echo : loose)
-      if (fits(*echo, *line))
+      if (misses(*echo, *line, loose.front()->travelled, loose.front()->turned))
         echoes.push_back(echo);
     if (echoes.size() > best.echoes.size()) {
       best.fit.line = *line;
@@ -145,7 +158,9 @@ void SideView::seek() {
   }
   if (best.echoes.size() < static_cast<std::size_t>(settings_.min_echoes))
     return;
-  best.fit = fit_line(best.echoes, best.fit.line, settings_.noise);
+  best.newest = loose.front()->travelled;
+  best.turned = loose.front()->turned;
+  best.fit = fit_line(best.echoes, best.fit.line, settings_.error);
   const Line& line = best.fit.line;
   std::stable_sort(best.echoes.begin(), best.echoes.end(), [&](const Return* a, const Return* b) {
     return line.u(a->sonar) < line.u(b->sonar);
@@ -179,7 +194,7 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
       continue;
     Event event{line.u(firing.sonar), &firing, Says::other};
     const bool sure = firing.steady && cosine >= std::cos(settings_.sure);
-    if (fits(firing, line))
+    if (misses(firing, line, candidate.newest, candidate.turned))
       event.says = Says::wall;
     else if (!firing.echo || firing.range > d + settings_.through) {
       if (!sure)
@@ -294,7 +309,9 @@ void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
   std::vector<std::pair<double, const Return*>> posts;
   for (const Return& other : others) {
     const double h = line.distance(other.sonar);
-    if (!other.steady || h < 0.15 || other.range < 1.05 * h)
+    if (!other.steady || h < 0.15 || other.range < 1.05 * h ||
+        std::abs(other.travelled - edge.travelled) > kPostWay ||
+        std::abs(other.turned - edge.turned) > kPostTurn)
       continue;
     const double off = std::sqrt(other.range * other.range - h * h);
     for (const double sign : {-1.0, 1.0}) {

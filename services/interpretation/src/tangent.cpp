@@ -24,53 +24,69 @@ std::optional<Line> tangent(const Return& a, const Return& b) {
   return Line{normal, normal.dot(a.sonar) + a.range};
 }
 
-LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near, double noise) {
+LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near,
+                 const EchoError& error) {
   LineFit fit;
   fit.line = near;
   if (echoes.empty())
     return fit;
-  const double n = static_cast<double>(echoes.size());
+  double newest = 0.0;
+  double turned = 0.0;
+  for (const Return* echo : echoes) {
+    newest = std::max(newest, echo->travelled);
+    turned = std::max(turned, echo->turned);
+  }
+  std::vector<double> weights;
+  weights.reserve(echoes.size());
+  double all = 0.0;
+  double way = 0.0;
+  double turn = 0.0;
   Vec2 middle(0.0, 0.0);
-  for (const Return* echo : echoes)
-    middle += echo->sonar;
-  middle /= n;
+  for (const Return* echo : echoes) {
+    weights.push_back(1.0 / error.variance(newest - echo->travelled, turned - echo->turned));
+    all += weights.back();
+    way += weights.back() * (newest - echo->travelled);
+    turn += weights.back() * (turned - echo->turned);
+    middle += weights.back() * echo->sonar;
+  }
+  middle /= all;
   double angle = std::atan2(near.normal.y(), near.normal.x());
   double offset = 0.0;  // from the middle
   double spread = 0.0;
+  // Three rounds of Gauss and Newton: the angle is known to a few degrees.
   for (int round = 0; round < 3; ++round) {
     const Vec2 normal(std::cos(angle), std::sin(angle));
     const Vec2 along(-normal.y(), normal.x());
-    offset = 0.0;
-    for (const Return* echo : echoes)
-      offset += normal.dot(echo->sonar - middle) + echo->range;
-    offset /= n;
     double mixed = 0.0;
     spread = 0.0;
-    for (const Return* echo : echoes) {
-      const double u = along.dot(echo->sonar - middle);
-      mixed += u * (normal.dot(echo->sonar - middle) + echo->range - offset);
-      spread += u * u;
+    for (std::size_t i = 0; i < echoes.size(); ++i) {
+      const Vec2 from = echoes[i]->sonar - middle;
+      const double u = along.dot(from);
+      mixed += weights[i] * u * (normal.dot(from) + echoes[i]->range);
+      spread += weights[i] * u * u;
     }
     if (spread <= 0.0)
       break;
     angle -= mixed / spread;
   }
   const Vec2 normal(std::cos(angle), std::sin(angle));
+  for (std::size_t i = 0; i < echoes.size(); ++i)
+    offset += weights[i] * (normal.dot(echoes[i]->sonar - middle) + echoes[i]->range);
+  offset /= all;
   double squares = 0.0;
-  offset = 0.0;
-  for (const Return* echo : echoes)
-    offset += normal.dot(echo->sonar - middle) + echo->range;
-  offset /= n;
-  for (const Return* echo : echoes) {
-    const double off = normal.dot(echo->sonar - middle) + echo->range - offset;
-    squares += off * off;
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const double off = normal.dot(echoes[i]->sonar - middle) + echoes[i]->range - offset;
+    squares += weights[i] * off * off;
   }
+  const double n = static_cast<double>(echoes.size());
   fit.line = {normal, offset + normal.dot(middle)};
   fit.u_mean = fit.line.u(middle);
-  fit.rms = std::sqrt(squares / n);
-  const double deviation = std::max(noise, std::sqrt(squares / std::max(1.0, n - 2.0)));
-  fit.sigma_offset = deviation / std::sqrt(n);
-  fit.sigma_heading = spread > 0.0 ? deviation / std::sqrt(spread) : kPi;
+  fit.rms = std::sqrt(squares / all);
+  const double scale = std::max(1.0, std::sqrt(squares / std::max(1.0, n - 2.0)));
+  fit.sigma_offset = scale / std::sqrt(all);
+  // What dead reckoning has strayed since is the same for all of them: it does not average out.
+  const double strayed = error.heading_variance(way / all, turn / all);
+  fit.sigma_heading = spread > 0.0 ? std::sqrt(scale * scale / spread + strayed) : kPi;
   return fit;
 }
 

@@ -94,11 +94,12 @@ int main(int argc, char** argv) {
       for (const Mistake& m : score.mistakes())
         std::printf(
             "    false type %d at %.2f %.2f %.0f deg, length %.2f width %.2f conf %.2f n "
-            "%zu cycle %llu side %d\n",
+            "%zu cycle %llu side %d sigmas %.3f %.3f %.2f\n",
             static_cast<int>(m.percept.type), m.pose_in_world.x, m.pose_in_world.y,
             degrees(m.pose_in_world.th), m.percept.length, m.percept.width, m.percept.confidence,
             m.percept.readings.size(), static_cast<unsigned long long>(m.cycle),
-            static_cast<int>(m.percept.side));
+            static_cast<int>(m.percept.side), m.percept.sigma_along, m.percept.sigma_across,
+            degrees(m.percept.sigma_heading));
       for (const auto& [id, cycle] : score.missed())
         std::printf("    missed %u at cycle %llu\n", id, static_cast<unsigned long long>(cycle));
     }

@@ -10,11 +10,12 @@ namespace {
 
 using lps::PointType;
 
-constexpr double kOnWall = 0.12;    // [m] a wall may be off
+constexpr double kOnWall = 0.2;     // [m] a wall may be off
 constexpr double kOnDoor = 0.3;     // [m] a door's middle may be off
 constexpr double kDoorWidth = 0.4;  // [m]
 constexpr double kOnCorner = 0.3;   // [m] one end
-constexpr double kAskew = radians(10.0);
+constexpr double kAskew = radians(5.0);
+constexpr double kDoorAskew = radians(10.0);
 
 double parallel(double a, double b) {
   const double off = std::abs(norm2_angle(a - b));
@@ -42,11 +43,13 @@ Pose Score::in_world(const lps::Percept& percept) const {
   return compose(odom_in_world_[cycle], percept.pose_in_odom);
 }
 
-bool Score::is_surface(const sim::Things& things, const Pose& middle, double length) const {
+bool Score::is_surface(const sim::Things& things, const Pose& middle,
+                       const lps::Percept& wall) const {
   constexpr int kSamples = 20;
   int hits = 0;
   for (int i = 0; i < kSamples; ++i) {
-    const Vec2 at = transform(middle, Vec2(((i + 0.5) / kSamples - 0.5) * length, 0.0));
+    const double along = ((i + 0.5) / kSamples - 0.5) * wall.length;
+    const Vec2 at = transform(middle, Vec2(along, 0.0));
     for (const sim::Segment& segment : things.segments) {
       const Vec2 way = segment.to - segment.from;
       if ((sim::nearest_point(segment, at) - at).norm() <= kOnWall &&
@@ -63,7 +66,7 @@ const maps::Feature* Score::door_at(const Pose& at, double width) const {
   for (const maps::Feature& feature : map_.features)
     if (feature.type == PointType::door &&
         (feature.pose_in_map.position() - at.position()).norm() <= kOnDoor &&
-        parallel(feature.pose_in_map.th, at.th) <= kAskew &&
+        parallel(feature.pose_in_map.th, at.th) <= kDoorAskew &&
         std::abs(feature.width - width) <= kDoorWidth)
       return &feature;
   return nullptr;
@@ -74,7 +77,7 @@ bool Score::is_real(Drive& drive, const lps::Percept& percept, const Pose& at) {
   drive.scene().add_movable(at.position(), 12.0, drive.robot().number(), things);
   switch (percept.type) {
     case PointType::wall: {
-      if (!is_surface(things, at, percept.length))
+      if (!is_surface(things, at, percept))
         return false;
       double best = 1e9;
       double heading = 0.0;
@@ -123,18 +126,14 @@ bool Score::is_real(Drive& drive, const lps::Percept& percept, const Pose& at) {
       return true;
     }
     case PointType::corridor: {
-      // Doors may interrupt its walls: half of each is there.
-      int sides = 0;
-      for (const double sign : {-1.0, 1.0}) {
-        int hits = 0;
-        for (int i = 0; i < 20; ++i) {
-          const Vec2 point =
-              transform(at, Vec2((i / 19.0 - 0.5) * percept.length, sign * percept.width / 2.0));
-          hits += sim::distance(things.segments, point) <= 0.15 ? 1 : 0;
-        }
-        sides += hits >= 8 ? 1 : 0;
+      for (const maps::Feature& feature : map_.features) {
+        const Pose from = relative(feature.pose_in_map, at);
+        if (feature.type == PointType::corridor && std::abs(from.x) < feature.length / 2.0 &&
+            std::abs(from.y) < kOnWall && parallel(from.th, 0.0) < kAskew &&
+            std::abs(feature.width - percept.width) < 0.2)
+          return true;
       }
-      return sides == 2;
+      return false;
     }
     default:
       return false;

@@ -64,7 +64,7 @@ class Score {
   };
   Pose in_world(const lps::Percept& percept) const;
   bool is_real(Drive& drive, const lps::Percept& percept, const Pose& in_world);
-  bool is_surface(const sim::Things& things, const Pose& middle, double length) const;
+  bool is_surface(const sim::Things& things, const Pose& middle, const lps::Percept& wall) const;
   const maps::Feature* door_at(const Pose& in_world, double width) const;
   void pass(const interpretation::Output& output);
 

@@ -20,12 +20,13 @@ struct Settings {
   double steady_turn = radians(4.0);  ///< a cycle; bearings are doubtful in faster turns
   double parallel = radians(6.0);     ///< between the two walls of a corridor
   double min_corridor = 1.0;          ///< [m] wide
-  double max_corridor = 4.0;
-  double min_overlap = 1.2;  ///< [m] of the two walls along each other
+  double max_corridor = 3.2;
+  double min_overlap = 2.0;  ///< [m] of the two walls along each other
   double beside = 0.6;       ///< [m] a wall that ended so far back is still beside the robot
-  /// [1] Share of the way by which dead reckoning strays; adds to what percepts admit.
-  double odometry_error = 0.01;
-  double odometry_heading = radians(0.3);  ///< and its heading over the aperture
+  double max_heading = radians(1.2);    ///< sigma of a wall that is spoken of
+  double encoder = 0.015;               ///< [m] one sigma of dead reckoning's way after 1 m
+  double least_offset = 0.006;          ///< [m] sigma of where any wall is
+  double least_heading = radians(0.4);  ///< sigma of any heading
 };
 
 struct Inputs {
@@ -59,15 +60,22 @@ class Interpretation {
   const SideView& right() const { return sides_[1]; }
 
  private:
+  using Lines = std::array<std::uint32_t, 2>;
   struct Standing {
     lps::Percept percept;
     bool seen = false;
+    Lines lines{0, 0};       // what it was seen on
+    double travelled = 0.0;  // when it was placed
   };
   void take(const lps::SonarReading& reading, const Pose& robot_in_odom, bool steady);
   void interpret();
   void find_walls(std::size_t side);
   void find_corridors();
-  void stand(lps::Percept percept);
+  void stand(lps::Percept percept, const Lines& lines);
+  bool holds_back(const Wall& wall, std::uint32_t line);
+  double across_sigma(const Wall& wall, double u) const;
+  double carried(const Line& line, const std::vector<const Return*>& through,
+                 const Stretch& stretch) const;
   lps::Percept wall_percept(const Wall& wall, const Stretch& stretch, lps::Side side) const;
   lps::Percept end_percept(const Wall& wall, const Stretch& stretch, bool upper,
                            lps::Side side) const;
@@ -79,6 +87,7 @@ class Interpretation {
   Pose pose_in_odom_;
   std::uint64_t cycle_ = 0;
   double travelled_ = 0.0;
+  double turned_ = 0.0;
   std::array<SideView, 2> sides_;
   std::array<bool, 2> changed_{false, false};
   std::deque<Return> others_;

@@ -18,9 +18,9 @@ struct SideSettings {
   double step = 0.03;      ///< [m] a sonar that has moved less, and...
   double turn = radians(5.0);  ///< ...turned less, says nothing new
 
-  double gate = 0.03;                ///< [m] an echo is of a line that it misses by less...
-  double relative_gate = 0.012;      ///< ...plus this share of its range
-  double noise = 0.008;              ///< [m] least deviation of an echo that is believed
+  double gate = 0.03;            ///< [m] an echo is of a line that it misses by less...
+  double relative_gate = 0.012;  ///< ...plus this share of its range
+  EchoError error;
   double max_rms = 0.03;             ///< [m] of a wall
   double incidence = radians(25.0);  ///< off the beam's axis up to which a wall is heard
   int min_echoes = 8;                ///< of a wall
@@ -90,9 +90,13 @@ class SideView {
   struct Candidate {
     std::uint32_t id = 0;
     LineFit fit;
+    double newest = 0.0;  // travelled and turned at its last echo
+    double turned = 0.0;
     std::vector<const Return*> echoes;
   };
-  bool fits(const Return& firing, const Line& line) const;
+  // How far it misses the line, when it is an echo of it, that was heard last there.
+  std::optional<double> misses(const Return& firing, const Line& line, double newest,
+                               double turned) const;
   bool is_wall(const Candidate& candidate) const;
   void assign();
   void seek();

@@ -16,7 +16,8 @@ struct Return {
   bool echo = false;
   bool steady = true;  ///< the robot was not turning so fast that the bearing is doubtful
   lps::ReadingId id;
-  double travelled = 0.0;  ///< [m] how far the robot had gone
+  double travelled = 0.0;  ///< [m] how far the robot had gone...
+  double turned = 0.0;     ///< [rad] ...and turned, to and fro
 };
 
 /// The points p with normal * p = offset. The normal points away from where it is seen from.
@@ -34,8 +35,8 @@ struct Line {
 
 struct LineFit {
   Line line;
-  double rms = 0.0;            ///< [m] of the ranges about it
-  double u_mean = 0.0;         ///< [m]
+  double rms = 0.0;            ///< [m] of the ranges about it, by weight
+  double u_mean = 0.0;         ///< [m] where it is known best
   double sigma_offset = 0.0;   ///< [m] at u_mean
   double sigma_heading = 0.0;  ///< [rad]
 };
@@ -46,8 +47,25 @@ struct LineFit {
 /// lies in the other.
 std::optional<Line> tangent(const Return& a, const Return& b);
 
-/// The line that touches the circles best (least squares of the normal distances), begun at one
-/// that is near. `noise` [m] is the least deviation that is believed of one echo.
-LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near, double noise);
+/// How far an echo may be off, and dead reckoning since.
+struct EchoError {
+  double noise = 0.008;  ///< [m] of one echo
+  double drift = 0.004;  ///< [rad/m] of the heading with the way...
+  double jitter = 0.04;  ///< [rad, one sigma] ...and with a turn of 1 rad
+  /// [rad^2] of the heading after so much.
+  double heading_variance(double way, double turn) const {
+    return drift * drift * way * way + jitter * jitter * turn;
+  }
+  /// [m^2] of an echo, seen from where the robot is so much later.
+  double variance(double way, double turn) const {
+    return noise * noise + way * way * heading_variance(way, turn);
+  }
+};
+
+/// The line that touches the circles best (weighted least squares of the normal distances), begun
+/// at one that is near. It is the line as it is seen from where its newest echo was heard: the
+/// heading of a wall is known from its last two metres, and the farther ones tell its length.
+LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near,
+                 const EchoError& error);
 
 }  // namespace saphira::interpretation
