@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::registration {
+
+/// How wrong dead reckoning is; one sigma, growing with the root of the way.
+struct ReckoningErrors {
+  double way = 0.03;                  ///< [m] after 1 m
+  double turn = 0.05;                 ///< [rad] after a turn of 1 rad
+  double heading = radians(0.5);      ///< [rad] after 1 m
+  double drift_walk = radians(0.01);  ///< [rad/m] by which drift itself changes in 1 m
+};
+
+/// The robot's pose in the map and the drift of its dead reckoning (a constant turn per metre that
+/// is not there, as of unequal wheels), with their covariance.
+class PoseFilter {
+ public:
+  using State = Eigen::Vector4d;  // x, y, th, drift
+  using Covariance = Eigen::Matrix4d;
+
+  PoseFilter(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
+             double drift_variance, const ReckoningErrors& errors);
+
+  /// The robot has moved so, by dead reckoning, in its own frame before.
+  void move(const Pose& moved);
+  /// A measurement that differs from what was expected by `innovation` = `jacobian` * error.
+  template <int N>
+  void correct(const Eigen::Matrix<double, N, 1>& innovation,
+               const Eigen::Matrix<double, N, 4>& jacobian,
+               const Eigen::Matrix<double, N, N>& noise);
+  template <int N>
+  double distance(const Eigen::Matrix<double, N, 1>& innovation,
+                  const Eigen::Matrix<double, N, 4>& jacobian,
+                  const Eigen::Matrix<double, N, N>& noise) const;
+
+  Pose pose() const { return {state_[0], state_[1], state_[2]}; }
+  double drift() const { return state_[3]; }
+  const Covariance& covariance() const { return covariance_; }
+  Eigen::Matrix3d pose_covariance() const { return covariance_.topLeftCorner<3, 3>(); }
+  double sigma_position() const;  ///< [m] along the worst direction
+  double sigma_heading() const;   ///< [rad]
+  void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
+  /// Another pose; the drift stays.
+  void set_pose(const Pose& pose, const Eigen::Matrix3d& covariance);
+  /// Less sure of the pose.
+  void widen(double position, double heading);
+
+ private:
+  State state_;
+  Covariance covariance_;
+  ReckoningErrors errors_;
+};
+
+template <int N>
+void PoseFilter::correct(const Eigen::Matrix<double, N, 1>& innovation,
+                         const Eigen::Matrix<double, N, 4>& jacobian,
+                         const Eigen::Matrix<double, N, N>& noise) {
+  const Eigen::Matrix<double, N, N> s = jacobian * covariance_ * jacobian.transpose() + noise;
+  const Eigen::Matrix<double, 4, N> gain = covariance_ * jacobian.transpose() * s.inverse();
+  state_ += gain * innovation;
+  state_[2] = norm2_angle(state_[2]);
+  // Joseph's form: stays symmetric and positive.
+  const Covariance rest = Covariance::Identity() - gain * jacobian;
+  covariance_ = rest * covariance_ * rest.transpose() + gain * noise * gain.transpose();
+}
+
+template <int N>
+double PoseFilter::distance(const Eigen::Matrix<double, N, 1>& innovation,
+                            const Eigen::Matrix<double, N, 4>& jacobian,
+                            const Eigen::Matrix<double, N, N>& noise) const {
+  const Eigen::Matrix<double, N, N> s = jacobian * covariance_ * jacobian.transpose() + noise;
+  return innovation.dot(s.inverse() * innovation);
+}
+
+}  // namespace saphira::registration

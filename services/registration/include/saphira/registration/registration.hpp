@@ -1,0 +1,123 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/registration/matching.hpp"
+#include "saphira/registration/range_model.hpp"
+#include "saphira/registration/search.hpp"
+
+namespace saphira::registration {
+
+/// One sigma of a pose.
+struct Sigmas {
+  double position = 0.2;          ///< [m] each way
+  double heading = radians(5.0);  ///< [rad]
+};
+
+struct Settings {
+  std::vector<lps::SonarMount> sonars;  ///< readings of others are left out
+  RangeModelSettings range;
+
+  ReckoningErrors reckoning;
+  double drift_error = radians(0.5);  ///< [rad/m] one sigma of the constant part, which is learnt
+
+  MatchSettings match;
+  double again = 0.4;                   ///< [m] the same wall is matched again after this way...
+  double again_turned = radians(10.0);  ///< [rad] ...or turn
+  double least_confidence = 0.5;        ///< percepts that are less sure are left alone
+  std::uint64_t fresh = 15;             ///< [cycles] percepts seen longer ago are left alone
+
+  // Raw readings: whether the pose holds.
+  double memory_way = 2.0;  ///< [m] of way over which their verdict is averaged
+  double doubtful = 0.45;   ///< fit below which it looks for another pose beside its own
+  double lost = 0.1;        ///< fit below which the pose does not hold
+  SearchSettings search;
+};
+
+enum class State {
+  off,       ///< switched off: the pose goes on by dead reckoning (manual 6.9.2)
+  unplaced,  ///< it has no pose, and looks for one
+  tracking,
+  lost  ///< the pose does not hold; it looks for another
+};
+std::string_view word(State state);
+
+struct Inputs {
+  std::uint64_t cycle = 0;
+  std::uint64_t odom =
+      0;  ///< number of the odometry frame; another one: the robot may be elsewhere
+  Pose pose_in_odom;
+  const std::vector<lps::Percept>& percepts;
+  const std::vector<lps::SonarReading>& readings;  ///< new ones, in firing order
+};
+
+struct Output {
+  State state = State::unplaced;
+  std::string_view reason;  ///< of the state, in words
+  Pose pose_in_map;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
+  double confidence = 0.0;  ///< [0..1] that the pose is right within its covariance
+  std::vector<Match> matches;
+  /// The feature of the map that the robot is in: junction before corridor before lane before
+  /// office. current_environment of manual 8.1.2.
+  std::optional<std::size_t> environment;
+};
+
+/// What a restart takes over.
+struct Memory {
+  std::uint64_t odom = 0;
+  Pose pose_in_odom;
+  Pose pose_in_map;
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< x, y, th, drift
+  double drift = 0.0;                                    ///< [rad/m] of dead reckoning
+  double confidence = 0.0;
+  bool placed = false;
+};
+
+/// Where the robot is in the map: test_match_proc and test_environment_proc of manual 6.9.2, and
+/// anchoring of paper 3.2.
+///
+/// An extended Kalman filter of the pose and of dead reckoning's constant drift, corrected by
+/// percepts that are matched to artifacts: hypotheses first, then features whose readings no
+/// accepted hypothesis has. What could be two artifacts is left alone. Raw readings say whether the
+/// pose holds; where it does not, or is not known, a search over the whole map finds it.
+/// The same inputs give the same outputs to the last bit.
+class Registration {
+ public:
+  Registration(Settings settings, maps::Map map, std::optional<Pose> pose_in_map = std::nullopt);
+  ~Registration();
+  Registration(Registration&&) noexcept;
+  Registration& operator=(Registration&&) noexcept;
+
+  const Output& step(const Inputs& inputs);
+  const Output& output() const;
+
+  /// Another map, or the same one changed. The pose stays.
+  void set_map(maps::Map map);
+  const maps::Map& map() const;
+  /// Somebody says where the robot is.
+  void set_pose(const Pose& pose_in_map, const Sigmas& sigmas = {});
+  /// Forgets where the robot is, and looks for it.
+  void forget_pose();
+  void switch_on(bool on);
+  bool on() const;
+
+  Memory save() const;
+  void restore(const Memory& memory);
+
+ private:
+  class Self;
+  std::unique_ptr<Self> self_;
+};
+
+}  // namespace saphira::registration

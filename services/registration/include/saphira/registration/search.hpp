@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "saphira/lps/percept.hpp"
+#include "saphira/registration/line_map.hpp"
+#include "saphira/registration/matching.hpp"
+#include "saphira/registration/pose_filter.hpp"
+#include "saphira/registration/range_model.hpp"
+
+namespace saphira::registration {
+
+/// One reading with the place of its sonar when it heard.
+struct PlacedReading {
+  Pose sensor_in_odom;
+  double range = 0.0;
+  bool echo = false;
+};
+
+struct SearchSettings {
+  std::size_t hypotheses = 150;  ///< the most that are followed
+  double trust = 0.3;            ///< exponent of the likelihoods: readings are not independent
+  double nothing = -2.1;         ///< log likelihood of a reading by no place in particular
+  double surprise = 1.5;         ///< the most that one reading speaks against a place
+  std::size_t history = 120;     ///< readings that a new hypothesis is held against
+  double spacing = 0.1;          ///< [m] of way between those of one sonar that count
+  double evidence = 20.0;        ///< score from which on a hypothesis may be it...
+  double margin = 10.0;          ///< ...when it is so much better than any at another place...
+  double way = 2.5;              ///< [m] ...and has been followed for so long
+  int matches = 3;               ///< ...and openings that it has explained, its first one included
+  double hopeless = 25.0;        ///< below the best one's score: given up
+};
+
+/// Where in the whole map the robot is: places that would explain an opening that was seen are
+/// followed with a filter each, matched with what is seen afterwards, and weighed by raw readings
+/// (multiple hypothesis localisation, Jensfelt and Kristensen 2001). It costs little, since an
+/// opening leaves only so many places as the map has openings of its width, and it needs no luck:
+/// a filter of 40000 particles had too few near the truth to survive in a floor of 36 by 28 m.
+class Search {
+ public:
+  Search(const maps::Map& map, const LineMap& lines, const RangeModel& model,
+         const SearchSettings& settings, const MatchSettings& match_settings,
+         const ReckoningErrors& reckoning, double drift_error);
+
+  void clear();
+  /// A place to begin with: the one that was believed so far.
+  void add(const PoseFilter& filter);
+  /// One cycle. `fresh` are the percepts that are to be matched in it.
+  void step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
+            const std::vector<const lps::Percept*>& fresh);
+
+  struct Hypothesis {
+    PoseFilter filter;
+    double score = 0.0;
+    double way = 0.0;  ///< [m] followed
+    int openings = 0;
+    bool given = false;  ///< by add
+  };
+  const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
+  /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
+  struct Best {
+    const Hypothesis* hypothesis = nullptr;
+    double margin = 0.0;
+    bool sure = false;
+  };
+  std::optional<Best> best() const;
+  /// [0..1] of the best one among all, nothing in particular included.
+  double share() const;
+
+ private:
+  void propose(const lps::Percept& percept);
+  double weigh(const Pose& pose, const PlacedReading& reading) const;
+  void thin_out();
+
+  const maps::Map* map_;
+  const LineMap* lines_;
+  const RangeModel* model_;
+  SearchSettings settings_;
+  MatchSettings match_settings_;
+  ReckoningErrors reckoning_;
+  double drift_error_;
+  std::vector<Hypothesis> hypotheses_;
+  std::deque<PlacedReading> history_;
+  std::optional<Pose> odom_;
+  double travelled_ = 0.0;
+  std::vector<double> last_at_;  // by sonar bearing: way when its last reading counted
+};
+
+}  // namespace saphira::registration

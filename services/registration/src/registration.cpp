@@ -1,0 +1,481 @@
+#include "saphira/registration/registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace saphira::registration {
+namespace {
+
+using lps::Percept;
+using lps::PointType;
+
+constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
+
+/// Hypotheses before features, paper 3.2: what constrains most comes first.
+int order(PointType type) {
+  switch (type) {
+    case PointType::corridor:
+      return 0;
+    case PointType::wall:
+      return 1;
+    case PointType::junction:
+      return 2;
+    case PointType::door:
+      return 3;
+    default:
+      return 4;
+  }
+}
+
+int rank(PointType type) {
+  switch (type) {
+    case PointType::junction:
+      return 3;
+    case PointType::corridor:
+      return 2;
+    case PointType::lane:
+      return 1;
+    case PointType::office:
+      return 0;
+    default:
+      return -1;
+  }
+}
+
+Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.diagonal() << sigmas.position * sigmas.position, sigmas.position * sigmas.position,
+      sigmas.heading * sigmas.heading;
+  return covariance;
+}
+
+}  // namespace
+
+std::string_view word(State state) {
+  switch (state) {
+    case State::off:
+      return "off";
+    case State::unplaced:
+      return "unplaced";
+    case State::tracking:
+      return "tracking";
+    case State::lost:
+      return "lost";
+  }
+  return "";
+}
+
+class Registration::Self {
+ public:
+  Self(Settings settings, maps::Map map)
+      : settings_(std::move(settings)),
+        map_(std::move(map)),
+        lines_(map_),
+        field_(map_, lines_),
+        model_(field_, settings_.range),
+        search_(map_, lines_, model_, settings_.search, settings_.match, settings_.reckoning,
+                settings_.drift_error) {}
+  Self(const Self&) = delete;
+  Self& operator=(const Self&) = delete;
+
+  const Output& step(const Inputs& inputs);
+  const Output& output() const { return output_; }
+  const maps::Map& map() const { return map_; }
+  const Settings& settings() const { return settings_; }
+  bool on() const { return on_; }
+
+  void place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
+             double drift_variance, double confidence);
+  void forget();
+  void switch_on(bool on);
+  void take_over(const Self& other);
+  Memory save() const;
+  void restore(const Memory& memory);
+
+ private:
+  void move(const Inputs& inputs);
+  std::vector<PlacedReading> place(const std::vector<lps::SonarReading>& readings) const;
+  void judge(const std::vector<PlacedReading>& readings, double way);
+  std::vector<const Percept*> fresh(const Inputs& inputs);
+  void correct(const std::vector<const Percept*>& percepts);
+  void look_elsewhere(const std::vector<PlacedReading>& readings,
+                      const std::vector<const Percept*>& percepts);
+  bool uses_old_readings(const Percept& percept) const;
+  void find_environment();
+  void report();
+
+  struct Done {
+    std::uint32_t percept;
+    std::uint64_t cycle;
+    Pose pose_in_odom;  // of the robot
+    double width;
+    double length;
+  };
+
+  Settings settings_;
+  maps::Map map_;
+  LineMap lines_;
+  Field field_;
+  RangeModel model_;
+  Search search_;
+  bool searching_ = false;
+
+  bool on_ = true;
+  State state_ = State::unplaced;
+  std::optional<PoseFilter> filter_;
+  double fit_ = 1.0;
+  double since_placed_ = 0.0;  // [m]
+  std::uint64_t cycle_ = 0;
+  std::optional<std::uint32_t> odom_;
+  Pose pose_in_odom_;
+  Pose moved_;  // in this cycle
+  std::vector<Done> done_;
+  std::set<std::pair<std::uint64_t, int>> used_;  // readings of accepted percepts
+  std::optional<Memory> restored_;
+  Output output_;
+};
+
+void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
+                               double drift_variance, double confidence) {
+  filter_.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
+  fit_ = std::max(settings_.doubtful + 0.05, confidence);
+  since_placed_ = 0.0;
+  searching_ = false;
+  search_.clear();
+  state_ = State::tracking;
+  done_.clear();
+}
+
+void Registration::Self::forget() {
+  filter_.reset();
+  search_.clear();
+  searching_ = false;
+  state_ = State::unplaced;
+  done_.clear();
+}
+
+void Registration::Self::switch_on(bool on) {
+  on_ = on;
+}
+
+void Registration::Self::take_over(const Self& other) {
+  on_ = other.on_;
+  state_ = other.state_;
+  filter_ = other.filter_;
+  fit_ = other.fit_;
+  since_placed_ = other.since_placed_;
+  cycle_ = other.cycle_;
+  odom_ = other.odom_;
+  pose_in_odom_ = other.pose_in_odom_;
+  output_ = other.output_;
+  output_.matches.clear();
+  restored_ = other.restored_;
+  find_environment();
+}
+
+Memory Registration::Self::save() const {
+  Memory memory;
+  memory.odom = odom_.value_or(0);
+  memory.pose_in_odom = pose_in_odom_;
+  memory.placed = filter_.has_value() && state_ != State::lost;
+  if (filter_) {
+    memory.pose_in_map = filter_->pose();
+    memory.covariance = filter_->covariance();
+    memory.drift = filter_->drift();
+    memory.confidence = output_.confidence;
+  }
+  return memory;
+}
+
+void Registration::Self::restore(const Memory& memory) {
+  if (!memory.placed)
+    return;
+  place(memory.pose_in_map, memory.covariance.topLeftCorner<3, 3>(), memory.drift,
+        memory.covariance(3, 3), memory.confidence);
+  filter_->set_covariance(memory.covariance);
+  odom_ = memory.odom;
+  pose_in_odom_ = memory.pose_in_odom;
+  report();
+}
+
+void Registration::Self::move(const Inputs& inputs) {
+  moved_ = Pose{};
+  if (odom_ && *odom_ == inputs.odom) {
+    moved_ = relative(pose_in_odom_, inputs.pose_in_odom);
+  } else if (odom_) {
+    // Dead reckoning begins anew: the robot has been switched off, and may have been moved a bit.
+    done_.clear();
+    used_.clear();
+    search_.clear();
+    searching_ = false;
+    if (filter_)
+      filter_->widen(0.3, radians(10.0));
+  }
+  odom_ = inputs.odom;
+  pose_in_odom_ = inputs.pose_in_odom;
+  cycle_ = inputs.cycle;
+  if (filter_)
+    filter_->move(moved_);
+}
+
+std::vector<PlacedReading> Registration::Self::place(
+    const std::vector<lps::SonarReading>& readings) const {
+  std::vector<PlacedReading> placed;
+  const Pose before = compose(pose_in_odom_, relative(moved_, Pose{}));
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const auto mount =
+        std::find_if(settings_.sonars.begin(), settings_.sonars.end(),
+                     [&](const lps::SonarMount& m) { return m.sonar == readings[i].sonar; });
+    if (mount == settings_.sonars.end())
+      continue;
+    // They came one after the other while the robot moved.
+    const double part = static_cast<double>(i + 1) / static_cast<double>(readings.size());
+    const Pose at = compose(before, {moved_.x * part, moved_.y * part, moved_.th * part});
+    placed.push_back({compose(at, mount->in_robot), readings[i].range, readings[i].echo});
+  }
+  return placed;
+}
+
+void Registration::Self::judge(const std::vector<PlacedReading>& readings, double way) {
+  if (!filter_ || readings.empty())
+    return;
+  const double slack = std::min(0.3, filter_->sigma_position());
+  const double each = way / static_cast<double>(readings.size());
+  const double part = 1.0 - std::exp(-each / settings_.memory_way);
+  for (const PlacedReading& reading : readings) {
+    const Pose sensor = compose(filter_->pose(), relative(pose_in_odom_, reading.sensor_in_odom));
+    double says = 0.0;
+    switch (model_.verdict(sensor, reading.range, reading.echo, slack)) {
+      case RangeModel::Verdict::nothing:
+        continue;
+      case RangeModel::Verdict::explained:
+        says = 1.0;
+        break;
+      case RangeModel::Verdict::foreign:
+        says = 0.0;
+        break;
+      case RangeModel::Verdict::against:
+        says = -2.0;
+        break;
+    }
+    fit_ += part * (says - fit_);
+  }
+}
+
+bool Registration::Self::uses_old_readings(const Percept& percept) const {
+  if (percept.readings.empty())
+    return false;
+  const auto old = std::count_if(percept.readings.begin(), percept.readings.end(),
+                                 [&](const lps::ReadingId& id) {
+                                   return used_.count({id.cycle, id.sonar}) != 0;
+                                 });
+  return 2 * static_cast<std::size_t>(old) > percept.readings.size();
+}
+
+std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
+  std::vector<const Percept*> result;
+  for (const Percept& percept : inputs.percepts) {
+    if (percept.confidence < settings_.least_confidence ||
+        percept.seen + settings_.fresh < inputs.cycle)
+      continue;
+    const auto last = std::find_if(done_.begin(), done_.end(),
+                                   [&](const Done& done) { return done.percept == percept.id; });
+    if (last != done_.end()) {
+      const Pose since = relative(last->pose_in_odom, inputs.pose_in_odom);
+      const bool point = percept.type == PointType::door || percept.type == PointType::junction ||
+                         percept.type == PointType::breach;
+      // What was seen of an opening does not get better by driving on; a wall is seen anew.
+      if (point ? std::abs(last->width - percept.width) < 0.05
+                : std::hypot(since.x, since.y) < settings_.again &&
+                      std::abs(since.th) < settings_.again_turned)
+        continue;
+      done_.erase(last);
+    }
+    result.push_back(&percept);
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Percept* a, const Percept* b) {
+    return order(a->type) < order(b->type);
+  });
+  return result;
+}
+
+void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
+  for (const Percept* percept : percepts) {
+    done_.push_back({percept->id, cycle_, pose_in_odom_, percept->width, percept->length});
+    if (!filter_ || state_ != State::tracking)
+      continue;
+    if (percept->type != PointType::door && percept->type != PointType::junction &&
+        uses_old_readings(*percept)) {
+      Match result;
+      result.percept = percept->id;
+      result.reason = "its readings have been used";
+      output_.matches.push_back(result);
+      continue;
+    }
+    const Match result = match(*percept, pose_in_odom_, map_, lines_, settings_.match, *filter_);
+    if (result.accepted)
+      for (const lps::ReadingId& id : percept->readings)
+        used_.insert({id.cycle, id.sonar});
+    output_.matches.push_back(result);
+  }
+  while (used_.size() > kKeptReadings)
+    used_.erase(used_.begin());
+  if (done_.size() > 200)
+    done_.erase(done_.begin(), done_.begin() + 100);
+}
+
+void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
+                                        const std::vector<const Percept*>& percepts) {
+  const bool wanted =
+      state_ == State::unplaced || state_ == State::lost || fit_ < settings_.doubtful;
+  if (!wanted) {
+    if (searching_)
+      search_.clear();
+    searching_ = false;
+    return;
+  }
+  if (!searching_) {
+    searching_ = true;
+    search_.clear();
+    if (filter_)
+      search_.add(*filter_);
+  }
+  search_.step(pose_in_odom_, readings, percepts);
+  const auto best = search_.best();
+  if (!best || !best->sure)
+    return;
+  const PoseFilter found = best->hypothesis->filter;
+  const bool same = state_ == State::tracking && filter_ &&
+                    (found.pose().position() - filter_->pose().position()).norm() < 0.5 &&
+                    std::abs(norm2_angle(found.pose().th - filter_->pose().th)) < radians(10.0);
+  if (same)
+    return;
+  const double drift_variance = found.covariance()(3, 3);
+  place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 0.6);
+}
+
+const Output& Registration::Self::step(const Inputs& inputs) {
+  output_.matches.clear();
+  move(inputs);
+  if (on_ && !lines_.empty()) {
+    const double way = std::hypot(moved_.x, moved_.y) + 0.2 * std::abs(moved_.th);
+    since_placed_ += way;
+    const std::vector<PlacedReading> readings = place(inputs.readings);
+    const std::vector<const Percept*> percepts = fresh(inputs);
+    correct(percepts);
+    judge(readings, way);
+    if (state_ == State::tracking && fit_ < settings_.lost)
+      state_ = State::lost;
+    look_elsewhere(readings, percepts);
+  }
+  report();
+  return output_;
+}
+
+void Registration::Self::find_environment() {
+  const auto before = output_.environment;
+  output_.environment.reset();
+  if (state_ != State::tracking && state_ != State::off)
+    return;
+  if (!filter_)
+    return;
+  int best = -1;
+  for (std::size_t i = 0; i < map_.features.size(); ++i) {
+    const maps::Feature& feature = map_.features[i];
+    const int r = rank(feature.type);
+    if (r < best || !maps::contains(feature, filter_->pose().position()))
+      continue;
+    // Where two of a kind cross, it stays in the one that it is in.
+    if (r > best || (before && *before == i)) {
+      best = r;
+      output_.environment = i;
+    }
+  }
+}
+
+void Registration::Self::report() {
+  output_.state = on_ ? state_ : State::off;
+  if (filter_) {
+    output_.pose_in_map = filter_->pose();
+    output_.covariance = filter_->pose_covariance();
+  } else {
+    output_.covariance = Eigen::Matrix3d::Identity() * 1e6;
+  }
+  output_.confidence = 0.0;
+  if (!on_) {
+    output_.reason = "switched off: the pose goes on by dead reckoning";
+    output_.confidence = filter_ ? 0.5 : 0.0;
+  } else if (lines_.empty()) {
+    output_.reason = "the map has no walls";
+  } else if (state_ == State::unplaced) {
+    output_.confidence = 0.0;
+    output_.reason = search_.hypotheses().empty()
+                         ? "looking for where it is: no opening seen yet"
+                         : "looking for where it is: several places would do";
+  } else if (state_ == State::lost) {
+    output_.reason = "the readings do not fit the map at this pose";
+  } else {
+    output_.confidence = std::clamp((fit_ - settings_.lost) / (0.7 - settings_.lost), 0.0, 1.0);
+    output_.reason = fit_ < settings_.doubtful ? "the readings hardly fit the map"
+                     : filter_->sigma_position() > 0.5
+                         ? "nothing matched for long: by dead reckoning"
+                         : "matched with the map";
+  }
+  find_environment();
+}
+
+Registration::Registration(Settings settings, maps::Map map, std::optional<Pose> pose_in_map)
+    : self_(std::make_unique<Self>(std::move(settings), std::move(map))) {
+  if (pose_in_map)
+    set_pose(*pose_in_map);
+}
+Registration::~Registration() = default;
+Registration::Registration(Registration&&) noexcept = default;
+Registration& Registration::operator=(Registration&&) noexcept = default;
+
+const Output& Registration::step(const Inputs& inputs) {
+  return self_->step(inputs);
+}
+
+const Output& Registration::output() const {
+  return self_->output();
+}
+
+void Registration::set_map(maps::Map map) {
+  auto next = std::make_unique<Self>(self_->settings(), std::move(map));
+  next->take_over(*self_);
+  self_ = std::move(next);
+}
+
+const maps::Map& Registration::map() const {
+  return self_->map();
+}
+
+void Registration::set_pose(const Pose& pose_in_map, const Sigmas& sigmas) {
+  const double drift = self_->settings().drift_error;
+  self_->place(pose_in_map, covariance_of(sigmas), 0.0, drift * drift, 0.8);
+}
+
+void Registration::forget_pose() {
+  self_->forget();
+}
+
+void Registration::switch_on(bool on) {
+  self_->switch_on(on);
+}
+
+bool Registration::on() const {
+  return self_->on();
+}
+
+Memory Registration::save() const {
+  return self_->save();
+}
+
+void Registration::restore(const Memory& memory) {
+  self_->restore(memory);
+}
+
+}  // namespace saphira::registration

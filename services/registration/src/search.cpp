@@ -1,0 +1,157 @@
+#include "saphira/registration/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::registration {
+namespace {
+
+bool same_place(const Pose& a, const Pose& b, double way, double turn) {
+  return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
+}
+
+Pose inverse(const Pose& pose) {
+  return relative(pose, Pose{});
+}
+
+}  // namespace
+
+Search::Search(const maps::Map& map, const LineMap& lines, const RangeModel& model,
+               const SearchSettings& settings, const MatchSettings& match_settings,
+               const ReckoningErrors& reckoning, double drift_error)
+    : map_(&map),
+      lines_(&lines),
+      model_(&model),
+      settings_(settings),
+      match_settings_(match_settings),
+      reckoning_(reckoning),
+      drift_error_(drift_error) {}
+
+void Search::clear() {
+  hypotheses_.clear();
+  history_.clear();
+  odom_.reset();
+  travelled_ = 0.0;
+}
+
+void Search::add(const PoseFilter& filter) {
+  hypotheses_.push_back({filter, 0.0, 0.0, 0, true});
+}
+
+double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
+  const Pose sensor = compose(pose, relative(*odom_, reading.sensor_in_odom));
+  const double better =
+      model_->log_likelihood(sensor, reading.range, reading.echo) - settings_.nothing;
+  return settings_.trust * std::max(better, -settings_.surprise);
+}
+
+void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
+                  const std::vector<const lps::Percept*>& fresh) {
+  const Pose moved = odom_ ? relative(*odom_, pose_in_odom) : Pose{};
+  const double way = std::hypot(moved.x, moved.y);
+  odom_ = pose_in_odom;
+  travelled_ += way + 0.3 * std::abs(moved.th);
+  for (Hypothesis& h : hypotheses_) {
+    h.filter.move(moved);
+    h.way += way;
+  }
+  // Readings of a robot that stands repeat one event.
+  if (travelled_ >= settings_.spacing) {
+    travelled_ -= settings_.spacing;
+    for (const PlacedReading& reading : readings) {
+      for (Hypothesis& h : hypotheses_)
+        h.score += weigh(h.filter.pose(), reading);
+      history_.push_back(reading);
+    }
+    while (history_.size() > settings_.history)
+      history_.pop_front();
+    travelled_ = std::min(travelled_, settings_.spacing);
+  }
+  for (const lps::Percept* percept : fresh) {
+    const bool opening =
+        percept->type == lps::PointType::door || percept->type == lps::PointType::junction;
+    for (Hypothesis& h : hypotheses_) {
+      const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, h.filter);
+      if (opening && result.accepted) {
+        ++h.openings;
+        h.score += 1.0;
+      } else if (opening && result.reason != "could be another one as well") {
+        h.score -= 1.0;
+      }
+    }
+    if (opening)
+      propose(*percept);
+  }
+  thin_out();
+}
+
+void Search::propose(const lps::Percept& percept) {
+  const Pose seen = relative(*odom_, percept.pose_in_odom);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  const double position = percept.sigma_along * percept.sigma_along +
+                          percept.sigma_across * percept.sigma_across + 0.1 * 0.1;
+  const double heading = percept.sigma_heading * percept.sigma_heading + 0.05 * 0.05;
+  covariance.diagonal() << position, position, heading;
+  for (const Opening& opening : lines_->openings()) {
+    if (std::abs(opening.width - percept.width) > match_settings_.width)
+      continue;
+    const Pose pose = compose(opening.pose_in_map, inverse(seen));
+    const bool there = std::any_of(
+        hypotheses_.begin(), hypotheses_.end(),
+        [&](const Hypothesis& h) { return same_place(h.filter.pose(), pose, 0.4, radians(8.0)); });
+    if (there)
+      continue;
+    Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
+                     0.0, 0.0, 1, false};
+    for (const PlacedReading& reading : history_)
+      fresh.score += weigh(pose, reading);
+    hypotheses_.push_back(fresh);
+  }
+}
+
+void Search::thin_out() {
+  if (hypotheses_.empty())
+    return;
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+  const double least = hypotheses_.front().score - settings_.hopeless;
+  std::vector<Hypothesis> left;
+  for (Hypothesis& h : hypotheses_) {
+    if (h.score < least || left.size() >= settings_.hypotheses)
+      break;
+    const bool twice = std::any_of(left.begin(), left.end(), [&](const Hypothesis& other) {
+      return same_place(h.filter.pose(), other.filter.pose(), 0.2, radians(5.0));
+    });
+    if (!twice)
+      left.push_back(h);
+  }
+  hypotheses_ = std::move(left);
+}
+
+std::optional<Search::Best> Search::best() const {
+  if (hypotheses_.empty())
+    return std::nullopt;
+  const Hypothesis& first = hypotheses_.front();
+  double second = 0.0;  // nothing in particular
+  for (const Hypothesis& h : hypotheses_)
+    if (!same_place(h.filter.pose(), first.filter.pose(), 0.8, radians(20.0))) {
+      second = std::max(second, h.score);
+      break;
+    }
+  const double margin = first.score - second;
+  return Best{&first, margin,
+              first.score >= settings_.evidence && margin >= settings_.margin &&
+                  first.way >= settings_.way && first.openings >= settings_.matches};
+}
+
+double Search::share() const {
+  if (hypotheses_.empty())
+    return 0.0;
+  const Hypothesis& first = hypotheses_.front();
+  double sum = std::exp(-first.score);
+  for (const Hypothesis& h : hypotheses_)
+    sum += std::exp(h.score - first.score);
+  return 1.0 / sum;
+}
+
+}  // namespace saphira::registration
