@@ -159,10 +159,15 @@ void Interpretation::find_walls(std::size_t number) {
     }
     for (std::size_t i = 0; i < wall.stretches.size(); ++i) {
       const Stretch& stretch = wall.stretches[i];
+      if (!stretch.own)
+        continue;
       const double length = stretch.to.u - stretch.from.u;
       if (stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
-          length >= side_settings.min_length)
-        stand(wall_percept(wall, stretch, side), lines);
+          length >= side_settings.min_length) {
+        Percept percept = wall_percept(wall, stretch, side);
+        if (percept.confidence >= settings_.min_confidence)
+          stand(std::move(percept), lines);
+      }
       if (length < side_settings.end_run)
         continue;
       const auto enough = static_cast<std::size_t>(side_settings.min_through);
@@ -200,9 +205,10 @@ void Interpretation::stand(Percept percept, const Lines& lines) {
   if (same) {
     percept.id = same->percept.id;
     percept.since = same->percept.since;
-    // Only what has been seen anew is placed anew.
-    const bool news = percept.seen != same->percept.seen;
-    *same = {std::move(percept), true, lines, news ? travelled_ : same->travelled};
+    // Only what has been seen anew is placed anew: the robot may have turned since.
+    if (percept.seen != same->percept.seen)
+      *same = {std::move(percept), true, lines, travelled_};
+    same->seen = true;
   } else {
     percept.id = ++last_id_;
     percept.since = cycle_;

@@ -94,7 +94,7 @@ void SideView::assign() {
   for (int round = 0; round < 2; ++round) {
     for (Candidate& line : lines_)
       line.echoes.clear();
-    for (const Return& firing : returns_) {
+    for (Return& firing : returns_) {
       Candidate* best = nullptr;
       double least = 0.0;
       for (Candidate& line : lines_) {
@@ -104,6 +104,7 @@ void SideView::assign() {
           least = *off;
         }
       }
+      firing.line = best ? best->id : 0;
       if (best)
         best->echoes.push_back(&firing);
     }
@@ -237,9 +238,13 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
   wall.fit = candidate.fit;
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     Stretch stretch;
+    std::size_t own = 0;
     for (std::size_t i = ranges[k].first; i <= ranges[k].last; ++i)
-      if (events[i].says == Says::wall)
+      if (events[i].says == Says::wall) {
         stretch.echoes.push_back(events[i].firing);
+        own += events[i].firing->line == candidate.id ? 1 : 0;
+      }
+    stretch.own = 2 * own >= stretch.echoes.size();
     std::vector<const Return*> beyond;
     const std::size_t end = k + 1 < ranges.size() ? ranges[k + 1].first : events.size();
     for (std::size_t i = ranges[k].last + 1; i < end; ++i)

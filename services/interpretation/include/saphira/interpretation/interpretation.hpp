@@ -21,8 +21,9 @@ struct Settings {
   double parallel = radians(6.0);     ///< between the two walls of a corridor
   double min_corridor = 1.0;          ///< [m] wide
   double max_corridor = 3.2;
-  double min_overlap = 2.0;  ///< [m] of the two walls along each other
-  double beside = 0.6;       ///< [m] a wall that ended so far back is still beside the robot
+  double min_overlap = 2.0;      ///< [m] of the two walls along each other
+  double beside = 0.6;           ///< [m] a wall that ended so far back is still beside the robot
+  double min_confidence = 0.88;  ///< of a wall that is spoken of
   double max_heading = radians(1.2);    ///< sigma of a wall that is spoken of
   double encoder = 0.015;               ///< [m] one sigma of dead reckoning's way after 1 m
   double least_offset = 0.006;          ///< [m] sigma of where any wall is

@@ -53,6 +53,8 @@ struct Stretch {
   std::vector<const Return*> echoes;  ///< in order along the line
   End from;
   End to;
+  /// Most of its echoes fit no other line better: not what was seen before the robot turned.
+  bool own = true;
 };
 
 /// What is between two stretches, seen through.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Return {
   lps::ReadingId id;
   double travelled = 0.0;  ///< [m] how far the robot had gone...
   double turned = 0.0;     ///< [rad] ...and turned, to and fro
+  std::uint32_t line = 0;  ///< that it is the echo of; 0: none
 };
 
 /// The points p with normal * p = offset. The normal points away from where it is seen from.
