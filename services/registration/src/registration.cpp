@@ -246,21 +246,20 @@ void Registration::Self::judge(const std::vector<PlacedReading>& readings, doubl
   const double part = 1.0 - std::exp(-each / settings_.memory_way);
   for (const PlacedReading& reading : readings) {
     const Pose sensor = compose(filter_->pose(), relative(pose_in_odom_, reading.sensor_in_odom));
-    double says = 0.0;
     switch (model_.verdict(sensor, reading.range, reading.echo, slack)) {
       case RangeModel::Verdict::nothing:
-        continue;
+        break;
       case RangeModel::Verdict::explained:
-        says = 1.0;
+        fit_ += part * (1.0 - fit_);
         break;
       case RangeModel::Verdict::foreign:
-        says = 0.0;
+        // Furniture and people say little of where the robot is.
+        fit_ += settings_.foreign * part * (0.0 - fit_);
         break;
       case RangeModel::Verdict::against:
-        says = -2.0;
+        fit_ += part * (-1.0 - fit_);
         break;
     }
-    fit_ += part * (says - fit_);
   }
 }
 
@@ -417,7 +416,7 @@ void Registration::Self::report() {
   } else if (state_ == State::lost) {
     output_.reason = "the readings do not fit the map at this pose";
   } else {
-    output_.confidence = std::clamp((fit_ - settings_.lost) / (0.7 - settings_.lost), 0.0, 1.0);
+    output_.confidence = std::clamp((fit_ - settings_.lost) / (0.8 - settings_.lost), 0.0, 1.0);
     output_.reason = fit_ < settings_.doubtful ? "the readings hardly fit the map"
                      : filter_->sigma_position() > 0.5
                          ? "nothing matched for long: by dead reckoning"

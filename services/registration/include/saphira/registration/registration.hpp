@@ -39,8 +39,9 @@ struct Settings {
 
   // Raw readings: whether the pose holds.
   double memory_way = 2.0;  ///< [m] of way over which their verdict is averaged
-  double doubtful = 0.45;   ///< fit below which it looks for another pose beside its own
-  double lost = 0.1;        ///< fit below which the pose does not hold
+  double foreign = 0.1;     ///< what an echo of something unknown counts, beside 1
+  double doubtful = 0.55;   ///< fit below which it looks for another pose beside its own
+  double lost = 0.3;        ///< fit below which the pose does not hold
   SearchSettings search;
 };
 
