@@ -46,24 +46,4 @@ double RangeModel::log_likelihood(const Pose& sensor, double range, bool echo) c
   return std::log(settings_.slanted_heard * std::exp(-0.5 * off * off) + settings_.slanted_other);
 }
 
-RangeModel::Verdict RangeModel::verdict(const Pose& sensor, double range, bool echo,
-                                        double slack) const {
-  if (!field_->known(sensor.position()))
-    return Verdict::nothing;
-  const Field::Nearest nearest = field_->nearest(sensor.position());
-  // Only what is well inside the cone for sure counts: the pose's heading may be off, too.
-  const double aside = nearest.towards.dot(sensor.direction());
-  const double tolerance = 0.15 + slack;
-  const bool faces = nearest.distance < 2.5 && aside > std::cos(settings_.facing * 0.7);
-  if (!echo)
-    return faces && nearest.distance > tolerance ? Verdict::against : Verdict::nothing;
-  if (faces && std::abs(range - nearest.distance) < tolerance)
-    return Verdict::explained;
-  if (!field_->known(sensor.position() + sensor.direction() * (range - 0.1)))
-    return blocked(sensor, range, tolerance + 0.15) ? Verdict::against : Verdict::nothing;
-  if (arc_distance(sensor, range) < tolerance)
-    return Verdict::explained;
-  return blocked(sensor, range, tolerance + 0.15) ? Verdict::against : Verdict::foreign;
-}
-
 }  // namespace saphira::registration

@@ -97,7 +97,6 @@ class Registration::Self {
  private:
   void move(const Inputs& inputs);
   std::vector<PlacedReading> place(const std::vector<lps::SonarReading>& readings) const;
-  void judge(const std::vector<PlacedReading>& readings, double way);
   std::vector<const Percept*> fresh(const Inputs& inputs);
   void correct(const std::vector<const Percept*>& percepts);
   void look_elsewhere(const std::vector<PlacedReading>& readings,
@@ -120,13 +119,10 @@ class Registration::Self {
   Field field_;
   RangeModel model_;
   Search search_;
-  bool searching_ = false;
 
   bool on_ = true;
   State state_ = State::unplaced;
   std::optional<PoseFilter> filter_;
-  double fit_ = 1.0;
-  double since_placed_ = 0.0;  // [m]
   std::uint64_t cycle_ = 0;
   std::optional<std::uint32_t> odom_;
   Pose pose_in_odom_;
@@ -140,10 +136,8 @@ class Registration::Self {
 void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
                                double drift_variance, double confidence) {
   filter_.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
-  fit_ = std::max(settings_.doubtful + 0.05, confidence);
-  since_placed_ = 0.0;
-  searching_ = false;
   search_.clear();
+  search_.believe(confidence * settings_.sure);
   state_ = State::tracking;
   done_.clear();
 }
@@ -151,7 +145,6 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
 void Registration::Self::forget() {
   filter_.reset();
   search_.clear();
-  searching_ = false;
   state_ = State::unplaced;
   done_.clear();
 }
@@ -164,8 +157,7 @@ void Registration::Self::take_over(const Self& other) {
   on_ = other.on_;
   state_ = other.state_;
   filter_ = other.filter_;
-  fit_ = other.fit_;
-  since_placed_ = other.since_placed_;
+  search_.believe(other.search_.own_score());
   cycle_ = other.cycle_;
   odom_ = other.odom_;
   pose_in_odom_ = other.pose_in_odom_;
@@ -209,7 +201,6 @@ void Registration::Self::move(const Inputs& inputs) {
     done_.clear();
     used_.clear();
     search_.clear();
-    searching_ = false;
     if (filter_)
       filter_->widen(0.3, radians(10.0));
   }
@@ -236,31 +227,6 @@ std::vector<PlacedReading> Registration::Self::place(
     placed.push_back({compose(at, mount->in_robot), readings[i].range, readings[i].echo});
   }
   return placed;
-}
-
-void Registration::Self::judge(const std::vector<PlacedReading>& readings, double way) {
-  if (!filter_ || readings.empty())
-    return;
-  const double slack = std::min(0.3, filter_->sigma_position());
-  const double each = way / static_cast<double>(readings.size());
-  const double part = 1.0 - std::exp(-each / settings_.memory_way);
-  for (const PlacedReading& reading : readings) {
-    const Pose sensor = compose(filter_->pose(), relative(pose_in_odom_, reading.sensor_in_odom));
-    switch (model_.verdict(sensor, reading.range, reading.echo, slack)) {
-      case RangeModel::Verdict::nothing:
-        break;
-      case RangeModel::Verdict::explained:
-        fit_ += part * (1.0 - fit_);
-        break;
-      case RangeModel::Verdict::foreign:
-        // Furniture and people say little of where the robot is.
-        fit_ += settings_.foreign * part * (0.0 - fit_);
-        break;
-      case RangeModel::Verdict::against:
-        fit_ += part * (-1.0 - fit_);
-        break;
-    }
-  }
 }
 
 bool Registration::Self::uses_old_readings(const Percept& percept) const {
@@ -327,30 +293,11 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
 
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
-  const bool wanted =
-      state_ == State::unplaced || state_ == State::lost || fit_ < settings_.doubtful;
-  if (!wanted) {
-    if (searching_)
-      search_.clear();
-    searching_ = false;
-    return;
-  }
-  if (!searching_) {
-    searching_ = true;
-    search_.clear();
-    if (filter_)
-      search_.add(*filter_);
-  }
-  search_.step(pose_in_odom_, readings, percepts);
+  search_.step(pose_in_odom_, readings, percepts, filter_ ? &*filter_ : nullptr);
   const auto best = search_.best();
   if (!best || !best->sure)
     return;
   const PoseFilter found = best->hypothesis->filter;
-  const bool same = state_ == State::tracking && filter_ &&
-                    (found.pose().position() - filter_->pose().position()).norm() < 0.5 &&
-                    std::abs(norm2_angle(found.pose().th - filter_->pose().th)) < radians(10.0);
-  if (same)
-    return;
   const double drift_variance = found.covariance()(3, 3);
   place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 0.6);
 }
@@ -359,15 +306,12 @@ const Output& Registration::Self::step(const Inputs& inputs) {
   output_.matches.clear();
   move(inputs);
   if (on_ && !lines_.empty()) {
-    const double way = std::hypot(moved_.x, moved_.y) + 0.2 * std::abs(moved_.th);
-    since_placed_ += way;
     const std::vector<PlacedReading> readings = place(inputs.readings);
     const std::vector<const Percept*> percepts = fresh(inputs);
     correct(percepts);
-    judge(readings, way);
-    if (state_ == State::tracking && fit_ < settings_.lost)
-      state_ = State::lost;
     look_elsewhere(readings, percepts);
+    if (state_ == State::tracking && search_.own_score() < settings_.lost)
+      state_ = State::lost;
   }
   report();
   return output_;
@@ -416,8 +360,9 @@ void Registration::Self::report() {
   } else if (state_ == State::lost) {
     output_.reason = "the readings do not fit the map at this pose";
   } else {
-    output_.confidence = std::clamp((fit_ - settings_.lost) / (0.8 - settings_.lost), 0.0, 1.0);
-    output_.reason = fit_ < settings_.doubtful ? "the readings hardly fit the map"
+    output_.confidence = std::clamp(
+        (search_.own_score() - settings_.lost) / (settings_.sure - settings_.lost), 0.0, 1.0);
+    output_.reason = output_.confidence < 0.5 ? "the readings hardly fit the map"
                      : filter_->sigma_position() > 0.5
                          ? "nothing matched for long: by dead reckoning"
                          : "matched with the map";

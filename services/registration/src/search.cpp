@@ -32,10 +32,8 @@ void Search::clear() {
   history_.clear();
   odom_.reset();
   travelled_ = 0.0;
-}
-
-void Search::add(const PoseFilter& filter) {
-  hypotheses_.push_back({filter, 0.0, 0.0, 0, true});
+  own_.reset();
+  own_score_ = 0.0;
 }
 
 double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
@@ -46,21 +44,29 @@ double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
 }
 
 void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
-                  const std::vector<const lps::Percept*>& fresh) {
+                  const std::vector<const lps::Percept*>& fresh, const PoseFilter* own) {
+  own_.reset();
+  if (own != nullptr)
+    own_ = own->pose();
   const Pose moved = odom_ ? relative(*odom_, pose_in_odom) : Pose{};
   const double way = std::hypot(moved.x, moved.y);
   odom_ = pose_in_odom;
   travelled_ += way + 0.3 * std::abs(moved.th);
+  const double fading = std::exp(-way / settings_.memory);
   for (Hypothesis& h : hypotheses_) {
     h.filter.move(moved);
     h.way += way;
+    h.score *= fading;
   }
+  own_score_ *= fading;
   // Readings of a robot that stands repeat one event.
   if (travelled_ >= settings_.spacing) {
     travelled_ -= settings_.spacing;
     for (const PlacedReading& reading : readings) {
       for (Hypothesis& h : hypotheses_)
         h.score += weigh(h.filter.pose(), reading);
+      if (own_)
+        own_score_ += weigh(*own_, reading);
       history_.push_back(reading);
     }
     while (history_.size() > settings_.history)
@@ -102,7 +108,7 @@ void Search::propose(const lps::Percept& percept) {
     if (there)
       continue;
     Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
-                     0.0, 0.0, 1, false};
+                     0.0, 0.0, 1};
     for (const PlacedReading& reading : history_)
       fresh.score += weigh(pose, reading);
     hypotheses_.push_back(fresh);
@@ -129,29 +135,24 @@ void Search::thin_out() {
 }
 
 std::optional<Search::Best> Search::best() const {
-  if (hypotheses_.empty())
+  const auto elsewhere = [](const Pose& a, const Pose& b) {
+    return !same_place(a, b, 0.5, radians(15.0));
+  };
+  const auto first = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
+    return !own_ || elsewhere(h.filter.pose(), *own_);
+  });
+  if (first == hypotheses_.end())
     return std::nullopt;
-  const Hypothesis& first = hypotheses_.front();
   double second = 0.0;  // nothing in particular
+  if (own_)
+    second = std::max(second, own_score_);
   for (const Hypothesis& h : hypotheses_)
-    if (!same_place(h.filter.pose(), first.filter.pose(), 0.8, radians(20.0))) {
+    if (elsewhere(h.filter.pose(), first->filter.pose()))
       second = std::max(second, h.score);
-      break;
-    }
-  const double margin = first.score - second;
-  return Best{&first, margin,
-              first.score >= settings_.evidence && margin >= settings_.margin &&
-                  first.way >= settings_.way && first.openings >= settings_.matches};
-}
-
-double Search::share() const {
-  if (hypotheses_.empty())
-    return 0.0;
-  const Hypothesis& first = hypotheses_.front();
-  double sum = std::exp(-first.score);
-  for (const Hypothesis& h : hypotheses_)
-    sum += std::exp(h.score - first.score);
-  return 1.0 / sum;
+  const double margin = first->score - second;
+  return Best{&*first, margin,
+              first->score >= settings_.evidence && margin >= settings_.margin &&
+                  first->way >= settings_.way && first->openings >= settings_.matches};
 }
 
 }  // namespace saphira::registration

@@ -32,15 +32,6 @@ class RangeModel {
   /// log of how likely a reading is, to be compared between poses.
   double log_likelihood(const Pose& sensor_in_map, double range, bool echo) const;
 
-  /// How a reading fits what the map says at a pose that is off by `slack` [m] at most.
-  enum class Verdict {
-    nothing,    ///< says nothing: no echo where none need be, or a place that the map does not know
-    explained,  ///< comes from what is in the map
-    foreign,    ///< comes from something nearer, that is not in the map
-    against     ///< comes from behind a wall, or a wall that must be heard is not
-  };
-  Verdict verdict(const Pose& sensor_in_map, double range, bool echo, double slack) const;
-
  private:
   double arc_distance(const Pose& sensor_in_map, double range) const;
   bool blocked(const Pose& sensor_in_map, double range, double margin) const;

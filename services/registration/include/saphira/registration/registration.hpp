@@ -37,11 +37,9 @@ struct Settings {
   double least_confidence = 0.5;        ///< percepts that are less sure are left alone
   std::uint64_t fresh = 15;             ///< [cycles] percepts seen longer ago are left alone
 
-  // Raw readings: whether the pose holds.
-  double memory_way = 2.0;  ///< [m] of way over which their verdict is averaged
-  double foreign = 0.1;     ///< what an echo of something unknown counts, beside 1
-  double doubtful = 0.55;   ///< fit below which it looks for another pose beside its own
-  double lost = 0.3;        ///< fit below which the pose does not hold
+  // Scores of raw readings at the believed pose, see SearchSettings.
+  double sure = 15.0;  ///< from which on they fit; a robot that tracks has 20 to 40
+  double lost = -6.0;  ///< below which the pose does not hold
   SearchSettings search;
 };
 

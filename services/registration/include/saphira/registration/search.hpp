@@ -28,6 +28,7 @@ struct SearchSettings {
   double surprise = 1.5;         ///< the most that one reading speaks against a place
   std::size_t history = 120;     ///< readings that a new hypothesis is held against
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
+  double memory = 6.0;           ///< [m] of way in which a score fades to a third
   double evidence = 20.0;        ///< score from which on a hypothesis may be it...
   double margin = 10.0;          ///< ...when it is so much better than any at another place...
   double way = 2.5;              ///< [m] ...and has been followed for so long
@@ -47,29 +48,29 @@ class Search {
          const ReckoningErrors& reckoning, double drift_error);
 
   void clear();
-  /// A place to begin with: the one that was believed so far.
-  void add(const PoseFilter& filter);
-  /// One cycle. `fresh` are the percepts that are to be matched in it.
+  /// One cycle. `fresh` are the percepts that are to be matched in it; `own` is the place that is
+  /// believed, which is weighed with the others, and nullptr while there is none.
   void step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
-            const std::vector<const lps::Percept*>& fresh);
+            const std::vector<const lps::Percept*>& fresh, const PoseFilter* own);
 
   struct Hypothesis {
     PoseFilter filter;
     double score = 0.0;
     double way = 0.0;  ///< [m] followed
     int openings = 0;
-    bool given = false;  ///< by add
   };
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
-  /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
+  /// What the place that is believed has been worth so far.
+  void believe(double score) { own_score_ = score; }
+  double own_score() const { return own_score_; }
+  /// The best one that is not the place that is believed, and how much better it is than any that
+  /// is elsewhere, the believed one included; nothing: there is none.
   struct Best {
     const Hypothesis* hypothesis = nullptr;
     double margin = 0.0;
     bool sure = false;
   };
   std::optional<Best> best() const;
-  /// [0..1] of the best one among all, nothing in particular included.
-  double share() const;
 
  private:
   void propose(const lps::Percept& percept);
@@ -87,7 +88,8 @@ class Search {
   std::deque<PlacedReading> history_;
   std::optional<Pose> odom_;
   double travelled_ = 0.0;
-  std::vector<double> last_at_;  // by sonar bearing: way when its last reading counted
+  std::optional<Pose> own_;
+  double own_score_ = 0.0;
 };
 
 }  // namespace saphira::registration
