@@ -6,6 +6,8 @@
 namespace saphira::registration {
 namespace {
 
+constexpr double kPoor = 6.0;  // a new place is not begun where the readings are so much against it
+
 bool same_place(const Pose& a, const Pose& b, double way, double turn) {
   return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
 }
@@ -98,6 +100,8 @@ void Search::propose(const lps::Percept& percept) {
                           percept.sigma_across * percept.sigma_across + 0.1 * 0.1;
   const double heading = percept.sigma_heading * percept.sigma_heading + 0.05 * 0.05;
   covariance.diagonal() << position, position, heading;
+  const double least = std::max(
+      -kPoor, hypotheses_.empty() ? -kPoor : hypotheses_.front().score - settings_.hopeless);
   for (const Opening& opening : lines_->openings()) {
     if (std::abs(opening.width - percept.width) > match_settings_.width)
       continue;
@@ -109,9 +113,12 @@ void Search::propose(const lps::Percept& percept) {
       continue;
     Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
                      0.0, 0.0, 1};
-    for (const PlacedReading& reading : history_)
-      fresh.score += weigh(pose, reading);
-    hypotheses_.push_back(fresh);
+    // The newest first: most places need no more than a few.
+    for (auto reading = history_.rbegin(); reading != history_.rend() && fresh.score > least;
+         ++reading)
+      fresh.score += weigh(pose, *reading);
+    if (fresh.score > least)
+      hypotheses_.push_back(fresh);
   }
 }
 

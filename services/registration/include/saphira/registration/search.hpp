@@ -22,11 +22,11 @@ struct PlacedReading {
 };
 
 struct SearchSettings {
-  std::size_t hypotheses = 150;  ///< the most that are followed
+  std::size_t hypotheses = 100;  ///< the most that are followed
   double trust = 0.3;            ///< exponent of the likelihoods: readings are not independent
   double nothing = -2.1;         ///< log likelihood of a reading by no place in particular
   double surprise = 1.5;         ///< the most that one reading speaks against a place
-  std::size_t history = 120;     ///< readings that a new hypothesis is held against
+  std::size_t history = 60;      ///< readings that a new hypothesis is held against
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
   double evidence = 20.0;        ///< score from which on a hypothesis may be it...
