@@ -199,13 +199,13 @@ Match match(const Percept& percept, const Pose& robot_in_odom, const maps::Map& 
     result.reason = "too far from where the nearest is expected";
     return result;
   }
-  const bool ambiguous = std::any_of(
+  result.ambiguous = std::any_of(
       matcher.candidates().begin(), matcher.candidates().end(), [&](const Candidate& c) {
         return c.distance < settings.ambiguity &&
                ((c.correction - best->correction).norm() > settings.same_innovation ||
                 std::abs(c.turned - best->turned) > settings.same_heading);
       });
-  if (ambiguous) {
+  if (result.ambiguous) {
     result.reason = "could be another one as well";
     return result;
   }

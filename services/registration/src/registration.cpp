@@ -124,7 +124,7 @@ class Registration::Self {
   State state_ = State::unplaced;
   std::optional<PoseFilter> filter_;
   std::uint64_t cycle_ = 0;
-  std::optional<std::uint32_t> odom_;
+  std::optional<std::uint64_t> odom_;
   Pose pose_in_odom_;
   Pose moved_;  // in this cycle
   std::vector<Done> done_;
@@ -294,12 +294,14 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
   search_.step(pose_in_odom_, readings, percepts, filter_ ? &*filter_ : nullptr);
-  const auto best = search_.best();
+  const auto best = search_.best(state_ == State::tracking);
   if (!best || !best->sure)
     return;
   const PoseFilter found = best->hypothesis->filter;
   const double drift_variance = found.covariance()(3, 3);
-  place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 0.6);
+  place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 1.0);
+  // It is the best of many: its own matches have made it surer than it may be.
+  filter_->widen(0.1, radians(3.0));
 }
 
 const Output& Registration::Self::step(const Inputs& inputs) {

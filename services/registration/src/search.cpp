@@ -6,10 +6,20 @@
 namespace saphira::registration {
 namespace {
 
+constexpr double kFits = 1.5;  // score of an object that is there, or is not
 constexpr double kPoor = 6.0;  // a new place is not begun where the readings are so much against it
 
 bool same_place(const Pose& a, const Pose& b, double way, double turn) {
   return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
+}
+
+/// What a hypothesis of an object that fits, or does not, says of a place.
+double worth(const lps::Percept& percept, const Match& match) {
+  if (!percept.is_hypothesis())
+    return 0.0;
+  if (match.accepted)
+    return kFits;
+  return match.ambiguous ? 0.0 : -kFits;
 }
 
 Pose inverse(const Pose& pose) {
@@ -80,12 +90,13 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
         percept->type == lps::PointType::door || percept->type == lps::PointType::junction;
     for (Hypothesis& h : hypotheses_) {
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, h.filter);
-      if (opening && result.accepted) {
-        ++h.openings;
-        h.score += 1.0;
-      } else if (opening && result.reason != "could be another one as well") {
-        h.score -= 1.0;
-      }
+      h.openings += opening && result.accepted ? 1 : 0;
+      h.score += worth(*percept, result);
+    }
+    if (own != nullptr) {
+      PoseFilter copy = *own;
+      own_score_ +=
+          worth(*percept, match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy));
     }
     if (opening)
       propose(*percept);
@@ -141,17 +152,18 @@ void Search::thin_out() {
   hypotheses_ = std::move(left);
 }
 
-std::optional<Search::Best> Search::best() const {
+std::optional<Search::Best> Search::best(bool beside_own) const {
+  const bool own = beside_own && own_;
   const auto elsewhere = [](const Pose& a, const Pose& b) {
     return !same_place(a, b, 0.5, radians(15.0));
   };
   const auto first = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
-    return !own_ || elsewhere(h.filter.pose(), *own_);
+    return !own || elsewhere(h.filter.pose(), *own_);
   });
   if (first == hypotheses_.end())
     return std::nullopt;
   double second = 0.0;  // nothing in particular
-  if (own_)
+  if (own)
     second = std::max(second, own_score_);
   for (const Hypothesis& h : hypotheses_)
     if (elsewhere(h.filter.pose(), first->filter.pose()))

@@ -37,6 +37,7 @@ struct Match {
   double turned = 0.0;
   double distance = 0.0;  ///< squared Mahalanobis
   bool accepted = false;
+  bool ambiguous = false;   ///< there are several that it could be
   std::string_view reason;  ///< why not
 };
 

@@ -63,14 +63,15 @@ class Search {
   /// What the place that is believed has been worth so far.
   void believe(double score) { own_score_ = score; }
   double own_score() const { return own_score_; }
-  /// The best one that is not the place that is believed, and how much better it is than any that
-  /// is elsewhere, the believed one included; nothing: there is none.
+  /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
+  /// While a place is believed, `beside_own`: the best one that is not there, and how much better
+  /// it is than that place, too.
   struct Best {
     const Hypothesis* hypothesis = nullptr;
     double margin = 0.0;
     bool sure = false;
   };
-  std::optional<Best> best() const;
+  std::optional<Best> best(bool beside_own) const;
 
  private:
   void propose(const lps::Percept& percept);
