@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/maps/map.hpp"
+
+namespace saphira::explore {
+
+struct Settings {
+  std::vector<lps::SonarMount> sonars;
+  double speed = 0.3;           ///< [m/s] doors are found at this pace
+  double look_ahead = 1.5;      ///< [m] how far before the robot the point to drive to is kept
+  double beyond = 6.0;          ///< [m] so far out of what is mapped nothing came: an open area
+  double aside = 0.8;           ///< [m] off the middle: what is ahead has turned the robot away
+  double tried = 1.2;           ///< [m] nearer than this to where it was tried, an end is the same
+  double open_side = 2.2;       ///< [m] a sonar that hears nothing nearer looks into another way
+  double min_progress = 0.15;   ///< [m] less...
+  std::uint64_t patience = 60;  ///< [cycles] ...in this time is being blocked
+  int least_corridors = 1;      ///< where fewer are mapped, straight on is worth a try
+  bool go_home = true;          ///< back to where it began, when nothing is left
+};
+
+struct Inputs {
+  std::uint64_t cycle = 0;
+  Pose pose_in_map;
+  const maps::Map& map;          ///< as built so far
+  const std::vector<Vec2>& way;  ///< [map] where the robot has been, in order, ends with now
+  const std::vector<lps::SonarReading>& readings;
+};
+
+/// Where the robot should drive now.
+struct Output {
+  bool done = false;
+  std::optional<Vec2> point_in_map;  ///< drive there; none: stand
+  std::optional<Vec2> look_at;       ///< turn towards this point of the map on the spot
+  double speed = 0.0;
+  std::string reason;  ///< what for, in words
+};
+
+/// Explores a floor corridor by corridor: drives to where the map as built so far ends, and on,
+/// until a wall or an open area is there; looks to the sides there, and into every opening that is
+/// wider than a door. The ways between are those that it has driven. What cannot be reached is
+/// given up. Pure: the map, the pose and the way are another's (registration::MapBuilder).
+class Explorer {
+ public:
+  explicit Explorer(Settings settings);
+
+  const Output& step(const Inputs& inputs);
+  const Output& output() const { return output_; }
+  /// Ends and openings that were given up since no way leads there.
+  int given_up() const { return given_up_; }
+
+ private:
+  /// A way out of what is mapped: from a point, straight on.
+  struct Lead {
+    Vec2 point{0.0, 0.0};
+    double heading = 0.0;
+    std::string what;
+    bool home = false;
+  };
+  enum class Doing { choosing, going, probing, looking };
+
+  void listen(const Inputs& inputs);
+  std::vector<Lead> leads(const Inputs& inputs) const;
+  bool is_tried(const Lead& lead) const;
+  bool mapped_along(const maps::Map& map, const Vec2& point, double heading) const;
+  void choose(const Inputs& inputs);
+  void go(const Inputs& inputs);
+  void probe(const Inputs& inputs);
+  void begin_looking(const Inputs& inputs);
+  void look(const Inputs& inputs);
+  double heard_ahead() const;
+  void finish(const Inputs& inputs);
+  bool blocked(const Inputs& inputs);
+  std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
+
+  Settings settings_;
+  Output output_;
+  Doing doing_ = Doing::choosing;
+  bool begun_ = false;
+  Pose start_in_map_;
+  std::optional<Lead> lead_;
+  Vec2 probe_from_{0.0, 0.0};
+  std::vector<Lead> tried_;
+  std::vector<Lead> seen_open_;  ///< ways that were heard, not yet mapped
+  std::vector<Vec2> shut_;       ///< where the robot came no farther on a way it had driven
+  std::vector<Vec2> path_;       ///< to the lead's point
+  struct Heard {
+    int sonar = 0;
+    double range = 0.0;
+    std::uint64_t cycle = 0;
+  };
+  std::vector<Heard> heard_;
+  std::vector<double> looks_;       ///< [rad, map] headings that are still to be looked at
+  std::uint64_t look_cycle_ = 0;    ///< when this one was begun...
+  std::uint64_t steady_cycle_ = 0;  ///< ...and since when the robot looks that way
+  Vec2 look_from_{0.0, 0.0};
+  Vec2 progress_from_{0.0, 0.0};
+  double progress_ = 0.0;
+  std::uint64_t progress_cycle_ = 0;
+  int given_up_ = 0;
+};
+
+}  // namespace saphira::explore

@@ -1,0 +1,377 @@
+#include "saphira/explore/explorer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::explore {
+
+namespace {
+
+using lps::PointType;
+using maps::Feature;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+// Two places of the driven way that are so near one another hang together [m].
+constexpr double kStep = 0.8;
+// What was heard longer ago [cycles] is not of here.
+constexpr std::uint64_t kFresh = 10;
+constexpr double kStraight = radians(10.0);  // of a sonar that looks ahead
+constexpr double kHalfWidth = 1.0;           // [m] of corridors, about
+
+Vec2 ahead(const Vec2& point, double heading, double far) {
+  return point + far * Vec2(std::cos(heading), std::sin(heading));
+}
+
+}  // namespace
+
+Explorer::Explorer(Settings settings) : settings_(std::move(settings)) {}
+
+const Output& Explorer::step(const Inputs& inputs) {
+  if (!begun_) {
+    begun_ = true;
+    start_in_map_ = inputs.pose_in_map;
+  }
+  listen(inputs);
+  if (output_.done)
+    return output_;
+  if (doing_ == Doing::looking)
+    look(inputs);
+  if (doing_ == Doing::choosing)
+    choose(inputs);
+  if (doing_ == Doing::going)
+    go(inputs);
+  if (doing_ == Doing::probing)
+    probe(inputs);
+  return output_;
+}
+
+void Explorer::listen(const Inputs& inputs) {
+  for (const lps::SonarReading& reading : inputs.readings)
+    heard_.push_back({reading.sonar, reading.echo ? reading.range : lps::kNothing, inputs.cycle});
+  std::erase_if(heard_, [&](const Heard& h) { return h.cycle + kFresh < inputs.cycle; });
+}
+
+bool Explorer::is_tried(const Lead& lead) const {
+  return std::any_of(tried_.begin(), tried_.end(), [&](const Lead& tried) {
+    const Vec2 off = tried.point - lead.point;
+    const double along = std::abs(off.dot(ahead({0.0, 0.0}, lead.heading, 1.0)));
+    const double across = std::sqrt(std::max(0.0, off.squaredNorm() - along * along));
+    return along < settings_.tried + 0.8 && across < settings_.tried &&
+           std::abs(norm2_angle(tried.heading - lead.heading)) < radians(45.0);
+  });
+}
+
+// Whether a corridor or junction of the map goes on from here that way.
+bool Explorer::mapped_along(const maps::Map& map, const Vec2& point, double heading) const {
+  const Vec2 there = ahead(point, heading, 2.5);
+  return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& f) {
+    return (f.type == PointType::corridor || f.type == PointType::junction) &&
+           maps::distance_to(f, there) < 0.1;
+  });
+}
+
+std::vector<Explorer::Lead> Explorer::leads(const Inputs& inputs) const {
+  std::vector<Lead> out;
+  const auto offer = [&](Lead lead) {
+    if (!is_tried(lead))
+      out.push_back(std::move(lead));
+  };
+  std::vector<const Feature*> junctions;
+  for (const Feature& f : inputs.map.features)
+    if (f.type == PointType::junction)
+      junctions.push_back(&f);
+  for (const Feature& f : inputs.map.features) {
+    if (f.type == PointType::corridor) {
+      for (const bool upper : {true, false}) {
+        const Vec2 end = upper ? maps::end_of(f) : maps::begin_of(f);
+        const double heading = upper ? f.pose_in_map.th : norm2_angle(f.pose_in_map.th + kPi);
+        const bool meets = std::any_of(junctions.begin(), junctions.end(), [&](const Feature* j) {
+          return maps::distance_to(*j, end) < 0.6;
+        });
+        if (!meets)
+          offer({end, heading, "the end of corridor " + std::to_string(f.id), false});
+      }
+    } else if (f.type == PointType::breach) {
+      const double inwards = norm2_angle(f.pose_in_map.th + kPi);
+      if (!mapped_along(inputs.map, f.pose_in_map.position(), inwards))
+        offer({f.pose_in_map.position(), inwards, "opening " + std::to_string(f.id), false});
+    }
+  }
+  for (const Lead& lead : seen_open_)
+    if (!mapped_along(inputs.map, lead.point, lead.heading))
+      offer(lead);
+  return out;
+}
+
+// Dijkstra over the places that the robot has been at.
+std::vector<std::size_t> Explorer::path(const std::vector<Vec2>& way, const Vec2& to,
+                                        double& length) const {
+  const std::size_t n = way.size();
+  const auto shut = [&](std::size_t i) {
+    return std::any_of(shut_.begin(), shut_.end(),
+                       [&](const Vec2& p) { return (p - way[i]).norm() < 0.5; });
+  };
+  std::vector<double> cost(n, kNone);
+  std::vector<std::size_t> previous(n, n);
+  std::vector<bool> done(n, false);
+  cost[n - 1] = 0.0;
+  std::size_t best = n;
+  double best_far = kNone;
+  for (;;) {
+    std::size_t next = n;
+    for (std::size_t i = 0; i < n; ++i)
+      if (!done[i] && cost[i] < kNone && (next == n || cost[i] < cost[next]))
+        next = i;
+    if (next == n)
+      break;
+    done[next] = true;
+    // As near as one gets; what is farther to go must be worth it.
+    const double far = (way[next] - to).norm() + 0.001 * cost[next];
+    if (far < best_far) {
+      best_far = far;
+      best = next;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (done[i])
+        continue;
+      const double step = (way[i] - way[next]).norm();
+      if (step > kStep || (shut(i) && !shut(next)))
+        continue;
+      if (cost[next] + step < cost[i]) {
+        cost[i] = cost[next] + step;
+        previous[i] = next;
+      }
+    }
+  }
+  std::vector<std::size_t> out;
+  for (std::size_t i = best; i < n; i = previous[i])
+    out.insert(out.begin(), i);
+  length = best < n ? cost[best] + (way[best] - to).norm() : kNone;
+  return out;
+}
+
+void Explorer::choose(const Inputs& inputs) {
+  std::vector<Lead> open = leads(inputs);
+  const auto corridors =
+      std::count_if(inputs.map.features.begin(), inputs.map.features.end(),
+                    [](const Feature& f) { return f.type == PointType::corridor; });
+  if (open.empty() && corridors < settings_.least_corridors)
+    for (const double turn : {0.0, kPi / 2, -kPi / 2, kPi}) {
+      const Lead lead{inputs.pose_in_map.position(), norm2_angle(start_in_map_.th + turn),
+                      "straight on", false};
+      if (!is_tried(lead)) {
+        open.push_back(lead);
+        break;
+      }
+    }
+  if (open.empty() && settings_.go_home &&
+      (inputs.pose_in_map.position() - start_in_map_.position()).norm() > 1.0) {
+    Lead home{start_in_map_.position(), start_in_map_.th, "the start", true};
+    if (!is_tried(home))
+      open.push_back(home);
+  }
+  std::optional<Lead> best;
+  std::vector<std::size_t> best_path;
+  double best_length = kNone;
+  for (const Lead& lead : open) {
+    double length = 0.0;
+    std::vector<std::size_t> way = path(inputs.way, lead.point, length);
+    const double short_by = way.empty() ? kNone : (inputs.way[way.back()] - lead.point).norm();
+    if (short_by > 5.0) {
+      tried_.push_back(lead);
+      ++given_up_;
+      continue;
+    }
+    if (length < best_length) {
+      best_length = length;
+      best = lead;
+      best_path = std::move(way);
+    }
+  }
+  if (!best) {
+    if (open.empty())
+      output_ = {true, std::nullopt, std::nullopt, 0.0, "nothing is left to explore"};
+    return;  // looks again in the next cycle, without what was given up
+  }
+  lead_ = best;
+  path_.clear();
+  for (const std::size_t i : best_path)
+    path_.push_back(inputs.way[i]);
+  doing_ = Doing::going;
+  progress_cycle_ = inputs.cycle;
+  progress_ = kNone;
+  output_.reason = lead_->what;
+}
+
+void Explorer::go(const Inputs& inputs) {
+  const Vec2 here = inputs.pose_in_map.position();
+  // The farthest place that is straight ahead, without cutting a corner.
+  while (path_.size() > 1) {
+    const Vec2 next = path_[1] - here;
+    const double along = next.dot(path_.front() - here) / std::max(1e-9, next.squaredNorm());
+    const Vec2 off = path_.front() - here - std::clamp(along, 0.0, 1.0) * next;
+    if ((path_.front() - here).norm() > 0.4 &&
+        (next.norm() > settings_.look_ahead || off.norm() > 0.2))
+      break;
+    path_.erase(path_.begin());
+  }
+  if (path_.size() <= 1 && (path_.empty() || (path_.front() - here).norm() < 0.6)) {
+    if (lead_->home) {
+      finish(inputs);
+      return;
+    }
+    doing_ = Doing::probing;
+    probe_from_ = here;
+    progress_cycle_ = inputs.cycle;
+    progress_ = kNone;
+    return;
+  }
+  double left = (path_.front() - here).norm();
+  for (std::size_t i = 1; i < path_.size(); ++i)
+    left += (path_[i] - path_[i - 1]).norm();
+  if (left < progress_ - settings_.min_progress) {
+    progress_ = left;
+    progress_cycle_ = inputs.cycle;
+  }
+  if (inputs.cycle > progress_cycle_ + 2 * settings_.patience) {
+    // Closed since: around it, if there is a way.
+    shut_.push_back(path_.front());
+    doing_ = Doing::choosing;
+    double length = 0.0;
+    const auto way = path(inputs.way, lead_->point, length);
+    if (way.empty() || (inputs.way[way.back()] - lead_->point).norm() > 5.0) {
+      tried_.push_back(*lead_);
+      ++given_up_;
+    }
+    lead_.reset();
+    output_.point_in_map.reset();
+    return;
+  }
+  output_.point_in_map = path_.front();
+  output_.speed = settings_.speed;
+}
+
+// Straight on along the lead, and along what the map has of it by now.
+void Explorer::probe(const Inputs& inputs) {
+  const Vec2 here = inputs.pose_in_map.position();
+  // The corridor that it has become: its middle is better known than the lead's.
+  Vec2 point = lead_->point;
+  double heading = lead_->heading;
+  double mapped = -kNone;  // how far along the heading the map goes
+  for (const Feature& f : inputs.map.features) {
+    if (f.type != PointType::corridor || maps::distance_to(f, here) > settings_.beyond)
+      continue;
+    const Pose in = relative({here.x(), here.y(), heading}, f.pose_in_map);
+    if (std::abs(norm3_angle(in.th)) > radians(20.0) || std::abs(in.y) > 1.0)
+      continue;
+    const bool same_way = std::abs(in.th) < kPi / 2;
+    point = f.pose_in_map.position();
+    heading = same_way ? f.pose_in_map.th : norm2_angle(f.pose_in_map.th + kPi);
+    mapped = in.x + f.length / 2;
+  }
+  const Vec2 u = ahead({0.0, 0.0}, heading, 1.0);
+  const double at = u.dot(here - point);
+  const double from = u.dot(probe_from_ - point);
+  const double gone = at - std::max(from, at + mapped);
+  const double done = at - from;
+  if (progress_ == kNone || done > progress_ + settings_.min_progress) {
+    progress_ = done;
+    progress_cycle_ = inputs.cycle;
+  }
+  const bool stuck = inputs.cycle > progress_cycle_ + settings_.patience;
+  const double off = std::abs(u.x() * (here - point).y() - u.y() * (here - point).x());
+  const bool away = off > settings_.aside && done > 0.5 && mapped == -kNone;
+  if (stuck || away || gone > settings_.beyond) {
+    output_.reason = lead_->what + (stuck  ? ": closed"
+                                    : away ? ": turned away"
+                                           : ": open, and nothing follows");
+    look_from_ = point + at * u;
+    begin_looking(inputs);
+    look(inputs);
+    return;
+  }
+  output_.point_in_map = point + (at + 2 * settings_.look_ahead) * u;
+  output_.speed = settings_.speed;
+}
+
+// The middle one of what the sonars that look ahead have heard of late.
+double Explorer::heard_ahead() const {
+  std::vector<double> ranges;
+  for (const lps::SonarMount& mount : settings_.sonars)
+    if (std::abs(mount.in_robot.th) < kStraight)
+      for (const Heard& h : heard_)
+        if (h.sonar == mount.sonar)
+          ranges.push_back(h.range);
+  if (ranges.empty())
+    return 0.0;
+  std::sort(ranges.begin(), ranges.end());
+  return ranges[ranges.size() / 2];
+}
+
+// Where it goes no farther, other ways may begin.
+void Explorer::begin_looking(const Inputs& inputs) {
+  doing_ = Doing::looking;
+  looks_ = {norm2_angle(lead_->heading + kPi / 2), norm2_angle(lead_->heading - kPi / 2)};
+  look_cycle_ = inputs.cycle;
+  steady_cycle_ = 0;
+  const auto corridor = [&](const Feature& f) { return f.type == PointType::corridor; };
+  const auto& features = inputs.map.features;
+  const bool beside_one = std::any_of(features.begin(), features.end(), [&](const Feature& f) {
+    return corridor(f) && maps::distance_to(f, look_from_) < settings_.beyond / 2;
+  });
+  // Ways that begin in a room are doors.
+  if (!beside_one && std::any_of(features.begin(), features.end(), corridor))
+    looks_.clear();
+  // A way aside is as wide as corridors are: its middle is not at the wall in front.
+  const double front = heard_ahead();
+  const bool straight =
+      std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(20.0);
+  look_from_ =
+      ahead(look_from_, lead_->heading, straight && front < kHalfWidth ? front - kHalfWidth : 0.0);
+}
+
+void Explorer::look(const Inputs& inputs) {
+  const Pose& pose = inputs.pose_in_map;
+  output_.point_in_map.reset();
+  while (!looks_.empty() && mapped_along(inputs.map, look_from_, looks_.front()))
+    looks_.erase(looks_.begin());
+  if (looks_.empty()) {
+    output_.look_at.reset();
+    finish(inputs);
+    return;
+  }
+  const double heading = looks_.front();
+  output_.look_at = ahead(pose.position(), heading, 5.0);
+  if (std::abs(norm2_angle(pose.th - heading)) > radians(6.0)) {
+    steady_cycle_ = 0;
+    if (inputs.cycle < look_cycle_ + settings_.patience)
+      return;
+  } else if (steady_cycle_ == 0) {
+    steady_cycle_ = inputs.cycle;
+    return;
+  } else if (inputs.cycle <= steady_cycle_ + kFresh) {
+    return;
+  }
+  Lead side{look_from_, heading, "a way aside", false};
+  if (steady_cycle_ != 0 && heard_ahead() > settings_.open_side && !is_tried(side))
+    seen_open_.push_back(side);
+  looks_.erase(looks_.begin());
+  look_cycle_ = inputs.cycle;
+  steady_cycle_ = 0;
+}
+
+void Explorer::finish(const Inputs& inputs) {
+  tried_.push_back(*lead_);
+  // Where it ended, too: the end of a corridor has moved on with the robot.
+  Lead here = *lead_;
+  here.point = inputs.pose_in_map.position();
+  tried_.push_back(here);
+  lead_.reset();
+  doing_ = Doing::choosing;
+  output_.point_in_map.reset();
+}
+
+}  // namespace saphira::explore

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
+#include "saphira/maps/edit.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/registration/feature_graph.hpp"
+
+namespace saphira::registration {
+
+struct MapBuilderSettings {
+  std::vector<lps::SonarMount> sonars;    ///< those that look ahead find the ends of corridors
+  bool add_new_features = true;           ///< manual 6.9.2
+  bool snap_to_right_angle_grid = true;   ///< manual 6.9.2
+  double grid_tolerance = radians(12.0);  ///< [rad] a wall that is farther off follows no grid
+
+  double least_confidence = 0.5;  ///< percepts that are less sure are left alone
+  double node_way = 0.5;          ///< [m] between places that are remembered
+  double node_turn = radians(20.0);
+  double again_way = 2.0;  ///< [m] of way after which a wall that is still seen counts once more
+
+  // What is the same thing.
+  double same_heading = radians(8.0);
+  double same_wall = 0.15;     ///< [m] across
+  double same_opening = 0.45;  ///< [m]
+  double stray = 0.015;        ///< [1] more, by this share of the way since it was last seen
+  double most_stray = 1.2;     ///< [m] and never more than this
+  double wall_gap = 5.5;       ///< [m] between stretches of one wall
+  double closure_way = 15.0;   ///< [m] of way after which seeing something again closes a loop
+
+  // What is a corridor.
+  double min_width = 1.0;
+  double max_width = 3.6;
+  double min_both = 1.2;    ///< [m] with a wall on either side
+  double min_length = 3.0;  ///< [m]
+  double max_gap = 1.4;     ///< [m] in both walls; more where the robot drove through
+  double max_driven_gap = 4.5;
+  double one_sided = 2.5;  ///< [m] by which one wall alone may make a corridor longer
+  double reach = 1.5;      ///< [m] an end so near to another corridor is a junction
+  double min_wall = 1.5;   ///< [m] of walls that are no corridor's
+
+  FeatureGraphSettings graph;
+};
+
+struct MapBuilderInputs {
+  std::uint64_t cycle = 0;
+  std::uint64_t odom = 0;  ///< number of the odometry frame
+  Pose pose_in_odom;
+  const std::vector<lps::Percept>& percepts;
+  const std::vector<lps::SonarReading>& readings;
+  /// Where registration on a known map has the robot; then that is believed, and what is new is put
+  /// down from there. Nothing: the builder finds the pose together with the map.
+  std::optional<Pose> pose_in_map;
+};
+
+/// How a door or object that was seen once did when the robot came by again.
+struct Passes {
+  int seen = 0;
+  int missed = 0;  ///< in a row, since it was last seen
+};
+
+/// Maps by driving (manual 6.9.2): what is seen and matches nothing becomes an artifact. Stretches
+/// of wall are joined to lines, lines that face one another to corridors, corridors meet in
+/// junctions, openings become doors and breaks. The way and the features are one least-squares
+/// problem, so that seeing the first corridor again corrects all of the map.
+///
+/// Walls and corridors stay for good. A door that was open and is seen closed stays, and is told as
+/// closed. A pure function of its inputs' history.
+class MapBuilder {
+ public:
+  /// Begins with a map that is known (or none) and, where no pose is believed, at `start`.
+  explicit MapBuilder(MapBuilderSettings settings, maps::Map known = {}, Pose start_in_map = {});
+
+  /// True when the map has changed.
+  bool step(const MapBuilderInputs& inputs);
+
+  const maps::Map& map() const { return editor_.map(); }
+  std::uint64_t revision() const { return editor_.revision(); }
+  /// Where the robot is by the map as it is built.
+  const Pose& pose_in_map() const { return pose_in_map_; }
+  /// Doors of the map that did not open the last two times that the robot came by.
+  std::vector<std::uint32_t> closed() const;
+  /// How often something was seen again after a long way.
+  int closures() const { return closures_; }
+  /// The way as it is believed now.
+  std::vector<Vec2> way() const;
+  const FeatureGraph& graph() const { return graph_; }
+
+ private:
+  /// What is known of a line or an opening beside where it is.
+  struct Known {
+    lps::PointType type = lps::PointType::wall;  ///< wall, door or junction
+    double heading = 0.0;   ///< of an opening: its normal, in the map, as it was seen first
+    double last_way = 0.0;  ///< [m] driven when it was seen last
+    Passes passes;
+    bool beside = false;  ///< the robot is passing it
+    bool found = false;   ///< ...and has seen it
+  };
+  /// A percept that stands, and what it was taken for.
+  struct Taken {
+    bool is_line = true;
+    std::size_t index = 0;
+    std::size_t seen = 0;     ///< the newest entry of its `seen`
+    double way = 0.0;         ///< [m] driven when that was made
+    std::uint64_t cycle = 0;  ///< when it stood last
+  };
+  struct Corridor;
+
+  void drive(const MapBuilderInputs& inputs);
+  bool take(const lps::Percept& percept, std::uint64_t cycle);
+  bool take_line(const lps::Percept& percept, std::uint64_t cycle);
+  bool take_opening(const lps::Percept& percept, std::uint64_t cycle);
+  std::size_t node_near(const Pose& in_odom) const;
+  SeenLine seen_line(const lps::Percept& percept) const;
+  SeenPoint seen_point(const lps::Percept& percept) const;
+  double stray(double last_way) const;
+  std::optional<std::size_t> match_line(const SeenLine& seen) const;
+  std::optional<std::size_t> match_opening(const SeenPoint& seen, lps::PointType type) const;
+  void listen_ahead(const MapBuilderInputs& inputs);
+  void pass();
+  void settle();
+  void merge_lines();
+  std::vector<std::pair<double, double>> stretches(const GraphLine& line) const;
+
+  std::vector<Corridor> corridors() const;
+  void close_ends(std::vector<Corridor>& corridors) const;
+  bool publish();
+
+  MapBuilderSettings settings_;
+  maps::Map given_;
+  FeatureGraph graph_;
+  std::vector<Known> known_lines_;
+  std::vector<Known> known_points_;
+  std::map<std::uint32_t, Taken> taken_;  ///< by the percept's id
+  std::vector<SeenPoint> ahead_;          ///< echoes from straight ahead
+  maps::Editor editor_;
+  std::vector<std::uint32_t> own_;                ///< ids of the features that were built
+  std::map<std::uint32_t, std::size_t> door_of_;  ///< feature to opening
+  Pose start_in_map_;
+  bool placed_ = false;
+  bool believed_ = false;
+  std::uint64_t odom_ = 0;
+  Pose pose_in_odom_;
+  Pose pose_in_map_;
+  double way_ = 0.0;
+  double settled_way_ = 0.0;
+  bool news_ = false;
+  int closures_ = 0;
+};
+
+}  // namespace saphira::registration

@@ -1,0 +1,757 @@
+#include "saphira/registration/map_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saphira/lps/point.hpp"
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::registration {
+
+namespace {
+
+using lps::PointType;
+using maps::Feature;
+
+// How many nodes back what is seen may be hung on.
+constexpr std::size_t kRecent = 24;
+// The map is put together anew after so much way [m], where there is news.
+constexpr double kSettle = 1.0;
+// Echoes from ahead that tell of the end of a corridor: so near, so straight on, so many.
+constexpr double kAhead = 1.8;
+constexpr double kStraight = radians(10.0);
+constexpr int kEchoes = 4;
+
+using Stretches = std::vector<std::pair<double, double>>;
+
+// Sorted and without overlaps; gaps of up to `gap` are closed.
+Stretches joined(Stretches stretches, double gap) {
+  std::sort(stretches.begin(), stretches.end());
+  Stretches out;
+  for (const auto& s : stretches) {
+    if (!out.empty() && s.first <= out.back().second + gap)
+      out.back().second = std::max(out.back().second, s.second);
+    else
+      out.push_back(s);
+  }
+  return out;
+}
+
+Stretches common(const Stretches& a, const Stretches& b) {
+  Stretches out;
+  for (const auto& x : a)
+    for (const auto& y : b)
+      if (std::min(x.second, y.second) > std::max(x.first, y.first))
+        out.emplace_back(std::max(x.first, y.first), std::min(x.second, y.second));
+  return joined(std::move(out), 0.0);
+}
+
+double total(const Stretches& stretches) {
+  double sum = 0.0;
+  for (const auto& s : stretches)
+    sum += s.second - s.first;
+  return sum;
+}
+
+double off_grid(double heading) {
+  return std::abs(heading - std::round(heading / (kPi / 2)) * (kPi / 2));
+}
+
+}  // namespace
+
+struct MapBuilder::Corridor {
+  Pose frame;  ///< a point of its middle line, and along it
+  double width = 0.0;
+  double from = 0.0;  ///< [m] along the frame's x
+  double to = 0.0;
+  Stretches both;   ///< a wall on either side
+  Stretches walls;  ///< on one at least
+
+  Vec2 begin() const { return transform(frame, {from, 0.0}); }
+  Vec2 end() const { return transform(frame, {to, 0.0}); }
+  double length() const { return to - from; }
+};
+
+MapBuilder::MapBuilder(MapBuilderSettings settings, maps::Map known, Pose start_in_map)
+    : settings_(std::move(settings)),
+      given_(known),
+      editor_(std::move(known)),
+      start_in_map_(start_in_map),
+      pose_in_map_(start_in_map) {
+  graph_.settings = settings_.graph;
+  // The grid decides which way the map is turned.
+  if (settings_.snap_to_right_angle_grid && given_.features.empty())
+    graph_.settings.start_heading = 0.3;
+}
+
+bool MapBuilder::step(const MapBuilderInputs& inputs) {
+  drive(inputs);
+  if (!settings_.add_new_features)
+    return false;
+  for (const lps::Percept& percept : inputs.percepts)
+    if (percept.confidence >= settings_.least_confidence)
+      news_ = take(percept, inputs.cycle) || news_;
+  listen_ahead(inputs);
+  pass();
+  for (auto it = taken_.begin(); it != taken_.end();)
+    it = it->second.cycle == inputs.cycle ? std::next(it) : taken_.erase(it);
+  if (!news_ || way_ - settled_way_ < kSettle)
+    return false;
+  settle();
+  return publish();
+}
+
+// Follows the robot, and remembers places on its way.
+void MapBuilder::drive(const MapBuilderInputs& inputs) {
+  const bool jumped = placed_ && inputs.odom != odom_;
+  if (placed_ && !jumped)
+    way_ += (inputs.pose_in_odom.position() - pose_in_odom_.position()).norm();
+  pose_in_odom_ = inputs.pose_in_odom;
+  odom_ = inputs.odom;
+  believed_ = inputs.pose_in_map.has_value();
+  if (believed_)
+    pose_in_map_ = *inputs.pose_in_map;
+  else if (!placed_)
+    pose_in_map_ = start_in_map_;
+  else if (!jumped)
+    pose_in_map_ =
+        compose(graph_.nodes.back().in_map, relative(graph_.nodes.back().in_odom, pose_in_odom_));
+  if (jumped)
+    taken_.clear();
+  if (placed_ && !jumped) {
+    const Pose since = relative(graph_.nodes.back().in_odom, pose_in_odom_);
+    if (std::hypot(since.x, since.y) < settings_.node_way &&
+        std::abs(since.th) < settings_.node_turn)
+      return;
+  }
+  graph_.nodes.push_back({pose_in_odom_, pose_in_map_, believed_, jumped});
+  placed_ = true;
+}
+
+std::size_t MapBuilder::node_near(const Pose& in_odom) const {
+  std::size_t best = graph_.nodes.size() - 1;
+  double nearest = lps::distance(graph_.nodes[best].in_odom, in_odom);
+  for (std::size_t back = 1; back < std::min(kRecent, graph_.nodes.size()); ++back) {
+    const std::size_t i = graph_.nodes.size() - 1 - back;
+    if (graph_.nodes[i + 1].broken)
+      break;
+    const double far = lps::distance(graph_.nodes[i].in_odom, in_odom);
+    if (far < nearest) {
+      nearest = far;
+      best = i;
+    }
+  }
+  return best;
+}
+
+SeenLine MapBuilder::seen_line(const lps::Percept& percept) const {
+  SeenLine seen;
+  seen.node = node_near(percept.pose_in_odom);
+  Pose wall = percept.pose_in_odom;
+  const Pose& from = graph_.nodes[seen.node].in_odom;
+  const bool right_of_it =
+      percept.side == lps::Side::none ? lps::yo(wall, from) < 0.0 : percept.side == lps::Side::left;
+  if (right_of_it)
+    wall.th = norm2_angle(wall.th + kPi);
+  seen.in_node = relative(from, wall);
+  seen.length = percept.length;
+  seen.sigma_across = std::max(0.02, percept.sigma_across);
+  seen.sigma_heading = std::max(radians(0.5), percept.sigma_heading);
+  return seen;
+}
+
+SeenPoint MapBuilder::seen_point(const lps::Percept& percept) const {
+  SeenPoint seen;
+  seen.node = node_near(percept.pose_in_odom);
+  seen.in_node = relative(graph_.nodes[seen.node].in_odom, percept.pose_in_odom);
+  seen.width = percept.width;
+  seen.sigma_along = std::max(0.04, percept.sigma_along);
+  seen.sigma_across = std::max(0.04, percept.sigma_across);
+  return seen;
+}
+
+double MapBuilder::stray(double last_way) const {
+  return believed_ ? 0.3 : std::min(settings_.most_stray, settings_.stray * (way_ - last_way));
+}
+
+Stretches MapBuilder::stretches(const GraphLine& line) const {
+  Stretches out;
+  const Vec2 u = line.along();
+  for (const SeenLine& seen : line.seen) {
+    const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+    const double at = u.dot(wall.position() - line.anchor);
+    out.emplace_back(at - seen.length / 2, at + seen.length / 2);
+  }
+  return joined(std::move(out), 0.1);
+}
+
+std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
+  const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+  std::optional<std::size_t> best;
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < graph_.lines.size(); ++i) {
+    const GraphLine& line = graph_.lines[i];
+    if (line.seen.empty())
+      continue;  // it has become another one's part
+    const double strayed = stray(known_lines_[i].last_way);
+    if (std::abs(norm2_angle(wall.th - line.heading)) > settings_.same_heading)
+      continue;
+    const Vec2 from = wall.position() - line.anchor;
+    const double across = std::abs(line.normal().dot(from) - line.offset);
+    if (across > settings_.same_wall + strayed)
+      continue;
+    const double at = line.along().dot(from);
+    double gap = 1e9;
+    for (const auto& s : stretches(line))
+      gap = std::min(gap, std::max(s.first - at, at - s.second) - seen.length / 2);
+    if (gap > settings_.wall_gap)
+      continue;
+    // A stretch that is farther along must fit the better.
+    const double cost = across + 0.02 * std::max(0.0, gap);
+    if (!best || cost < nearest) {
+      best = i;
+      nearest = cost;
+    }
+  }
+  return best;
+}
+
+std::optional<std::size_t> MapBuilder::match_opening(const SeenPoint& seen, PointType type) const {
+  const Pose opening = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+  std::optional<std::size_t> best;
+  double nearest = 0.0;
+  for (std::size_t i = 0; i < graph_.points.size(); ++i) {
+    const Known& known = known_points_[i];
+    if (graph_.points[i].seen.empty() || known.type != type ||
+        std::abs(norm2_angle(opening.th - known.heading)) > 2 * settings_.same_heading)
+      continue;
+    const double far = (opening.position() - graph_.points[i].in_map).norm();
+    if (far < settings_.same_opening + stray(known.last_way) && (!best || far < nearest)) {
+      best = i;
+      nearest = far;
+    }
+  }
+  return best;
+}
+
+bool MapBuilder::take_line(const lps::Percept& percept, std::uint64_t cycle) {
+  const SeenLine seen = seen_line(percept);
+  const auto known = taken_.find(percept.id);
+  if (known != taken_.end()) {
+    Taken& taken = known->second;
+    GraphLine& line = graph_.lines[taken.index];
+    taken.cycle = cycle;
+    known_lines_[taken.index].last_way = way_;
+    // The aperture moves on with the robot: after a while the same wall is seen from elsewhere.
+    if (way_ - taken.way < settings_.again_way) {
+      line.seen[taken.seen] = seen;
+      return false;
+    }
+    taken.way = way_;
+    taken.seen = line.seen.size();
+    line.seen.push_back(seen);
+    return true;
+  }
+  auto index = match_line(seen);
+  if (index && way_ - known_lines_[*index].last_way > settings_.closure_way)
+    ++closures_;
+  if (!index) {
+    const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+    index = graph_.lines.size();
+    graph_.lines.push_back({wall.position(), wall.th, 0.0, {}, false});
+    known_lines_.emplace_back();
+  }
+  GraphLine& line = graph_.lines[*index];
+  taken_[percept.id] = {true, *index, line.seen.size(), way_, cycle};
+  line.seen.push_back(seen);
+  known_lines_[*index].last_way = way_;
+  return true;
+}
+
+bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) {
+  const SeenPoint seen = seen_point(percept);
+  const auto known = taken_.find(percept.id);
+  if (known != taken_.end()) {
+    Taken& taken = known->second;
+    taken.cycle = cycle;
+    known_points_[taken.index].last_way = way_;
+    known_points_[taken.index].found = true;
+    graph_.points[taken.index].seen[taken.seen] = seen;
+    return false;
+  }
+  auto index = match_opening(seen, percept.type);
+  if (index && way_ - known_points_[*index].last_way > settings_.closure_way)
+    ++closures_;
+  if (!index) {
+    const Pose opening = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+    index = graph_.points.size();
+    graph_.points.push_back({opening.position(), {}});
+    Known fresh;
+    fresh.type = percept.type;
+    fresh.heading = opening.th;
+    known_points_.push_back(fresh);
+  }
+  GraphPoint& point = graph_.points[*index];
+  taken_[percept.id] = {false, *index, point.seen.size(), way_, cycle};
+  point.seen.push_back(seen);
+  known_points_[*index].last_way = way_;
+  known_points_[*index].found = true;
+  return true;
+}
+
+bool MapBuilder::take(const lps::Percept& percept, std::uint64_t cycle) {
+  switch (percept.type) {
+    case PointType::wall:
+      return take_line(percept, cycle);
+    case PointType::door:
+    case PointType::junction:
+      return take_opening(percept, cycle);
+    default:
+      return false;  // ends of openings and corridors: what they are made of is here already
+  }
+}
+
+// What a sonar hears straight ahead may be the end of a corridor.
+void MapBuilder::listen_ahead(const MapBuilderInputs& inputs) {
+  for (const lps::SonarReading& reading : inputs.readings) {
+    if (!reading.echo || reading.range > kAhead)
+      continue;
+    for (const lps::SonarMount& mount : settings_.sonars) {
+      if (mount.sonar != reading.sonar || std::abs(norm2_angle(mount.in_robot.th)) > kStraight)
+        continue;
+      const Vec2 echo = transform(mount.in_robot, {reading.range, 0.0});
+      SeenPoint seen;
+      seen.node = graph_.nodes.size() - 1;
+      const Pose in_node = relative(graph_.nodes.back().in_odom, pose_in_odom_);
+      const Vec2 at = transform(in_node, echo);
+      seen.in_node = {at.x(), at.y(), in_node.th};
+      ahead_.push_back(seen);
+    }
+  }
+}
+
+// Whether a door was there when the robot came by: counted when it has gone on.
+void MapBuilder::pass() {
+  for (std::size_t i = 0; i < known_points_.size(); ++i) {
+    Known& known = known_points_[i];
+    const Vec2 at =
+        to_frame({graph_.points[i].in_map.x(), graph_.points[i].in_map.y(), known.heading},
+                 pose_in_map_.position());
+    const bool abeam = at.x() > 0.3 && at.x() < 2.5 && std::abs(at.y()) < 0.3;
+    if (abeam)
+      known.beside = true;
+    if (!known.beside || std::abs(at.y()) < 3.0)
+      continue;
+    if (known.found) {
+      ++known.passes.seen;
+      known.passes.missed = 0;
+    } else {
+      ++known.passes.missed;
+      news_ = true;
+    }
+    known.beside = false;
+    known.found = false;
+  }
+}
+
+std::vector<std::uint32_t> MapBuilder::closed() const {
+  std::vector<std::uint32_t> out;
+  for (const auto& [id, point] : door_of_)
+    if (known_points_[point].passes.missed >= 2)
+      out.push_back(id);
+  return out;
+}
+
+std::vector<Vec2> MapBuilder::way() const {
+  std::vector<Vec2> out;
+  for (const GraphNode& node : graph_.nodes)
+    out.push_back(node.in_map.position());
+  out.push_back(pose_in_map_.position());
+  return out;
+}
+
+void MapBuilder::settle() {
+  news_ = false;
+  settled_way_ = way_;
+  for (GraphLine& line : graph_.lines)
+    line.on_grid = settings_.snap_to_right_angle_grid && !line.seen.empty() &&
+                   off_grid(line.heading) < settings_.grid_tolerance &&
+                   total(stretches(line)) > settings_.min_wall;
+  graph_.optimize();
+  merge_lines();
+  if (!believed_)
+    pose_in_map_ =
+        compose(graph_.nodes.back().in_map, relative(graph_.nodes.back().in_odom, pose_in_odom_));
+}
+
+// Two lines that have come to lie on one another are one.
+void MapBuilder::merge_lines() {
+  for (std::size_t a = 0; a < graph_.lines.size(); ++a)
+    for (std::size_t b = a + 1; b < graph_.lines.size(); ++b) {
+      GraphLine& first = graph_.lines[a];
+      GraphLine& second = graph_.lines[b];
+      if (first.seen.empty() || second.seen.empty() ||
+          std::abs(norm2_angle(first.heading - second.heading)) > radians(3.0))
+        continue;
+      const auto parts = stretches(second);
+      const double at = (parts.front().first + parts.back().second) / 2;
+      const Vec2 middle = second.anchor + second.offset * second.normal() + at * second.along();
+      const Vec2 from = middle - first.anchor;
+      if (std::abs(first.normal().dot(from) - first.offset) > settings_.same_wall / 2)
+        continue;
+      const double half = (parts.back().second - parts.front().first) / 2;
+      const double along = first.along().dot(from);
+      double gap = 1e9;
+      for (const auto& s : stretches(first))
+        gap = std::min(gap, std::max(s.first - along, along - s.second) - half);
+      if (gap > settings_.wall_gap)
+        continue;
+      const std::size_t moved = first.seen.size();
+      first.seen.insert(first.seen.end(), second.seen.begin(), second.seen.end());
+      second.seen.clear();
+      known_lines_[a].last_way = std::max(known_lines_[a].last_way, known_lines_[b].last_way);
+      for (auto& [id, taken] : taken_)
+        if (taken.is_line && taken.index == b) {
+          taken.index = a;
+          taken.seen += moved;
+        }
+    }
+}
+
+std::vector<MapBuilder::Corridor> MapBuilder::corridors() const {
+  // Pairs of walls that face one another...
+  std::vector<Corridor> pairs;
+  for (std::size_t a = 0; a < graph_.lines.size(); ++a)
+    for (std::size_t b = a + 1; b < graph_.lines.size(); ++b) {
+      const GraphLine& one = graph_.lines[a];
+      const GraphLine& other = graph_.lines[b];
+      if (one.seen.empty() || other.seen.empty() ||
+          std::abs(norm2_angle(one.heading - other.heading + kPi)) > settings_.same_heading)
+        continue;
+      Corridor corridor;
+      const Pose near = one.pose();
+      // The stretches of both in the first one's frame, which is that of its left side too.
+      const auto of = [&](const GraphLine& line) {
+        Stretches out;
+        for (const SeenLine& seen : line.seen) {
+          const Pose wall = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+          const double at = to_frame(near, wall.position()).x();
+          out.emplace_back(at - seen.length / 2, at + seen.length / 2);
+        }
+        return joined(std::move(out), 0.1);
+      };
+      const Stretches left = of(other);
+      const Stretches right = of(one);
+      corridor.both = common(left, right);
+      if (total(corridor.both) < settings_.min_both)
+        continue;
+      const double at = (corridor.both.front().first + corridor.both.back().second) / 2;
+      const Vec2 across = transform(near, {at, 0.0});
+      const Pose far = other.pose();
+      corridor.width = lps::yo(far, {across.x(), across.y(), 0.0});
+      if (corridor.width < settings_.min_width || corridor.width > settings_.max_width)
+        continue;
+      // One of walls that look at one another through a third one is no corridor: the robot was
+      // between them.
+      const Vec2 middle = transform(near, {at, corridor.width / 2});
+      corridor.frame = {middle.x(), middle.y(),
+                        norm2_angle(one.heading + norm2_angle(far.th + kPi - one.heading) / 2)};
+      for (auto* list : {&corridor.both})
+        for (auto& s : *list)
+          s = {s.first - at, s.second - at};
+      corridor.walls = left;
+      corridor.walls.insert(corridor.walls.end(), right.begin(), right.end());
+      for (auto& s : corridor.walls)
+        s = {s.first - at, s.second - at};
+      corridor.walls = joined(std::move(corridor.walls), 0.1);
+      const bool between =
+          std::any_of(graph_.nodes.begin(), graph_.nodes.end(), [&](const GraphNode& node) {
+            const Pose in = relative(corridor.frame, node.in_map);
+            return std::abs(in.y) < corridor.width / 2 &&
+                   std::any_of(corridor.both.begin(), corridor.both.end(),
+                               [&](const auto& s) { return in.x > s.first && in.x < s.second; });
+          });
+      if (between)
+        pairs.push_back(corridor);
+    }
+  // ...that follow one another on one line.
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Corridor& a, const Corridor& b) {
+    return total(a.both) > total(b.both);
+  });
+  std::vector<Corridor> groups;
+  for (const Corridor& pair : pairs) {
+    Corridor* home = nullptr;
+    for (Corridor& group : groups) {
+      const Pose in = relative(group.frame, pair.frame);
+      if (std::abs(norm3_angle(in.th)) < settings_.same_heading && std::abs(in.y) < 0.4 &&
+          std::abs(pair.width - group.width) < 0.8) {
+        home = &group;
+        break;
+      }
+    }
+    if (home == nullptr) {
+      groups.push_back(pair);
+      continue;
+    }
+    const Pose in = relative(home->frame, pair.frame);
+    const double sign = std::cos(in.th) > 0.0 ? 1.0 : -1.0;
+    const auto bring = [&](const Stretches& from, Stretches& to) {
+      for (const auto& s : from) {
+        const double x = in.x + sign * s.first;
+        const double y = in.x + sign * s.second;
+        to.emplace_back(std::min(x, y), std::max(x, y));
+      }
+      to = joined(std::move(to), 0.1);
+    };
+    bring(pair.both, home->both);
+    bring(pair.walls, home->walls);
+  }
+  // Gaps part them, where nobody drove through.
+  std::vector<Corridor> out;
+  for (const Corridor& group : groups) {
+    Stretches driven;
+    for (const GraphNode& node : graph_.nodes) {
+      const Pose in = relative(group.frame, node.in_map);
+      if (std::abs(in.y) < group.width / 2)
+        driven.emplace_back(in.x - settings_.node_way, in.x + settings_.node_way);
+    }
+    driven = joined(std::move(driven), 0.3);
+    std::vector<Stretches> parts;
+    for (const auto& s : group.both) {
+      bool follows = false;
+      if (!parts.empty()) {
+        const double end = parts.back().back().second;
+        const double gap = s.first - end;
+        // One wall going on, or the robot's having gone on, holds the parts together.
+        const bool wall = std::any_of(group.walls.begin(), group.walls.end(), [&](const auto& w) {
+          return w.first <= end + 0.1 && w.second >= s.first - 0.1;
+        });
+        const bool drove = std::any_of(driven.begin(), driven.end(), [&](const auto& d) {
+          return d.first <= end && d.second >= s.first;
+        });
+        follows = gap < settings_.max_gap || wall || (drove && gap < settings_.max_driven_gap);
+      }
+      if (follows)
+        parts.back().push_back(s);
+      else
+        parts.push_back({s});
+    }
+    for (const Stretches& part : parts) {
+      Corridor corridor = group;
+      corridor.both = part;
+      corridor.from = part.front().first;
+      corridor.to = part.back().second;
+      for (const auto& w : group.walls) {
+        if (w.second < corridor.from - settings_.max_gap ||
+            w.first > corridor.to + settings_.max_gap)
+          continue;
+        corridor.from =
+            std::min(corridor.from, std::max(w.first, part.front().first - settings_.one_sided));
+        corridor.to =
+            std::max(corridor.to, std::min(w.second, part.back().second + settings_.one_sided));
+      }
+      if (corridor.length() >= settings_.min_length)
+        out.push_back(corridor);
+    }
+  }
+  close_ends(out);
+  return out;
+}
+
+// Where corridors end: at a wall ahead, or at one another.
+void MapBuilder::close_ends(std::vector<Corridor>& corridors) const {
+  for (Corridor& corridor : corridors) {
+    for (const bool upper : {false, true}) {
+      double& end = upper ? corridor.to : corridor.from;
+      const double sign = upper ? 1.0 : -1.0;
+      // How far the robot has been, or the walls go: what was heard nearer than that has gone.
+      double reached = -1e9;
+      for (const GraphNode& node : graph_.nodes) {
+        const Pose in = relative(corridor.frame, node.in_map);
+        if (std::abs(in.y) < corridor.width / 2 && sign * (in.x - end) < settings_.reach + 1.0)
+          reached = std::max(reached, sign * in.x);
+      }
+      std::vector<double> heard;
+      for (const SeenPoint& echo : ahead_) {
+        const Pose at = compose(graph_.nodes[echo.node].in_map, echo.in_node);
+        const Pose in = relative(corridor.frame, at);
+        const double heading = upper ? in.th : norm2_angle(in.th + kPi);
+        const double beyond = sign * (in.x - end);
+        if (std::abs(heading) < kStraight && std::abs(in.y) < corridor.width / 4 && beyond > -0.3 &&
+            beyond < 2.5 && sign * in.x > reached + 0.1)
+          heard.push_back(sign * in.x);
+      }
+      if (static_cast<int>(heard.size()) < kEchoes)
+        continue;
+      std::sort(heard.begin(), heard.end());
+      end = sign * heard[heard.size() / 2];
+    }
+  }
+  // Corridors that meet: at a T the one ends at the near wall of the other; at an L both end at the
+  // outer wall of the other.
+  struct Meeting {
+    std::size_t corridor;
+    bool upper;
+    double near;
+    double far;
+    bool ends_too;
+  };
+  std::vector<Meeting> meetings;
+  for (std::size_t a = 0; a < corridors.size(); ++a)
+    for (std::size_t b = 0; b < corridors.size(); ++b) {
+      const Corridor& one = corridors[a];
+      const Corridor& other = corridors[b];
+      const double angle = norm2_angle(other.frame.th - one.frame.th);
+      if (a == b || std::abs(norm3_angle(angle)) < radians(60.0))
+        continue;
+      // Where the middle lines cross, along each of them.
+      const Vec2 between = other.frame.position() - one.frame.position();
+      const Vec2 u = one.frame.direction();
+      const Vec2 v = other.frame.direction();
+      const double cross = u.x() * v.y() - u.y() * v.x();
+      const double at = (between.x() * v.y() - between.y() * v.x()) / cross;
+      const double at_other = (between.x() * u.y() - between.y() * u.x()) / cross;
+      const double half = other.width / 2;
+      const double half_one = one.width / 2;
+      if (at_other < other.from - half_one - settings_.reach ||
+          at_other > other.to + half_one + settings_.reach)
+        continue;
+      const bool ends_too =
+          at_other < other.from + half_one + 0.6 || at_other > other.to - half_one - 0.6;
+      if (std::abs(one.from - at) < half + settings_.reach)
+        meetings.push_back({a, false, at + half, at - half, ends_too});
+      if (std::abs(one.to - at) < half + settings_.reach)
+        meetings.push_back({a, true, at - half, at + half, ends_too});
+    }
+  for (const Meeting& meeting : meetings) {
+    Corridor& corridor = corridors[meeting.corridor];
+    double& end = meeting.upper ? corridor.to : corridor.from;
+    end = meeting.ends_too ? meeting.far : meeting.near;
+  }
+}
+
+// The map from what is known now. What is built again keeps its id.
+bool MapBuilder::publish() {
+  std::vector<Feature> fresh;
+  std::vector<std::optional<std::size_t>> points;
+  const auto put = [&](Feature feature, std::optional<std::size_t> point = std::nullopt) {
+    if (maps::problem(feature))
+      return;
+    const bool given = std::any_of(given_.features.begin(), given_.features.end(),
+                                   [&](const Feature& f) { return maps::same(f, feature); });
+    if (given)
+      return;
+    fresh.push_back(std::move(feature));
+    points.push_back(point);
+  };
+
+  const std::vector<Corridor> found = corridors();
+  std::vector<Feature> halls;
+  for (const Feature& feature : given_.features)
+    if (feature.type == PointType::corridor)
+      halls.push_back(feature);
+  for (const Corridor& corridor : found) {
+    Feature feature;
+    feature.type = PointType::corridor;
+    const Vec2 middle = (corridor.begin() + corridor.end()) / 2;
+    feature.pose_in_map = {middle.x(), middle.y(), corridor.frame.th};
+    feature.length = corridor.length();
+    feature.width = corridor.width;
+    halls.push_back(feature);
+    put(feature);
+  }
+  // Their junctions: the graph of what there is so far knows where corridors meet.
+  maps::Map halls_only;
+  for (Feature hall : halls) {
+    hall.id = static_cast<std::uint32_t>(halls_only.features.size() + 1);
+    halls_only.features.push_back(hall);
+  }
+  std::vector<Feature> junctions;
+  const maps::Topology topology(halls_only);
+  for (const maps::Region& region : topology.regions())
+    if (region.kind == maps::RegionKind::junction) {
+      junctions.push_back(region.area);
+      put(region.area);
+    }
+  for (std::size_t i = 0; i < graph_.points.size(); ++i) {
+    const GraphPoint& point = graph_.points[i];
+    if (point.seen.empty())
+      continue;
+    Feature feature;
+    feature.type = known_points_[i].type == PointType::door ? PointType::door : PointType::breach;
+    feature.pose_in_map = {point.in_map.x(), point.in_map.y(), known_points_[i].heading};
+    for (const SeenPoint& seen : point.seen)
+      feature.width += seen.width / static_cast<double>(point.seen.size());
+    // In the wall of its corridor, square to it.
+    for (const Feature& hall : halls) {
+      const Pose in = relative(hall.pose_in_map, feature.pose_in_map);
+      const double side = in.y > 0.0 ? 1.0 : -1.0;
+      if (std::abs(in.x) > hall.length / 2 || std::abs(side * in.y - hall.width / 2) > 0.4 ||
+          std::abs(norm2_angle(in.th + side * kPi / 2)) > 2 * settings_.same_heading)
+        continue;
+      const Vec2 at = transform(hall.pose_in_map, {in.x, side * hall.width / 2});
+      feature.pose_in_map = {at.x(), at.y(), norm2_angle(hall.pose_in_map.th - side * kPi / 2)};
+      break;
+    }
+    const bool of_a_junction =
+        std::any_of(junctions.begin(), junctions.end(), [&](const Feature& junction) {
+          return maps::distance_to(junction, feature.pose_in_map.position()) < 0.5;
+        });
+    if (feature.type == PointType::breach && of_a_junction)
+      continue;  // another corridor is behind it
+    put(feature, i);
+  }
+  // Walls where a corridor is not appropriate (manual 6.9.1).
+  for (const GraphLine& line : graph_.lines) {
+    if (line.seen.empty())
+      continue;
+    for (const auto& s : stretches(line)) {
+      Feature wall;
+      wall.type = PointType::wall;
+      wall.length = s.second - s.first;
+      const Vec2 middle =
+          line.anchor + line.offset * line.normal() + (s.first + s.second) / 2 * line.along();
+      wall.pose_in_map = {middle.x(), middle.y(), line.heading};
+      const bool of_a_hall = std::any_of(halls.begin(), halls.end(), [&](const Feature& hall) {
+        return maps::distance_to(hall, middle) < 0.4;
+      });
+      if (wall.length >= settings_.min_wall && !of_a_hall)
+        put(wall);
+    }
+  }
+
+  const std::uint64_t before = editor_.revision();
+  std::vector<std::uint32_t> old = own_;
+  own_.clear();
+  door_of_.clear();
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    std::size_t match = old.size();
+    double nearest = 0.0;
+    for (std::size_t k = 0; k < old.size(); ++k) {
+      const Feature* feature = maps::find(editor_.map(), old[k]);
+      if (feature == nullptr || !maps::same(*feature, fresh[i], {1.0, radians(15.0)}))
+        continue;
+      const double far = lps::distance(feature->pose_in_map, fresh[i].pose_in_map);
+      if (match == old.size() || far < nearest) {
+        match = k;
+        nearest = far;
+      }
+    }
+    std::uint32_t id = 0;
+    if (match < old.size()) {
+      id = old[match];
+      old.erase(old.begin() + static_cast<std::ptrdiff_t>(match));
+      editor_.change(id, fresh[i]);
+    } else {
+      id = editor_.add(fresh[i]);
+    }
+    own_.push_back(id);
+    if (points[i])
+      door_of_[id] = *points[i];
+  }
+  for (const std::uint32_t id : old)
+    editor_.remove(id);
+  return editor_.revision() != before;
+}
+
+}  // namespace saphira::registration
