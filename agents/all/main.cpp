@@ -16,6 +16,8 @@
 #include "behaviors/shell/shell.hpp"
 #include "bridge/shell/shell.hpp"
 #include "intentions/shell/shell.hpp"
+#include "interpretation/shell/shell.hpp"
+#include "registration/shell/shell.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/sim/host.hpp"
@@ -76,6 +78,7 @@ int main(int argc, char** argv) {
   // The keeper needs a process with one thread. Here the robot dies with whoever drives it.
   link.keeper = false;
   intentions::ShellOptions goals;
+  registration::ShellOptions place;
   std::string socket = sim::default_socket();
   return bus::run_program(
       argc, argv, "all", "A simulated robot and all services in one process",
@@ -100,10 +103,17 @@ int main(int argc, char** argv) {
         app.add_flag("--free-step", link.free_step, "lockstep: step without a permit");
         app.add_option("--memory", goals.memory_file,
                        "file that remembers ended goals over a restart");
+        app.add_option("--map", place.map_file,
+                       "map file, or the name of one that is shipped; none: an empty map");
+        app.add_option("--start", place.start, "where the robot is on the map at first")
+            ->capture_default_str();
+        app.add_option("--map-memory", place.memory_file,
+                       "file that keeps pose and map over a restart");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         robot.world = find_file(config + "/worlds", robot.world, ".wld");
         robot.robot = find_file(config + "/robots", robot.robot, ".p");
+        place.map_file = registration::find_map(place.map_file);
         robot.socket = socket;
         link.robot_port = "unix:" + socket;
         robot.log = [](const std::string& line) {
@@ -120,6 +130,14 @@ int main(int argc, char** argv) {
         crew.add([&](const bus::Stop& end) {
           bus::Node node(named(options, "intentions"));
           intentions::Shell(node, goals).run(end);
+        });
+        crew.add([&](const bus::Stop& end) {
+          bus::Node node(named(options, "interpretation"));
+          interpretation::Shell(node).run(end);
+        });
+        crew.add([&](const bus::Stop& end) {
+          bus::Node node(named(options, "registration"));
+          registration::Shell(node, place).run(end);
         });
         crew.run(stop);
         return bus::kExitOk;

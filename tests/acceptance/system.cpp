@@ -51,13 +51,17 @@ void System::start(const std::string& name) {
     argv.emplace_back("--memory");
     argv.push_back(folder_.path("goals"));
   }
+  if (name == "saphira-registration")
+    for (const std::string& word : {std::string("--map"), source("config/maps/office.map"),
+                                    std::string("--map-memory"), folder_.path("map.memory")})
+      argv.push_back(word);
   processes_.erase(name);
   processes_[name] = std::make_unique<Process>(argv, folder_.path(name + ".log"));
 }
 
 void System::start_all() {
-  for (const char* name :
-       {"saphira-sim", "saphira-bridge", "saphira-behaviors", "saphira-intentions"})
+  for (const char* name : {"saphira-sim", "saphira-bridge", "saphira-behaviors",
+                           "saphira-intentions", "saphira-interpretation", "saphira-registration"})
     start(name);
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <limits>
@@ -15,6 +16,7 @@
 
 #include "commands.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/deployment.hpp"
@@ -82,15 +84,21 @@ std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& 
   deployment.bus.profile = "host";
   deployment.bus.lockstep = options.lockstep;
   std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
-  if (!options.world.empty())
+  if (!options.world.empty()) {
     set.push_back("world=" + options.world);
+    // A map that is shipped bears the name of its world; a world of one's own has none.
+    set.push_back("map=" + std::string(std::filesystem::exists(config_folder() + "/maps/" +
+                                                               options.world + ".map")
+                                           ? options.world
+                                           : "none"));
+  }
   if (!options.base.empty())
     set.push_back("base=" + options.base);
   const std::vector<std::string> more = options.lockstep
                                             ? std::vector<std::string>{"--trace", trace, "--step"}
                                             : std::vector<std::string>{"--trace", trace};
   if (options.single_process) {
-    // saphira-all takes the options of all four, and those of the bus once.
+    // saphira-all takes the options of all, and those of the bus once.
     Program all{"all", {"saphira-all"}, {}, {}, true, true};
     for (const Program& program : deployment.programs)
       all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());

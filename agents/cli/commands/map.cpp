@@ -10,6 +10,7 @@
 #include "maps/shell/convert.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
+#include "saphira/explore/explorer.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/maps/route.hpp"
 #include "watch.hpp"
@@ -218,15 +219,10 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   return write_out(path, maps::to_svg(drawing));
 }
 
-int request(const std::vector<std::string>& words, const bus::NodeOptions& options,
-            const bus::Stop& stop) {
-  View view(options);
-  auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
-  auto writer = view.node.writer(bus::topics::kRegistrationRequest);
-  // Names of places are those of the map that is there.
-  if (!view.wait_for_map(stop, false))
-    return bus::kExitFailed;
-  v1::RegistrationRequest asked = parse_map_request(words, view.map);
+/// Asks registration and waits for its answer; says what came, and what did not.
+bool ask(View& view, bus::Reader<v1::RegistrationAnswer>& answers,
+         bus::Writer<v1::RegistrationRequest>& writer, v1::RegistrationRequest asked,
+         const bus::NodeOptions& options, const bus::Stop& stop) {
   std::random_device random;
   asked.request((static_cast<std::uint64_t>(random()) << 32U) | random());
   asked.source("saphira map");
@@ -238,20 +234,31 @@ int request(const std::vector<std::string>& words, const bus::NodeOptions& optio
     for (const auto& answer : answers.take()) {
       if (answer.data.request() != asked.request())
         continue;
-      if (!answer.data.done()) {
+      if (!answer.data.done())
         std::cerr << "saphira: " << answer.data.reason() << '\n';
-        return bus::kExitFailed;
-      }
-      if (answer.data.artifact() != 0)
+      else if (answer.data.artifact() != 0)
         std::printf("artifact %u\n", answer.data.artifact());
-      return bus::kExitOk;
+      return answer.data.done();
     }
     view.node.wait(milliseconds(50), &stop);
     view.poll();
   }
   std::cerr << "saphira: registration did not answer; " << who_is_there(options, view.processes)
             << '\n';
-  return bus::kExitFailed;
+  return false;
+}
+
+int request(const std::vector<std::string>& words, const bus::NodeOptions& options,
+            const bus::Stop& stop) {
+  View view(options);
+  auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
+  auto writer = view.node.writer(bus::topics::kRegistrationRequest);
+  // Names of places are those of the map that is there.
+  if (!view.wait_for_map(stop, false))
+    return bus::kExitFailed;
+  return ask(view, answers, writer, parse_map_request(words, view.map), options, stop)
+             ? bus::kExitOk
+             : bus::kExitFailed;
 }
 
 /// Drives by a route: one goal, whose point is moved on before the robot gets there, so that it
@@ -331,6 +338,115 @@ int go(const std::string& place, bool only_say, const bus::NodeOptions& options,
   }
 }
 
+/// Explores the floor and lets registration map it; writes the map when nothing is left.
+int build(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
+  View view(options);
+  auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
+  auto requests = view.node.writer(bus::topics::kRegistrationRequest);
+  auto states = view.node.reader(bus::topics::kRobotState);
+  auto descriptions = view.node.reader(bus::topics::kRobotDescription);
+  if (!view.wait_for_map(stop))
+    return bus::kExitFailed;
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_DELETE);
+  if (!ask(view, answers, requests, request, options, stop))
+    return bus::kExitFailed;
+  request.action(v1::REGISTRATION_ADD_FEATURES);
+  request.on(true);
+  if (!ask(view, answers, requests, request, options, stop))
+    return bus::kExitFailed;
+
+  bus::GoalClient goals(view.node, "saphira map build");
+  std::optional<explore::Explorer> explorer;
+  std::vector<Vec2> way;
+  std::vector<lps::SonarReading> readings;
+  std::optional<v1::GoalId> goal;
+  std::optional<Vec2> driving_to;
+  std::string told;
+  std::size_t corridors = 0;
+  std::size_t doors = 0;
+  const auto drop = [&] {
+    if (goal)
+      goals.cancel(*goal);
+    goal.reset();
+    driving_to.reset();
+  };
+  bool done = false;
+  while (!done && !stop.requested()) {
+    view.node.wait(milliseconds(200), &stop);
+    goals.poll();
+    for (const auto& state : states.take())
+      for (const lps::SonarReading& reading : lps::sonars_from_bus(state.data))
+        readings.push_back(reading);
+    if (!explorer) {
+      if (const auto description = descriptions.take_newest()) {
+        explore::Settings settings;
+        settings.sonars = lps::mounts_from_bus(*description);
+        explorer.emplace(settings);
+      }
+    }
+    if (!view.poll() || !explorer)
+      continue;
+    const Pose pose_in_map = lps::from_bus(view.registration->pose_in_map());
+    way.push_back(pose_in_map.position());
+    const explore::Output& next =
+        explorer->step({view.registration->stamp().cycle(), pose_in_map, view.map, way, readings});
+    readings.clear();
+    if (next.reason != told) {
+      std::printf("%8.1f s  %s\n", 0.1 * static_cast<double>(view.registration->stamp().cycle()),
+                  next.reason.c_str());
+      told = next.reason;
+    }
+    std::size_t now_corridors = 0;
+    std::size_t now_doors = 0;
+    for (const maps::Feature& feature : view.map.features) {
+      now_corridors += feature.type == lps::PointType::corridor ? 1U : 0U;
+      now_doors += feature.type == lps::PointType::door ? 1U : 0U;
+    }
+    if (now_corridors != corridors || now_doors != doors)
+      std::printf("%8.1f s  %zu corridors, %zu doors\n",
+                  0.1 * static_cast<double>(view.registration->stamp().cycle()), now_corridors,
+                  now_doors);
+    corridors = now_corridors;
+    doors = now_doors;
+    std::fflush(stdout);
+    done = next.done;
+    if (!next.point_in_map) {
+      drop();
+      continue;
+    }
+    // A goal that has ended is of the past: the explorer judges itself whether it gets on.
+    if (goal) {
+      const auto status = goals.status(*goal);
+      if (status && bus::ended(status->state()))
+        goal.reset();
+    }
+    if (goal && driving_to && (*driving_to - *next.point_in_map).norm() < 0.02)
+      continue;
+    v1::Goal wanted;
+    wanted.functor("go_to");
+    wanted.arguments(
+        {bus::point("position", next.point_in_map->x(), next.point_in_map->y(), 0.0, v1::FRAME_MAP),
+         bus::number("speed", next.speed), bus::number("radius", 0.2)});
+    if (goal)
+      goals.change(*goal, wanted);
+    else
+      goal = goals.ask(wanted);
+    driving_to = next.point_in_map;
+  }
+  drop();
+  goals.delivered(1000);
+  // Also when it was broken off: what there is, is the map.
+  const bus::Stop end;
+  request.on(false);
+  if (!ask(view, answers, requests, request, options, end))
+    return bus::kExitFailed;
+  view.poll();
+  std::printf("%zu corridors, %zu doors, %zu artifacts%s\n", corridors, doors,
+              view.map.features.size(), done ? "" : "; broken off, something may be left");
+  return write_out(path, maps::to_text(view.map));
+}
+
 int map(const std::vector<std::string>& words, double seconds, const bus::NodeOptions& options,
         const bus::Stop& stop) {
   const std::string verb = words.empty() ? "" : words.front();
@@ -344,6 +460,8 @@ int map(const std::vector<std::string>& words, double seconds, const bus::NodeOp
       return save(rest, options, stop);
     if (verb == "show" && words.size() <= 2)
       return show(rest.empty() ? "map.svg" : rest, seconds, options, stop);
+    if (verb == "build" && words.size() <= 2)
+      return build(rest.empty() ? "built.map" : rest, options, stop);
     if ((verb == "go" || verb == "route") && !rest.empty())
       return go(rest, verb == "route", options, stop);
     return request(words, options, stop);
@@ -362,6 +480,7 @@ constexpr const char* kMapWords = R"(
   saphira map list               the map as the text of a map file
   saphira map save FILE          the same into a file
   saphira map show [FILE.svg]    a picture of map, grid, matches and the way, of --seconds
+  saphira map build [FILE]       explores the floor, maps it from nothing, and writes the map
   saphira map load FILE          this map instead of the one that is there
   saphira map delete             no map
   saphira map put "DOOR (3) 3000, 1000, 90, 900"   adds an artifact, or changes the one of this id

@@ -21,4 +21,14 @@ v1::Perception to_bus(const Output& output) {
   return sample;
 }
 
+v1::GridTile to_bus(const Grid& grid, const TileKey& key) {
+  v1::GridTile tile;
+  tile.column(static_cast<std::int32_t>(key.column));
+  tile.row(static_cast<std::int32_t>(key.row));
+  tile.resolution(grid.settings().resolution);
+  tile.side(static_cast<std::uint32_t>(Grid::kTile));
+  tile.cells(grid.cells(key));
+  return tile;
+}
+
 }  // namespace saphira::interpretation

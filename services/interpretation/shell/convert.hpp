@@ -1,6 +1,7 @@
 #pragma once
 
 #include "perception.h"
+#include "saphira/interpretation/grid.hpp"
 #include "saphira/interpretation/interpretation.hpp"
 
 /// Between the types of the bus and those of the library: pure functions, nothing else.
@@ -8,5 +9,7 @@ namespace saphira::interpretation {
 
 /// The perception sample; its stamp and odom are the caller's.
 v1::Perception to_bus(const Output& output);
+/// A tile of the grid; its stamp and odom are the caller's.
+v1::GridTile to_bus(const Grid& grid, const TileKey& key);
 
 }  // namespace saphira::interpretation

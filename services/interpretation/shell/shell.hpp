@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 
 #include "saphira/bus/cycle.hpp"
 #include "saphira/bus/known_robot.hpp"
@@ -23,12 +24,18 @@ class Shell {
   bool step(const bus::Stop& stop);
 
  private:
+  void publish_grid(const Output& output);
+  void dispose(const TileKey& key);
+
   bus::Node& node_;
   bus::Cycle cycle_;
   bus::KnownRobot robot_;
   bus::Writer<v1::Perception> perceptions_;
+  bus::Writer<v1::GridTile> tiles_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step
-  Interpretation interpretation_{Settings{}};
+  std::optional<Interpretation> interpretation_;
+  std::set<TileKey> changed_;    ///< since they were published
+  std::set<TileKey> published_;  ///< and not disposed
 };
 
 }  // namespace saphira::interpretation

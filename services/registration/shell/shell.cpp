@@ -1,0 +1,310 @@
+#include "registration/shell/shell.hpp"
+
+#include <charconv>
+#include <stdexcept>
+#include <vector>
+
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "registration/shell/convert.hpp"
+#include "saphira/base/places.hpp"
+
+namespace saphira::registration {
+namespace {
+
+constexpr std::chrono::seconds kSaveEvery{1};
+constexpr const char* kBuilding = "the map is being built: switch that off first (features off)";
+
+}  // namespace
+
+std::string find_map(const std::string& name) {
+  if (name.empty() || name == "none")
+    return "";
+  return find_file(config_folder() + "/maps", name, ".map");
+}
+
+std::optional<Pose> start_pose(const std::string& start, const maps::Map& map) {
+  if (start == "unknown")
+    return std::nullopt;
+  const auto places = maps::named(map, lps::PointType::position, start);
+  if (!places.empty())
+    return places.front()->pose_in_map;
+  if (start == "start")
+    return std::nullopt;
+  double values[3] = {0.0, 0.0, 0.0};
+  const char* at = start.data();
+  const char* const end = at + start.size();
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != ','))
+      break;
+    const auto [next, error] = std::from_chars(at, end, values[i]);
+    if (error != std::errc{})
+      break;
+    at = next;
+    if (i == 2 && at == end)
+      return Pose{values[0], values[1], norm2_angle(values[2])};
+  }
+  throw std::invalid_argument("start \"" + start +
+                              "\": expected x,y,th in metres and radians, the name of a POS of the "
+                              "map, or unknown");
+}
+
+Shell::Shell(bus::Node& node, const ShellOptions& options)
+    : node_(node),
+      options_(options),
+      cycle_(node),
+      perception_(cycle_.input(bus::topics::kPerception)),
+      robot_(node),
+      requests_(node.reader(bus::topics::kRegistrationRequest)),
+      registrations_(node.writer(bus::topics::kRegistration)),
+      maps_(node.writer(bus::topics::kMap)),
+      answers_(node.writer(bus::topics::kRegistrationAnswer)) {
+  if (!options_.map_file.empty()) {
+    editor_.replace(maps::load_map(options_.map_file));
+    source_ = options_.map_file;
+  }
+  start_ = start_pose(options_.start, editor_.map());
+  if (!options_.memory_file.empty())
+    remembered_ = load_remembered(options_.memory_file);
+  // Somebody wants another map than that of the memory: the memory is of another place.
+  if (remembered_ && remembered_->source != source_)
+    remembered_.reset();
+  if (remembered_) {
+    changed_ = remembered_->map != editor_.map();
+    editor_.replace(remembered_->map);
+  }
+  adds_features_ = options.add_features.value_or(editor_.map().features.empty());
+  snaps_ = options.snap;
+  publish_map();
+}
+
+void Shell::begin() {
+  Settings settings;
+  settings.sonars = lps::mounts_from_bus(robot_.description());
+  std::optional<Memory> memory;
+  if (registration_)
+    memory = registration_->save();
+  else if (remembered_)
+    memory = remembered_->memory;
+  remembered_.reset();
+  registration_.emplace(settings, editor_.map(), start_);
+  if (memory && memory->placed)
+    registration_->restore(*memory);
+  if (!builder_)
+    set_builder(start_.value_or(Pose{}));
+}
+
+/// Begins to add to the map as it is now, or ends that, as adds_features_ says.
+void Shell::set_builder(const Pose& pose_in_map) {
+  if (building_)
+    end_building();
+  builder_.reset();
+  if (!adds_features_ || !registration_)
+    return;
+  MapBuilderSettings settings;
+  settings.sonars = lps::mounts_from_bus(robot_.description());
+  settings.snap_to_right_angle_grid = snaps_;
+  building_ = LineMap(editor_.map()).empty();
+  builder_.emplace(settings, editor_.map(), pose_in_map);
+}
+
+/// From now on the pose is registered on the map that was built.
+void Shell::end_building() {
+  building_ = false;
+  registration_->set_map(editor_.map());
+  registration_->set_pose(builder_->pose_in_map());
+}
+
+bool Shell::step(const bus::Stop& stop) {
+  const auto step = cycle_.next(stop, [this] { take_requests(); });
+  if (!step)
+    return false;
+  using Knowledge = bus::KnownRobot::Knowledge;
+  const Knowledge known = robot_.of(cycle_.stamp().epoch(), stop);
+  if (known == Knowledge::fresh)
+    begin();
+  odom_ = step->robot.odom();
+  pose_in_odom_ = lps::from_bus(step->robot.pose_in_odom());
+  take_requests();
+  v1::Registration sample;
+  sample.state(v1::REGISTRATION_UNPLACED);
+  sample.reason("waits for the robot");
+  if (known != Knowledge::none) {
+    std::vector<lps::Percept> percepts;
+    const v1::Perception* const seen = perception_.value();
+    if (seen != nullptr && seen->odom() == odom_)
+      for (const v1::Percept& percept : seen->percepts())
+        percepts.push_back(lps::from_bus(percept));
+    sample = building_ ? built(*step, percepts) : registered(*step, percepts);
+  }
+  sample.stamp(cycle_.stamp());
+  sample.odom(odom_);
+  sample.map_revision(editor_.revision());
+  sample.adds_features(adds_features_);
+  sample.snaps(snaps_);
+  registrations_.write(sample);
+  publish_map();
+  if (!options_.memory_file.empty() && Clock::now() - saved_ >= kSaveEvery)
+    remember();
+  cycle_.done();
+  return true;
+}
+
+/// The pose on a map that is known; what is new is put down from there.
+v1::Registration Shell::registered(const bus::Step& step,
+                                   const std::vector<lps::Percept>& percepts) {
+  const std::vector<lps::SonarReading> readings = lps::sonars_from_bus(step.robot);
+  const Output& output =
+      registration_->step({cycle_.stamp().cycle(), odom_, pose_in_odom_, percepts, readings});
+  if (output.state != told_)
+    node_.info(std::string(word(output.state)) +
+               (output.reason.empty() ? "" : ": " + std::string(output.reason)));
+  told_ = output.state;
+  v1::Registration sample = to_bus(output, editor_.map(), pose_in_odom_);
+  if (output.state == State::tracking && grow(percepts, readings, output.pose_in_map))
+    registration_->set_map(editor_.map());
+  return sample;
+}
+
+/// The pose and the map together.
+v1::Registration Shell::built(const bus::Step& step, const std::vector<lps::Percept>& percepts) {
+  grow(percepts, lps::sonars_from_bus(step.robot), std::nullopt);
+  Output output;
+  output.state = State::tracking;
+  output.reason = "builds the map";
+  output.pose_in_map = builder_->pose_in_map();
+  return to_bus(output, editor_.map(), pose_in_odom_);
+}
+
+/// True where the map has become another.
+bool Shell::grow(const std::vector<lps::Percept>& percepts,
+                 const std::vector<lps::SonarReading>& readings, std::optional<Pose> pose_in_map) {
+  if (!builder_ || !builder_->step({cycle_.stamp().cycle(), odom_, pose_in_odom_, percepts,
+                                    readings, pose_in_map}))
+    return false;
+  editor_.replace(builder_->map());
+  changed_ = true;
+  return true;
+}
+
+void Shell::take_requests() {
+  for (const auto& sample : requests_.take()) {
+    const v1::RegistrationRequest& request = sample.data;
+    v1::RegistrationAnswer answer;
+    answer.stamp(cycle_.stamp());
+    answer.request(request.request());
+    try {
+      answer.artifact(act(request));
+      answer.done(true);
+    } catch (const std::exception& error) {
+      answer.reason(error.what());
+      node_.warn("a request of " + request.source() + ": " + error.what());
+    }
+    answers_.write(answer);
+  }
+  publish_map();
+}
+
+std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
+  const auto placed = [&]() -> Registration& {
+    if (!registration_)
+      throw std::runtime_error("there is no robot yet");
+    return *registration_;
+  };
+  switch (request.action()) {
+    case v1::REGISTRATION_LOAD: {
+      maps::Map map = maps::parse_map(request.text(), request.name());
+      editor_.replace(std::move(map));
+      source_ = request.name();
+      changed_ = false;
+      map_changed();
+      return 0;
+    }
+    case v1::REGISTRATION_DELETE:
+      editor_.replace({});
+      source_.clear();
+      changed_ = false;
+      map_changed();
+      return 0;
+    case v1::REGISTRATION_PUT: {
+      if (building_)
+        throw std::runtime_error(kBuilding);
+      const maps::Feature feature = maps::from_bus(request.artifact());
+      std::uint32_t id = feature.id;
+      if (id == 0 || !editor_.change(id, feature))
+        id = editor_.add(feature);
+      changed_ = true;
+      map_changed();
+      return id;
+    }
+    case v1::REGISTRATION_REMOVE:
+      if (building_)
+        throw std::runtime_error(kBuilding);
+      if (!editor_.remove(request.artifact().id()))
+        throw std::invalid_argument("no artifact (" + std::to_string(request.artifact().id()) +
+                                    ") in the map");
+      changed_ = true;
+      map_changed();
+      return request.artifact().id();
+    case v1::REGISTRATION_PLACE:
+      placed().set_pose(lps::from_bus(request.pose_in_map()));
+      return 0;
+    case v1::REGISTRATION_FIND:
+      placed().forget_pose();
+      return 0;
+    case v1::REGISTRATION_SWITCH:
+      placed().switch_on(request.on());
+      return 0;
+    case v1::REGISTRATION_ADD_FEATURES:
+      adds_features_ = request.on();
+      set_builder(placed().output().pose_in_map);
+      return 0;
+    case v1::REGISTRATION_SNAP:
+      snaps_ = request.on();
+      set_builder(placed().output().pose_in_map);
+      return 0;
+    default:
+      break;
+  }
+  throw std::invalid_argument("nobody knows what action " +
+                              std::to_string(static_cast<int>(request.action())) + " is");
+}
+
+/// By somebody else than the builder, which begins anew with it.
+void Shell::map_changed() {
+  if (!registration_)
+    return;
+  building_ = false;
+  registration_->set_map(editor_.map());
+  set_builder(registration_->output().pose_in_map);
+}
+
+void Shell::publish_map() {
+  if (published_revision_ == editor_.revision() + 1)
+    return;
+  published_revision_ = editor_.revision() + 1;
+  v1::Map sample = maps::to_bus(editor_.map());
+  sample.stamp(cycle_.stamp());
+  sample.revision(editor_.revision());
+  sample.source(source_);
+  sample.changed(changed_);
+  maps_.write(sample);
+}
+
+void Shell::remember() {
+  saved_ = Clock::now();
+  if (!registration_)
+    return;
+  Remembered now{registration_->save(), source_, editor_.map()};
+  if (building_) {
+    now.memory.placed = true;
+    now.memory.odom = odom_;
+    now.memory.pose_in_map = builder_->pose_in_map();
+    now.memory.pose_in_odom = pose_in_odom_;
+  }
+  if (!save_remembered(options_.memory_file, now))
+    node_.warn(options_.memory_file +
+               ": cannot be written: a restart will not know where the robot is");
+}
+
+}  // namespace saphira::registration

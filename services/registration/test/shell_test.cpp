@@ -1,0 +1,294 @@
+// Interpretation and registration as services, with a simulated robot that tours an office: on a
+// bus within the process, step by step.
+#include "registration/shell/shell.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "drive/drive.hpp"
+#include "interpretation/shell/shell.hpp"
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::registration {
+namespace {
+
+bus::NodeOptions named(const std::string& name) {
+  bus::NodeOptions options;
+  options.name = name;
+  options.lockstep = true;
+  return options;
+}
+
+std::string map_path(const std::string& name) {
+  return config_folder() + "/maps/" + name + ".map";
+}
+
+/// Files of one test, gone after it.
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("saphira-registration-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+class RegistrationShell : public testing::Test {
+ protected:
+  RegistrationShell() {
+    v1::RobotDescription description;
+    description.stamp().epoch(7);
+    description.radius(0.22);
+    for (const lps::SonarMount& mount : drive.mounts()) {
+      v1::SonarPose pose;
+      pose.sonar(static_cast<std::uint8_t>(mount.sonar));
+      pose.pose_in_robot(lps::to_bus(mount.in_robot));
+      description.sonars().push_back(pose);
+    }
+    descriptions.write(description);
+  }
+
+  void start(const ShellOptions& options) {
+    service.emplace(named("registration"), memory);
+    shell.emplace(*service, options);
+  }
+
+  /// One cycle of robot and services.
+  void cycle() {
+    const test::Seen& seen = drive.advance();
+    v1::RobotState state;
+    state.stamp().epoch(7);
+    state.stamp().cycle(seen.cycle);
+    state.odom(odom);
+    state.pose_in_odom(lps::to_bus(seen.pose_in_odom));
+    for (const lps::SonarReading& reading : seen.readings) {
+      v1::SonarReading sample;
+      sample.sonar(static_cast<std::uint8_t>(reading.sonar));
+      sample.range(static_cast<float>(reading.range));
+      sample.echo(reading.echo);
+      state.sonars().push_back(sample);
+    }
+    states.write(state);
+    ASSERT_TRUE(eyes_shell.step(stop));
+    // A service that comes late steps the oldest cycle first that it finds.
+    do {
+      ASSERT_TRUE(shell->step(stop));
+      const auto newest = registrations.take_newest();
+      ASSERT_TRUE(newest);
+      registration = *newest;
+    } while (registration.stamp().cycle() < seen.cycle);
+    ASSERT_EQ(registration.stamp().cycle(), seen.cycle);
+  }
+
+  /// Through the corridor of the office to and fro, by where the service says the robot is.
+  void tour(test::Tour& tour, int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      if (!tour.act(drive, lps::from_bus(registration.pose_in_map())))
+        return;
+      ASSERT_NO_FATAL_FAILURE(cycle());
+    }
+  }
+
+  double error() const {
+    return (lps::from_bus(registration.pose_in_map()).position() -
+            drive.seen().true_pose_in_world.position())
+        .norm();
+  }
+
+  v1::RegistrationAnswer ask(v1::RegistrationRequest request) {
+    request.source("test");
+    request.request(++asked);
+    requests.write(request);
+    cycle();
+    const auto answer = answers.take_newest();
+    EXPECT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->request(), asked);
+    return *answer;
+  }
+
+  static test::DriveOptions options() {
+    test::DriveOptions made;
+    made.world = "office";
+    made.errors = 2.0;
+    return made;
+  }
+
+  Folder folder;
+  test::Drive drive{options()};
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Stop stop;
+  bus::Node bridge{named("bridge"), memory};
+  bus::Writer<v1::RobotState> states{bridge.writer(bus::topics::kRobotState)};
+  bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
+  bus::Writer<v1::RegistrationRequest> requests{bridge.writer(bus::topics::kRegistrationRequest)};
+  bus::Reader<v1::Registration> registrations{bridge.reader(bus::topics::kRegistration)};
+  bus::Reader<v1::RegistrationAnswer> answers{bridge.reader(bus::topics::kRegistrationAnswer)};
+  bus::Reader<v1::Map> maps{bridge.reader(bus::topics::kMap)};
+  bus::Node eyes{named("interpretation"), memory};
+  interpretation::Shell eyes_shell{eyes};
+  std::optional<bus::Node> service;
+  std::optional<Shell> shell;
+  v1::Registration registration;
+  std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
+  std::uint64_t asked = 0;
+};
+
+TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
+  start({map_path("office"), "start", ""});
+  const auto map = maps.take_newest();
+  ASSERT_TRUE(map);
+  const maps::Map file = maps::load_map(map_path("office"));
+  ASSERT_EQ(map->artifacts().size(), file.features.size());
+  for (std::size_t i = 0; i < file.features.size(); ++i) {
+    maps::Feature expected = file.features[i];
+    const maps::Feature feature = maps::from_bus(map->artifacts()[i]);
+    EXPECT_NE(feature.id, 0U) << "while it is loaded a wall has one, too";
+    if (expected.type == lps::PointType::wall)
+      expected.id = feature.id;
+    EXPECT_EQ(feature, expected);
+  }
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+  test::Tour to_and_fro({{9.2, 7.0}, {2.0, 7.0}}, true);
+  int accepted = 0;
+  int off = 0;
+  for (int i = 0; i < 1500; ++i) {
+    tour(to_and_fro, 1);
+    off += error() > 0.3 ? 1 : 0;
+    for (const v1::Match& match : registration.matches())
+      accepted += match.accepted() ? 1 : 0;
+    ASSERT_EQ(registration.state(), v1::REGISTRATION_TRACKING) << registration.reason();
+    ASSERT_LT(error(), 0.8) << "in cycle " << i;
+  }
+  EXPECT_GE(to_and_fro.reached(), 4U);
+  EXPECT_GT(accepted, 30);
+  EXPECT_LT(off, 75) << "of 1500 cycles farther than 0.3 m from the truth";
+  EXPECT_EQ(registration.environment(), 1U);
+}
+
+TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
+  const ShellOptions options{map_path("office"), "start", folder.path("memory")};
+  start(options);
+  cycle();
+  test::Tour there({{8.0, 7.0}}, false);
+  tour(there, 100);
+  v1::RegistrationRequest put;
+  put.action(v1::REGISTRATION_PUT);
+  put.artifact().type(v1::ARTIFACT_POSITION);
+  put.artifact().pose_in_map().x(5.0);
+  put.artifact().name("printer");
+  const std::uint32_t id = ask(put).artifact();
+  EXPECT_NE(id, 0U);
+  // The memory is written once a second.
+  const auto began = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - began < std::chrono::milliseconds(1200))
+    cycle();
+  const v1::Registration before = registration;
+  shell.reset();
+  service.reset();
+  start(options);
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+  const Vec2 moved = drive.seen().true_pose_in_world.position();
+  EXPECT_LT((lps::from_bus(registration.pose_in_map()).position() - moved).norm(), 0.4);
+  // Without a jump: odom has the same place on the map.
+  EXPECT_NEAR(registration.odom_in_map().x(), before.odom_in_map().x(), 0.1);
+  EXPECT_NEAR(registration.odom_in_map().y(), before.odom_in_map().y(), 0.1);
+  EXPECT_NEAR(registration.odom_in_map().th(), before.odom_in_map().th(), 0.03);
+  const auto map = maps.take_newest();
+  ASSERT_TRUE(map);
+  EXPECT_TRUE(map->changed());
+  const auto places = maps::named(maps::from_bus(*map), lps::PointType::position, "printer");
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_EQ(places.front()->id, id);
+}
+
+TEST_F(RegistrationShell, TakesRequestsAndSaysWhyNot) {
+  start({map_path("office"), "start", ""});
+  cycle();
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_LOAD);
+  request.name("wrong.map");
+  request.text("CORRIDOR (1) 0, 0, 0, 10000\n");
+  const auto refused = ask(request);
+  EXPECT_FALSE(refused.done());
+  EXPECT_NE(refused.reason().find("wrong.map:1:"), std::string::npos) << refused.reason();
+  // A bad map does not replace the good one.
+  EXPECT_GT(maps.take_newest()->artifacts().size(), 10U);
+  request.action(v1::REGISTRATION_REMOVE);
+  request.artifact().id(4711);
+  EXPECT_EQ(ask(request).reason(), "no artifact (4711) in the map");
+  request.artifact().id(111);
+  EXPECT_TRUE(ask(request).done());
+  const auto map = maps.take_newest();
+  ASSERT_TRUE(map);
+  EXPECT_EQ(maps::find(maps::from_bus(*map), 111), nullptr);
+  request.action(v1::REGISTRATION_SWITCH);
+  request.on(false);
+  EXPECT_TRUE(ask(request).done());
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
+  request.on(true);
+  EXPECT_TRUE(ask(request).done());
+  request.action(v1::REGISTRATION_PLACE);
+  request.pose_in_map(lps::to_bus(Pose{5.0, 7.0, 1.0}));
+  EXPECT_TRUE(ask(request).done());
+  EXPECT_NEAR(registration.pose_in_map().x(), 5.0, 0.05);
+  EXPECT_NEAR(registration.pose_in_map().th(), 1.0, 0.05);
+  request.action(v1::REGISTRATION_DELETE);
+  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(maps.take_newest()->artifacts().empty());
+}
+
+TEST(StartPose, IsAPlaceOrAPose) {
+  const maps::Map map = maps::parse_map("POS (1) 1000, 2000, 90 \"start\"\n", "a.map");
+  EXPECT_NEAR(start_pose("start", map)->y, 2.0, 1e-12);
+  EXPECT_FALSE(start_pose("start", {}));
+  EXPECT_FALSE(start_pose("unknown", map));
+  EXPECT_EQ(start_pose("1.5,-2,0.5", {}), (Pose{1.5, -2.0, 0.5}));
+  EXPECT_THROW(start_pose("1.5,-2", {}), std::invalid_argument);
+  EXPECT_THROW(start_pose("kitchen", map), std::invalid_argument);
+}
+
+TEST(MemoryFile, ReadsWhatItWrote) {
+  Folder folder;
+  Remembered a;
+  a.memory.odom = 12;
+  a.memory.pose_in_odom = {1.0, 2.0, 0.1};
+  a.memory.pose_in_map = {3.0, 1.0 / 3.0, -1.0};
+  a.memory.covariance = Eigen::Matrix4d::Identity() * 0.25;
+  a.memory.drift = -0.001;
+  a.memory.confidence = 0.5;
+  a.memory.placed = true;
+  a.source = "/some where/a.map";
+  a.map = maps::load_map(map_path("office"));
+  EXPECT_FALSE(load_remembered(folder.path("memory")));
+  ASSERT_TRUE(save_remembered(folder.path("memory"), a));
+  const auto b = load_remembered(folder.path("memory"));
+  ASSERT_TRUE(b);
+  EXPECT_EQ(b->memory.odom, a.memory.odom);
+  EXPECT_EQ(b->memory.pose_in_odom, a.memory.pose_in_odom);
+  EXPECT_EQ(b->memory.pose_in_map, a.memory.pose_in_map);
+  EXPECT_EQ(b->memory.covariance, a.memory.covariance);
+  EXPECT_EQ(b->memory.drift, a.memory.drift);
+  EXPECT_EQ(b->memory.confidence, a.memory.confidence);
+  EXPECT_EQ(b->memory.placed, a.memory.placed);
+  EXPECT_EQ(b->source, a.source);
+  EXPECT_EQ(b->map, a.map);
+  EXPECT_THROW(parse_remembered("odom 1\nnonsense 2\nmap\n", "m"), FileError);
+  EXPECT_THROW(parse_remembered("odom 1\n", "m"), FileError);
+}
+
+}  // namespace
+}  // namespace saphira::registration
