@@ -58,7 +58,9 @@ std::optional<double> apart(const Percept& a, const Percept& b) {
 }  // namespace
 
 Interpretation::Interpretation(Settings settings)
-    : settings_(std::move(settings)), sides_{SideView(settings_.side), SideView(settings_.side)} {}
+    : settings_(std::move(settings)),
+      grid_(settings_.grid),
+      sides_{SideView(settings_.side), SideView(settings_.side)} {}
 
 void Interpretation::reset() {
   placed_ = false;
@@ -68,6 +70,7 @@ void Interpretation::reset() {
     side.clear();
   others_.clear();
   standing_.clear();
+  grid_.clear();
   output_ = {};
 }
 
@@ -83,6 +86,8 @@ const Output& Interpretation::step(const Inputs& inputs) {
   turned_ += std::abs(moved.th);
   travelled_ += std::hypot(moved.x, moved.y) + settings_.side.turn_cost * std::abs(moved.th);
   changed_ = {false, false};
+  odom_in_grid_ = inputs.odom_in_grid;
+  grid_.move_to(transform(odom_in_grid_, pose_in_odom_.position()));
   for (std::size_t i = 0; i < inputs.readings.size(); ++i) {
     const double part = static_cast<double>(i + 1) / static_cast<double>(inputs.readings.size());
     take(inputs.readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}),
@@ -91,6 +96,8 @@ const Output& Interpretation::step(const Inputs& inputs) {
   while (!others_.empty() && travelled_ - others_.front().travelled > settings_.side.aperture)
     others_.pop_front();
   interpret();
+  output_.changed_tiles = grid_.changed();
+  output_.dropped_tiles = grid_.dropped();
   return output_;
 }
 
@@ -102,6 +109,8 @@ void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in
   if (mount == settings_.sonars.end())
     return;
   const Pose sonar = compose(robot_in_odom, mount->in_robot);
+  grid_.add(reading.sonar, compose(odom_in_grid_, sonar),
+            reading.echo ? std::optional(reading.range) : std::nullopt);
   const Return firing{sonar.position(), sonar.direction(),       reading.range, reading.echo,
                       steady,           {cycle_, reading.sonar}, travelled_,    turned_};
   const double bearing = norm2_angle(mount->in_robot.th);

@@ -1,108 +1,269 @@
-#include <chrono>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
+#include <cstring>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "perception/score.hpp"
 
-// saphira-bench-perception [--json] [--seeds N] [--errors E] [--seconds S] [--verbose]
+// saphira-bench-perception: what interpretation sees against what is there, and what it costs.
 
 namespace {
 
 using namespace saphira;
 using namespace saphira::test;
 
+constexpr const char* kUsage =
+    R"(saphira-bench-perception: tours of simulated worlds; percepts and grids against the truth, and the
+cost of a cycle. Builds and runs without the bus.
+  --json          one line of JSON instead of text
+  --seeds N       tours, each with its own seed [5]
+  --seconds S     of the robot's time for each [900]
+  --errors E      factor on the errors of dead reckoning [2]
+  --world NAME    office-floor, loop, small-office, visitors or cluttered [office-floor]
+  --verbose       lists what was wrong and what was missed
+)";
+
 struct Options {
   bool json = false;
   bool verbose = false;
-  int seeds = 3;
-  double errors = 1.0;
+  int seeds = 5;
+  double errors = 2.0;
   double seconds = 900.0;
   std::string world = "office-floor";
 };
 
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const std::string value = i + 1 < argc ? argv[i + 1] : "";
-    if (word == "--json")
+template <class Number>
+bool read(std::string_view word, Number& number) {
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+// False where it is not understood.
+bool parse(const std::vector<std::string>& words, Options& options) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--json") {
       options.json = true;
-    else if (word == "--verbose")
+      continue;
+    }
+    if (words[i] == "--verbose") {
       options.verbose = true;
-    else if (word == "--seeds")
-      options.seeds = std::atoi(value.c_str()), ++i;
-    else if (word == "--errors")
-      options.errors = std::atof(value.c_str()), ++i;
-    else if (word == "--seconds")
-      options.seconds = std::atof(value.c_str()), ++i;
-    else if (word == "--world")
-      options.world = value, ++i;
+      continue;
+    }
+    if (i + 1 == words.size())
+      return false;
+    const std::string& option = words[i];
+    const std::string& value = words[++i];
+    if (option == "--world")
+      options.world = value;
+    else if (!(option == "--seeds" && read(value, options.seeds)) &&
+             !(option == "--seconds" && read(value, options.seconds)) &&
+             !(option == "--errors" && read(value, options.errors)))
+      return false;
   }
-  return options;
+  return options.seeds > 0 && !patrol(options.world).empty();
+}
+
+// Of this thread: what else runs on the machine does not count.
+double cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) / 1e6;
+}
+
+constexpr std::array<std::pair<lps::PointType, const char*>, 5> kKinds{
+    {{lps::PointType::wall, "walls"},
+     {lps::PointType::door, "doors"},
+     {lps::PointType::junction, "junctions"},
+     {lps::PointType::breach, "single_ends"},
+     {lps::PointType::corridor, "corridors"}}};
+
+struct Result {
+  std::array<Count, kKinds.size()> counts;
+  int passed = 0;
+  int found = 0;
+  int contacts = 0;
+  std::vector<double> ms;
+  std::uint64_t cells = 0;
+  std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
+  std::vector<double> door_place, door_place_sigmas, door_width, end_place, end_place_sigmas;
+  std::array<GridScore, 2> grids;  // muriel, cone
+};
+
+void append(std::vector<double>& all, const std::vector<double>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+DriveOptions drive_options(const Options& options, int seed, double errors) {
+  DriveOptions drive;
+  drive.world = options.world;
+  drive.seed = static_cast<std::uint64_t>(seed);
+  drive.errors = errors;
+  return drive;
+}
+
+void percepts(const Options& options, int seed, Result& result) {
+  Drive drive(drive_options(options, seed, options.errors));
+  interpretation::Interpretation interpretation(settings_of(drive));
+  Score score(drive, map_of(options.world));
+  Tour tour(patrol(options.world), true);
+  while (static_cast<double>(drive.seen().cycle) < options.seconds * 10.0) {
+    tour.act(drive, drive.seen().true_pose_in_world);
+    const Seen& seen = drive.advance();
+    const interpretation::Inputs inputs{seen.cycle, seen.pose_in_odom, seen.readings, {}};
+    const double before = cpu_ms();
+    const auto& output = interpretation.step(inputs);
+    result.ms.push_back(cpu_ms() - before);
+    score.look(drive, output);
+  }
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    const Count count = score.count(kKinds[i].first);
+    result.counts[i].reported += count.reported;
+    result.counts[i].real += count.real;
+  }
+  result.passed += score.doors_passed();
+  result.found += score.doors_found();
+  result.contacts += drive.contacts();
+  result.cells += interpretation.grid().updates();
+  append(result.wall_offset, score.wall_offset);
+  append(result.wall_heading, score.wall_heading);
+  append(result.wall_offset_sigmas, score.wall_offset_sigmas);
+  append(result.wall_heading_sigmas, score.wall_heading_sigmas);
+  append(result.door_place, score.door_place);
+  append(result.door_place_sigmas, score.door_place_sigmas);
+  append(result.door_width, score.door_width);
+  append(result.end_place, score.breach_place);
+  append(result.end_place_sigmas, score.breach_place_sigmas);
+  if (!options.verbose)
+    return;
+  for (const Mistake& m : score.mistakes())
+    std::fprintf(stderr,
+                 "seed %d cycle %llu: no such thing, type %d at %.2f %.2f, %.0f degrees, length "
+                 "%.2f width %.2f confidence %.2f\n",
+                 seed, static_cast<unsigned long long>(m.cycle), static_cast<int>(m.percept.type),
+                 m.pose_in_world.x, m.pose_in_world.y, degrees(m.pose_in_world.th),
+                 m.percept.length, m.percept.width, m.percept.confidence);
+  for (const auto& [id, cycle] : score.missed())
+    std::fprintf(stderr, "seed %d cycle %llu: door %u passed and not found\n", seed,
+                 static_cast<unsigned long long>(cycle), id);
+}
+
+// Both grids from the same readings at the true pose: what is compared is the model alone.
+void grids(const Options& options, int seed, Result& result) {
+  Drive drive(drive_options(options, seed, 1.0));
+  interpretation::Settings settings = settings_of(drive);
+  settings.grid.window = 100.0;
+  interpretation::Interpretation muriel(settings);
+  settings.grid.model = interpretation::GridModel::cone;
+  interpretation::Interpretation cone(settings);
+  Tour tour(patrol(options.world), true);
+  std::vector<Vec2> path;
+  while (static_cast<double>(drive.seen().cycle) < options.seconds * 10.0) {
+    tour.act(drive, drive.seen().true_pose_in_world);
+    const Seen& seen = drive.advance();
+    const interpretation::Inputs inputs{
+        seen.cycle, seen.pose_in_odom, seen.readings,
+        compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))};
+    muriel.step(inputs);
+    cone.step(inputs);
+    if (seen.cycle % 10 == 0)
+      path.push_back(seen.true_pose_in_world.position());
+  }
+  const maps::Map map = map_of(options.world);
+  result.grids = {score_grid(muriel.grid(), drive.world(), map, path),
+                  score_grid(cone.grid(), drive.world(), map, path)};
+}
+
+void print(const Options& options, const Result& result) {
+  const double ms = std::max(1e-9, quantile(result.ms, 0.5));
+  double all = 0.0;
+  for (const double one : result.ms)
+    all += one;
+  const double cells = static_cast<double>(result.cells) / (all / 1e3);
+  const double recall =
+      result.passed == 0 ? 0.0 : static_cast<double>(result.found) / result.passed;
+  if (options.json) {
+    std::printf(
+        "{\"world\":\"%s\",\"seeds\":%d,\"seconds\":%g,\"errors\":%g,"
+        "\"cycle_ms_p50\":%.4f,\"cycle_ms_p99\":%.4f,\"cells_per_second\":%.0f,",
+        options.world.c_str(), options.seeds, options.seconds, options.errors, ms,
+        quantile(result.ms, 0.99), cells);
+    for (std::size_t i = 0; i < kKinds.size(); ++i)
+      std::printf("\"%s_reported\":%d,\"%s_precision\":%.4f,", kKinds[i].second,
+                  result.counts[i].reported, kKinds[i].second, result.counts[i].precision());
+    std::printf(
+        "\"doors_passed\":%d,\"doors_recall\":%.4f,\"wall_offset_p95_m\":%.4f,"
+        "\"wall_heading_p95_deg\":%.3f,\"door_place_p95_m\":%.4f,\"door_width_p95_m\":%.4f,"
+        "\"single_end_place_p95_m\":%.4f",
+        result.passed, recall, quantile(result.wall_offset, 0.95),
+        degrees(quantile(result.wall_heading, 0.95)), quantile(result.door_place, 0.95),
+        quantile(result.door_width, 0.95), quantile(result.end_place, 0.95));
+    for (std::size_t i = 0; i < 2; ++i) {
+      const GridScore& grid = result.grids[i];
+      const char* name = i == 0 ? "muriel" : "cone";
+      std::printf(
+          ",\"%s_walls_kept\":%.4f,\"%s_doorways_blocked\":%.4f,\"%s_free_wrong\":%.5f,"
+          "\"%s_auc\":%.4f",
+          name, grid.walls, name, grid.doorways, name, grid.free, name, grid.auc);
+    }
+    std::printf("}\n");
+    return;
+  }
+  std::printf("%s, %d tours of %g s, errors of dead reckoning times %g, %d contacts\n\n",
+              options.world.c_str(), options.seeds, options.seconds, options.errors,
+              result.contacts);
+  std::printf("%-12s %8s %8s %9s\n", "", "reported", "real", "precision");
+  for (std::size_t i = 0; i < kKinds.size(); ++i)
+    std::printf("%-12s %8d %8d %9.4f\n", kKinds[i].second, result.counts[i].reported,
+                result.counts[i].real, result.counts[i].precision());
+  std::printf("doors passed %d, found %d: recall %.4f\n\n", result.passed, result.found, recall);
+  std::printf("%-28s %8s %8s %16s\n", "error", "p50", "p95", "p95 in its sigmas");
+  const auto row = [](const char* name, const std::vector<double>& errors, double unit,
+                      const std::vector<double>& sigmas) {
+    std::printf("%-28s %8.3f %8.3f", name, unit * quantile(errors, 0.5),
+                unit * quantile(errors, 0.95));
+    if (sigmas.empty())
+      std::printf("\n");
+    else
+      std::printf(" %16.2f\n", quantile(sigmas, 0.95));
+  };
+  row("wall, across [m]", result.wall_offset, 1.0, result.wall_offset_sigmas);
+  row("wall, heading [degrees]", result.wall_heading, 180.0 / kPi, result.wall_heading_sigmas);
+  row("door, along its wall [m]", result.door_place, 1.0, result.door_place_sigmas);
+  row("door, width [m]", result.door_width, 1.0, {});
+  row("single end [m]", result.end_place, 1.0, result.end_place_sigmas);
+  std::printf("\n%-10s %12s %18s %14s %8s\n", "grid", "walls kept", "doorways blocked",
+              "free is wrong", "AUC");
+  for (std::size_t i = 0; i < 2; ++i)
+    std::printf("%-10s %12.3f %18.3f %14.4f %8.3f\n", i == 0 ? "MURIEL" : "cone",
+                result.grids[i].walls, result.grids[i].doorways, result.grids[i].free,
+                result.grids[i].auc);
+  std::printf("\ncycle_ms_p50 %.3f, cycle_ms_p99 %.3f (CPU), %.1f million cells a second of CPU\n",
+              ms, quantile(result.ms, 0.99), cells / 1e6);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Options options = parse(argc, argv);
-  for (int seed = 1; seed <= options.seeds; ++seed) {
-    DriveOptions drive_options;
-    drive_options.world = options.world;
-    drive_options.seed = static_cast<std::uint64_t>(seed);
-    drive_options.errors = options.errors;
-    Drive drive(drive_options);
-    interpretation::Interpretation interpretation(settings_of(drive));
-    Score score(drive, map_of(options.world));
-    Tour tour(patrol(options.world), true);
-    std::vector<double> ms;
-    while (static_cast<double>(drive.seen().cycle) < options.seconds * 10.0) {
-      tour.act(drive, drive.seen().true_pose_in_world);
-      const Seen& seen = drive.advance();
-      const auto before = std::chrono::steady_clock::now();
-      const auto& output = interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings});
-      ms.push_back(
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before)
-              .count());
-      score.look(drive, output);
-    }
-    std::printf("seed %d: reached %zu contacts %d\n", seed, tour.reached(), drive.contacts());
-    for (const auto& [type, name] :
-         {std::pair{lps::PointType::wall, "walls"}, std::pair{lps::PointType::door, "doors"},
-          std::pair{lps::PointType::junction, "junctions"},
-          std::pair{lps::PointType::breach, "breaches"},
-          std::pair{lps::PointType::corridor, "corridors"}}) {
-      const Count count = score.count(type);
-      std::printf("  %-10s %4d reported, %4d real: %.3f\n", name, count.reported, count.real,
-                  count.precision());
-    }
-    std::printf("  doors passed %d found %d: %.3f\n", score.doors_passed(), score.doors_found(),
-                score.recall());
-    std::printf("  wall offset p50 %.3f p95 %.3f (sigmas p95 %.2f) heading p95 %.2f deg (%.2f)\n",
-                quantile(score.wall_offset, .5), quantile(score.wall_offset, .95),
-                quantile(score.wall_offset_sigmas, .95), degrees(quantile(score.wall_heading, .95)),
-                quantile(score.wall_heading_sigmas, .95));
-    std::printf("  door place p50 %.3f p95 %.3f (%.2f) width p50 %.3f p95 %.3f\n",
-                quantile(score.door_place, .5), quantile(score.door_place, .95),
-                quantile(score.door_place_sigmas, .95), quantile(score.door_width, .5),
-                quantile(score.door_width, .95));
-    std::printf("  breach place p50 %.3f p95 %.3f (%.2f)\n", quantile(score.breach_place, .5),
-                quantile(score.breach_place, .95), quantile(score.breach_place_sigmas, .95));
-    std::printf("  cycle ms p50 %.4f p99 %.4f\n", quantile(ms, .5), quantile(ms, .99));
-    if (options.verbose) {
-      for (const Mistake& m : score.mistakes())
-        std::printf(
-            "    false type %d at %.2f %.2f %.0f deg, length %.2f width %.2f conf %.2f n "
-            "%zu cycle %llu side %d sigmas %.3f %.3f %.2f\n",
-            static_cast<int>(m.percept.type), m.pose_in_world.x, m.pose_in_world.y,
-            degrees(m.pose_in_world.th), m.percept.length, m.percept.width, m.percept.confidence,
-            m.percept.readings.size(), static_cast<unsigned long long>(m.cycle),
-            static_cast<int>(m.percept.side), m.percept.sigma_along, m.percept.sigma_across,
-            degrees(m.percept.sigma_heading));
-      for (const auto& [id, cycle] : score.missed())
-        std::printf("    missed %u at cycle %llu\n", id, static_cast<unsigned long long>(cycle));
-    }
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  Options options;
+  if (!words.empty() && (words[0] == "--help" || words[0] == "-h")) {
+    std::fputs(kUsage, stdout);
+    return 0;
   }
+  if (!parse(words, options)) {
+    std::fputs(kUsage, stderr);
+    return 2;
+  }
+  Result result;
+  for (int seed = 1; seed <= options.seeds; ++seed)
+    percepts(options, seed, result);
+  grids(options, 1, result);
+  print(options, result);
   return 0;
 }

@@ -21,7 +21,7 @@ TEST(Perception, WhatIsReportedInTheOfficeFloorIsThere) {
     while (drive.seen().cycle < 6000) {
       tour.act(drive, drive.seen().true_pose_in_world);
       const Seen& seen = drive.advance();
-      score.look(drive, interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings}));
+      score.look(drive, interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings, {}}));
     }
     walls.reported += score.walls().reported;
     walls.real += score.walls().real;

@@ -208,6 +208,84 @@ Count Score::count(PointType type) const {
   return count;
 }
 
+GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
+                     const maps::Map& map, const std::vector<Vec2>& path) {
+  const double cell = grid.settings().resolution;
+  GridScore score;
+  const auto nearest = [&](const Vec2& at) {
+    const Vec2* best = nullptr;
+    for (const Vec2& point : path)
+      if (!best || (point - at).squaredNorm() < (*best - at).squaredNorm())
+        best = &point;
+    return *best;
+  };
+  int surfaces = 0;
+  int kept = 0;
+  for (const sim::Segment& segment : world.segments) {
+    const Vec2 way = segment.to - segment.from;
+    const int steps = static_cast<int>(way.norm() / cell);
+    for (int i = 0; i <= steps; ++i) {
+      const Vec2 at = segment.from + (i + 0.5) / (steps + 1.0) * way;
+      const Vec2 from = nearest(at);
+      const double apart = (from - at).norm();
+      if (apart > 2.0 || sim::cast_ray(world.segments, from, (at - from) / apart, apart - 0.02))
+        continue;
+      ++surfaces;
+      double most = 0.0;
+      for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+          most = std::max(most, grid.probability(at + cell * Vec2(x, y)).value_or(0.0));
+      kept += most > 0.5 ? 1 : 0;
+    }
+  }
+  score.walls = surfaces == 0 ? 0.0 : static_cast<double>(kept) / surfaces;
+  int inside = 0;
+  int blocked = 0;
+  for (const maps::Feature& door : map.features) {
+    if (door.type != PointType::door ||
+        (nearest(door.pose_in_map.position()) - door.pose_in_map.position()).norm() > 1.5)
+      continue;
+    for (double x = -0.2; x <= 0.21; x += cell)
+      for (double y = 0.15 - door.width / 2.0; y <= door.width / 2.0 - 0.15; y += cell) {
+        const auto probability = grid.probability(transform(door.pose_in_map, Vec2(x, y)));
+        if (!probability)
+          continue;
+        ++inside;
+        blocked += *probability > 0.5 ? 1 : 0;
+      }
+  }
+  score.doorways = inside == 0 ? 0.0 : static_cast<double>(blocked) / inside;
+  std::vector<double> occupied(202, 0.0);
+  std::vector<double> empty(202, 0.0);
+  double all_occupied = 0.0;
+  double all_empty = 0.0;
+  double wrong = 0.0;
+  for (double y = cell / 2.0; y < world.height; y += cell)
+    for (double x = cell / 2.0; x < world.width; x += cell) {
+      const auto probability = grid.probability(Vec2(x, y));
+      if (!probability)
+        continue;
+      const double off = sim::distance(world.segments, Vec2(x, y));
+      const auto step = static_cast<std::size_t>(*probability * 200.0);
+      if (off <= 0.71 * cell) {
+        ++occupied[step];
+        ++all_occupied;
+      } else if (off > 0.15) {
+        ++empty[step];
+        ++all_empty;
+        wrong += *probability > 0.5 ? 1.0 : 0.0;
+      }
+    }
+  double below = 0.0;
+  for (std::size_t i = 0; i < occupied.size(); ++i) {
+    score.auc += occupied[i] * (below + empty[i] / 2.0);
+    below += empty[i];
+  }
+  score.auc /= std::max(1.0, all_occupied * all_empty);
+  score.free = wrong / std::max(1.0, all_empty);
+  return score;
+}
+
 std::vector<Vec2> patrol(const std::string& world) {
   if (world == "office-floor")
     return {{17.5, 7.2},  {35.5, 7.0},  {25.6, 7.0}, {25.6, 25.0}, {17.5, 25.0},

@@ -79,6 +79,16 @@ class Score {
   std::vector<std::pair<std::uint32_t, std::uint64_t>> missed_;
 };
 
+/// A grid in the frame of the world, held against it.
+struct GridScore {
+  double walls = 0.0;     ///< share of the surfaces along the way that are in it
+  double doorways = 0.0;  ///< share of the open doorways along the way that it takes for blocked
+  double free = 0.0;      ///< share of the free cells that it takes for occupied
+  double auc = 0.0;       ///< that an occupied cell is likelier than a free one
+};
+GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
+                     const maps::Map& map, const std::vector<Vec2>& path);
+
 /// The points of a patrol of a world of config/worlds that goes through all its corridors.
 std::vector<Vec2> patrol(const std::string& world);
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/interpretation/grid.hpp"
 #include "saphira/interpretation/side_view.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
@@ -15,6 +16,7 @@ namespace saphira::interpretation {
 struct Settings {
   std::vector<lps::SonarMount> sonars;
   SideSettings side;
+  GridSettings grid;
   /// [rad] the directions straight to the sides, and how far a sonar that makes walls is off them
   double side_sector = radians(31.0);
   double steady_turn = radians(4.0);  ///< a cycle; bearings are doubtful in faster turns
@@ -34,6 +36,9 @@ struct Inputs {
   std::uint64_t cycle = 0;
   Pose pose_in_odom;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+  /// Where odom is in the frame of the grid: the grid is in odom when this is left as it is. It may
+  /// change a little from cycle to cycle, as registration corrects it.
+  Pose odom_in_grid{};
 };
 
 struct Output {
@@ -41,6 +46,8 @@ struct Output {
   std::vector<lps::Percept> percepts;
   std::optional<lps::Percept> left_wall;   ///< sfLeftWallHyp: beside the robot now
   std::optional<lps::Percept> right_wall;  ///< sfRightWallHyp
+  std::vector<TileKey> changed_tiles;      ///< of the grid, in this cycle
+  std::vector<TileKey> dropped_tiles;      ///< left behind
 };
 
 /// From sonar readings to features and hypotheses (paper 3.2.1, manual 6.7): side segments by
@@ -50,12 +57,15 @@ struct Output {
 class Interpretation {
  public:
   explicit Interpretation(Settings settings);
+  Interpretation(const Interpretation&) = delete;
+  Interpretation& operator=(const Interpretation&) = delete;
 
   const Output& step(const Inputs& inputs);
   /// Forgets everything but the settings; ids are not used again.
   void reset();
 
   const Settings& settings() const { return settings_; }
+  const Grid& grid() const { return grid_; }
   /// What is seen to the left and to the right.
   const SideView& left() const { return sides_[0]; }
   const SideView& right() const { return sides_[1]; }
@@ -89,6 +99,8 @@ class Interpretation {
   std::uint64_t cycle_ = 0;
   double travelled_ = 0.0;
   double turned_ = 0.0;
+  Pose odom_in_grid_;
+  Grid grid_;
   std::array<SideView, 2> sides_;
   std::array<bool, 2> changed_{false, false};
   std::deque<Return> others_;

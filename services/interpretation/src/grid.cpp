@@ -1,0 +1,247 @@
+#include "saphira/interpretation/grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::interpretation {
+namespace {
+
+/// Evidence and log odds are counted in steps of this.
+constexpr double kStep = 0.04;
+constexpr int kMost = 120;
+
+double logit(double probability) {
+  return std::log(probability / (1.0 - probability));
+}
+
+}  // namespace
+
+Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(settings.prior)) {
+  // With the probability `mirror` the surface of an occupied cell sends the sound elsewhere, and
+  // whatever was heard from this direction says nothing of it.
+  for (int i = -128; i < 128; ++i) {
+    const double q = settings_.model == GridModel::muriel ? settings_.mirror : 0.0;
+    const double said = std::log(q + (1.0 - q) * std::exp(kStep * i));
+    weighed_[static_cast<std::size_t>(i + 128)] =
+        static_cast<std::int16_t>(std::lround(said / kStep));
+  }
+}
+
+void Grid::clear() {
+  for (const auto& [key, tile] : tiles_)
+    cleared_.push_back(key);
+  tiles_.clear();
+  fired_.clear();
+}
+
+void Grid::move_to(const Vec2& robot) {
+  dropped_.swap(cleared_);
+  cleared_.clear();
+  const double edge = kTile * settings_.resolution;
+  for (auto it = tiles_.begin(); it != tiles_.end();) {
+    it->second.changed = false;
+    const Vec2 middle((static_cast<double>(it->first.column) + 0.5) * edge,
+                      (static_cast<double>(it->first.row) + 0.5) * edge);
+    if ((middle - robot).cwiseAbs().maxCoeff() > settings_.window + edge / 2.0) {
+      dropped_.push_back(it->first);
+      it = tiles_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+}
+
+TileKey Grid::tile_of(const Vec2& at) const {
+  const double edge = kTile * settings_.resolution;
+  return {static_cast<long>(std::floor(at.x() / edge)),
+          static_cast<long>(std::floor(at.y() / edge))};
+}
+
+std::vector<TileKey> Grid::tiles() const {
+  std::vector<TileKey> keys;
+  for (const auto& [key, tile] : tiles_)
+    keys.push_back(key);
+  return keys;
+}
+
+std::vector<TileKey> Grid::changed() const {
+  std::vector<TileKey> keys;
+  for (const auto& [key, tile] : tiles_)
+    if (tile.changed)
+      keys.push_back(key);
+  return keys;
+}
+
+double Grid::probability(const Tile& tile, std::size_t cell) const {
+  return 1.0 / (1.0 + std::exp(-prior_ - kStep * tile.total[cell]));
+}
+
+std::optional<double> Grid::probability(const Vec2& at) const {
+  const auto it = tiles_.find(tile_of(at));
+  if (it == tiles_.end())
+    return std::nullopt;
+  const auto within = [&](double v, long tile) {
+    return std::clamp(static_cast<long>(std::floor(v / settings_.resolution)) - tile * kTile, 0L,
+                      kTile - 1);
+  };
+  const auto cell = static_cast<std::size_t>(within(at.y(), it->first.row) * kTile +
+                                             within(at.x(), it->first.column));
+  if (!it->second.seen[cell])
+    return std::nullopt;
+  return probability(it->second, cell);
+}
+
+std::vector<std::uint8_t> Grid::cells(const TileKey& key) const {
+  const auto it = tiles_.find(key);
+  if (it == tiles_.end())
+    return {};
+  std::vector<std::uint8_t> cells(kCells, kNeverSeen);
+  for (std::size_t cell = 0; cell < kCells; ++cell)
+    if (it->second.seen[cell])
+      cells[cell] = static_cast<std::uint8_t>(std::lround(200.0 * probability(it->second, cell)));
+  return cells;
+}
+
+void Grid::add(int sonar, const Pose& sonar_in_grid, std::optional<double> range) {
+  if (sonar < 0 || (!range && settings_.silence <= 0.0))
+    return;
+  const auto number = static_cast<std::size_t>(sonar);
+  if (number >= fired_.size())
+    fired_.resize(number + 1);
+  Fired& fired = fired_[number];
+  if (settings_.model == GridModel::cone) {
+    add_cone(sonar_in_grid, range);
+    return;
+  }
+  if (fired.before && (fired.pose.position() - sonar_in_grid.position()).norm() < settings_.move &&
+      std::abs(norm2_angle(fired.pose.th - sonar_in_grid.th)) < settings_.turn)
+    return;
+  fired = {true, sonar_in_grid};
+  add_muriel(sonar_in_grid, range);
+}
+
+// f(tile, cell, distance [m], tangent of the bearing off the axis)
+template <class F>
+void Grid::for_cone(const Pose& sonar, double range, F&& f) {
+  double low_x = sonar.x, high_x = sonar.x, low_y = sonar.y, high_y = sonar.y;
+  for (const double off :
+       {-settings_.beam, -settings_.beam / 2.0, 0.0, settings_.beam / 2.0, settings_.beam}) {
+    const double x = sonar.x + range * std::cos(sonar.th + off);
+    const double y = sonar.y + range * std::sin(sonar.th + off);
+    low_x = std::min(low_x, x);
+    high_x = std::max(high_x, x);
+    low_y = std::min(low_y, y);
+    high_y = std::max(high_y, y);
+  }
+  const double size = settings_.resolution;
+  const auto cell_of = [size](double v) { return static_cast<long>(std::floor(v / size)); };
+  const long first_column = cell_of(low_x);
+  const long last_column = cell_of(high_x);
+  const long first_row = cell_of(low_y);
+  const long last_row = cell_of(high_y);
+  const auto tile_at = [](long cell) {
+    return cell >= 0 ? cell / kTile : -((-cell + kTile - 1) / kTile);
+  };
+  const double c = std::cos(sonar.th);
+  const double s = std::sin(sonar.th);
+  const double edge = std::tan(settings_.beam);
+  for (long tile_row = tile_at(first_row); tile_row <= tile_at(last_row); ++tile_row)
+    for (long tile_column = tile_at(first_column); tile_column <= tile_at(last_column);
+         ++tile_column) {
+      const long row0 = tile_row * kTile;
+      const long column0 = tile_column * kTile;
+      Tile* tile = nullptr;
+      for (long row = std::max(row0, first_row); row <= std::min(row0 + kTile - 1, last_row); ++row)
+        for (long column = std::max(column0, first_column);
+             column <= std::min(column0 + kTile - 1, last_column); ++column) {
+          const double dx = (static_cast<double>(column) + 0.5) * size - sonar.x;
+          const double dy = (static_cast<double>(row) + 0.5) * size - sonar.y;
+          const double along = c * dx + s * dy;
+          const double across = -s * dx + c * dy;
+          if (along <= 0.0 || std::abs(across) > edge * along)
+            continue;
+          const double distance = std::sqrt(dx * dx + dy * dy);
+          if (distance > range)
+            continue;
+          if (!tile)
+            tile = &tiles_[{tile_column, tile_row}];
+          f(*tile, static_cast<std::size_t>((row - row0) * kTile + column - column0), distance,
+            across / along);
+        }
+    }
+}
+
+void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
+  std::int8_t& said = tile.bins[cell][static_cast<std::size_t>(bin)];
+  const int before = said;
+  const int after =
+      std::clamp(before + static_cast<int>(std::lround(log_odds / kStep)), -kMost, kMost);
+  tile.seen[cell] = true;
+  tile.changed = true;
+  ++updates_;
+  if (after == before)
+    return;
+  said = static_cast<std::int8_t>(after);
+  tile.total[cell] =
+      static_cast<std::int16_t>(tile.total[cell] + weighed_[static_cast<std::size_t>(after + 128)] -
+                                weighed_[static_cast<std::size_t>(before + 128)]);
+}
+
+void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {
+  const double edge = std::tan(settings_.beam);
+  const double far = settings_.range;
+  // Beyond three deviations behind the echo nothing is said.
+  const double deviation =
+      range ? settings_.noise + settings_.relative_noise * *range : settings_.noise;
+  const double half_cell = settings_.resolution / 2.0;
+  const double spread = std::hypot(deviation, half_cell);
+  const double reach = range ? std::min(far, *range + 3.0 * spread) : far;
+  const double bins = kBins / (2.0 * kPi);
+  const double detection = settings_.detection * (range ? 1.0 : settings_.silence);
+  arc_.clear();
+  double sum = 0.0;
+  for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double tangent) {
+    const double off = 1.0 - tangent * tangent / (edge * edge);
+    const double found = detection * (1.0 - z / far) * off * off;
+    if (found <= 0.0)
+      return;
+    const double bearing = sonar.th + tangent * (1.0 - tangent * tangent / 3.0);
+    const int bin = std::min(kBins - 1, static_cast<int>(norm_angle(bearing) * bins));
+    const double behind = range ? (*range - z) / spread : 4.0;
+    if (behind > 3.0) {
+      evidence(tile, cell, bin, std::log(1.0 - found));
+      return;
+    }
+    Arc arc{&tile, cell, bin, 0.0, 1.0, 0.0};
+    arc.density = found / (std::sqrt(2.0 * kPi) * spread) * std::exp(-behind * behind / 2.0);
+    arc.before = 1.0 - found / (1.0 + std::exp(-1.7 * behind));
+    arc.odds = probability(tile, cell);
+    sum += arc.odds * arc.density;
+    arc_.push_back(arc);
+  });
+  // The echo came from somewhere on the arc: what is believed of the rest explains it as well.
+  for (const Arc& arc : arc_) {
+    const double rest =
+        settings_.false_echoes + settings_.attribution * (sum - arc.odds * arc.density);
+    evidence(*arc.tile, arc.cell, arc.bin, std::log(arc.before * arc.density / rest + arc.before));
+  }
+}
+
+void Grid::add_cone(const Pose& sonar, std::optional<double> range) {
+  const double edge = std::tan(settings_.beam);
+  const double half = settings_.resolution;
+  const double reach = range ? std::min(5.0, *range + half) : settings_.range;
+  for_cone(sonar, reach, [&](Tile& tile, std::size_t cell, double z, double tangent) {
+    const double off = 1.0 - tangent * tangent / (edge * edge);
+    const bool met = range && z > *range - half;
+    const double most = settings_.most / kStep;
+    const double before = tile.bins[cell][0];
+    const double change =
+        (met ? settings_.met
+             : -settings_.passed * (range ? 1.0 : settings_.silence) * (1.0 - z / 5.0)) *
+        off / kStep;
+    evidence(tile, cell, 0, (std::clamp(before + change, -most, most) - before) * kStep);
+  });
+}
+
+}  // namespace saphira::interpretation
