@@ -1,16 +1,19 @@
 // Where robots were, by their logs: dead reckoning and registration beside published figures.
+#include <time.h>
+
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "carmen.hpp"
-#include "metrics.hpp"
+#include "corridor.hpp"
+#include "data_set.hpp"
+#include "laser_map.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/maps/drawing.hpp"
 #include "saphira/registration/scan_mapping.hpp"
-#include "stamps.hpp"
 
 using namespace saphira;
 using namespace saphira::bench;
@@ -19,174 +22,366 @@ using nlohmann::json;
 
 namespace {
 
-struct Figures {
-  std::optional<RelationErrors> relations;
-  std::optional<double> ate;
-  std::optional<DriftErrors> drift;
+constexpr std::uint64_t kSeed = 1;
+
+// Kümmerle et al. 2009, absolute translational error of the relations [m].
+struct Published {
+  const char* data;
+  const char* method;
+  double mean;
+  double deviation;
+};
+constexpr Published kPublished[] = {
+    {"aces", "scan matching", 0.173, 0.614},
+    {"aces", "GMapping, 50 particles", 0.060, 0.049},
+    {"aces", "graph mapping", 0.044, 0.044},
+    {"intel", "scan matching", 0.220, 0.296},
+    {"intel", "GMapping, 50 particles", 0.070, 0.083},
+    {"intel", "graph mapping", 0.031, 0.026},
+    {"killian", "scan matching", 1.651, 4.138},
+    {"killian", "GMapping, 50 particles", 0.122, 0.386},
+    {"killian", "graph mapping", 0.050, 0.056},
+    {"csail", "scan matching", 0.106, 0.325},
+    {"csail", "GMapping, 50 particles", 0.049, 0.049},
+    {"csail", "graph mapping", 0.004, 0.009},
+    {"fr079", "scan matching", 0.258, 0.427},
+    {"fr079", "GMapping, 50 particles", 0.061, 0.044},
+    {"fr079", "graph mapping", 0.056, 0.042},
+    {"hospital", "scan matching", 0.434, 1.615},
+    {"hospital", "GMapping, 50 particles", 0.637, 2.638},
+    {"hospital", "graph mapping", 0.143, 0.180},
 };
 
-struct DataSet {
-  std::string name;
-  CarmenLog raw;
-  std::optional<CarmenLog> corrected;
-  std::vector<Relation> relations;
-  Clock clock = Clock::ipc;
-  Trajectory odometry{{}};
-  std::optional<Trajectory> reference;
-  std::size_t mended = 0;
-};
-
-std::optional<fs::path> file_with(const fs::path& folder,
-                                  std::initializer_list<const char*> parts) {
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    for (const char* part : parts)
-      if (name.find(part) != std::string::npos) {
-        found.push_back(entry.path());
-        break;
-      }
-  }
-  std::sort(found.begin(), found.end());
-  return found.empty() ? std::nullopt : std::optional(found.front());
+// Of this program alone: other work on the machine does not count.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-DataSet load(const fs::path& folder) {
-  DataSet set;
-  set.name = folder.filename().string();
-  const auto raw = file_with(folder, {"raw.log", ".clf", "raw.gfs"});
-  const auto corrected = file_with(folder, {"corrected"});
-  const auto relations = file_with(folder, {".relations"});
-  set.raw = parse_carmen(read_log(raw->string()), raw->string());
-  for (std::size_t i = 0; i < set.raw.damaged.size() && i < 3; ++i)
-    std::cerr << set.raw.damaged[i] << '\n';
-  if (corrected)
-    set.corrected = parse_carmen(read_log(corrected->string()), corrected->string());
-  if (relations)
-    set.relations = parse_relations(read_log(relations->string()), relations->string());
-  // The clock that knows the relations' stamps, or that the corrected file has.
-  const auto hits = [&](Clock clock) {
-    const Trajectory track = time_base(set.raw, clock).odometry;
-    std::size_t count = 0;
-    for (const Relation& relation : set.relations)
-      count += track.at(relation.from) && track.at(relation.to) ? 1U : 0U;
-    return count;
+double quantile(std::vector<double> values, double share) {
+  if (values.empty())
+    return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+class Report {
+ public:
+  void heading(const std::string& text) {
+    std::printf("\n%s\n", text.c_str());
+    markdown_ +=
+        "\n## " + text +
+        "\n\n| | relations, m | deg | relations with exact stamps, m | ATE, m | per 10 m |\n"
+        "|---|---|---|---|---|---|\n";
+  }
+  void note(const std::string& text) {
+    std::printf("  %s\n", text.c_str());
+    std::fflush(stdout);
+    notes_ += "- " + text + "\n";
+  }
+  void end_of_set() {
+    markdown_ += "\n" + notes_;
+    notes_.clear();
+  }
+  void row(const std::string& what, const std::vector<std::string>& cells) {
+    std::printf("  %-36s", what.c_str());
+    markdown_ += "| " + what;
+    for (const std::string& cell : cells) {
+      std::printf(" %s ", cell.c_str());
+      markdown_ += " | " + cell;
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+    markdown_ += " |\n";
+  }
+  const std::string& markdown() const { return markdown_; }
+
+ private:
+  std::string markdown_;
+  std::string notes_;
+};
+
+template <typename... Values>
+std::string format(const char* how, Values... values) {
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(), how, values...);
+  return text.data();
+}
+
+json evaluate(const DataSet& set, const Trajectory& estimate, const std::string& what,
+              Report& report) {
+  json out;
+  std::vector<std::string> cells(5);
+  const auto relations = [&](const std::vector<Relation>& which, const std::string& name,
+                             std::size_t cell) {
+    if (which.empty())
+      return;
+    const RelationErrors e = relation_errors(estimate, which);
+    out[name] = {{"translation_m", e.translation.mean},
+                 {"translation_deviation_m", e.translation.deviation},
+                 {"translation_median_m", e.translation.median},
+                 {"translation_squared_m2", e.translation.squared},
+                 {"translation_max_m", e.translation.most},
+                 {"rotation_deg", degrees(e.rotation.mean)},
+                 {"rotation_deviation_deg", degrees(e.rotation.deviation)},
+                 {"count", e.translation.count},
+                 {"missing", e.missing}};
+    cells[cell] = format("%.3f +- %.3f (%zu)", e.translation.mean, e.translation.deviation,
+                         e.translation.count);
+    if (cell == 0)
+      cells[1] = format("%.2f +- %.2f", degrees(e.rotation.mean), degrees(e.rotation.deviation));
   };
-  if (!set.relations.empty()) {
-    if (hits(Clock::logger) > hits(Clock::ipc))
-      set.clock = Clock::logger;
-  } else if (set.corrected) {
-    const auto ipc = clock_offset(set.raw, Clock::ipc, *set.corrected);
-    const auto logger = clock_offset(set.raw, Clock::logger, *set.corrected);
-    if (ipc && logger && std::abs(*logger) < std::abs(*ipc))
-      set.clock = Clock::logger;
-  }
-  const bool interpolated =
-      set.raw.odometry.empty() && std::any_of(set.raw.scans.begin(), set.raw.scans.end(),
-                                              [](const LaserScan& s) { return s.host == "A"; });
-  TimeBase base = interpolated && set.corrected ? mend_stamps(set.raw, *set.corrected)
-                                                : time_base(set.raw, set.clock);
-  set.odometry = std::move(base.odometry);
-  set.mended = base.mended;
-  if (set.corrected) {
-    const double offset = clock_offset(set.raw, set.clock, *set.corrected).value_or(0.0);
-    std::vector<StampedPose> poses;
-    for (const LaserScan& scan : set.corrected->scans)
-      poses.push_back({scan.time.ipc + offset, scan.pose});
-    set.reference.emplace(std::move(poses));
-  }
-  return set;
-}
-
-Figures evaluate(const DataSet& set, const Trajectory& estimate) {
-  Figures out;
-  if (!set.relations.empty())
-    out.relations = relation_errors(estimate, set.relations);
+  relations(set.relations, "relations", 0);
+  if (set.exact_relations.size() != set.relations.size())
+    relations(set.exact_relations, "relations_exact", 2);
   if (set.reference) {
     const Pairs pairs = pair_up(estimate, *set.reference);
-    out.ate = ate_rmse(pairs);
-    out.drift = drift(pairs, 10.0);
+    const DriftErrors d = drift(pairs, 10.0);
+    out["ate_rmse_m"] = ate_rmse(pairs);
+    out["per_10m_m"] = d.translation.median;
+    out["per_10m_deg"] = degrees(d.rotation.median);
+    cells[3] = format("%.3f", ate_rmse(pairs));
+    cells[4] = format("%.3f m, %.2f deg", d.translation.median, degrees(d.rotation.median));
   }
+  report.row(what, cells);
   return out;
 }
 
-Trajectory scan_times(const DataSet& set, const std::vector<Pose>& poses) {
+std::vector<Vec2> points_of(const std::vector<StampedPose>& poses, const Pose& align) {
+  std::vector<Vec2> out;
+  for (const StampedPose& p : poses)
+    out.push_back(transform(align, p.pose.position()));
+  return out;
+}
+
+std::vector<StampedPose> stamped(const std::vector<double>& times, const std::vector<Pose>& poses) {
   std::vector<StampedPose> out;
   for (std::size_t i = 0; i < poses.size(); ++i)
-    out.push_back({time_of(set.raw.scans[i].time, set.clock), poses[i]});
-  return densify(Trajectory(std::move(out)), set.odometry);
+    out.push_back({times[i], poses[i]});
+  return out;
 }
 
-void print(const char* what, const Figures& f) {
-  std::printf("  %-34s", what);
-  if (f.relations)
-    std::printf(" %6.3f +- %6.3f m %5.2f +- %5.2f deg (most %.2f, %zu)",
-                f.relations->translation.mean, f.relations->translation.deviation,
-                degrees(f.relations->rotation.mean), degrees(f.relations->rotation.deviation),
-                f.relations->translation.most, f.relations->translation.count);
-  if (f.ate)
-    std::printf("  ATE %6.3f m", *f.ate);
-  if (f.drift)
-    std::printf("  per 10 m %5.3f m %5.2f deg", f.drift->translation.median,
-                degrees(f.drift->rotation.median));
-  std::printf("\n");
-  std::fflush(stdout);
+json sonar_json(const DataSet& set, const SonarRun& run, const std::string& what, Report& report) {
+  // As it was believed at the time, without a look back.
+  json out = evaluate(set, Trajectory(run.poses), what, report);
+  const double steps = static_cast<double>(std::max<std::size_t>(run.steps, 1));
+  out["tracking"] = static_cast<double>(run.tracking) / steps;
+  out["lost"] = static_cast<double>(run.lost) / steps;
+  out["unplaced"] = static_cast<double>(run.unplaced) / steps;
+  out["matches"] = run.accepted;
+  out["step_ms_p50"] = quantile(run.step_ms, 0.5);
+  out["step_ms_p99"] = quantile(run.step_ms, 0.99);
+  report.note(
+      what + format(": tracking %.1f %%, lost %.1f %% of the steps, %zu matches, %zu walls and %zu "
+                    "openings seen; a step %.2f ms, p99 %.2f ms",
+                    100.0 * static_cast<double>(run.tracking) / steps,
+                    100.0 * static_cast<double>(run.lost) / steps, run.accepted, run.walls,
+                    run.openings, quantile(run.step_ms, 0.5), quantile(run.step_ms, 0.99)));
+  return out;
 }
 
-int run(const std::string& data) {
-  for (const char* name : {"intel", "fr101"}) {
-    const fs::path folder = fs::path(data) / name;
-    if (!fs::is_directory(folder))
-      continue;
-    DataSet set = load(folder);
-    std::printf("%s: %zu scans, %.0f m by dead reckoning, %zu stamps mended\n", name,
-                set.raw.scans.size(), set.odometry.length(), set.mended);
-    print("dead reckoning", evaluate(set, set.odometry));
-    if (set.corrected) {
-      std::vector<StampedPose> poses;
-      const double offset = clock_offset(set.raw, set.clock, *set.corrected).value_or(0.0);
-      for (const OdomRecord& record : set.corrected->odometry)
-        poses.push_back({record.time.ipc + offset, record.pose});
-      print("corrected file", evaluate(set, Trajectory(std::move(poses))));
-      print("corrected file's scans", evaluate(set, densify(*set.reference, set.odometry)));
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    registration::ScanMapper mapper;
-    for (const LaserScan& scan : set.raw.scans) {
-      registration::Beams beams;
-      beams.first_angle = scan.first_angle;
-      beams.step = scan.step;
-      beams.sensor_in_robot = scan.laser_in_robot;
-      beams.max_range = std::min(20.0, scan.no_return);
-      mapper.add(scan.pose, registration::make_scan(scan.ranges, beams));
-    }
-    const auto& r = mapper.report();
-    std::printf("  %.1f s: %zu nodes, %zu searches, %zu unmatched, %zu candidates, %zu loops\n",
-                seconds(), r.nodes, r.searches, r.unmatched, r.loop_candidates, r.loops);
-    print("full ranges, as it drove", evaluate(set, scan_times(set, mapper.trajectory())));
-    for (int round = 1; round <= 4; ++round) {
-      mapper.refine(1);
-      print("full ranges, refined", evaluate(set, scan_times(set, mapper.trajectory())));
-      std::printf("  %.1f s\n", seconds());
+json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Drawing* drawing) {
+  json out;
+  report.heading(set.name + format(": %zu scans, %.0f m by dead reckoning", set.scans.size(),
+                                   set.odometry.length()));
+  if (set.mended > 0)
+    report.note(
+        format("%zu stamps of scans were interpolated in the log and are mended", set.mended));
+  for (std::size_t i = 0; i < std::min<std::size_t>(set.damaged.size(), 3); ++i)
+    report.note(set.damaged[i]);
+  out["dead_reckoning"] = evaluate(set, set.odometry, "dead reckoning", report);
+  for (const Published& p : kPublished)
+    if (set.name.find(p.data) != std::string::npos)
+      report.row(std::string(p.method) + " (published)",
+                 {format("%.3f +- %.3f", p.mean, p.deviation), "", "", "", ""});
+  if (set.reference && !set.relations.empty())
+    out["corrected_file"] =
+        evaluate(set, densify(*set.reference, set.odometry), "the corrected file's scans", report);
+
+  registration::ScanMapper mapper;
+  std::vector<double> step_ms;
+  std::vector<StampedPose> live;
+  const double start = cpu_seconds();
+  for (std::size_t i = 0; i < set.scans.size(); ++i) {
+    const double before = cpu_seconds();
+    live.push_back({set.times[i], mapper.add(set.poses_in_odom[i], set.scans[i])});
+    step_ms.push_back(1e3 * (cpu_seconds() - before));
+  }
+  const double drove = cpu_seconds();
+  out["full_ranges_live"] = evaluate(set, densify(Trajectory(std::move(live)), set.odometry),
+                                     "full ranges, believed at the time", report);
+  out["full_ranges_graph"] =
+      evaluate(set, densify(Trajectory(stamped(set.times, mapper.trajectory())), set.odometry),
+               "full ranges, graph at the end", report);
+  const double refining = cpu_seconds();
+  mapper.refine(2);
+  const double refined = cpu_seconds();
+  const std::vector<StampedPose> full = stamped(set.times, mapper.trajectory());
+  out["full_ranges"] =
+      evaluate(set, densify(Trajectory(full), set.odometry), "full ranges, refined", report);
+  const auto& r = mapper.report();
+  report.note(format(
+      "%zu nodes, %zu wide searches, %zu scans unmatched, %zu loop closures; %.1f s of CPU, a "
+      "scan %.1f ms, p99 %.0f ms; refining %.1f s",
+      r.nodes, r.searches, r.unmatched, r.loops, drove - start, quantile(step_ms, 0.5),
+      quantile(step_ms, 0.99), refined - refining));
+  out["full_ranges"]["cpu_s"] = drove - start;
+  out["full_ranges"]["refine_cpu_s"] = refined - refining;
+  out["full_ranges"]["scan_ms_p50"] = quantile(step_ms, 0.5);
+  out["full_ranges"]["scan_ms_p99"] = quantile(step_ms, 0.99);
+  out["full_ranges"]["loops"] = r.loops;
+  out["full_ranges"]["unmatched"] = r.unmatched;
+
+  // Sonar-like ranges, in the walls that the full ranges drew.
+  const maps::Map walls = walls_of(mapper.node_scans(), mapper.nodes());
+  report.note(format("%zu walls drawn from the full ranges", walls.features.size()));
+  SonarDrive heard;
+  heard.ring = ring;
+  heard.times = set.times;
+  heard.poses_in_odom = set.poses_in_odom;
+  for (const registration::Scan& scan : set.scans)
+    heard.readings.push_back(hear(scan, ring));
+  const SonarRun by_sonar = register_sonars(heard, walls, full.front().pose);
+  out["sonar_like"] = sonar_json(set, by_sonar, "7 virtual sonars, walls known", report);
+  if (set.sonars && set.map) {
+    const SonarRun simulated =
+        register_sonars(*set.sonars, *set.map, set.reference->poses().front().pose);
+    out["sonar"] = sonar_json(set, simulated, "simulated sonars, the map known", report);
+  }
+  if (drawing != nullptr) {
+    drawing->map = walls;
+    drawing->title = set.name;
+    drawing->trajectories.push_back({"full ranges", points_of(full, {})});
+    if (!by_sonar.poses.empty())
+      drawing->trajectories.push_back({"7 virtual sonars", points_of(by_sonar.poses, {})});
+    const Pose odom = relative(relative(full.front().pose, set.poses_in_odom.front()), Pose{});
+    drawing->trajectories.push_back({"dead reckoning", points_of(set.odometry.poses(), odom)});
+    if (set.reference) {
+      const Pairs pairs = pair_up(*set.reference, Trajectory(full));
+      drawing->trajectories.push_back(
+          {"reference", points_of(set.reference->poses(), alignment(pairs))});
     }
   }
+  report.end_of_set();
+  return out;
+}
+
+json measure_corridor(const std::string& folder, Report& report) {
+  const CorridorFindings f = interpret_corridor(parse_corridor(
+      read_file(folder + "/measurement.txt"), read_file(folder + "/poses.txt"), folder));
+  report.heading("sonar-corridor: eight real sonars along a corridor");
+  report.note(format(
+      "walls seen: %zu along the two, %zu elsewhere; the longest %.0f and %.0f mm off the fit",
+      f.walls, f.other_walls, 1e3 * f.left_offset, 1e3 * f.right_offset));
+  report.note(f.width ? format("corridors seen: %zu, the surest %.2f m wide (2.14 by the fit)",
+                               f.corridors, *f.width)
+                      : std::string("no corridor seen"));
+  report.note(f.gap_found ? format("the gap is seen: centre %.0f mm, width %.0f mm off",
+                                   1e3 * f.gap_centre_error, 1e3 * f.gap_width_error)
+                          : format("the gap is not seen as one; %zu of its ends", f.gap_ends));
+  report.note(format("openings elsewhere: %zu", f.other_openings));
+  report.end_of_set();
+  json out = {{"walls", f.walls},
+              {"other_walls", f.other_walls},
+              {"left_offset_m", f.left_offset},
+              {"right_offset_m", f.right_offset},
+              {"corridors", f.corridors},
+              {"gap_found", f.gap_found},
+              {"gap_ends", f.gap_ends},
+              {"gap_centre_error_m", f.gap_centre_error},
+              {"gap_width_error_m", f.gap_width_error},
+              {"other_openings", f.other_openings}};
+  if (f.width)
+    out["width_m"] = *f.width;
+  return out;
+}
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream out(path);
+  out << text << std::flush;
+  if (!out)
+    throw std::runtime_error(path + ": cannot be written");
+}
+
+struct Options {
+  std::string data;
+  LogFiles log;
+  std::vector<std::string> only;
+  std::string plot;
+  std::string report;
+  bool json = false;
+};
+
+int run(const Options& options) {
+  Report report;
+  json out;
+  SonarRing ring;
+  ring.mounts = pioneer_sonars();
+  const auto with = [&](const DataSet& set) {
+    maps::Drawing drawing;
+    out[set.name] = measure(set, ring, report, options.plot.empty() ? nullptr : &drawing);
+    if (!options.plot.empty()) {
+      fs::path path(options.plot);
+      std::string name = set.name;
+      std::replace(name.begin(), name.end(), ' ', '-');
+      path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
+      write(path.string(), maps::to_svg(drawing));
+    }
+  };
+  const auto wanted = [&](const std::string& name) {
+    return options.only.empty() ||
+           std::find(options.only.begin(), options.only.end(), name) != options.only.end();
+  };
+  if (!options.log.raw.empty()) {
+    with(load_data_set(fs::path(options.log.raw).stem().string(), options.log));
+  } else {
+    if (!options.data.empty() && fs::is_directory(options.data)) {
+      for (const LogFiles& files : find_logs(options.data)) {
+        const std::string name = fs::path(files.raw).parent_path().filename().string();
+        if (wanted(name))
+          with(load_data_set(name, files));
+      }
+      const std::string corridor = (fs::path(options.data) / "sonar-corridor").string();
+      if (fs::is_directory(corridor) && wanted("sonar-corridor"))
+        out["sonar-corridor"] = measure_corridor(corridor, report);
+    } else {
+      std::printf(
+          "no logs of real robots%s%s: give --data (or SAPHIRA_DATA) a folder of them "
+          "(tests/bench/registration/README.md); simulated logs only\n",
+          options.data.empty() ? "" : " in ", options.data.c_str());
+    }
+    for (const char* world : {"office-floor", "loop"})
+      if (wanted(world))
+        with(simulate_data_set(world, 2.0, kSeed, 9000));
+  }
+  if (!options.report.empty())
+    write(options.report, report.markdown());
+  if (options.json)
+    std::printf("%s\n", out.dump().c_str());
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Registration on logs of real robots"};
-  bool as_json = false;
-  std::string data;
-  app.add_flag("--json", as_json, "one JSON object on the last line");
-  app.add_option("--data", data, "the folder of the data sets")->envname("SAPHIRA_DATA");
+  CLI::App app{"Registration on logs of real and simulated robots"};
+  Options options;
+  app.add_flag("--json", options.json, "one JSON object on the last line");
+  app.add_option("--data", options.data, "the folder of the data sets, a folder each")
+      ->envname("SAPHIRA_DATA");
+  app.add_option("--only", options.only,
+                 "these alone: intel, fr101, sonar-corridor, office-floor...");
+  auto* log = app.add_option("--log", options.log.raw, "a CARMEN log instead (.gz or not)");
+  app.add_option("--relations", options.log.relations, "its reference relations")->needs(log);
+  app.add_option("--corrected", options.log.corrected, "its corrected log")->needs(log);
+  app.add_option("--report", options.report, "write the tables into this file (Markdown)");
+  app.add_option("--plot", options.plot, "draw each drive into FILE-NAME.svg")
+      ->type_name("FILE.svg");
   CLI11_PARSE(app, argc, argv);
   try {
-    return run(data);
+    return run(options);
   } catch (const std::exception& error) {
     std::cerr << "saphira-bench-registration: " << error.what() << '\n';
     return 2;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "../sonar/data.hpp"
+#include "saphira/lps/percept.hpp"
+
+namespace saphira::bench {
+
+/// What interpretation found with the readings of a real robot in a corridor. What is there is
+/// known from a fit to all readings at once (tests/bench/sonar): walls 2.14 m apart and one gap of
+/// 0.73 m in the left one, at x = 3.81 to 4.54 m.
+struct CorridorFindings {
+  std::size_t walls = 0;        ///< along the corridor's walls
+  std::size_t other_walls = 0;  ///< elsewhere
+  double left_offset = 0.0;     ///< [m] of the longest along each, from the fit at its middle
+  double right_offset = 0.0;
+  std::optional<double> width;  ///< [m] of the corridor with the greatest confidence
+  std::size_t corridors = 0;
+  bool gap_found = false;
+  double gap_centre_error = 0.0;       ///< [m] along the wall
+  double gap_width_error = 0.0;        ///< [m]
+  std::size_t gap_ends = 0;            ///< single ends within 0.3 m of one of its ends
+  std::size_t other_openings = 0;      ///< doors and junctions elsewhere in the two walls
+  std::vector<lps::Percept> percepts;  ///< each as it stood last
+};
+
+CorridorFindings interpret_corridor(const std::vector<CorridorRecord>& records);
+
+}  // namespace saphira::bench

@@ -1,0 +1,178 @@
+#include "data_set.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "drive/drive.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/random.hpp"
+#include "stamps.hpp"
+
+namespace saphira::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLaserReach = 20.0;  // [m]
+
+std::string first_of(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "" : names.front();
+}
+
+std::vector<Vec2> round_of(const std::string& world) {
+  if (world == "loop")
+    return {{2.0, 2.0}, {24.0, 2.0}, {24.0, 16.0}, {2.0, 16.0}};
+  return {{17.5, 24.6}, {25.0, 25.0}, {25.6, 7.0}, {34.0, 7.0}, {10.0, 7.0}, {17.5, 7.2}};
+}
+
+}  // namespace
+
+std::vector<LogFiles> find_logs(const std::string& folder) {
+  std::vector<std::string> folders;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_directory())
+      folders.push_back(entry.path().string());
+  folders.push_back(folder);
+  std::sort(folders.begin(), folders.end());
+  std::vector<LogFiles> out;
+  for (const std::string& each : folders) {
+    std::vector<std::string> logs;
+    std::vector<std::string> corrected;
+    std::vector<std::string> relations;
+    for (const auto& entry : fs::directory_iterator(each)) {
+      if (!entry.is_regular_file())
+        continue;
+      const std::string name = entry.path().filename().string();
+      const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
+      if (has(".relations"))
+        relations.push_back(entry.path().string());
+      else if (has("correct"))
+        corrected.push_back(entry.path().string());
+      else if (has(".log") || has(".clf"))
+        logs.push_back(entry.path().string());
+    }
+    if (!logs.empty())
+      out.push_back({first_of(logs), first_of(corrected), first_of(relations)});
+  }
+  return out;
+}
+
+DataSet load_data_set(const std::string& name, const LogFiles& files) {
+  DataSet set;
+  set.name = name;
+  CarmenLog raw = parse_carmen(read_log(files.raw), files.raw);
+  set.damaged = raw.damaged;
+  std::optional<CarmenLog> corrected;
+  if (!files.corrected.empty())
+    corrected = parse_carmen(read_log(files.corrected), files.corrected);
+  if (!files.relations.empty())
+    set.relations = parse_relations(read_log(files.relations), files.relations);
+
+  // The clock that knows the relations' stamps, or that the corrected file has.
+  Clock clock = Clock::ipc;
+  const auto hits = [&](Clock by) {
+    const Trajectory track = time_base(raw, by).odometry;
+    return std::count_if(set.relations.begin(), set.relations.end(),
+                         [&](const Relation& r) { return track.at(r.from) && track.at(r.to); });
+  };
+  if (!set.relations.empty()) {
+    if (hits(Clock::logger) > hits(Clock::ipc))
+      clock = Clock::logger;
+  } else if (corrected) {
+    const auto ipc = clock_offset(raw, Clock::ipc, *corrected);
+    const auto logger = clock_offset(raw, Clock::logger, *corrected);
+    if (ipc && logger && std::abs(*logger) < std::abs(*ipc))
+      clock = Clock::logger;
+  }
+  // What the merge of thinned logs is marked with: the stamp is interpolated.
+  const auto interpolated = [](const LaserScan& scan) { return scan.host == "A"; };
+  const bool mend = corrected && raw.odometry.empty() &&
+                    std::any_of(raw.scans.begin(), raw.scans.end(), interpolated);
+  TimeBase base = mend ? mend_stamps(raw, *corrected) : time_base(raw, clock);
+  set.odometry = std::move(base.odometry);
+  set.mended = base.mended;
+  if (!mend)
+    std::stable_sort(raw.scans.begin(), raw.scans.end(),
+                     [&](const LaserScan& a, const LaserScan& b) {
+                       return time_of(a.time, clock) < time_of(b.time, clock);
+                     });
+
+  std::set<double> stamps;
+  for (const LaserScan& scan : raw.scans) {
+    set.times.push_back(time_of(scan.time, clock));
+    set.poses_in_odom.push_back(scan.pose);
+    registration::Beams beams;
+    beams.first_angle = scan.first_angle;
+    beams.step = scan.step;
+    beams.sensor_in_robot = scan.laser_in_robot;
+    beams.max_range = std::min(kLaserReach, scan.no_return);
+    set.scans.push_back(registration::make_scan(scan.ranges, beams));
+    if (!mend || !interpolated(scan))
+      stamps.insert(set.times.back());
+  }
+  const auto known = [&](double stamp) {
+    const auto it = stamps.lower_bound(stamp - 5e-6);
+    return it != stamps.end() && *it < stamp + 5e-6;
+  };
+  for (const Relation& relation : set.relations)
+    if (known(relation.from) && known(relation.to))
+      set.exact_relations.push_back(relation);
+
+  if (corrected) {
+    const double offset = clock_offset(raw, clock, *corrected).value_or(0.0);
+    std::vector<StampedPose> poses;
+    for (const LaserScan& scan : corrected->scans)
+      poses.push_back({scan.time.ipc + offset, scan.pose});
+    set.reference.emplace(std::move(poses));
+  }
+  return set;
+}
+
+DataSet simulate_data_set(const std::string& world, double errors, std::uint64_t seed, int cycles) {
+  test::DriveOptions options;
+  options.world = world;
+  options.errors = errors;
+  options.seed = seed;
+  test::Drive drive(options);
+  test::Tour tour(round_of(world), true);
+  Random random(seed, 11);
+  DataSet set;
+  set.name = "simulated " + world;
+  set.map = maps::load_map(find_file(config_folder() + "/maps", world, ".map"));
+  set.sonars.emplace();
+  set.sonars->ring.mounts = drive.mounts();
+  std::vector<StampedPose> odometry;
+  std::vector<StampedPose> truth;
+  registration::Beams beams;
+  beams.step = radians(1.0);
+  for (int cycle = 1; cycle <= cycles; ++cycle) {
+    const test::Seen& seen = drive.advance();
+    const double time = 0.1 * cycle;
+    tour.act(drive, seen.true_pose_in_world);
+    odometry.push_back({time, seen.pose_in_odom});
+    truth.push_back({time, seen.true_pose_in_world});
+    set.sonars->times.push_back(time);
+    set.sonars->poses_in_odom.push_back(seen.pose_in_odom);
+    set.sonars->readings.push_back(seen.readings);
+    if (cycle % 3 != 0)
+      continue;
+    std::vector<double> ranges;
+    for (int i = 0; i <= 180; ++i) {
+      const double at = seen.true_pose_in_world.th + beams.first_angle + i * beams.step;
+      const auto hit = sim::cast_ray(drive.world().segments, seen.true_pose_in_world.position(),
+                                     {std::cos(at), std::sin(at)}, kLaserReach);
+      ranges.push_back(hit ? hit->range + random.normal(0.0, 0.01) : 80.0);
+    }
+    set.times.push_back(time);
+    set.poses_in_odom.push_back(seen.pose_in_odom);
+    set.scans.push_back(registration::make_scan(ranges, beams));
+  }
+  set.odometry = Trajectory(std::move(odometry));
+  set.reference.emplace(std::move(truth));
+  return set;
+}
+
+}  // namespace saphira::bench

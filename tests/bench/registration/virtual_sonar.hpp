@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/registration/scan_matching.hpp"
+
+namespace saphira::bench {
+
+/// What sonars would have heard where a laser scanned: the nearest surface in a sonar's cone that
+/// does not mirror the sound away.
+struct SonarRing {
+  std::vector<lps::SonarMount> mounts;
+  double half_cone = radians(12.5);
+  double incidence =
+      radians(25.0);       ///< surfaces that are hit farther off their normal are not heard
+  double max_range = 5.0;  ///< [m]
+};
+
+/// Those of config/robots/pioneer.p.
+std::vector<lps::SonarMount> pioneer_sonars();
+
+std::vector<lps::SonarReading> hear(const registration::Scan& scan, const SonarRing& ring);
+
+}  // namespace saphira::bench
