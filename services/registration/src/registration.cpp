@@ -99,6 +99,7 @@ class Registration::Self {
   std::vector<PlacedReading> place(const std::vector<lps::SonarReading>& readings) const;
   std::vector<const Percept*> fresh(const Inputs& inputs);
   void correct(const std::vector<const Percept*>& percepts);
+  void correct(const std::vector<PlacedReading>& readings);
   void look_elsewhere(const std::vector<PlacedReading>& readings,
                       const std::vector<const Percept*>& percepts);
   bool uses_old_readings(const Percept& percept) const;
@@ -126,7 +127,8 @@ class Registration::Self {
   std::uint64_t cycle_ = 0;
   std::optional<std::uint64_t> odom_;
   Pose pose_in_odom_;
-  Pose moved_;  // in this cycle
+  Pose moved_;                   // in this cycle
+  double since_readings_ = 0.0;  // [m] of way since readings corrected it
   std::vector<Done> done_;
   std::set<std::pair<std::uint64_t, int>> used_;  // readings of accepted percepts
   std::optional<Memory> restored_;
@@ -291,12 +293,44 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
     done_.erase(done_.begin(), done_.begin() + 100);
 }
 
+void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
+  since_readings_ += std::hypot(moved_.x, moved_.y) + 0.3 * std::abs(moved_.th);
+  if (since_readings_ < settings_.search.spacing || !filter_ || state_ != State::tracking)
+    return;
+  since_readings_ = 0.0;
+  for (const PlacedReading& reading : readings) {
+    if (!reading.echo || reading.range > settings_.wall_range)
+      continue;
+    const Pose robot = filter_->pose();
+    const Pose sensor = compose(robot, relative(pose_in_odom_, reading.sensor_in_odom));
+    const Field::Nearest nearest = field_.nearest(sensor.position());
+    if (nearest.towards.dot(sensor.direction()) < std::cos(settings_.range.facing))
+      continue;
+    const Vec2 arm = sensor.position() - robot.position();
+    Eigen::Matrix<double, 1, 4> jacobian = Eigen::Matrix<double, 1, 4>::Zero();
+    jacobian.leftCols<2>() = -nearest.towards.transpose();
+    jacobian(0, 2) = -nearest.towards.dot(Vec2(-arm.y(), arm.x()));
+    const double spread =
+        std::sqrt((jacobian * filter_->covariance() * jacobian.transpose()).value());
+    const Eigen::Matrix<double, 1, 1> innovation(reading.range - nearest.distance);
+    if (std::abs(innovation.value()) > std::clamp(1.5 * spread, 0.15, 0.3))
+      continue;
+    filter_->correct<1>(innovation, jacobian,
+                        Eigen::Matrix<double, 1, 1>(settings_.wall_sigma * settings_.wall_sigma));
+  }
+}
+
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
   search_.step(pose_in_odom_, readings, percepts, filter_ ? &*filter_ : nullptr);
   const auto best = search_.best(state_ == State::tracking);
   if (!best || !best->sure)
     return;
+  if (state_ == State::tracking) {
+    // Said before it is mended, so that who relies on the pose hears that it did not hold.
+    state_ = State::lost;
+    return;
+  }
   const PoseFilter found = best->hypothesis->filter;
   const double drift_variance = found.covariance()(3, 3);
   place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 1.0);
@@ -311,6 +345,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     const std::vector<PlacedReading> readings = place(inputs.readings);
     const std::vector<const Percept*> percepts = fresh(inputs);
     correct(percepts);
+    correct(readings);
     look_elsewhere(readings, percepts);
     if (state_ == State::tracking && search_.own_score() < settings_.lost)
       state_ = State::lost;

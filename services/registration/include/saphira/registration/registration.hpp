@@ -37,6 +37,10 @@ struct Settings {
   double least_confidence = 0.5;        ///< percepts that are less sure are left alone
   std::uint64_t fresh = 15;             ///< [cycles] percepts seen longer ago are left alone
 
+  // Single readings of a wall that faces the sonar: little by little, between percepts.
+  double wall_sigma = 0.15;  ///< [m] so much since they are not independent
+  double wall_range = 2.5;   ///< [m] the farthest that count
+
   // Scores of raw readings at the believed pose, see SearchSettings.
   double sure = 15.0;  ///< from which on they fit; a robot that tracks has 20 to 40
   double lost = -6.0;  ///< below which the pose does not hold

@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "localization/patrol.hpp"
+#include "saphira/base/random.hpp"
+
+namespace saphira::test {
+namespace {
+
+using registration::Output;
+using registration::State;
+
+std::string source(const std::string& path) {
+  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
+}
+
+maps::Map office() {
+  return maps::load_map(source("config/maps/office-floor.map"));
+}
+
+DriveOptions doubled(std::uint64_t seed) {
+  DriveOptions options;
+  options.seed = seed;
+  options.errors = 2.0;
+  return options;
+}
+
+const Pose kStart{17.5, 14.0, -kPi / 2};
+
+/// The office floor with more in it, as a file.
+std::string office_with(const std::string& name, const std::string& more) {
+  const std::string path = testing::TempDir() + "saphira-" + name + ".wld";
+  std::ifstream in(source("config/worlds/office-floor.wld"));
+  std::ofstream out(path);
+  out << in.rdbuf() << "\n" << more;
+  return path;
+}
+
+TEST(Localization, OnPatrolThePoseStaysWithinAHandOfTheTruth) {
+  Localizer robot(doubled(1), office(), kStart);
+  const PatrolResult result = patrol(robot, office_tour(), 9000);
+  EXPECT_GT(result.way, 200.0);
+  EXPECT_EQ(result.not_tracking, 0);
+  EXPECT_LT(quantile(result.registered.position, 0.95), 0.3);
+  EXPECT_LT(quantile(result.registered.heading, 0.95), radians(5.0));
+  EXPECT_GT(quantile(result.reckoned.position, 0.95), 1.0);
+}
+
+TEST(Localization, TheSameSeedGivesTheSamePoseToTheLastBit) {
+  Localizer a(doubled(3), office(), kStart);
+  Localizer b(doubled(3), office(), kStart);
+  patrol(a, office_tour(), 1500);
+  patrol(b, office_tour(), 1500);
+  EXPECT_EQ(a.believed(), b.believed());
+  EXPECT_EQ(a.registration().output().covariance, b.registration().output().covariance);
+}
+
+TEST(Localization, AWrongInitialPoseIsCorrected) {
+  Random random(5);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const double way = random.uniform(-kPi, kPi);
+    const Pose wrong{kStart.x + 0.5 * std::cos(way), kStart.y + 0.5 * std::sin(way),
+                     kStart.th + radians(seed % 2 == 0 ? 15.0 : -15.0)};
+    Localizer robot(doubled(seed), office(), std::nullopt);
+    robot.registration().set_pose(wrong, {0.35, radians(10.0)});
+    const PatrolResult result = patrol(robot, office_tour(), 1800);
+    EXPECT_EQ(result.not_tracking, 0) << "seed " << seed;
+    EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.3)
+        << "seed " << seed;
+  }
+}
+
+TEST(Localization, WithoutAPoseItFindsItAndSaysNothingBefore) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    DriveOptions options = doubled(seed);
+    std::vector<Vec2> points = office_tour();
+    std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(4 * seed),
+                points.end());
+    const Vec2 ahead = points[1] - points[0];
+    options.start_in_world = Pose{points[0].x(), points[0].y(), std::atan2(ahead.y(), ahead.x())};
+    points.erase(points.begin());
+    Localizer robot(options, office(), std::nullopt);
+    EXPECT_EQ(robot.registration().output().state, State::unplaced);
+    Tour tour(points, true);
+    bool found = false;
+    for (int i = 0; i < 3000; ++i) {
+      tour.act(robot.drive(), robot.truth());
+      const Output& output = robot.advance();
+      if (output.state == State::tracking) {
+        found = true;
+        ASSERT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.5)
+            << "seed " << seed << " cycle " << i;
+      }
+    }
+    EXPECT_TRUE(found) << "seed " << seed;
+    EXPECT_EQ(robot.registration().output().state, State::tracking);
+  }
+}
+
+TEST(Localization, WhoIsCarriedAwaySaysThatHeIsLostAndFindsHimselfAgain) {
+  Localizer robot(doubled(1), office(), kStart);
+  patrol(robot, office_tour(), 1200);
+  ASSERT_EQ(robot.registration().output().state, State::tracking);
+  ASSERT_TRUE(robot.drive().robot().place({25.6, 12.0, kPi / 2}));
+  Tour tour({{25.6, 24.0}, {24.0, 25.0}, {17.5, 25.0}, {17.5, 9.0}}, true);
+  bool lost = false;
+  for (int i = 0; i < 1800; ++i) {
+    tour.act(robot.drive(), robot.truth());
+    lost = robot.advance().state == State::lost || lost;
+  }
+  EXPECT_TRUE(lost);
+  EXPECT_EQ(robot.registration().output().state, State::tracking);
+  EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.3);
+}
+
+TEST(Localization, PeopleClosedDoorsAndBoxesDoNotMisleadIt) {
+  DriveOptions options = doubled(2);
+  options.world =
+      office_with("busy",
+                  "person bob 17000 20000\n"
+                  "  walk 17000 9000 900  wait 3  walk 17000 22000 900  wait 3  repeat\n"
+                  "person ann 25100 11000\n"
+                  "  walk 25100 22000 700  wait 5  walk 25100 11000 700  repeat\n"
+                  "door a 16500 13100 16500 14000 90\n"
+                  "door b 18500 16300 18500 17200 -90\n"
+                  "door c 26600 12800 26600 11900 90\n"
+                  "door d 16600 6000 15700 6000 90\n"
+                  "door e 21800 6000 20900 6000 90\n"
+                  "box crate 26300 19000 20 400 400 50\n"
+                  "box chest 18200 10000 0 350 700 50\n");
+  maps::Map map = office();
+  // One was here when the map was made.
+  maps::Feature moved;
+  moved.type = lps::PointType::object;
+  moved.id = 9000;
+  moved.pose_in_map = {18.2, 15.4, 0.0};
+  moved.length = 0.4;
+  moved.width = 0.6;
+  map.features.push_back(moved);
+  Localizer robot(options, map, kStart);
+  const PatrolResult result = patrol(robot, office_tour(), 6000);
+  EXPECT_GT(result.reached, 10U);
+  EXPECT_EQ(result.not_tracking, 0);
+  EXPECT_LT(quantile(result.registered.position, 0.95), 0.3);
+}
+
+TEST(Localization, AMapThatIsPartlyWrongDoesNotLoseIt) {
+  maps::Map map = office();
+  // Every fourth door is forgotten, some stand half a metre off, and a corridor is 15 cm too wide.
+  std::size_t doors = 0;
+  maps::Map wrong;
+  for (maps::Feature feature : map.features) {
+    if (feature.type == lps::PointType::door) {
+      ++doors;
+      if (doors % 4 == 0)
+        continue;
+      if (doors % 7 == 0)
+        feature.pose_in_map.x += feature.pose_in_map.y < 8.0 ? 0.5 : 0.0;
+    }
+    if (feature.id == 4)
+      feature.width += 0.15;
+    wrong.features.push_back(feature);
+  }
+  Localizer robot(doubled(4), wrong, kStart);
+  const PatrolResult result = patrol(robot, office_tour(), 6000);
+  EXPECT_EQ(result.not_tracking, 0);
+  EXPECT_LT(quantile(result.registered.position, 0.95), 0.4);
+}
+
+TEST(Localization, ARestartGoesOnWithoutAJump) {
+  Localizer robot(doubled(1), office(), kStart);
+  patrol(robot, office_tour(), 900);
+  const registration::Memory memory = robot.registration().save();
+  const Pose before = robot.believed();
+  registration::Settings settings;
+  settings.sonars = robot.drive().mounts();
+  registration::Registration again(settings, office());
+  again.restore(memory);
+  EXPECT_EQ(again.output().state, State::tracking);
+  EXPECT_EQ(again.output().pose_in_map, before);
+  // Two seconds were missed; the way in them is made up for by dead reckoning.
+  Tour tour(office_tour(), true);
+  for (int i = 0; i < 20; ++i) {
+    tour.act(robot.drive(), robot.believed());
+    robot.advance();
+  }
+  const Seen& seen = robot.drive().seen();
+  again.step({seen.cycle, 1, seen.pose_in_odom, robot.percepts(), seen.readings});
+  EXPECT_LT((again.output().pose_in_map.position() - robot.truth().position()).norm(), 0.2);
+}
+
+TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
+  Localizer robot(doubled(1), office(), kStart);
+  patrol(robot, office_tour(), 300);
+  robot.registration().switch_on(false);
+  Tour tour(office_tour(), true);
+  for (int i = 0; i < 100; ++i) {
+    tour.act(robot.drive(), robot.believed());
+    const Output& output = robot.advance();
+    EXPECT_EQ(output.state, State::off);
+    EXPECT_TRUE(output.matches.empty());
+  }
+  EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.6);
+  robot.registration().switch_on(true);
+  EXPECT_EQ(robot.advance().state, State::tracking);
+}
+
+TEST(Localization, TheEnvironmentIsTheCorridorOrJunctionThatItIsIn) {
+  Localizer robot(doubled(1), office(), kStart);
+  robot.advance();
+  const maps::Map map = office();
+  const auto environment = robot.registration().output().environment;
+  ASSERT_TRUE(environment.has_value());
+  EXPECT_EQ(map.features[*environment].id, 2U);
+  Tour tour({{17.5, 7.2}}, false);
+  while (tour.act(robot.drive(), robot.believed()) && robot.drive().seen().cycle < 600)
+    robot.advance();
+  EXPECT_EQ(map.features[*robot.registration().output().environment].id, 12U);
+}
+
+}  // namespace
+}  // namespace saphira::test

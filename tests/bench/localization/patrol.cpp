@@ -1,0 +1,85 @@
+#include "localization/patrol.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace saphira::test {
+namespace {
+
+registration::Settings registration_settings(const Drive& drive) {
+  registration::Settings settings;
+  settings.sonars = drive.mounts();
+  return settings;
+}
+
+interpretation::Settings interpretation_settings(const Drive& drive) {
+  interpretation::Settings settings;
+  settings.sonars = drive.mounts();
+  return settings;
+}
+
+}  // namespace
+
+Localizer::Localizer(const DriveOptions& drive, maps::Map map, std::optional<Pose> pose_in_map)
+    : drive_(drive),
+      start_(drive_.seen().true_pose_in_world),
+      interpretation_(interpretation_settings(drive_)),
+      registration_(registration_settings(drive_), std::move(map), pose_in_map) {}
+
+const registration::Output& Localizer::advance() {
+  const Seen& seen = drive_.advance();
+  const double before = clock_ ? clock_() : 0.0;
+  percepts_ = interpretation_.step({seen.cycle, seen.pose_in_odom, seen.readings}).percepts;
+  const registration::Output& output =
+      registration_.step({seen.cycle, 1, seen.pose_in_odom, percepts_, seen.readings});
+  took_ = clock_ ? clock_() - before : 0.0;
+  return output;
+}
+
+void Offs::add(const Pose& believed, const Pose& truth) {
+  position.push_back((believed.position() - truth.position()).norm());
+  heading.push_back(std::abs(norm2_angle(believed.th - truth.th)));
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty())
+    return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::vector<Vec2> office_tour(bool library) {
+  std::vector<Vec2> points{{17.5, 8.0},  {19.0, 7.0},  {24.6, 7.0},  {25.6, 8.5},
+                           {25.6, 24.0}, {24.0, 25.0}, {17.5, 25.0}, {12.0, 25.0}};
+  if (library)
+    points.insert(points.end(), {{8.0, 25.0}, {6.25, 22.0}, {6.25, 10.0}, {6.25, 7.2}});
+  else
+    points.insert(points.end(), {{16.0, 25.0}, {17.5, 23.5}, {17.5, 9.0}, {16.0, 7.0}, {3.0, 6.8}});
+  points.insert(points.end(),
+                {{17.0, 7.0}, {35.0, 7.0}, {27.0, 7.0}, {19.0, 7.0}, {17.5, 9.0}, {17.5, 23.0}});
+  return points;
+}
+
+PatrolResult patrol(Localizer& robot, const std::vector<Vec2>& points, int cycles) {
+  PatrolResult result;
+  Tour tour(points, true);
+  Vec2 last = robot.truth().position();
+  for (int i = 0; i < cycles; ++i) {
+    tour.act(robot.drive(), i == 0 ? robot.truth() : robot.believed());
+    const registration::Output& output = robot.advance();
+    result.way += (robot.truth().position() - last).norm();
+    last = robot.truth().position();
+    result.reckoned.add(robot.reckoned(), robot.truth());
+    if (output.state == registration::State::tracking)
+      result.registered.add(output.pose_in_map, robot.truth());
+    else
+      ++result.not_tracking;
+    result.took.push_back(robot.took());
+  }
+  result.reached = tour.reached();
+  return result;
+}
+
+}  // namespace saphira::test
