@@ -340,6 +340,7 @@ int go(const std::string& place, bool only_say, const bus::NodeOptions& options,
 
 /// Explores the floor and lets registration map it; writes the map when nothing is left.
 int build(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
+  constexpr double kWayStep = 0.4;  // [m]
   View view(options);
   auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
   auto requests = view.node.writer(bus::topics::kRegistrationRequest);
@@ -361,7 +362,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   std::vector<Vec2> way;
   std::vector<lps::SonarReading> readings;
   std::optional<v1::GoalId> goal;
-  std::optional<Vec2> driving_to;
+  Vec2 driving_to{0.0, 0.0};
+  std::string functor;
   std::string told;
   std::size_t corridors = 0;
   std::size_t doors = 0;
@@ -369,7 +371,6 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     if (goal)
       goals.cancel(*goal);
     goal.reset();
-    driving_to.reset();
   };
   bool done = false;
   while (!done && !stop.requested()) {
@@ -388,7 +389,11 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     if (!view.poll() || !explorer)
       continue;
     const Pose pose_in_map = lps::from_bus(view.registration->pose_in_map());
-    way.push_back(pose_in_map.position());
+    // The way as places that are well apart, and where it is now.
+    if (way.size() > 1 && (way.back() - way[way.size() - 2]).norm() < kWayStep)
+      way.back() = pose_in_map.position();
+    else
+      way.push_back(pose_in_map.position());
     const explore::Output& next =
         explorer->step({view.registration->stamp().cycle(), pose_in_map, view.map, way, readings});
     readings.clear();
@@ -411,7 +416,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     doors = now_doors;
     std::fflush(stdout);
     done = next.done;
-    if (!next.point_in_map) {
+    const std::optional<Vec2> point = next.look_at ? next.look_at : next.point_in_map;
+    if (!point) {
       drop();
       continue;
     }
@@ -421,18 +427,24 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
       if (status && bus::ended(status->state()))
         goal.reset();
     }
-    if (goal && driving_to && (*driving_to - *next.point_in_map).norm() < 0.02)
-      continue;
     v1::Goal wanted;
-    wanted.functor("go_to");
-    wanted.arguments(
-        {bus::point("position", next.point_in_map->x(), next.point_in_map->y(), 0.0, v1::FRAME_MAP),
-         bus::number("speed", next.speed), bus::number("radius", 0.2)});
+    wanted.functor(next.look_at ? "turn_to" : "go_to");
+    wanted.arguments({bus::point("position", point->x(), point->y(), 0.0, v1::FRAME_MAP)});
+    if (!next.look_at) {
+      wanted.arguments().push_back(bus::number("speed", next.speed));
+      wanted.arguments().push_back(bus::number("radius", 0.2));
+    }
+    const bool same = wanted.functor() == functor;
+    if (goal && same && (driving_to - *point).norm() < 0.02)
+      continue;
+    if (goal && !same)
+      drop();
     if (goal)
       goals.change(*goal, wanted);
     else
       goal = goals.ask(wanted);
-    driving_to = next.point_in_map;
+    functor = wanted.functor();
+    driving_to = *point;
   }
   drop();
   goals.delivered(1000);

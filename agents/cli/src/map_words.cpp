@@ -11,6 +11,8 @@
 namespace saphira::cli {
 namespace {
 
+constexpr double kAnywhere = 100.0;  ///< [m] with a larger sigma there is no place to speak of
+
 constexpr const char* kWords =
     "expected load FILE, delete, put \"LINE OF A MAP FILE\", remove ID, place X Y TH or place "
     "NAME, "
@@ -122,13 +124,20 @@ std::string describe(const v1::Registration& registration, const maps::Map& map)
   // The longer axis of the ellipse of one sigma.
   const double middle = 0.5 * (c.xx() + c.yy());
   const double spread = std::hypot(0.5 * (c.xx() - c.yy()), c.xy());
-  const v1::Pose2& pose = registration.pose_in_map();
-  char line[200];
-  std::snprintf(line, sizeof line, "%-8s (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure",
-                name_of(registration.state()), pose.x(), pose.y(), degrees(pose.th()),
-                std::sqrt(std::max(0.0, middle + spread)),
-                degrees(std::sqrt(std::max(0.0, c.thth()))), 100.0 * registration.confidence());
-  std::string text = line;
+  const double sigma = std::sqrt(std::max(0.0, middle + spread));
+  std::string text = name_of(registration.state());
+  text.resize(8, ' ');
+  if (sigma < kAnywhere) {
+    const v1::Pose2& pose = registration.pose_in_map();
+    char numbers[120];
+    std::snprintf(numbers, sizeof numbers,
+                  " (%.2f, %.2f, %.0f deg) +-%.2f m, %.1f deg, %.0f %% sure", pose.x(), pose.y(),
+                  degrees(pose.th()), sigma, degrees(std::sqrt(std::max(0.0, c.thth()))),
+                  100.0 * registration.confidence());
+    text += numbers;
+  } else {
+    text += " it may be anywhere";
+  }
   if (const maps::Feature* in =
           registration.environment() == 0 ? nullptr : maps::find(map, registration.environment()))
     text += ", in " + describe(*in);
