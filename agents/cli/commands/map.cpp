@@ -196,7 +196,9 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
         const auto percept = percepts.find(match.percept());
         const maps::Feature* const artifact =
             match.artifact() == 0 ? nullptr : maps::find(view.map, match.artifact());
-        if (percept != percepts.end() && artifact != nullptr)
+        // Of a corridor the middle says nothing of where it was matched.
+        if (percept != percepts.end() && artifact != nullptr &&
+            artifact->type != lps::PointType::corridor)
           drawing.matches.push_back({transform(lps::from_bus(view.registration->odom_in_map()),
                                                percept->second.position()),
                                      artifact->pose_in_map.position(), match.accepted()});
@@ -209,7 +211,9 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   for (auto& [key, tile] : tiles)
     all.push_back(std::move(tile));
   drawing.map = view.map;
-  drawing.title = describe(*view.registration, view.map);
+  const maps::Feature* const in = maps::find(view.map, view.registration->environment());
+  drawing.title = name_of(view.registration->state()) +
+                  (in == nullptr ? std::string() : ", in " + describe(*in));
   drawing.raster = raster_of(all, *view.registration);
   if (!way.points_in_map.empty())
     drawing.trajectories.push_back(std::move(way));
