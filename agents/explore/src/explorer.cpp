@@ -50,8 +50,13 @@ const Output& Explorer::step(const Inputs& inputs) {
 
 void Explorer::listen(const Inputs& inputs) {
   for (const lps::SonarReading& reading : inputs.readings)
-    heard_.push_back({reading.sonar, reading.echo ? reading.range : lps::kNothing, inputs.cycle});
-  std::erase_if(heard_, [&](const Heard& h) { return h.cycle + kFresh < inputs.cycle; });
+    heard_.push_back({reading.sonar, reading.echo ? reading.range : lps::kNothing, inputs.cycle,
+                      inputs.pose_in_map.th});
+  // After a turn the sonars look elsewhere.
+  std::erase_if(heard_, [&](const Heard& h) {
+    return h.cycle + kFresh < inputs.cycle ||
+           std::abs(norm2_angle(h.heading - inputs.pose_in_map.th)) > radians(8.0);
+  });
 }
 
 bool Explorer::is_tried(const Lead& lead) const {
@@ -88,16 +93,19 @@ std::vector<Explorer::Lead> Explorer::leads(const Inputs& inputs) const {
       for (const bool upper : {true, false}) {
         const Vec2 end = upper ? maps::end_of(f) : maps::begin_of(f);
         const double heading = upper ? f.pose_in_map.th : norm2_angle(f.pose_in_map.th + kPi);
-        const bool meets = std::any_of(junctions.begin(), junctions.end(), [&](const Feature* j) {
-          return maps::distance_to(*j, end) < 0.6;
-        });
-        if (!meets)
-          offer({end, heading, "the end of corridor " + std::to_string(f.id), false});
+        // What ends where another corridor comes from the side may go on behind it.
+        const auto junction =
+            std::find_if(junctions.begin(), junctions.end(),
+                         [&](const Feature* j) { return maps::distance_to(*j, end) < 0.6; });
+        const bool meets = junction != junctions.end();
+        const Vec2 from = meets ? (*junction)->pose_in_map.position() : end;
+        if (!meets || !mapped_along(inputs.map, from, heading))
+          offer({from, heading, "the end of corridor " + std::to_string(f.id), false, false});
       }
     } else if (f.type == PointType::breach) {
       const double inwards = norm2_angle(f.pose_in_map.th + kPi);
       if (!mapped_along(inputs.map, f.pose_in_map.position(), inwards))
-        offer({f.pose_in_map.position(), inwards, "opening " + std::to_string(f.id), false});
+        offer({f.pose_in_map.position(), inwards, "opening " + std::to_string(f.id), false, true});
     }
   }
   for (const Lead& lead : seen_open_)
@@ -161,17 +169,21 @@ void Explorer::choose(const Inputs& inputs) {
   if (open.empty() && corridors < settings_.least_corridors)
     for (const double turn : {0.0, kPi / 2, -kPi / 2, kPi}) {
       const Lead lead{inputs.pose_in_map.position(), norm2_angle(start_in_map_.th + turn),
-                      "straight on", false};
+                      "straight on", false, false};
       if (!is_tried(lead)) {
         open.push_back(lead);
         break;
       }
     }
-  if (open.empty() && settings_.go_home &&
-      (inputs.pose_in_map.position() - start_in_map_.position()).norm() > 1.0) {
-    Lead home{start_in_map_.position(), start_in_map_.th, "the start", true};
-    if (!is_tried(home))
+  if (open.empty() && settings_.home > 0.0) {
+    // Along the way that it went first, so that what was seen there is seen again.
+    std::size_t i = 0;
+    for (double gone = 0.0; i + 1 < inputs.way.size() && gone < settings_.home; ++i)
+      gone += (inputs.way[i + 1] - inputs.way[i]).norm();
+    Lead home{inputs.way[i], start_in_map_.th, "the start", true, false};
+    if (!home_)
       open.push_back(home);
+    home_ = true;
   }
   std::optional<Lead> best;
   std::vector<std::size_t> best_path;
@@ -262,7 +274,7 @@ void Explorer::probe(const Inputs& inputs) {
   double heading = lead_->heading;
   double mapped = -kNone;  // how far along the heading the map goes
   for (const Feature& f : inputs.map.features) {
-    if (f.type != PointType::corridor || maps::distance_to(f, here) > settings_.beyond)
+    if (f.type != PointType::corridor || maps::distance_to(f, here) > settings_.beyond + 2.0)
       continue;
     const Pose in = relative({here.x(), here.y(), heading}, f.pose_in_map);
     if (std::abs(norm3_angle(in.th)) > radians(20.0) || std::abs(in.y) > 1.0)
@@ -272,6 +284,7 @@ void Explorer::probe(const Inputs& inputs) {
     heading = same_way ? f.pose_in_map.th : norm2_angle(f.pose_in_map.th + kPi);
     mapped = in.x + f.length / 2;
   }
+  in_corridor_ = mapped > -kNone;
   const Vec2 u = ahead({0.0, 0.0}, heading, 1.0);
   const double at = u.dot(here - point);
   const double from = u.dot(probe_from_ - point);
@@ -283,11 +296,37 @@ void Explorer::probe(const Inputs& inputs) {
   }
   const bool stuck = inputs.cycle > progress_cycle_ + settings_.patience;
   const double off = std::abs(u.x() * (here - point).y() - u.y() * (here - point).x());
-  const bool away = off > settings_.aside && done > 0.5 && mapped == -kNone;
-  if (stuck || away || gone > settings_.beyond) {
+  const bool away = off > settings_.aside && done > 0.5;
+  if (squeeze_ && done > *squeeze_ + 1.5)
+    squeeze_.reset();  // that was only something in the way
+  const double turned = norm2_angle(inputs.pose_in_map.th - heading);
+  const bool front = !squeeze_ && off < settings_.aside && std::abs(turned) < radians(35.0) &&
+                     heard(-turned).value_or(heard(0.0).value_or(lps::kNothing)) < settings_.front;
+  if (front) {
+    // The sides first: what is ahead turns the robot away, into a door as likely as not. Then on,
+    // for it may be a box.
+    look_from_ = point + at * u;
+    output_.reason = lead_->what + ": something ahead";
+    if (passable())
+      squeeze_ = done;
+    else
+      tried_.push_back(
+          {point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
+    begin_looking(inputs);
+    look(inputs);
+    return;
+  }
+  const double beyond = lead_->opening ? settings_.beyond_opening : settings_.beyond;
+  if (stuck || away || gone > beyond) {
     output_.reason = lead_->what + (stuck  ? ": closed"
                                     : away ? ": turned away"
                                            : ": open, and nothing follows");
+    // An end that was left behind on the way into the open has been tried with it.
+    tried_.push_back({point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
+    if (squeeze_) {
+      finish(inputs);
+      return;
+    }
     look_from_ = point + at * u;
     begin_looking(inputs);
     look(inputs);
@@ -297,18 +336,22 @@ void Explorer::probe(const Inputs& inputs) {
   output_.speed = settings_.speed;
 }
 
-// The middle one of what the sonars that look ahead have heard of late.
-double Explorer::heard_ahead() const {
+std::optional<double> Explorer::heard(double bearing) const {
   std::vector<double> ranges;
   for (const lps::SonarMount& mount : settings_.sonars)
-    if (std::abs(mount.in_robot.th) < kStraight)
+    if (std::abs(norm2_angle(mount.in_robot.th - bearing)) < kStraight)
       for (const Heard& h : heard_)
         if (h.sonar == mount.sonar)
           ranges.push_back(h.range);
   if (ranges.empty())
-    return 0.0;
+    return std::nullopt;
   std::sort(ranges.begin(), ranges.end());
   return ranges[ranges.size() / 2];
+}
+
+bool Explorer::passable() const {
+  return heard(radians(30.0)).value_or(lps::kNothing) > 2 * settings_.front ||
+         heard(radians(-30.0)).value_or(lps::kNothing) > 2 * settings_.front;
 }
 
 // Where it goes no farther, other ways may begin.
@@ -317,20 +360,31 @@ void Explorer::begin_looking(const Inputs& inputs) {
   looks_ = {norm2_angle(lead_->heading + kPi / 2), norm2_angle(lead_->heading - kPi / 2)};
   look_cycle_ = inputs.cycle;
   steady_cycle_ = 0;
-  const auto corridor = [&](const Feature& f) { return f.type == PointType::corridor; };
-  const auto& features = inputs.map.features;
-  const bool beside_one = std::any_of(features.begin(), features.end(), [&](const Feature& f) {
-    return corridor(f) && maps::distance_to(f, look_from_) < settings_.beyond / 2;
-  });
   // Ways that begin in a room are doors.
-  if (!beside_one && std::any_of(features.begin(), features.end(), corridor))
+  const bool any = std::any_of(inputs.map.features.begin(), inputs.map.features.end(),
+                               [](const Feature& f) { return f.type == PointType::corridor; });
+  if (any && !in_corridor_)
     looks_.clear();
   // A way aside is as wide as corridors are: its middle is not at the wall in front.
-  const double front = heard_ahead();
+  const double front = heard(0.0).value_or(lps::kNothing);
   const bool straight =
-      std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(20.0);
+      std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(12.0);
   look_from_ =
       ahead(look_from_, lead_->heading, straight && front < kHalfWidth ? front - kHalfWidth : 0.0);
+  if (!straight)
+    return;
+  // It stands along the way, and its sonars look aside: no need to turn, which costs dead reckoning
+  // more than a way.
+  std::erase_if(looks_, [&](double heading) {
+    const auto range = heard(norm2_angle(heading - lead_->heading));
+    if (!range)
+      return false;
+    Lead side{look_from_, heading, "a way aside", false, false};
+    if (*range > settings_.open_side && !mapped_along(inputs.map, look_from_, heading) &&
+        !is_tried(side))
+      seen_open_.push_back(side);
+    return true;
+  });
 }
 
 void Explorer::look(const Inputs& inputs) {
@@ -340,14 +394,26 @@ void Explorer::look(const Inputs& inputs) {
     looks_.erase(looks_.begin());
   if (looks_.empty()) {
     output_.look_at.reset();
-    finish(inputs);
+    if (squeeze_) {
+      doing_ = Doing::probing;
+      progress_cycle_ = inputs.cycle;
+    } else {
+      finish(inputs);
+    }
+    return;
+  }
+  if ((look_from_ - pose.position()).norm() > 0.45 && steady_cycle_ == 0 &&
+      inputs.cycle < look_cycle_ + settings_.patience / 2) {
+    output_.look_at.reset();  // back into the middle first
+    output_.point_in_map = look_from_;
+    output_.speed = settings_.speed;
     return;
   }
   const double heading = looks_.front();
   output_.look_at = ahead(pose.position(), heading, 5.0);
   if (std::abs(norm2_angle(pose.th - heading)) > radians(6.0)) {
     steady_cycle_ = 0;
-    if (inputs.cycle < look_cycle_ + settings_.patience)
+    if (inputs.cycle < look_cycle_ + 2 * settings_.patience)
       return;
   } else if (steady_cycle_ == 0) {
     steady_cycle_ = inputs.cycle;
@@ -355,8 +421,8 @@ void Explorer::look(const Inputs& inputs) {
   } else if (inputs.cycle <= steady_cycle_ + kFresh) {
     return;
   }
-  Lead side{look_from_, heading, "a way aside", false};
-  if (steady_cycle_ != 0 && heard_ahead() > settings_.open_side && !is_tried(side))
+  Lead side{look_from_, heading, "a way aside", false, false};
+  if (steady_cycle_ != 0 && heard(0.0).value_or(0.0) > settings_.open_side && !is_tried(side))
     seen_open_.push_back(side);
   looks_.erase(looks_.begin());
   look_cycle_ = inputs.cycle;
@@ -370,6 +436,7 @@ void Explorer::finish(const Inputs& inputs) {
   here.point = inputs.pose_in_map.position();
   tried_.push_back(here);
   lead_.reset();
+  squeeze_.reset();
   doing_ = Doing::choosing;
   output_.point_in_map.reset();
 }

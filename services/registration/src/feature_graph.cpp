@@ -37,13 +37,19 @@ class Problem {
     }
   }
 
-  std::optional<Eigen::VectorXd> solve() const {
+  /// The step, and the covariance of the three variables from `pose` on, where it is asked for.
+  std::optional<Eigen::VectorXd> solve(int pose, Eigen::Matrix3d& covariance) const {
     const auto n = gradient_.size();
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(hessian_.begin(), hessian_.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     if (solver.info() != Eigen::Success)
       return std::nullopt;
+    for (int k = 0; pose >= 0 && k < 3; ++k) {
+      Eigen::VectorXd unit = Eigen::VectorXd::Zero(n);
+      unit(pose + k) = 1.0;
+      covariance.col(k) = solver.solve(unit).segment<3>(pose);
+    }
     Eigen::VectorXd step = solver.solve(gradient_);
     return step.allFinite() ? std::optional(std::move(step)) : std::nullopt;
   }
@@ -64,6 +70,14 @@ Vec2 left_of(const Vec2& v) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d FeatureGraph::way_covariance(const Pose& way) const {
+  const double length = std::hypot(way.x, way.y);
+  const double along = 1e-6 + settings.way_error * settings.way_error * length;
+  const double turn = 2.5e-7 + settings.heading_error * settings.heading_error * length +
+                      settings.turn_error * settings.turn_error * std::abs(way.th);
+  return Eigen::Vector3d(along, along, turn).asDiagonal();
+}
 
 double FeatureGraph::optimize(int iterations) {
   // Variables: the nodes' poses, the lines' headings and offsets, the points, the drift.
@@ -110,10 +124,9 @@ double FeatureGraph::optimize(int iterations) {
       const Pose& to = nodes[i].in_map;
       const Pose way = relative(nodes[i - 1].in_odom, nodes[i].in_odom);
       const double length = std::hypot(way.x, way.y);
-      const double sigma_way = 0.001 + settings.way_error * std::sqrt(length);
-      const double sigma_turn =
-          0.0005 + std::hypot(settings.heading_error * std::sqrt(length),
-                              settings.turn_error * std::sqrt(std::abs(way.th)));
+      const Eigen::Matrix3d noise = way_covariance(way);
+      const double sigma_way = std::sqrt(noise(0, 0));
+      const double sigma_turn = std::sqrt(noise(2, 2));
       const Vec2 moved = turned(from.th, {way.x, way.y});
       const Vec2 error = to.position() - from.position() - moved;
       const Vec2 slope = left_of(moved);
@@ -181,7 +194,7 @@ double FeatureGraph::optimize(int iterations) {
       }
     }
 
-    const auto step = problem.solve();
+    const auto step = problem.solve(nodes.empty() ? -1 : of_node.back(), covariance);
     if (!step)
       break;  // stays where it is
     for (std::size_t i = 0; i < nodes.size(); ++i)

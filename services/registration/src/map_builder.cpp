@@ -124,6 +124,20 @@ void MapBuilder::drive(const MapBuilderInputs& inputs) {
         std::abs(since.th) < settings_.node_turn)
       return;
   }
+  if (believed_) {
+    // As sure as registration is where it tracks.
+    covariance_ = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
+  } else if (jumped) {
+    covariance_ = Eigen::Vector3d(0.25, 0.25, 0.1).asDiagonal();
+  } else if (placed_) {
+    const GraphNode& last = graph_.nodes.back();
+    const Vec2 way = pose_in_map_.position() - last.in_map.position();
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    turn(0, 2) = -way.y();
+    turn(1, 2) = way.x();
+    covariance_ = turn * covariance_ * turn.transpose() +
+                  graph_.way_covariance(relative(last.in_odom, pose_in_odom_));
+  }
   graph_.nodes.push_back({pose_in_odom_, pose_in_map_, believed_, jumped});
   placed_ = true;
 }
@@ -170,8 +184,14 @@ SeenPoint MapBuilder::seen_point(const lps::Percept& percept) const {
   return seen;
 }
 
-double MapBuilder::stray(double last_way) const {
-  return believed_ ? 0.3 : std::min(settings_.most_stray, settings_.stray * (way_ - last_way));
+double MapBuilder::stray(const Vec2& direction) const {
+  const double variance = direction.dot(covariance_.topLeftCorner<2, 2>() * direction);
+  return std::min(settings_.most_stray, 3.0 * std::sqrt(std::max(0.0, variance)));
+}
+
+double MapBuilder::stray_heading() const {
+  return std::min(settings_.most_heading - settings_.same_heading,
+                  3.0 * std::sqrt(covariance_(2, 2)));
 }
 
 Stretches MapBuilder::stretches(const GraphLine& line) const {
@@ -193,12 +213,14 @@ std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
     const GraphLine& line = graph_.lines[i];
     if (line.seen.empty())
       continue;  // it has become another one's part
-    const double strayed = stray(known_lines_[i].last_way);
-    if (std::abs(norm2_angle(wall.th - line.heading)) > settings_.same_heading)
+    const double turned = std::abs(norm2_angle(wall.th - line.heading));
+    const double most_turned = settings_.same_heading + stray_heading();
+    if (turned > most_turned)
       continue;
     const Vec2 from = wall.position() - line.anchor;
     const double across = std::abs(line.normal().dot(from) - line.offset);
-    if (across > settings_.same_wall + strayed)
+    const double most_across = settings_.same_wall + stray(line.normal());
+    if (across > most_across)
       continue;
     const double at = line.along().dot(from);
     double gap = 1e9;
@@ -207,7 +229,7 @@ std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
     if (gap > settings_.wall_gap)
       continue;
     // A stretch that is farther along must fit the better.
-    const double cost = across + 0.02 * std::max(0.0, gap);
+    const double cost = across / most_across + turned / most_turned + 0.1 * std::max(0.0, gap);
     if (!best || cost < nearest) {
       best = i;
       nearest = cost;
@@ -223,10 +245,13 @@ std::optional<std::size_t> MapBuilder::match_opening(const SeenPoint& seen, Poin
   for (std::size_t i = 0; i < graph_.points.size(); ++i) {
     const Known& known = known_points_[i];
     if (graph_.points[i].seen.empty() || known.type != type ||
-        std::abs(norm2_angle(opening.th - known.heading)) > 2 * settings_.same_heading)
+        std::abs(norm2_angle(opening.th - known.heading)) >
+            2 * settings_.same_heading + stray_heading())
       continue;
-    const double far = (opening.position() - graph_.points[i].in_map).norm();
-    if (far < settings_.same_opening + stray(known.last_way) && (!best || far < nearest)) {
+    const Vec2 off = opening.position() - graph_.points[i].in_map;
+    const double far = off.norm();
+    const Vec2 direction = far > 0.0 ? Vec2(off / far) : Vec2(1.0, 0.0);
+    if (far < settings_.same_opening + stray(direction) && (!best || far < nearest)) {
       best = i;
       nearest = far;
     }
@@ -378,6 +403,8 @@ void MapBuilder::settle() {
                    off_grid(line.heading) < settings_.grid_tolerance &&
                    total(stretches(line)) > settings_.min_wall;
   graph_.optimize();
+  if (!believed_)
+    covariance_ = graph_.covariance;
   merge_lines();
   if (!believed_)
     pose_in_map_ =
@@ -523,7 +550,8 @@ std::vector<MapBuilder::Corridor> MapBuilder::corridors() const {
         const double end = parts.back().back().second;
         const double gap = s.first - end;
         // One wall going on, or the robot's having gone on, holds the parts together.
-        const bool wall = std::any_of(group.walls.begin(), group.walls.end(), [&](const auto& w) {
+        const Stretches walls = joined(group.walls, settings_.max_gap);
+        const bool wall = std::any_of(walls.begin(), walls.end(), [&](const auto& w) {
           return w.first <= end + 0.1 && w.second >= s.first - 0.1;
         });
         const bool drove = std::any_of(driven.begin(), driven.end(), [&](const auto& d) {
@@ -550,12 +578,33 @@ std::vector<MapBuilder::Corridor> MapBuilder::corridors() const {
         corridor.to =
             std::max(corridor.to, std::min(w.second, part.back().second + settings_.one_sided));
       }
-      if (corridor.length() >= settings_.min_length)
+      if (corridor.length() >= std::max(settings_.min_length, settings_.min_ratio * corridor.width))
         out.push_back(corridor);
     }
   }
-  close_ends(out);
-  return out;
+  // Walls that face one another over a corridor, from a niche to its far side, make none: the one
+  // with more of both walls is it.
+  std::stable_sort(out.begin(), out.end(), [](const Corridor& a, const Corridor& b) {
+    return total(a.both) > total(b.both);
+  });
+  std::vector<Corridor> kept;
+  for (const Corridor& corridor : out) {
+    const bool inside = std::any_of(kept.begin(), kept.end(), [&](const Corridor& other) {
+      const Pose in = relative(other.frame, corridor.frame);
+      const double sign = std::cos(in.th) > 0.0 ? 1.0 : -1.0;
+      const double x = in.x + sign * corridor.from;
+      const double y = in.x + sign * corridor.to;
+      const double overlap =
+          std::min(std::max(x, y), other.to) - std::max(std::min(x, y), other.from);
+      return std::abs(norm3_angle(in.th)) < settings_.same_heading &&
+             std::abs(in.y) < (corridor.width + other.width) / 2 - 0.3 &&
+             overlap > corridor.length() / 2;
+    });
+    if (!inside)
+      kept.push_back(corridor);
+  }
+  close_ends(kept);
+  return kept;
 }
 
 // Where corridors end: at a wall ahead, or at one another.

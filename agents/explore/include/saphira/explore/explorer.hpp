@@ -16,14 +16,18 @@ struct Settings {
   std::vector<lps::SonarMount> sonars;
   double speed = 0.3;           ///< [m/s] doors are found at this pace
   double look_ahead = 1.5;      ///< [m] how far before the robot the point to drive to is kept
-  double beyond = 6.0;          ///< [m] so far out of what is mapped nothing came: an open area
+  double beyond = 6.5;          ///< [m] so far out of what is mapped nothing came: an open area
+  double beyond_opening = 6.0;  ///< [m] the same behind an opening
   double aside = 0.8;           ///< [m] off the middle: what is ahead has turned the robot away
   double tried = 1.2;           ///< [m] nearer than this to where it was tried, an end is the same
+  double front = 0.95;          ///< [m] what is nearer ahead may be the end
   double open_side = 2.2;       ///< [m] a sonar that hears nothing nearer looks into another way
   double min_progress = 0.15;   ///< [m] less...
-  std::uint64_t patience = 60;  ///< [cycles] ...in this time is being blocked
+  std::uint64_t patience = 80;  ///< [cycles] ...in this time is being blocked
   int least_corridors = 1;      ///< where fewer are mapped, straight on is worth a try
-  bool go_home = true;          ///< back to where it began, when nothing is left
+  /// [m] When nothing is left, back to so far along the way that it went first: that closes the
+  /// last loop. 0: stays where it is.
+  double home = 5.0;
 };
 
 struct Inputs {
@@ -63,6 +67,7 @@ class Explorer {
     double heading = 0.0;
     std::string what;
     bool home = false;
+    bool opening = false;  ///< in a wall: what is behind it begins there
   };
   enum class Doing { choosing, going, probing, looking };
 
@@ -75,7 +80,11 @@ class Explorer {
   void probe(const Inputs& inputs);
   void begin_looking(const Inputs& inputs);
   void look(const Inputs& inputs);
-  double heard_ahead() const;
+  /// [m] The middle one of what the sonars that look that way have heard of late; none: nothing
+  /// looks there.
+  std::optional<double> heard(double bearing) const;
+  /// What is ahead leaves room to the left or right, as far as can be heard.
+  bool passable() const;
   void finish(const Inputs& inputs);
   bool blocked(const Inputs& inputs);
   std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
@@ -84,6 +93,7 @@ class Explorer {
   Output output_;
   Doing doing_ = Doing::choosing;
   bool begun_ = false;
+  bool home_ = false;  ///< on the way home, or there
   Pose start_in_map_;
   std::optional<Lead> lead_;
   Vec2 probe_from_{0.0, 0.0};
@@ -95,12 +105,16 @@ class Explorer {
     int sonar = 0;
     double range = 0.0;
     std::uint64_t cycle = 0;
+    double heading = 0.0;  ///< [rad, map] of the robot
   };
   std::vector<Heard> heard_;
   std::vector<double> looks_;       ///< [rad, map] headings that are still to be looked at
   std::uint64_t look_cycle_ = 0;    ///< when this one was begun...
   std::uint64_t steady_cycle_ = 0;  ///< ...and since when the robot looks that way
   Vec2 look_from_{0.0, 0.0};
+  bool in_corridor_ = false;  ///< what was probed last has become one
+  /// The sides have been looked at; now it tries to get by what is ahead, begun so far along.
+  std::optional<double> squeeze_;
   Vec2 progress_from_{0.0, 0.0};
   double progress_ = 0.0;
   std::uint64_t progress_cycle_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -78,7 +79,11 @@ struct FeatureGraph {
   std::vector<GraphLine> lines;
   std::vector<GraphPoint> points;
   double drift = 0.0;  ///< [rad/m] of dead reckoning
+  /// Of the newest node's pose in the map (x, y, th), by the last optimization.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
+  /// What dead reckoning adds to the covariance of a pose on a way, in the frame where it begins.
+  Eigen::Matrix3d way_covariance(const Pose& way) const;
   /// Moves everything to where it fits best. Returns the largest correction of a node [m].
   double optimize(int iterations = 5);
 };

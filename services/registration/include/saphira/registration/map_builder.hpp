@@ -26,11 +26,11 @@ struct MapBuilderSettings {
   double again_way = 2.0;  ///< [m] of way after which a wall that is still seen counts once more
 
   // What is the same thing.
-  double same_heading = radians(8.0);
-  double same_wall = 0.15;     ///< [m] across
-  double same_opening = 0.45;  ///< [m]
-  double stray = 0.015;        ///< [1] more, by this share of the way since it was last seen
-  double most_stray = 1.2;     ///< [m] and never more than this
+  double same_heading = radians(6.0);  ///< and three sigmas of the pose, up to...
+  double most_heading = radians(25.0);
+  double same_wall = 0.15;     ///< [m] across; likewise
+  double same_opening = 0.45;  ///< [m] likewise
+  double most_stray = 1.2;     ///< [m]
   double wall_gap = 5.5;       ///< [m] between stretches of one wall
   double closure_way = 15.0;   ///< [m] of way after which seeing something again closes a loop
 
@@ -38,9 +38,10 @@ struct MapBuilderSettings {
   double min_width = 1.0;
   double max_width = 3.6;
   double min_both = 1.2;    ///< [m] with a wall on either side
+  double min_ratio = 2.2;   ///< [1] of length and width; less is a room
   double min_length = 3.0;  ///< [m]
   double max_gap = 1.4;     ///< [m] in both walls; more where the robot drove through
-  double max_driven_gap = 4.5;
+  double max_driven_gap = 7.0;
   double one_sided = 2.5;  ///< [m] by which one wall alone may make a corridor longer
   double reach = 1.5;      ///< [m] an end so near to another corridor is a junction
   double min_wall = 1.5;   ///< [m] of walls that are no corridor's
@@ -119,7 +120,10 @@ class MapBuilder {
   std::size_t node_near(const Pose& in_odom) const;
   SeenLine seen_line(const lps::Percept& percept) const;
   SeenPoint seen_point(const lps::Percept& percept) const;
-  double stray(double last_way) const;
+  /// Three sigmas of the pose, along a direction of the map [m]...
+  double stray(const Vec2& direction) const;
+  /// ...and of its heading [rad].
+  double stray_heading() const;
   std::optional<std::size_t> match_line(const SeenLine& seen) const;
   std::optional<std::size_t> match_opening(const SeenPoint& seen, lps::PointType type) const;
   void listen_ahead(const MapBuilderInputs& inputs);
@@ -148,6 +152,7 @@ class MapBuilder {
   std::uint64_t odom_ = 0;
   Pose pose_in_odom_;
   Pose pose_in_map_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  ///< of the newest node's pose
   double way_ = 0.0;
   double settled_way_ = 0.0;
   bool news_ = false;
