@@ -11,6 +11,8 @@ namespace {
 using lps::Percept;
 using lps::PointType;
 
+constexpr double kNear = 1.0;                // [m] another place within this and...
+constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther off it was lost
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
 
 /// Hypotheses before features, paper 3.2: what constrains most comes first.
@@ -271,7 +273,7 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
 void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
   for (const Percept* percept : percepts) {
     done_.push_back({percept->id, cycle_, pose_in_odom_, percept->width, percept->length});
-    if (!filter_ || state_ != State::tracking)
+    if (!filter_)
       continue;
     if (percept->type != PointType::door && percept->type != PointType::junction &&
         uses_old_readings(*percept)) {
@@ -295,7 +297,7 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
 
 void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
   since_readings_ += std::hypot(moved_.x, moved_.y) + 0.3 * std::abs(moved_.th);
-  if (since_readings_ < settings_.search.spacing || !filter_ || state_ != State::tracking)
+  if (since_readings_ < settings_.search.spacing || !filter_)
     return;
   since_readings_ = 0.0;
   for (const PlacedReading& reading : readings) {
@@ -323,14 +325,25 @@ void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
   search_.step(pose_in_odom_, readings, percepts, filter_ ? &*filter_ : nullptr);
+  // Who knows that his pose may be off is not lost because it is.
+  if (filter_ && search_.own_score() < 0.0 && state_ == State::tracking &&
+      (filter_->sigma_position() > settings_.uncertain ||
+       filter_->sigma_heading() > settings_.uncertain_heading))
+    search_.believe(0.0);
   const auto best = search_.best(state_ == State::tracking);
-  if (!best || !best->sure)
+  if (!best)
     return;
-  if (state_ == State::tracking) {
+  const Pose there = best->hypothesis->filter.pose();
+  const bool near = filter_ && (there.position() - filter_->pose().position()).norm() < kNear &&
+                    std::abs(norm2_angle(there.th - filter_->pose().th)) < kNearTurn;
+  if (state_ == State::tracking && !near) {
     // Said before it is mended, so that who relies on the pose hears that it did not hold.
-    state_ = State::lost;
+    if (best->likely)
+      state_ = State::lost;
     return;
   }
+  if (!best->sure)
+    return;
   const PoseFilter found = best->hypothesis->filter;
   const double drift_variance = found.covariance()(3, 3);
   place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 1.0);
@@ -349,6 +362,9 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     look_elsewhere(readings, percepts);
     if (state_ == State::tracking && search_.own_score() < settings_.lost)
       state_ = State::lost;
+    else if (state_ == State::lost && search_.own_score() > settings_.again_sure &&
+             search_.own_is_best())
+      state_ = State::tracking;
   }
   report();
   return output_;

@@ -6,20 +6,21 @@
 namespace saphira::registration {
 namespace {
 
-constexpr double kFits = 1.5;  // score of an object that is there, or is not
+constexpr double kOpening = 3.0;   // score of a door or junction that is there, or is not
+constexpr double kCorridor = 0.5;  // the same of a corridor
 constexpr double kPoor = 6.0;  // a new place is not begun where the readings are so much against it
 
 bool same_place(const Pose& a, const Pose& b, double way, double turn) {
   return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
 }
 
-/// What a hypothesis of an object that fits, or does not, says of a place.
+/// What an object that is there, or is not, says of a place.
 double worth(const lps::Percept& percept, const Match& match) {
-  if (!percept.is_hypothesis())
+  if (!percept.is_hypothesis() || match.ambiguous)
     return 0.0;
-  if (match.accepted)
-    return kFits;
-  return match.ambiguous ? 0.0 : -kFits;
+  // A corridor is seen anew every few steps, a door once.
+  const double each = percept.type == lps::PointType::corridor ? kCorridor : kOpening;
+  return match.accepted ? each : -each;
 }
 
 Pose inverse(const Pose& pose) {
@@ -50,8 +51,8 @@ void Search::clear() {
 
 double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
   const Pose sensor = compose(pose, relative(*odom_, reading.sensor_in_odom));
-  const double better =
-      model_->log_likelihood(sensor, reading.range, reading.echo) - settings_.nothing;
+  const double better = model_->log_likelihood(sensor, reading.range, reading.echo) -
+                        (reading.echo ? settings_.any_echo : settings_.any_silence);
   return settings_.trust * std::max(better, -settings_.surprise);
 }
 
@@ -111,8 +112,6 @@ void Search::propose(const lps::Percept& percept) {
                           percept.sigma_across * percept.sigma_across + 0.1 * 0.1;
   const double heading = percept.sigma_heading * percept.sigma_heading + 0.05 * 0.05;
   covariance.diagonal() << position, position, heading;
-  const double least = std::max(
-      -kPoor, hypotheses_.empty() ? -kPoor : hypotheses_.front().score - settings_.hopeless);
   for (const Opening& opening : lines_->openings()) {
     if (std::abs(opening.width - percept.width) > match_settings_.width)
       continue;
@@ -125,10 +124,10 @@ void Search::propose(const lps::Percept& percept) {
     Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
                      0.0, 0.0, 1};
     // The newest first: most places need no more than a few.
-    for (auto reading = history_.rbegin(); reading != history_.rend() && fresh.score > least;
+    for (auto reading = history_.rbegin(); reading != history_.rend() && fresh.score > -kPoor;
          ++reading)
       fresh.score += weigh(pose, *reading);
-    if (fresh.score > least)
+    if (fresh.score > -kPoor)
       hypotheses_.push_back(fresh);
   }
 }
@@ -141,8 +140,11 @@ void Search::thin_out() {
   const double least = hypotheses_.front().score - settings_.hopeless;
   std::vector<Hypothesis> left;
   for (Hypothesis& h : hypotheses_) {
-    if (h.score < least || left.size() >= settings_.hypotheses)
+    if (left.size() >= settings_.hypotheses)
       break;
+    // A young one has not had the time to be as good.
+    if (h.score < (h.way < settings_.way ? -kPoor : least))
+      continue;
     const bool twice = std::any_of(left.begin(), left.end(), [&](const Hypothesis& other) {
       return same_place(h.filter.pose(), other.filter.pose(), 0.2, radians(5.0));
     });
@@ -150,6 +152,11 @@ void Search::thin_out() {
       left.push_back(h);
   }
   hypotheses_ = std::move(left);
+}
+
+bool Search::own_is_best() const {
+  const auto other = best(true);
+  return !other || other->hypothesis->score < own_score_;
 }
 
 std::optional<Search::Best> Search::best(bool beside_own) const {
@@ -169,9 +176,14 @@ std::optional<Search::Best> Search::best(bool beside_own) const {
     if (elsewhere(h.filter.pose(), first->filter.pose()))
       second = std::max(second, h.score);
   const double margin = first->score - second;
-  return Best{&*first, margin,
-              first->score >= settings_.evidence && margin >= settings_.margin &&
-                  first->way >= settings_.way && first->openings >= settings_.matches};
+  const bool enough = first->score >= settings_.evidence && first->way >= settings_.way;
+  // With fewer openings explained it has to be better by more.
+  const bool sure =
+      enough && ((first->openings >= settings_.matches && margin >= settings_.margin) ||
+                 (first->openings >= settings_.matches - 1 && margin >= 1.6 * settings_.margin));
+  const bool likely =
+      enough && first->openings >= settings_.matches - 1 && margin >= settings_.margin;
+  return Best{&*first, margin, likely, sure};
 }
 
 }  // namespace saphira::registration

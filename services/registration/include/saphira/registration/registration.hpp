@@ -42,8 +42,12 @@ struct Settings {
   double wall_range = 2.5;   ///< [m] the farthest that count
 
   // Scores of raw readings at the believed pose, see SearchSettings.
-  double sure = 15.0;  ///< from which on they fit; a robot that tracks has 20 to 40
-  double lost = -6.0;  ///< below which the pose does not hold
+  double sure = 15.0;        ///< from which on they fit; a robot that tracks has 20 to 40
+  double lost = -6.0;        ///< below which the pose does not hold...
+  double again_sure = 20.0;  ///< ...until it has fitted as well as this again
+  /// Sigmas beyond which readings that do not fit are no proof of being lost.
+  double uncertain = 0.3;  ///< [m]
+  double uncertain_heading = radians(6.0);
   SearchSettings search;
 };
 

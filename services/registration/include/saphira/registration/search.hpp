@@ -24,7 +24,8 @@ struct PlacedReading {
 struct SearchSettings {
   std::size_t hypotheses = 100;  ///< the most that are followed
   double trust = 0.3;            ///< exponent of the likelihoods: readings are not independent
-  double nothing = -2.1;         ///< log likelihood of a reading by no place in particular
+  double any_echo = -2.6;        ///< log likelihood of an echo by no place in particular...
+  double any_silence = -0.8;     ///< ...and of silence
   double surprise = 1.5;         ///< the most that one reading speaks against a place
   std::size_t history = 60;      ///< readings that a new hypothesis is held against
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
@@ -63,13 +64,16 @@ class Search {
   /// What the place that is believed has been worth so far.
   void believe(double score) { own_score_ = score; }
   double own_score() const { return own_score_; }
+  /// Whether no other place is worth more than the one that is believed.
+  bool own_is_best() const;
   /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
   /// While a place is believed, `beside_own`: the best one that is not there, and how much better
   /// it is than that place, too.
   struct Best {
     const Hypothesis* hypothesis = nullptr;
     double margin = 0.0;
-    bool sure = false;
+    bool likely = false;  ///< enough not to believe the other place any more
+    bool sure = false;    ///< enough to believe this one
   };
   std::optional<Best> best(bool beside_own) const;
 
