@@ -153,7 +153,10 @@ void Interpretation::find_walls(std::size_t number) {
   for (const Wall& wall : sides_[number].walls()) {
     // Lines of the two sides are numbered apart.
     const Lines lines{2 * wall.line + static_cast<std::uint32_t>(number), 0};
-    if (holds_back(wall, lines[0]))
+    const double doubt = wall.fit.sigma_heading;
+    if (doubt > settings_.max_heading)
+      hold(lines[0], doubt > settings_.max_opening_heading);
+    if (doubt > settings_.max_opening_heading)
       continue;
     std::vector<bool> from_taken(wall.stretches.size(), false);
     std::vector<bool> to_taken(wall.stretches.size(), false);
@@ -171,7 +174,8 @@ void Interpretation::find_walls(std::size_t number) {
       if (!stretch.own)
         continue;
       const double length = stretch.to.u - stretch.from.u;
-      if (stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
+      if (doubt <= settings_.max_heading &&
+          stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
           length >= side_settings.min_length) {
         Percept percept = wall_percept(wall, stretch, side);
         if (percept.confidence >= settings_.min_confidence)
@@ -188,15 +192,15 @@ void Interpretation::find_walls(std::size_t number) {
   }
 }
 
-// A wall whose heading is doubtful, since the robot has just turned: what was said of it stands.
-bool Interpretation::holds_back(const Wall& wall, std::uint32_t line) {
-  if (wall.fit.sigma_heading <= settings_.max_heading)
-    return false;
-  for (Standing& standing : standing_)
+// The heading of a wall is doubtful, since the robot has just turned: what was said of it stands.
+void Interpretation::hold(std::uint32_t line, bool openings_too) {
+  for (Standing& standing : standing_) {
+    const PointType type = standing.percept.type;
     if ((standing.lines[0] == line || standing.lines[1] == line) &&
+        (openings_too || type == PointType::wall || type == PointType::corridor) &&
         travelled_ - standing.travelled <= settings_.side.aperture)
       standing.seen = true;
-  return true;
+  }
 }
 
 void Interpretation::stand(Percept percept, const Lines& lines) {

@@ -17,6 +17,8 @@ constexpr std::size_t kFew = 4;
 constexpr std::size_t kStretch = 3;
 /// Nobody looked between readings farther apart than this [m].
 constexpr double kUnseen = 0.45;
+/// What stands beside an opening [m].
+constexpr double kBeside = 0.8;
 /// A post that is heard from elsewhere is where the wall seems to end, to this [m]...
 constexpr double kPostNear = 0.2;
 /// ...and the echoes agree with each other to this [m].
@@ -264,6 +266,18 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
     return length(stretch.echoes, line) >
            2.0 * stretch.echoes.front()->range * std::tan(settings_.corner_cone) + 0.1;
   };
+  // Where the wall is beside the opening, off the line: the fronts of a sofa and a shelf are no
+  // wall.
+  const auto off = [&](const Stretch& stretch, double end) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const Return* echo : stretch.echoes)
+      if (std::abs(line.u(echo->sonar) - end) < kBeside) {
+        sum += line.distance(echo->sonar) - echo->range;
+        ++count;
+      }
+    return sum / std::max(1.0, count);
+  };
   for (std::size_t k = 0; k + 1 < ranges.size(); ++k) {
     Opening opening{k, k + 1, {}};
     std::size_t other = 0;
@@ -280,7 +294,9 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
     if (opening.through.size() >= static_cast<std::size_t>(settings_.min_through) &&
         4 * other <= opening.through.size() && widest < kUnseen && wall.stretches[k].to.open &&
         wall.stretches[k + 1].from.open && is_more(wall.stretches[k]) &&
-        is_more(wall.stretches[k + 1]))
+        is_more(wall.stretches[k + 1]) &&
+        std::abs(off(wall.stretches[k], wall.stretches[k].to.u) -
+                 off(wall.stretches[k + 1], wall.stretches[k + 1].from.u)) <= settings_.max_step)
       wall.openings.push_back(std::move(opening));
   }
   walls_.push_back(std::move(wall));
@@ -322,7 +338,7 @@ void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
     for (const double sign : {-1.0, 1.0}) {
       const Vec2 way = (sign * off * line.along() + h * line.normal) / other.range;
       const double at = line.u(other.sonar) + sign * off;
-      if (way.dot(other.axis) > std::cos(settings_.sure) && std::abs(at - end.u) < kPostNear)
+      if (way.dot(other.axis) > std::cos(settings_.post_cone) && std::abs(at - end.u) < kPostNear)
         posts.emplace_back(at, &other);
     }
   }

@@ -45,8 +45,6 @@ LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near,
   for (const Return* echo : echoes) {
     weights.push_back(1.0 / error.variance(newest - echo->travelled, turned - echo->turned));
     all += weights.back();
-    way += weights.back() * (newest - echo->travelled);
-    turn += weights.back() * (turned - echo->turned);
     middle += weights.back() * echo->sonar;
   }
   middle /= all;
@@ -73,19 +71,23 @@ LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near,
   for (std::size_t i = 0; i < echoes.size(); ++i)
     offset += weights[i] * (normal.dot(echoes[i]->sonar - middle) + echoes[i]->range);
   offset /= all;
+  fit.line = {normal, offset + normal.dot(middle)};
+  fit.u_mean = fit.line.u(middle);
   double squares = 0.0;
+  // The heading is owed to echoes by their leverage.
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const double off = normal.dot(echoes[i]->sonar - middle) + echoes[i]->range - offset;
     squares += weights[i] * off * off;
+    const double u = fit.line.u(echoes[i]->sonar) - fit.u_mean;
+    way += weights[i] * u * u * (newest - echoes[i]->travelled);
+    turn += weights[i] * u * u * (turned - echoes[i]->turned);
   }
   const double n = static_cast<double>(echoes.size());
-  fit.line = {normal, offset + normal.dot(middle)};
-  fit.u_mean = fit.line.u(middle);
   fit.rms = std::sqrt(squares / all);
   const double scale = std::max(1.0, std::sqrt(squares / std::max(1.0, n - 2.0)));
   fit.sigma_offset = scale / std::sqrt(all);
   // What dead reckoning has strayed since is the same for all of them: it does not average out.
-  const double strayed = error.heading_variance(way / all, turn / all);
+  const double strayed = spread > 0.0 ? error.heading_variance(way / spread, turn / spread) : 0.0;
   fit.sigma_heading = spread > 0.0 ? std::sqrt(scale * scale / spread + strayed) : kPi;
   return fit;
 }

@@ -15,7 +15,7 @@ constexpr double kOnDoor = 0.3;     // [m] a door's middle may be off
 constexpr double kDoorWidth = 0.4;  // [m]
 constexpr double kOnCorner = 0.3;   // [m] one end
 constexpr double kAskew = radians(5.0);
-constexpr double kDoorAskew = radians(10.0);
+constexpr double kDoorAskew = radians(15.0);
 
 double parallel(double a, double b) {
   const double off = std::abs(norm2_angle(a - b));

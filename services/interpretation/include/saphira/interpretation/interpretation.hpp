@@ -26,10 +26,11 @@ struct Settings {
   double min_overlap = 2.0;      ///< [m] of the two walls along each other
   double beside = 0.6;           ///< [m] a wall that ended so far back is still beside the robot
   double min_confidence = 0.88;  ///< of a wall that is spoken of
-  double max_heading = radians(1.2);    ///< sigma of a wall that is spoken of
-  double encoder = 0.015;               ///< [m] one sigma of dead reckoning's way after 1 m
-  double least_offset = 0.006;          ///< [m] sigma of where any wall is
-  double least_heading = radians(0.4);  ///< sigma of any heading
+  double max_heading = radians(1.2);          ///< sigma of a wall that is spoken of
+  double max_opening_heading = radians(2.5);  ///< and of the wall of an opening
+  double encoder = 0.015;                     ///< [m] one sigma of dead reckoning's way after 1 m
+  double least_offset = 0.006;                ///< [m] sigma of where any wall is
+  double least_heading = radians(0.4);        ///< sigma of any heading
 };
 
 struct Inputs {
@@ -83,7 +84,7 @@ class Interpretation {
   void find_walls(std::size_t side);
   void find_corridors();
   void stand(lps::Percept percept, const Lines& lines);
-  bool holds_back(const Wall& wall, std::uint32_t line);
+  void hold(std::uint32_t line, bool openings_too);
   double across_sigma(const Wall& wall, double u) const;
   double carried(const Line& line, const std::vector<const Return*>& through,
                  const Stretch& stretch) const;

@@ -30,13 +30,15 @@ struct SideSettings {
   /// Half the width of the cone in which a corner is heard. A wall seems longer by as much.
   double corner_cone = radians(9.5);
   double corner_doubt = radians(3.0);  ///< one sigma of it
-  double sure = radians(12.0);  ///< off the axis up to which a wall would surely have been heard
+  double post_cone = radians(12.0);    ///< in which the others are taken to hear one
+  double sure = radians(18.0);  ///< off the axis up to which a wall would surely have been heard
   double through = 0.45;        ///< [m] an echo from so far behind a line has gone through it
-  int min_through = 3;          ///< readings through an opening
-  double min_door = 0.6;        ///< [m]
-  double max_door = 1.4;        ///< [m] wider ones are junctions
-  double max_junction = 4.5;    ///< [m]
-  double end_run = 0.6;         ///< [m] of wall that a single end stands at
+  double max_step = 0.05;     ///< [m] from the wall on one side of an opening to that on the other
+  int min_through = 3;        ///< readings through an opening
+  double min_door = 0.6;      ///< [m]
+  double max_door = 1.4;      ///< [m] wider ones are junctions
+  double max_junction = 4.5;  ///< [m]
+  double end_run = 0.6;       ///< [m] of wall that a single end stands at
 };
 
 /// One end of a stretch of wall.

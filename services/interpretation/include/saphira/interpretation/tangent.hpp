@@ -53,7 +53,7 @@ std::optional<Line> tangent(const Return& a, const Return& b);
 struct EchoError {
   double noise = 0.008;  ///< [m] of one echo
   double drift = 0.004;  ///< [rad/m] of the heading with the way...
-  double jitter = 0.04;  ///< [rad, one sigma] ...and with a turn of 1 rad
+  double jitter = 0.03;  ///< [rad, one sigma] ...and with a turn of 1 rad
   /// [rad^2] of the heading after so much.
   double heading_variance(double way, double turn) const {
     return drift * drift * way * way + jitter * jitter * turn;

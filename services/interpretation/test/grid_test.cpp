@@ -1,0 +1,122 @@
+#include "saphira/interpretation/grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace saphira::interpretation {
+namespace {
+
+GridSettings of(GridModel model) {
+  GridSettings settings;
+  settings.model = model;
+  return settings;
+}
+
+TEST(Grid, AnEchoIsAnObstacleAndTheWayToItIsFree) {
+  Grid grid;
+  for (int i = 0; i < 4; ++i)
+    grid.add(0, {0.0, 0.1 * i, 0.0}, 1.0);
+  EXPECT_GT(grid.probability({1.0, 0.15}).value_or(0.0), 0.5);
+  EXPECT_LT(grid.probability({0.5, 0.15}).value_or(1.0), 0.2);
+  EXPECT_FALSE(grid.probability({2.0, 0.0}));  // behind it nothing is said
+  EXPECT_FALSE(grid.probability({-0.5, 0.0}));
+}
+
+// Readings from one place are one event.
+TEST(Grid, StandingStillSaysNoMoreThanOneReading) {
+  Grid once;
+  Grid often;
+  Grid cone(of(GridModel::cone));
+  once.add(0, {}, 1.0);
+  cone.add(0, {}, 1.0);
+  const double before = *cone.probability({1.0, 0.0});
+  for (int i = 0; i < 20; ++i) {
+    often.add(0, {}, 1.0);
+    cone.add(0, {}, 1.0);
+  }
+  EXPECT_EQ(*once.probability({1.0, 0.0}), *often.probability({1.0, 0.0}));
+  EXPECT_EQ(*once.probability({0.5, 0.0}), *often.probability({0.5, 0.0}));
+  EXPECT_GT(*cone.probability({1.0, 0.0}), before);
+}
+
+// A corridor with a smooth wall at y = 1: the sonar to the side hears it, and one that looks 30
+// degrees ahead hears nothing of it, over and over.
+TEST(Grid, AMirroringWallStays) {
+  Grid muriel;
+  Grid cone(of(GridModel::cone));
+  for (double x = 0.0; x < 6.0; x += 0.08)
+    for (Grid* grid : {&muriel, &cone}) {
+      grid->add(0, {x, 0.0, kPi / 2.0}, 1.0);
+      grid->add(1, {x, 0.0, radians(30.0)}, std::nullopt);
+      grid->add(2, {x, 0.0, radians(45.0)}, std::nullopt);
+    }
+  int muriel_kept = 0;
+  int cone_kept = 0;
+  int all = 0;
+  for (double x = 2.0; x < 5.5; x += 0.05) {
+    ++all;
+    muriel_kept += muriel.probability({x, 1.0}).value_or(0.0) > 0.5 ? 1 : 0;
+    cone_kept += cone.probability({x, 1.0}).value_or(0.0) > 0.5 ? 1 : 0;
+  }
+  EXPECT_GT(muriel_kept, 0.95 * all);
+  EXPECT_LT(cone_kept, 0.7 * all);
+}
+
+TEST(Grid, IsClearedFromSeveralDirections) {
+  Grid grid;
+  for (int i = 0; i < 5; ++i)
+    grid.add(0, {0.0, 0.07 * i, 0.0}, 1.0);
+  ASSERT_GT(grid.probability({1.0, 0.15}).value_or(0.0), 0.5);
+  // The box has gone: all around it sonars hear the wall behind.
+  for (double angle = 0.0; angle < 6.2; angle += 0.1)
+    grid.add(0, {1.0 - std::cos(angle), 0.15 - std::sin(angle), angle}, 3.0);
+  EXPECT_LT(grid.probability({1.0, 0.15}).value_or(1.0), 0.3);
+}
+
+TEST(Grid, GoesWithTheRobotInTiles) {
+  Grid grid;
+  std::size_t most = 0;
+  std::size_t dropped = 0;
+  for (double x = -30.0; x < 30.0; x += 0.2) {
+    grid.move_to({x, 0.0});
+    dropped += grid.dropped().size();
+    EXPECT_TRUE(grid.changed().empty());
+    grid.add(0, {x, 0.0, kPi / 2.0}, 2.0);
+    EXPECT_FALSE(grid.changed().empty());
+    most = std::max(most, grid.tiles().size());
+  }
+  EXPECT_GT(dropped, 40U);
+  EXPECT_LT(most, 60U);
+  EXPECT_FALSE(grid.probability({-25.0, 1.0}));
+
+  // Each cell of a tile is where probability says.
+  const Vec2 at(29.0, 2.0);
+  const TileKey key = grid.tile_of(at);
+  const std::vector<std::uint8_t> cells = grid.cells(key);
+  ASSERT_EQ(cells.size(), static_cast<std::size_t>(Grid::kTile * Grid::kTile));
+  const double size = grid.settings().resolution;
+  int seen = 0;
+  for (long row = 0; row < Grid::kTile; ++row)
+    for (long column = 0; column < Grid::kTile; ++column) {
+      const auto cell = cells[static_cast<std::size_t>(row * Grid::kTile + column)];
+      const auto probability =
+          grid.probability({(static_cast<double>(key.column * Grid::kTile + column) + 0.5) * size,
+                            (static_cast<double>(key.row * Grid::kTile + row) + 0.5) * size});
+      ASSERT_EQ(cell == Grid::kNeverSeen, !probability);
+      if (probability) {
+        ++seen;
+        EXPECT_NEAR(cell / 200.0, *probability, 0.003);
+      }
+    }
+  EXPECT_GT(seen, 100);
+  EXPECT_TRUE(grid.cells({1000, 1000}).empty());
+
+  grid.clear();
+  grid.move_to({30.0, 0.0});
+  EXPECT_FALSE(grid.dropped().empty());
+  EXPECT_TRUE(grid.tiles().empty());
+}
+
+}  // namespace
+}  // namespace saphira::interpretation

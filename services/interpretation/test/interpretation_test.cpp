@@ -1,0 +1,224 @@
+#include "saphira/interpretation/interpretation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "saphira/base/random.hpp"
+
+namespace saphira::interpretation {
+namespace {
+
+using lps::Percept;
+using lps::PointType;
+using lps::Side;
+
+constexpr double kSpeed = 0.03;  // [m] a cycle
+
+/// A robot with one sonar to each side in a corridor along x: the side sonars hear what the two
+/// functions say at the robot's x; nothing where that is not positive.
+class Corridor {
+ public:
+  using Range = std::function<double(double x)>;
+  Corridor(Range left, Range right) : left_(std::move(left)), right_(std::move(right)) {
+    Settings settings;
+    settings.sonars = {{0, {0.0, 0.0, kPi / 2.0}}, {6, {0.0, 0.0, -kPi / 2.0}}};
+    interpretation_.emplace(settings);
+  }
+
+  const Output& drive(double to) {
+    const Output* output = &interpretation_->step({cycle_, {x_, 0.0, 0.0}, {}, {}});
+    while (x_ < to) {
+      x_ += kSpeed;
+      ++cycle_;
+      std::vector<lps::SonarReading> readings;
+      // One reading of each sonar in three cycles.
+      if (cycle_ % 3 == 0)
+        readings = {reading(0, left_(x_)), reading(6, right_(x_))};
+      output = &interpretation_->step({cycle_, {x_, 0.0, 0.0}, readings, {}});
+      for (const Percept& percept : output->percepts)
+        ids_.insert(percept.id);
+    }
+    return *output;
+  }
+  std::uint64_t cycle() const { return cycle_; }
+  const std::set<std::uint32_t>& ids() const { return ids_; }
+  Interpretation& interpretation() { return *interpretation_; }
+
+ private:
+  lps::SonarReading reading(int sonar, double range) {
+    return range > 0.0 ? lps::SonarReading{sonar, range + random_.normal(0.0, 0.004), true}
+                       : lps::SonarReading{sonar, 5.0, false};
+  }
+  Range left_;
+  Range right_;
+  Random random_{1};
+  double x_ = 0.0;
+  std::uint64_t cycle_ = 0;
+  std::optional<Interpretation> interpretation_;
+  std::set<std::uint32_t> ids_;
+};
+
+double nothing(double) {
+  return 0.0;
+}
+
+double wall(double) {
+  return 1.0;
+}
+
+/// A smooth wall with an opening: its corners are heard within 9.5 degrees.
+Corridor::Range opening(double from, double to) {
+  return [=](double x) {
+    const double past = std::tan(radians(9.5));
+    if (x <= from || x >= to)
+      return 1.0;
+    if (x - from < past)
+      return std::hypot(1.0, x - from);
+    if (to - x < past)
+      return std::hypot(1.0, to - x);
+    return 0.0;
+  };
+}
+
+std::vector<Percept> of(const Output& output, PointType type) {
+  std::vector<Percept> found;
+  std::copy_if(output.percepts.begin(), output.percepts.end(), std::back_inserter(found),
+               [&](const Percept& percept) { return percept.type == type; });
+  return found;
+}
+
+TEST(Interpretation, SeesAWallBesideTheRobot) {
+  Corridor corridor(wall, nothing);
+  const Output output = corridor.drive(3.0);
+  ASSERT_EQ(output.percepts.size(), 1U);
+  const Percept& percept = output.percepts[0];
+  EXPECT_EQ(percept.type, PointType::wall);
+  EXPECT_EQ(percept.side, Side::left);
+  EXPECT_NEAR(percept.pose_in_odom.y, 1.0, 0.01);
+  EXPECT_NEAR(percept.pose_in_odom.th, 0.0, radians(1.0));
+  EXPECT_NEAR(percept.length, 2.9, 0.15);
+  EXPECT_GT(percept.confidence, 0.9);
+  EXPECT_GT(percept.readings.size(), 25U);
+  EXPECT_GT(percept.since, 10U);
+  EXPECT_GT(percept.seen, corridor.cycle() - 4);
+  ASSERT_TRUE(output.left_wall);
+  EXPECT_EQ(output.left_wall->id, percept.id);
+  EXPECT_FALSE(output.right_wall);
+}
+
+TEST(Interpretation, SeesOneEndAtOnceAndTheDoorWhenItIsPassed) {
+  Corridor corridor(opening(2.0, 2.9), nothing);
+  const Output early = corridor.drive(2.6);
+  EXPECT_TRUE(of(early, PointType::door).empty());
+  const auto ends = of(early, PointType::breach);
+  ASSERT_EQ(ends.size(), 1U);
+  EXPECT_NEAR(ends[0].pose_in_odom.x, 2.0, 0.1);
+  // The normal, towards the robot.
+  EXPECT_NEAR(ends[0].pose_in_odom.th, -kPi / 2.0, radians(1.0));
+
+  const Output late = corridor.drive(4.0);
+  const auto doors = of(late, PointType::door);
+  ASSERT_EQ(doors.size(), 1U);
+  EXPECT_NEAR(doors[0].pose_in_odom.x, 2.45, 0.06);
+  EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
+  EXPECT_NEAR(doors[0].pose_in_odom.th, -kPi / 2.0, radians(1.0));
+  EXPECT_NEAR(doors[0].width, 0.9, 0.1);
+  EXPECT_EQ(doors[0].side, Side::left);
+  EXPECT_TRUE(of(late, PointType::breach).empty());
+  EXPECT_EQ(of(late, PointType::wall).size(), 2U);
+}
+
+TEST(Interpretation, AWiderOpeningIsAJunction) {
+  Corridor corridor(nothing, opening(2.0, 4.0));
+  const auto junctions = of(corridor.drive(5.2), PointType::junction);
+  ASSERT_EQ(junctions.size(), 1U);
+  EXPECT_NEAR(junctions[0].width, 2.0, 0.1);
+  EXPECT_NEAR(junctions[0].pose_in_odom.th, kPi / 2.0, radians(1.0));
+  EXPECT_EQ(junctions[0].side, Side::right);
+}
+
+TEST(Interpretation, TwoParallelWallsAreACorridor) {
+  Corridor corridor(wall, [](double) { return 0.8; });
+  const auto corridors = of(corridor.drive(3.5), PointType::corridor);
+  ASSERT_EQ(corridors.size(), 1U);
+  EXPECT_NEAR(corridors[0].pose_in_odom.y, 0.1, 0.01);
+  EXPECT_NEAR(corridors[0].width, 1.8, 0.02);
+  EXPECT_TRUE(corridors[0].is_hypothesis());
+}
+
+// A box before the wall, or a person: nobody has looked through the wall there.
+TEST(Interpretation, WhatHidesAWallIsNoOpening) {
+  Corridor corridor([](double x) { return x > 2.0 && x < 2.9 ? 0.5 : 1.0; }, nothing);
+  const Output& output = corridor.drive(4.5);
+  EXPECT_TRUE(of(output, PointType::door).empty());
+  EXPECT_TRUE(of(output, PointType::breach).empty());
+}
+
+TEST(Interpretation, AClosedDoorInItsFrameIsNoOpening) {
+  Corridor corridor([](double x) { return x > 2.0 && x < 2.9 ? 1.1 : 1.0; }, nothing);
+  const Output& output = corridor.drive(4.5);
+  EXPECT_TRUE(of(output, PointType::door).empty());
+  EXPECT_TRUE(of(output, PointType::breach).empty());
+}
+
+TEST(Interpretation, ALostEchoIsNoOpening) {
+  Corridor corridor([](double x) { return std::fmod(x, 0.9) < 0.09 ? 0.0 : 1.0; }, nothing);
+  const Output& output = corridor.drive(4.5);
+  EXPECT_TRUE(of(output, PointType::door).empty());
+  EXPECT_EQ(of(output, PointType::wall).size(), 1U);
+}
+
+// The corner of a table, two metres off: heard for 0.7 m of the way at nearly the same range.
+TEST(Interpretation, ACornerIsNoWall) {
+  Corridor corridor(
+      [](double x) { return std::abs(x - 2.0) < 0.36 ? std::hypot(2.0, x - 2.0) : 0.0; }, nothing);
+  corridor.drive(4.0);
+  EXPECT_TRUE(corridor.ids().empty());
+}
+
+TEST(Interpretation, IsSilentAmongClutter) {
+  Random random(3);
+  Corridor corridor([&](double) { return random.uniform(0.5, 2.5); },
+                    [&](double) { return random.chance(0.4) ? 0.0 : random.uniform(0.5, 3.0); });
+  corridor.drive(60.0);
+  EXPECT_LE(corridor.ids().size(), 1U);
+}
+
+TEST(Interpretation, IdsStayWhileTheSameThingIsSeenAndEndWithTheAperture) {
+  Corridor corridor(opening(2.0, 2.9), nothing);
+  const auto door = of(corridor.drive(4.0), PointType::door);
+  ASSERT_EQ(door.size(), 1U);
+  const auto same = of(corridor.drive(6.0), PointType::door);
+  ASSERT_EQ(same.size(), 1U);
+  EXPECT_EQ(same[0].id, door[0].id);
+  EXPECT_EQ(same[0].since, door[0].since);
+  const Output far = corridor.drive(9.0);
+  EXPECT_TRUE(of(far, PointType::door).empty());
+  // One wall before it, one behind it, an end and the door.
+  EXPECT_LE(corridor.ids().size(), 5U);
+}
+
+TEST(Interpretation, ForgetsEverythingButItsIds) {
+  Corridor corridor(wall, nothing);
+  const std::uint32_t id = corridor.drive(3.0).percepts.at(0).id;
+  corridor.interpretation().reset();
+  const Output output = corridor.drive(3.02);
+  EXPECT_TRUE(output.percepts.empty());
+  EXPECT_FALSE(output.left_wall);
+  EXPECT_FALSE(output.dropped_tiles.empty());
+  EXPECT_GT(corridor.drive(6.0).percepts.at(0).id, id);
+}
+
+TEST(Interpretation, KnowsNothingOfSonarsThatTheRobotDoesNotHave) {
+  Interpretation interpretation({});
+  const Output& output = interpretation.step({1, {}, {{3, 1.0, true}}, {}});
+  EXPECT_TRUE(output.percepts.empty());
+  EXPECT_TRUE(output.changed_tiles.empty());
+}
+
+}  // namespace
+}  // namespace saphira::interpretation
