@@ -249,9 +249,13 @@ void Explorer::go(const Inputs& inputs) {
     progress_cycle_ = inputs.cycle;
   }
   if (inputs.cycle > progress_cycle_ + 2 * settings_.patience) {
+    doing_ = Doing::choosing;
+    output_.look_at.reset();
+    output_.point_in_map.reset();
+    if (++stuck_ % 2 == 1)
+      return;  // once more
     // Closed since: around it, if there is a way.
     shut_.push_back(path_.front());
-    doing_ = Doing::choosing;
     double length = 0.0;
     const auto way = path(inputs.way, lead_->point, length);
     if (way.empty() || (inputs.way[way.back()] - lead_->point).norm() > 5.0) {
@@ -262,7 +266,17 @@ void Explorer::go(const Inputs& inputs) {
     output_.point_in_map.reset();
     return;
   }
-  output_.point_in_map = path_.front();
+  head_for(path_.front(), inputs);
+}
+
+// A turn on the spot before a way back: in a turn with a wide bow the next opening takes the robot
+// in.
+void Explorer::head_for(const Vec2& point, const Inputs& inputs) {
+  const Vec2 there = to_frame(inputs.pose_in_map, point);
+  const double bearing = std::abs(std::atan2(there.y(), there.x()));
+  turning_ = bearing > (turning_ ? radians(25.0) : radians(60.0));
+  output_.look_at = turning_ ? std::optional(point) : std::nullopt;
+  output_.point_in_map = turning_ ? std::nullopt : std::optional(point);
   output_.speed = settings_.speed;
 }
 
@@ -332,8 +346,7 @@ void Explorer::probe(const Inputs& inputs) {
     look(inputs);
     return;
   }
-  output_.point_in_map = point + (at + 2 * settings_.look_ahead) * u;
-  output_.speed = settings_.speed;
+  head_for(point + (at + 2 * settings_.look_ahead) * u, inputs);
 }
 
 std::optional<double> Explorer::heard(double bearing) const {
@@ -436,6 +449,8 @@ void Explorer::finish(const Inputs& inputs) {
   here.point = inputs.pose_in_map.position();
   tried_.push_back(here);
   lead_.reset();
+  stuck_ = 0;
+  output_.look_at.reset();
   squeeze_.reset();
   doing_ = Doing::choosing;
   output_.point_in_map.reset();

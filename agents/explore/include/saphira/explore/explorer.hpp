@@ -86,6 +86,7 @@ class Explorer {
   /// What is ahead leaves room to the left or right, as far as can be heard.
   bool passable() const;
   void finish(const Inputs& inputs);
+  void head_for(const Vec2& point, const Inputs& inputs);
   bool blocked(const Inputs& inputs);
   std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
 
@@ -96,6 +97,8 @@ class Explorer {
   bool home_ = false;  ///< on the way home, or there
   Pose start_in_map_;
   std::optional<Lead> lead_;
+  bool turning_ = false;  ///< towards where it goes, on the spot
+  int stuck_ = 0;         ///< times that it came no farther on the way to this lead
   Vec2 probe_from_{0.0, 0.0};
   std::vector<Lead> tried_;
   std::vector<Lead> seen_open_;  ///< ways that were heard, not yet mapped
