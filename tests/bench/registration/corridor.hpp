@@ -8,9 +8,10 @@
 
 namespace saphira::bench {
 
-/// What interpretation found with the readings of a real robot in a corridor. What is there is
-/// known from a fit to all readings at once (tests/bench/sonar): walls 2.14 m apart and one gap of
-/// 0.73 m in the left one, at x = 3.81 to 4.54 m.
+/// What interpretation found with the readings of a real robot. It drives along one corridor, round
+/// a corner and along a second one, of which is known, from a fit to all readings at once: its
+/// walls are parallel and 2.14 m apart, and the left one has a gap of 0.73 m (its middle at y =
+/// -6.24 m).
 struct CorridorFindings {
   std::size_t walls = 0;        ///< along the corridor's walls
   std::size_t other_walls = 0;  ///< elsewhere

@@ -17,13 +17,31 @@ constexpr double kAgree = 0.94;  // cosine between the normals
 constexpr double kGap = 0.3;     // [m] in a wall
 constexpr double kLeast = 0.8;   // [m] of a wall
 constexpr double kReach = 20.0;  // [m]
+constexpr double kThick = 0.3;   // [m] of a wall, the most
+constexpr double kNear = 3.0;    // [m]
 
 struct Cell {
   Vec2 at{0.0, 0.0};
   Vec2 normal{0.0, 0.0};
   double hits = 0.0;
+  double near = 0.0;  // from so near that a sonar would hear it
   bool taken = false;
 };
+
+struct Wall {
+  Vec2 middle{0.0, 0.0};
+  Vec2 normal{1.0, 0.0};
+  double length = 0.0;
+  double near = 0.0;
+};
+
+// The two faces of one wall. A map has one line for it.
+bool same_wall(const Wall& a, const Wall& b) {
+  if (a.normal.dot(b.normal) > -0.95 || std::abs((b.middle - a.middle).dot(a.normal)) > kThick)
+    return false;
+  const double apart = std::abs((b.middle - a.middle).dot(Vec2(-a.normal.y(), a.normal.x())));
+  return 0.5 * (a.length + b.length) - apart > 0.5 * std::min(a.length, b.length);
+}
 
 }  // namespace
 
@@ -45,16 +63,17 @@ maps::Map walls_of(const std::vector<registration::Scan>& scans, const std::vect
       cell.at += at;
       cell.normal += normal;
       cell.hits += 1.0;
+      cell.near += scans[i].points[k].norm() < kNear ? 1.0 : 0.0;
     }
   }
   std::vector<Cell> cells;
   for (auto& [key, cell] : grid)
     if (cell.hits >= kHits)
-      cells.push_back({cell.at / cell.hits, cell.normal.normalized(), cell.hits, false});
+      cells.push_back({cell.at / cell.hits, cell.normal.normalized(), cell.hits, cell.near, false});
   std::stable_sort(cells.begin(), cells.end(),
                    [](const Cell& a, const Cell& b) { return a.hits > b.hits; });
 
-  maps::Map map;
+  std::vector<Wall> walls;
   for (std::size_t seed = 0; seed < cells.size(); ++seed) {
     if (cells[seed].taken)
       continue;
@@ -114,15 +133,28 @@ maps::Map walls_of(const std::vector<registration::Scan>& scans, const std::vect
     cells[seed].taken = true;
     if (members.size() < 4 || to - from < kLeast)
       continue;
-    for (const std::size_t i : members)
+    Wall wall{origin + 0.5 * (from + to) * Vec2(-normal.y(), normal.x()), normal, to - from, 0.0};
+    for (const std::size_t i : members) {
       cells[i].taken = true;
-    const Vec2 along(-normal.y(), normal.x());
-    const Vec2 middle = origin + 0.5 * (from + to) * along;
-    maps::Feature wall;
-    wall.type = lps::PointType::wall;
-    wall.pose_in_map = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
-    wall.length = to - from;
-    map.features.push_back(wall);
+      wall.near += cells[i].near;
+    }
+    walls.push_back(wall);
+  }
+  // The face stays that was seen more from near.
+  std::stable_sort(walls.begin(), walls.end(),
+                   [](const Wall& a, const Wall& b) { return a.near > b.near; });
+  maps::Map map;
+  std::vector<Wall> kept;
+  for (const Wall& wall : walls) {
+    if (std::any_of(kept.begin(), kept.end(), [&](const Wall& k) { return same_wall(k, wall); }))
+      continue;
+    kept.push_back(wall);
+    maps::Feature feature;
+    feature.type = lps::PointType::wall;
+    feature.pose_in_map = {wall.middle.x(), wall.middle.y(),
+                           std::atan2(wall.normal.x(), -wall.normal.y())};
+    feature.length = wall.length;
+    map.features.push_back(feature);
   }
   return map;
 }

@@ -245,10 +245,16 @@ json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Dr
     heard.readings.push_back(hear(scan, ring));
   const SonarRun by_sonar = register_sonars(heard, walls, full.front().pose);
   out["sonar_like"] = sonar_json(set, by_sonar, "7 virtual sonars, walls known", report);
+  const SonarRun mapped = map_sonars(heard, full.front().pose);
+  out["sonar_like_mapping"] =
+      sonar_json(set, mapped, "7 virtual sonars, map built on the way", report);
   if (set.sonars && set.map) {
     const SonarRun simulated =
         register_sonars(*set.sonars, *set.map, set.reference->poses().front().pose);
     out["sonar"] = sonar_json(set, simulated, "simulated sonars, the map known", report);
+    out["sonar_mapping"] =
+        sonar_json(set, map_sonars(*set.sonars, set.reference->poses().front().pose),
+                   "simulated sonars, map built on the way", report);
   }
   if (drawing != nullptr) {
     drawing->map = walls;
@@ -272,10 +278,10 @@ json measure_corridor(const std::string& folder, Report& report) {
   const CorridorFindings f = interpret_corridor(parse_corridor(
       read_file(folder + "/measurement.txt"), read_file(folder + "/poses.txt"), folder));
   report.heading("sonar-corridor: eight real sonars along a corridor");
-  report.note(format(
-      "walls seen: %zu along the two, %zu elsewhere; the longest %.0f and %.0f mm off the fit",
-      f.walls, f.other_walls, 1e3 * f.left_offset, 1e3 * f.right_offset));
-  report.note(f.width ? format("corridors seen: %zu, the surest %.2f m wide (2.14 by the fit)",
+  report.note(
+      format("walls of the second corridor: %zu percepts, the longest %.0f and %.0f mm off the fit",
+             f.walls, 1e3 * f.left_offset, 1e3 * f.right_offset));
+  report.note(f.width ? format("corridors seen there: %zu, one %.2f m wide (2.14 by the fit)",
                                f.corridors, *f.width)
                       : std::string("no corridor seen"));
   report.note(f.gap_found ? format("the gap is seen: centre %.0f mm, width %.0f mm off",
@@ -284,7 +290,6 @@ json measure_corridor(const std::string& folder, Report& report) {
   report.note(format("openings elsewhere: %zu", f.other_openings));
   report.end_of_set();
   json out = {{"walls", f.walls},
-              {"other_walls", f.other_walls},
               {"left_offset_m", f.left_offset},
               {"right_offset_m", f.right_offset},
               {"corridors", f.corridors},

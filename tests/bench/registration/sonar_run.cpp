@@ -5,19 +5,20 @@
 #include <set>
 
 #include "saphira/interpretation/interpretation.hpp"
+#include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
 
 namespace saphira::bench {
 
-SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
-                         std::optional<Pose> start_in_map) {
-  interpretation::Settings seen_by;
-  seen_by.sonars = drive.ring.mounts;
-  interpretation::Interpretation interpretation(seen_by);
-  registration::Settings settings;
+namespace {
+
+// One step after the other: `locate` is given each cycle and what is seen in it.
+template <typename Locate>
+SonarRun run(const SonarDrive& drive, Locate&& locate) {
+  interpretation::Settings settings;
   settings.sonars = drive.ring.mounts;
-  registration::Registration registration(settings, map, start_in_map);
-  SonarRun run;
+  interpretation::Interpretation interpretation(settings);
+  SonarRun out;
   std::set<std::uint32_t> known;
   std::uint64_t cycle = 0;
   for (std::size_t i = 0; i < drive.times.size(); ++i) {
@@ -27,28 +28,62 @@ SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
     cycle = std::max(cycle + 1, now);
     const auto start = std::chrono::steady_clock::now();
     const auto& seen = interpretation.step({cycle, drive.poses_in_odom[i], drive.readings[i]});
-    const auto& placed =
-        registration.step({cycle, 1, drive.poses_in_odom[i], seen.percepts, drive.readings[i]});
-    run.step_ms.push_back(
+    const std::optional<Pose> pose = locate(out, cycle, i, seen.percepts);
+    out.step_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
-    ++run.steps;
-    run.tracking += placed.state == registration::State::tracking ? 1U : 0U;
-    run.lost += placed.state == registration::State::lost ? 1U : 0U;
-    run.unplaced += placed.state == registration::State::unplaced ? 1U : 0U;
-    for (const registration::Match& match : placed.matches)
-      run.accepted += match.accepted ? 1U : 0U;
+    ++out.steps;
+    if (pose)
+      out.poses.push_back({drive.times[i], *pose});
     for (const lps::Percept& percept : seen.percepts)
       if (known.insert(percept.id).second) {
-        run.walls += percept.type == lps::PointType::wall ? 1U : 0U;
-        run.openings +=
-            percept.type == lps::PointType::door || percept.type == lps::PointType::junction ? 1U
-                                                                                             : 0U;
+        const bool opening =
+            percept.type == lps::PointType::door || percept.type == lps::PointType::junction;
+        out.walls += percept.type == lps::PointType::wall ? 1U : 0U;
+        out.openings += opening ? 1U : 0U;
       }
-    if (placed.state != registration::State::unplaced)
-      run.poses.push_back({drive.times[i], placed.pose_in_map});
   }
-  return run;
+  return out;
+}
+
+}  // namespace
+
+SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
+                         std::optional<Pose> start_in_map) {
+  registration::Settings settings;
+  settings.sonars = drive.ring.mounts;
+  registration::Registration registration(settings, map, start_in_map);
+  return run(drive,
+             [&](SonarRun& out, std::uint64_t cycle, std::size_t i,
+                 const std::vector<lps::Percept>& percepts) -> std::optional<Pose> {
+               const auto& placed = registration.step(
+                   {cycle, 1, drive.poses_in_odom[i], percepts, drive.readings[i]});
+               out.tracking += placed.state == registration::State::tracking ? 1U : 0U;
+               out.lost += placed.state == registration::State::lost ? 1U : 0U;
+               out.unplaced += placed.state == registration::State::unplaced ? 1U : 0U;
+               for (const registration::Match& match : placed.matches)
+                 out.accepted += match.accepted ? 1U : 0U;
+               if (placed.state == registration::State::unplaced)
+                 return std::nullopt;
+               return placed.pose_in_map;
+             });
+}
+
+SonarRun map_sonars(const SonarDrive& drive, const Pose& start_in_map) {
+  registration::MapBuilderSettings settings;
+  settings.sonars = drive.ring.mounts;
+  registration::MapBuilder builder(settings, {}, start_in_map);
+  SonarRun out = run(
+      drive,
+      [&](SonarRun& counts, std::uint64_t cycle, std::size_t i,
+          const std::vector<lps::Percept>& percepts) -> std::optional<Pose> {
+        builder.step({cycle, 1, drive.poses_in_odom[i], percepts, drive.readings[i], std::nullopt});
+        ++counts.tracking;
+        return builder.pose_in_map();
+      });
+  out.accepted = static_cast<std::size_t>(builder.closures());
+  out.features = builder.map().features.size();
+  return out;
 }
 
 }  // namespace saphira::bench

@@ -26,12 +26,16 @@ struct SonarRun {
   std::size_t unplaced = 0;
   std::size_t walls = 0;  ///< percepts that were new, by kind
   std::size_t openings = 0;
-  std::size_t accepted = 0;  ///< matches
+  std::size_t accepted = 0;  ///< matches; of map building, loops closed
+  std::size_t features = 0;  ///< of the map that was built
   std::vector<double> step_ms;
 };
 
 /// Interpretation and registration over the drive, beginning at `start_in_map` if it is known.
 SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
                          std::optional<Pose> start_in_map);
+
+/// Interpretation and map building, from nothing.
+SonarRun map_sonars(const SonarDrive& drive, const Pose& start_in_map);
 
 }  // namespace saphira::bench
