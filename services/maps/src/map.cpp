@@ -45,6 +45,14 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
 
+/// Line breaks and their kind, which no line of a file could hold.
+bool has_control(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 || byte == 0x7F;
+  });
+}
+
 // Reads one line: words and numbers between blanks, commas and parentheses.
 class Scanner {
  public:
@@ -105,6 +113,8 @@ class Scanner {
     const std::string_view text = token(end + 1 - at_);
     if (text.size() == 2)
       fail("expected a name between the quotation marks");
+    if (has_control(text))
+      fail("expected a name without control characters");
     return std::string(text.substr(1, text.size() - 2));
   }
   bool at_quote() { return !at_end() && line_[at_] == '"'; }
@@ -233,8 +243,8 @@ std::string line_of(const Feature& feature) {
     throw std::invalid_argument("a feature without an id");
   if (!std::isfinite(feature.pose_in_map.th))
     throw std::invalid_argument("a heading that is not a number");
-  if (feature.name.find_first_of("\"\n\r") != std::string::npos)
-    throw std::invalid_argument("a name with a quotation mark or a line break");
+  if (feature.name.find('"') != std::string::npos || has_control(feature.name))
+    throw std::invalid_argument("a name with a quotation mark or a control character");
   std::string out(form.word);
   if (form.id)
     out += " (" + std::to_string(feature.id) + ")";

@@ -169,6 +169,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"POS (1) 0, 0, 0 \"a\" \"b\"\n", 1, 21, "the end of the line"},
         Broken{"POS (1) 0, 0, 0 \"a\n", 1, 17, "closing \""},
         Broken{"POS (1) 0, 0, 0 \"\"\n", 1, 17, "a name between"},
+        Broken{"POS (1) 0, 0, 0 \"a\rb\"\n", 1, 17, "without control characters"},
         Broken{"POS (1) 0, 0, nan\n", 1, 15, "a number (theta"}));
 
 }  // namespace

@@ -41,7 +41,7 @@ Map load_map(const std::string& path);
 
 /// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.
 /// Walls lose their ids. std::invalid_argument where no file could hold it: an id twice, a size
-/// that is not positive, a name with a quotation mark or a line break.
+/// that is not positive, a name with a quotation mark or a control character.
 std::string to_text(const Map& map);
 
 /// The feature of that id; nullptr where there is none.
