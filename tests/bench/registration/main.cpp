@@ -1,6 +1,4 @@
 // Where robots were, by their logs: dead reckoning and registration beside published figures.
-#include <time.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -51,13 +49,6 @@ constexpr Published kPublished[] = {
     {"hospital", "GMapping, 50 particles", 0.637, 2.638},
     {"hospital", "graph mapping", 0.143, 0.180},
 };
-
-// Of this program alone: other work on the machine does not count.
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty())
@@ -248,6 +239,25 @@ json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Dr
   const SonarRun mapped = map_sonars(heard, full.front().pose);
   out["sonar_like_mapping"] =
       sonar_json(set, mapped, "7 virtual sonars, map built on the way", report);
+  // The same with dead reckoning calibrated, as one would for a robot that one drives. Its
+  // constants are from the full ranges of the whole drive.
+  std::vector<Pose> at_scans;
+  for (const StampedPose& p : full)
+    at_scans.push_back(p.pose);
+  const OdometryErrors errors = fit_odometry(set.poses_in_odom, at_scans);
+  report.note(
+      format("dead reckoning is off by %.2f degrees a metre, %.1f %% of turns, %.1f %% of ways",
+             degrees(errors.turn_per_metre), 100.0 * (errors.turn_scale - 1.0),
+             100.0 * (errors.way_scale - 1.0)));
+  heard.poses_in_odom = calibrated(set.poses_in_odom, errors);
+  out["dead_reckoning_calibrated"] =
+      evaluate(set, Trajectory(stamped(set.times, heard.poses_in_odom)),
+               "dead reckoning, calibrated", report);
+  out["sonar_like_calibrated"] = sonar_json(set, register_sonars(heard, walls, full.front().pose),
+                                            "  7 virtual sonars, walls known", report);
+  out["sonar_like_mapping_calibrated"] =
+      sonar_json(set, map_sonars(heard, full.front().pose),
+                 "  7 virtual sonars, map built on the way", report);
   if (set.sonars && set.map) {
     const SonarRun simulated =
         register_sonars(*set.sonars, *set.map, set.reference->poses().front().pose);

@@ -72,6 +72,60 @@ Trajectory densify(const Trajectory& scans, const Trajectory& odometry) {
   return Trajectory(std::move(out));
 }
 
+OdometryErrors fit_odometry(const std::vector<Pose>& odometry, const std::vector<Pose>& truth) {
+  // Turns: true = scale * measured + per_metre * way; ways: true = scale * measured.
+  double tt = 0.0;
+  double tw = 0.0;
+  double ww = 0.0;
+  double to_turn = 0.0;
+  double to_way = 0.0;
+  double measured_way = 0.0;
+  double true_way = 0.0;
+  double turn = 0.0;
+  double true_turn = 0.0;
+  double way = 0.0;
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    turn += norm2_angle(odometry[i].th - odometry[i - 1].th);
+    true_turn += norm2_angle(truth[i].th - truth[i - 1].th);
+    way += distance(odometry[i], odometry[i - 1]);
+    measured_way += distance(odometry[i], odometry[i - 1]);
+    true_way += distance(truth[i], truth[i - 1]);
+    if (way < 1.0 && std::abs(turn) < 0.5)
+      continue;
+    tt += turn * turn;
+    tw += turn * way;
+    ww += way * way;
+    to_turn += true_turn * turn;
+    to_way += true_turn * way;
+    turn = true_turn = way = 0.0;
+  }
+  OdometryErrors out;
+  const double det = tt * ww - tw * tw;
+  if (det > 1e-9) {
+    out.turn_scale = (to_turn * ww - to_way * tw) / det;
+    out.turn_per_metre = (to_way * tt - to_turn * tw) / det;
+  }
+  if (measured_way > 1.0)
+    out.way_scale = true_way / measured_way;
+  return out;
+}
+
+std::vector<Pose> calibrated(const std::vector<Pose>& odometry, const OdometryErrors& errors) {
+  std::vector<Pose> out;
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    if (i == 0) {
+      out.push_back(odometry.front());
+      continue;
+    }
+    const Pose step = relative(odometry[i - 1], odometry[i]);
+    const double turn =
+        errors.turn_scale * step.th + errors.turn_per_metre * std::hypot(step.x, step.y);
+    out.push_back(
+        compose(out.back(), {errors.way_scale * step.x, errors.way_scale * step.y, turn}));
+  }
+  return out;
+}
+
 Spread spread_of(const std::vector<double>& values) {
   Spread out;
   out.count = values.size();

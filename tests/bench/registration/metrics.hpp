@@ -31,6 +31,17 @@ class Trajectory {
 /// scan, bent so that it ends where the next scan is.
 Trajectory densify(const Trajectory& scans, const Trajectory& odometry);
 
+/// What dead reckoning does wrong all the time, as a person finds it out by driving.
+struct OdometryErrors {
+  double turn_per_metre = 0.0;  ///< [rad/m] it misses
+  double turn_scale = 1.0;      ///< true by measured
+  double way_scale = 1.0;
+};
+/// The constants that fit the whole way best, over stretches of about a metre.
+OdometryErrors fit_odometry(const std::vector<Pose>& odometry, const std::vector<Pose>& truth);
+/// Dead reckoning without them.
+std::vector<Pose> calibrated(const std::vector<Pose>& odometry, const OdometryErrors& errors);
+
 struct Spread {
   double mean = 0.0;
   double deviation = 0.0;

@@ -123,6 +123,17 @@ TEST(Metrics, DriftIsPerDistance) {
   EXPECT_NEAR(degrees(errors.rotation.median), 10.0, 0.2);
 }
 
+TEST(Metrics, ConstantErrorsOfDeadReckoningAreFound) {
+  std::vector<Pose> truth;
+  for (const StampedPose& p : a_way())
+    truth.push_back(p.pose);
+  const OdometryErrors wrong{radians(-1.0), 0.95, 1.02};
+  const std::vector<Pose> measured = calibrated(truth, wrong);
+  ASSERT_GT((measured.back().position() - truth.back().position()).norm(), 1.0);
+  const std::vector<Pose> again = calibrated(measured, fit_odometry(measured, truth));
+  EXPECT_LT((again.back().position() - truth.back().position()).norm(), 0.2);
+}
+
 TEST(Metrics, BetweenScansItGoesAsDeadReckoningDid) {
   const auto way = a_way();
   std::vector<StampedPose> scans;

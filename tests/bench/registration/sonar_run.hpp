@@ -18,6 +18,9 @@ struct SonarDrive {
   std::vector<std::vector<lps::SonarReading>> readings;
 };
 
+/// [s] Of this program alone: other work on the machine does not count.
+double cpu_seconds();
+
 struct SonarRun {
   std::vector<StampedPose> poses;  ///< in the map, from when it is placed
   std::size_t steps = 0;
@@ -26,9 +29,9 @@ struct SonarRun {
   std::size_t unplaced = 0;
   std::size_t walls = 0;  ///< percepts that were new, by kind
   std::size_t openings = 0;
-  std::size_t accepted = 0;  ///< matches; of map building, loops closed
-  std::size_t features = 0;  ///< of the map that was built
-  std::vector<double> step_ms;
+  std::size_t accepted = 0;     ///< matches; of map building, loops closed
+  std::size_t features = 0;     ///< of the map that was built
+  std::vector<double> step_ms;  ///< of CPU
 };
 
 /// Interpretation and registration over the drive, beginning at `start_in_map` if it is known.
