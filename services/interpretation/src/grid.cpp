@@ -9,6 +9,7 @@ namespace {
 /// Evidence and log odds are counted in steps of this.
 constexpr double kStep = 0.04;
 constexpr int kMost = 120;
+constexpr int kHalf = 128;
 
 double logit(double probability) {
   return std::log(probability / (1.0 - probability));
@@ -19,12 +20,18 @@ double logit(double probability) {
 Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(settings.prior)) {
   // With the probability `mirror` the surface of an occupied cell sends the sound elsewhere, and
   // whatever was heard from this direction says nothing of it.
-  for (int i = -128; i < 128; ++i) {
-    const double q = settings_.model == GridModel::muriel ? settings_.mirror : 0.0;
-    const double said = std::log(q + (1.0 - q) * std::exp(kStep * i));
-    weighed_[static_cast<std::size_t>(i + 128)] =
-        static_cast<std::int16_t>(std::lround(said / kStep));
+  const double q = settings_.model == GridModel::muriel ? settings_.mirror : 0.0;
+  int evidence = -kHalf;
+  for (std::int16_t& weighed : weighed_) {
+    const double said = std::log(q + (1.0 - q) * std::exp(kStep * evidence));
+    weighed = static_cast<std::int16_t>(std::lround(said / kStep));
+    ++evidence;
   }
+}
+
+int Grid::weighed(int said) const {
+  const int index = said + kHalf;
+  return weighed_[static_cast<std::size_t>(index)];
 }
 
 void Grid::clear() {
@@ -173,7 +180,7 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
 
 void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
   std::int8_t& said = tile.bins[cell][static_cast<std::size_t>(bin)];
-  const int before = said;
+  const auto before = static_cast<int>(said);
   const int after =
       std::clamp(before + static_cast<int>(std::lround(log_odds / kStep)), -kMost, kMost);
   tile.seen[cell] = true;
@@ -182,9 +189,7 @@ void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
   if (after == before)
     return;
   said = static_cast<std::int8_t>(after);
-  tile.total[cell] =
-      static_cast<std::int16_t>(tile.total[cell] + weighed_[static_cast<std::size_t>(after + 128)] -
-                                weighed_[static_cast<std::size_t>(before + 128)]);
+  tile.total[cell] = static_cast<std::int16_t>(tile.total[cell] + weighed(after) - weighed(before));
 }
 
 void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {

@@ -45,8 +45,9 @@ TEST(Grid, StandingStillSaysNoMoreThanOneReading) {
 TEST(Grid, AMirroringWallStays) {
   Grid muriel;
   Grid cone(of(GridModel::cone));
-  for (double x = 0.0; x < 6.0; x += 0.08)
+  for (int i = 0; i < 75; ++i)
     for (Grid* grid : {&muriel, &cone}) {
+      const double x = 0.08 * i;
       grid->add(0, {x, 0.0, kPi / 2.0}, 1.0);
       grid->add(1, {x, 0.0, radians(30.0)}, std::nullopt);
       grid->add(2, {x, 0.0, radians(45.0)}, std::nullopt);
@@ -54,7 +55,8 @@ TEST(Grid, AMirroringWallStays) {
   int muriel_kept = 0;
   int cone_kept = 0;
   int all = 0;
-  for (double x = 2.0; x < 5.5; x += 0.05) {
+  for (int i = 0; i < 70; ++i) {
+    const double x = 2.0 + 0.05 * i;
     ++all;
     muriel_kept += muriel.probability({x, 1.0}).value_or(0.0) > 0.5 ? 1 : 0;
     cone_kept += cone.probability({x, 1.0}).value_or(0.0) > 0.5 ? 1 : 0;
@@ -69,8 +71,10 @@ TEST(Grid, IsClearedFromSeveralDirections) {
     grid.add(0, {0.0, 0.07 * i, 0.0}, 1.0);
   ASSERT_GT(grid.probability({1.0, 0.15}).value_or(0.0), 0.5);
   // The box has gone: all around it sonars hear the wall behind.
-  for (double angle = 0.0; angle < 6.2; angle += 0.1)
+  for (int i = 0; i < 62; ++i) {
+    const double angle = 0.1 * i;
     grid.add(0, {1.0 - std::cos(angle), 0.15 - std::sin(angle), angle}, 3.0);
+  }
   EXPECT_LT(grid.probability({1.0, 0.15}).value_or(1.0), 0.3);
 }
 
@@ -78,7 +82,8 @@ TEST(Grid, GoesWithTheRobotInTiles) {
   Grid grid;
   std::size_t most = 0;
   std::size_t dropped = 0;
-  for (double x = -30.0; x < 30.0; x += 0.2) {
+  for (int i = 0; i < 300; ++i) {
+    const double x = -30.0 + 0.2 * i;
     grid.move_to({x, 0.0});
     dropped += grid.dropped().size();
     EXPECT_TRUE(grid.changed().empty());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "saphira/base/random.hpp"
@@ -19,6 +20,13 @@ Return heard(const Vec2& at, double offset, double slope, double tilt, double no
   firing.echo = true;
   firing.travelled = at.x();
   return firing;
+}
+
+std::vector<const Return*> all(const std::vector<Return>& firings) {
+  std::vector<const Return*> echoes(firings.size());
+  std::transform(firings.begin(), firings.end(), echoes.begin(),
+                 [](const Return& firing) { return &firing; });
+  return echoes;
 }
 
 TEST(Tangent, TouchesBothCirclesOnTheSideThatTheSonarsLookTo) {
@@ -40,26 +48,25 @@ TEST(Fit, IsRightForSonarsThatLookAskewAndKnowsHowSureItIs) {
   const double slope = radians(-4.0);
   Random random(1);
   int within = 0;
-  constexpr int kRuns = 200;
-  for (int run = 0; run < kRuns; ++run) {
+  int runs = 0;
+  for (; runs < 200; ++runs) {
     std::vector<Return> firings;
+    firings.reserve(25);
     for (int i = 0; i < 25; ++i)
       firings.push_back(heard({0.08 * i, 0.01 * i}, 1.0, slope, radians(20.0),
                               random.normal(0.0, EchoError{}.noise)));
-    std::vector<const Return*> echoes;
-    for (const Return& firing : firings)
-      echoes.push_back(&firing);
-    const LineFit fit = fit_line(echoes, {{0.0, 1.0}, 1.0}, {});
+    const LineFit fit = fit_line(all(firings), {{0.0, 1.0}, 1.0}, {});
     const double heading = std::atan2(-fit.line.along().y(), -fit.line.along().x());
     EXPECT_NEAR(heading, slope, radians(1.5));
     EXPECT_LT(fit.sigma_heading, radians(1.0));
     within += std::abs(heading - slope) < 2.0 * fit.sigma_heading ? 1 : 0;
   }
-  EXPECT_GT(within, 0.9 * kRuns);
+  EXPECT_GT(within, 0.9 * runs);
 }
 
 TEST(Fit, FollowsTheNewestEchoesWhereDeadReckoningHasTurned) {
   std::vector<Return> firings;
+  firings.reserve(37);
   // The robot's heading strays by 3 degrees while it turns by 0.5 rad at x = 2.
   for (int i = 0; i < 25; ++i)
     firings.push_back(heard({0.08 * i, 0.0}, 1.0, 0.0, 0.0));
@@ -69,10 +76,7 @@ TEST(Fit, FollowsTheNewestEchoesWhereDeadReckoningHasTurned) {
     firing.turned = 0.5;
     firings.push_back(firing);
   }
-  std::vector<const Return*> echoes;
-  for (const Return& firing : firings)
-    echoes.push_back(&firing);
-  const LineFit fit = fit_line(echoes, {{0.0, 1.0}, 1.0}, {});
+  const LineFit fit = fit_line(all(firings), {{0.0, 1.0}, 1.0}, {});
   const double heading = std::atan2(-fit.line.along().y(), -fit.line.along().x());
   EXPECT_NEAR(heading, radians(3.0), radians(1.5));
   EXPECT_NEAR(heading, radians(3.0), 2.0 * fit.sigma_heading);

@@ -11,6 +11,7 @@ namespace {
 using lps::PointType;
 
 constexpr double kOnWall = 0.2;     // [m] a wall may be off
+constexpr int kSamples = 20;        // along a wall
 constexpr double kOnDoor = 0.3;     // [m] a door's middle may be off
 constexpr double kDoorWidth = 0.4;  // [m]
 constexpr double kOnCorner = 0.3;   // [m] one end
@@ -45,7 +46,6 @@ Pose Score::in_world(const lps::Percept& percept) const {
 
 bool Score::is_surface(const sim::Things& things, const Pose& middle,
                        const lps::Percept& wall) const {
-  constexpr int kSamples = 20;
   int hits = 0;
   for (int i = 0; i < kSamples; ++i) {
     const double along = ((i + 0.5) / kSamples - 0.5) * wall.length;
@@ -212,12 +212,12 @@ GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
                      const maps::Map& map, const std::vector<Vec2>& path) {
   const double cell = grid.settings().resolution;
   GridScore score;
+  if (path.empty())
+    return score;
   const auto nearest = [&](const Vec2& at) {
-    const Vec2* best = nullptr;
-    for (const Vec2& point : path)
-      if (!best || (point - at).squaredNorm() < (*best - at).squaredNorm())
-        best = &point;
-    return *best;
+    return *std::min_element(path.begin(), path.end(), [&](const Vec2& a, const Vec2& b) {
+      return (a - at).squaredNorm() < (b - at).squaredNorm();
+    });
   };
   int surfaces = 0;
   int kept = 0;
@@ -245,9 +245,12 @@ GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
     if (door.type != PointType::door ||
         (nearest(door.pose_in_map.position()) - door.pose_in_map.position()).norm() > 1.5)
       continue;
-    for (double x = -0.2; x <= 0.21; x += cell)
-      for (double y = 0.15 - door.width / 2.0; y <= door.width / 2.0 - 0.15; y += cell) {
-        const auto probability = grid.probability(transform(door.pose_in_map, Vec2(x, y)));
+    // Of the opening, without 0.15 m at its posts and 0.2 m to either side of the wall.
+    const int deep = static_cast<int>(0.2 / cell);
+    const int wide = static_cast<int>((door.width / 2.0 - 0.15) / cell);
+    for (int i = -deep; i <= deep; ++i)
+      for (int k = -wide; k <= wide; ++k) {
+        const auto probability = grid.probability(transform(door.pose_in_map, cell * Vec2(i, k)));
         if (!probability)
           continue;
         ++inside;
@@ -260,12 +263,15 @@ GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
   double all_occupied = 0.0;
   double all_empty = 0.0;
   double wrong = 0.0;
-  for (double y = cell / 2.0; y < world.height; y += cell)
-    for (double x = cell / 2.0; x < world.width; x += cell) {
-      const auto probability = grid.probability(Vec2(x, y));
+  const int rows = static_cast<int>(world.height / cell);
+  const int columns = static_cast<int>(world.width / cell);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const Vec2 at = cell * Vec2(column + 0.5, row + 0.5);
+      const auto probability = grid.probability(at);
       if (!probability)
         continue;
-      const double off = sim::distance(world.segments, Vec2(x, y));
+      const double off = sim::distance(world.segments, at);
       const auto step = static_cast<std::size_t>(*probability * 200.0);
       if (off <= 0.71 * cell) {
         ++occupied[step];

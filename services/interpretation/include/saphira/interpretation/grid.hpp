@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -49,7 +48,10 @@ struct GridSettings {
 struct TileKey {
   long column = 0;
   long row = 0;
-  auto operator<=>(const TileKey&) const = default;
+  bool operator==(const TileKey&) const = default;
+  bool operator<(const TileKey& other) const {
+    return column != other.column ? column < other.column : row < other.row;
+  }
 };
 
 /// An occupancy grid in the frame of its caller, in square tiles around the robot.
@@ -107,6 +109,7 @@ class Grid {
   void for_cone(const Pose& sonar, double range, F&& f);
   void add_muriel(const Pose& sonar, std::optional<double> range);
   void add_cone(const Pose& sonar, std::optional<double> range);
+  int weighed(int said) const;
   void evidence(Tile& tile, std::size_t cell, int bin, double log_odds);
   double probability(const Tile& tile, std::size_t cell) const;
 
