@@ -195,7 +195,7 @@ Match match(const Percept& percept, const Pose& robot_in_odom, const maps::Map& 
   result.offset = -best->correction;
   result.turned = best->turned;
   result.distance = best->distance;
-  if (best->distance > settings.gate) {
+  if (best->distance > settings.gate || best->correction.norm() > settings.most_off) {
     result.reason = "too far from where the nearest is expected";
     return result;
   }

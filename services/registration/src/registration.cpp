@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <set>
 #include <utility>
 
@@ -13,6 +14,7 @@ using lps::PointType;
 
 constexpr double kNear = 1.0;                // [m] another place within this and...
 constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther off it was lost
+constexpr std::size_t kTurns = 600;          // cycles
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
 
 /// Hypotheses before features, paper 3.2: what constrains most comes first.
@@ -105,6 +107,7 @@ class Registration::Self {
   void look_elsewhere(const std::vector<PlacedReading>& readings,
                       const std::vector<const Percept*>& percepts);
   bool uses_old_readings(const Percept& percept) const;
+  double turned_since(const Percept& percept) const;
   void find_environment();
   void report();
 
@@ -129,8 +132,10 @@ class Registration::Self {
   std::uint64_t cycle_ = 0;
   std::optional<std::uint64_t> odom_;
   Pose pose_in_odom_;
-  Pose moved_;                   // in this cycle
-  double since_readings_ = 0.0;  // [m] of way since readings corrected it
+  Pose moved_;                                          // in this cycle
+  double since_readings_ = 0.0;                         // [m] of way since readings corrected it
+  double turned_ = 0.0;                                 // [rad] ever, either way
+  std::deque<std::pair<std::uint64_t, double>> turns_;  // the same by cycle, of late
   std::vector<Done> done_;
   std::set<std::pair<std::uint64_t, int>> used_;  // readings of accepted percepts
   std::optional<Memory> restored_;
@@ -211,6 +216,10 @@ void Registration::Self::move(const Inputs& inputs) {
   odom_ = inputs.odom;
   pose_in_odom_ = inputs.pose_in_odom;
   cycle_ = inputs.cycle;
+  turned_ += std::abs(moved_.th);
+  turns_.emplace_back(cycle_, turned_);
+  if (turns_.size() > kTurns)
+    turns_.pop_front();
   if (filter_)
     filter_->move(moved_);
 }
@@ -243,11 +252,22 @@ bool Registration::Self::uses_old_readings(const Percept& percept) const {
   return 2 * static_cast<std::size_t>(old) > percept.readings.size();
 }
 
+double Registration::Self::turned_since(const Percept& percept) const {
+  // Half of what made it is newer.
+  const std::uint64_t cycle =
+      percept.readings.empty() ? percept.seen : percept.readings[percept.readings.size() / 2].cycle;
+  const auto at = std::lower_bound(
+      turns_.begin(), turns_.end(), cycle,
+      [](const std::pair<std::uint64_t, double>& turn, std::uint64_t c) { return turn.first < c; });
+  return at == turns_.end() ? 0.0 : turned_ - at->second;
+}
+
 std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
   std::vector<const Percept*> result;
   for (const Percept& percept : inputs.percepts) {
     if (percept.confidence < settings_.least_confidence ||
-        percept.seen + settings_.fresh < inputs.cycle)
+        percept.seen + settings_.fresh < inputs.cycle ||
+        turned_since(percept) > settings_.most_turned)
       continue;
     const auto last = std::find_if(done_.begin(), done_.end(),
                                    [&](const Done& done) { return done.percept == percept.id; });
@@ -325,11 +345,6 @@ void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
   search_.step(pose_in_odom_, readings, percepts, filter_ ? &*filter_ : nullptr);
-  // Who knows that his pose may be off is not lost because it is.
-  if (filter_ && search_.own_score() < 0.0 && state_ == State::tracking &&
-      (filter_->sigma_position() > settings_.uncertain ||
-       filter_->sigma_heading() > settings_.uncertain_heading))
-    search_.believe(0.0);
   const auto best = search_.best(state_ == State::tracking);
   if (!best)
     return;

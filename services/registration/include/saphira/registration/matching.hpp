@@ -20,6 +20,7 @@ struct MatchSettings {
   double ambiguity = 12.0;             ///< a second artifact within this gate is ambiguous...
   double same_innovation = 0.06;       ///< [m] ...unless it says the same of the pose, to this
   double same_heading = radians(2.0);  ///< [rad]
+  double most_off = 0.7;               ///< [m] however unsure: doors are not much farther apart
   double map_error = 0.03;             ///< [m] one sigma of the map's lines and doors
   double map_heading = radians(0.5);   ///< [rad] the same
   double width = 0.35;                 ///< [m] that openings may differ in width

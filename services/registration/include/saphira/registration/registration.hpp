@@ -36,6 +36,9 @@ struct Settings {
   double again_turned = radians(10.0);  ///< [rad] ...or turn
   double least_confidence = 0.5;        ///< percepts that are less sure are left alone
   std::uint64_t fresh = 15;             ///< [cycles] percepts seen longer ago are left alone
+  /// [rad] and those since whose readings the robot has turned by more: dead reckoning errs most in
+  /// turns, so that they are not where they seem.
+  double most_turned = radians(40.0);
 
   // Single readings of a wall that faces the sonar: little by little, between percepts.
   double wall_sigma = 0.15;  ///< [m] so much since they are not independent
@@ -45,9 +48,6 @@ struct Settings {
   double sure = 15.0;        ///< from which on they fit; a robot that tracks has 20 to 40
   double lost = -6.0;        ///< below which the pose does not hold...
   double again_sure = 20.0;  ///< ...until it has fitted as well as this again
-  /// Sigmas beyond which readings that do not fit are no proof of being lost.
-  double uncertain = 0.3;  ///< [m]
-  double uncertain_heading = radians(6.0);
   SearchSettings search;
 };
 
