@@ -180,7 +180,7 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
 
 void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
   std::int8_t& said = tile.bins[cell][static_cast<std::size_t>(bin)];
-  const auto before = static_cast<int>(said);
+  const auto before = static_cast<int>(said);  // NOLINT(bugprone-signed-char-misuse): a number
   const int after =
       std::clamp(before + static_cast<int>(std::lround(log_odds / kStep)), -kMost, kMost);
   tile.seen[cell] = true;
