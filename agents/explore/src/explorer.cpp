@@ -335,6 +335,7 @@ void Explorer::probe(const Inputs& inputs) {
     output_.reason = lead_->what + (stuck  ? ": closed"
                                     : away ? ": turned away"
                                            : ": open, and nothing follows");
+    open_ = !stuck && !away;
     // An end that was left behind on the way into the open has been tried with it.
     tried_.push_back({point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
     if (squeeze_) {
@@ -444,10 +445,13 @@ void Explorer::look(const Inputs& inputs) {
 
 void Explorer::finish(const Inputs& inputs) {
   tried_.push_back(*lead_);
-  // Where it ended, too: the end of a corridor has moved on with the robot.
+  // Where it ended, too: the end of a corridor has moved on with the robot. In the open the map may
+  // only be late.
   Lead here = *lead_;
   here.point = inputs.pose_in_map.position();
-  tried_.push_back(here);
+  if (!open_)
+    tried_.push_back(here);
+  open_ = false;
   lead_.reset();
   stuck_ = 0;
   output_.look_at.reset();

@@ -540,24 +540,19 @@ std::vector<MapBuilder::Corridor> MapBuilder::corridors() const {
     for (const GraphNode& node : graph_.nodes) {
       const Pose in = relative(group.frame, node.in_map);
       if (std::abs(in.y) < group.width / 2)
-        driven.emplace_back(in.x - settings_.node_way, in.x + settings_.node_way);
+        driven.emplace_back(in.x - settings_.node_way / 2, in.x + settings_.node_way / 2);
     }
-    driven = joined(std::move(driven), 0.3);
+    driven = joined(std::move(driven), 0.2);
     std::vector<Stretches> parts;
     for (const auto& s : group.both) {
       bool follows = false;
       if (!parts.empty()) {
         const double end = parts.back().back().second;
         const double gap = s.first - end;
-        // One wall going on, or the robot's having gone on, holds the parts together.
-        const Stretches walls = joined(group.walls, settings_.max_gap);
-        const bool wall = std::any_of(walls.begin(), walls.end(), [&](const auto& w) {
-          return w.first <= end + 0.1 && w.second >= s.first - 0.1;
-        });
         const bool drove = std::any_of(driven.begin(), driven.end(), [&](const auto& d) {
           return d.first <= end && d.second >= s.first;
         });
-        follows = gap < settings_.max_gap || wall || (drove && gap < settings_.max_driven_gap);
+        follows = gap < settings_.max_gap || (drove && gap < settings_.max_driven_gap);
       }
       if (follows)
         parts.back().push_back(s);
@@ -570,8 +565,15 @@ std::vector<MapBuilder::Corridor> MapBuilder::corridors() const {
       corridor.from = part.front().first;
       corridor.to = part.back().second;
       for (const auto& w : group.walls) {
-        if (w.second < corridor.from - settings_.max_gap ||
-            w.first > corridor.to + settings_.max_gap)
+        // What goes on beyond a wall ahead is another corridor's.
+        const auto drove = [&](double from, double to) {
+          return std::any_of(driven.begin(), driven.end(),
+                             [&](const auto& d) { return d.first <= from && d.second >= to; });
+        };
+        if ((w.second < part.front().first && !drove(w.second, part.front().first)) ||
+            (w.first > part.back().second && !drove(part.back().second, w.first)) ||
+            w.second < corridor.from - settings_.one_gap ||
+            w.first > corridor.to + settings_.one_gap)
           continue;
         corridor.from =
             std::min(corridor.from, std::max(w.first, part.front().first - settings_.one_sided));
@@ -614,11 +616,19 @@ void MapBuilder::close_ends(std::vector<Corridor>& corridors) const {
       double& end = upper ? corridor.to : corridor.from;
       const double sign = upper ? 1.0 : -1.0;
       // How far the robot has been, or the walls go: what was heard nearer than that has gone.
-      double reached = -1e9;
+      // Driven without a gap, that is: beyond a wall it may have been, too.
+      std::vector<double> been;
       for (const GraphNode& node : graph_.nodes) {
         const Pose in = relative(corridor.frame, node.in_map);
-        if (std::abs(in.y) < corridor.width / 2 && sign * (in.x - end) < settings_.reach + 1.0)
-          reached = std::max(reached, sign * in.x);
+        if (std::abs(in.y) < corridor.width / 2)
+          been.push_back(sign * in.x);
+      }
+      std::sort(been.begin(), been.end());
+      double reached = -1e9;
+      for (const double at : been) {
+        if (at > sign * end - 1.0 && at > reached + 1.5 * settings_.node_way)
+          break;
+        reached = at;
       }
       std::vector<double> heard;
       for (const SeenPoint& echo : ahead_) {

@@ -85,7 +85,7 @@ class Explorer {
   std::optional<double> heard(double bearing) const;
   /// What is ahead leaves room to the left or right, as far as can be heard.
   bool passable() const;
-  void finish(const Inputs& inputs);
+  void finish(const Inputs& inputs);  ///< with the lead
   void head_for(const Vec2& point, const Inputs& inputs);
   bool blocked(const Inputs& inputs);
   std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
@@ -115,6 +115,7 @@ class Explorer {
   std::uint64_t look_cycle_ = 0;    ///< when this one was begun...
   std::uint64_t steady_cycle_ = 0;  ///< ...and since when the robot looks that way
   Vec2 look_from_{0.0, 0.0};
+  bool open_ = false;         ///< it ended in the open, with no wall ahead
   bool in_corridor_ = false;  ///< what was probed last has become one
   /// The sides have been looked at; now it tries to get by what is ahead, begun so far along.
   std::optional<double> squeeze_;

@@ -40,7 +40,8 @@ struct MapBuilderSettings {
   double min_both = 1.2;    ///< [m] with a wall on either side
   double min_ratio = 2.2;   ///< [1] of length and width; less is a room
   double min_length = 3.0;  ///< [m]
-  double max_gap = 1.4;     ///< [m] in both walls; more where the robot drove through
+  double max_gap = 0.3;     ///< [m] in both walls; more where the robot drove through
+  double one_gap = 1.4;     ///< [m] between them and a wall that goes on on one side
   double max_driven_gap = 7.0;
   double one_sided = 2.5;  ///< [m] by which one wall alone may make a corridor longer
   double reach = 1.5;      ///< [m] an end so near to another corridor is a junction
