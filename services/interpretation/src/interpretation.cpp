@@ -130,10 +130,10 @@ void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in
 }
 
 void Interpretation::interpret() {
-  for (std::size_t side = 0; side < 2; ++side)
-    if (changed_[side])
-      sides_[side].interpret(travelled_, others_);
   if (changed_[0] || changed_[1]) {
+    // Both: what a side has put together refers to readings, of which the oldest are gone since.
+    for (SideView& side : sides_)
+      side.interpret(travelled_, others_);
     for (Standing& standing : standing_)
       standing.seen = false;
     find_walls(0);
