@@ -220,8 +220,8 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
     }
   };
   for (std::size_t k = 0; k < lines_.size(); ++k)
-    for (double t = 0.0; t <= lines_[k].length; t += kCell / 2.0)
-      if (const auto i = index(lines_[k].from + lines_[k].way * t))
+    for (int step = 0; step * kCell / 2.0 <= lines_[k].length; ++step)
+      if (const auto i = index(lines_[k].from + lines_[k].way * (step * kCell / 2.0)))
         offer(static_cast<int>(*i % static_cast<std::size_t>(columns_)),
               static_cast<int>(*i / static_cast<std::size_t>(columns_)),
               static_cast<std::uint16_t>(k));

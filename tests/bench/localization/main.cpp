@@ -115,7 +115,8 @@ int run(const Options& options) {
     test::DriveOptions drive = drive_of(options, seed);
     std::vector<Vec2> points = test::office_tour();
     std::rotate(points.begin(),
-                points.begin() + (3 * seed) % static_cast<std::ptrdiff_t>(points.size()),
+                points.begin() + static_cast<std::ptrdiff_t>(3) * seed %
+                                     static_cast<std::ptrdiff_t>(points.size()),
                 points.end());
     const Vec2 ahead = points[1] - points[0];
     drive.start_in_world = Pose{points[0].x(), points[0].y(), std::atan2(ahead.y(), ahead.x())};
