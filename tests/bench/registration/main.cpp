@@ -141,9 +141,13 @@ json evaluate(const DataSet& set, const Trajectory& estimate, const std::string&
 }
 
 std::vector<Vec2> points_of(const std::vector<StampedPose>& poses, const Pose& align) {
+  constexpr double kSpacing = 0.15;  // [m] more detail only makes the file bigger
   std::vector<Vec2> out;
-  for (const StampedPose& p : poses)
-    out.push_back(transform(align, p.pose.position()));
+  for (const StampedPose& p : poses) {
+    const Vec2 at = transform(align, p.pose.position());
+    if (out.empty() || (at - out.back()).norm() > kSpacing)
+      out.push_back(at);
+  }
   return out;
 }
 
