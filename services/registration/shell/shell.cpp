@@ -173,6 +173,8 @@ v1::Registration Shell::built(const bus::Step& step, const std::vector<lps::Perc
   output.state = State::tracking;
   output.reason = "builds the map";
   output.pose_in_map = builder_->pose_in_map();
+  output.covariance = builder_->covariance();
+  output.confidence = 1.0;  // pose and map are one: there is no other place to be
   return to_bus(output, editor_.map(), pose_in_odom_);
 }
 

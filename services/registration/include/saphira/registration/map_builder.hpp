@@ -86,6 +86,8 @@ class MapBuilder {
   std::uint64_t revision() const { return editor_.revision(); }
   /// Where the robot is by the map as it is built.
   const Pose& pose_in_map() const { return pose_in_map_; }
+  /// Of x, y, th in the map, when the newest place on the way was put down.
+  const Eigen::Matrix3d& covariance() const { return covariance_; }
   /// Doors of the map that did not open the last two times that the robot came by.
   std::vector<std::uint32_t> closed() const;
   /// How often something was seen again after a long way.
