@@ -14,15 +14,16 @@ bool same_place(const Pose& a, const Pose& b, double way, double turn) {
   return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
 }
 
-/// What an object that is there, or is not, says of a place.
-double worth(const lps::Percept& percept, const Match& match) {
-  if (!percept.is_hypothesis() || match.ambiguous)
-    return 0.0;
-  // A corridor is seen anew every few steps, a door once.
-  const double each = percept.type == lps::PointType::corridor ? kCorridor : kOpening;
-  return match.accepted ? each : -each;
+/// Whether the map has a wall there.
+bool is_wall(const LineMap& lines, const Vec2& position) {
+  constexpr double kNear = 0.3;  // [m]
+  return std::any_of(lines.surfaces().begin(), lines.surfaces().end(), [&](const Surface& surface) {
+    const Vec2 way = surface.to - surface.from;
+    const double along = std::clamp(
+        (position - surface.from).dot(way) / std::max(1e-12, way.squaredNorm()), 0.0, 1.0);
+    return (surface.from + along * way - position).norm() < kNear;
+  });
 }
-
 Pose inverse(const Pose& pose) {
   return relative(pose, Pose{});
 }
@@ -33,6 +34,9 @@ Search::Search(const maps::Map& map, const LineMap& lines, const RangeModel& mod
                const SearchSettings& settings, const MatchSettings& match_settings,
                const ReckoningErrors& reckoning, double drift_error)
     : map_(&map),
+      maps_corridors_(std::any_of(
+          map.features.begin(), map.features.end(),
+          [](const maps::Feature& feature) { return feature.type == lps::PointType::corridor; })),
       lines_(&lines),
       model_(&model),
       settings_(settings),
@@ -92,17 +96,35 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     for (Hypothesis& h : hypotheses_) {
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, h.filter);
       h.openings += opening && result.accepted ? 1 : 0;
-      h.score += worth(*percept, result);
+      h.score += worth(*percept, result, h.filter.pose());
     }
     if (own != nullptr) {
       PoseFilter copy = *own;
-      own_score_ +=
-          worth(*percept, match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy));
+      const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
+      own_score_ += worth(*percept, result, own->pose());
     }
     if (opening)
       propose(*percept);
   }
   thin_out();
+}
+
+/// What an object that is there, or is not, says of a place.
+double Search::worth(const lps::Percept& percept, const Match& match,
+                     const Pose& robot_in_map) const {
+  if (!percept.is_hypothesis() || match.ambiguous)
+    return 0.0;
+  // A corridor is seen anew every few steps, a door once.
+  const bool corridor = percept.type == lps::PointType::corridor;
+  const double each = corridor ? kCorridor : kOpening;
+  if (match.accepted)
+    return each;
+  // A map of walls alone does not say where there is no corridor and no door, but where a wall is.
+  const Pose seen_in_map = compose(robot_in_map, relative(*odom_, percept.pose_in_odom));
+  const bool denied = corridor
+                          ? maps_corridors_
+                          : !lines_->openings().empty() || is_wall(*lines_, seen_in_map.position());
+  return denied ? -each : 0.0;
 }
 
 void Search::propose(const lps::Percept& percept) {

@@ -80,9 +80,11 @@ class Search {
  private:
   void propose(const lps::Percept& percept);
   double weigh(const Pose& pose, const PlacedReading& reading) const;
+  double worth(const lps::Percept& percept, const Match& match, const Pose& robot_in_map) const;
   void thin_out();
 
   const maps::Map* map_;
+  bool maps_corridors_ = false;
   const LineMap* lines_;
   const RangeModel* model_;
   SearchSettings settings_;
