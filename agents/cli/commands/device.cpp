@@ -1,7 +1,6 @@
 // What a robot carries besides wheels: what it shows, and what is asked of it.
 #include <cstdio>
 #include <iostream>
-#include <random>
 #include <set>
 
 #include "commands.hpp"
@@ -110,11 +109,6 @@ SAPHIRA_DEVICE(ServerCommand, kServer)
 SAPHIRA_DEVICE(SerialCommand, kSerial)
 #undef SAPHIRA_DEVICE
 
-std::uint64_t random_number() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32U) | device();
-}
-
 void print_serial(const v1::SerialData& data) {
   std::string hex;
   std::string text;
@@ -134,7 +128,7 @@ int ask(Command command, const bus::NodeOptions& options, const bus::Stop& stop)
   auto answers = watch.node.reader(bus::topics::kSerialData);
   auto writer = watch.node.writer(topic_of<Command>());
   command.source("saphira device");
-  command.request(random_number());
+  command.request(watch.node.instance());
   bool written = false;
   const auto began = Clock::now();
   while (!stop.requested() && seconds_since(began) < kPatience) {

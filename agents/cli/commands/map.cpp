@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
-#include <random>
 
 #include "commands.hpp"
 #include "lps/shell/convert.hpp"
@@ -73,6 +72,7 @@ class View {
   std::optional<v1::Map> sample;
   maps::Map map;
   std::optional<v1::Registration> registration;
+  std::uint64_t next_request = node.instance();  ///< random at first
 
  private:
   bus::NodeOptions options_;
@@ -172,6 +172,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   View view(options);
   auto grid = view.node.reader(bus::topics::kGrid);
   auto perceptions = view.node.reader(bus::topics::kPerception);
+  auto descriptions = view.node.reader(bus::topics::kRobotDescription);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
   maps::Drawing drawing;
@@ -218,8 +219,13 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   if (!way.points_in_map.empty())
     drawing.trajectories.push_back(std::move(way));
   const v1::Covariance2& c = view.registration->covariance();
-  drawing.robot = maps::DrawnRobot{lps::from_bus(view.registration->pose_in_map()), 0.22, c.xx(),
-                                   c.yy(), c.xy()};
+  drawing.robot.emplace();
+  drawing.robot->pose_in_map = lps::from_bus(view.registration->pose_in_map());
+  if (const auto description = descriptions.take_newest())
+    drawing.robot->radius = description->radius();
+  drawing.robot->xx = c.xx();
+  drawing.robot->yy = c.yy();
+  drawing.robot->xy = c.xy();
   return write_out(path, maps::to_svg(drawing));
 }
 
@@ -227,8 +233,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
 bool ask(View& view, bus::Reader<v1::RegistrationAnswer>& answers,
          bus::Writer<v1::RegistrationRequest>& writer, v1::RegistrationRequest asked,
          const bus::NodeOptions& options, const bus::Stop& stop) {
-  std::random_device random;
-  asked.request((static_cast<std::uint64_t>(random()) << 32U) | random());
+  asked.request(view.next_request++);
   asked.source("saphira map");
   bool written = false;
   const auto began = Clock::now();

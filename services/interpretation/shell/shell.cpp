@@ -31,7 +31,11 @@ bool Shell::step(const bus::Stop& stop) {
     changed_.clear();
     Settings settings;
     settings.sonars = lps::mounts_from_bus(robot_.description());
-    interpretation_.emplace(settings);
+    // The same robot again: ids go on, so that none stands for two things.
+    if (interpretation_ && interpretation_->settings().sonars == settings.sonars)
+      interpretation_->reset();
+    else
+      interpretation_.emplace(settings);
     odom_.reset();
   }
   v1::Perception sample;

@@ -223,7 +223,9 @@ void Interpretation::stand(Percept percept, const Lines& lines) {
       *same = {std::move(percept), true, lines, travelled_};
     same->seen = true;
   } else {
-    percept.id = ++last_id_;
+    // Not below the cycle: a service that was started again gives none that it gave before.
+    last_id_ = std::max(last_id_ + 1, static_cast<std::uint32_t>(cycle_));
+    percept.id = last_id_;
     percept.since = cycle_;
     standing_.push_back({std::move(percept), true, lines, travelled_});
   }

@@ -103,34 +103,4 @@ void Editor::replace(Map map) {
   ++revision_;
 }
 
-Merged Editor::merge(const Map& other, const Sameness& sameness) {
-  Merged merged;
-  const std::size_t before = map_.features.size();
-  for (const Feature& feature : other.features) {
-    std::size_t match = before;
-    double nearest = 0.0;
-    for (std::size_t i = 0; i < before; ++i) {
-      const Pose between = relative(map_.features[i].pose_in_map, feature.pose_in_map);
-      const double far = std::hypot(between.x, between.y);
-      if (same(map_.features[i], feature, sameness) && (match == before || far < nearest)) {
-        match = i;
-        nearest = far;
-      }
-    }
-    if (match == before) {
-      merged.added.push_back(add(feature));
-      continue;
-    }
-    Feature changed = feature;
-    if (changed.name.empty())
-      changed.name = map_.features[match].name;
-    const std::uint32_t id = map_.features[match].id;
-    const std::uint64_t revision = revision_;
-    change(id, changed);
-    if (revision_ != revision)
-      merged.changed.push_back(id);
-  }
-  return merged;
-}
-
 }  // namespace saphira::maps

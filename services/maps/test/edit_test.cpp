@@ -66,22 +66,21 @@ TEST(Editor, WhatNoMapHoldsIsRefused) {
   EXPECT_EQ(editor.revision(), 0U);
 }
 
-TEST(Editor, MergeKnowsWhatIsTheSame) {
-  Editor editor(small());
-  const Map other = parse_map(
-      "CORRIDOR (3) 2000, 100, 181, 12000, 2100\n"  // the hall, the other way round, and longer
-      "DOOR (4) 1100, 1000, -90, 950\n"             // EJ-231's
-      "DOOR (5) 1000, -1000, 90, 900\n"             // across the hall
-      "WALL 500, 5010, 0, 3000\n",
-      "other.map");
-  const Merged merged = editor.merge(other);
-  ASSERT_EQ(merged.added.size(), 1U);
-  EXPECT_EQ(merged.changed, (std::vector<std::uint32_t>{1, 7, 8}));
-  EXPECT_EQ(find(editor.map(), 1)->length, 12.0);
-  EXPECT_EQ(find(editor.map(), 1)->name, "hall");
-  EXPECT_EQ(find(editor.map(), 7)->name, "EJ-231");
-  EXPECT_EQ(find(editor.map(), merged.added[0])->pose_in_map.y, -1.0);
-  EXPECT_TRUE(editor.merge(editor.map()).added.empty());
+TEST(Same, IsTheSameLineOrTheSamePlace) {
+  const Map map = parse_map(
+      "CORRIDOR (1) 0, 0, 0, 10000, 2000\n"
+      "CORRIDOR (2) 2000, 100, 181, 12000, 2100\n"  // the same, the other way round, and longer
+      "CORRIDOR (3) 12000, 0, 0, 10000, 2000\n"     // in line with it, farther on
+      "DOOR (4) 1000, 1000, -90, 900\n"
+      "DOOR (5) 1100, 1000, -90, 950\n"
+      "DOOR (6) 1000, 1000, 90, 900\n",  // into the other side
+      "a.map");
+  const auto at = [&](std::uint32_t id) { return *find(map, id); };
+  EXPECT_TRUE(same(at(1), at(2)));
+  EXPECT_FALSE(same(at(1), at(3)));
+  EXPECT_TRUE(same(at(4), at(5)));
+  EXPECT_FALSE(same(at(4), at(6)));
+  EXPECT_FALSE(same(at(1), at(4)));
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
     source_ = options_.map_file;
   }
   start_ = start_pose(options_.start, editor_.map());
+  pose_in_map_ = start_.value_or(Pose{});
   if (!options_.memory_file.empty())
     remembered_ = load_remembered(options_.memory_file);
   // Somebody wants another map than that of the memory: the memory is of another place.
@@ -91,11 +92,11 @@ void Shell::begin() {
   if (memory && memory->placed)
     registration_->restore(*memory);
   if (!builder_)
-    set_builder(start_.value_or(Pose{}));
+    set_builder();
 }
 
 /// Begins to add to the map as it is now, or ends that, as adds_features_ says.
-void Shell::set_builder(const Pose& pose_in_map) {
+void Shell::set_builder() {
   if (building_)
     end_building();
   builder_.reset();
@@ -105,7 +106,7 @@ void Shell::set_builder(const Pose& pose_in_map) {
   settings.sonars = lps::mounts_from_bus(robot_.description());
   settings.snap_to_right_angle_grid = snaps_;
   building_ = LineMap(editor_.map()).empty();
-  builder_.emplace(settings, editor_.map(), pose_in_map);
+  builder_.emplace(settings, editor_.map(), pose_in_map_);
 }
 
 /// From now on the pose is registered on the map that was built.
@@ -136,6 +137,7 @@ bool Shell::step(const bus::Stop& stop) {
       for (const v1::Percept& percept : seen->percepts())
         percepts.push_back(lps::from_bus(percept));
     sample = building_ ? built(*step, percepts) : registered(*step, percepts);
+    pose_in_map_ = lps::from_bus(sample.pose_in_map());
   }
   sample.stamp(cycle_.stamp());
   sample.odom(odom_);
@@ -214,6 +216,18 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
     return *registration_;
   };
   switch (request.action()) {
+    case v1::REGISTRATION_PUT:
+    case v1::REGISTRATION_REMOVE:
+    case v1::REGISTRATION_PLACE:
+    case v1::REGISTRATION_FIND:
+    case v1::REGISTRATION_SWITCH:
+      if (building_)
+        throw std::runtime_error(kBuilding);
+      break;
+    default:
+      break;
+  }
+  switch (request.action()) {
     case v1::REGISTRATION_LOAD: {
       maps::Map map = maps::parse_map(request.text(), request.name());
       editor_.replace(std::move(map));
@@ -229,8 +243,6 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
       map_changed();
       return 0;
     case v1::REGISTRATION_PUT: {
-      if (building_)
-        throw std::runtime_error(kBuilding);
       const maps::Feature feature = maps::from_bus(request.artifact());
       std::uint32_t id = feature.id;
       if (id == 0 || !editor_.change(id, feature))
@@ -240,8 +252,6 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
       return id;
     }
     case v1::REGISTRATION_REMOVE:
-      if (building_)
-        throw std::runtime_error(kBuilding);
       if (!editor_.remove(request.artifact().id()))
         throw std::invalid_argument("no artifact (" + std::to_string(request.artifact().id()) +
                                     ") in the map");
@@ -258,12 +268,14 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
       placed().switch_on(request.on());
       return 0;
     case v1::REGISTRATION_ADD_FEATURES:
+      placed();
       adds_features_ = request.on();
-      set_builder(placed().output().pose_in_map);
+      set_builder();
       return 0;
     case v1::REGISTRATION_SNAP:
+      placed();
       snaps_ = request.on();
-      set_builder(placed().output().pose_in_map);
+      set_builder();
       return 0;
     default:
       break;
@@ -278,7 +290,7 @@ void Shell::map_changed() {
     return;
   building_ = false;
   registration_->set_map(editor_.map());
-  set_builder(registration_->output().pose_in_map);
+  set_builder();
 }
 
 void Shell::publish_map() {
@@ -301,7 +313,7 @@ void Shell::remember() {
   if (building_) {
     now.memory.placed = true;
     now.memory.odom = odom_;
-    now.memory.pose_in_map = builder_->pose_in_map();
+    now.memory.pose_in_map = pose_in_map_;
     now.memory.pose_in_odom = pose_in_odom_;
   }
   if (!save_remembered(options_.memory_file, now))

@@ -57,7 +57,7 @@ class Shell {
   /// Does it; throws what is told to the one who asked.
   std::uint32_t act(const v1::RegistrationRequest& request);
   void map_changed();
-  void set_builder(const Pose& pose_in_map);
+  void set_builder();
   v1::Registration registered(const bus::Step& step, const std::vector<lps::Percept>& percepts);
   v1::Registration built(const bus::Step& step, const std::vector<lps::Percept>& percepts);
   bool grow(const std::vector<lps::Percept>& percepts,
@@ -89,6 +89,7 @@ class Shell {
   bool building_ = false;
   std::uint64_t odom_ = 0;  ///< of the newest step
   Pose pose_in_odom_;
+  Pose pose_in_map_;  ///< as it was told in the newest step; before that, the start
   std::uint64_t published_revision_ = 0;
   Clock::time_point saved_ = Clock::now();
   State told_ = State::unplaced;

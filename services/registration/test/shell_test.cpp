@@ -251,6 +251,35 @@ TEST_F(RegistrationShell, TakesRequestsAndSaysWhyNot) {
   EXPECT_TRUE(maps.take_newest()->artifacts().empty());
 }
 
+TEST_F(RegistrationShell, BuildsAnEmptyMapAndRefusesWhatWouldBeLost) {
+  start({"", "start", ""});
+  cycle();
+  EXPECT_TRUE(registration.adds_features());
+  EXPECT_EQ(registration.reason(), "builds the map");
+  v1::RegistrationRequest request;
+  for (const v1::RegistrationAction action :
+       {v1::REGISTRATION_PUT, v1::REGISTRATION_REMOVE, v1::REGISTRATION_PLACE,
+        v1::REGISTRATION_FIND, v1::REGISTRATION_SWITCH}) {
+    request.action(action);
+    const auto answer = ask(request);
+    EXPECT_FALSE(answer.done());
+    EXPECT_NE(answer.reason().find("being built"), std::string::npos) << answer.reason();
+  }
+  test::Tour there({{8.0, 0.0}}, false);
+  tour(there, 400);
+  EXPECT_GT(maps.take_newest()->artifacts().size(), 0U);
+  request.action(v1::REGISTRATION_ADD_FEATURES);
+  request.on(false);
+  EXPECT_TRUE(ask(request).done());
+  // On what was built, where it was.
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+  EXPECT_LT((lps::from_bus(registration.pose_in_map()).position() -
+             (drive.seen().true_pose_in_world.position() - Vec2(1.5, 7.0)))
+                .norm(),
+            0.4);
+}
+
 TEST(StartPose, IsAPlaceOrAPose) {
   const maps::Map map = maps::parse_map("POS (1) 1000, 2000, 90 \"start\"\n", "a.map");
   EXPECT_NEAR(start_pose("start", map)->y, 2.0, 1e-12);

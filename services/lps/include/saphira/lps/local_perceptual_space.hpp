@@ -21,6 +21,8 @@ struct SonarReading {
 struct SonarMount {
   int sonar = 0;
   Pose in_robot;
+
+  bool operator==(const SonarMount&) const = default;
 };
 
 /// What the LPS has to know of a robot; from its description.

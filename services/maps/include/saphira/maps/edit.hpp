@@ -22,12 +22,6 @@ struct Sameness {
 /// which must overlap (a stretch of a corridor is the same as the whole), all else by its middle.
 bool same(const Feature& a, const Feature& b, const Sameness& sameness = {});
 
-/// What a merge did: ids of the editor's map.
-struct Merged {
-  std::vector<std::uint32_t> added;
-  std::vector<std::uint32_t> changed;
-};
-
 /// A map that changes while it is used. Every feature has an id as long as the editor lives, walls
 /// too (whose ids a file does not hold), and the id of what was removed is not given again.
 class Editor {
@@ -47,9 +41,6 @@ class Editor {
   bool remove(std::uint32_t id);
   /// Another map instead of this one. What is in both by id keeps its id.
   void replace(Map map);
-  /// Brings another map in: what is the same as a feature here takes its place, under the id here
-  /// and with the name here where it has none; what is not is added.
-  Merged merge(const Map& other, const Sameness& sameness = {});
 
  private:
   std::size_t index_of(std::uint32_t id) const;
