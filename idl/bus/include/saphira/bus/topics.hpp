@@ -53,6 +53,14 @@ inline constexpr Topic<v1::Behaviors> kBehaviors{"behaviors/state", Qos::cyclic}
 inline constexpr Topic<v1::Intentions> kIntentions{"intentions", Qos::cyclic};
 inline constexpr Topic<v1::Goal> kGoals{"goals", Qos::goal};
 inline constexpr Topic<v1::GoalStatus> kGoalStatus{"goals/status", Qos::latched};
+inline constexpr Topic<v1::BehaviorSchemas> kBehaviorSchemas{"behaviors/schemas", Qos::latched};
+inline constexpr Topic<v1::ActivitySchemas> kActivitySchemas{"intentions/schemas", Qos::latched};
+inline constexpr Topic<v1::Beliefs> kBeliefs{"beliefs", Qos::latched};
+inline constexpr Topic<v1::BeliefClaim> kBeliefClaims{"beliefs/said", Qos::goal};
+inline constexpr Topic<v1::Processes> kProcesses{"processes", Qos::latched};
+inline constexpr Topic<v1::ProcessRequest> kProcessRequest{"processes/request", Qos::command};
+inline constexpr Topic<v1::ProcessAnswer> kProcessAnswer{"processes/answers", Qos::event};
+inline constexpr Topic<v1::Message> kMessages{"messages", Qos::event};
 inline constexpr Topic<v1::ServiceStatus> kStatus{"system/status", Qos::status};
 inline constexpr Topic<v1::LogRecord> kLog{"system/log", Qos::event};
 
@@ -91,6 +99,14 @@ void for_each_topic(F&& f) {
   f(kIntentions);
   f(kGoals);
   f(kGoalStatus);
+  f(kBehaviorSchemas);
+  f(kActivitySchemas);
+  f(kBeliefs);
+  f(kBeliefClaims);
+  f(kProcesses);
+  f(kProcessRequest);
+  f(kProcessAnswer);
+  f(kMessages);
   f(kStatus);
   f(kLog);
 }
