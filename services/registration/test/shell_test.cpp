@@ -209,7 +209,8 @@ TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
   const auto map = maps.take_newest();
   ASSERT_TRUE(map);
   EXPECT_TRUE(map->changed());
-  const auto places = maps::named(maps::from_bus(*map), lps::PointType::position, "printer");
+  const maps::Map now = maps::from_bus(*map);
+  const auto places = maps::named(now, lps::PointType::position, "printer");
   ASSERT_EQ(places.size(), 1U);
   EXPECT_EQ(places.front()->id, id);
 }
