@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira {
+
+/// The reserved states of manual Table 6-3. A state of a process's own is 10 or more, and -n is
+/// "suspended for n cycles".
+enum ReservedState : int { kInit = 0, kSuspend = 1, kResume = 2, kInterrupt = 3 };
+inline constexpr int kFirstOwnState = 10;
+
+/// A micro-task (manual 6.5): a little work in every cycle, with a state that others can change.
+///
+/// One with a function is called in every cycle in which it is not suspended, and changes its own
+/// state; it sees kInit until it does, and kInterrupt once: then it has to put its things away.
+/// One without a function is done by its owner, where works() says so, and is in state 10 from its
+/// first cycle on.
+class Process {
+ public:
+  using Function = std::function<void(Process&)>;
+
+  Process(std::string name, std::string effect, Function function);
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  const std::string& name() const { return name_; }
+  /// What it does, for people.
+  const std::string& effect() const { return effect_; }
+  int state() const { return state_; }
+  /// Cycle in which it came to its state; sleeping does not count anew in each.
+  std::uint64_t since() const { return since_; }
+
+  /// sfSetProcessState. std::invalid_argument for one that is neither reserved nor its own.
+  void set_state(int state);
+  /// sfSuspendProcess, sfSuspendSelf: for so many cycles; 0: until it is resumed.
+  void suspend(std::uint32_t cycles = 0);
+  /// sfInterruptProcess, sfInterruptSelf.
+  void interrupt() { set_state(kInterrupt); }
+  /// sfResumeProcess.
+  void resume() { set_state(kResume); }
+
+  bool suspended() const { return state_ == kSuspend || state_ < 0; }
+  /// In this cycle it was its turn, and not for being interrupted.
+  bool works() const { return turn_ == Turn::work; }
+  /// In this cycle it is told to put its things away.
+  bool interrupted() const { return turn_ == Turn::interrupted; }
+  /// In this cycle it works again for the first time after a suspension.
+  bool resumed() const { return resumed_; }
+
+ private:
+  friend class ProcessTable;
+  enum class Turn { none, work, interrupted };
+  void step(std::uint64_t cycle);
+
+  std::string name_;
+  std::string effect_;
+  Function function_;
+  int state_ = kInit;
+  std::uint64_t cycle_ = 0;
+  std::uint64_t since_ = 0;
+  Turn turn_ = Turn::none;
+  bool resumed_ = false;
+};
+
+/// What somebody can ask for from outside.
+enum class ProcessAction { interrupt, suspend, resume };
+
+/// The micro-tasks of a service, round robin: each gets its turn once a cycle, in the order in
+/// which they were added. Since each gives the processor back by itself, there is nothing to lock.
+///
+/// Processes cannot be deleted: one that is not needed is suspended (manual 6.5.2).
+class ProcessTable {
+ public:
+  /// sfInitProcess. std::invalid_argument where the name is taken.
+  Process& add(std::string name, std::string effect, Process::Function function = {});
+  /// sfFindProcess; nullptr where there is none.
+  Process* find(std::string_view name);
+  const Process* find(std::string_view name) const;
+
+  /// One cycle.
+  void step(std::uint64_t cycle);
+
+  /// Does what somebody asks for; empty, or why it cannot be done and what there is.
+  std::string request(std::string_view name, ProcessAction action, std::uint32_t cycles = 0);
+  /// The names of those that do not work now; empty where all do.
+  std::string suspended() const;
+  /// True when some state has changed since the last call. That a process puts itself to sleep for
+  /// some cycles and wakes up does not count.
+  bool take_changed();
+
+  std::vector<const Process*> processes() const;
+
+ private:
+  std::vector<std::unique_ptr<Process>> processes_;
+  std::vector<int> told_;  ///< states, as of the last take_changed()
+  bool asked_ = false;     ///< somebody asked for something since
+};
+
+}  // namespace saphira
