@@ -29,7 +29,7 @@ constexpr Table<GoalState, v1::GoalState, 7> kStates = {{
     {GoalState::kFailed, v1::GOAL_FAILED},
     {GoalState::kCanceled, v1::GOAL_CANCELED},
 }};
-constexpr Table<GoalCode, v1::GoalCode, 12> kCodes = {{
+constexpr Table<GoalCode, v1::GoalCode, 15> kCodes = {{
     {GoalCode::kNone, v1::CODE_NONE},
     {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
     {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
@@ -39,6 +39,9 @@ constexpr Table<GoalCode, v1::GoalCode, 12> kCodes = {{
     {GoalCode::kBlocked, v1::CODE_BLOCKED},
     {GoalCode::kNoRobot, v1::CODE_NO_ROBOT},
     {GoalCode::kNoPosition, v1::CODE_NO_POSITION},
+    {GoalCode::kNoRoute, v1::CODE_NO_ROUTE},
+    {GoalCode::kActivity, v1::CODE_ACTIVITY},
+    {GoalCode::kTimeout, v1::CODE_TIMEOUT},
     {GoalCode::kDisposed, v1::CODE_DISPOSED},
     {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
     {GoalCode::kPreempted, v1::CODE_PREEMPTED},

@@ -77,6 +77,12 @@ const char* name_of(GoalCode code) {
       return "no_robot";
     case GoalCode::kNoPosition:
       return "no_position";
+    case GoalCode::kNoRoute:
+      return "no_route";
+    case GoalCode::kActivity:
+      return "activity";
+    case GoalCode::kTimeout:
+      return "timeout";
     case GoalCode::kDisposed:
       return "disposed";
     case GoalCode::kWriterLost:

@@ -8,25 +8,9 @@
 #include <vector>
 
 #include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/world.hpp"
 
 namespace saphira::intentions {
-
-/// Cycles of 100 ms that the robot has been connected: the only time here. Negative for what
-/// happened before the service began.
-using Ticks = std::int64_t;
-inline constexpr double kTick = 0.1;  ///< [s]
-
-/// What is known of the robot in a cycle.
-struct Robot {
-  bool connected = false;
-  bool has_power = true;   ///< of its motors
-  std::uint64_t odom = 0;  ///< which odom frame
-  Pose pose_in_odom{};
-  double velocity = 0.0;           ///< [m/s]
-  double rotation_velocity = 0.0;  ///< [rad/s]
-  /// The origin of odom on the map; none while the robot does not know where it is on the map.
-  std::optional<Pose> odom_in_map{};
-};
 
 /// How far a behavior instance says it is.
 struct BehaviorLevel {

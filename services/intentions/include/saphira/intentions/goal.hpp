@@ -70,6 +70,9 @@ enum class GoalCode {
   kBlocked,
   kNoRobot,
   kNoPosition,
+  kNoRoute,   ///< the map knows no way, or every way is blocked
+  kActivity,  ///< the activity says so
+  kTimeout,   ///< a part of it took longer than it may
   kDisposed,
   kWriterLost,
   kPreempted

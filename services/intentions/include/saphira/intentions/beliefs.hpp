@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/intentions/value.hpp"
+#include "saphira/intentions/world.hpp"
+
+namespace saphira::intentions {
+
+class Functions;
+
+/// One thing that is taken to be true.
+struct Belief {
+  std::string name;
+  Value value;
+  std::string said_by;  ///< an intention, "perception", or who claimed it
+  Ticks since = 0;      ///< of the newest change of its value
+
+  bool operator==(const Belief&) const = default;
+};
+
+/// What a third party says on the bus, or takes back.
+struct ClaimEvent {
+  enum class Kind { kSaid, kWithdrawn };
+  Kind kind = Kind::kSaid;
+  GoalId id;           ///< unique for ever, as that of a goal
+  std::string source;  ///< who, for people
+  std::string name;
+  Value value;
+};
+
+/// The beliefs of the robot (paper 3.4: the LPS and a set of environment variables): what
+/// conditions of the LPS give, what third parties claim, and what activities have set. A condition
+/// cannot be overruled; of the others the newest counts.
+class Beliefs {
+ public:
+  /// The functions whose conditions are beliefs; they outlive this. None: no conditions.
+  explicit Beliefs(const Functions* functions = nullptr) : functions_(functions) {}
+
+  /// Conditions whose value is another than in the step before come to be since `now`.
+  void look(const World& world);
+  void set(std::string_view name, Value value, std::string_view who, Ticks now);
+  void unset(std::string_view name);
+  void take(const ClaimEvent& event, Ticks now);
+
+  /// nil where nothing is known.
+  Value get(std::string_view name, const World& world) const;
+  bool known(std::string_view name) const;
+  /// By name.
+  std::vector<Belief> all() const;
+  /// Larger whenever all() has changed.
+  std::uint64_t revision() const { return revision_; }
+
+ private:
+  struct Claim {
+    GoalId id;
+    Belief belief;
+  };
+  const Belief* stored(std::string_view name) const;
+
+  const Functions* functions_;
+  std::map<std::string, Belief, std::less<>> set_;
+  std::map<std::string, std::vector<Claim>, std::less<>> claims_;  ///< oldest first
+  std::map<std::string, Belief, std::less<>> conditions_;
+  std::size_t claim_count_ = 0;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace saphira::intentions

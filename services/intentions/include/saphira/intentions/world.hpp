@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "saphira/intentions/goal.hpp"
+
+namespace saphira::lps {
+class LocalPerceptualSpace;
+struct Percept;
+}  // namespace saphira::lps
+namespace saphira::maps {
+class Topology;
+}
+
+namespace saphira::intentions {
+
+class Beliefs;
+
+/// Cycles of 100 ms that the robot has been connected: the only time here. Negative for what
+/// happened before the service began.
+using Ticks = std::int64_t;
+inline constexpr double kTick = 0.1;  ///< [s]
+
+/// What is known of the robot in a cycle.
+struct Robot {
+  bool connected = false;
+  bool has_power = true;   ///< of its motors
+  std::uint64_t odom = 0;  ///< which odom frame
+  Pose pose_in_odom{};
+  double velocity = 0.0;           ///< [m/s]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  /// The origin of odom on the map; none while the robot does not know where it is on the map.
+  std::optional<Pose> odom_in_map{};
+  bool left_stalled = false;
+  bool right_stalled = false;
+  std::uint16_t bumpers = 0;  ///< as the packet has them
+};
+
+enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
+
+/// What registration says.
+struct Registered {
+  Localization state = Localization::kNone;  ///< kNone: there is no registration
+  Pose pose_in_map;                          ///< of the robot; where it is lost: the best guess
+  double confidence = 0.0;                   ///< [0..1]
+  std::uint32_t environment = 0;             ///< the artifact that the robot is in; 0: none known
+};
+
+/// What is known beside the robot. What is pointed to outlives the step.
+struct Surroundings {
+  const lps::LocalPerceptualSpace* lps = nullptr;       ///< none: nothing is sensed
+  const std::vector<lps::Percept>* percepts = nullptr;  ///< none: no interpretation
+  Registered registration;
+  std::shared_ptr<const maps::Topology> topology;  ///< none: no map
+  std::uint64_t map_revision = 0;
+};
+
+/// All that activities can ask for in a cycle: what the functions of their language look at.
+struct World {
+  const Robot& robot;
+  const Surroundings& around;
+  const Beliefs& beliefs;
+  Ticks now = 0;
+
+  /// The robot on the map; none while it is not known.
+  std::optional<Pose> robot_in_map() const {
+    if (!robot.odom_in_map)
+      return std::nullopt;
+    return compose(*robot.odom_in_map, robot.pose_in_odom);
+  }
+};
+
+/// The same point in another frame; none where the way goes over the map and the robot does not
+/// know where it is on it.
+std::optional<Pose> in_frame(const Pose& pose, Frame from, Frame to, const Robot& robot);
+
+}  // namespace saphira::intentions
