@@ -11,6 +11,10 @@ Registry predefined() {
   registry.add(keep_off());
   registry.add(go_to_pos());
   registry.add(turn_to());
+  registry.add(attend_at_pos());
+  registry.add(follow());
+  registry.add(follow_corridor());
+  registry.add(follow_door());
   return registry;
 }
 

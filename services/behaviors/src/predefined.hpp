@@ -12,6 +12,10 @@ Schema stop_collision();
 Schema keep_off();
 Schema go_to_pos();
 Schema turn_to();
+Schema attend_at_pos();
+Schema follow();
+Schema follow_corridor();
+Schema follow_door();
 
 /// A turn by `angle` [rad, counter-clockwise] as a rule.
 inline Rule turn_rule(std::string name, Fuzzy strength, double angle) {

@@ -222,5 +222,123 @@ TEST(Drive, TurnToTurnsTheShortWayOnTheSpot) {
   }
 }
 
+Argument point_argument(std::string name, const Pose& in_odom) {
+  return {std::move(name), PlacedPoint{in_odom, Frame::odom}};
+}
+
+/// AvoidCollision and KeepOff over `task`.
+std::vector<Intended> guarded(Intended task) {
+  return {{"avoid", "AvoidCollision", 0, true, {}},
+          {"keep off", "KeepOff", 1, true, {}},
+          std::move(task),
+          {"stop", "Stop", 3, true, {}}};
+}
+
+double goal_of(const Output& output, const std::string& name) {
+  for (const BehaviorState& state : output.behaviors)
+    if (state.name == name)
+      return state.blended.evaluation.activity.goal;
+  return -1.0;
+}
+
+/// Drives until the task says that its goal is reached; returns the cycles, 0 where it never does.
+std::uint64_t drive_until_done(const sim::World& world, const Pose& start, Drive what,
+                               const std::string& task, DriveResult& run) {
+  std::uint64_t done = 0;
+  what.goal_in_odom = {1e6, 0.0};
+  run = drive(world, pioneer(), start, what,
+              [&](const sim::Robot&, const Inputs& inputs, const Output& output, const Executive&) {
+                if (done == 0 && goal_of(output, task) >= 0.99)
+                  done = inputs.cycle;
+              });
+  return done;
+}
+
+TEST(Drive, FollowsALaneToItsGoalFromBesideAndAgainstIt) {
+  for (const double goal_x : {6.0, -6.0}) {
+    Drive what;
+    what.behaviors = guarded(
+        {"follow",
+         "Follow",
+         2,
+         true,
+         {point_argument("lane", {0.0, 1.0, 0.0}), point_argument("goal", {goal_x, 1.0, 0.0})}});
+    what.limit = 450;
+    DriveResult run;
+    const std::uint64_t done =
+        drive_until_done(hall(""), {10, 10, radians(40)}, what, "follow", run);
+    // The lane's frame is odom's, which begins at the start, turned by 40 degrees.
+    const Pose end = relative({10, 10, radians(40)}, run.end_in_world);
+    EXPECT_GT(done, 0U);
+    EXPECT_NEAR(end.x, goal_x, 0.4);
+    EXPECT_NEAR(end.y, 1.0, 0.3);  // in the lane, by a dead reckoning that drifts
+    EXPECT_LT(run.path, 9.0);
+  }
+}
+
+TEST(Drive, FollowsACorridor) {
+  const sim::World world = hall(box(9000, 9000, 0, 12000, 200) + box(9000, 11000, 0, 12000, 200));
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    Drive what;
+    what.seed = seed;
+    what.behaviors = guarded({"corridor",
+                              "FollowCorridor",
+                              2,
+                              true,
+                              {point_argument("corridor", {3.0, 0.3, 0.0}),
+                               point_argument("goal", {9.0, 0.3, 0.0}),
+                               {"width", 1.8}}});
+    what.limit = 500;
+    DriveResult run;
+    EXPECT_GT(drive_until_done(world, {4, 9.7, radians(0)}, what, "corridor", run), 0U);
+    EXPECT_EQ(run.contacts, 0);
+    EXPECT_GE(run.min_clearance, 0.2);
+    EXPECT_LE(run.swings, 6);
+  }
+}
+
+/// A wall with a door in it, beside a corridor; the robot comes along the corridor.
+TEST(Drive, FollowsADoorInAndOut) {
+  const sim::World world = hall(box(10000, 9000, 0, 12000, 200) +  // the corridor's far wall
+                                box(6550, 11000, 0, 6000, 200) + box(13450, 11000, 0, 6000, 200));
+  // The doorway is 900 mm wide, its middle (10, 11) in the world; out is towards -y.
+  const Pose door{10, 11, radians(-90)};
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
+    for (const Pose& start :
+         {Pose{9.3, 10, 0}, Pose{10.8, 10.0, kPi}, Pose{9.8, 12.8, radians(-90)}}) {
+      const bool in = start.y < 11;
+      Drive what;
+      what.seed = seed;
+      what.behaviors = guarded({"door",
+                                "FollowDoor",
+                                2,
+                                true,
+                                {point_argument("door", relative(start, door)),
+                                 {"direction", std::string(in ? "in" : "out")}}});
+      what.limit = 300;
+      DriveResult run;
+      EXPECT_GT(drive_until_done(world, start, what, "door", run), 0U)
+          << "seed " << seed << " from " << start.x << ", " << start.y << " to "
+          << run.end_in_world.x << ", " << run.end_in_world.y;
+      EXPECT_EQ(run.contacts, 0);
+      EXPECT_GE(run.min_clearance, 0.04);
+    }
+}
+
+TEST(Drive, AttendsAtAPosition) {
+  Drive what;
+  what.behaviors = guarded({"attend",
+                            "AttendAtPos",
+                            2,
+                            true,
+                            {point_argument("goal", {-3.0, 2.0, 0.0}), {"radius", 1.0}}});
+  what.limit = 300;
+  DriveResult run;
+  EXPECT_GT(drive_until_done(hall(""), {10, 10, 0}, what, "attend", run), 0U);
+  const Pose goal = relative(run.end_in_world, {7, 12, 0});
+  EXPECT_NEAR(std::hypot(goal.x, goal.y), 0.9, 0.15);
+  EXPECT_NEAR(std::atan2(goal.y, goal.x), 0.0, 0.1);
+}
+
 }  // namespace
 }  // namespace saphira::behaviors
