@@ -40,7 +40,7 @@ Drive::Drive(const DriveOptions& options)
                                options.start_in_world.value_or(world_.start.value_or(Pose{})),
                                options.seed)),
       sonars_(scene_, robot_->number(), parameters_, options.sonar, options.seed),
-      executive_(behaviors::predefined(), model_of(parameters_)) {
+      executive_(options.behaviors.value_or(behaviors::predefined()), model_of(parameters_)) {
   seen_.pose_in_odom = robot_->pose_in_odom();
   seen_.true_pose_in_world = robot_->pose_in_world();
 }
@@ -58,24 +58,31 @@ const Seen& Drive::advance() {
   seen_.rotation_velocity = robot_->rotation_velocity();
   seen_.true_pose_in_world = robot_->pose_in_world();
 
-  intent_ = {seen_.cycle - 1, !by_hand_, intended_};
+  intent_ = {seen_.cycle - 1, !by_hand_ && control_, intended_};
   const behaviors::Inputs inputs{seen_.cycle,
                                  {seen_.pose_in_odom, seen_.velocity, seen_.rotation_velocity},
                                  seen_.readings,
                                  &intent_};
-  const behaviors::Output output = executive_.step(inputs);
-  const double speed = by_hand_ ? speed_ : output.active ? output.speed : 0.0;
-  const double heading = by_hand_        ? heading_
-                         : output.active ? output.heading_in_odom
-                                         : seen_.pose_in_odom.th;
+  output_ = executive_.step(inputs);
+  const double speed = by_hand_ ? speed_ : output_.active ? output_.speed : 0.0;
+  const double heading = by_hand_         ? heading_
+                         : output_.active ? output_.heading_in_odom
+                                          : seen_.pose_in_odom.th;
   // Whole millimetres and degrees, as the robot's commands have them.
   robot_->set_velocity(std::round(speed * 1000.0) / 1000.0);
   robot_->set_heading(radians(std::round(degrees(heading))));
   return seen_;
 }
 
+void Drive::intend(std::vector<behaviors::Intended> intended, bool control) {
+  by_hand_ = false;
+  control_ = control;
+  intended_ = std::move(intended);
+}
+
 void Drive::go_to(const Vec2& goal_in_odom, double speed, double radius) {
   by_hand_ = false;
+  control_ = true;
   intended_ = {{"avoid", "AvoidCollision", 0, true, {}},
                {"keep off", "KeepOff", 1, true, {}},
                {"go",
@@ -95,6 +102,7 @@ void Drive::turn_to(double heading_in_odom) {
 
 void Drive::stop() {
   by_hand_ = false;
+  control_ = true;
   intended_ = {{"stop", "Stop", 0, true, {}}};
 }
 

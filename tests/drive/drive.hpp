@@ -21,6 +21,8 @@ struct DriveOptions {
   double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
   std::optional<Pose> start_in_world;  ///< else the world's own
   sim::SonarModel sonar;
+  /// Else the predefined ones.
+  std::optional<behaviors::Registry> behaviors;
 };
 
 /// What one cycle brings, and the truth beside it.
@@ -50,6 +52,12 @@ class Drive {
   void stop();
   /// By hand, without behaviors: [m/s], and the heading in odom [rad].
   void drive(double speed, double heading_in_odom);
+  /// These behaviors, as intentions would intend them.
+  void intend(std::vector<behaviors::Intended> intended, bool control = true);
+
+  /// What the behaviors made of it in the newest cycle.
+  const behaviors::Output& output() const { return output_; }
+  behaviors::Executive& executive() { return executive_; }
 
   const Seen& seen() const { return seen_; }
   const sim::World& world() const { return world_; }
@@ -67,7 +75,9 @@ class Drive {
   sim::Sonars sonars_;
   behaviors::Executive executive_;
   behaviors::Intent intent_;
+  behaviors::Output output_;
   std::vector<behaviors::Intended> intended_;
+  bool control_ = true;
   bool by_hand_ = false;
   double speed_ = 0.0;
   double heading_ = 0.0;

@@ -1,0 +1,181 @@
+#include "drive/whole.hpp"
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "saphira/base/places.hpp"
+#include "saphira/intentions/functors.hpp"
+
+namespace saphira::test {
+namespace {
+
+constexpr std::uint64_t kEpoch = 1;
+constexpr std::uint64_t kOdom = 1;
+
+template <class T>
+T with_sonars(const Drive& drive) {
+  T settings;
+  settings.sonars = drive.mounts();
+  return settings;
+}
+
+behaviors::Frame frame_of(intentions::Frame frame) {
+  return frame == intentions::Frame::kRobot ? behaviors::Frame::robot
+         : frame == intentions::Frame::kMap ? behaviors::Frame::map
+                                            : behaviors::Frame::odom;
+}
+
+behaviors::Argument argument_of(const intentions::Argument& argument) {
+  switch (argument.kind) {
+    case intentions::ArgumentKind::kNumber:
+      return {argument.name, argument.number};
+    case intentions::ArgumentKind::kText:
+      return {argument.name, argument.text};
+    case intentions::ArgumentKind::kPoint:
+      break;
+  }
+  return {argument.name, behaviors::PlacedPoint{argument.point, frame_of(argument.frame)}};
+}
+
+std::vector<behaviors::Intended> intended_of(
+    const std::vector<intentions::IntendedBehavior>& wanted) {
+  std::vector<behaviors::Intended> intended;
+  for (const intentions::IntendedBehavior& behavior : wanted) {
+    intended.push_back({behavior.name, behavior.schema, behavior.priority, behavior.running, {}});
+    for (const intentions::Argument& parameter : behavior.parameters)
+      intended.back().parameters.push_back(argument_of(parameter));
+  }
+  return intended;
+}
+
+std::vector<intentions::BehaviorLevel> levels_of(const behaviors::Output& output) {
+  std::vector<intentions::BehaviorLevel> levels;
+  for (const behaviors::BehaviorState& state : output.behaviors)
+    levels.push_back({state.name, state.blended.evaluation.activity.goal,
+                      state.blended.evaluation.activity.progress});
+  return levels;
+}
+
+}  // namespace
+
+Whole::Whole(const WholeOptions& options)
+    : drive_(options.drive),
+      map_(maps::load_map(find_file(config_folder() + "/maps",
+                                    options.map.empty() ? options.drive.world : options.map,
+                                    ".map"))),
+      topology_(std::make_shared<const maps::Topology>(map_)),
+      interpretation_(with_sonars<interpretation::Settings>(drive_)),
+      registration_(
+          with_sonars<registration::Settings>(drive_), map_,
+          options.knows_pose ? std::optional(drive_.seen().true_pose_in_world) : std::nullopt),
+      executor_(options.schemas.value_or(intentions::built_in())) {}
+
+void Whole::advance() {
+  // What the others said in the cycle before.
+  const behaviors::Output behaved = drive_.output();
+  const std::vector<lps::Percept> seen_before = percepts_;
+  const registration::Output registered = registration_.output();
+  const Pose was_in_odom = drive_.seen().pose_in_odom;
+
+  const Seen& seen = drive_.advance();
+  intentions::Inputs inputs;
+  inputs.epoch = kEpoch;
+  inputs.cycle = seen.cycle;
+  inputs.robot.connected = true;
+  inputs.robot.odom = kOdom;
+  inputs.robot.pose_in_odom = seen.pose_in_odom;
+  inputs.robot.velocity = seen.velocity;
+  inputs.robot.rotation_velocity = seen.rotation_velocity;
+  if (registered.state == registration::State::tracking ||
+      registered.state == registration::State::off)
+    inputs.robot.odom_in_map = compose(registered.pose_in_map, relative(was_in_odom, Pose{}));
+  inputs.behaviors = levels_of(behaved);
+  inputs.behaviors_cycle = seen.cycle - 1;
+  inputs.events = std::exchange(events_, {});
+  intentions_ = executor_.step(inputs);
+  for (const intentions::GoalStatus& status : intentions_.news.changed)
+    statuses_[status.id] = status;
+  drive_.intend(intended_of(intentions_.behaviors));
+
+  registration_.step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings});
+  percepts_ = interpretation_.step({seen.cycle, seen.pose_in_odom, seen.readings}).percepts;
+  note_transitions();
+}
+
+bool Whole::advance_until(const std::function<bool()>& done, int cycles) {
+  for (int i = 0; i < cycles; ++i) {
+    if (done())
+      return true;
+    advance();
+  }
+  return done();
+}
+
+intentions::GoalId Whole::ask(std::string functor, intentions::Arguments arguments, int priority,
+                              double deadline) {
+  intentions::GoalEvent event;
+  event.goal.id = {1, next_goal_++};
+  event.goal.requester = "test";
+  event.goal.functor = std::move(functor);
+  event.goal.arguments = std::move(arguments);
+  event.goal.priority = priority;
+  event.goal.deadline = deadline;
+  events_.push_back(event);
+  return event.goal.id;
+}
+
+void Whole::withdraw(const intentions::GoalId& goal) {
+  intentions::GoalEvent event;
+  event.kind = intentions::GoalEvent::Kind::kDisposed;
+  event.goal.id = goal;
+  events_.push_back(std::move(event));
+}
+
+const intentions::GoalStatus& Whole::status(const intentions::GoalId& goal) const {
+  static const intentions::GoalStatus unheard;
+  const auto found = statuses_.find(goal);
+  return found == statuses_.end() ? unheard : found->second;
+}
+
+bool Whole::ended(const intentions::GoalId& goal) const {
+  return intentions::ended(status(goal).state);
+}
+
+intentions::GoalStatus Whole::achieve(std::string functor, intentions::Arguments arguments,
+                                      int cycles) {
+  const intentions::GoalId goal = ask(std::move(functor), std::move(arguments));
+  advance_until([&] { return ended(goal); }, cycles);
+  return status(goal);
+}
+
+bool Whole::at_rest() const {
+  return std::abs(drive_.seen().velocity) < 0.02 &&
+         std::abs(drive_.seen().rotation_velocity) < radians(3.0);
+}
+
+/// The display of paper Figure 10, as it changes: nodes that come, that come to another state or
+/// label, and that go.
+void Whole::note_transitions() {
+  using intentions::IntentionNode;
+  const auto line = [&](const IntentionNode& node, const std::string& what) {
+    transitions_.push_back(std::to_string(cycle()) + " " + node.schema + " (" + node.name + ") " +
+                           what);
+  };
+  std::map<std::uint32_t, IntentionNode> now;
+  for (const IntentionNode& node : intentions_.nodes)
+    now.emplace(node.id, node);
+  for (const auto& [id, node] : nodes_)
+    if (!now.contains(id))
+      line(node, "gone");
+  for (const auto& [id, node] : now) {
+    const auto before = nodes_.find(id);
+    if (before == nodes_.end())
+      line(node, node.step.empty() ? "begins" : node.step);
+    else if (before->second.step != node.step)
+      line(node, node.step);
+  }
+  nodes_ = std::move(now);
+}
+
+}  // namespace saphira::test

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drive/drive.hpp"
+#include "saphira/intentions/executor.hpp"
+#include "saphira/interpretation/interpretation.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/maps/topology.hpp"
+#include "saphira/registration/registration.hpp"
+
+namespace saphira::test {
+
+struct WholeOptions {
+  DriveOptions drive;
+  std::string map;         ///< a name of config/maps; empty: that of the world
+  bool knows_pose = true;  ///< registration is told where the robot starts
+  /// Else the built-in schemas and the activities of config/activities.
+  std::optional<intentions::Registry> schemas;
+};
+
+/// The whole robot in one loop, without the bus: simulated robot, interpretation, registration,
+/// behaviors and intentions, each of which reads what the others said in the cycle before, as the
+/// services do. Repeatable to the last bit, and thousands of times as fast as the robot.
+class Whole {
+ public:
+  explicit Whole(const WholeOptions& options);
+  Whole(const Whole&) = delete;
+  Whole& operator=(const Whole&) = delete;
+
+  void advance();
+  /// Until `done`, for so many cycles at most; whether it was.
+  bool advance_until(const std::function<bool()>& done, int cycles);
+
+  /// Asks for a goal; it is heard in the next cycle.
+  intentions::GoalId ask(std::string functor, intentions::Arguments arguments = {},
+                         int priority = 0, double deadline = 0.0);
+  void withdraw(const intentions::GoalId& goal);
+  /// The newest word on a goal; kWaiting until there is one.
+  const intentions::GoalStatus& status(const intentions::GoalId& goal) const;
+  bool ended(const intentions::GoalId& goal) const;
+  /// Asks, and advances until the goal has ended, or for so many cycles.
+  intentions::GoalStatus achieve(std::string functor, intentions::Arguments arguments, int cycles);
+
+  Drive& drive() { return drive_; }
+  intentions::Executor& executor() { return executor_; }
+  registration::Registration& registration() { return registration_; }
+  const std::shared_ptr<const maps::Topology>& topology() const { return topology_; }
+  const std::vector<lps::Percept>& percepts() const { return percepts_; }
+  const intentions::Outputs& intentions() const { return intentions_; }
+  Pose truth() const { return drive_.seen().true_pose_in_world; }
+  std::uint64_t cycle() const { return drive_.seen().cycle; }
+  bool at_rest() const;
+
+  /// Everything that changed in the intentions since the start, a line each: "12 go_to (1:1)
+  /// BEGIN".
+  const std::vector<std::string>& transitions() const { return transitions_; }
+
+ private:
+  void note_transitions();
+
+  Drive drive_;
+  maps::Map map_;
+  std::shared_ptr<const maps::Topology> topology_;
+  interpretation::Interpretation interpretation_;
+  registration::Registration registration_;
+  intentions::Executor executor_;
+  std::vector<lps::Percept> percepts_;
+  intentions::Outputs intentions_;
+  std::vector<intentions::GoalEvent> events_;
+  std::map<intentions::GoalId, intentions::GoalStatus> statuses_;
+  std::uint64_t next_goal_ = 1;
+  std::map<std::uint32_t, intentions::IntentionNode> nodes_;
+  std::vector<std::string> transitions_;
+};
+
+}  // namespace saphira::test

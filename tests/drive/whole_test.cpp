@@ -1,0 +1,34 @@
+#include "drive/whole.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::test {
+namespace {
+
+using intentions::Frame;
+using intentions::GoalState;
+
+WholeOptions office(std::uint64_t seed = 1) {
+  WholeOptions options;
+  options.drive.seed = seed;
+  return options;
+}
+
+TEST(Whole, DrivesToAPointOfTheMapByWhatItBelievesAndTheSameEachTime) {
+  const auto run = [](std::uint64_t seed) {
+    Whole whole(office(seed));
+    const auto status =
+        whole.achieve("go_to", {intentions::point("position", {17.5, 8.0, 0.0}, Frame::kMap)}, 600);
+    EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+    EXPECT_LT((whole.truth().position() - Vec2(17.5, 8.0)).norm(), 0.4);
+    EXPECT_EQ(whole.drive().contacts(), 0);
+    EXPECT_TRUE(whole.at_rest());
+    return whole.truth();
+  };
+  const Pose first = run(1);
+  EXPECT_EQ(run(1), first);
+  EXPECT_NE(run(2), first);
+}
+
+}  // namespace
+}  // namespace saphira::test
