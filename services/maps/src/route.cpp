@@ -37,7 +37,8 @@ class Search {
   bool blocked(std::uint32_t id) const { return id != 0 && settings_.blocked.contains(id); }
   bool usable(std::size_t link) const {
     const Link& l = topology_.links()[link];
-    return l.b && !blocked(l.id) && !blocked(topology_.regions()[l.a].area.id) &&
+    return l.b && !blocked(l.id) && !settings_.blocked_links.contains(link) &&
+           !blocked(topology_.regions()[l.a].area.id) &&
            !blocked(topology_.regions()[*l.b].area.id);
   }
   bool wanted(std::size_t region, const Place& to) const {
@@ -147,9 +148,11 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     enter(region, at, cost[next], next);
   }
   if (best == states)
-    return {std::nullopt, "no way from " + topology_.text(starts.front()) + " to " +
-                              with_article(to) + " that is known" +
-                              (settings_.blocked.empty() ? "" : " and not closed")};
+    return {std::nullopt,
+            "no way from " + topology_.text(starts.front()) + " to " + with_article(to) +
+                " that is known" +
+                (settings_.blocked.empty() && settings_.blocked_links.empty() ? ""
+                                                                              : " and not closed")};
 
   std::vector<std::size_t> chain;
   for (std::size_t state = best; state != states; state = previous[state])

@@ -31,8 +31,9 @@ struct Route {
 
 struct RouteSettings {
   std::set<std::uint32_t> blocked;  ///< ids of doors, breaks and regions that are not to be used
-  double door_clearance = 0.7;      ///< [m] how far before and behind a door the robot is in line
-  double tolerance = 0.5;  ///< [m] how far outside of its region the robot may believe to be
+  std::set<std::size_t> blocked_links;  ///< by index: also those that have no id
+  double door_clearance = 0.7;  ///< [m] how far before and behind a door the robot is in line
+  double tolerance = 0.5;       ///< [m] how far outside of its region the robot may believe to be
 };
 
 /// A route, or why there is none, in words.
