@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "behavior.h"
+#include "intention.h"
+#include "system.h"
+
+namespace saphira::cli {
+
+/// The intention display (paper, Figure 10): a line for each intention and each behavior, with the
+/// marker * (blocking) or o, the schema, the instance, and the state that comes next or B; behind
+/// that what it does. `behaviors` adds how far each is satisfied.
+std::string intentions_display(const v1::Intentions& intentions, const v1::Behaviors* behaviors);
+
+/// The behaviors window (manual 2.3.6, Figures 2-4 and 2-5): for each behavior on both channels its
+/// activity as a bar through the middle line, and its recommendation as a bar to one side; at the
+/// bottom their summation.
+std::string behaviors_display(const v1::Behaviors& behaviors);
+
+/// The window of one behavior (Figure 2-6): parameters, state, rules with their antecedents, fuzzy
+/// variables. `intended` and `schema` add what only they know.
+std::string behavior_display(const v1::BehaviorState& behavior,
+                             const v1::IntendedBehavior* intended,
+                             const v1::BehaviorSchema* schema);
+
+/// The beliefs whose name holds `part` (all: empty), with who said so and how long ago.
+std::string beliefs_table(const v1::Beliefs& beliefs, const std::string& part = {});
+
+/// The processes window (manual 2.3.7), for all services together.
+std::string processes_table(std::vector<v1::Processes> services);
+
+/// As the manual's window shows it: INIT, SUSP, or the number of its own state.
+std::string state_text(const v1::Process& process);
+
+/// A parameter's value, such as 0.3, "left" or (1, 2) in odom.
+std::string value_text(const v1::Argument& argument);
+
+}  // namespace saphira::cli
