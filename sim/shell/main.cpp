@@ -107,6 +107,14 @@ int main(int argc, char** argv) {
         return text == "max" ? std::string() : CLI::Range(1e-6, 1000.0)(text);
       });
   app.add_option("--trace", options.trace, "File for the true state of every cycle, CSV");
+  app.add_option("--check", options.check,
+                 "File to which is appended what of the conversation is against the protocol's "
+                 "tables (default: $SAPHIRA_CHECK; none)");
+  app.add_option("--stereo", options.stereo,
+                 "Folder for what the robot's stereo cameras see: a PGM each cycle, the left "
+                 "picture beside the right one");
+  app.add_option("--stereo-socket", options.stereo_socket,
+                 "Local socket that sends the same pictures to whoever connects");
   app.add_option("--position", positions,
                  "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's; again "
                  "for each further robot")

@@ -1,14 +1,10 @@
 #include "saphira/sim/host.hpp"
 
-#include <arpa/inet.h>
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/timerfd.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,8 +19,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "listener.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/sim/line_check.hpp"
 #include "saphira/sim/simulation.hpp"
+#include "stereo_feed.hpp"
 
 namespace saphira::sim {
 
@@ -44,116 +43,15 @@ constexpr double kGivenUp = 2.0;  // [s]
 // they are stale when it wakes.
 constexpr std::size_t kMost = 65536;
 
-[[noreturn]] void fail(const std::string& what) {
-  throw std::runtime_error(what + ": " + std::strerror(errno));
+/// `number` of the robot, from 1.
+Listener listen(const HostOptions& options, std::size_t number) {
+  if (!options.tcp)
+    return Listener::local(numbered(options.socket.value_or(default_socket()), number));
+  const std::size_t port = *options.tcp == 0 ? 0 : *options.tcp + number - 1;
+  if (port > 65535)
+    throw std::runtime_error("port " + std::to_string(port) + ": expected at most 65535");
+  return Listener::tcp(options.tcp_address, static_cast<std::uint16_t>(port));
 }
-
-class Fd {
- public:
-  explicit Fd(int fd = -1) : fd_(fd) {}
-  ~Fd() { reset(); }
-  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Fd& operator=(Fd&& other) noexcept {
-    if (this != &other)
-      reset(std::exchange(other.fd_, -1));
-    return *this;
-  }
-  Fd(const Fd&) = delete;
-  Fd& operator=(const Fd&) = delete;
-  void reset(int fd = -1) {
-    if (fd_ >= 0)
-      ::close(fd_);
-    fd_ = fd;
-  }
-  int get() const { return fd_; }
-  explicit operator bool() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
-
-sockaddr_un local_address(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path)
-    throw std::runtime_error("socket " + path + ": expected a path of 1 to " +
-                             std::to_string(sizeof address.sun_path - 1) + " characters");
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
-  return address;
-}
-
-// The socket that is listened on; a local one is removed at the end.
-class Listener {
- public:
-  /// `number` of the robot, from 1.
-  Listener(const HostOptions& options, std::size_t number) {
-    if (options.tcp) {
-      const std::size_t port = *options.tcp == 0 ? 0 : *options.tcp + number - 1;
-      if (port > 65535)
-        throw std::runtime_error("port " + std::to_string(port) + ": expected at most 65535");
-      listen_tcp(options.tcp_address, static_cast<std::uint16_t>(port));
-    } else {
-      listen_local(numbered(options.socket.value_or(default_socket()), number));
-    }
-  }
-  ~Listener() {
-    // Unless another simulator has put its own there meanwhile.
-    struct stat now {};
-    if (!path_.empty() && ::stat(path_.c_str(), &now) == 0 && now.st_ino == inode_)
-      ::unlink(path_.c_str());
-  }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  int fd() const { return fd_.get(); }
-  const std::string& name() const { return name_; }
-
- private:
-  void listen_local(const std::string& path) {
-    const sockaddr_un address = local_address(path);
-    name_ = path;
-    // A simulator that was killed leaves its socket behind; one that lives answers.
-    const Fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    const auto* where = reinterpret_cast<const sockaddr*>(&address);
-    struct stat there {};
-    if (::lstat(path.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) {
-      if (::connect(probe.get(), where, sizeof address) == 0)
-        throw std::runtime_error("socket " + path + ": another simulator listens on it");
-      if (errno == ECONNREFUSED)
-        ::unlink(path.c_str());
-    }
-    fd_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    if (!fd_ || ::bind(fd_.get(), where, sizeof address) != 0 || ::listen(fd_.get(), 8) != 0)
-      fail("socket " + path);
-    path_ = path;
-    if (::stat(path.c_str(), &there) == 0)
-      inode_ = there.st_ino;
-  }
-
-  void listen_tcp(const std::string& text, std::uint16_t port) {
-    name_ = text + ":" + std::to_string(port);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    if (::inet_pton(AF_INET, text.c_str(), &address.sin_addr) != 1)
-      throw std::runtime_error("address " + text + ": expected four numbers, such as 127.0.0.1");
-    fd_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    const int yes = 1;
-    if (fd_)
-      ::setsockopt(fd_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    if (!fd_ || ::bind(fd_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
-        ::listen(fd_.get(), 8) != 0)
-      fail("port " + name_);
-    socklen_t size = sizeof address;
-    if (::getsockname(fd_.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0)
-      name_ = text + ":" + std::to_string(ntohs(address.sin_port));
-  }
-
-  Fd fd_;
-  std::string name_;
-  std::string path_;
-  ino_t inode_ = 0;
-};
 
 class TraceFile {
  public:
@@ -249,10 +147,20 @@ class Station {
       : log_(options.log),
         prefix_(options.more.empty() ? "" : "robot " + std::to_string(number + 1) + ": "),
         patient_(options.rate == kMaxRate),
+        real_time_(options.rate == 1.0),
         simulation_(simulation),
         number_(number),
         trace_(options.trace.empty() ? "" : numbered(options.trace, number + 1)),
-        listener_(options, number + 1) {
+        listener_(listen(options, number + 1)) {
+    if (const std::string path = options.check.value_or(default_check()); !path.empty())
+      check_.emplace(path, prefix_, server().parameters());
+    if (!options.stereo.empty() || options.stereo_socket) {
+      stereo_.emplace(options.stereo.empty() ? "" : numbered(options.stereo, number + 1),
+                      options.stereo_socket
+                          ? std::optional(numbered(*options.stereo_socket, number + 1))
+                          : std::nullopt,
+                      options.seed + number);
+    }
     log("listening on " + listener_.name() + (options.step ? ", single-step" : ""));
   }
 
@@ -260,6 +168,10 @@ class Station {
     const auto events = static_cast<short>(output_.empty() ? POLLIN : POLLIN | POLLOUT);
     fds.push_back({client_.get(), events, 0});  // poll leaves out those below zero
     fds.push_back({listener_.fd(), POLLIN, 0});
+  }
+  void add_viewers_to(std::vector<pollfd>& fds) const {
+    if (stereo_)
+      stereo_->add_to(fds);
   }
   bool packet_pending() const { return server().packet_pending(); }
 
@@ -276,7 +188,7 @@ class Station {
   void gap() { simulation_.gap(number_); }
 
   void accept() {
-    Fd fd(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    Fd fd = listener_.accept();
     if (!fd)
       return;
     if (client_) {
@@ -299,7 +211,9 @@ class Station {
     if (size > 0) {
       cycles_ = 0;
       heard_ = Clock::now();
-      simulation_.receive(number_, {buffer.data(), static_cast<std::size_t>(size)});
+      const protocol::ByteView bytes(buffer.data(), static_cast<std::size_t>(size));
+      watch(protocol::Side::kClient, bytes);
+      simulation_.receive(number_, bytes);
     } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
       hang_up("the client has gone");
     }
@@ -315,6 +229,9 @@ class Station {
     // Live, somebody may be watching the file.
     if (!rows.empty() && (live || !client_))
       trace_.flush();
+    // After the packet, which is not to wait for the picture.
+    if (stereo_)
+      stereo_->serve(simulation_.scene(), number_, server().cycle());
   }
 
   void end() {
@@ -334,9 +251,20 @@ class Station {
   }
   Server& server() const { return simulation_.server(number_); }
 
+  void watch(protocol::Side side, protocol::ByteView bytes) {
+    if (!check_ || bytes.empty())
+      return;
+    std::optional<double> time;
+    if (real_time_ && !server().single_step())
+      time = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+    check_->pass(side, bytes, time);
+  }
+
   void send(const protocol::Bytes& fresh) {
-    if (output_.size() + fresh.size() <= kMost)
+    if (output_.size() + fresh.size() <= kMost) {
+      watch(protocol::Side::kServer, fresh);
       output_.insert(output_.end(), fresh.begin(), fresh.end());
+    }
     while (!output_.empty()) {
       const ssize_t size = ::send(client_.get(), output_.data(), output_.size(), MSG_NOSIGNAL);
       if (size > 0) {
@@ -357,18 +285,23 @@ class Station {
       return;
     client_.reset();
     simulation_.disconnect(number_);
+    if (check_)
+      check_->disconnect();
     log(why);
   }
 
   std::function<void(const std::string&)> log_;
   std::string prefix_;
   bool patient_;
+  bool real_time_;
   Simulation& simulation_;
   RobotNumber number_;
   TraceFile trace_;
   Listener listener_;
   Fd client_;
   protocol::Bytes output_;
+  std::optional<LineCheck> check_;
+  std::optional<StereoFeed> stereo_;
   int cycles_ = 0;  // since the client was heard
   Clock::time_point heard_ = Clock::now();
 };
@@ -385,12 +318,14 @@ class Host {
     std::vector<pollfd> fds;
     while (true) {
       const int timeout = schedule();
-      // In that order: stop, timer, then each robot's client and listener.
+      // In that order: stop, timer, then each robot's client and listener, then who looks on.
       fds.clear();
       fds.push_back({stop_fd, POLLIN, 0});
       fds.push_back({timer_.fd(), POLLIN, 0});
       for (const auto& station : stations_)
         station->add_to(fds);
+      for (const auto& station : stations_)
+        station->add_viewers_to(fds);
       if (::poll(fds.data(), fds.size(), timeout) < 0) {
         if (errno == EINTR)
           continue;

@@ -10,6 +10,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -385,6 +387,81 @@ TEST_F(HostTest, SeveralRobotsNeedSeveralPlaces) {
     FAIL() << "no error";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("position"), std::string::npos) << error.what();
+  }
+}
+
+// One picture of a stream.
+std::string next_picture(int fd) {
+  std::string picture;
+  std::size_t size = std::string::npos;
+  while (picture.size() < size) {
+    std::array<char, 65536> buffer{};
+    pollfd wait{fd, POLLIN, 0};
+    if (::poll(&wait, 1, static_cast<int>(std::chrono::milliseconds(kLimit).count())) != 1)
+      return "no picture came";
+    const ssize_t got = ::read(fd, buffer.data(), std::min(buffer.size(), size - picture.size()));
+    if (got <= 0)
+      return "the stream has ended";
+    picture.append(buffer.data(), static_cast<std::size_t>(got));
+    const std::string head = "\n640 240\n255\n";
+    if (const auto at = picture.find(head); at != std::string::npos)
+      size = at + head.size() + 640 * 240;
+  }
+  return picture;
+}
+
+TEST_F(HostTest, ShowsWhatTheStereoCamerasSee) {
+  options_.step = true;
+  options_.stereo = directory_ + "/pictures";
+  options_.stereo_socket = directory_ + "/eyes";
+  start();
+  Client client(*options_.socket);
+  client.open();
+  const int viewer = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  options_.stereo_socket->copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::connect(viewer, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  std::string last;
+  for (int cycle = 1; cycle <= 3; ++cycle) {
+    client.send(encode(protocol::Step{}));
+    client.information();
+    const std::string picture = next_picture(viewer);
+    EXPECT_TRUE(picture.starts_with("P5\n# saphira stereo cycle=" + std::to_string(cycle) + " "))
+        << picture.substr(0, 80);
+    EXPECT_EQ(picture, read_file(options_.stereo + "/00000" + std::to_string(cycle) + ".pgm"));
+    EXPECT_NE(picture, last);
+    last = picture;
+  }
+  ::close(viewer);
+  client.send(encode(protocol::Step{}));
+  client.information();
+}
+
+TEST_F(HostTest, WritesDownWhatIsAgainstTheTables) {
+  options_.step = true;
+  options_.check = directory_ + "/check";
+  start();
+  {
+    Client client(*options_.socket);
+    client.open();
+    client.send(encode(protocol::Step{}));
+    client.information();
+  }
+  ASSERT_TRUE(logs("the client has gone"));
+  const std::string good = read_file(*options_.check);
+  EXPECT_EQ(good.find("violation:"), std::string::npos) << good;
+  EXPECT_NE(good.find("client: 1 x STEP (64)"), std::string::npos) << good;
+  EXPECT_NE(good.find("0 violations"), std::string::npos) << good;
+  {
+    Client client(*options_.socket);
+    client.open();
+    client.send({0x55});
+    client.send(encode(protocol::Step{}));
+    client.information();
+    // At once, and not when it goes.
+    EXPECT_NE(read_file(*options_.check).find("violation: 1 bytes that belong to no packet"),
+              std::string::npos);
   }
 }
 

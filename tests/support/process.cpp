@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +17,16 @@
 namespace saphira::test {
 
 namespace {
+
+// See LineCheck of the simulator.
+constexpr char kCheck[] = "SAPHIRA_CHECK";
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
 
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
@@ -57,6 +68,10 @@ Process::Process(std::vector<std::string> argv, std::string output_file,
     : output_file_(std::move(output_file)) {
   if (argv.at(0).find('/') == std::string::npos)
     argv[0] = program(argv[0]);
+  if (complain != nullptr && !environment.contains(kCheck)) {
+    check_file_ = output_file_ + ".check";
+    check_begins_ = read_file(check_file_).size();
+  }
   std::vector<char*> pointers;
   pointers.reserve(argv.size() + 1);
   for (std::string& word : argv)
@@ -77,14 +92,22 @@ Process::Process(std::vector<std::string> argv, std::string output_file,
     dup2(out, 2);
     for (const auto& [name, value] : environment)
       setenv(name.c_str(), value.c_str(), 1);
+    if (!check_file_.empty())
+      setenv(kCheck, check_file_.c_str(), 1);
     execv(pointers[0], pointers.data());
     _exit(127);
   }
 }
 
 Process::Process(Process&& other) noexcept
-    : pid_(other.pid_), status_(other.status_), output_file_(std::move(other.output_file_)) {
+    : pid_(other.pid_),
+      status_(other.status_),
+      output_file_(std::move(other.output_file_)),
+      check_file_(std::move(other.check_file_)),
+      check_begins_(other.check_begins_),
+      violations_expected_(other.violations_expected_) {
   other.pid_ = -1;
+  other.check_file_.clear();
 }
 
 Process::~Process() {
@@ -96,6 +119,8 @@ Process::~Process() {
       wait();
     }
   }
+  if (const std::string found = violations(); !found.empty() && !violations_expected_)
+    complain(found);
 }
 
 void Process::signal(int number) const {
@@ -119,10 +144,25 @@ std::optional<int> Process::wait(std::chrono::milliseconds limit) {
 }
 
 std::string Process::output() const {
-  std::ifstream in(output_file_);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return read_file(output_file_);
+}
+
+void (*Process::complain)(const std::string& violations) = nullptr;
+
+std::string Process::checked() const {
+  if (check_file_.empty())
+    return {};
+  const std::string all = read_file(check_file_);
+  return all.substr(std::min(check_begins_, all.size()));
+}
+
+std::string Process::violations() const {
+  std::istringstream lines(checked());
+  std::string found;
+  for (std::string line; std::getline(lines, line);)
+    if (line.find(": violation: ") != std::string::npos)
+      found += line + "\n";
+  return found;
 }
 
 std::string program(const std::string& name) {

@@ -31,6 +31,9 @@ class TempDir {
 };
 
 /// A child process; killed with its object. Its output (both streams) goes to a file.
+///
+/// In a test, every simulator that it is or starts has the strict protocol checker on its lines,
+/// and what that says to be against the tables fails the test when the object goes.
 class Process {
  public:
   /// argv[0] without a slash is one of the project's programs. `environment` adds to our own.
@@ -49,10 +52,24 @@ class Process {
   /// What it has printed so far.
   std::string output() const;
 
+  /// What the checker has found so far.
+  std::string violations() const;
+  /// All that it has written: findings, and a summary for each connection that was closed.
+  std::string checked() const;
+  /// Somebody hurts the line or what is on it: violations are no failure.
+  void expect_violations() { violations_expected_ = true; }
+
+  /// What violations are told to; nobody looks for them where this is not set. Set where a test is
+  /// linked with this.
+  static void (*complain)(const std::string& violations);
+
  private:
   pid_t pid_ = -1;
   std::optional<int> status_;
   std::string output_file_;
+  std::string check_file_;        // empty: nobody looks
+  std::size_t check_begins_ = 0;  // what stands there of a process before
+  bool violations_expected_ = false;
 };
 
 /// A program of this build, such as saphira-bridge; a file of the source tree, such as

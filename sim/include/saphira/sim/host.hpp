@@ -41,6 +41,14 @@ struct HostOptions {
   /// The second robot, the third, ... Number n listens on the next port but n - 2, or on the socket
   /// with "-n" behind it, and its trace is written likewise: run-2.csv.
   std::vector<RobotOptions> more;
+  /// File to which is appended what of the conversation is against the protocol's tables; not
+  /// given: default_check(); empty: nobody looks. See line_check.hpp.
+  std::optional<std::string> check;
+  /// Folder for what the robot's stereo cameras see, a picture each cycle; empty: none. Of further
+  /// robots as with the trace: numbered().
+  std::string stereo;
+  /// Local socket on which the same pictures are sent to whoever connects. README, "Vision".
+  std::optional<std::string> stereo_socket;
   /// Takes lines for the log; may be empty. Called in the thread of run().
   std::function<void(const std::string&)> log;
 };

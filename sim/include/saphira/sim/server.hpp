@@ -97,6 +97,7 @@ class Server {
   bool packet_pending() const { return parser_.pending(); }
 
   const Robot& robot() const { return robot_; }
+  const protocol::RobotParameters& parameters() const { return parameters_; }
   std::uint64_t cycle() const { return cycle_; }
   ServerCounters counters() const;
   const Devices& devices() const { return devices_; }

@@ -1,0 +1,97 @@
+#include "listener.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace saphira::sim {
+
+namespace {
+
+sockaddr_un local_address(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof address.sun_path)
+    throw std::runtime_error("socket " + path + ": expected a path of 1 to " +
+                             std::to_string(sizeof address.sun_path - 1) + " characters");
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  return address;
+}
+
+}  // namespace
+
+void fail(const std::string& what) {
+  throw std::runtime_error(what + ": " + std::strerror(errno));
+}
+
+void Fd::reset(int fd) {
+  if (fd_ >= 0)
+    ::close(fd_);
+  fd_ = fd;
+}
+
+Listener::~Listener() {
+  // Unless another simulator has put its own there meanwhile.
+  struct stat now {};
+  if (fd_ && !path_.empty() && ::stat(path_.c_str(), &now) == 0 && now.st_ino == inode_)
+    ::unlink(path_.c_str());
+}
+
+Fd Listener::accept() const {
+  return Fd(::accept4(fd_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+}
+
+Listener Listener::local(const std::string& path) {
+  Listener out;
+  const sockaddr_un address = local_address(path);
+  out.name_ = path;
+  // A simulator that was killed leaves its socket behind; one that lives answers.
+  const Fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const auto* where = reinterpret_cast<const sockaddr*>(&address);
+  struct stat there {};
+  if (::lstat(path.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) {
+    if (::connect(probe.get(), where, sizeof address) == 0)
+      throw std::runtime_error("socket " + path + ": another simulator listens on it");
+    if (errno == ECONNREFUSED)
+      ::unlink(path.c_str());
+  }
+  out.fd_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!out.fd_ || ::bind(out.fd_.get(), where, sizeof address) != 0 ||
+      ::listen(out.fd_.get(), 8) != 0)
+    fail("socket " + path);
+  out.path_ = path;
+  if (::stat(path.c_str(), &there) == 0)
+    out.inode_ = there.st_ino;
+  return out;
+}
+
+Listener Listener::tcp(const std::string& text, std::uint16_t port) {
+  Listener out;
+  out.name_ = text + ":" + std::to_string(port);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  if (::inet_pton(AF_INET, text.c_str(), &address.sin_addr) != 1)
+    throw std::runtime_error("address " + text + ": expected four numbers, such as 127.0.0.1");
+  out.fd_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int yes = 1;
+  if (out.fd_)
+    ::setsockopt(out.fd_.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (!out.fd_ ||
+      ::bind(out.fd_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(out.fd_.get(), 8) != 0)
+    fail("port " + out.name_);
+  socklen_t size = sizeof address;
+  if (::getsockname(out.fd_.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0)
+    out.name_ = text + ":" + std::to_string(ntohs(address.sin_port));
+  return out;
+}
+
+}  // namespace saphira::sim

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+namespace saphira::sim {
+
+/// std::runtime_error with what errno says.
+[[noreturn]] void fail(const std::string& what);
+
+/// A file descriptor that is closed with its object.
+class Fd {
+ public:
+  explicit Fd(int fd = -1) : fd_(fd) {}
+  ~Fd() { reset(); }
+  Fd(Fd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Fd& operator=(Fd&& other) noexcept {
+    if (this != &other)
+      reset(std::exchange(other.fd_, -1));
+    return *this;
+  }
+  Fd(const Fd&) = delete;
+  Fd& operator=(const Fd&) = delete;
+  void reset(int fd = -1);
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+/// A socket that is listened on; a local one is removed at the end. std::runtime_error where it
+/// cannot be had.
+class Listener {
+ public:
+  static Listener local(const std::string& path);
+  static Listener tcp(const std::string& address, std::uint16_t port);
+  ~Listener();
+  Listener(Listener&&) = default;
+  Listener& operator=(Listener&&) = delete;
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  int fd() const { return fd_.get(); }
+  const std::string& name() const { return name_; }
+  /// Who has connected, not blocking; nobody where the descriptor is none.
+  Fd accept() const;
+
+ private:
+  Listener() = default;
+
+  Fd fd_;
+  std::string name_;
+  std::string path_;
+  ino_t inode_ = 0;
+};
+
+}  // namespace saphira::sim

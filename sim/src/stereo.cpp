@@ -1,0 +1,337 @@
+#include "saphira/sim/stereo.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace saphira::sim {
+
+namespace {
+
+// Of a grey of 0 to 255. Real walls are plainer than this; a census window needs something to hold
+// on to, and gets it from plaster, posters and shelves there.
+constexpr double kWall = 170.0;
+constexpr double kFloor = 110.0;
+constexpr double kCeiling = 215.0;
+constexpr double kTexture = 45.0;
+constexpr double kFar = 128.0;
+constexpr double kRobotHeight = 0.3;  // [m] no robot of ours is much higher
+// Of a person: where the head begins, as a share of the height; its radius, as one of the body's;
+// where the trousers end.
+constexpr double kShoulder = 0.83;
+constexpr double kHead = 0.42;
+constexpr double kBelt = 0.52;
+
+std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  std::uint32_t h = a * 0x9E3779B1U + b * 0x85EBCA77U + c * 0xC2B2AE3DU;
+  h ^= h >> 15U;
+  h *= 0x2C1B3C6DU;
+  return h ^ h >> 13U;
+}
+
+std::int32_t floor_of(double value) {
+  const auto whole = static_cast<std::int32_t>(value);
+  return value < whole ? whole - 1 : whole;
+}
+
+// Values between -1 and 1 on a lattice of the unit, straight lines between.
+double lattice(double u, double v, std::uint32_t seed) {
+  const std::int32_t fu = floor_of(u);
+  const std::int32_t fv = floor_of(v);
+  const auto iu = static_cast<std::uint32_t>(fu);
+  const auto iv = static_cast<std::uint32_t>(fv);
+  const auto value = [&](std::uint32_t i, std::uint32_t j) {
+    return static_cast<std::int32_t>(hash(iu + i, iv + j, seed)) * 0x1p-31;
+  };
+  const double a = u - fu;
+  const double b = v - fv;
+  return (value(0, 0) * (1.0 - a) + value(1, 0) * a) * (1.0 - b) +
+         (value(0, 1) * (1.0 - a) + value(1, 1) * a) * b;
+}
+
+// Which details of a texture a pixel shows that covers so much of it: of two pixels and more. Finer
+// ones are left out, for they would differ from one camera to the other.
+struct Detail {
+  double scale = 100.0;  // [1/m] of the finest: 1 cm, or its double, ...
+  double fade = 1.0;     // how much of it
+  std::uint32_t octave = 0;
+
+  static Detail of(double pixel) {
+    const double level = std::max(0.0, std::log2(2.0 * pixel / 0.01));
+    const int first = static_cast<int>(level);
+    return {std::ldexp(100.0, -first), 1.0 - (level - first), static_cast<std::uint32_t>(first)};
+  }
+};
+
+// A texture between -1 and 1.
+double texture(double u, double v, std::uint32_t seed, const Detail& detail) {
+  const double scale = detail.scale;
+  const std::uint32_t first = seed + detail.octave * 977U;
+  return (detail.fade * lattice(u * scale, v * scale, first) +
+          lattice(u * scale * 0.5, v * scale * 0.5, first + 977U) +
+          lattice(u * scale * 0.125, v * scale * 0.125, first + 3U * 977U)) /
+         1.6;
+}
+
+// An upright face of something, from low to high.
+struct Face {
+  bool round = false;
+  Segment segment;
+  Disc disc;
+  double low = 0.0;   // [m]
+  double high = 0.0;  // [m]
+  double grey = 0.0;  // 0 to 255
+  double belt = 0.0;  // [m] below that it is darker
+  std::uint32_t seed = 0;
+  int thing = 0;        // faces of one thing stand around it
+  double turned = 0.0;  // [rad] how a round one is
+};
+
+// Where a column's plane meets a face.
+struct Meeting {
+  double depth = 0.0;  // [m] along the axis
+  double u = 0.0;      // [m] along the face
+  double light = 0.0;  // from a window far away
+  Detail detail;
+  const Face* face = nullptr;
+  bool leaves = false;  // the thing: what is seen below its top is its lid
+};
+
+class Faces {
+ public:
+  Faces(const Scene& scene, RobotNumber self, const Vec2& eye, const StereoRig& rig)
+      : eye_(eye), range_(rig.range), pixel_(1.0 / rig.focal()) {
+    std::uint32_t seed = 1;
+    for (const Segment& segment : scene.world().segments)
+      add(segment, kWallHeight, kWall, seed++, ++things_);
+    for (const Door& door : scene.doors())
+      add(scene.leaf(door), door.plan->look.height, 120.0, seed++, ++things_);
+    for (const Box& box : scene.boxes()) {
+      ++things_;
+      for (const Segment& side : scene.sides(box))
+        add(side, box.plan->look.height, grey(seed), seed, things_);
+      ++seed;
+    }
+    for (const Person& person : scene.persons()) {
+      const double height = person.plan->look.height;
+      const double radius = person.plan->radius;
+      add({person.at, radius}, 0.0, kShoulder * height, grey(seed), seed, 0.0, kBelt * height);
+      ++seed;
+      add({person.at, kHead * radius}, kShoulder * height, height, 150.0, seed++, 0.0, 0.0);
+    }
+    for (const PostPlan& post : scene.world().movable.posts) {
+      add({post.at, post.radius}, 0.0, post.look.height, grey(seed), seed, 0.0, 0.0);
+      ++seed;
+    }
+    for (RobotNumber i = 0; i < scene.robots(); ++i) {
+      const Pose at = scene.robot(i).pose_in_world();
+      if (i != self)
+        add({at.position(), scene.robot(i).radius()}, 0.0, kRobotHeight, 90.0, seed, at.th, 0.0);
+      ++seed;
+    }
+  }
+
+  // All that a column meets, the nearest first. `way` is as long as it goes aside for a depth of 1.
+  void meet(const Vec2& way, std::vector<Meeting>& meetings) const {
+    meetings.clear();
+    for (const Face& face : faces_)
+      face.round ? meet_disc(face, way, meetings) : meet_segment(face, way, meetings);
+    std::sort(meetings.begin(), meetings.end(), [](const Meeting& a, const Meeting& b) {
+      return a.depth != b.depth ? a.depth < b.depth : a.face < b.face;
+    });
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+      meetings[i].detail = Detail::of(meetings[i].depth * pixel_);
+      for (std::size_t k = 0; k < i; ++k)
+        meetings[i].leaves =
+            meetings[i].leaves || meetings[k].face->thing == meetings[i].face->thing;
+    }
+  }
+
+  const Vec2& eye() const { return eye_; }
+
+ private:
+  static constexpr double kNear = 0.02;  // [m]
+
+  static double grey(std::uint32_t seed) { return 80.0 + hash(seed, 3, 7) % 110U; }
+  static double light(const Vec2& normal) { return 18.0 * (0.8 * normal.x() + 0.6 * normal.y()); }
+
+  void add(const Segment& segment, double high, double grey, std::uint32_t seed, int thing) {
+    if ((nearest_point(segment, eye_) - eye_).norm() > range_)
+      return;
+    Face face;
+    face.segment = segment;
+    face.high = high;
+    face.grey = grey;
+    face.seed = seed;
+    face.thing = thing;
+    faces_.push_back(face);
+  }
+  void add(const Disc& disc, double low, double high, double grey, std::uint32_t seed,
+           double turned, double belt) {
+    ++things_;
+    if ((disc.centre - eye_).norm() > range_ + disc.radius)
+      return;
+    Face face;
+    face.round = true;
+    face.disc = disc;
+    face.low = low;
+    face.high = high;
+    face.grey = grey;
+    face.belt = belt;
+    face.seed = seed;
+    face.thing = things_;
+    face.turned = turned;
+    faces_.push_back(face);
+  }
+
+  void meet_segment(const Face& face, const Vec2& way, std::vector<Meeting>& meetings) const {
+    const Vec2 along = face.segment.to - face.segment.from;
+    const Vec2 from = face.segment.from - eye_;
+    const double cross = way.x() * along.y() - way.y() * along.x();
+    const double length = along.norm();
+    if (std::abs(cross) < 1e-12 || length < 1e-9)
+      return;
+    const double depth = (from.x() * along.y() - from.y() * along.x()) / cross;
+    const double share = (from.x() * way.y() - from.y() * way.x()) / cross;
+    if (depth < kNear || share < 0.0 || share > 1.0)
+      return;
+    Vec2 normal(-along.y() / length, along.x() / length);
+    if (normal.dot(way) > 0.0)
+      normal = -normal;
+    meetings.push_back({depth, share * length, light(normal), {}, &face, false});
+  }
+
+  void meet_disc(const Face& face, const Vec2& way, std::vector<Meeting>& meetings) const {
+    const Vec2 to = face.disc.centre - eye_;
+    const double a = way.squaredNorm();
+    const double b = to.dot(way);
+    const double under = b * b - a * (to.squaredNorm() - face.disc.radius * face.disc.radius);
+    if (under <= 0.0)
+      return;
+    for (const double sign : {-1.0, 1.0}) {
+      const double depth = (b + sign * std::sqrt(under)) / a;
+      if (depth < kNear)
+        return;
+      const Vec2 normal = (way * depth - to) / face.disc.radius;
+      const double angle = std::atan2(normal.y(), normal.x()) - face.turned;
+      meetings.push_back({depth, angle * face.disc.radius, light(normal), {}, &face, false});
+    }
+  }
+
+  Vec2 eye_;
+  double range_;
+  double pixel_;  // [m] what one covers at a depth of 1 m
+  std::vector<Face> faces_;
+  int things_ = 0;
+};
+
+// What all columns have in common of a row: where it meets the floor or the ceiling.
+struct Row {
+  double slope = 0.0;  // [m] upward for each of depth
+  double depth = 0.0;  // [m]
+  Detail detail;
+};
+
+std::vector<Row> rows_of(const StereoRig& rig) {
+  std::vector<Row> rows(static_cast<std::size_t>(rig.rows));
+  for (int i = 0; i < rig.rows; ++i) {
+    Row& row = rows[static_cast<std::size_t>(i)];
+    row.slope = (0.5 * rig.rows - i - 0.5) / rig.focal();
+    row.depth = row.slope < 0.0   ? rig.height / -row.slope
+                : row.slope > 0.0 ? (kWallHeight - rig.height) / row.slope
+                                  : rig.range;
+    row.detail = Detail::of(row.depth / rig.focal());
+  }
+  return rows;
+}
+
+double pixel_grey(const StereoRig& rig, const std::vector<Meeting>& meetings, const Vec2& eye,
+                  const Vec2& way, const Row& row) {
+  const double end = std::min(row.depth, rig.range);
+  for (const Meeting& meeting : meetings) {
+    if (meeting.depth >= end)
+      break;
+    const Face& face = *meeting.face;
+    const double at = rig.height + row.slope * meeting.depth;
+    if (at < face.low || at > face.high)
+      continue;
+    if (meeting.leaves) {
+      const Vec2 lid = eye + way * ((face.high - rig.height) / row.slope);
+      return face.grey + 20.0 +
+             kTexture * texture(lid.x(), lid.y(), face.seed + 7000U, meeting.detail);
+    }
+    const double grey = at < face.belt ? 0.5 * face.grey : face.grey;
+    return grey + meeting.light + kTexture * texture(meeting.u, at, face.seed, meeting.detail);
+  }
+  if (end >= rig.range)
+    return kFar;
+  const Vec2 point = eye + way * end;
+  const bool floor = row.slope < 0.0;
+  return (floor ? kFloor : kCeiling) +
+         kTexture * texture(point.x(), point.y(), floor ? 100001U : 100003U, row.detail);
+}
+
+GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, double left,
+                 double gain, Random& random) {
+  const Pose middle = compose(scene.robot(robot).pose_in_world(), rig.pose_in_robot);
+  const Vec2 ahead(std::cos(middle.th), std::sin(middle.th));
+  const Vec2 aside(-ahead.y(), ahead.x());
+  const Faces faces(scene, robot, middle.position() + aside * left, rig);
+  const std::vector<Row> rows = rows_of(rig);
+  const double focal = rig.focal();
+  // Two even draws make a triangle with this half width.
+  const double spread = rig.noise * std::sqrt(6.0);
+  GreyImage image{rig.columns, rig.rows, {}};
+  image.pixels.resize(static_cast<std::size_t>(rig.columns) * static_cast<std::size_t>(rig.rows));
+  std::vector<Meeting> meetings;
+  for (int column = 0; column < rig.columns; ++column) {
+    const double across = (column + 0.5 - 0.5 * rig.columns) / focal;
+    const Vec2 way = ahead - aside * across;
+    faces.meet(way, meetings);
+    for (int row = 0; row < rig.rows; ++row) {
+      const std::uint32_t draw = random.next();
+      const double noise = ((draw & 0xFFFFU) + (draw >> 16U)) / 65536.0 - 1.0;
+      const double grey =
+          gain * pixel_grey(rig, meetings, faces.eye(), way, rows[static_cast<std::size_t>(row)]) +
+          spread * noise;
+      image.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(rig.columns) +
+                   static_cast<std::size_t>(column)] =
+          static_cast<std::uint8_t>(std::clamp(static_cast<int>(grey + 0.5), 0, 255));
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+double StereoRig::focal() const {
+  return 0.5 * columns / std::tan(0.5 * field_of_view);
+}
+
+StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig& rig,
+                         Random& random) {
+  StereoPair pair;
+  pair.left = render(scene, robot, rig, 0.5 * rig.baseline, 1.0, random);
+  pair.right = render(scene, robot, rig, -0.5 * rig.baseline, 1.0 + rig.gain_difference, random);
+  return pair;
+}
+
+std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t cycle) {
+  std::array<char, 200> head{};
+  std::snprintf(
+      head.data(), head.size(),
+      "P5\n# saphira stereo cycle=%llu focal=%.9g baseline=%.9g height=%.9g forward=%.9g\n"
+      "%d %d\n255\n",
+      static_cast<unsigned long long>(cycle), rig.focal(), rig.baseline, rig.height,
+      rig.pose_in_robot.x, 2 * pair.left.columns, pair.left.rows);
+  std::string out = head.data();
+  for (int row = 0; row < pair.left.rows; ++row)
+    for (const GreyImage* image : {&pair.left, &pair.right}) {
+      const auto begin = image->pixels.begin() + static_cast<std::ptrdiff_t>(row) * image->columns;
+      out.append(begin, begin + image->columns);
+    }
+  return out;
+}
+
+}  // namespace saphira::sim

@@ -1,0 +1,77 @@
+#include "stereo_feed.hpp"
+
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+namespace saphira::sim {
+
+StereoFeed::StereoFeed(std::string folder, const std::optional<std::string>& socket,
+                       std::uint64_t seed)
+    : folder_(std::move(folder)), seed_(seed) {
+  std::error_code error;
+  if (!folder_.empty() && !std::filesystem::is_directory(folder_) &&
+      !std::filesystem::create_directories(folder_, error))
+    throw std::runtime_error(folder_ + ": " + error.message());
+  if (socket)
+    listener_.emplace(Listener::local(*socket));
+}
+
+void StereoFeed::add_to(std::vector<pollfd>& fds) const {
+  if (listener_)
+    fds.push_back({listener_->fd(), POLLIN, 0});
+  for (const Viewer& viewer : viewers_)
+    fds.push_back({viewer.fd.get(),
+                   static_cast<short>(viewer.waiting.empty() ? POLLIN : POLLIN | POLLOUT), 0});
+}
+
+// False where the viewer has gone.
+bool StereoFeed::send(Viewer& viewer) {
+  // What viewers say is of no interest, but that they go.
+  std::array<char, 256> said{};
+  const ssize_t heard = ::recv(viewer.fd.get(), said.data(), said.size(), MSG_DONTWAIT);
+  if (heard == 0 || (heard < 0 && errno != EAGAIN && errno != EINTR))
+    return false;
+  while (!viewer.waiting.empty()) {
+    const ssize_t size =
+        ::send(viewer.fd.get(), viewer.waiting.data(), viewer.waiting.size(), MSG_NOSIGNAL);
+    if (size < 0)
+      return errno == EAGAIN || errno == EINTR;
+    viewer.waiting.erase(0, static_cast<std::size_t>(size));
+  }
+  return true;
+}
+
+void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "/%06llu.pgm", static_cast<unsigned long long>(cycle));
+  std::ofstream file(folder_ + name.data(), std::ios::binary);
+  file << picture << std::flush;
+  if (!file)
+    throw std::runtime_error(folder_ + name.data() + ": cannot be written");
+}
+
+void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle) {
+  if (listener_)
+    for (Fd fd = listener_->accept(); fd; fd = listener_->accept())
+      viewers_.push_back({std::move(fd), {}});
+  if (cycle != cycle_ && cycle != 0 && (!folder_.empty() || !viewers_.empty())) {
+    Random random(seed_, cycle);
+    const std::string picture = to_pgm(render_stereo(scene, robot, rig_, random), rig_, cycle);
+    for (Viewer& viewer : viewers_)
+      if (viewer.waiting.empty())
+        viewer.waiting = picture;
+    if (!folder_.empty())
+      write(picture, cycle);
+  }
+  cycle_ = cycle;
+  std::erase_if(viewers_, [](Viewer& viewer) { return !send(viewer); });
+}
+
+}  // namespace saphira::sim

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <poll.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "listener.hpp"
+#include "saphira/sim/stereo.hpp"
+
+namespace saphira::sim {
+
+/// The pictures of a robot's stereo cameras for whoever wants them, one pair a cycle: PGM after PGM
+/// on a local socket, to any number of clients, or a file each in a folder. The noise of a picture
+/// depends on the seed and the cycle alone, so that nobody sees another one because somebody else
+/// looks.
+class StereoFeed {
+ public:
+  /// An empty folder: none. It is made where it is missing.
+  StereoFeed(std::string folder, const std::optional<std::string>& socket, std::uint64_t seed);
+
+  void add_to(std::vector<pollfd>& fds) const;
+  /// Takes on who has come, sends on what waits, and the picture of `cycle` where it is a new one.
+  /// Who has not taken the last one yet does not get it.
+  void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle);
+
+ private:
+  struct Viewer {
+    Fd fd;
+    std::string waiting;
+  };
+  static bool send(Viewer& viewer);
+  void write(const std::string& picture, std::uint64_t cycle) const;
+
+  std::string folder_;
+  std::optional<Listener> listener_;
+  std::uint64_t seed_;
+  std::uint64_t cycle_ = 0;
+  StereoRig rig_;
+  std::vector<Viewer> viewers_;
+};
+
+}  // namespace saphira::sim
