@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 
 #include "commands.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -17,6 +18,7 @@ struct Options {
   std::vector<std::string> words;
   int priority = 0;
   double deadline = 0.0;
+  double level = 0.0;
   bool keep = false;
 };
 
@@ -50,6 +52,7 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
   }
   goal.priority(options.priority);
   goal.deadline(options.deadline);
+  goal.level(options.level);
   goal.writer_lost(options.keep ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
 
   bus::Node node(node_options);
@@ -147,17 +150,83 @@ int list(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   return bus::kExitOk;
 }
 
+const char* describe(v1::ParameterKind kind) {
+  switch (kind) {
+    case v1::PARAMETER_ANY:
+      return "anything";
+    case v1::PARAMETER_NUMBER:
+      return "number";
+    case v1::PARAMETER_TEXT:
+      return "text";
+    case v1::PARAMETER_POINT:
+      return "point";
+  }
+  return "?";
+}
+
+void print(const v1::ActivitySchema& schema) {
+  std::printf("%s  %s%s%s\n", schema.name().c_str(), schema.summary().c_str(),
+              schema.source().empty() ? "" : "  ", schema.source().c_str());
+  for (const v1::ActivityParameter& parameter : schema.parameters()) {
+    std::printf("  %s  %s", parameter.name().c_str(), describe(parameter.kind()));
+    if (parameter.kind() == v1::PARAMETER_NUMBER && parameter.low() < parameter.high())
+      std::printf(", %g to %g", parameter.low(), parameter.high());
+    if (!parameter.unit().empty())
+      std::printf(" [%s]", parameter.unit().c_str());
+    std::printf("%s\n", parameter.required()        ? ", required"
+                        : parameter.usual().empty() ? ""
+                                                    : (", usual: " + parameter.usual()).c_str());
+  }
+}
+
+/// What can be asked for.
+int schemas(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  if (options.words.size() > 2) {
+    std::cerr << "saphira: expected goal schemas [FUNCTOR]\n";
+    return bus::kExitUsage;
+  }
+  bus::Node node(node_options);
+  Processes processes(node);
+  auto reader = node.reader(bus::topics::kActivitySchemas);
+  const auto end = Clock::now() + milliseconds(5000);
+  std::optional<v1::ActivitySchemas> known;
+  while (!known && !stop.requested() && Clock::now() < end) {
+    node.wait(milliseconds(100), &stop);
+    processes.poll();
+    known = reader.take_newest();
+  }
+  if (!known) {
+    std::cerr << "saphira: nobody said what can be asked for; "
+              << who_is_there(node_options, processes) << '\n';
+    return bus::kExitFailed;
+  }
+  bool any = false;
+  for (const v1::ActivitySchema& schema : known->schemas()) {
+    if (options.words.size() == 2 && schema.name() != options.words[1])
+      continue;
+    print(schema);
+    any = true;
+  }
+  if (!known->trouble().empty())
+    std::printf("%s\n", known->trouble().c_str());
+  if (!any)
+    std::cerr << "saphira: no such schema\n";
+  return any ? bus::kExitOk : bus::kExitFailed;
+}
+
 }  // namespace
 
 void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
   command->add_option("words", options->words,
-                      "go X Y | drive SPEED | turn DEGREES | stop | FUNCTOR name=value... | "
-                      "list | cancel ID");
+                      "go X Y | go PLACE | drive SPEED | turn DEGREES | stop | "
+                      "FUNCTOR name=value... | list | cancel ID | schemas [FUNCTOR]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--level", options->level, "of satisfaction that is enough (0..1)")
+      ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--keep", options->keep, "the goal goes on when this program ends");
   command->footer(
       "Values: 0.3 (SI units), 90deg, x,y or x,y,th with @odom, @robot or @map, text.\n"
@@ -168,6 +237,8 @@ void add_goal(CLI::App& app, Chosen& chosen) {
         return cancel(*options, node, stop);
       if (options->words == std::vector<std::string>{"list"})
         return list(node, stop);
+      if (!options->words.empty() && options->words[0] == "schemas")
+        return schemas(*options, node, stop);
       return ask(*options, node, stop);
     };
   });

@@ -162,8 +162,10 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     rest.insert(rest.begin(), first);
     return rest;
   };
+  if (words[0] == "go" && bare == 1 && !parse_number(rest[0]))
+    return parse_goal("go-to-place", with("place=" + rest[0]));
   if (words[0] == "go") {
-    expect(2, "go X Y [m]");
+    expect(2, "go X Y [m] or go PLACE");
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
   }
   if (words[0] == "drive" && bare > 0) {

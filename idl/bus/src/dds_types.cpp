@@ -53,7 +53,10 @@ std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
               v1::GridTilePubSubType, v1::MapPubSubType, v1::RegistrationPubSubType,
               v1::RegistrationRequestPubSubType, v1::RegistrationAnswerPubSubType,
               v1::BehaviorsPubSubType, v1::IntentionsPubSubType, v1::GoalPubSubType,
-              v1::GoalStatusPubSubType, v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
+              v1::GoalStatusPubSubType, v1::BehaviorSchemasPubSubType,
+              v1::ActivitySchemasPubSubType, v1::BeliefsPubSubType, v1::BeliefClaimPubSubType,
+              v1::ProcessesPubSubType, v1::ProcessRequestPubSubType, v1::ProcessAnswerPubSubType,
+              v1::MessagePubSubType, v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
 }
 
 }  // namespace saphira::bus::internal

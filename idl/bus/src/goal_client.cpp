@@ -186,8 +186,12 @@ std::string describe(const v1::GoalStatus& status) {
   if (!ended(status.state()) && !status.step().empty())
     line += ": " + status.step();
   if (status.state() == v1::GOAL_UNDERWAY) {
-    char percent[16];
-    std::snprintf(percent, sizeof percent, " (%.0f %%)", 100.0 * status.progress());
+    const char* const trend = status.trend() == v1::TREND_RISING    ? ", rising"
+                              : status.trend() == v1::TREND_FALLING ? ", falling"
+                                                                    : "";
+    char percent[48];
+    std::snprintf(percent, sizeof percent, " (%.0f %% done, level %.2f%s)",
+                  100.0 * status.progress(), status.level(), trend);
     line += percent;
   }
   if (!status.reason().empty())

@@ -108,7 +108,7 @@ TEST(GoalClient, TellsAStatusInALine) {
   status.state(v1::GOAL_UNDERWAY);
   status.step("driving");
   status.progress(0.25);
-  EXPECT_EQ(describe(status), "underway: driving (25 %)");
+  EXPECT_EQ(describe(status), "underway: driving (25 % done, level 0.00)");
   status.state(v1::GOAL_SUSPENDED);
   status.step("");
   status.reason("interrupted");
