@@ -86,6 +86,8 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
         parameters.items_.push_back({spec.name, spec.usual});
       else if (spec.kind == Kind::text)
         parameters.items_.push_back({spec.name, spec.choices.front()});
+      else
+        parameters.items_.push_back({spec.name, std::monostate{}});
       continue;
     }
     if (const std::string wrong = fault(spec, *given); !wrong.empty()) {
@@ -94,9 +96,11 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
     }
     if (const double* const number = std::get_if<double>(&given->value))
       parameters.items_.push_back({spec.name, *number});
-    else if (const auto* const text = std::get_if<std::string>(&given->value))
-      parameters.items_.push_back({spec.name, *text});
-    else {
+    else if (const auto* const text = std::get_if<std::string>(&given->value)) {
+      const auto choice = std::find(spec.choices.begin(), spec.choices.end(), *text);
+      parameters.items_.push_back(
+          {spec.name, *text, static_cast<std::size_t>(choice - spec.choices.begin())});
+    } else {
       const PlacedPoint& point = std::get<PlacedPoint>(given->value);
       parameters.items_.push_back({spec.name, point.frame == Frame::robot
                                                   ? compose(robot_in_odom, point.pose)
@@ -124,9 +128,15 @@ const std::string& Parameters::text(std::string_view name) const {
 
 std::optional<Pose> Parameters::point(std::string_view name) const {
   for (const Item& item : items_)
-    if (item.name == name)
-      return std::get<Pose>(item.value);
+    if (const Pose* const pose = std::get_if<Pose>(&item.value);
+        pose != nullptr && item.name == name)
+      return *pose;
   return {};
+}
+
+std::optional<Pose> Parameters::point(std::size_t index) const {
+  const Pose* const pose = std::get_if<Pose>(&items_[index].value);
+  return pose == nullptr ? std::optional<Pose>{} : *pose;
 }
 
 ParameterSpec number_parameter(std::string name, std::string meaning, double low, double high,

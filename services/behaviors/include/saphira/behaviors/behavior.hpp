@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saphira/behaviors/fuzzy.hpp"
@@ -72,9 +73,20 @@ struct Activity {
   Fuzzy progress = 0.0;
 };
 
+/// A lane that a behavior follows, to be drawn into the LPS as dotted lines (manual 7.8).
+struct Lane {
+  Pose in_robot;       ///< a point on it, directed along it
+  double left = 0.0;   ///< [m] from the point's line to the edge on that side
+  double right = 0.0;  ///< [m]
+};
+
 struct Evaluation {
   std::vector<Rule> rules;
   Activity activity;
+  /// What the update found, as far as the antecedents of the rules and the activity name it.
+  std::vector<std::pair<std::string, double>> variables = {};
+  std::optional<Lane> lane = {};
+  std::string trouble = {};  ///< what went wrong in this cycle; empty: nothing
 };
 
 /// One instance of a behavior: the update function of manual 7.6.2, and what it remembers.
@@ -89,26 +101,48 @@ class Behavior {
   /// Every cycle in which the behavior runs. Reads the LPS, computes the fuzzy variables and from
   /// them the rules. Parameters may have changed since the last time.
   virtual Evaluation update(const Parameters& parameters, const Context& context) = 0;
+  /// This one takes the place of `old`, which ran until now by an earlier version of the schema.
+  /// Called before init. May keep what `old` remembers.
+  virtual void take_over(const Behavior& old);
+};
+
+/// A rule as it is written, for people.
+struct RuleSpec {
+  std::string name;
+  std::string antecedent;  ///< such as "front_left And Not front_right"
+  std::string action;      ///< such as "Turn Right Sharply"
 };
 
 /// A kind of behavior: its parameters and how an instance is made. Those written in C++ are made by
-/// a function; those written in the behavior language will bring an interpreter along.
+/// a function; those written in the behavior language bring an interpreter along (language.hpp).
 struct Schema {
   std::string name;
   std::string summary;
-  std::vector<ParameterSpec> parameters;
-  std::function<std::unique_ptr<Behavior>()> make;
+  std::vector<ParameterSpec> parameters = {};
+  std::function<std::unique_ptr<Behavior>()> make = {};
+  std::vector<RuleSpec> rules = {};
+  std::string source = {};     ///< the file that it comes from; empty: built in
+  std::uint64_t revision = 0;  ///< set by the registry: another number for each version
 };
 
 class Registry {
  public:
-  /// A schema of the same name is replaced: instances that run stay as they were made.
+  /// A schema of the same name is replaced. The executive puts the new version in the place of
+  /// instances that run, see Behavior::take_over.
   void add(Schema schema);
+  /// Instances that run stay. False where there is none.
+  bool remove(const std::string& name);
+  /// By its name as it is written; otherwise without regard to case, "-", "_" and a leading "sf":
+  /// "follow-corridor" and "sfFollowCorridor" are FollowCorridor. nullptr where there is none.
   const Schema* find(const std::string& name) const;
   std::vector<std::string> names() const;
+  /// Another number after each change.
+  std::uint64_t revision() const { return revision_; }
 
  private:
   std::map<std::string, Schema> schemas_;
+  std::map<std::string, std::string> plain_names_;
+  std::uint64_t revision_ = 0;
 };
 
 /// The predefined behaviors of manual 7.8.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -58,10 +59,18 @@ class Parameters {
   /// In odom; nothing where it was not given.
   std::optional<Pose> point(std::string_view name) const;
 
+  // By the place in the schema's list.
+  double number(std::size_t index) const { return std::get<double>(items_[index].value); }
+  std::optional<Pose> point(std::size_t index) const;
+  /// Which of the choices a text is.
+  std::size_t choice(std::size_t index) const { return items_[index].choice; }
+
  private:
+  /// One for each of the schema's; nothing of a point that is not given.
   struct Item {
     std::string name;
-    std::variant<double, std::string, Pose> value;
+    std::variant<std::monostate, double, std::string, Pose> value;
+    std::size_t choice = 0;  ///< of a text
   };
   const Item& find(std::string_view name) const;
   std::vector<Item> items_;
