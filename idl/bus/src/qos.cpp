@@ -36,6 +36,13 @@ Policies policies(Qos qos, bool lockstep) {
               .writer_depth = 100,
               .reader_depth = 1000,
               .heartbeat_ms = 200};
+    case Qos::recall:
+      // Without a reader a sample costs no more than being kept.
+      return {.reliable = true,
+              .transient_local = true,
+              .writer_depth = 600,
+              .reader_depth = 600,
+              .heartbeat_ms = 200};
   }
   return {};
 }
@@ -56,6 +63,8 @@ const char* qos_name(Qos qos) {
       return "event";
     case Qos::status:
       return "status";
+    case Qos::recall:
+      return "recall";
   }
   return "?";
 }

@@ -12,6 +12,7 @@ enum class Qos {
   latched,  ///< the newest value of each key, also for late joiners, while its writer lives
   event,    ///< the last few events, also for late joiners
   status,   ///< keyed presence of programs
+  recall,   ///< the last minute of a cyclic topic, for who asks for it
 };
 
 }  // namespace saphira::bus

@@ -61,6 +61,11 @@ inline constexpr Topic<v1::Processes> kProcesses{"processes", Qos::latched};
 inline constexpr Topic<v1::ProcessRequest> kProcessRequest{"processes/request", Qos::command};
 inline constexpr Topic<v1::ProcessAnswer> kProcessAnswer{"processes/answers", Qos::event};
 inline constexpr Topic<v1::Message> kMessages{"messages", Qos::event};
+// What the same writers published in the last minute, for who asks why afterwards.
+inline constexpr Topic<v1::RobotState> kRecallRobot{"recall/robot", Qos::recall};
+inline constexpr Topic<v1::Grant> kRecallGrant{"recall/grant", Qos::recall};
+inline constexpr Topic<v1::Behaviors> kRecallBehaviors{"recall/behaviors", Qos::recall};
+inline constexpr Topic<v1::Intentions> kRecallIntentions{"recall/intentions", Qos::recall};
 inline constexpr Topic<v1::ServiceStatus> kStatus{"system/status", Qos::status};
 inline constexpr Topic<v1::LogRecord> kLog{"system/log", Qos::event};
 
@@ -107,6 +112,10 @@ void for_each_topic(F&& f) {
   f(kProcessRequest);
   f(kProcessAnswer);
   f(kMessages);
+  f(kRecallRobot);
+  f(kRecallGrant);
+  f(kRecallBehaviors);
+  f(kRecallIntentions);
   f(kStatus);
   f(kLog);
 }
