@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "line.hpp"
+#include "process.hpp"
 
 namespace saphira::test {
 
@@ -28,7 +29,10 @@ void word(Wire& out, int value) {
 
 }  // namespace
 
-ForeignRobot::ForeignRobot() {
+ForeignRobot::ForeignRobot()
+    : checker_([](const protocol::RobotIdentity&) {
+        return protocol::load_parameters(source("config/robots/p3dx.p"));
+      }) {
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -57,7 +61,22 @@ std::map<int, int> ForeignRobot::commands() const {
 
 std::string ForeignRobot::trouble() const {
   const std::lock_guard lock(mutex_);
-  return trouble_;
+  std::string all = trouble_;
+  for (const protocol::Finding& finding : checker_.findings())
+    if (finding.kind == protocol::Finding::Kind::kViolation)
+      all += to_string(finding) + "; ";
+  return all;
+}
+
+void ForeignRobot::watch(protocol::Side side, const Wire& bytes) {
+  const std::lock_guard lock(mutex_);
+  checker_.feed(side, bytes);
+}
+
+void ForeignRobot::send(const Wire& body) {
+  const Wire bytes = packet(body);
+  watch(protocol::Side::kServer, bytes);
+  [[maybe_unused]] const auto sent = ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
 void ForeignRobot::run() {
@@ -79,7 +98,10 @@ void ForeignRobot::run() {
         ::close(client_);
         client_ = -1;
         open_ = false;
+        const std::lock_guard lock(mutex_);
+        checker_.disconnect();
       } else {
+        watch(protocol::Side::kClient, {bytes, bytes + size});
         received.insert(received.end(), bytes, bytes + size);
       }
     }
@@ -103,10 +125,8 @@ void ForeignRobot::run() {
     th_ = std::remainder(th_ + rotation_ * kPeriod, 360.0);
     x_ = x_ + velocity_ * kPeriod * std::cos(th_ * kPi / 180.0);
     y_ += velocity_ * kPeriod * std::sin(th_ * kPi / 180.0);
-    if (open_) {
-      const Wire sip = packet(information());
-      [[maybe_unused]] const auto sent = ::send(client_, sip.data(), sip.size(), MSG_NOSIGNAL);
-    }
+    if (open_)
+      send(information());
   }
 }
 
@@ -141,10 +161,6 @@ Wire ForeignRobot::information() const {
 }
 
 void ForeignRobot::handle(const Wire& body) {
-  const auto send = [this](const Wire& answer) {
-    const Wire bytes = packet(answer);
-    [[maybe_unused]] const auto sent = ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  };
   if (!open_ && body.size() == 1 && body[0] == syncs_ && syncs_ < 3) {
     Wire answer{body[0]};
     if (syncs_ == 2)

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "saphira/protocol/check.hpp"
+
 namespace saphira::test {
 
 /// A robot server that is not ours, after AMRISim's ways with a Pioneer 3 DX: it listens on a TCP
@@ -30,12 +32,15 @@ class ForeignRobot {
   bool connected() const { return open_; }
   /// How often each command has come.
   std::map<int, int> commands() const;
-  std::string trouble() const;  ///< bytes that were no packet
+  /// Bytes that were no packet, and what the strict checker says of both sides.
+  std::string trouble() const;
 
  private:
   void run();
   void handle(const std::vector<std::uint8_t>& body);
   std::vector<std::uint8_t> information() const;
+  void watch(protocol::Side side, const std::vector<std::uint8_t>& bytes);
+  void send(const std::vector<std::uint8_t>& body);
 
   int listener_ = -1;
   int client_ = -1;
@@ -54,6 +59,7 @@ class ForeignRobot {
   mutable std::mutex mutex_;
   std::map<int, int> commands_;
   std::string trouble_;
+  protocol::Checker checker_;
   std::thread thread_;
 };
 

@@ -65,6 +65,7 @@ TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
   ASSERT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << scene.bridge_log();
   scene.bridge->signal(SIGKILL);
   EXPECT_TRUE(scene.until([&] { return robot.velocity() == 0.0; }, seconds(5)));
+  EXPECT_EQ(robot.trouble(), "");
 }
 
 class UnderTheChecker : public ::testing::TestWithParam<const char*> {};

@@ -19,43 +19,63 @@ Wire packet(const Wire& body);
 /// With an integer, by type 0x3B or 0x1B as they do.
 Wire packet(std::uint8_t command, int argument);
 
-/// A simulated robot with a line on which time passes only when the client waits, and the strict
-/// checker listening on it.
+/// A line to a robot as a client has it.
 class Line {
  public:
-  /// `file`: a robot of config/robots. It stands before a wall that is 3 m from its middle, in a
-  /// hall.
-  explicit Line(const std::string& file);
+  virtual ~Line() = default;
+  Line() = default;
+  Line(const Line&) = delete;
+  Line& operator=(const Line&) = delete;
 
-  void send(const Wire& bytes);
+  virtual void send(const Wire& bytes) = 0;
   /// Lets time pass [s] and collects what comes.
-  void wait(double seconds);
+  virtual void wait(double seconds) = 0;
+  virtual double now() const = 0;  ///< [s]
   /// Waits until a body with that property has come, takes all up to it, and returns it; nothing
   /// when the time is up.
   std::optional<Wire> expect(const std::function<bool(const Wire&)>& property, double seconds);
   /// What has come and was not yet taken.
   std::optional<Wire> next();
 
-  double now() const { return time_; }
+ protected:
+  void collect(const Wire& bytes) { received_.insert(received_.end(), bytes.begin(), bytes.end()); }
+
+ private:
+  Wire received_;
+};
+
+/// The hall of all robots here: a wall ahead, 3 m from the robot's middle.
+std::string hall();
+inline const Pose kStart{4.0, 4.0, 0.0};
+
+/// A simulated robot with a line on which time passes only when the client waits, and the strict
+/// checker listening on it.
+class PureLine : public Line {
+ public:
+  /// `file`: a robot of config/robots, in the hall.
+  explicit PureLine(const std::string& file);
+
+  void send(const Wire& bytes) override;
+  void wait(double seconds) override;
+  double now() const override { return time_; }
+
   const sim::Robot& robot() const { return server_.robot(); }
   const sim::Server& server() const { return server_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
-  const Pose& start() const { return start_; }
+  const Pose& start() const { return kStart; }
 
   /// What the checker has found, as text; empty when nothing is against the tables.
   std::string violations() const;
   const protocol::Checker& checker() const { return checker_; }
 
  private:
-  void collect();
+  void take();
 
   sim::World world_;
   protocol::RobotParameters parameters_;
-  Pose start_{4.0, 4.0, 0.0};
   sim::Scene scene_;
   sim::Server server_;
   protocol::Checker checker_;
-  std::vector<std::uint8_t> received_;
   double time_ = 0.0;
 };
 

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+
+#include "line.hpp"
+
+namespace saphira::test {
+
+/// A stand-in of the BeeSoft family of clients, which is strict with the information packet.
+class BeeClient {
+ public:
+  BeeClient(Line& line, int fewest, int most) : line_(line), fewest_(fewest), most_(most) {}
+
+  bool connect() {
+    for (int number = 0; number < 3; ++number) {
+      line_.send(packet(Wire{static_cast<std::uint8_t>(number)}));
+      const auto body = line_.expect([](const Wire&) { return true; }, 0.5);
+      if (!body || (*body)[0] != number)
+        return false;
+    }
+    line_.send(packet(Wire{1}));  // OPEN
+    return true;
+  }
+
+  void send(const Wire& bytes) { line_.send(bytes); }
+
+  // The next information packet, by its rules; empty, or which one it breaks.
+  std::string cycle() {
+    const auto body = line_.expect([](const Wire&) { return true; }, 0.5);
+    if (!body)
+      return "no packet";
+    if ((*body)[0] < 0x32 || (*body)[0] > 0x34)
+      return "status " + std::to_string((*body)[0]);
+    if ((*body)[11] == 0)
+      return "battery 0";
+    if ((*body)[12] > 1 || (*body)[13] > 1)
+      return "stall bytes";
+    const int count = (*body)[19];
+    // The first packet's sonars began to fire when it was opened.
+    if (++packets_ > 1 && (count < fewest_ || count > most_))
+      return std::to_string(count) + " sonar readings";
+    if (body->size() < 20U + 3U * static_cast<std::size_t>(count) + 5U)
+      return "too short";
+    moving = (*body)[0] == 0x33;
+    return {};
+  }
+
+  bool moving = false;
+
+ private:
+  Line& line_;
+  int fewest_;
+  int most_;
+  int packets_ = 0;
+};
+
+}  // namespace saphira::test

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "line.hpp"
+
+namespace saphira::test {
+
+/// A line to a program, in real time.
+class RealLine : public Line {
+ public:
+  static int local(const std::string& path);
+  static int tcp(int port);
+  /// A terminal at 9600 baud, as these clients set it.
+  static int terminal(const std::string& path);
+
+  /// Takes the descriptor.
+  explicit RealLine(int fd) : fd_(fd) {}
+  ~RealLine() override;
+
+  void send(const Wire& bytes) override;
+  void wait(double seconds) override;
+  double now() const override;
+  /// Whether the other end has gone.
+  bool closed() const { return closed_; }
+
+ private:
+  int fd_;
+  bool closed_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace saphira::test
