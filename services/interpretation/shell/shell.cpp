@@ -16,12 +16,14 @@ Shell::Shell(bus::Node& node)
       cycle_(node),
       robot_(node),
       perceptions_(node.writer(bus::topics::kPerception)),
-      tiles_(node.writer(bus::topics::kGrid)) {}
+      tiles_(node.writer(bus::topics::kGrid)),
+      processes_(node, table_) {}
 
 bool Shell::step(const bus::Stop& stop) {
-  const auto step = cycle_.next(stop);
+  const auto step = cycle_.next(stop, [this] { processes_.idle(); });
   if (!step)
     return false;
+  processes_.step(cycle_.stamp());
   using Knowledge = bus::KnownRobot::Knowledge;
   const Knowledge known = robot_.of(cycle_.stamp().epoch(), stop);
   if (known == Knowledge::fresh) {
@@ -35,7 +37,7 @@ bool Shell::step(const bus::Stop& stop) {
     if (interpretation_ && interpretation_->settings().sonars == settings.sonars)
       interpretation_->reset();
     else
-      interpretation_.emplace(settings);
+      interpretation_.emplace(settings, &tasks_);
     odom_.reset();
   }
   v1::Perception sample;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "base/shell/processes.hpp"
 #include "saphira/bus/cycle.hpp"
 #include "saphira/bus/known_robot.hpp"
 #include "saphira/interpretation/interpretation.hpp"
@@ -28,10 +29,13 @@ class Shell {
   void dispose(const TileKey& key);
 
   bus::Node& node_;
+  ProcessTable table_;
+  Tasks tasks_{table_};
   bus::Cycle cycle_;
   bus::KnownRobot robot_;
   bus::Writer<v1::Perception> perceptions_;
   bus::Writer<v1::GridTile> tiles_;
+  ProcessesOnBus processes_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step
   std::optional<Interpretation> interpretation_;
   std::set<TileKey> changed_;    ///< since they were published

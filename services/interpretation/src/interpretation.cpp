@@ -57,8 +57,16 @@ std::optional<double> apart(const Percept& a, const Percept& b) {
 
 }  // namespace
 
-Interpretation::Interpretation(Settings settings)
+Tasks::Tasks(ProcessTable& table)
+    : grid_(&table.add("occgrid", "puts sonar readings into the occupancy grid")),
+      sides_(&table.add("side-segment", "puts together what the side sonars heard")),
+      walls_(&table.add("test-wall", "finds walls")),
+      breaks_(&table.add("test-wall-break", "finds the ends of walls, doors and junctions")),
+      corridors_(&table.add("corridor", "finds corridors")) {}
+
+Interpretation::Interpretation(Settings settings, const Tasks* tasks)
     : settings_(std::move(settings)),
+      tasks_(tasks),
       grid_(settings_.grid),
       sides_{SideView(settings_.side), SideView(settings_.side)} {}
 
@@ -87,7 +95,8 @@ const Output& Interpretation::step(const Inputs& inputs) {
   travelled_ += std::hypot(moved.x, moved.y) + settings_.side.turn_cost * std::abs(moved.th);
   changed_ = {false, false};
   odom_in_grid_ = inputs.odom_in_grid;
-  grid_.move_to(transform(odom_in_grid_, pose_in_odom_.position()));
+  if (works(&Tasks::grid_))
+    grid_.move_to(transform(odom_in_grid_, pose_in_odom_.position()));
   for (std::size_t i = 0; i < inputs.readings.size(); ++i) {
     const double part = static_cast<double>(i + 1) / static_cast<double>(inputs.readings.size());
     take(inputs.readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}),
@@ -95,10 +104,43 @@ const Output& Interpretation::step(const Inputs& inputs) {
   }
   while (!others_.empty() && travelled_ - others_.front().travelled > settings_.side.aperture)
     others_.pop_front();
+  if (tasks_)
+    mind_tasks();
   interpret();
-  output_.changed_tiles = grid_.changed();
-  output_.dropped_tiles = grid_.dropped();
+  output_.changed_tiles = works(&Tasks::grid_) ? grid_.changed() : std::vector<TileKey>();
+  output_.dropped_tiles = works(&Tasks::grid_) ? grid_.dropped() : std::vector<TileKey>();
   return output_;
+}
+
+bool Interpretation::works(Process* Tasks::*task) const {
+  return tasks_ == nullptr || (tasks_->*task)->works();
+}
+
+// What a suspended task has found is not kept up any more: it is taken back.
+void Interpretation::mind_tasks() {
+  if (!works(&Tasks::sides_)) {
+    for (SideView& side : sides_)
+      side.clear();
+    others_.clear();
+  }
+  const std::size_t before = standing_.size();
+  std::erase_if(standing_, [&](const Standing& standing) {
+    if (!works(&Tasks::sides_))
+      return true;
+    switch (standing.percept.type) {
+      case PointType::wall:
+        return !works(&Tasks::walls_);
+      case PointType::corridor:
+        return !works(&Tasks::corridors_);
+      default:
+        return !works(&Tasks::breaks_);
+    }
+  });
+  const auto resumed = [](const Process* task) { return task->works() && task->resumed(); };
+  // All anew: also where no wall has changed, one that works again has something to say.
+  if (standing_.size() != before || resumed(tasks_->walls_) || resumed(tasks_->breaks_) ||
+      resumed(tasks_->corridors_))
+    changed_ = {true, true};
 }
 
 void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in_odom,
@@ -109,8 +151,11 @@ void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in
   if (mount == settings_.sonars.end())
     return;
   const Pose sonar = compose(robot_in_odom, mount->in_robot);
-  grid_.add(reading.sonar, compose(odom_in_grid_, sonar),
-            reading.echo ? std::optional(reading.range) : std::nullopt);
+  if (works(&Tasks::grid_))
+    grid_.add(reading.sonar, compose(odom_in_grid_, sonar),
+              reading.echo ? std::optional(reading.range) : std::nullopt);
+  if (!works(&Tasks::sides_))
+    return;
   const Return firing{sonar.position(), sonar.direction(),       reading.range, reading.echo,
                       steady,           {cycle_, reading.sonar}, travelled_,    turned_};
   const double bearing = norm2_angle(mount->in_robot.th);
@@ -138,7 +183,8 @@ void Interpretation::interpret() {
       standing.seen = false;
     find_walls(0);
     find_walls(1);
-    find_corridors();
+    if (works(&Tasks::corridors_))
+      find_corridors();
     std::erase_if(standing_, [](const Standing& standing) { return !standing.seen; });
     output_.percepts.clear();
     for (const Standing& standing : standing_)
@@ -150,6 +196,8 @@ void Interpretation::interpret() {
 void Interpretation::find_walls(std::size_t number) {
   const SideSettings& side_settings = settings_.side;
   const Side side = number == 0 ? Side::left : Side::right;
+  const bool walls = works(&Tasks::walls_);
+  const bool breaks = works(&Tasks::breaks_);
   for (const Wall& wall : sides_[number].walls()) {
     // Lines of the two sides are numbered apart.
     const Lines lines{2 * wall.line + static_cast<std::uint32_t>(number), 0};
@@ -165,7 +213,8 @@ void Interpretation::find_walls(std::size_t number) {
           wall.stretches[opening.after].from.u - wall.stretches[opening.before].to.u;
       if (width < side_settings.min_door || width > side_settings.max_junction)
         continue;
-      stand(opening_percept(wall, opening, side), lines);
+      if (breaks)
+        stand(opening_percept(wall, opening, side), lines);
       to_taken[opening.before] = true;
       from_taken[opening.after] = true;
     }
@@ -174,14 +223,14 @@ void Interpretation::find_walls(std::size_t number) {
       if (!stretch.own)
         continue;
       const double length = stretch.to.u - stretch.from.u;
-      if (doubt <= settings_.max_heading &&
+      if (walls && doubt <= settings_.max_heading &&
           stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
           length >= side_settings.min_length) {
         Percept percept = wall_percept(wall, stretch, side);
         if (percept.confidence >= settings_.min_confidence)
           stand(std::move(percept), lines);
       }
-      if (length < side_settings.end_run)
+      if (!breaks || length < side_settings.end_run)
         continue;
       const auto enough = static_cast<std::size_t>(side_settings.min_through);
       if (!from_taken[i] && stretch.from.open && stretch.from.through.size() >= enough)

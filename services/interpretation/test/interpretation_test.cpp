@@ -23,10 +23,13 @@ constexpr double kSpeed = 0.03;  // [m] a cycle
 class Corridor {
  public:
   using Range = std::function<double(double x)>;
-  Corridor(Range left, Range right) : left_(std::move(left)), right_(std::move(right)) {
+  Corridor(Range left, Range right, ProcessTable* table = nullptr)
+      : left_(std::move(left)), right_(std::move(right)), table_(table) {
     Settings settings;
     settings.sonars = {{0, {0.0, 0.0, kPi / 2.0}}, {6, {0.0, 0.0, -kPi / 2.0}}};
-    interpretation_.emplace(settings);
+    if (table != nullptr)
+      tasks_.emplace(*table);
+    interpretation_.emplace(settings, tasks_ ? &*tasks_ : nullptr);
   }
 
   const Output& drive(double to) {
@@ -34,6 +37,8 @@ class Corridor {
     while (x_ < to) {
       x_ += kSpeed;
       ++cycle_;
+      if (table_ != nullptr)
+        table_->step(cycle_);
       std::vector<lps::SonarReading> readings;
       // One reading of each sonar in three cycles.
       if (cycle_ % 3 == 0)
@@ -55,6 +60,8 @@ class Corridor {
   }
   Range left_;
   Range right_;
+  ProcessTable* table_;
+  std::optional<Tasks> tasks_;
   Random random_{1};
   double x_ = 0.0;
   std::uint64_t cycle_ = 0;
@@ -211,6 +218,79 @@ TEST(Interpretation, ForgetsEverythingButItsIds) {
   EXPECT_FALSE(output.left_wall);
   EXPECT_FALSE(output.dropped_tiles.empty());
   EXPECT_GT(corridor.drive(6.0).percepts.at(0).id, id);
+}
+
+TEST(InterpretationTasks, ChangeNothingWhileAllWork) {
+  ProcessTable table;
+  Corridor with(opening(2.0, 2.9), wall, &table);
+  Corridor without(opening(2.0, 2.9), wall);
+  for (double x = 0.5; x < 6.0; x += 0.5) {
+    const Output& one = with.drive(x);
+    const Output& other = without.drive(x);
+    ASSERT_EQ(one.percepts.size(), other.percepts.size());
+    for (std::size_t i = 0; i < one.percepts.size(); ++i) {
+      EXPECT_EQ(one.percepts[i].id, other.percepts[i].id);
+      EXPECT_EQ(one.percepts[i].pose_in_odom.x, other.percepts[i].pose_in_odom.x);
+      EXPECT_EQ(one.percepts[i].confidence, other.percepts[i].confidence);
+    }
+    EXPECT_EQ(one.changed_tiles.size(), other.changed_tiles.size());
+  }
+  EXPECT_EQ(with.ids(), without.ids());
+}
+
+TEST(InterpretationTasks, WhatASuspendedOneFoundIsGoneUntilItIsResumed) {
+  ProcessTable table;
+  Corridor corridor(opening(2.0, 2.9), wall, &table);
+  double x = 4.5;
+  const auto seen = [&](PointType type) {
+    x += 0.04;
+    return of(corridor.drive(x), type).size();
+  };
+  EXPECT_EQ(seen(PointType::door), 1U);
+  EXPECT_GE(seen(PointType::wall), 2U);
+  EXPECT_EQ(seen(PointType::corridor), 1U);
+  EXPECT_EQ(table.request("test-wall-break", ProcessAction::interrupt), "");
+  EXPECT_EQ(seen(PointType::door), 0U);
+  EXPECT_GE(seen(PointType::wall), 2U);
+  EXPECT_EQ(table.request("test-wall", ProcessAction::suspend), "");
+  EXPECT_EQ(seen(PointType::wall), 0U);
+  EXPECT_EQ(seen(PointType::corridor), 1U);
+  EXPECT_FALSE(corridor.drive(x += 0.04).right_wall);
+  EXPECT_EQ(table.request("corridor", ProcessAction::suspend), "");
+  EXPECT_TRUE(corridor.drive(x += 0.04).percepts.empty());
+  for (const char* name : {"test-wall-break", "test-wall", "corridor"})
+    EXPECT_EQ(table.request(name, ProcessAction::resume), "");
+  EXPECT_EQ(seen(PointType::door), 1U);
+  EXPECT_GE(seen(PointType::wall), 2U);
+  EXPECT_EQ(seen(PointType::corridor), 1U);
+}
+
+TEST(InterpretationTasks, WithoutSideSegmentsItSeesNothingAndThenBeginsAnew) {
+  ProcessTable table;
+  Corridor corridor(wall, wall, &table);
+  EXPECT_FALSE(corridor.drive(4.0).percepts.empty());
+  EXPECT_EQ(table.request("side-segment", ProcessAction::suspend), "");
+  EXPECT_TRUE(corridor.drive(4.04).percepts.empty());
+  EXPECT_TRUE(corridor.drive(6.0).percepts.empty());
+  EXPECT_EQ(table.request("side-segment", ProcessAction::resume), "");
+  EXPECT_TRUE(corridor.drive(6.1).percepts.empty());
+  const Output& output = corridor.drive(9.0);
+  ASSERT_FALSE(of(output, PointType::wall).empty());
+  for (const Percept& percept : of(output, PointType::wall))
+    EXPECT_LT(percept.length, 3.5);
+}
+
+TEST(InterpretationTasks, ASuspendedGridStaysAsItWas) {
+  ProcessTable table;
+  Corridor corridor(wall, wall, &table);
+  EXPECT_FALSE(corridor.drive(2.0).percepts.empty());
+  const std::uint64_t updates = corridor.interpretation().grid().updates();
+  EXPECT_EQ(table.request("occgrid", ProcessAction::interrupt), "");
+  EXPECT_TRUE(corridor.drive(4.0).changed_tiles.empty());
+  EXPECT_EQ(corridor.interpretation().grid().updates(), updates);
+  EXPECT_EQ(table.request("occgrid", ProcessAction::resume), "");
+  corridor.drive(4.5);
+  EXPECT_GT(corridor.interpretation().grid().updates(), updates);
 }
 
 TEST(Interpretation, KnowsNothingOfSonarsThatTheRobotDoesNotHave) {

@@ -58,7 +58,8 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       requests_(node.reader(bus::topics::kRegistrationRequest)),
       registrations_(node.writer(bus::topics::kRegistration)),
       maps_(node.writer(bus::topics::kMap)),
-      answers_(node.writer(bus::topics::kRegistrationAnswer)) {
+      answers_(node.writer(bus::topics::kRegistrationAnswer)),
+      processes_(node, table_) {
   if (!options_.map_file.empty()) {
     editor_.replace(maps::load_map(options_.map_file));
     source_ = options_.map_file;
@@ -89,6 +90,7 @@ void Shell::begin() {
     memory = remembered_->memory;
   remembered_.reset();
   registration_.emplace(settings, editor_.map(), start_);
+  on_ = true;
   if (memory && memory->placed)
     registration_->restore(*memory);
   if (!builder_)
@@ -117,9 +119,13 @@ void Shell::end_building() {
 }
 
 bool Shell::step(const bus::Stop& stop) {
-  const auto step = cycle_.next(stop, [this] { take_requests(); });
+  const auto step = cycle_.next(stop, [this] {
+    take_requests();
+    processes_.idle();
+  });
   if (!step)
     return false;
+  processes_.step(cycle_.stamp());
   using Knowledge = bus::KnownRobot::Knowledge;
   const Knowledge known = robot_.of(cycle_.stamp().epoch(), stop);
   if (known == Knowledge::fresh)
@@ -139,6 +145,8 @@ bool Shell::step(const bus::Stop& stop) {
     sample = building_ ? built(*step, percepts) : registered(*step, percepts);
     pose_in_map_ = lps::from_bus(sample.pose_in_map());
   }
+  if (!environment_.works())
+    sample.environment(0);
   sample.stamp(cycle_.stamp());
   sample.odom(odom_);
   sample.map_revision(editor_.revision());
@@ -156,6 +164,7 @@ bool Shell::step(const bus::Stop& stop) {
 v1::Registration Shell::registered(const bus::Step& step,
                                    const std::vector<lps::Percept>& percepts) {
   const std::vector<lps::SonarReading> readings = lps::sonars_from_bus(step.robot);
+  registration_->switch_on(on_ && match_.works());
   const Output& output =
       registration_->step({cycle_.stamp().cycle(), odom_, pose_in_odom_, percepts, readings});
   if (output.state != told_)
@@ -163,6 +172,8 @@ v1::Registration Shell::registered(const bus::Step& step,
                (output.reason.empty() ? "" : ": " + std::string(output.reason)));
   told_ = output.state;
   v1::Registration sample = to_bus(output, editor_.map(), pose_in_odom_);
+  if (on_ && !match_.works())
+    sample.reason(match_.name() + " is suspended: the pose goes on by dead reckoning");
   if (output.state == State::tracking && grow(percepts, readings, output.pose_in_map))
     registration_->set_map(editor_.map());
   return sample;
@@ -265,7 +276,8 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
       placed().forget_pose();
       return 0;
     case v1::REGISTRATION_SWITCH:
-      placed().switch_on(request.on());
+      placed();
+      on_ = request.on();
       return 0;
     case v1::REGISTRATION_ADD_FEATURES:
       placed();

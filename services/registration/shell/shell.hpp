@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shell/processes.hpp"
 #include "registration/shell/memory_file.hpp"
 #include "saphira/bus/cycle.hpp"
 #include "saphira/bus/known_robot.hpp"
@@ -75,6 +76,12 @@ class Shell {
   bus::Writer<v1::Registration> registrations_;
   bus::Writer<v1::Map> maps_;
   bus::Writer<v1::RegistrationAnswer> answers_;
+  ProcessTable table_;
+  // sfInitRegistrationProcs.
+  Process& match_ = table_.add(
+      "test-match", "matches what is seen with the map (not while the map is being built)");
+  Process& environment_ = table_.add("test-environment", "says where on the map the robot is");
+  ProcessesOnBus processes_;
 
   maps::Editor editor_;
   std::string source_;    ///< where the map came from
@@ -82,6 +89,7 @@ class Shell {
   std::optional<Pose> start_;
   std::optional<Remembered> remembered_;  ///< until it is used
   std::optional<Registration> registration_;
+  bool on_ = true;  ///< somebody may have switched it off
   bool adds_features_ = false;
   bool snaps_ = true;
   std::optional<MapBuilder> builder_;

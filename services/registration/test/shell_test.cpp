@@ -177,6 +177,33 @@ TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
   EXPECT_EQ(registration.environment(), 1U);
 }
 
+TEST_F(RegistrationShell, ASuspendedProcessSaysNothingUntilItIsResumed) {
+  start({map_path("office"), "start", ""});
+  bus::Writer<v1::ProcessRequest> process_requests = bridge.writer(bus::topics::kProcessRequest);
+  const auto request = [&](const std::string& process, v1::ProcessAction action) {
+    v1::ProcessRequest sample;
+    sample.source("test");
+    sample.service("registration");
+    sample.process(process);
+    sample.action(action);
+    process_requests.write(sample);
+    cycle();
+  };
+  cycle();
+  ASSERT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+  ASSERT_EQ(registration.environment(), 1U);
+  request("test-environment", v1::PROCESS_SUSPEND);
+  EXPECT_EQ(registration.environment(), 0U);
+  request("test-environment", v1::PROCESS_RESUME);
+  EXPECT_EQ(registration.environment(), 1U);
+  request("test-match", v1::PROCESS_INTERRUPT);
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
+  EXPECT_EQ(registration.reason(), "test-match is suspended: the pose goes on by dead reckoning");
+  request("test-match", v1::PROCESS_RESUME);
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+}
+
 TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
   const ShellOptions options{map_path("office"), "start", folder.path("memory")};
   start(options);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/base/process.hpp"
 #include "saphira/interpretation/grid.hpp"
 #include "saphira/interpretation/side_view.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
@@ -51,13 +52,31 @@ struct Output {
   std::vector<TileKey> dropped_tiles;      ///< left behind
 };
 
+/// The micro-tasks of interpretation, by the names of sfInitInterpretationProcs: each
+/// can be suspended and resumed. What a suspended one found is gone at once, but for the grid,
+/// which stays as it was; what it would have heard meanwhile is missed.
+class Tasks {
+ public:
+  explicit Tasks(ProcessTable& table);
+
+ private:
+  friend class Interpretation;
+  Process* grid_;
+  Process* sides_;
+  Process* walls_;
+  Process* breaks_;
+  Process* corridors_;
+};
+
 /// From sonar readings to features and hypotheses (paper 3.2.1, manual 6.7): side segments by
 /// extended aperture, walls, their ends and breaks, doors, junctions and corridors.
 ///
 /// A pure function of its inputs' history. When the odom frame changes, reset() it.
 class Interpretation {
  public:
-  explicit Interpretation(Settings settings);
+  /// tasks: which parts work; all of them where there are none. They outlive the interpretation,
+  /// and their table has its turn before each step.
+  explicit Interpretation(Settings settings, const Tasks* tasks = nullptr);
   Interpretation(const Interpretation&) = delete;
   Interpretation& operator=(const Interpretation&) = delete;
 
@@ -79,7 +98,9 @@ class Interpretation {
     Lines lines{0, 0};       // what it was seen on
     double travelled = 0.0;  // when it was placed
   };
+  bool works(Process* Tasks::*task) const;
   void take(const lps::SonarReading& reading, const Pose& robot_in_odom, bool steady);
+  void mind_tasks();
   void interpret();
   void find_walls(std::size_t side);
   void find_corridors();
@@ -95,6 +116,7 @@ class Interpretation {
   void choose_beside();
 
   Settings settings_;
+  const Tasks* tasks_;
   bool placed_ = false;
   Pose pose_in_odom_;
   std::uint64_t cycle_ = 0;
