@@ -18,6 +18,7 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       registration_(options.registration ? &cycle_.input(bus::topics::kRegistration) : nullptr),
       goals_(node.reader(bus::topics::kGoals)),
       intentions_(node.writer(bus::topics::kIntentions)),
+      recall_(node.writer(bus::topics::kRecallIntentions)),
       statuses_(node.writer(bus::topics::kGoalStatus)),
       memory_(options.memory_file),
       executor_(built_in(), memory_.memory()) {}
@@ -53,6 +54,7 @@ bool Shell::step(const bus::Stop& stop) {
   for (const IntentionNode& node : outputs.nodes)
     sample.nodes().push_back(to_bus(node));
   intentions_.write(sample);
+  recall_.write(sample);
   publish(outputs.news);
   cycle_.done();
   return true;

@@ -45,6 +45,7 @@ class Shell {
   bus::Input<v1::Registration>* registration_;  ///< null where there is no such service
   bus::Reader<v1::Goal> goals_;
   bus::Writer<v1::Intentions> intentions_;
+  bus::Writer<v1::Intentions> recall_;
   bus::Writer<v1::GoalStatus> statuses_;
   MemoryFile memory_;
   Executor executor_;

@@ -13,6 +13,10 @@ constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
 constexpr int kBeginsPerCycle = 8;
 
+/// Cycles over which the trend of a level is told, and by how much it has to differ.
+constexpr std::size_t kTrend = 20;
+constexpr double kTrendStep = 0.02;
+
 constexpr const char* kPositionLost =
     "position lost: the robot's dead reckoning has begun anew since the goal was accepted, so "
     "where "
@@ -61,7 +65,11 @@ bool is_of(const Placement& placement, const Arguments& arguments) {
 }  // namespace
 
 Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions options)
-    : registry_(std::move(registry)), options_(options) {
+    : options_(std::move(options)), registry_(std::make_shared<Registry>(std::move(registry))) {
+  if (!options_.functions)
+    options_.functions = std::make_shared<const Functions>(core_functions());
+  beliefs_ = std::make_shared<Beliefs>(options_.functions.get());
+  forest_ = Forest(registry_, beliefs_, options_.forest);
   for (const Placement& placement : memory.placements)
     remembered_places_[placement.id] = placement;
   for (const Ending& ending : memory.endings)
@@ -111,17 +119,24 @@ Outputs Executor::step(const Inputs& inputs) {
   }
   check_deadlines(inputs.robot);
   replace();
+  for (const ClaimEvent& claim : inputs.claims)
+    beliefs_->take(claim, now_);
+  const World world{inputs.robot, inputs.around, *beliefs_, now_};
+  beliefs_->look(world);
   if (inputs.behaviors_cycle > 0)
     forest_.hear(inputs.behaviors,
                  now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle));
-  if (robot_here_)
+  forest_.hear(inputs.troubles);
+  if (robot_here_) {
     arbitrate();
-  forest_.step(now_, inputs.robot);
+    begin_concurrent();
+  }
+  forest_.step(world);
   // The next goal begins in the cycle in which the one before it ends: without a gap in what is
   // intended, in which the robot would be released.
   for (int begun = 0; collect() && robot_here_ && begun < kBeginsPerCycle; ++begun) {
     if (const Entry* const next = arbitrate())
-      forest_.begin(next->node, now_, inputs.robot);
+      forest_.begin(next->node, world);
   }
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const bool old =
@@ -130,7 +145,10 @@ Outputs Executor::step(const Inputs& inputs) {
       withdrawn_.push_back(entry->first);
     entry = old ? entries_.erase(entry) : std::next(entry);
   }
-  return {forest_.behaviors(), forest_.nodes(), take_news()};
+  for (auto& [id, entry] : entries_)
+    measure(entry);
+  return {forest_.behaviors(), forest_.nodes(), take_news(), forest_.behavior_control(),
+          forest_.take_said()};
 }
 
 void Executor::pass_time(const Inputs& inputs) {
@@ -211,7 +229,7 @@ void Executor::take_written(const Goal& goal) {
 /// Makes the entry one for this goal, whose arguments are checked.
 void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
   entry.goal = goal;
-  entry.schema = registry_.find(goal.functor);
+  entry.schema = registry_->share(goal.functor);
   entry.arguments = std::move(complete);
   entry.placed = false;
   entry.odom.reset();
@@ -264,16 +282,18 @@ void Executor::change(Entry& entry, const Goal& goal) {
 }
 
 std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& complete) const {
-  const Schema* const schema = registry_.find(goal.functor);
+  const Schema* const schema = registry_->find(goal.functor);
   if (schema == nullptr) {
     code = GoalCode::kUnknownFunctor;
-    return "unknown functor " + quoted(goal.functor) + ": expected one of " + registry_.names();
+    return "unknown functor " + quoted(goal.functor) + ": expected one of " + registry_->names();
   }
   code = GoalCode::kBadArgument;
   if (goal.id == GoalId{})
     return "expected an id that is unique for ever, got 0:0";
   if (!(goal.deadline >= 0.0) || !std::isfinite(goal.deadline))
     return "expected a deadline of 0 (none) or more seconds, got " + plain(goal.deadline);
+  if (!(goal.level >= 0.0 && goal.level <= 1.0))
+    return "expected a level from 0 (the usual one) to 1, got " + plain(goal.level);
   std::string wrong = check_arguments(*schema, goal.arguments, complete);
   if (wrong.empty())
     code = GoalCode::kNone;
@@ -434,7 +454,8 @@ Executor::Entry* Executor::best() {
   };
   Entry* best = nullptr;
   for (auto& [id, entry] : entries_) {
-    if (open(entry.status) && (best == nullptr || rank(entry) < rank(*best)))
+    if (open(entry.status) && !entry.schema->concurrent &&
+        (best == nullptr || rank(entry) < rank(*best)))
       best = &entry;
   }
   return best;
@@ -446,7 +467,7 @@ Executor::Entry* Executor::arbitrate() {
   if (chosen == nullptr)
     return nullptr;
   for (auto& [id, entry] : entries_) {
-    if (!open(entry.status) || &entry == chosen)
+    if (!open(entry.status) || &entry == chosen || entry.schema->concurrent)
       continue;
     const bool more = chosen->goal.priority > entry.goal.priority;
     const std::string who =
@@ -459,17 +480,76 @@ Executor::Entry* Executor::arbitrate() {
     else
       suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
   }
-  if (chosen->status.state != GoalState::kUnderway) {
-    chosen->status.state = GoalState::kUnderway;
-    chosen->status.code = GoalCode::kNone;
-    chosen->status.reason.clear();
-    if (chosen->node != 0)
-      forest_.resume(chosen->node);
-  }
-  if (chosen->node == 0)
-    chosen->node = forest_.plant(chosen->goal.id, describe(chosen->goal.id), chosen->goal.functor,
-                                 chosen->schema->make(chosen->arguments));
+  begin(*chosen);
   return chosen;
+}
+
+void Executor::begin(Entry& entry) {
+  if (entry.status.state != GoalState::kUnderway) {
+    entry.status.state = GoalState::kUnderway;
+    entry.status.code = GoalCode::kNone;
+    entry.status.reason.clear();
+    if (entry.node != 0)
+      forest_.resume(entry.node);
+  }
+  if (entry.node == 0)
+    entry.node = forest_.plant(entry.goal.id, describe(entry.goal.id), entry.goal.functor,
+                               entry.schema->make(entry.arguments), entry.schema->priority,
+                               entry.schema->timeout);
+}
+
+/// Those that are underway beside the one that drives, from the cycle on in which they came.
+void Executor::begin_concurrent() {
+  for (auto& [id, entry] : entries_) {
+    if (open(entry.status) && entry.schema->concurrent)
+      begin(entry);
+  }
+}
+
+void Executor::add(Schema schema) {
+  registry_->add(std::move(schema));
+}
+
+void Executor::remove(std::string_view name) {
+  registry_->remove(name);
+}
+
+void Executor::know_behaviors(std::vector<BehaviorSignature> behaviors) {
+  registry_->know_behaviors(std::move(behaviors));
+}
+
+bool Executor::interrupt(std::uint32_t node) {
+  if (!forest_.is_activity(node))
+    return false;
+  forest_.interrupt(node, Hold::kPerson);
+  return true;
+}
+
+bool Executor::resume(std::uint32_t node) {
+  if (!forest_.is_activity(node) || !forest_.held(node, Hold::kPerson))
+    return false;
+  forest_.resume(node, Hold::kPerson);
+  return true;
+}
+
+/// Takes over how far the goal is satisfied.
+void Executor::measure(Entry& entry) {
+  GoalStatus& status = entry.status;
+  if (status.state != GoalState::kUnderway || entry.node == 0) {
+    if (status.state == GoalState::kSucceeded && entry.goal.level <= 0.0)
+      status.level = 1.0;
+    status.trend = Trend::kSteady;
+    entry.levels.clear();
+    return;
+  }
+  status.level = forest_.level_of(entry.node);
+  entry.levels.push_back(status.level);
+  if (entry.levels.size() > kTrend)
+    entry.levels.pop_front();
+  const double change = status.level - entry.levels.front();
+  status.trend = change > kTrendStep    ? Trend::kRising
+                 : change < -kTrendStep ? Trend::kFalling
+                                        : Trend::kSteady;
 }
 
 /// Takes over what the step made of the goals; true where one has ended.
@@ -486,8 +566,17 @@ bool Executor::collect() {
           outcome->second.reason);
       any = true;
     } else if (entry.status.state == GoalState::kUnderway) {
-      entry.status.step = forest_.step_of(entry.node);
+      entry.status.step = forest_.held(entry.node, Hold::kPerson)
+                              ? "interrupted by a person; waits to be resumed"
+                              : forest_.step_of(entry.node);
       entry.status.progress = forest_.progress_of(entry.node);
+      const double level = forest_.level_of(entry.node);
+      if (entry.goal.level > 0.0 && level >= entry.goal.level) {
+        entry.status.level = level;
+        end(entry, GoalState::kSucceeded, GoalCode::kNone,
+            "satisfied to " + plain(level) + ", " + plain(entry.goal.level) + " was asked for");
+        any = true;
+      }
     }
   }
   return any;

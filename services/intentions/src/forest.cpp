@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <charconv>
+#include <cmath>
 #include <utility>
+
+#include "saphira/intentions/beliefs.hpp"
+#include "saphira/intentions/functions.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -11,37 +16,62 @@ namespace {
 /// intended is of the parameters before: it reads the intentions of the cycle before its own, and
 /// one cycle more where, live, they came too late for it.
 constexpr Ticks kLevelDelay = 2;
+/// The level of a behavior's own goal that counts as reached.
+constexpr double kSatisfied = 0.9;
+/// Of a behavior that says nothing else: as the manual's own example has it (8.1.2).
+constexpr int kUsualPriority = 2;
+/// A point on the map that registration has moved by less is where it was: the behavior is not
+/// changed every cycle.
+constexpr double kMoved = 0.005;  ///< [m]
+constexpr double kTurned = radians(0.3);
+
+Ticks ticks(double seconds) {
+  return seconds > 0.0 ? std::max<Ticks>(1, std::llround(seconds / kTick)) : 0;
+}
+
+constexpr const char* kBehaviorControl = "*behavior-control*";
 
 }  // namespace
 
 struct Forest::Node {
   IntentionNode shown;
   std::unique_ptr<Activity> activity;  ///< none: it is a behavior
+  std::vector<std::uint32_t> children;
+  std::uint32_t root = 0;
+  std::size_t depth = 0;
+  unsigned holds = 0;
+  bool suspended = false;  ///< by its own holds or with its parent
+  Ticks suspended_at = 0;
+  Ticks timeout = 0;
+  Ticks begun = 0;
+  std::optional<double> level;
+  Outcome outcome;
   // Of a behavior.
   std::string label;
   IntendedBehavior behavior;
+  Arguments given;      ///< its parameters with the frames that they were given in
+  bool on_map = false;  ///< some of them are on the map
+  bool until_satisfied = false;
   Ticks since = 0;  ///< when its parameters were intended
-  double level = 0.0;
   // Of an activity.
-  Ticks timeout = 0;
-  Ticks begun = 0;
   double progress = 0.0;
-  Outcome outcome;
+  Ticks stepped = -1;  ///< when it was, last
 };
 
 /// What an activity gets hold of: one node for one step.
 class Forest::Handle : public Self {
  public:
-  Handle(Forest& forest, Node& node, Ticks now, const Robot& robot)
-      : forest_(forest), node_(node), now_(now), robot_(robot) {}
+  Handle(Forest& forest, Node& node, const World& world)
+      : forest_(forest), node_(node), world_(world) {}
 
-  const Robot& robot() const override { return robot_; }
-  Ticks now() const override { return now_; }
+  const Robot& robot() const override { return world_.robot; }
+  const World& world() const override { return world_; }
+  Ticks now() const override { return world_.now; }
   IntentionState state() const override { return node_.shown.state; }
 
   void intend_behavior(std::string_view label, std::string_view schema, int priority,
                        Arguments parameters) override {
-    Node* child = forest_.child_of(node_.shown.id, label);
+    Node* child = forest_.child_of(node_, label);
     if (child != nullptr && child->behavior.schema == schema &&
         child->behavior.priority == priority && child->behavior.parameters == parameters)
       return;
@@ -51,6 +81,7 @@ class Forest::Handle : public Self {
       child = &forest_.add(node_, label, schema, true);
       child->label = label;
       child->shown.state = IntentionState::kRunning;
+      child->shown.label = "B";
       // Its number makes the name unique: what is left of an earlier instance in the behaviors'
       // samples is not taken for this one.
       child->shown.name = std::string(label) + "#" + std::to_string(child->shown.id);
@@ -59,19 +90,20 @@ class Forest::Handle : public Self {
       child->behavior.intention = child->shown.id;
     }
     child->behavior.priority = priority;
+    child->shown.priority = priority;
     child->behavior.parameters = std::move(parameters);
-    child->since = now_;
+    child->since = world_.now;
     child->level = 0.0;
   }
 
   void drop_behavior(std::string_view label) override {
-    if (const Node* child = forest_.child_of(node_.shown.id, label))
+    if (const Node* child = forest_.child_of(node_, label))
       forest_.remove(child->shown.id);
   }
 
   double level(std::string_view label) const override {
-    const Node* const child = forest_.child_of(node_.shown.id, label);
-    return child == nullptr ? 0.0 : child->level;
+    const Node* const child = forest_.child_of(node_, label);
+    return child == nullptr ? 0.0 : child->level.value_or(0.0);
   }
 
   std::uint32_t intend(std::string_view name, std::string_view schema,
@@ -79,20 +111,83 @@ class Forest::Handle : public Self {
     Node& child = forest_.add(node_, name, schema, blocking);
     child.activity = std::move(activity);
     child.timeout = timeout;
-    child.begun = now_;
+    child.begun = world_.now;
     return child.shown.id;
   }
 
+  std::uint32_t start(const Start& start) override { return forest_.start(node_, start, world_); }
+
   IntentionState child_state(std::uint32_t child) const override {
-    const auto found = forest_.nodes_.find(child);
-    const bool mine =
-        found != forest_.nodes_.end() && found->second->shown.parent == node_.shown.id;
-    return mine ? found->second->shown.state : IntentionState::kRemoved;
+    const Node* const found = mine(child);
+    return found == nullptr ? IntentionState::kRemoved : found->shown.state;
+  }
+  double child_level(std::uint32_t child) const override {
+    return mine(child) == nullptr ? 0.0 : forest_.level_of(child);
+  }
+  const Outcome* child_outcome(std::uint32_t child) const override {
+    const Node* const found = mine(child);
+    return found == nullptr || !finished(found->shown.state) ? nullptr : &found->outcome;
+  }
+  std::uint32_t child_named(std::string_view name) const override {
+    const std::string wanted = normal(name);
+    for (auto id = node_.children.rbegin(); id != node_.children.rend(); ++id) {
+      if (normal(forest_.at(*id)->shown.name) == wanted)
+        return *id;
+    }
+    return 0;
   }
 
   void remove_child(std::uint32_t child) override {
-    if (child_state(child) != IntentionState::kRemoved)
+    if (mine(child) != nullptr)
       forest_.remove(child);
+  }
+  void hold_child(std::uint32_t child, bool hold) override {
+    if (mine(child) == nullptr)
+      return;
+    if (hold)
+      forest_.interrupt(child, Hold::kActivity);
+    else
+      forest_.resume(child, Hold::kActivity);
+  }
+
+  bool unintend(std::string_view name) override {
+    const std::string wanted = normal(name);
+    for (const Node* top = &node_; top != nullptr; top = forest_.at(top->shown.parent)) {
+      const Node* const found = forest_.named(*top, wanted, node_);
+      if (found == nullptr)
+        continue;
+      const std::uint32_t id = found->shown.id;
+      for (const Node* above = &node_; above != nullptr; above = forest_.at(above->shown.parent)) {
+        if (above == found) {
+          // It stands in its own step: it goes when that is over.
+          forest_.doomed_.push_back(id);
+          return true;
+        }
+      }
+      forest_.tell_parent(*found);
+      forest_.remove(id);
+      return true;
+    }
+    return false;
+  }
+
+  void label(const std::string& label) override {
+    if (node_.shown.label == label)
+      return;
+    node_.shown.label = label;
+    node_.shown.since = world_.now;
+  }
+  void level(double satisfied) override {
+    node_.level = satisfied >= 0.0 ? std::min(satisfied, 1.0) : 0.0;
+  }
+  void tell(std::string text) override {
+    forest_.said_.push_back(
+        {node_.shown.id, node_.shown.schema, std::move(text), node_.shown.goal});
+  }
+  void believe(const std::string& name, Value value) override {
+    if (normal(name) == kBehaviorControl)
+      forest_.control_owner_ = value.nil() ? node_.root : 0;
+    forest_.beliefs_->set(name, std::move(value), node_.shown.schema, world_.now);
   }
 
   void say(std::string step) override { node_.shown.step = std::move(step); }
@@ -105,31 +200,50 @@ class Forest::Handle : public Self {
   }
 
  private:
+  const Node* mine(std::uint32_t child) const {
+    const Node* const found = forest_.at(child);
+    return found != nullptr && found->shown.parent == node_.shown.id ? found : nullptr;
+  }
+
   Forest& forest_;
   Node& node_;
-  Ticks now_;
-  const Robot& robot_;
+  const World& world_;
 };
 
-Forest::Forest() = default;
+Forest::Forest(std::shared_ptr<const Registry> registry, std::shared_ptr<Beliefs> beliefs,
+               ForestOptions options)
+    : registry_(registry ? std::move(registry) : std::make_shared<const Registry>()),
+      beliefs_(beliefs ? std::move(beliefs) : std::make_shared<Beliefs>()),
+      options_(options) {}
 Forest::~Forest() = default;
 Forest::Forest(Forest&&) noexcept = default;
 Forest& Forest::operator=(Forest&&) noexcept = default;
 
+Forest::Node* Forest::at(std::uint32_t id) const {
+  const auto found = nodes_.find(id);
+  return found == nodes_.end() ? nullptr : found->second.get();
+}
+
 std::uint32_t Forest::plant(const GoalId& goal, std::string_view name, std::string_view schema,
-                            std::unique_ptr<Activity> activity) {
+                            std::unique_ptr<Activity> activity, int priority, double timeout) {
   auto node = std::make_unique<Node>();
   const std::uint32_t id = ++last_id_;
   node->shown.id = id;
   node->shown.name = name;
   node->shown.schema = schema;
   node->shown.goal = goal;
+  node->shown.priority = priority;
+  node->shown.since = now_;
+  node->root = id;
+  node->begun = now_;
+  node->timeout = ticks(timeout);
   node->activity = std::move(activity);
   nodes_.emplace(id, std::move(node));
+  order_is_old_ = true;
   return id;
 }
 
-Forest::Node& Forest::add(const Node& parent, std::string_view name, std::string_view schema,
+Forest::Node& Forest::add(Node& parent, std::string_view name, std::string_view schema,
                           bool blocking) {
   auto node = std::make_unique<Node>();
   const std::uint32_t id = ++last_id_;
@@ -139,105 +253,389 @@ Forest::Node& Forest::add(const Node& parent, std::string_view name, std::string
   node->shown.schema = schema;
   node->shown.goal = parent.shown.goal;
   node->shown.blocking = blocking;
+  node->shown.priority = parent.shown.priority;
+  node->shown.since = now_;
+  node->root = parent.root;
+  node->depth = parent.depth + 1;
+  parent.children.push_back(id);
+  order_is_old_ = true;
   return *nodes_.emplace(id, std::move(node)).first->second;
 }
 
-void Forest::interrupt(std::uint32_t id) {
-  Node& node = *nodes_.at(id);
-  // What was never begun has nothing to put away.
-  node.shown.state = node.shown.state == IntentionState::kInit ? IntentionState::kSuspended
-                                                               : IntentionState::kInterrupted;
+std::uint32_t Forest::start(Node& parent, const Start& start, const World& world) {
+  if (nodes_.size() >= options_.max_intentions)
+    throw ActivityError("there are " + std::to_string(nodes_.size()) + " intentions already");
+  if (parent.children.size() >= options_.max_children)
+    throw ActivityError(parent.shown.schema + " has begun " +
+                        std::to_string(parent.children.size()) + " intentions already");
+  if (parent.depth >= options_.max_depth)
+    throw ActivityError("intentions stand within each other " + std::to_string(options_.max_depth) +
+                        " deep");
+  const std::shared_ptr<const Schema> schema = registry_->intended(start.schema);
+  std::unique_ptr<Activity> activity;
+  if (schema)
+    activity = instantiate(*schema, start.arguments, world.robot);
+  Node& child =
+      add(parent, start.name, schema ? schema->name : std::string(start.schema), start.blocking);
+  const std::uint32_t id = child.shown.id;
+  if (start.name.empty())
+    child.shown.name = "I" + std::to_string(id);
+  child.timeout = start.timeout > 0 || !schema ? start.timeout : ticks(schema->timeout);
+  child.begun = world.now;
+  if (!activity) {
+    try {
+      make_behavior(child, start, world);
+    } catch (...) {
+      drop(id);
+      throw;
+    }
+    return id;
+  }
+  child.activity = std::move(activity);
+  child.shown.priority =
+      start.priority.value_or(schema->priority != 0 ? schema->priority : parent.shown.priority);
+  to_begin_.push_back(id);
+  return id;
 }
 
-void Forest::resume(std::uint32_t id) {
-  remove_children(id);
-  nodes_.at(id)->shown.state = IntentionState::kResumed;
+void Forest::make_behavior(Node& node, const Start& start, const World& world) {
+  const BehaviorSignature* const known = registry_->behavior(start.schema);
+  if (known == nullptr && registry_->knows_behaviors())
+    throw ActivityError("there is neither an activity nor a behavior " +
+                        quoted(std::string(start.schema)));
+  node.behavior.schema = registry_->behavior_name(start.schema);
+  node.shown.schema = node.behavior.schema;
+  node.shown.label = "B";
+  node.shown.state = IntentionState::kRunning;
+  node.behavior.name = (start.name.empty() ? node.behavior.schema : std::string(start.name)) + "#" +
+                       std::to_string(node.shown.id);
+  node.behavior.intention = node.shown.id;
+  node.behavior.blocking = start.blocking;
+  node.behavior.priority = start.priority.value_or(kUsualPriority);
+  node.shown.priority = node.behavior.priority;
+  node.until_satisfied = start.until_satisfied;
+  for (const auto& [name, value] : start.arguments) {
+    std::string spelled = name;
+    if (known != nullptr) {
+      const auto parameter =
+          std::find_if(known->parameters.begin(), known->parameters.end(),
+                       [&](const Parameter& each) { return normal(each.name) == normal(name); });
+      if (parameter == known->parameters.end())
+        throw ActivityError("behavior " + known->name + " has no parameter " + quoted(name));
+      spelled = parameter->name;
+    } else {
+      std::replace(spelled.begin(), spelled.end(), '-', '_');
+    }
+    if (value.nil())
+      continue;  // not given
+    Argument argument;
+    if (!to_argument(spelled, value, argument))
+      throw ActivityError("behavior " + node.behavior.schema + ": parameter " + quoted(name) +
+                          " cannot be " + kind_of(value));
+    if (argument.kind == ArgumentKind::kPoint && argument.frame == Frame::kRobot) {
+      argument.point = compose(world.robot.pose_in_odom, argument.point);
+      argument.frame = Frame::kOdom;
+    }
+    node.on_map =
+        node.on_map || (argument.kind == ArgumentKind::kPoint && argument.frame == Frame::kMap);
+    node.given.push_back(std::move(argument));
+  }
+  node.since = world.now;
+  node.level = 0.0;
+  if (!place(node, world))
+    throw ActivityError("the robot does not know where it is on the map", GoalCode::kNoPosition);
+}
+
+/// Puts what is on the map where it is in odom now. Where that is not known, it stays where it was;
+/// false where it has never been known.
+bool Forest::place(Node& node, const World& world) {
+  if (node.behavior.parameters.empty())
+    node.behavior.parameters = node.given;
+  if (!node.on_map)
+    return true;
+  bool placed = true;
+  for (std::size_t i = 0; i < node.given.size(); ++i) {
+    const Argument& given = node.given[i];
+    Argument& argument = node.behavior.parameters[i];
+    if (given.kind != ArgumentKind::kPoint || given.frame != Frame::kMap)
+      continue;
+    const auto there = in_frame(given.point, Frame::kMap, Frame::kOdom, world.robot);
+    if (!there) {
+      placed = placed && argument.frame == Frame::kOdom;
+      continue;
+    }
+    const bool moved = argument.frame == Frame::kMap ||
+                       (argument.point.position() - there->position()).norm() > kMoved ||
+                       std::abs(norm2_angle(argument.point.th - there->th)) > kTurned;
+    if (moved)
+      argument.point = *there;
+    argument.frame = Frame::kOdom;
+  }
+  return placed;
+}
+
+void Forest::interrupt(std::uint32_t id, Hold why) {
+  Node& node = *nodes_.at(id);
+  node.holds |= static_cast<unsigned>(why);
+  if (!node.suspended)
+    suspend(node);
+}
+
+void Forest::suspend(Node& node) {
+  if (finished(node.shown.state))
+    return;
+  node.suspended = true;
+  node.suspended_at = now_;
+  // What was never begun has nothing to put away.
+  const bool put_away = node.activity != nullptr && node.shown.state != IntentionState::kInit;
+  node.shown.state = put_away ? IntentionState::kInterrupted : IntentionState::kSuspended;
+  if (node.activity == nullptr || !node.activity->keeps_children())
+    return;
+  for (const std::uint32_t child : node.children) {
+    if (!at(child)->suspended)
+      suspend(*at(child));
+  }
+}
+
+void Forest::resume(std::uint32_t id, Hold why) {
+  Node& node = *nodes_.at(id);
+  node.holds &= ~static_cast<unsigned>(why);
+  const Node* const parent = at(node.shown.parent);
+  if (node.holds == 0 && (parent == nullptr || !parent->suspended))
+    wake(node);
+}
+
+void Forest::wake(Node& node) {
+  if (finished(node.shown.state) || node.holds != 0)
+    return;
+  if (node.suspended)
+    node.begun += now_ - node.suspended_at;
+  node.suspended = false;
+  if (!node.activity) {
+    node.shown.state = IntentionState::kRunning;
+    node.since = now_ + 1;
+    node.level = 0.0;
+    return;
+  }
+  node.shown.state = IntentionState::kResumed;
+  if (!node.activity->keeps_children()) {
+    remove_children(node);
+    return;
+  }
+  for (const std::uint32_t child : node.children)
+    wake(*at(child));
+}
+
+bool Forest::held(std::uint32_t id, Hold why) const {
+  const Node* const node = at(id);
+  return node != nullptr && (node->holds & static_cast<unsigned>(why)) != 0;
 }
 
 void Forest::remove(std::uint32_t id) {
-  remove_children(id);
+  if (at(id) != nullptr)
+    drop(id);
+}
+
+void Forest::drop(std::uint32_t id) {
+  Node& node = *nodes_.at(id);
+  remove_children(node);
+  if (Node* const parent = at(node.shown.parent))
+    std::erase(parent->children, id);
+  if (control_owner_ == id) {
+    control_owner_ = 0;
+    beliefs_->unset(kBehaviorControl);
+  }
+  order_is_old_ = true;
   nodes_.erase(id);
 }
 
-void Forest::remove_children(std::uint32_t parent) {
-  std::vector<std::uint32_t> children;
-  for (auto node = nodes_.upper_bound(parent); node != nodes_.end(); ++node) {
-    if (node->second->shown.parent == parent)
-      children.push_back(node->first);
-  }
+void Forest::remove_children(Node& parent) {
+  const std::vector<std::uint32_t> children = std::exchange(parent.children, {});
   for (const std::uint32_t child : children)
-    remove(child);
+    drop(child);
 }
 
-Forest::Node* Forest::child_of(std::uint32_t parent, std::string_view label) const {
-  for (auto node = nodes_.upper_bound(parent); node != nodes_.end(); ++node) {
-    if (node->second->shown.parent == parent && !node->second->activity &&
-        node->second->label == label)
-      return node->second.get();
+Forest::Node* Forest::child_of(const Node& parent, std::string_view label) const {
+  for (const std::uint32_t id : parent.children) {
+    Node* const child = at(id);
+    if (!child->activity && child->label == label)
+      return child;
   }
   return nullptr;
 }
 
+/// What has that name among what `top` has begun, the nearest to it first; not `seeker` itself.
+Forest::Node* Forest::named(const Node& top, std::string_view name, const Node& seeker) const {
+  std::deque<const Node*> open = {&top};
+  while (!open.empty()) {
+    const Node* const node = open.front();
+    open.pop_front();
+    for (const std::uint32_t id : node->children) {
+      Node* const child = at(id);
+      if (child != &seeker && !finished(child->shown.state) && normal(child->shown.name) == name)
+        return child;
+      open.push_back(child);
+    }
+  }
+  return nullptr;
+}
+
+void Forest::tell_parent(const Node& node) {
+  if (node.shown.parent != 0)
+    to_tell_.push_back(node.shown.parent);
+}
+
 void Forest::hear(const std::vector<BehaviorLevel>& levels, Ticks tick) {
-  for (auto& [id, node] : nodes_) {
-    if (node->activity || tick < node->since + kLevelDelay)
+  for (const BehaviorLevel& level : levels) {
+    const std::size_t mark = level.name.rfind('#');
+    if (mark == std::string::npos)
       continue;
-    for (const BehaviorLevel& level : levels) {
-      if (level.name == node->behavior.name)
-        node->level = level.goal;
+    std::uint32_t id = 0;
+    std::from_chars(level.name.data() + mark + 1, level.name.data() + level.name.size(), id);
+    Node* const node = at(id);
+    if (node != nullptr && !node->activity && node->behavior.name == level.name &&
+        tick >= node->since + kLevelDelay)
+      node->level = level.goal;
+  }
+}
+
+void Forest::hear(const std::vector<BehaviorTrouble>& troubles) {
+  for (const BehaviorTrouble& trouble : troubles) {
+    for (auto& [id, node] : nodes_) {
+      if (node->activity || node->behavior.name != trouble.name || finished(node->shown.state))
+        continue;
+      node->shown.state = IntentionState::kFailure;
+      node->outcome = {IntentionState::kFailure, GoalCode::kActivity, trouble.reason};
     }
   }
 }
 
-void Forest::step(Ticks now, const Robot& robot) {
-  std::vector<std::uint32_t> ids;
-  for (const auto& [id, node] : nodes_)
-    ids.push_back(id);
-  for (const std::uint32_t id : ids)
-    step_one(id, now, robot);
-  sweep();
-}
-
-void Forest::begin(std::uint32_t id, Ticks now, const Robot& robot) {
-  step_one(id, now, robot);
-  sweep();
-}
-
-void Forest::step_one(std::uint32_t id, Ticks now, const Robot& robot) {
-  const auto found = nodes_.find(id);
-  if (found == nodes_.end() || !found->second->activity)
+/// A behavior is an intention that watches it (manual 8.5).
+void Forest::watch(Node& node, const World& world) {
+  if (node.suspended || node.shown.state != IntentionState::kRunning)
     return;
-  Node& node = *found->second;
+  place(node, world);
+  if (node.until_satisfied && node.level.value_or(0.0) >= kSatisfied) {
+    node.shown.state = IntentionState::kSuccess;
+    node.outcome = {IntentionState::kSuccess, GoalCode::kNone, "satisfied"};
+  } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
+    node.shown.state = IntentionState::kTimeout;
+    node.outcome = {IntentionState::kTimeout, GoalCode::kTimeout,
+                    "not satisfied in " + plain(kTick * static_cast<double>(node.timeout)) + " s"};
+  }
+}
+
+void Forest::step(Ticks now, const Robot& robot) {
+  const Surroundings nothing;
+  step(World{robot, nothing, *beliefs_, now});
+}
+
+void Forest::step(const World& world) {
+  now_ = world.now;
+  begun_ = 0;
+  if (std::exchange(order_is_old_, false)) {
+    order_.clear();
+    for (const auto& [id, node] : nodes_) {
+      if (node->activity)
+        order_.push_back(id);
+    }
+    std::stable_sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return at(a)->shown.priority > at(b)->shown.priority;
+    });
+  }
+  for (auto& [id, node] : nodes_) {
+    if (!node->activity)
+      watch(*node, world);
+  }
+  // What comes to be in the course of the step is not in the order yet.
+  for (std::size_t i = 0; i < order_.size(); ++i)
+    step_one(order_[i], world);
+  work_off(world);
+  sweep();
+}
+
+void Forest::begin(std::uint32_t id, const World& world) {
+  step_one(id, world);
+  work_off(world);
+  sweep();
+}
+
+void Forest::step_one(std::uint32_t id, const World& world) {
+  Node* const found = at(id);
+  if (found == nullptr || !found->activity)
+    return;
+  Node& node = *found;
   if (node.shown.state == IntentionState::kSuspended || finished(node.shown.state))
     return;
   const bool interrupted = node.shown.state == IntentionState::kInterrupted;
-  Handle handle(*this, node, now, robot);
+  node.stepped = world.now;
+  Handle handle(*this, node, world);
   node.activity->step(handle);
+  conclude(node, interrupted, world);
+}
+
+/// What a step has made of the intention.
+void Forest::conclude(Node& node, bool interrupted, const World& world) {
   if (finished(node.outcome.state)) {
     node.shown.state = node.outcome.state;
+    node.shown.label = "END";
   } else if (interrupted) {
     node.shown.state = IntentionState::kSuspended;
-  } else if (node.timeout > 0 && now - node.begun >= node.timeout) {
+  } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
     node.shown.state = IntentionState::kTimeout;
-    node.outcome = {IntentionState::kTimeout, GoalCode::kDeadline,
+    node.outcome = {IntentionState::kTimeout, GoalCode::kTimeout,
                     "not done in " + plain(kTick * static_cast<double>(node.timeout)) + " s"};
   } else {
     node.shown.state = IntentionState::kRunning;
-    return;
   }
+  const bool ends = finished(node.shown.state);
   // Nothing is left running by one that does not run (manual 8.1.4, and rule 3 of 8.4).
-  remove_children(id);
+  if (ends || (interrupted && !node.activity->keeps_children()))
+    remove_children(node);
+  if (ends)
+    tell_parent(node);
+  for (const std::uint32_t id : std::exchange(doomed_, {})) {
+    if (const Node* const doomed = at(id)) {
+      tell_parent(*doomed);
+      remove(id);
+    }
+  }
+}
+
+/// Steps what has been begun and passes up what has ended, until nothing is left of both.
+void Forest::work_off(const World& world) {
+  while (!to_begin_.empty() || !to_tell_.empty()) {
+    if (!to_begin_.empty()) {
+      const std::uint32_t id = to_begin_.front();
+      to_begin_.pop_front();
+      // Beyond the bound it begins in the next step.
+      if (begun_ < options_.max_begun) {
+        ++begun_;
+        step_one(id, world);
+      }
+      continue;
+    }
+    const std::uint32_t id = to_tell_.front();
+    to_tell_.pop_front();
+    Node* const node = at(id);
+    if (node == nullptr || !node->activity || node->shown.state != IntentionState::kRunning ||
+        node->stepped != world.now)
+      continue;
+    Handle handle(*this, *node, world);
+    node->activity->child_ended(handle);
+    conclude(*node, false, world);
+  }
 }
 
 void Forest::sweep() {
   std::vector<std::uint32_t> gone;
   for (const auto& [id, node] : nodes_) {
-    if (finished(node->shown.state) && node->shown.parent == 0)
+    if (node->shown.parent == 0 && finished(node->shown.state))
       gone.push_back(id);
   }
   for (const std::uint32_t id : gone) {
     ended_[id] = nodes_.at(id)->outcome;
-    remove(id);
+    drop(id);
   }
 }
 
@@ -245,8 +643,25 @@ bool Forest::contains(std::uint32_t id) const {
   return nodes_.contains(id);
 }
 
+bool Forest::is_activity(std::uint32_t id) const {
+  const Node* const node = at(id);
+  return node != nullptr && node->activity != nullptr;
+}
+
+std::size_t Forest::size() const {
+  return nodes_.size();
+}
+
+bool Forest::behavior_control() const {
+  return control_owner_ == 0;
+}
+
 std::map<std::uint32_t, Outcome> Forest::take_ended() {
   return std::exchange(ended_, {});
+}
+
+std::vector<Said> Forest::take_said() {
+  return std::exchange(said_, {});
 }
 
 Activity& Forest::activity(std::uint32_t id) {
@@ -263,10 +678,17 @@ double Forest::progress_of(std::uint32_t id) const {
   return nodes_.at(id)->progress;
 }
 
+double Forest::level_of(std::uint32_t id) const {
+  const Node& node = *nodes_.at(id);
+  if (node.shown.state == IntentionState::kSuccess)
+    return 1.0;
+  return node.level.value_or(node.progress);
+}
+
 std::vector<IntendedBehavior> Forest::behaviors() const {
   std::vector<IntendedBehavior> all;
   for (const auto& [id, node] : nodes_) {
-    if (!node->activity)
+    if (!node->activity && node->shown.state == IntentionState::kRunning)
       all.push_back(node->behavior);
   }
   return all;
@@ -275,8 +697,10 @@ std::vector<IntendedBehavior> Forest::behaviors() const {
 std::vector<IntentionNode> Forest::nodes() const {
   std::vector<IntentionNode> all;
   all.reserve(nodes_.size());
-  for (const auto& [id, node] : nodes_)
+  for (const auto& [id, node] : nodes_) {
     all.push_back(node->shown);
+    all.back().level = level_of(id);
+  }
   return all;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/value.hpp"
 #include "saphira/intentions/world.hpp"
 
 namespace saphira::intentions {
@@ -19,6 +20,27 @@ struct BehaviorLevel {
   double progress = 0.0;  ///< [0..1]
 };
 
+/// A behavior that the behaviors service could not make.
+struct BehaviorTrouble {
+  std::string name;  ///< of the instance
+  std::string reason;
+};
+
+/// What an intention is begun with by another (paper 3.4, Intend).
+struct Start {
+  std::string_view schema;  ///< an activity or a behavior
+  std::string_view name;    ///< empty: to be assigned
+  Bindings arguments;
+  Ticks timeout = 0;  ///< 0: none
+  bool blocking = true;
+  /// A behavior that is satisfied has finished. Otherwise it lasts.
+  bool until_satisfied = false;
+  std::optional<int> priority;  ///< none: that of the parent; of behaviors 2
+};
+
+/// How an intention came to its end.
+struct Outcome;
+
 /// A behavior that is wanted to exist with these parameters.
 struct IntendedBehavior {
   std::string name;  ///< of the instance, unique in the set
@@ -27,6 +49,7 @@ struct IntendedBehavior {
   bool running = true;
   Arguments parameters;
   std::uint32_t intention = 0;  ///< the node that wants it
+  bool blocking = false;        ///< somebody waits for it
 
   bool operator==(const IntendedBehavior&) const = default;
 };
@@ -58,6 +81,7 @@ class Self {
   virtual ~Self() = default;
 
   virtual const Robot& robot() const = 0;
+  virtual const World& world() const = 0;
   virtual Ticks now() const = 0;
   /// kInit, kResumed, kRunning or kInterrupted.
   virtual IntentionState state() const = 0;
@@ -80,6 +104,30 @@ class Self {
   virtual IntentionState child_state(std::uint32_t child) const = 0;
   virtual void remove_child(std::uint32_t child) = 0;
 
+  /// Intends an activity or behavior by name; its number. It begins in the same cycle, after this
+  /// step. ActivityError where there is no such schema, where it does not take the arguments, or
+  /// where there are too many intentions.
+  virtual std::uint32_t start(const Start& start) = 0;
+  /// How far a child is satisfied [0..1].
+  virtual double child_level(std::uint32_t child) const = 0;
+  /// How it ended; nullptr while it has not, or where there is none.
+  virtual const Outcome* child_outcome(std::uint32_t child) const = 0;
+  /// The newest child of that name; 0: none.
+  virtual std::uint32_t child_named(std::string_view name) const = 0;
+  /// Interrupts a child with all that it has begun, until it is resumed. For those that keep their
+  /// children (Activity::keeps_children).
+  virtual void hold_child(std::uint32_t child, bool hold) = 0;
+  /// Ends the nearest intention of that name in the same tree (paper 3.4, Unintend): first among
+  /// what this one has begun, then what its parent has, and so on. False where there is none.
+  virtual bool unintend(std::string_view name) = 0;
+
+  /// The state that comes next, for the display.
+  virtual void label(const std::string& label) = 0;
+  /// How far this intention is satisfied [0..1].
+  virtual void level(double satisfied) = 0;
+  virtual void tell(std::string text) = 0;                         ///< a message to people
+  virtual void believe(const std::string& name, Value value) = 0;  ///< an environment variable
+
   /// What is being done now, for people: short, and the same from cycle to cycle.
   virtual void say(std::string step) = 0;
   virtual void progress(double done) = 0;  ///< [0..1]
@@ -96,6 +144,11 @@ class Activity {
  public:
   virtual ~Activity() = default;
   virtual void step(Self& self) = 0;
+  /// A child has ended or is gone, in the cycle in which step() has been called already.
+  virtual void child_ended(Self& self) { static_cast<void>(self); }
+  /// While it is interrupted its children are interrupted too, and resumed with it; otherwise they
+  /// are removed.
+  virtual bool keeps_children() const { return false; }
   /// Other arguments for the one that is running; false where it has to be begun anew.
   virtual bool change(const Arguments& arguments) {
     static_cast<void>(arguments);

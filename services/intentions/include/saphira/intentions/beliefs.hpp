@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -68,6 +69,7 @@ class Beliefs {
   std::map<std::string, Belief, std::less<>> conditions_;
   std::size_t claim_count_ = 0;
   std::uint64_t revision_ = 0;
+  Ticks looked_ = std::numeric_limits<Ticks>::min();  ///< when conditions_ is of
 };
 
 }  // namespace saphira::intentions

@@ -3,12 +3,15 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
+#include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/goal.hpp"
 #include "saphira/intentions/journal.hpp"
 #include "saphira/intentions/schema.hpp"
@@ -30,6 +33,9 @@ struct Inputs {
   std::vector<BehaviorLevel> behaviors;
   std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
   std::vector<GoalEvent> events;      ///< since the last step, oldest first
+  Surroundings around{};
+  std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
+  std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
 };
 
 /// What became of the goals since the last time.
@@ -45,20 +51,25 @@ struct Outputs {
   std::vector<IntendedBehavior> behaviors;
   std::vector<IntentionNode> nodes;
   News news;
+  bool behavior_control = true;  ///< sfBehaviorControl (manual 7.4)
+  std::vector<Said> said;        ///< to people, oldest first
 };
 
 struct ExecutorOptions {
   double keep_ended = 60.0;       ///< [s] of robot time that an ended goal's status stays
   std::size_t max_open = 256;     ///< goals that may be open at once
   std::size_t max_ended = 65536;  ///< endings that are remembered; the oldest are forgotten
+  /// Whose conditions are beliefs. None: those of core_functions().
+  std::shared_ptr<const Functions> functions{};
+  ForestOptions forest{};
 };
 
 /// Goals in, intended behaviors out (manual 8, paper 3.3): the executor of PRS-lite with a queue of
 /// goals on top.
 ///
-/// At most one goal is underway: the most important, of equals the one that came first. A more
-/// important one interrupts it; it resumes afterwards. Nothing is intended when no goal is
-/// underway, which releases the robot.
+/// At most one goal that drives is underway: the most important, of equals the one that came first.
+/// A more important one interrupts it; it resumes afterwards. Goals of concurrent schemas are
+/// underway beside it. Nothing is intended when no goal is underway, which releases the robot.
 class Executor {
  public:
   explicit Executor(Registry registry, const Memory& memory = {}, ExecutorOptions options = {});
@@ -74,11 +85,24 @@ class Executor {
   /// There is no robot any more (no cycles come). Goals wait for it; the next step goes on.
   News robot_gone();
 
+  /// Puts a schema in, also in the place of an older one: goals that have begun and intentions go
+  /// on with theirs.
+  void add(Schema schema);
+  void remove(std::string_view name);
+  void know_behaviors(std::vector<BehaviorSignature> behaviors);
+  const Registry& registry() const { return *registry_; }
+  const Beliefs& beliefs() const { return *beliefs_; }
+
+  /// Interrupts an intention with all that it has begun, or lets it go on, by the number of its
+  /// node (manual 6.5, sfInterruptProcess). False where there is no such intention.
+  bool interrupt(std::uint32_t node);
+  bool resume(std::uint32_t node);
+
  private:
   struct Entry {
     Goal goal;            ///< as it was written, to tell a change from a repetition
     Arguments arguments;  ///< complete; points in odom once `placed`
-    const Schema* schema = nullptr;
+    std::shared_ptr<const Schema> schema;
     bool fresh = true;  ///< no step since it was heard: acceptance counts from the next one
     bool placed = false;
     bool changed = false;               ///< while begun, and its activity does not know yet
@@ -91,6 +115,7 @@ class Executor {
     GoalStatus status;
     std::optional<GoalStatus> published;
     Ticks published_at = 0;
+    std::deque<double> levels;  ///< of the last cycles, for the trend
   };
   using Entries = std::map<GoalId, Entry>;
 
@@ -113,11 +138,15 @@ class Executor {
   void replace();
   Entry* best();
   Entry* arbitrate();
+  void begin(Entry& entry);
+  void begin_concurrent();
+  void measure(Entry& entry);
   bool collect();
   News take_news();
 
-  Registry registry_;
   ExecutorOptions options_;
+  std::shared_ptr<Registry> registry_;
+  std::shared_ptr<Beliefs> beliefs_;
   Forest forest_;
   Entries entries_;
   std::map<GoalId, Placement> remembered_places_;

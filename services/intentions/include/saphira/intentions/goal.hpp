@@ -54,6 +54,7 @@ struct Goal {
   int priority = 0;       ///< larger is more important
   double deadline = 0.0;  ///< [s] of robot time from acceptance; 0: none
   WriterLost writer_lost = WriterLost::kCancel;
+  double level = 0.0;  ///< [0..1] of satisfaction that is enough; 0: the usual one
 
   bool operator==(const Goal&) const = default;
 };
@@ -78,6 +79,9 @@ enum class GoalCode {
   kPreempted
 };
 
+/// Of a goal's level, over the last seconds.
+enum class Trend { kSteady, kRising, kFalling };
+
 inline constexpr bool ended(GoalState state) {
   return state == GoalState::kRefused || state == GoalState::kSucceeded ||
          state == GoalState::kFailed || state == GoalState::kCanceled;
@@ -94,6 +98,8 @@ struct GoalStatus {
   std::string step;       ///< what is being done now
   double progress = 0.0;  ///< [0..1]
   double elapsed = 0.0;   ///< [s] of robot time since acceptance
+  double level = 0.0;     ///< [0..1] how far it is satisfied
+  Trend trend = Trend::kSteady;
 
   bool operator==(const GoalStatus&) const = default;
 };

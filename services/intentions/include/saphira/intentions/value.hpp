@@ -60,14 +60,18 @@ class Value {
   const Reference* reference() const { return std::get_if<Reference>(&is_); }
   /// The elements; none of what is no list.
   const List& list() const;
-  bool is_list() const { return std::holds_alternative<std::shared_ptr<const List>>(is_); }
+  bool is_list() const { return std::holds_alternative<std::shared_ptr<const Elements>>(is_); }
+  /// How many values there are in it, those in lists within lists among them: what a list costs
+  /// whoever goes through it.
+  std::size_t weight() const;
   bool is_t() const { return std::holds_alternative<bool>(is_); }
 
   bool operator==(const Value& other) const;
 
  private:
+  struct Elements;
   std::variant<std::monostate, bool, double, std::string, Point, Reference,
-               std::shared_ptr<const List>>
+               std::shared_ptr<const Elements>>
       is_;
 };
 

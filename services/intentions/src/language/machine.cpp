@@ -1,0 +1,627 @@
+#include <algorithm>
+#include <cmath>
+#include <list>
+#include <utility>
+
+#include "language/program.hpp"
+#include "saphira/intentions/beliefs.hpp"
+#include "saphira/intentions/forest.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+constexpr std::size_t kMostThreads = 64;  ///< of one intention
+
+const char* word(IntentionState state) {
+  switch (state) {
+    case IntentionState::kInit:
+      return "init";
+    case IntentionState::kRunning:
+    case IntentionState::kResumed:
+      return "running";
+    case IntentionState::kSuspended:
+    case IntentionState::kInterrupted:
+      return "suspended";
+    case IntentionState::kSuccess:
+      return "success";
+    case IntentionState::kFailure:
+      return "failure";
+    case IntentionState::kTimeout:
+      return "timeout";
+    case IntentionState::kRemoved:
+      return "removed";
+  }
+  return "?";
+}
+
+/// An intention: an instance of a compiled schema. It has one current node, its main thread, and
+/// more while goals run in parallel. In a cycle each thread begins one goal-set at most.
+class Machine : public Activity {
+ public:
+  Machine(std::shared_ptr<const Program> program, const Bindings& bindings)
+      : program_(std::move(program)), locals_(program_->locals.size()) {
+    std::copy(program_->usual.begin(), program_->usual.end(), locals_.begin());
+    for (const auto& [name, value] : bindings) {
+      for (std::size_t i = 0; i < program_->parameters; ++i) {
+        if (normal(program_->locals[i]) == normal(name))
+          locals_[i] = value;
+      }
+    }
+    threads_.push_back({});
+    threads_.back().id = ++last_thread_;
+  }
+
+  bool keeps_children() const override { return true; }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted) {
+      if (!suspended_at_)
+        suspended_at_ = self.now();
+      return;
+    }
+    if (begun_at_ < 0)
+      begun_at_ = self.now();
+    if (suspended_at_) {
+      const Ticks away = self.now() - *std::exchange(suspended_at_, std::nullopt);
+      begun_at_ += away;
+      for (Thread& thread : threads_)
+        thread.since += away;
+    }
+    for (Thread& thread : threads_)
+      thread.spent = false;
+    go_on(self);
+  }
+
+  void child_ended(Self& self) override { go_on(self); }
+
+ private:
+  struct Child {
+    std::uint32_t id = 0;
+    bool kept = false;  ///< named, so that its end can be asked for
+  };
+  struct Thread {
+    std::size_t id = 0;
+    std::size_t parent = 0;  ///< that waits for it; 0: none
+    std::size_t at = 0;      ///< the step
+    bool waiting = false;    ///< in the step, which has been begun
+    bool spent = false;      ///< a goal-set has been begun in this cycle
+    bool fresh = true;       ///< before a goal-set
+    bool held = false;       ///< by a MAINTAIN whose condition does not hold
+    bool over = false;
+    bool restores = false;  ///< it is the :by of a MAINTAIN
+    Ticks since = 0;        ///< when the waiting began
+    Ticks limit = 0;        ///< of the waiting; 0: none
+    std::uint32_t child = 0;
+    double threshold = 0.0;
+    std::vector<Child> children;  ///< that it has begun
+    std::string failed;           ///< why, when it is over
+    GoalCode code = GoalCode::kNone;
+    bool has_failed = false;
+  };
+
+  /// What expressions can ask of this intention, and what actions do through it.
+  class View : public Own, public Effects {
+   public:
+    View(const Machine& machine, Self& self) : machine_(machine), self_(self) {}
+    Value state_of(const std::string& name) const override {
+      const std::uint32_t id = self_.child_named(name);
+      return id == 0 ? Value() : Value(word(self_.child_state(id)));
+    }
+    double level_of(const std::string& name) const override {
+      const std::uint32_t id = self_.child_named(name);
+      return id == 0 ? 0.0 : self_.child_level(id);
+    }
+    const std::string& outcome() const override { return machine_.outcome_; }
+    const std::string& reason() const override { return machine_.reason_; }
+    double elapsed() const override {
+      return kTick * static_cast<double>(self_.now() - machine_.begun_at_);
+    }
+    const World& world() const override { return self_.world(); }
+    void say(std::string text) override { self_.tell(std::move(text)); }
+    void believe(const std::string& name, Value value) override {
+      self_.believe(name, std::move(value));
+    }
+
+   private:
+    const Machine& machine_;
+    Self& self_;
+  };
+
+  Value value(const Expression& expression, Self& self) {
+    View view(*this, self);
+    Scope scope{self.world(), locals_, view, view};
+    return evaluate(expression, scope);
+  }
+
+  // --- a cycle
+
+  void go_on(Self& self) {
+    // Threads that end may let others go on, which stand before them: until nothing moves. A thread
+    // begins one goal-set in a cycle at most, so that this comes to an end.
+    for (bool moved = true; moved && !over_;) {
+      moved = false;
+      for (auto thread = threads_.begin(); thread != threads_.end() && !over_; ++thread)
+        moved = run(*thread, self) || moved;
+      threads_.remove_if([](const Thread& thread) { return thread.over && thread.parent == 0; });
+    }
+    if (over_)
+      return;
+    show(self);
+    if (program_->level) {
+      try {
+        const Value level = value(*program_->level, self);
+        self.level(level.number() != nullptr ? *level.number() : level.truthy() ? 1.0 : 0.0);
+      } catch (const ActivityError&) {
+        self.level(0.0);  // what it is measured by is not there
+      }
+    } else {
+      const Thread& main = threads_.front();
+      self.level(main.child != 0 ? self.child_level(main.child) : 0.0);
+    }
+  }
+
+  void show(Self& self) {
+    const Thread& main = threads_.front();
+    if (shown_at_ == main.at && shown_waiting_ == main.waiting)
+      return;
+    shown_at_ = main.at;
+    shown_waiting_ = main.waiting;
+    const Step& step = program_->steps[main.at];
+    const std::size_t next = main.fresh ? step.set : step.set + 1;
+    static const std::string kEnd = "END";
+    self.label(next < program_->sets.size() ? program_->sets[next].label : kEnd);
+    if (!main.waiting)
+      self.say(program_->sets[step.set].text);
+    else if (step.op == Step::Op::kWait)
+      self.say("waits for " + step.text);
+    else
+      self.say(step.text);
+  }
+
+  /// Runs a thread until it has to wait; whether it moved.
+  bool run(Thread& thread, Self& self) {
+    bool moved = false;
+    while (!thread.over && !thread.held && !over_) {
+      if (thread.waiting) {
+        if (!poll(thread, self))
+          return moved;
+        moved = true;
+        continue;
+      }
+      if (thread.fresh) {
+        if (thread.spent)
+          return moved;
+        thread.spent = true;
+        thread.fresh = false;
+      }
+      moved = true;
+      try {
+        perform(thread, self);
+      } catch (const ActivityError& error) {
+        failure(thread, error.code(), error.what(), self);
+      }
+    }
+    return moved;
+  }
+
+  void perform(Thread& thread, Self& self) {
+    const Step& step = program_->steps[thread.at];
+    switch (step.op) {
+      case Step::Op::kTest:
+        if (value(step.expression, self).nil()) {
+          failure(thread, GoalCode::kActivity,
+                  step.reason ? spoken(value(*step.reason, self)) : step.text + " does not hold",
+                  self);
+          return;
+        }
+        break;
+      case Step::Op::kExecute:
+        value(step.expression, self);
+        break;
+      case Step::Op::kAssign:
+        locals_[step.slot] = value(step.expression, self);
+        break;
+      case Step::Op::kWait:
+        thread.limit = limit(step.timeout, self);
+        await(thread, self);
+        return;
+      case Step::Op::kIntend:
+        intend(thread, *step.intend, self);
+        return;
+      case Step::Op::kUnintend: {
+        const Value name = value(step.expression, self);
+        if (name.text() == nullptr)
+          throw ActivityError("UNINTEND expected a name, got " + kind_of(name));
+        self.unintend(*name.text());
+        break;
+      }
+      case Step::Op::kJump:
+        thread.at = step.target;
+        return;
+      case Step::Op::kJumpUnless:
+        thread.at = value(step.expression, self).truthy() ? thread.at + 1 : step.target;
+        return;
+      case Step::Op::kFork:
+      case Step::Op::kSplit:
+        fork(thread, step, self);
+        return;
+      case Step::Op::kPreserve:
+      case Step::Op::kMaintain:
+        if (step.op == Step::Op::kPreserve && value(step.expression, self).nil()) {
+          failure(thread, GoalCode::kActivity, step.text + " does not hold", self);
+          return;
+        }
+        branch(thread, step.branches[0], self);
+        await(thread, self);
+        return;
+      case Step::Op::kEndThread:
+        end(thread);
+        return;
+      case Step::Op::kEndSet:
+        if (step.set + 1 >= program_->sets.size()) {
+          end_of_all(thread, self);
+          return;
+        }
+        thread.at = program_->sets[step.set + 1].begin;
+        thread.fresh = true;
+        return;
+      case Step::Op::kGoto:
+        thread.at = program_->sets[step.target].begin;
+        thread.fresh = true;
+        return;
+      case Step::Op::kSucceed:
+        over_ = true;
+        self.succeed(step.reason ? spoken(value(*step.reason, self)) : "done");
+        return;
+      case Step::Op::kFail:
+        failure(thread, GoalCode::kActivity,
+                step.reason ? spoken(value(*step.reason, self)) : "failed", self);
+        return;
+    }
+    ++thread.at;
+  }
+
+  static void await(Thread& thread, const Self& self) {
+    thread.waiting = true;
+    thread.since = self.now();
+  }
+  void go_behind(Thread& thread) {
+    const Step& step = program_->steps[thread.at];
+    thread.waiting = false;
+    thread.child = 0;
+    thread.at = step.target != kNowhere ? step.target : thread.at + 1;
+  }
+
+  Ticks limit(const std::optional<Expression>& timeout, Self& self) {
+    if (!timeout)
+      return 0;
+    const Value seconds = value(*timeout, self);
+    if (seconds.nil())
+      return 0;
+    if (seconds.number() == nullptr || !(*seconds.number() >= 0.0))
+      throw ActivityError("a timeout expected a number of seconds, got " + kind_of(seconds));
+    return std::max<Ticks>(1, std::llround(std::min(*seconds.number(), 1e9) / kTick));
+  }
+
+  bool too_late(const Thread& thread, const Self& self) const {
+    return thread.limit > 0 && self.now() - thread.since >= thread.limit;
+  }
+
+  /// Whether what the thread waits for has come.
+  bool poll(Thread& thread, Self& self) {
+    const Step& step = program_->steps[thread.at];
+    try {
+      switch (step.op) {
+        case Step::Op::kWait:
+          if (value(step.expression, self).truthy()) {
+            go_behind(thread);
+            return true;
+          }
+          if (!too_late(thread, self))
+            return false;
+          failure(
+              thread, GoalCode::kTimeout,
+              "waited " + plain(kTick * static_cast<double>(thread.limit)) + " s for " + step.text,
+              self);
+          return true;
+        case Step::Op::kIntend:
+          return poll_child(thread, self);
+        case Step::Op::kFork:
+          return poll_fork(thread, self);
+        case Step::Op::kPreserve:
+          return poll_fork(thread, self) || poll_preserve(thread, step, self);
+        case Step::Op::kMaintain:
+          return poll_maintain(thread, step, self);
+        default:
+          return true;
+      }
+    } catch (const ActivityError& error) {
+      failure(thread, error.code(), error.what(), self);
+      return true;
+    }
+  }
+
+  // --- intending
+
+  void intend(Thread& thread, const Intend& intend, Self& self) {
+    Start start;
+    start.schema = intend.schema;
+    start.name = intend.name;
+    bool waits = intend.waits;
+    thread.threshold = 2.0;  // never: until it is finished
+    if (intend.threshold) {
+      const Value degree = value(*intend.threshold, self);
+      if (degree.nil())
+        waits = false;
+      else if (degree.number() != nullptr)
+        thread.threshold = *degree.number();
+    }
+    for (const auto& [name, expression] : intend.arguments)
+      start.arguments.emplace_back(name, value(expression, self));
+    start.timeout = limit(intend.timeout, self);
+    start.blocking = waits;
+    start.until_satisfied = waits && thread.threshold > 1.0;
+    if (intend.priority) {
+      const Value priority = value(*intend.priority, self);
+      if (priority.number() == nullptr)
+        throw ActivityError("a priority expected a number, got " + kind_of(priority));
+      start.priority = static_cast<int>(std::clamp(*priority.number(), -1000.0, 1000.0));
+    }
+    reap(thread, intend.name, self);
+    const std::uint32_t id = self.start(start);
+    thread.children.push_back({id, !intend.name.empty()});
+    if (waits) {
+      thread.child = id;
+      await(thread, self);
+    } else {
+      ++thread.at;
+    }
+  }
+
+  /// Removes children that have ended and cannot be asked for any more (manual 8.4 makes that the
+  /// parent's): those without a name, and one of the name that is used anew.
+  void reap(Thread& thread, const std::string& name, Self& self) {
+    const std::uint32_t older = name.empty() ? 0 : self.child_named(name);
+    for (Thread& each : threads_) {
+      std::erase_if(each.children, [&](const Child& child) {
+        const IntentionState state = self.child_state(child.id);
+        if (state == IntentionState::kRemoved)
+          return true;
+        if (!finished(state) || (child.kept && child.id != older) || child.id == each.child)
+          return false;
+        self.remove_child(child.id);
+        return true;
+      });
+    }
+    static_cast<void>(thread);
+  }
+
+  bool poll_child(Thread& thread, Self& self) {
+    const IntentionState state = self.child_state(thread.child);
+    if (!finished(state) && state != IntentionState::kRemoved) {
+      if (self.child_level(thread.child) < thread.threshold)
+        return false;
+      outcome_ = "running";
+      reason_.clear();
+      go_behind(thread);
+      return true;
+    }
+    outcome_ = word(state);
+    const Outcome* const outcome = self.child_outcome(thread.child);
+    reason_ = outcome == nullptr ? "" : outcome->reason;
+    if (state == IntentionState::kFailure || state == IntentionState::kTimeout) {
+      const GoalCode code = state == IntentionState::kTimeout  ? GoalCode::kTimeout
+                            : outcome->code == GoalCode::kNone ? GoalCode::kActivity
+                                                               : outcome->code;
+      const std::string& schema = program_->steps[thread.at].intend->schema;
+      failure(thread, code, schema + ": " + reason_, self);
+      return true;
+    }
+    go_behind(thread);
+    return true;
+  }
+
+  // --- threads
+
+  Thread& branch(Thread& parent, std::size_t at, Self& self) {
+    if (threads_.size() >= kMostThreads)
+      throw ActivityError("more than " + std::to_string(kMostThreads) + " goals in parallel");
+    Thread thread;
+    thread.id = ++last_thread_;
+    thread.parent = parent.id;
+    thread.at = at;
+    thread.fresh = false;
+    thread.spent = true;  // its goals are part of the goal-set that is being done
+    thread.since = self.now();
+    threads_.push_back(std::move(thread));
+    return threads_.back();
+  }
+
+  void fork(Thread& thread, const Step& step, Self& self) {
+    for (const std::size_t at : step.branches) {
+      Thread& made = branch(thread, at, self);
+      if (step.op == Step::Op::kSplit)
+        made.parent = 0;
+    }
+    if (step.op == Step::Op::kSplit)
+      thread.at = step.target;
+    else
+      await(thread, self);
+  }
+
+  bool poll_fork(Thread& thread, Self& self) {
+    bool all = true;
+    for (const Thread& each : threads_) {
+      if (each.parent != thread.id)
+        continue;
+      if (each.over && each.has_failed) {
+        const GoalCode code = each.code;
+        const std::string reason = each.failed;
+        failure(thread, code, reason, self);
+        return true;
+      }
+      all = all && each.over;
+    }
+    if (!all)
+      return false;
+    join(thread);
+    go_behind(thread);
+    return true;
+  }
+
+  /// What the branches have begun and is left goes on as the parent's.
+  void join(Thread& thread) {
+    for (Thread& each : threads_) {
+      if (each.parent != thread.id)
+        continue;
+      thread.children.insert(thread.children.end(), each.children.begin(), each.children.end());
+      each.children.clear();
+      each.parent = 0;
+      each.over = true;
+    }
+  }
+
+  /// Ends the branches of a thread with all that they have begun.
+  void cut(const Thread& thread, Self& self) {
+    for (Thread& each : threads_) {
+      if (each.parent != thread.id)
+        continue;
+      cut(each, self);
+      for (const Child& child : each.children)
+        self.remove_child(child.id);
+      each.children.clear();
+      each.parent = 0;
+      each.over = true;
+    }
+  }
+
+  /// Holds the branches of a thread, but for those that restore, or lets them go on.
+  void hold(const Thread& thread, bool held, Self& self) {
+    for (Thread& each : threads_) {
+      if (each.parent != thread.id || each.over || each.restores)
+        continue;
+      if (each.held && !held)
+        each.since += self.now() - held_since_[each.id];
+      if (held)
+        held_since_[each.id] = self.now();
+      else
+        held_since_.erase(each.id);
+      each.held = held;
+      for (const Child& child : each.children)
+        self.hold_child(child.id, held);
+      hold(each, held, self);
+    }
+  }
+
+  bool poll_preserve(Thread& thread, const Step& step, Self& self) {
+    if (value(step.expression, self).truthy())
+      return false;
+    failure(thread, GoalCode::kActivity, step.text + " does not hold any more", self);
+    return true;
+  }
+
+  bool poll_maintain(Thread& thread, const Step& step, Self& self) {
+    Thread* restoring = nullptr;
+    bool held = false;
+    bool finished_body = true;
+    for (Thread& each : threads_) {
+      if (each.parent != thread.id)
+        continue;
+      if (each.restores) {
+        restoring = &each;
+      } else {
+        held = held || each.held;
+        finished_body = finished_body && each.over;
+      }
+    }
+    const bool holds = value(step.expression, self).truthy();
+    if (restoring != nullptr) {
+      if (!restoring->over)
+        return false;
+      if (restoring->has_failed || !holds) {
+        const GoalCode code = restoring->has_failed ? restoring->code : GoalCode::kActivity;
+        const std::string why = restoring->has_failed ? ": " + restoring->failed : "";
+        failure(thread, code, step.text + " could not be restored" + why, self);
+        return true;
+      }
+      // What was begun to restore it is not needed any more.
+      for (const Child& child : restoring->children)
+        self.remove_child(child.id);
+      restoring->children.clear();
+      restoring->parent = 0;
+      hold(thread, false, self);
+      return true;
+    }
+    if (finished_body)
+      return poll_fork(thread, self);
+    if (holds)
+      return poll_fork(thread, self);
+    if (!held) {
+      hold(thread, true, self);
+      branch(thread, step.branches[1], self).restores = true;
+      return true;
+    }
+    return false;
+  }
+
+  void end(Thread& thread) { thread.over = true; }
+
+  /// The thread has come to the end of the schema.
+  void end_of_all(Thread& thread, Self& self) {
+    if (thread.id != threads_.front().id) {
+      thread.over = true;
+      return;
+    }
+    over_ = true;
+    self.succeed("done");
+  }
+
+  void failure(Thread& thread, GoalCode code, const std::string& reason, Self& self) {
+    reason_ = reason;
+    cut(thread, self);
+    const Step& step = program_->steps[thread.at];
+    // What was waited for in vain does not go on beside what comes instead of it.
+    if (thread.child != 0 && !finished(self.child_state(thread.child)))
+      self.remove_child(thread.child);
+    thread.child = 0;
+    thread.waiting = false;
+    if (step.other != kNowhere) {
+      thread.at = step.other;
+      return;
+    }
+    if (thread.id == threads_.front().id) {
+      over_ = true;
+      self.fail(code, reason);
+      return;
+    }
+    for (const Child& child : thread.children)
+      self.remove_child(child.id);
+    thread.children.clear();
+    thread.over = true;
+    thread.has_failed = true;
+    thread.failed = reason;
+    thread.code = code;
+  }
+
+  std::shared_ptr<const Program> program_;
+  std::vector<Value> locals_;
+  std::list<Thread> threads_;  ///< the main thread first
+  std::size_t last_thread_ = 0;
+  std::map<std::size_t, Ticks> held_since_;
+  bool over_ = false;
+  Ticks begun_at_ = -1;
+  std::optional<Ticks> suspended_at_;
+  std::string outcome_;  ///< of the newest INTEND that was waited for
+  std::string reason_;
+  std::size_t shown_at_ = kNowhere;
+  bool shown_waiting_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Activity> make_machine(std::shared_ptr<const Program> program,
+                                       const Bindings& bindings) {
+  return std::make_unique<Machine>(std::move(program), bindings);
+}
+
+}  // namespace saphira::intentions

@@ -1,0 +1,157 @@
+#include "saphira/intentions/language.hpp"
+
+#include <gtest/gtest.h>
+
+#include "language_bench.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string activity(const std::string& goals, const std::string& rest = "") {
+  return "(defintention :it " + rest + " :goals '(" + goals + "))";
+}
+
+TEST(Activities, OneGoalSetForACycle) {
+  Stage stage(
+      activity("(EXECUTE (say \"one\")) ((EXECUTE (say \"two\")) (EXECUTE (say \"more\")))"
+               "(:three (EXECUTE (say \"three\")))"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step();
+  EXPECT_EQ(stage.messages, Names({"one"}));
+  stage.step();
+  EXPECT_EQ(stage.messages, Names({"one", "two", "more"}));
+  EXPECT_EQ(stage.display(), "* it THREE");
+  stage.step();
+  EXPECT_EQ(stage.messages.back(), "three");
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+}
+
+TEST(Activities, ParametersVariablesAndConditions) {
+  Stage stage(
+      activity("(= double (* 2 n)) (IF (> double 5) (GOTO :large))"
+               "(SUCCEED \"small ~a\" double) (:large (SUCCEED \"large ~a\" double))",
+               ":params ((n :number 1 :low 0 :high 9))"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it", {number("n", 2.0)});
+  stage.step(5);
+  EXPECT_EQ(stage.status(1).reason, "small 4");
+  stage.ask(2, "it", {number("n", 3.0)});
+  stage.step(5);
+  EXPECT_EQ(stage.status(2).reason, "large 6");
+  stage.ask(3, "it");
+  stage.step(5);
+  EXPECT_EQ(stage.status(3).reason, "small 2");
+  stage.ask(4, "it", {number("n", 10.0)});
+  stage.step();
+  EXPECT_EQ(stage.status(4).state, GoalState::kRefused);
+  EXPECT_EQ(stage.status(4).reason, "argument \"n\": expected a number from 0 to 9, got 10");
+}
+
+TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
+  Stage stage(
+      activity("(INTEND :go-to-pos ((goal . (point 1 2)) (speed . 300mm/s)) :name first)"
+               "(INTEND :TurnTo ((goal . (point 1 2))) :name second :priority 1)"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(5);
+  ASSERT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  EXPECT_EQ(stage.out.behaviors[0].priority, 2);
+  EXPECT_TRUE(stage.out.behaviors[0].blocking);
+  EXPECT_EQ(find(stage.out.behaviors[0].parameters, "speed")->number, 0.3);
+  EXPECT_EQ(stage.display(), "* it S2; * GoToPos B");
+  stage.satisfy("first", 0.89);
+  stage.step(5);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  stage.satisfy("first", 0.95);
+  stage.step();
+  EXPECT_EQ(stage.behaviors(), Names({"TurnTo"})) << "in the cycle in which the first ended";
+  EXPECT_EQ(stage.out.behaviors[0].priority, 1);
+  stage.satisfy("second", 1.0);
+  stage.step(3);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_TRUE(stage.out.behaviors.empty());
+}
+
+TEST(Activities, AThresholdLetsGoOnWhileTheBehaviorLasts) {
+  Stage stage(
+      activity("(INTEND :follow () :blocking 0.6 :name lane)"
+               "(INTEND :follow-door () :name door) (UNINTEND 'lane)"));
+  stage.ask(1, "it");
+  stage.satisfy("lane", 0.5);
+  stage.step(5);
+  EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
+  stage.satisfy("lane", 0.7);
+  stage.step();
+  EXPECT_EQ(stage.behaviors(), Names({"Follow", "FollowDoor"}));
+  stage.satisfy("lane", 1.0);
+  stage.step(5);
+  EXPECT_EQ(stage.behaviors(), Names({"Follow", "FollowDoor"}));
+}
+
+TEST(Activities, AFinishedChildIsPassedUpInTheSameCycle) {
+  Stage stage(
+      "(defintention :top :goals '((INTEND :middle ()) (INTEND :stop-here ())))"
+      "(defintention :middle :goals '((INTEND :bottom ())))"
+      "(defintention :bottom :goals '((INTEND :go-to-pos () :name go)))"
+      "(defintention :stop-here :goals '((INTEND :halt () :name halt)))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "top");
+  stage.step();
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "begun at once, three levels deep";
+  EXPECT_EQ(stage.display(), "* top S2; * middle END; * bottom END; * GoToPos B");
+  stage.satisfy("go", 1.0);
+  stage.step(2);  // what is said of it may still be of what was before it
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  stage.step();
+  EXPECT_EQ(stage.behaviors(), Names({"Halt"}));
+}
+
+TEST(Activities, Figure9RunsFromItsFile) {
+  const std::string folder = std::getenv("SAPHIRA_SOURCE_DIR");
+  Functions functions = core_functions();
+  functions.add(Function{"find-path", 2, 2,
+                         [](const World&, Values arguments) {
+                           return *arguments[1].text() == "nowhere"
+                                      ? Value()
+                                      : Value(Value::List{arguments[0], arguments[1]});
+                         },
+                         ""});
+  Stage stage(read_file(folder + "/config/activities/figure-9.act") + R"(
+    (defintention :follow-path
+      :params (path)
+      :goals '((EXECUTE (say "following ~a" path))
+               (INTEND :follow () :name way)))
+    (defintention :spoil :concurrent t :goals '((EXECUTE (setq *failed-execution* t)))))",
+              functions);
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "plan_and_execute", {text("dest", "nowhere")});
+  stage.step(6);
+  EXPECT_EQ(stage.messages, Names({"Planning path to nowhere", "No passable routes"}));
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+
+  stage.messages.clear();
+  stage.ask(2, "plan-and-execute", {text("dest", "EJ-231")});
+  stage.step(4);
+  EXPECT_EQ(stage.messages, Names({"Planning path to EJ-231", "following nil, EJ-231"}));
+  stage.step();
+  EXPECT_EQ(stage.display(),
+            "* plan-and-execute S5; o monitor-planex CLEANUP; * follow-path END; * Follow B");
+  // A failure signalled: the monitor ends the following, and the plan is made anew.
+  stage.ask(3, "spoil");
+  stage.step(4);
+  EXPECT_EQ(stage.messages.size(), 3U);
+  EXPECT_EQ(stage.messages.back(), "Planning path to EJ-231");
+  stage.step(6);
+  EXPECT_EQ(stage.messages.back(), "following nil, EJ-231");
+  EXPECT_TRUE(stage.belief("*failed-execution*").nil());
+  stage.satisfy("way", 1.0);
+  stage.step(8);
+  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+}
+
+}  // namespace
+}  // namespace saphira::intentions
