@@ -2,10 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
 namespace saphira::behaviors {
+namespace {
+
+/// Nothing that is not a number may get to the robot. Returns what is wrong.
+std::string check(Evaluation& evaluation) {
+  std::string wrong = std::move(evaluation.trouble);
+  const auto bad = [&](const std::string& what) {
+    wrong += (wrong.empty() ? "" : ", ") + what + " is not a number";
+  };
+  for (Rule& rule : evaluation.rules)
+    if (!std::isfinite(rule.strength) || !std::isfinite(rule.value)) {
+      rule.strength = 0.0;
+      rule.value = 0.0;
+      bad("rule \"" + rule.name + "\"");
+    }
+  Activity& activity = evaluation.activity;
+  for (double* const value : {&activity.turn, &activity.speed, &activity.goal, &activity.progress})
+    if (!std::isfinite(*value)) {
+      *value = 0.0;
+      bad("the activity");
+    }
+  evaluation.trouble = wrong;
+  return wrong;
+}
+
+}  // namespace
 
 Executive::Executive(Registry registry, RobotModel model, ExecutiveSettings settings)
     : registry_(std::move(registry)),
@@ -16,12 +44,16 @@ Executive::Executive(Registry registry, RobotModel model, ExecutiveSettings sett
 void Executive::reset() {
   lps_.reset();
   instances_.clear();
+  reconciled_.clear();
+  reconcile_trouble_.clear();
 }
 
 void Executive::reset(RobotModel model) {
   model_ = std::move(model);
   lps_ = lps::LocalPerceptualSpace(model_.lps);
   instances_.clear();
+  reconciled_.clear();
+  reconcile_trouble_.clear();
 }
 
 Output Executive::step(const Inputs& inputs) {
@@ -45,6 +77,9 @@ Output Executive::step(const Inputs& inputs) {
     if (!std::exchange(instance.initialised, true))
       instance.behavior->init(instance.parameters, context);
     blended[i].evaluation = instance.behavior->update(instance.parameters, context);
+    if (const std::string wrong = check(blended[i].evaluation); !wrong.empty())
+      output.trouble +=
+          (output.trouble.empty() ? "" : "; ") + instance.intended.name + ": " + wrong;
   }
   output.blend = blend(blended, inputs.robot.velocity);
   for (std::size_t i = 0; i < instances_.size(); ++i)
@@ -69,37 +104,55 @@ Output Executive::step(const Inputs& inputs) {
 }
 
 std::string Executive::reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom) {
+  // Most cycles want what the one before has wanted.
+  if (reconciled_revision_ == registry_.revision() && reconciled_ == intended)
+    return reconcile_trouble_;
+  std::map<std::string, Instance*> known;  // by copies: instances are moved from below
+  for (Instance& instance : instances_)
+    known.emplace(instance.intended.name, &instance);
+  std::set<std::string_view> seen;
   std::string trouble;
   std::vector<Instance> next;
   next.reserve(intended.size());
-  for (const Intended& wanted : intended)
-    if (const std::string wrong = adopt(wanted, robot_in_odom, next); !wrong.empty())
+  for (const Intended& wanted : intended) {
+    std::string wrong;
+    const auto found = known.find(wanted.name);
+    Instance* const same = found != known.end() && found->second->intended.schema == wanted.schema
+                               ? found->second
+                               : nullptr;
+    if (!seen.insert(wanted.name).second)
+      wrong = "the name is there twice; the first one holds";
+    else
+      wrong = adopt(wanted, robot_in_odom, same, next);
+    if (!wrong.empty())
       trouble += (trouble.empty() ? "" : "; ") + wanted.name + ": " + wrong;
+  }
   // By name among equals: the order of the set must not show in the result.
   std::stable_sort(next.begin(), next.end(), [](const Instance& a, const Instance& b) {
     return std::tie(a.intended.priority, a.intended.name) <
            std::tie(b.intended.priority, b.intended.name);
   });
   instances_ = std::move(next);
+  reconciled_ = intended;
+  reconciled_revision_ = registry_.revision();
+  reconcile_trouble_ = trouble;
   return trouble;
 }
 
-std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom,
+std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom, Instance* same,
                              std::vector<Instance>& next) {
-  if (std::any_of(next.begin(), next.end(),
-                  [&](const Instance& i) { return i.intended.name == wanted.name; }))
-    return "the name is there twice; the first one holds";
-  const auto same = std::find_if(instances_.begin(), instances_.end(), [&](const Instance& i) {
-    return i.behavior != nullptr && i.intended.name == wanted.name &&
-           i.intended.schema == wanted.schema;
-  });
-  const bool known = same != instances_.end();
-  if (known && same->intended.parameters == wanted.parameters) {
-    next.push_back(std::move(*same));
-    next.back().intended = wanted;
+  const Schema* const schema = registry_.find(wanted.schema);
+  const auto keep = [&] {
+    Instance instance = std::move(*same);
+    instance.intended = wanted;
+    next.push_back(std::move(instance));
+  };
+  // One whose schema is gone stays as long as nothing else is wanted of it.
+  const bool current = same != nullptr && (schema == nullptr || same->revision == schema->revision);
+  if (current && same->intended.parameters == wanted.parameters) {
+    keep();
     return {};
   }
-  const Schema* const schema = registry_.find(wanted.schema);
   if (schema == nullptr) {
     std::string names;
     for (const std::string& name : registry_.names())
@@ -109,13 +162,22 @@ std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom,
   std::string trouble;
   std::optional<Parameters> parameters =
       Parameters::check(schema->parameters, wanted.parameters, robot_in_odom, trouble);
-  if (!parameters)
-    return trouble;
+  if (!parameters) {
+    if (same == nullptr || same->intended.parameters != wanted.parameters)
+      return trouble;
+    // The new version wants other parameters than those that were fine: the old one runs on.
+    keep();
+    return "its schema has changed, and the old version runs on: " + trouble;
+  }
   Instance instance;
-  if (known)
+  if (current) {
     instance = std::move(*same);
-  else
+  } else {
     instance.behavior = schema->make();
+    if (same != nullptr)
+      instance.behavior->take_over(*same->behavior);
+  }
+  instance.revision = schema->revision;
   instance.intended = wanted;
   instance.parameters = std::move(*parameters);
   next.push_back(std::move(instance));

@@ -1,21 +1,10 @@
-#include "predefined.hpp"
+#include "saphira/behaviors/folder.hpp"
 
 namespace saphira::behaviors {
 
 Registry predefined() {
-  Registry registry;
-  registry.add(constant_velocity());
-  registry.add(stop());
-  registry.add(avoid_collision());
-  registry.add(stop_collision());
-  registry.add(keep_off());
-  registry.add(go_to_pos());
-  registry.add(turn_to());
-  registry.add(attend_at_pos());
-  registry.add(follow());
-  registry.add(follow_corridor());
-  registry.add(follow_door());
-  return registry;
+  static const Registry kShipped = load_behaviors(behaviors_folder());
+  return kShipped;
 }
 
 }  // namespace saphira::behaviors

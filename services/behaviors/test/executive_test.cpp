@@ -183,7 +183,8 @@ TEST_F(ExecutiveTest, EverySchemaRunsOnItsDefaults) {
     std::vector<Argument> arguments;
     for (const ParameterSpec& spec : executive_.registry().find(name)->parameters)
       if (spec.required)
-        arguments.push_back(point(spec.name, {3.0, 0.0, 0.0}));
+        arguments.push_back(spec.kind == Kind::point ? point(spec.name, {3.0, 0.0, 0.0})
+                                                     : number(spec.name, 300.0));
     const Output output = step({{name, name, 0, true, arguments}});
     EXPECT_EQ(output.trouble, "");
     ASSERT_EQ(output.behaviors.size(), 1U);

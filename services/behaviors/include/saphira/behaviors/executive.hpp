@@ -18,6 +18,8 @@ struct Intended {
   int priority = 0;  ///< 0 is the highest
   bool running = true;
   std::vector<Argument> parameters;
+
+  bool operator==(const Intended&) const = default;
 };
 
 /// What is intended, the whole of it, as of some cycle.
@@ -82,12 +84,14 @@ class Executive {
   struct Instance {
     Intended intended;  ///< as it was asked for last
     Parameters parameters;
+    std::uint64_t revision = 0;  ///< of its schema
     std::unique_ptr<Behavior> behavior;
     bool initialised = false;
   };
   /// Makes the instances what is intended; returns what was wrong.
   std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
-  std::string adopt(const Intended& intended, const Pose& robot_in_odom,
+  /// `same` is the instance of that name and schema; nullptr where there is none.
+  std::string adopt(const Intended& intended, const Pose& robot_in_odom, Instance* same,
                     std::vector<Instance>& next);
 
   Registry registry_;
@@ -95,6 +99,10 @@ class Executive {
   ExecutiveSettings settings_;
   lps::LocalPerceptualSpace lps_;
   std::vector<Instance> instances_;
+  // What the instances were made from, and what was wrong with it.
+  std::vector<Intended> reconciled_;
+  std::uint64_t reconciled_revision_ = 0;
+  std::string reconcile_trouble_;
 };
 
 }  // namespace saphira::behaviors

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "saphira/behaviors/behavior.hpp"
+
+namespace saphira::behaviors {
+
+/// The behavior files (*.beh) of a folder, and what they have given a registry.
+class Folder {
+ public:
+  explicit Folder(std::string path) : path_(std::move(path)) {}
+
+  /// What a look has found to be new.
+  struct News {
+    bool changed = false;             ///< schemas came, changed or went, or the trouble is another
+    std::vector<std::string> taken;   ///< files
+    std::vector<std::string> faults;  ///< of files that changed: as FileError has them
+    std::vector<std::string> warnings;
+  };
+
+  /// Takes what is new in the folder since the last look into `registry`. A file that is wrong
+  /// changes nothing: what it gave before stays. What a file that is gone gave is taken away.
+  News look(Registry& registry);
+
+  const std::string& path() const { return path_; }
+  /// What is wrong now with which files; empty: nothing.
+  std::string trouble() const;
+
+ private:
+  struct Stamp {
+    std::int64_t time = 0;
+    std::uintmax_t size = 0;
+
+    bool operator==(const Stamp&) const = default;
+  };
+  struct File {
+    Stamp stamp;
+    std::vector<std::string> schemas;  ///< that it has given
+    std::string fault;                 ///< the first one; empty: none
+  };
+  void take(const std::string& name, File& file, Registry& registry, News& news);
+  std::string owner(const std::string& schema, const std::string& but) const;
+
+  std::string path_;
+  std::map<std::string, File> files_;  ///< by name
+  bool missing_ = false;
+};
+
+/// The behaviors of a folder; std::runtime_error that says all that is wrong with its files.
+Registry load_behaviors(const std::string& folder);
+
+/// The folder of the shipped behaviors: config/behaviors.
+std::string behaviors_folder();
+
+}  // namespace saphira::behaviors

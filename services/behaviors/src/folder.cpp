@@ -1,0 +1,131 @@
+#include "saphira/behaviors/folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "saphira/base/places.hpp"
+#include "saphira/behaviors/language.hpp"
+
+namespace saphira::behaviors {
+
+namespace fs = std::filesystem;
+
+Folder::News Folder::look(Registry& registry) {
+  News news;
+  std::error_code error;
+  fs::directory_iterator entries(path_, error);
+  const bool missing = static_cast<bool>(error);
+  if (missing != missing_) {
+    news.changed = true;
+    missing_ = missing;
+    if (missing)
+      news.faults.push_back(path_ + ": expected a folder of behavior files: " + error.message());
+  }
+  // A folder that cannot be read takes nothing away.
+  if (missing)
+    return news;
+
+  std::map<std::string, Stamp> there;
+  for (; entries != fs::directory_iterator(); entries.increment(error)) {
+    const fs::directory_entry& entry = *entries;
+    if (entry.path().extension() != ".beh" || !entry.is_regular_file(error))
+      continue;
+    Stamp stamp;
+    stamp.time = entry.last_write_time(error).time_since_epoch().count();
+    stamp.size = entry.file_size(error);
+    there[entry.path().filename().string()] = stamp;
+    if (error)
+      break;
+  }
+  for (auto file = files_.begin(); file != files_.end();) {
+    if (there.contains(file->first)) {
+      ++file;
+      continue;
+    }
+    for (const std::string& schema : file->second.schemas)
+      registry.remove(schema);
+    news.changed = true;
+    file = files_.erase(file);
+  }
+  for (const auto& [name, stamp] : there) {
+    File& file = files_[name];
+    if (file.stamp == stamp)
+      continue;
+    file.stamp = stamp;
+    news.changed = true;
+    take(name, file, registry, news);
+  }
+  return news;
+}
+
+void Folder::take(const std::string& name, File& file, Registry& registry, News& news) {
+  const std::string path = (fs::path(path_) / name).string();
+  const auto fault = [&](const std::string& what) {
+    if (file.fault.empty())
+      file.fault = what;
+    news.faults.push_back(what);
+  };
+  file.fault.clear();
+  Compiled compiled;
+  try {
+    compiled = compile(read_file(path), path);
+  } catch (const std::runtime_error& error) {
+    fault(error.what());
+    return;
+  }
+  for (const FileError& warning : compiled.warnings)
+    news.warnings.emplace_back(warning.what());
+  for (const FileError& one : compiled.errors)
+    fault(one.what());
+  for (const Schema& schema : compiled.schemas)
+    if (const std::string other = owner(schema.name, name); !other.empty())
+      fault(path + ": the behavior \"" + schema.name + "\" is in " + other + " already");
+  if (!file.fault.empty())
+    return;
+  std::vector<std::string> names;
+  for (Schema& schema : compiled.schemas) {
+    names.push_back(schema.name);
+    registry.add(std::move(schema));
+  }
+  for (const std::string& old : file.schemas)
+    if (std::find(names.begin(), names.end(), old) == names.end())
+      registry.remove(old);
+  file.schemas = std::move(names);
+  news.taken.push_back(path);
+}
+
+std::string Folder::owner(const std::string& schema, const std::string& but) const {
+  for (const auto& [name, file] : files_)
+    if (name != but &&
+        std::find(file.schemas.begin(), file.schemas.end(), schema) != file.schemas.end())
+      return name;
+  return {};
+}
+
+std::string Folder::trouble() const {
+  std::string out = missing_ ? path_ + ": expected a folder of behavior files" : "";
+  for (const auto& [name, file] : files_)
+    if (!file.fault.empty())
+      out += (out.empty() ? "" : "\n") + file.fault;
+  return out;
+}
+
+Registry load_behaviors(const std::string& folder) {
+  Registry registry;
+  const Folder::News news = Folder(folder).look(registry);
+  if (!news.faults.empty()) {
+    std::string all;
+    for (const std::string& fault : news.faults)
+      all += (all.empty() ? "" : "\n") + fault;
+    throw std::runtime_error(all);
+  }
+  return registry;
+}
+
+std::string behaviors_folder() {
+  return config_folder() + "/behaviors";
+}
+
+}  // namespace saphira::behaviors
