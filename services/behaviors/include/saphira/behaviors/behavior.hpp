@@ -145,8 +145,8 @@ class Registry {
   std::uint64_t revision_ = 0;
 };
 
-/// The predefined behaviors of manual 7.8: those of config/behaviors, as they were when it was first
-/// called. std::runtime_error where they cannot be had.
+/// The predefined behaviors of manual 7.8: those of config/behaviors, as they were when it was
+/// first called. std::runtime_error where they cannot be had.
 Registry predefined();
 
 }  // namespace saphira::behaviors
