@@ -178,6 +178,27 @@ void add_numbers(Functions& functions) {
                                                    number_of(a, 2, name)));
                            },
                            "(down-straight x low high) fuzzy: from 1 at low to 0 at high"});
+  functions.add(Function{"f-greater", 3, 3,
+                         [](const World&, Values a) {
+                           const double c = number_of(a, 1, "f-greater");
+                           const double half = number_of(a, 2, "f-greater") / 2.0;
+                           return Value(up(number_of(a, 0, "f-greater"), c - half, c + half));
+                         },
+                         "(f-greater x c delta) fuzzy: one half at c"});
+  functions.add(Function{"f-smaller", 3, 3,
+                         [](const World&, Values a) {
+                           const double c = number_of(a, 1, "f-smaller");
+                           const double half = number_of(a, 2, "f-smaller") / 2.0;
+                           return Value(1.0 - up(number_of(a, 0, "f-smaller"), c - half, c + half));
+                         },
+                         "(f-smaller x c delta) fuzzy: one half at c"});
+  functions.add(Function{"f-eq", 3, 3,
+                         [](const World&, Values a) {
+                           const double off =
+                               std::abs(number_of(a, 0, "f-eq") - number_of(a, 1, "f-eq"));
+                           return Value(1.0 - up(off, 0.0, number_of(a, 2, "f-eq")));
+                         },
+                         "(f-eq x c delta) fuzzy: 1 at c, 0 from delta off"});
   functions.add(
       fold("f-and", "fuzzy: the smallest", [](double a, double b) { return std::min(a, b); }));
   functions.add(

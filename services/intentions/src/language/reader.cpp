@@ -100,6 +100,10 @@ void Reader::advance() {
   ++at_;
 }
 
+bool Reader::at_definition() const {
+  return column_ == 1 && content_.substr(at_).starts_with("(def");
+}
+
 void Reader::skip_blank() {
   while (more()) {
     if (peek() == ';') {
@@ -119,8 +123,8 @@ void Reader::fail(int line, int column, std::string message) {
 }
 
 void Reader::recover() {
-  // read_list stops before a "(" in the first column; anything else is passed over.
-  while (more() && !(peek() == '(' && column_ == 1))
+  // read_list stops before a definition in the first column; anything else is passed over.
+  while (more() && !at_definition())
     advance();
 }
 
@@ -161,7 +165,7 @@ Form Reader::read_list(int depth) {
   for (;;) {
     skip_blank();
     // A definition begins in the first column: what it stands in has lost a parenthesis.
-    if (!more() || (peek() == '(' && column_ == 1))
+    if (!more() || at_definition())
       fail(form.line, form.column, "expected a ) for this (");
     if (peek() == ')') {
       advance();

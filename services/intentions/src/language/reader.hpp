@@ -39,6 +39,8 @@ class Reader {
   struct Stop {};  ///< thrown up to the form at the top, behind a mistake
   bool more() const { return at_ < content_.size(); }
   char peek() const { return content_[at_]; }
+  /// At a "(def" in the first column, where nothing but a definition stands.
+  bool at_definition() const;
   void advance();
   void skip_blank();
   Form read_form(int depth);
@@ -46,7 +48,7 @@ class Reader {
   Form read_text();
   Form read_atom();
   [[noreturn]] void fail(int line, int column, std::string message);
-  /// Behind a mistake: to the next "(" in the first column.
+  /// Behind a mistake: to the next definition.
   void recover();
 
   std::string file_;

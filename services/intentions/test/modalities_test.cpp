@@ -1,0 +1,407 @@
+#include <gtest/gtest.h>
+
+#include "language_bench.hpp"
+
+// Each goal modality of Figure 8, and what PRS adds to them.
+
+namespace saphira::intentions {
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string activity(const std::string& goals, const std::string& rest = "") {
+  return "(defintention :it " + rest + " :goals '(" + goals + "))";
+}
+
+TEST(Modality, TestFailsWithAReasonUpToTheGoal) {
+  Stage stage(
+      "(defintention :it :goals '((INTEND :part ())))"
+      "(defintention :part :goals '((TEST (> 1 2) :reason (format \"~a is too small\" 1))))");
+  stage.ask(1, "it");
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).code, GoalCode::kActivity);
+  EXPECT_EQ(stage.status(1).reason, "part: 1 is too small");
+}
+
+TEST(Modality, WhatFailsCanBeGoneAround) {
+  Stage stage(
+      activity("(INTEND :part () :else ((EXECUTE (say \"because ~a\" (reason))) (GOTO :other)))"
+               "(FAIL \"not here\") (:other (TEST stalled :else (EXECUTE (say \"not stalled\"))))"
+               "(SUCCEED \"~a\" (outcome))") +
+      "(defintention :part :goals '((FAIL \"no way\")))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(5);
+  EXPECT_EQ(stage.messages, Names({"because part: no way", "not stalled"}));
+  EXPECT_EQ(stage.status(1).reason, "failure");
+}
+
+TEST(Modality, WaitForAConditionAndItsLimit) {
+  Stage stage(activity("(WAIT-FOR stalled :timeout 0.5s)", ":timeout 60s"));
+  ASSERT_TRUE(stage.loaded.troubles.empty()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.status(1).step, "waits for stalled");
+  stage.inputs.robot.left_stalled = true;
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+
+  stage.inputs.robot.left_stalled = false;
+  stage.ask(2, "it");
+  stage.step(6);  // it begins in the first, and 5 cycles are its limit
+  EXPECT_EQ(stage.status(2).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(2).code, GoalCode::kTimeout);
+  EXPECT_EQ(stage.status(2).reason, "waited 0.5 s for stalled");
+}
+
+TEST(Modality, TimeoutsOfBehaviorsAndActivities) {
+  Stage stage(
+      "(defintention :a :goals '((INTEND :GoToPos () :timeout 1s)))"
+      "(defintention :b :timeout 1s :goals '((WAIT-FOR stalled)))"
+      "(defintention :c :goals '((INTEND :b () :timeout 0.3s)))");
+  stage.ask(1, "a");
+  stage.step(10);
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).reason, "GoToPos: not satisfied in 1 s");
+  EXPECT_EQ(stage.status(1).code, GoalCode::kTimeout);
+  stage.ask(2, "b");
+  stage.step(12);
+  EXPECT_EQ(stage.status(2).reason, "not done in 1 s");
+  stage.ask(3, "c");
+  stage.step(5);
+  EXPECT_EQ(stage.status(3).reason, "b: not done in 0.3 s");
+}
+
+TEST(Modality, AndJoinsSplitDoesNot) {
+  Stage stage(activity("(AND (WAIT-FOR *a*) (SEQ (WAIT-FOR *b*) (EXECUTE (say \"b\"))))"
+                       "(SPLIT (SEQ (WAIT-FOR *c*) (EXECUTE (say \"c\")))"
+                       "       (GOTO :aside))"
+                       "(WAIT-FOR *d*) (GOTO :end)"
+                       "(:aside (EXECUTE (say \"aside\"))) (:end)",
+                       ":timeout 60s") +
+              "(defintention :put :concurrent t :params (what)"
+              " :goals '((IF (equal what 'a) (EXECUTE (setq *a* t)))"
+              "          (IF (equal what 'b) (EXECUTE (setq *b* t)))"
+              "          (IF (equal what 'c) (EXECUTE (setq *c* t)))"
+              "          (IF (equal what 'd) (EXECUTE (setq *d* t)))))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  auto put = [&, id = std::uint64_t{10}](const char* what) mutable {
+    stage.ask(id++, "put", {text("what", what)});
+    stage.step(8);
+  };
+  stage.ask(1, "it");
+  put("b");
+  EXPECT_EQ(stage.messages, Names({"b"}));
+  EXPECT_EQ(stage.display(), "* it S2") << "joined only when both have ended";
+  put("a");
+  EXPECT_EQ(stage.messages, Names({"b", "aside"}));
+  EXPECT_EQ(stage.display(), "* it S4");
+  put("c");
+  EXPECT_EQ(stage.messages, Names({"b", "aside", "c"}));
+  put("d");
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+}
+
+TEST(Modality, AndFailsWithOneOfItsGoalsAndEndsTheOthers) {
+  Stage stage(activity("(AND (INTEND :Follow ()) (INTEND :part ())"
+                       " :else (EXECUTE (say \"~a\" (reason)))) (WAIT-FOR stalled)",
+                       ":timeout 60s") +
+              "(defintention :part :goals '((WAIT-FOR *x*) (FAIL \"enough\")))");
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
+  stage.inputs.claims.push_back(
+      {ClaimEvent::Kind::kSaid, {9, 1}, "somebody", "*x*", Value::truth(true)});
+  stage.step(2);
+  EXPECT_EQ(stage.messages, Names({"part: enough"}));
+  EXPECT_TRUE(stage.behaviors().empty());
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+}
+
+TEST(Modality, WhatIsNotWaitedForEndsWithItsParent) {
+  Stage stage(activity("(INTEND :guard () :blocking nil) (INTEND :GoToPos () :name go)") +
+              "(defintention :guard :goals '((INTEND :AvoidCollision () :blocking nil :priority 0)"
+              "                              (WAIT-FOR stalled :forever t)))");
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.behaviors(), Names({"AvoidCollision", "GoToPos"}));
+  EXPECT_EQ(stage.display(), "* it END; o guard END; o AvoidCollision B; * GoToPos B");
+  stage.satisfy("go", 1.0);
+  stage.step(3);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_TRUE(stage.out.nodes.empty());
+}
+
+TEST(Modality, UnintendEndsTheNearestOfThatNameAndWhoWaitedGoesOn) {
+  Stage stage(activity("(INTEND :watch () :blocking nil)"
+                       "(INTEND :follow () :name way)"
+                       "(SUCCEED \"~a\" (outcome))") +
+              "(defintention :follow :goals '((INTEND :GoToPos () :name way)))"
+              "(defintention :watch :goals '((WAIT-FOR stalled :forever t) (UNINTEND 'way)))");
+  stage.ask(1, "it");
+  stage.step(4);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  stage.inputs.robot.right_stalled = true;
+  stage.step();
+  EXPECT_TRUE(stage.behaviors().empty());
+  stage.step();
+  EXPECT_EQ(stage.status(1).reason, "removed");
+}
+
+TEST(Modality, AnActivityMayEndWhatItStandsIn) {
+  Stage stage(activity("(INTEND :outer () :name outer) (SUCCEED \"~a\" (outcome))") +
+              "(defintention :outer :goals '((INTEND :inner ()) (FAIL \"not this\")))"
+              "(defintention :inner :goals '((UNINTEND 'outer) (WAIT-FOR stalled :forever t)))");
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded) << stage.status(1).reason;
+  EXPECT_EQ(stage.status(1).reason, "removed");
+}
+
+TEST(Modality, PreserveEndsItsGoalsWhenTheConditionBreaks) {
+  Stage stage(
+      activity("(PRESERVE (not stalled) (INTEND :GoToPos () :name go)"
+               " :else (EXECUTE (say \"~a\" (reason)))) (EXECUTE (say \"on\"))"));
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  stage.inputs.robot.left_stalled = true;
+  stage.step();
+  EXPECT_TRUE(stage.behaviors().empty());
+  EXPECT_EQ(stage.messages, Names({"(not stalled) does not hold any more", "on"}));
+}
+
+TEST(Modality, MaintainRestoresAndGoesOn) {
+  Stage stage(activity("(MAINTAIN (not stalled) :by (INTEND :back ())"
+                       " (INTEND :walk ())) (EXECUTE (say \"there\"))") +
+              "(defintention :walk :goals '((INTEND :GoToPos () :name go)"
+              "                             (EXECUTE (say \"walked\"))))"
+              "(defintention :back :goals '((INTEND :ConstantVelocity ((speed . -100mm/s)))))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  stage.inputs.robot.left_stalled = true;
+  stage.step();
+  EXPECT_EQ(stage.behaviors(), Names({"ConstantVelocity"})) << "instead of what is maintained";
+  stage.step(5);
+  stage.inputs.robot.left_stalled = false;
+  stage.satisfy("ConstantVelocity", 1.0);
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "it went on where it was";
+  stage.satisfy("go", 1.0);
+  stage.step(8);
+  EXPECT_EQ(stage.messages, Names({"walked", "there"}));
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+}
+
+TEST(Modality, MaintainFailsWhereItCannotRestore) {
+  Stage stage(
+      activity("(MAINTAIN (not stalled) :by (EXECUTE (say \"trying\"))"
+               " (INTEND :GoToPos ()))"));
+  stage.ask(1, "it");
+  stage.step(3);
+  stage.inputs.robot.left_stalled = true;
+  stage.step();
+  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).reason, "(not stalled) could not be restored");
+  EXPECT_EQ(stage.messages, Names({"trying"}));
+}
+
+TEST(Modality, AnInterruptedGoalGoesOnWhereItWas) {
+  Stage stage(activity("(EXECUTE (say \"begun\")) (INTEND :part ()) (EXECUTE (say \"over\"))",
+                       ":timeout 3s") +
+              "(defintention :part :goals '((EXECUTE (say \"part\"))"
+              "                             (INTEND :GoToPos () :name go :timeout 2s)))"
+              "(defintention :other :goals '((INTEND :TurnTo () :name turn)))");
+  stage.ask(1, "it");
+  stage.step(5);
+  stage.ask(2, "other", {}, 1);
+  stage.step(50);
+  EXPECT_EQ(stage.behaviors(), Names({"TurnTo"}));
+  EXPECT_EQ(stage.status(1).state, GoalState::kSuspended);
+  stage.satisfy("turn", 1.0);
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "no timeout has run meanwhile";
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  stage.satisfy("go", 1.0);
+  stage.step(6);
+  EXPECT_EQ(stage.messages, Names({"begun", "part", "over"})) << "nothing is done twice";
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+}
+
+TEST(Modality, APersonInterruptsAndResumesAnIntention) {
+  Stage stage(activity("(INTEND :part ())") +
+              "(defintention :part :goals '((INTEND :GoToPos () :name go)))"
+              "(defintention :other :goals '((EXECUTE (say \"other\"))))");
+  stage.ask(1, "it");
+  stage.step(3);
+  const std::uint32_t part = stage.out.nodes[1].id;
+  EXPECT_FALSE(stage.executor->interrupt(stage.out.nodes[2].id)) << "a behavior is none";
+  ASSERT_TRUE(stage.executor->interrupt(part));
+  stage.step(3);
+  EXPECT_TRUE(stage.behaviors().empty());
+  EXPECT_EQ(stage.out.nodes[1].state, IntentionState::kSuspended);
+  // Another goal comes and goes: what a person holds stays held.
+  stage.ask(2, "other", {}, 5);
+  stage.step(10);
+  EXPECT_TRUE(stage.behaviors().empty());
+  ASSERT_TRUE(stage.executor->resume(part));
+  EXPECT_FALSE(stage.executor->resume(part));
+  stage.step();
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+}
+
+TEST(Modality, LevelsAndTrends) {
+  Stage stage(activity("(INTEND :GoToPos () :name go)"));
+  stage.ask(1, "it");
+  stage.step(4);
+  for (int i = 0; i < 20; ++i) {
+    stage.satisfy("go", 0.03 * i);
+    stage.step();
+  }
+  EXPECT_NEAR(stage.status(1).level, 0.5, 0.1);
+  EXPECT_EQ(stage.status(1).trend, Trend::kRising);
+  stage.step(40);
+  EXPECT_EQ(stage.status(1).trend, Trend::kSteady);
+  stage.dispose(1);
+  stage.step();
+  // A goal that is content with less.
+  stage.satisfy("go", 0.4);
+  stage.level = 0.5;
+  stage.ask(2, "it");
+  stage.step(10);
+  EXPECT_EQ(stage.status(2).state, GoalState::kUnderway);
+  stage.satisfy("go", 0.6);
+  stage.step(2);
+  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(2).reason, "satisfied to 0.6, 0.5 was asked for");
+}
+
+TEST(Modality, BehaviorControlIsBackWhenItsGoalIsOver) {
+  Stage stage(activity("(EXECUTE (setq *behavior-control* nil)) (WAIT-FOR stalled :forever t)"));
+  stage.ask(1, "it");
+  stage.step();
+  EXPECT_FALSE(stage.out.behavior_control);
+  stage.step(3);
+  EXPECT_FALSE(stage.out.behavior_control);
+  stage.dispose(1);
+  stage.step();
+  EXPECT_TRUE(stage.out.behavior_control);
+}
+
+TEST(Modality, ABehaviorThatCannotBeMadeFailsItsIntention) {
+  Stage stage(activity("(INTEND :Fly () :name fly)"));
+  stage.ask(1, "it");
+  stage.step(2);
+  stage.inputs.troubles = {{stage.out.behaviors.at(0).name, "there is no behavior \"Fly\""}};
+  stage.step();
+  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).reason, "Fly: there is no behavior \"Fly\"");
+}
+
+TEST(Modality, PointsOnTheMapAreGivenInOdomAsRegistrationGoes) {
+  Stage stage(activity("(INTEND :GoToPos ((goal . p)))", ":params ((p :point))"));
+  stage.inputs.robot.odom_in_map = Pose{10.0, 0.0, 0.0};
+  stage.ask(1, "it", {point("p", {12.0, 3.0, 0.0}, Frame::kMap)});
+  stage.step(2);
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{2.0, 3.0, 0.0}));
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->frame, Frame::kOdom);
+  stage.inputs.robot.odom_in_map = Pose{10.5, 0.0, 0.0};
+  stage.step();
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{1.5, 3.0, 0.0}));
+  stage.inputs.robot.odom_in_map.reset();
+  stage.step();
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{1.5, 3.0, 0.0}));
+}
+
+TEST(Modality, ConcurrentGoalsAreUnderwayBesideTheOneThatDrives) {
+  Stage stage(
+      "(defintention :watch :concurrent t :goals '((WAIT-FOR stalled :forever t)))"
+      "(defintention :go :goals '((INTEND :GoToPos () :name go)))");
+  stage.ask(1, "watch");
+  stage.ask(2, "go");
+  stage.ask(3, "watch", {}, 9);
+  stage.step();
+  for (const std::uint64_t id : {1U, 2U, 3U})
+    EXPECT_EQ(stage.status(id).state, GoalState::kUnderway) << id;
+  stage.inputs.robot.left_stalled = true;
+  stage.step();
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(2).state, GoalState::kUnderway);
+}
+
+TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
+  Stage stage(activity("(WAIT-FOR stalled :forever t) (INTEND :part ())") +
+              "(defintention :part :goals '((SUCCEED)))");
+  stage.ask(1, "it");
+  stage.step(2);
+  const Loaded changed = load_text(
+      "test.act", activity("(FAIL \"new\")") + "(defintention :part :goals '((FAIL \"new part\")))",
+      *stage.options.functions, stage.executor->registry());
+  ASSERT_TRUE(changed.ok()) << errors(changed);
+  for (const Schema& schema : changed.schemas)
+    stage.executor->add(schema);
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  stage.inputs.robot.left_stalled = true;
+  stage.step(3);
+  EXPECT_EQ(stage.status(1).reason, "part: new part") << "what it begins anew is the new one";
+  stage.ask(2, "it");
+  stage.step(3);
+  EXPECT_EQ(stage.status(2).reason, "new");
+}
+
+TEST(Modality, ClaimsOfThirdPartiesAreBeliefs) {
+  Stage stage(activity("(WAIT-FOR (belief 'door-open) :forever t)"));
+  stage.ask(1, "it");
+  stage.step(3);
+  stage.inputs.claims.push_back(
+      {ClaimEvent::Kind::kSaid, {9, 1}, "a door", "door_open", Value::truth(true)});
+  stage.step();
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  const auto all = stage.executor->beliefs().all();
+  const auto claimed = std::find_if(all.begin(), all.end(),
+                                    [](const Belief& each) { return each.name == "door_open"; });
+  ASSERT_NE(claimed, all.end());
+  EXPECT_EQ(claimed->said_by, "a door");
+  EXPECT_EQ(claimed->since, 3);
+  stage.inputs.claims.push_back({ClaimEvent::Kind::kWithdrawn, {9, 1}, "", "", {}});
+  stage.step();
+  EXPECT_TRUE(stage.belief("door_open").nil());
+}
+
+TEST(Modality, NothingGrowsWithoutBound) {
+  Stage deep("(defintention :it :goals '((INTEND :it ())))");
+  deep.ask(1, "it");
+  deep.step(3);
+  EXPECT_EQ(deep.status(1).state, GoalState::kFailed);
+  EXPECT_NE(deep.status(1).reason.find("64 deep"), std::string::npos) << deep.status(1).reason;
+
+  Stage wide(activity("(:again (INTEND :Follow () :blocking nil)) (GOTO :again)"));
+  wide.ask(1, "it");
+  wide.step(3000);
+  EXPECT_EQ(wide.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(wide.status(1).reason, "it has begun 1024 intentions already");
+
+  Stage parallel(activity("(:again (SPLIT (WAIT-FOR stalled :forever t))) (GOTO :again)"));
+  parallel.ask(1, "it");
+  parallel.step(300);
+  EXPECT_EQ(parallel.status(1).reason, "more than 64 goals in parallel");
+
+  Stage bomb("(defintention :it :goals '((AND (INTEND :it ()) (INTEND :it ()))))");
+  bomb.ask(1, "it");
+  bomb.step(200);
+  EXPECT_EQ(bomb.status(1).state, GoalState::kFailed);
+
+  Stage lists(
+      activity("(:again (= x (list x x)) (= y (format \"~a~a~a\" y y \"abc\"))) (GOTO :again)"));
+  lists.ask(1, "it");
+  lists.step(200);
+  EXPECT_EQ(lists.status(1).reason, "a list of more than 4096 values");
+}
+
+}  // namespace
+}  // namespace saphira::intentions
