@@ -88,6 +88,8 @@ struct ParsedBehavior {
   std::vector<Statement> init;
   std::vector<Statement> update;
   std::vector<ParsedActivity> activity;
+  /// Variables of sentences that could not be read: that they are unknown is no other mistake.
+  std::vector<std::string> lost;
 };
 
 /// Parses as much as can be understood; what cannot be is in `messages`.

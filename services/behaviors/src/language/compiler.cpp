@@ -56,6 +56,7 @@ class Compiler {
     const std::size_t errors = messages_.errors.size();
     program_->name = behavior_.name;
     zero_ = constant(0.0);
+    unknown_.insert(behavior_.lost.begin(), behavior_.lost.end());
     for (const ParsedParameter& parameter : behavior_.parameters)
       bind(parameter);
     code_ = &program_->init;
@@ -236,8 +237,17 @@ class Compiler {
       at = static_cast<Register>(at + (argument.type == Type::point ? 3 : 1));
     }
     const Register to = fresh(found->result == Type::point ? 3 : 1);
-    emit(Op::call, to, first, static_cast<Register>(found - all.begin()));
+    emit(Op::call, to, first, call_index(found->call));
     return {to, found->result};
+  }
+
+  Register call_index(void (*target)(Call&, const double*, double*)) {
+    auto& calls = program_->calls;
+    const auto known = std::find(calls.begin(), calls.end(), target);
+    const auto index = static_cast<Register>(known - calls.begin());
+    if (known == calls.end())
+      calls.push_back(target);
+    return index;
   }
 
   // Statements ----------------------------------------------------------------------------------

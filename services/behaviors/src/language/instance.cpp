@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMetres = 0.001;  // of the language's millimetres
 
-void run(const std::vector<Instruction>& code, double* r, Call& call) {
+void run(const Program& program, const std::vector<Instruction>& code, double* r, Call& call) {
   const Instruction* const begin = code.data();
   const Instruction* const end = begin + code.size();
   for (const Instruction* i = begin; i != end; ++i) {
@@ -27,7 +27,7 @@ void run(const std::vector<Instruction>& code, double* r, Call& call) {
           i = begin + i->b - 1;
         break;
       case Op::call:
-        functions()[i->b].call(call, r + i->a, r + i->to);
+        program.calls[i->b](call, r + i->a, r + i->to);
         break;
       default:
         r[i->to] = apply(i->op, r[i->a], r[i->b], r[i->c]);
@@ -44,7 +44,7 @@ class Instance : public Behavior {
   void init(const Parameters& parameters, const Context& context) override {
     Evaluation evaluation;
     Call call = begin(parameters, context, evaluation);
-    run(program_->init, registers_.data(), call);
+    run(*program_, program_->init, registers_.data(), call);
     if (old_ == nullptr)
       return;
     for (const Program::Kept& kept : program_->kept)
@@ -60,7 +60,7 @@ class Instance : public Behavior {
     Evaluation evaluation;
     Call call = begin(parameters, context, evaluation);
     double* const r = registers_.data();
-    run(program_->update, r, call);
+    run(*program_, program_->update, r, call);
     evaluation.rules.reserve(program_->rules.size());
     for (const Program::RuleCode& rule : program_->rules)
       recommend(rule, evaluation);

@@ -23,6 +23,13 @@ class Lexer {
       skip_blanks();
       Token token = next();
       const bool end = token.kind == TokenKind::end;
+      // What is missing at the end is missing after the last word.
+      if (end && !tokens.empty()) {
+        const Token& last = tokens.back();
+        const bool text = last.kind == TokenKind::text;
+        token.place = {last.place.line,
+                       last.place.column + static_cast<int>(last.text.size()) + (text ? 2 : 0)};
+      }
       tokens.push_back(token);
       if (end)
         return tokens;

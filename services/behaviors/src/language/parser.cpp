@@ -111,10 +111,12 @@ class Parser {
   void section(Sentence&& sentence, Begins&& begins) {
     while (!at_end() && !ends_section(now()) && !messages_.full()) {
       const std::size_t before = at_;
+      naming_.clear();
       try {
         sentence();
       } catch (const SyntaxError& error) {
         report(error);
+        lost_.insert(lost_.end(), naming_.begin(), naming_.end());
         if (at_ == before)
           ++at_;
         while (!at_end() && !ends_section(now()) && !begins())
@@ -151,6 +153,8 @@ class Parser {
             [&] { return channel(now().text) && now().kind == TokenKind::symbol; });
     if (!accept("EndBehavior"))
       messages_.error(now().place, "expected \"EndBehavior\", found " + found(now()));
+    out.lost = std::move(lost_);
+    lost_.clear();
     return out;
   }
 
@@ -177,6 +181,7 @@ class Parser {
     parameter.place = now().place;
     ParameterSpec& spec = parameter.spec;
     spec.name = std::string(expect_symbol("the name of the parameter").text);
+    naming_.push_back(spec.name);
     // An underscore that the print has lost.
     while (now().kind == TokenKind::symbol && !ends_section(now()) && !parameter_type(now().text) &&
            !now().is("from") && !now().is("optional") && !is_unit()) {
@@ -537,6 +542,7 @@ class Parser {
     out.place = now().place;
     const Token& name = take();
     out.name = std::string(name.text);
+    naming_.push_back(out.name);
     const Token& sign = take();
     Expression right = expression();
     if (!sign.is("=")) {
@@ -569,6 +575,7 @@ class Parser {
       one.place = now().place;
       one.type = type;
       one.name = std::string(expect_symbol("the name of a variable").text);
+      naming_.push_back(one.name);
       if (accept("="))
         one.value = expression();
       out.body.push_back(std::move(one));
@@ -707,6 +714,8 @@ class Parser {
   const std::vector<Token>& tokens_;
   Messages& messages_;
   std::size_t at_ = 0;
+  std::vector<std::string> naming_;  ///< what the sentence declares or sets
+  std::vector<std::string> lost_;    ///< of sentences that could not be read
 };
 
 }  // namespace

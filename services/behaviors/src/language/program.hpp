@@ -79,7 +79,7 @@ enum class Op : std::uint16_t {
   down,         ///< down_straight(a, b, c)
   jump,         ///< to instruction a
   jump_unless,  ///< to instruction b where a is 0
-  call          ///< function b, arguments from a on
+  call          ///< the program's call b, arguments from a on
 };
 
 struct Instruction {
@@ -163,7 +163,8 @@ struct Program {
   std::vector<double> registers;    ///< constants; 0 elsewhere
   std::vector<Instruction> init;
   std::vector<Instruction> update;
-  std::vector<Kept> kept;  ///< the variables that persist
+  std::vector<void (*)(Call&, const double*, double*)> calls;  ///< what Op::call's b counts
+  std::vector<Kept> kept;                                      ///< the variables that persist
   std::vector<RuleCode> rules;
   std::vector<Shown> shown;
   std::uint16_t turn = 0;

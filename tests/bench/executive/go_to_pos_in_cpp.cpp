@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <optional>
 
-#include "predefined.hpp"
+#include "behaviors_in_cpp.hpp"
 #include "saphira/lps/point.hpp"
 
-namespace saphira::behaviors {
+namespace saphira::bench {
+
+using namespace behaviors;
+
 namespace {
 
 /// [rad] Further than this off its course the robot slows down, and at the second it turns on the
@@ -62,7 +65,7 @@ class GoToPos : public Behavior {
 
 }  // namespace
 
-Schema go_to_pos() {
+Schema go_to_pos_in_cpp() {
   return {"GoToPos",
           "drives straight to a point",
           {point_parameter("goal", "where to"), number_parameter("speed", "m/s", 0.0, 2.0, 0.3),
@@ -70,4 +73,4 @@ Schema go_to_pos() {
           [] { return std::make_unique<GoToPos>(); }};
 }
 
-}  // namespace saphira::behaviors
+}  // namespace saphira::bench

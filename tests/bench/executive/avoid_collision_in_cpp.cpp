@@ -1,10 +1,24 @@
 #include <algorithm>
 
-#include "free_path.hpp"
-#include "predefined.hpp"
+#include "../../../services/behaviors/src/free_path.hpp"
+#include "behaviors_in_cpp.hpp"
 
-namespace saphira::behaviors {
+namespace saphira::bench {
+
+using namespace behaviors;
+
 namespace {
+
+Rule turn_rule(std::string name, Fuzzy strength, double angle) {
+  return {std::move(name), strength, angle >= 0.0 ? Action::turn_left : Action::turn_right,
+          std::abs(angle)};
+}
+
+Side side_from(const std::string& text) {
+  if (text == "left")
+    return Side::left;
+  return text == "right" ? Side::right : Side::none;
+}
 
 constexpr double kLookahead = 2.0;  ///< [m]
 /// [m] The path that must be free is wider than the hull by this on each side: what the noise of
@@ -119,15 +133,6 @@ class AvoidCollision : public Behavior {
   Side side_ = Side::none;
 };
 
-class StopCollision : public Behavior {
- public:
-  Evaluation update(const Parameters& parameters, const Context& context) override {
-    const Blocked blocked = look(parameters, context);
-    return {{{"something ahead", blocked.front, Action::speed, careful_speed(blocked)}},
-            {.speed = blocked.front}};
-  }
-};
-
 ParameterSpec sensitivity(std::string name, std::string what, double usual) {
   return number_parameter(std::move(name), std::move(what) + ": 0.5 not sensitive, 3 very", 0.5,
                           3.0, usual);
@@ -137,9 +142,13 @@ ParameterSpec standoff() {
   return number_parameter("standoff", "m, the bubble around the hull", 0.0, 1.0, 0.1);
 }
 
+ParameterSpec preferred_turn_parameter() {
+  return choice_parameter("preferred_turn", "sfPreferredTurnDir", {"auto", "left", "right"});
+}
+
 }  // namespace
 
-Schema avoid_collision() {
+Schema avoid_collision_in_cpp() {
   return {"AvoidCollision",
           "slows and turns away sharply from what is near",
           {sensitivity("front_sensitivity", "to what is ahead", 1.5),
@@ -149,12 +158,4 @@ Schema avoid_collision() {
           [] { return std::make_unique<AvoidCollision>(); }};
 }
 
-Schema stop_collision() {
-  return {"StopCollision",
-          "slows for what is near, and does not turn",
-          {sensitivity("front_sensitivity", "to what is ahead", 1.5),
-           sensitivity("side_sensitivity", "to what is beside", 1.0), standoff()},
-          [] { return std::make_unique<StopCollision>(); }};
-}
-
-}  // namespace saphira::behaviors
+}  // namespace saphira::bench

@@ -1,0 +1,209 @@
+#include "saphira/behaviors/folder.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "saphira/base/random.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/behaviors/executive.hpp"
+#include "saphira/behaviors/language.hpp"
+
+namespace saphira::behaviors {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string source_dir() {
+  const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
+  return dir == nullptr ? "." : dir;
+}
+
+/// A behavior that counts its cycles, and says so as its speed in mm/s.
+std::string counter(const std::string& speed, const std::string& more = "") {
+  return "BeginBehavior Counter\nParams\n  sfFLOAT p = 1 from 0 to 9\n" + more +
+         "Rules\n  If 1.0 Then Speed v\nInit\n  float n = 0;\nUpdate\n  n += 1;\n  float v = " +
+         speed + ";\nActivity\n  Speed 1.0\nEndBehavior\n";
+}
+
+class FolderTest : public ::testing::Test {
+ protected:
+  FolderTest() : path_(fs::temp_directory_path() / ("saphira-folder-" + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directory(path_);
+  }
+  ~FolderTest() override { fs::remove_all(path_); }
+  FolderTest(const FolderTest&) = delete;
+  FolderTest& operator=(const FolderTest&) = delete;
+
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(path_ / name) << text;
+    // Files that are written within a tick of the clock are of one age.
+    fs::last_write_time(path_ / name, fs::file_time_type(std::chrono::seconds(++time_)));
+  }
+  double step(Executive& executive, std::string* trouble = nullptr) {
+    ++cycle_;
+    const Intent intent{cycle_, true, {{"c", "Counter", 0, true, {}}}};
+    Inputs inputs;
+    inputs.cycle = cycle_;
+    inputs.intent = &intent;
+    const Output output = executive.step(inputs);
+    if (trouble != nullptr)
+      *trouble = output.trouble;
+    else
+      EXPECT_EQ(output.trouble, "");
+    return output.blend.speed * 1000.0;
+  }
+
+  fs::path path_;
+  std::uint64_t cycle_ = 0;
+  int time_ = 1'000'000;
+};
+
+TEST_F(FolderTest, ARunningBehaviorTakesTheNewCodeAndKeepsItsVariables) {
+  write("c.beh", counter("n"));
+  Folder folder(path_.string());
+  Executive executive({}, {});
+  EXPECT_TRUE(folder.look(executive.registry()).changed);
+  EXPECT_FALSE(folder.look(executive.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(executive), 1);
+  EXPECT_DOUBLE_EQ(step(executive), 2);
+  write("c.beh", counter("100 + n"));
+  const Folder::News news = folder.look(executive.registry());
+  EXPECT_TRUE(news.changed);
+  EXPECT_EQ(news.taken.size(), 1U);
+  EXPECT_DOUBLE_EQ(step(executive), 103);
+}
+
+TEST_F(FolderTest, ABrokenFileLeavesWhatRunsUntouchedAndIsTold) {
+  write("c.beh", counter("n"));
+  Folder folder(path_.string());
+  Executive executive({}, {});
+  folder.look(executive.registry());
+  step(executive);
+  write("c.beh", counter("n +"));
+  const Folder::News news = folder.look(executive.registry());
+  EXPECT_TRUE(news.changed);
+  ASSERT_EQ(news.faults.size(), 1U);
+  EXPECT_NE(news.faults[0].find("c.beh:10:16: expected a number, a variable"), std::string::npos)
+      << news.faults[0];
+  EXPECT_EQ(folder.trouble(), news.faults[0]);
+  EXPECT_DOUBLE_EQ(step(executive), 2);
+  write("c.beh", counter("n"));
+  EXPECT_TRUE(folder.look(executive.registry()).changed);
+  EXPECT_EQ(folder.trouble(), "");
+  EXPECT_DOUBLE_EQ(step(executive), 3);
+}
+
+TEST_F(FolderTest, AVersionThatWantsOtherParametersWaitsUntilItGetsThem) {
+  write("c.beh", counter("n"));
+  Folder folder(path_.string());
+  Executive executive({}, {});
+  folder.look(executive.registry());
+  step(executive);
+  write("c.beh", counter("500", "  sfPTR goal\n"));
+  folder.look(executive.registry());
+  std::string trouble;
+  EXPECT_DOUBLE_EQ(step(executive, &trouble), 2);
+  EXPECT_NE(trouble.find("the old version runs on: parameter \"goal\" is missing"),
+            std::string::npos)
+      << trouble;
+}
+
+TEST_F(FolderTest, WhatIsGoneCannotBeIntendedAnewButRunsOn) {
+  write("c.beh", counter("n"));
+  Folder folder(path_.string());
+  Executive executive({}, {});
+  folder.look(executive.registry());
+  step(executive);
+  fs::remove(path_ / "c.beh");
+  EXPECT_TRUE(folder.look(executive.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(executive), 2);
+  executive.reset();
+  std::string trouble;
+  step(executive, &trouble);
+  EXPECT_NE(trouble.find("unknown schema \"Counter\""), std::string::npos);
+}
+
+TEST_F(FolderTest, OneNameInTwoFilesIsAFault) {
+  write("a.beh", counter("1"));
+  write("b.beh", counter("2"));
+  Folder folder(path_.string());
+  Registry registry;
+  const Folder::News news = folder.look(registry);
+  ASSERT_EQ(news.faults.size(), 1U);
+  EXPECT_NE(news.faults[0].find("b.beh: the behavior \"Counter\" is in a.beh already"),
+            std::string::npos);
+}
+
+TEST_F(FolderTest, AFolderThatIsNotThereIsAFaultAndTakesNothingAway) {
+  write("a.beh", counter("1"));
+  Folder folder(path_.string());
+  Registry registry;
+  folder.look(registry);
+  fs::remove_all(path_);
+  EXPECT_EQ(folder.look(registry).faults.size(), 1U);
+  EXPECT_NE(registry.find("Counter"), nullptr);
+  EXPECT_NE(folder.trouble().find("expected a folder"), std::string::npos);
+  EXPECT_THROW(load_behaviors(path_.string()), std::runtime_error);
+}
+
+/// The shipped files with one word left out, doubled, or another in its place: some hundreds.
+TEST(BrokenFiles, GiveMessagesAndNoneIsTakenHalf) {
+  Random random(7);
+  const char* const others[] = {"(",     ")",  ";",    "If", "Then",   "BeginBehavior",
+                                "\"",    "/*", "1e9",  "=",  "Params", "nothing_known",
+                                "sfPTR", "%",  "Turn", "0.5"};
+  int broken = 0;
+  int files = 0;
+  std::set<std::string> shipped;
+  for (const auto& entry : fs::directory_iterator(source_dir() + "/config/behaviors"))
+    if (entry.path().extension() == ".beh")
+      shipped.insert(entry.path().string());
+  ASSERT_GE(shipped.size(), 8U);
+  for (const std::string& path : shipped) {
+    const std::string text = read_file(path);
+    ASSERT_TRUE(compile(text, path).errors.empty()) << path;
+    for (int trial = 0; trial < 100; ++trial) {
+      // A word begins where a blank ends.
+      std::size_t at = random.next() % text.size();
+      at = text.find_first_not_of(" \n", std::min(text.find_first_of(" \n", at), text.size() - 1));
+      if (at == std::string::npos)
+        continue;
+      const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+      std::string changed = text;
+      switch (random.next() % 3) {
+        case 0:
+          changed.erase(at, end - at);
+          break;
+        case 1:
+          changed.insert(at, text.substr(at, end - at) + " ");
+          break;
+        default:
+          changed.replace(at, end - at, others[random.next() % std::size(others)]);
+          break;
+      }
+      ++files;
+      const Compiled compiled = compile(changed, "broken.beh");
+      if (compiled.errors.empty())
+        continue;
+      ++broken;
+      EXPECT_TRUE(compiled.schemas.empty());
+      for (const FileError& error : compiled.errors) {
+        const std::string what = error.what();
+        EXPECT_TRUE(error.line() >= 1 && error.column() >= 1) << what;
+        EXPECT_NE(what.find("\n"), std::string::npos) << what;  // with the line and a caret
+      }
+    }
+  }
+  EXPECT_GE(broken, 500);
+  EXPECT_LE(broken, files);
+}
+
+}  // namespace
+}  // namespace saphira::behaviors

@@ -1,0 +1,178 @@
+// What the behaviors cost: a thousand of them, and the behavior language beside C++.
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+
+#include "behaviors_in_cpp.hpp"
+#include "executive_bench.hpp"
+#include "saphira/base/random.hpp"
+#include "saphira/behaviors/executive.hpp"
+#include "saphira/behaviors/language.hpp"
+
+namespace saphira::bench {
+namespace {
+
+using namespace behaviors;
+
+/// Of this process [s]: what others do on the machine does not count.
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+RobotModel pioneer() {
+  RobotModel model;
+  const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
+  for (int i = 0; i < 7; ++i)
+    model.lps.sonars.push_back({i, {0.1, 0.0, radians(bearings[i])}});
+  return model;
+}
+
+/// What the seven sonars hear in a cluttered room.
+std::vector<lps::SonarReading> readings(Random& random) {
+  std::vector<lps::SonarReading> out;
+  for (int i = 0; i < 7; ++i)
+    out.push_back({i, random.uniform(0.5, 2.0), true});
+  return out;
+}
+
+Argument place(double x, double y) {
+  return {"goal", PlacedPoint{{x, y, 0.0}, Frame::odom}};
+}
+
+const char* const kFiveRules = R"(
+BeginBehavior Load
+  Params
+    sfPTR goal
+    sfFLOAT speed = 300 from 0 to 2000 mm/s
+  Rules
+    too_right  If goal_left And Not at_goal Then Turn Left turn
+    too_left   If Not goal_left And Not at_goal Then Turn Right turn
+    on_course  If Not (off_course Or ahead) Then Speed speed
+    off_course If off_course Then Speed 0.0
+    near       If ahead Then Speed slow
+  Init
+    int cycles = 0;
+  Update
+    float phi = sfPointPhi(goal);
+    float dist = sfPointDist(goal);
+    cycles += 1;
+    at_goal = straight_down(dist, 100, 200);
+    off_course = straight_up(fabs(phi), 0.3, 1.0);
+    ahead = straight_down(sfOccPlane(sfFRONT, sfFRONT, 0, 300, 300), 500, 1000);
+    goal_left = phi > 0;
+    float turn = min(fabs(phi), 0.7);
+    float slow = cycles < 10 ? 50 : 100;
+  Activity
+    Turn Not at_goal
+    Speed Not at_goal
+    Goal at_goal
+EndBehavior
+)";
+
+/// [ms] of CPU a step, of `count` behaviors with five rules each. Each cycle one parameter of each
+/// of them is another, as with points of the map.
+double step_ms(std::size_t count, int steps) {
+  Compiled compiled = compile(kFiveRules, "load.beh");
+  if (!compiled.errors.empty())
+    throw compiled.errors.front();
+  Registry registry;
+  registry.add(std::move(compiled.schemas.front()));
+  Executive executive(std::move(registry), pioneer());
+  Random random(1);
+  Intent intent{0, true, {}};
+  for (std::size_t i = 0; i < count; ++i)
+    intent.behaviors.push_back({"behavior " + std::to_string(i),
+                                "Load",
+                                static_cast<int>(i % 10),
+                                true,
+                                {place(0.0, 0.0), {"speed", 0.2}}});
+  double begin = 0.0;
+  for (int step = -5; step < steps; ++step) {
+    if (step == 0)
+      begin = cpu_seconds();
+    Inputs inputs;
+    inputs.cycle = static_cast<std::uint64_t>(step + 10);
+    inputs.robot.pose_in_odom = {0.03 * step, 0.0, 0.01 * step};
+    inputs.sonars = readings(random);
+    intent.cycle = inputs.cycle;
+    for (std::size_t i = 0; i < count; ++i)
+      intent.behaviors[i].parameters[0] = place(5.0 + static_cast<double>(i % 100), 0.001 * step);
+    inputs.intent = &intent;
+    const Output output = executive.step(inputs);
+    if (output.behaviors.size() != count || !output.trouble.empty())
+      throw std::logic_error("the behaviors do not run: " + output.trouble);
+  }
+  return (cpu_seconds() - begin) * 1000.0 / steps;
+}
+
+/// [s] of CPU for so many updates of one behavior. The LPS stands still: it is the same for both.
+double updates(const Schema& schema, const std::vector<Argument>& arguments, int count,
+               double& check) {
+  const RobotModel model = pioneer();
+  lps::LocalPerceptualSpace lps(model.lps);
+  Random random(1);
+  for (std::uint64_t cycle = 1; cycle <= 30; ++cycle)
+    lps.update({0.02 * static_cast<double>(cycle), 0.0, 0.0}, readings(random), cycle);
+  RobotNow robot{{0.6, 0.0, 0.0}, 0.3, 0.0};
+  std::string trouble;
+  const auto parameters =
+      Parameters::check(schema.parameters, arguments, robot.pose_in_odom, trouble);
+  if (!parameters)
+    throw std::logic_error(trouble);
+  const std::unique_ptr<Behavior> behavior = schema.make();
+  check = 0.0;
+  double begin = 0.0;
+  for (int i = 0; i < count; ++i) {
+    if (i == 1)
+      begin = cpu_seconds();
+    Shared shared;
+    robot.pose_in_odom.th = 0.001 * (i % 1000);
+    const Context context{model, robot, lps, static_cast<std::uint64_t>(i), shared};
+    if (i == 0)
+      behavior->init(*parameters, context);
+    const Evaluation evaluation = behavior->update(*parameters, context);
+    for (const Rule& rule : evaluation.rules)
+      check += rule.strength * rule.value;
+  }
+  return cpu_seconds() - begin;
+}
+
+}  // namespace
+
+double behaviors_1000_ms() {
+  return step_ms(1000, 100);
+}
+
+double behaviors_10_ms() {
+  return step_ms(10, 2000);
+}
+
+double language_over_cpp() {
+  const Registry shipped = predefined();
+  double worst = 0.0;
+  struct Pair {
+    Schema cpp;
+    std::vector<Argument> arguments;
+  };
+  for (const Pair& pair :
+       {Pair{avoid_collision_in_cpp(), {}}, Pair{go_to_pos_in_cpp(), {place(5.0, 1.0)}}}) {
+    // The best of some, in turns: what disturbs one run does not disturb the ratio.
+    double cpp = 1e9;
+    double language = 1e9;
+    for (int run = 0; run < 5; ++run) {
+      double cpp_check = 0.0;
+      double language_check = 0.0;
+      cpp = std::min(cpp, updates(pair.cpp, pair.arguments, 50'000, cpp_check));
+      language = std::min(
+          language, updates(*shipped.find(pair.cpp.name), pair.arguments, 50'000, language_check));
+      if (std::abs(cpp_check - language_check) > 1e-6 * (1.0 + std::abs(cpp_check)))
+        throw std::logic_error(pair.cpp.name + " in C++ and in the language do not do the same");
+    }
+    worst = std::max(worst, language / cpp);
+  }
+  return worst;
+}
+
+}  // namespace saphira::bench
