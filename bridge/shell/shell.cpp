@@ -86,6 +86,8 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       state_writer_(node_.writer(bus::topics::kRobotState)),
       description_writer_(node_.writer(bus::topics::kRobotDescription)),
       grant_writer_(node_.writer(bus::topics::kGrant)),
+      state_recall_(node_.writer(bus::topics::kRecallRobot)),
+      grant_recall_(node_.writer(bus::topics::kRecallGrant)),
       devices_writer_(node_.writer(bus::topics::kDevices)),
       serial_data_writer_(node_.writer(bus::topics::kSerialData)),
       servo_(node_.reader(bus::topics::kServo)),
@@ -396,7 +398,8 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   stamp_.cycle(stamp_.cycle() + 1);
   const reflector::State& state =
       reflector_.packet(packet, time(), std::max(epoch_, last_odom_ + 1));
-  state_writer_.write(to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_));
+  newest_state_ = to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_);
+  state_writer_.write(newest_state_);
 
   last_packet_ = now;
   link_silent_ = false;
@@ -682,7 +685,14 @@ void Shell::step(double now) {
 
 void Shell::publish_grant() {
   grant_changed_ = false;
-  grant_writer_.write(to_bus(grant_, guarded_, arbiter_.take_refused(), stamp_));
+  const v1::Grant grant = to_bus(grant_, guarded_, arbiter_.take_refused(), stamp_);
+  grant_writer_.write(grant);
+  // With the grant, not with the state: the services wait for that.
+  grant_recall_.write(grant);
+  if (recalled_ != stamp_ && newest_state_.stamp() == stamp_) {
+    recalled_ = stamp_;
+    state_recall_.write(newest_state_);
+  }
 }
 
 bool Shell::motors_off() const {

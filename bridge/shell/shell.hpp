@@ -87,6 +87,8 @@ class Shell {
   bus::Writer<v1::RobotState> state_writer_;
   bus::Writer<v1::RobotDescription> description_writer_;
   bus::Writer<v1::Grant> grant_writer_;
+  bus::Writer<v1::RobotState> state_recall_;
+  bus::Writer<v1::Grant> grant_recall_;
   struct Drive {
     authority::Role role;
     bus::Reader<v1::MotorCommand> reader;
@@ -124,6 +126,8 @@ class Shell {
   reflector::Slack slack_;
   int state_fd_ = -1;
   v1::Stamp stamp_;
+  v1::RobotState newest_state_;
+  v1::Stamp recalled_;  ///< of the newest state that was put where it is recalled
   authority::Grant grant_;
   authority::Guarded guarded_;
   std::vector<std::uint8_t> input_;

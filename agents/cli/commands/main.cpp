@@ -14,6 +14,11 @@ int main(int argc, char** argv) {
         cli::add_up(app, chosen);
         cli::add_status(app, chosen);
         cli::add_goal(app, chosen);
+        cli::add_intentions(app, chosen);
+        cli::add_behaviors(app, chosen);
+        cli::add_why(app, chosen);
+        cli::add_beliefs(app, chosen);
+        cli::add_processes(app, chosen);
         cli::add_map(app, chosen);
         cli::add_drive(app, chosen);
         cli::add_device(app, chosen);

@@ -92,6 +92,52 @@ struct TreeLine {
   std::string right;
 };
 
+const v1::BehaviorState* find_state(const v1::Behaviors* behaviors, const std::string& name) {
+  if (behaviors != nullptr)
+    for (const v1::BehaviorState& state : behaviors->behaviors())
+      if (state.name() == name)
+        return &state;
+  return nullptr;
+}
+
+TreeLine behavior_line(const std::string& indent, bool blocking, const std::string& schema,
+                       const std::string& name, const v1::Behaviors* behaviors) {
+  TreeLine line{indent + (blocking ? "* " : "o ") + schema + " (" + name + ") B", ""};
+  if (const v1::BehaviorState* const state = find_state(behaviors, name))
+    line.right = format("activity %.2f, goal %.2f",
+                        std::max(state->turn_activity(), state->speed_activity()), state->goal());
+  return line;
+}
+
+TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node) {
+  TreeLine line{indent + (node.blocking() ? "* " : "o ") + node.schema() + " (" +
+                    (node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) + ") " +
+                    node.label(),
+                node.step()};
+  const char* how = "";
+  switch (node.state()) {
+    case v1::INTENTION_SUSPENDED:
+      how = "suspended";
+      break;
+    case v1::INTENTION_INTERRUPTED:
+      how = "interrupted";
+      break;
+    case v1::INTENTION_SUCCESS:
+      how = "has succeeded";
+      break;
+    case v1::INTENTION_FAILURE:
+      how = "has failed";
+      break;
+    case v1::INTENTION_TIMEOUT:
+      how = "took too long";
+      break;
+    default:
+      return line;
+  }
+  line.right = how + (line.right.empty() ? "" : "; " + line.right);
+  return line;
+}
+
 void add_tree(const v1::Intentions& all, const v1::Behaviors* behaviors, std::uint32_t parent,
               std::size_t depth, std::vector<TreeLine>& lines) {
   const std::string indent(2 * depth, ' ');
@@ -100,52 +146,34 @@ void add_tree(const v1::Intentions& all, const v1::Behaviors* behaviors, std::ui
   for (const v1::IntentionNode& node : all.nodes()) {
     if (node.parent() != parent)
       continue;
-    TreeLine line;
-    line.left = indent + (node.blocking() ? "* " : "o ") + node.schema() + " (" +
-                (node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) + ") " +
-                node.label();
-    line.right = node.step();
-    switch (node.state()) {
-      case v1::INTENTION_SUSPENDED:
-        line.right = "suspended; " + line.right;
-        break;
-      case v1::INTENTION_INTERRUPTED:
-        line.right = "interrupted; " + line.right;
-        break;
-      case v1::INTENTION_SUCCESS:
-        line.right = "has succeeded; " + line.right;
-        break;
-      case v1::INTENTION_FAILURE:
-        line.right = "has failed; " + line.right;
-        break;
-      case v1::INTENTION_TIMEOUT:
-        line.right = "took too long; " + line.right;
-        break;
-      default:
-        break;
+    if (is_behavior(node, all)) {
+      lines.push_back(
+          behavior_line(indent, node.blocking(), node.schema(), node.name(), behaviors));
+      if (node.state() == v1::INTENTION_SUSPENDED)
+        lines.back().right = "suspended";
+      continue;
     }
-    lines.push_back(std::move(line));
+    lines.push_back(intention_line(indent, node));
     add_tree(all, behaviors, node.id(), depth + 1, lines);
   }
   if (parent == 0)
     return;
-  for (const v1::IntendedBehavior& behavior : all.behaviors()) {
-    if (behavior.intention() != parent)
-      continue;
-    TreeLine line;
-    line.left = indent + (behavior.blocking() ? "* " : "o ") + behavior.schema() + " (" +
-                behavior.name() + ") B";
-    if (behaviors != nullptr)
-      for (const v1::BehaviorState& state : behaviors->behaviors())
-        if (state.name() == behavior.name())
-          line.right =
-              format("activity %.2f, goal %.2f",
-                     std::max(state.turn_activity(), state.speed_activity()), state.goal());
-    lines.push_back(std::move(line));
-  }
+  for (const v1::IntendedBehavior& behavior : all.behaviors())
+    if (behavior.intention() == parent)
+      lines.push_back(behavior_line(indent, behavior.blocking(), behavior.schema(), behavior.name(),
+                                    behaviors));
 }
 
 }  // namespace
+
+bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {
+  return node.label() == "B" ||
+         std::any_of(intentions.behaviors().begin(), intentions.behaviors().end(),
+                     [&](const v1::IntendedBehavior& behavior) {
+                       return behavior.intention() == node.id() && behavior.name() == node.name() &&
+                              behavior.schema() == node.schema();
+                     });
+}
 
 std::string value_text(const v1::Argument& argument) {
   switch (argument.kind()) {

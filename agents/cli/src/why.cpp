@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "saphira/cli/displays.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
@@ -253,11 +254,15 @@ const v1::IntentionNode* Reason::node(std::uint32_t id) const {
   return nullptr;
 }
 
+/// The intention that wants the behavior.
 const v1::IntentionNode* Reason::node_of(const v1::BehaviorState& behavior) const {
   if (scene_.intentions)
     for (const v1::IntendedBehavior& intended : scene_.intentions->behaviors())
-      if (intended.name() == behavior.name())
-        return node(intended.intention());
+      if (intended.name() == behavior.name()) {
+        const v1::IntentionNode* const found = node(intended.intention());
+        return found != nullptr && is_behavior(*found, *scene_.intentions) ? node(found->parent())
+                                                                           : found;
+      }
   return nullptr;
 }
 
@@ -456,6 +461,8 @@ Cause Reason::wheels(const std::string& text) {
 std::string Reason::idle_reason() const {
   if (!scene_.missing.empty())
     return scene_.missing + " is not on the bus";
+  if (!scene_.suspended.empty())
+    return scene_.suspended + " is suspended";
   if (scene_.intentions && !scene_.intentions->behavior_control())
     return "behavior control is switched off";
   if (scene_.intentions && !scene_.intentions->behaviors().empty())

@@ -83,6 +83,20 @@ behavior control is off
   EXPECT_EQ(intentions_display({}, nullptr), "nothing is intended\n");
 }
 
+// The intentions service has its behaviors in the tree, as leaves.
+TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
+  v1::Intentions all;
+  all.behavior_control(true);
+  all.nodes({node(1, 0, true, "go_to", "go_to1", "S1"), node(2, 1, true, "GoToPos", "GoToPos", ""),
+             node(3, 1, false, "Stop", "end", "B")});
+  all.nodes()[2].state(v1::INTENTION_SUSPENDED);
+  all.behaviors({behavior(2, true, "GoToPos", "GoToPos")});
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1) S1
+  * GoToPos (GoToPos) B
+  o Stop (end) B          suspended
+)");
+}
+
 TEST(IntentionsDisplay, ComesToAnEndWithWhatIsNoTree) {
   v1::Intentions all;
   all.behavior_control(true);

@@ -163,6 +163,24 @@ TEST_F(WhyTest, NamesBehaviorsRulesIntentionAndGoal) {
                 kPurpose);
 }
 
+// The intentions service has its behaviors in the tree, as leaves.
+TEST_F(WhyTest, ABehaviorIsNotItsOwnPurpose) {
+  const std::string before = sentence();
+  v1::IntentionNode leaf;
+  leaf.id(6);
+  leaf.parent(5);
+  leaf.label("B");
+  for (v1::IntendedBehavior& intended : scene.intentions->behaviors()) {
+    leaf.name(intended.name());
+    leaf.schema(intended.schema());
+    intended.intention(leaf.id());
+    scene.intentions->nodes().push_back(leaf);
+    leaf.id(leaf.id() + 1);
+    leaf.label("");
+  }
+  EXPECT_EQ(sentence(), before);
+}
+
 TEST_F(WhyTest, DrawsTheTreeFromTheWheelsToTheGoal) {
   const std::string text = to_text(why(scene));
   EXPECT_EQ(
@@ -267,6 +285,9 @@ TEST_F(WhyTest, NobodyDrives) {
   EXPECT_TRUE(sentence().ends_with("; nobody has asked for a goal.")) << sentence();
   scene.intentions->behavior_control(false);
   EXPECT_TRUE(sentence().ends_with("; behavior control is switched off.")) << sentence();
+  scene.suspended = "execute-intentions of intentions";
+  EXPECT_TRUE(sentence().ends_with("; execute-intentions of intentions is suspended."))
+      << sentence();
   scene.missing = "behaviors";
   EXPECT_TRUE(sentence().ends_with("; behaviors is not on the bus.")) << sentence();
 }

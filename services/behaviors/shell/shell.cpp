@@ -11,12 +11,15 @@ Shell::Shell(bus::Node& node)
       intentions_(cycle_.input(bus::topics::kIntentions)),
       robot_(node),
       commands_(node.writer(bus::topics::kDriveBehaviors)),
-      behaviors_(node.writer(bus::topics::kBehaviors)) {}
+      behaviors_(node.writer(bus::topics::kBehaviors)),
+      recall_(node.writer(bus::topics::kRecallBehaviors)),
+      processes_(node, table_) {}
 
 bool Shell::step(const bus::Stop& stop) {
-  const auto step = cycle_.next(stop);
+  const auto step = cycle_.next(stop, [this] { processes_.idle(); });
   if (!step)
     return false;
+  processes_.step(cycle_.stamp());
   Output output;
   using Knowledge = bus::KnownRobot::Knowledge;
   const Knowledge known = robot_.of(cycle_.stamp().epoch(), stop);
@@ -41,7 +44,14 @@ bool Shell::step(const bus::Stop& stop) {
     const v1::Intentions* const sample = intentions_.value();
     if (sample != nullptr && sample->stamp().cycle() >= odom_since_)
       inputs.intent = &intent.emplace(from_bus(*sample));
+    if (!execution_.works()) {
+      intent.emplace();
+      intent->cycle = inputs.cycle;
+      inputs.intent = &*intent;
+    }
     output = executive_.step(inputs);
+    if (!execution_.works())
+      output.inactive_reason = execution_.name() + " is suspended";
   }
   publish(output);
   cycle_.done();
@@ -59,6 +69,7 @@ void Shell::publish(const Output& output) {
   v1::Behaviors sample = to_bus(output);
   sample.stamp(cycle_.stamp());
   behaviors_.write(sample);
+  recall_.write(sample);
   if (output.trouble != trouble_ && !output.trouble.empty())
     node_.warn("behaviors that cannot be had: " + output.trouble);
   trouble_ = output.trouble;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "base/shell/processes.hpp"
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/bus/cycle.hpp"
 #include "saphira/bus/known_robot.hpp"
@@ -32,6 +33,12 @@ class Shell {
   bus::KnownRobot robot_;
   bus::Writer<v1::MotorCommand> commands_;
   bus::Writer<v1::Behaviors> behaviors_;
+  bus::Writer<v1::Behaviors> recall_;
+  ProcessTable table_;
+  // sfInitControlProcs. Suspended it puts all behaviors away, and nobody drives.
+  Process& execution_ =
+      table_.add("execute-current-behaviors", "evaluates the behaviors, and drives the robot");
+  ProcessesOnBus processes_;
 
   std::optional<std::uint64_t> odom_;  ///< of the newest step
   std::uint64_t odom_since_ = 0;       ///< cycle in which it last changed

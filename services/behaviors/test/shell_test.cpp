@@ -182,5 +182,46 @@ TEST_P(LiveShellTest, WaitsForTheDescriptionWithoutHoldingUpTheBridge) {
   EXPECT_EQ(service.status().state(), v1::SERVICE_RUNNING);
 }
 
+// Manual 6.5: who suspends what drives has a robot that stands.
+TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
+  bus::Writer<v1::ProcessRequest> requests{bridge.writer(bus::topics::kProcessRequest)};
+  const auto request = [&](v1::ProcessAction action) {
+    v1::ProcessRequest sample;
+    sample.source("a person");
+    sample.service("behaviors");
+    sample.process("execute-current-behaviors");
+    sample.action(action);
+    requests.write(sample);
+  };
+  describe();
+  const auto ahead = behavior("ConstantVelocity", 2, {number("speed", 0.25)});
+  one({ahead});
+  one({ahead});
+  EXPECT_TRUE(command.active());
+  request(v1::PROCESS_INTERRUPT);
+  for (int i = 0; i < 3; ++i) {
+    one({ahead});
+    EXPECT_FALSE(command.active());
+    EXPECT_FALSE(told.control());
+    EXPECT_TRUE(told.behaviors().empty());
+  }
+  request(v1::PROCESS_RESUME);
+  one({ahead});
+  EXPECT_TRUE(command.active());
+  EXPECT_EQ(told.behaviors().size(), 1U);
+}
+
+// A minute of what was published is kept for who comes late.
+TEST_P(ShellTest, RecallsWhatItPublished) {
+  describe();
+  for (int i = 0; i < 20; ++i)
+    one({behavior("Stop", 2)});
+  bus::Reader<v1::Behaviors> late{bridge.reader(bus::topics::kRecallBehaviors)};
+  const auto samples = late.take();
+  ASSERT_EQ(samples.size(), 20U);
+  EXPECT_EQ(samples.front().data.stamp().cycle(), 1U);
+  EXPECT_EQ(samples.back().data.stamp().cycle(), cycle);
+}
+
 }  // namespace
 }  // namespace saphira::behaviors

@@ -1,5 +1,7 @@
 #include "intentions/shell/shell.hpp"
 
+#include <algorithm>
+
 #include "intentions/shell/convert.hpp"
 #include "saphira/intentions/functors.hpp"
 
@@ -21,7 +23,11 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       recall_(node.writer(bus::topics::kRecallIntentions)),
       statuses_(node.writer(bus::topics::kGoalStatus)),
       memory_(options.memory_file),
-      executor_(built_in(), memory_.memory()) {}
+      executor_(built_in(), memory_.memory()),
+      processes_(node, table_,
+                 [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
+                   return ask_intention(name, action, cycles);
+                 }) {}
 
 bool Shell::step(const bus::Stop& stop) {
   const auto step = cycle_.next(stop, [this] { idle(); });
@@ -44,7 +50,11 @@ bool Shell::step(const bus::Stop& stop) {
     inputs.robot.odom_in_map =
         odom_in_map_from_bus(*registration, stamp_.cycle(), inputs.robot.odom);
   inputs.events = take_events();
+  processes_.step(stamp_);
+  if (!execution_.works())
+    inputs.hold = execution_.name() + " is suspended";
   const Outputs outputs = executor_.step(inputs);
+  nodes_ = outputs.nodes;
 
   v1::Intentions sample;
   sample.stamp(stamp_);
@@ -61,12 +71,28 @@ bool Shell::step(const bus::Stop& stop) {
 }
 
 void Shell::idle() {
+  processes_.idle();
   publish(executor_.hear(take_events()));
   // A simulator that is being single-stepped may stand still for as long as it likes.
   if (robot_here_ && !node_.options().lockstep && Clock::now() - stepped_ > kSilence) {
     robot_here_ = false;
     publish(executor_.robot_gone());
   }
+}
+
+std::optional<std::string> Shell::ask_intention(const std::string& name, ProcessAction action,
+                                                std::uint32_t cycles) {
+  const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
+    return one.name == name || std::to_string(one.id) == name ||
+           "I" + std::to_string(one.id) == name;
+  });
+  if (node == nodes_.end())
+    return std::nullopt;
+  if (cycles > 0)
+    return "an intention is interrupted until it is resumed, not for some cycles";
+  if (action == ProcessAction::resume)
+    return executor_.resume(node->id) ? "" : name + " was not interrupted";
+  return executor_.interrupt(node->id) ? "" : name + " is not an intention any more";
 }
 
 std::vector<GoalEvent> Shell::take_events() {

@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/shell/processes.hpp"
 #include "intentions/shell/memory_file.hpp"
 #include "saphira/bus/cycle.hpp"
 #include "saphira/intentions/executor.hpp"
@@ -35,6 +37,10 @@ class Shell {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// What somebody asks of an intention, named by its instance or number.
+  std::optional<std::string> ask_intention(const std::string& name, ProcessAction action,
+                                           std::uint32_t cycles);
+
   std::vector<GoalEvent> take_events();
   void idle();
   void publish(const News& news);
@@ -49,6 +55,12 @@ class Shell {
   bus::Writer<v1::GoalStatus> statuses_;
   MemoryFile memory_;
   Executor executor_;
+  std::vector<IntentionNode> nodes_;  ///< of the newest step
+  ProcessTable table_;
+  /// Suspended it lets nothing be intended: the goals are suspended, and the robot is released.
+  Process& execution_ =
+      table_.add("execute-intentions", "pursues the goals: begins and steps intentions");
+  ProcessesOnBus processes_;
   std::map<GoalId, bus::WriterId> writers_;  ///< who wrote each goal last
   std::map<GoalId, GoalState> logged_;
   v1::Stamp stamp_;  ///< of the newest step

@@ -106,7 +106,7 @@ Outputs Executor::step(const Inputs& inputs) {
     if (open(entry.status))
       entry.status.elapsed = seconds(now_ - entry.accepted);
   }
-  robot_here_ = inputs.robot.connected;
+  robot_here_ = inputs.robot.connected && inputs.hold.empty();
   if (robot_here_) {
     meet_odom(inputs.robot.odom);
     for (auto& [id, entry] : entries_) {
@@ -115,7 +115,7 @@ Outputs Executor::step(const Inputs& inputs) {
     }
     pass_changes();
   } else {
-    lose_robot();
+    lose_robot(inputs.robot.connected ? inputs.hold : std::string());
   }
   check_deadlines(inputs.robot);
   replace();
@@ -334,13 +334,14 @@ void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
   entry.status.step.clear();
 }
 
-void Executor::lose_robot() {
+void Executor::lose_robot(const std::string& hold) {
   robot_here_ = false;
+  const GoalCode code = hold.empty() ? GoalCode::kNoRobot : GoalCode::kNone;
   for (auto& [id, entry] : entries_) {
     if (entry.status.state == GoalState::kWaiting)
-      wait(entry, GoalCode::kNoRobot, "waits for the robot");
+      wait(entry, code, hold.empty() ? "waits for the robot" : hold);
     else if (open(entry.status))
-      suspend(entry, GoalCode::kNoRobot, "the robot is not connected; goes on when it is");
+      suspend(entry, code, hold.empty() ? "the robot is not connected; goes on when it is" : hold);
   }
 }
 

@@ -82,6 +82,45 @@ TEST_F(ShellTest, PublishesTheTree) {
   EXPECT_EQ(robot.intended->nodes()[1].parent(), robot.intended->nodes()[0].id());
 }
 
+// Manual 6.5, and 2.3.8 for one intention alone.
+TEST_F(ShellTest, HoldsAllGoalsWhileItIsSuspendedAndOneIntentionByItsName) {
+  bus::Writer<v1::ProcessRequest> requests{requester.writer(bus::topics::kProcessRequest)};
+  bus::Reader<v1::ProcessAnswer> answers{requester.reader(bus::topics::kProcessAnswer)};
+  const auto request = [&](const std::string& process, v1::ProcessAction action) {
+    v1::ProcessRequest sample;
+    sample.source("a person");
+    sample.service("intentions");
+    sample.process(process);
+    sample.action(action);
+    requests.write(sample);
+    cycle();
+    return answers.take_newest().value().reason();
+  };
+  start();
+  const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
+  cycle();
+  EXPECT_FALSE(robot.intended->behaviors().empty());
+  EXPECT_EQ(request("execute-intentions", v1::PROCESS_SUSPEND), "");
+  EXPECT_TRUE(robot.intended->behaviors().empty());
+  EXPECT_EQ(state(id), v1::GOAL_SUSPENDED);
+  EXPECT_EQ(goals.status(id)->reason(), "execute-intentions is suspended");
+  EXPECT_EQ(request("execute-intentions", v1::PROCESS_RESUME), "");
+  cycle();
+  EXPECT_FALSE(robot.intended->behaviors().empty());
+  EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
+
+  const std::string name = robot.intended->nodes()[0].name();
+  EXPECT_EQ(request(name, v1::PROCESS_INTERRUPT), "");
+  cycle();
+  EXPECT_TRUE(robot.intended->behaviors().empty());
+  EXPECT_EQ(request(std::to_string(robot.intended->nodes()[0].id()), v1::PROCESS_RESUME), "");
+  cycle();
+  EXPECT_FALSE(robot.intended->behaviors().empty());
+  EXPECT_EQ(request(name, v1::PROCESS_RESUME), name + " was not interrupted");
+  EXPECT_EQ(request("nothing", v1::PROCESS_INTERRUPT),
+            "no process \"nothing\"; there are execute-intentions");
+}
+
 TEST_F(ShellTest, CancelsByDispose) {
   start();
   const v1::GoalId id = goals.ask(go_to(5.0, 0.0));

@@ -15,6 +15,9 @@ namespace saphira::cli {
 /// that what it does. `behaviors` adds how far each is satisfied.
 std::string intentions_display(const v1::Intentions& intentions, const v1::Behaviors* behaviors);
 
+/// Whether the node stands for a behavior: a leaf of the tree.
+bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions);
+
 /// The behaviors window (manual 2.3.6, Figures 2-4 and 2-5): for each behavior on both channels its
 /// activity as a bar through the middle line, and its recommendation as a bar to one side; at the
 /// bottom their summation.

@@ -23,6 +23,7 @@ struct Scene {
   std::vector<v1::GoalStatus> statuses;      ///< the newest
   std::vector<v1::BehaviorSchema> schemas;   ///< for the rules as they are written
   std::string missing;                       ///< services that are not on the bus, in words
+  std::string suspended;                     ///< processes that are suspended, in words
 };
 
 /// Something that is so, and what makes it so.

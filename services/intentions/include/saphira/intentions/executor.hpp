@@ -36,6 +36,7 @@ struct Inputs {
   Surroundings around{};
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
   std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
+  std::string hold{};                       ///< why all goals are to wait; empty: they are not
 };
 
 /// What became of the goals since the last time.
@@ -130,7 +131,7 @@ class Executor {
   void remember(const Ending& ending);
   static void wait(Entry& entry, GoalCode code, std::string reason);
   void suspend(Entry& entry, GoalCode code, std::string reason);
-  void lose_robot();
+  void lose_robot(const std::string& hold = {});
   void meet_odom(std::uint64_t odom);
   void place(Entry& entry, const Robot& robot);
   void pass_changes();

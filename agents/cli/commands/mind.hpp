@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "saphira/cli/why.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+/// What has come on a cyclic topic, of the newest epoch.
+template <class T>
+class Past {
+ public:
+  void take(bus::Reader<T>& reader) {
+    reader.visit([&](const T& sample, const bus::SampleInfo& info) {
+      if (info.disposed || sample.stamp().epoch() < epoch_)
+        return;
+      if (sample.stamp().epoch() > epoch_)
+        samples_.clear();
+      epoch_ = sample.stamp().epoch();
+      // The first one of a cycle stays: a second one is what came of the cycle.
+      samples_.emplace(sample.stamp().cycle(), sample);
+      while (samples_.size() > kMost)
+        samples_.erase(samples_.begin());
+    });
+  }
+  const T* at(std::uint64_t cycle) const {
+    const auto found = samples_.find(cycle);
+    return found == samples_.end() ? nullptr : &found->second;
+  }
+  const T* newest() const { return samples_.empty() ? nullptr : &samples_.rbegin()->second; }
+  const T* oldest() const { return samples_.empty() ? nullptr : &samples_.begin()->second; }
+  std::uint64_t epoch() const { return epoch_; }
+
+ private:
+  static constexpr std::size_t kMost = 1000;
+  std::uint64_t epoch_ = 0;
+  std::map<std::uint64_t, T> samples_;
+};
+
+/// What the robot thinks, as far as it is said on the bus: of now, or as it is recalled.
+class Mind {
+ public:
+  /// recalled: also what the last minute was. Where nothing is heard for a second that is asked for
+  /// by itself: a simulator in single step may stand still.
+  Mind(bus::Node& node, bool recalled);
+
+  void poll();
+  /// Waits and polls, for as long.
+  void listen(std::chrono::milliseconds time, const bus::Stop& stop);
+
+  const v1::Intentions* intentions() const { return intentions_.newest(); }
+  const v1::Behaviors* behaviors() const { return behaviors_.newest(); }
+  const v1::BehaviorSchema* schema(const std::string& name) const;
+  const v1::Beliefs* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
+  bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }
+  const Processes& processes() const { return processes_; }
+
+  /// All that is known of a cycle.
+  Scene scene(std::uint64_t cycle) const;
+  /// Whether there is all that makes a whole of a cycle.
+  bool whole(std::uint64_t cycle) const;
+  /// The newest cycle that is whole; else the newest of which anything is known; 0: none.
+  std::uint64_t newest_cycle() const;
+  /// The oldest and newest cycle of which the behaviors are known.
+  std::pair<std::uint64_t, std::uint64_t> known() const;
+  /// What does not come each cycle has been there, or cannot be waited for.
+  bool knows_goals() const;
+
+ private:
+  struct Recall {
+    bus::Reader<v1::RobotState> robots;
+    bus::Reader<v1::Grant> grants;
+    bus::Reader<v1::Behaviors> behaviors;
+    bus::Reader<v1::Intentions> intentions;
+  };
+  void recall();
+  std::string suspended() const;
+  const v1::Grant* grant_for(std::uint64_t cycle) const;
+
+  bus::Node& node_;
+  Processes processes_;
+  bus::Reader<v1::RobotDescription> description_reader_;
+  bus::Reader<v1::RobotState> robot_reader_;
+  bus::Reader<v1::Grant> grant_reader_;
+  bus::Reader<v1::Behaviors> behavior_reader_;
+  bus::Reader<v1::Intentions> intention_reader_;
+  bus::Reader<v1::Goal> goal_reader_;
+  bus::Reader<v1::GoalStatus> status_reader_;
+  bus::Reader<v1::BehaviorSchemas> schema_reader_;
+  bus::Reader<v1::Beliefs> belief_reader_;
+  bus::Reader<v1::Processes> process_reader_;
+  std::unique_ptr<Recall> recall_;
+  Clock::time_point began_ = Clock::now();
+
+  bool lockstep_ = false;
+  Past<v1::RobotState> robots_;
+  Past<v1::Grant> grants_;
+  Past<v1::Behaviors> behaviors_;
+  Past<v1::Intentions> intentions_;
+  using Key = std::pair<std::uint64_t, std::uint64_t>;
+  std::map<Key, v1::Goal> goals_;
+  std::map<Key, v1::GoalStatus> statuses_;
+  std::optional<v1::BehaviorSchemas> schemas_;
+  std::optional<v1::Beliefs> beliefs_;
+  std::map<std::uint64_t, v1::Processes> services_;  ///< by instance
+};
+
+}  // namespace saphira::cli

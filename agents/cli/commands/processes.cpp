@@ -1,0 +1,159 @@
+// processes: the micro-tasks of the services (manual 2.3.7 and 6.5).
+#include <cstdio>
+#include <iostream>
+#include <map>
+
+#include "commands.hpp"
+#include "saphira/cli/displays.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kListen{1300};  // the status comes once a second
+constexpr double kPatience = 4.0;      // [s] for an answer
+
+struct Options {
+  std::vector<std::string> words;
+  std::uint32_t cycles = 0;
+};
+
+class Watch {
+ public:
+  explicit Watch(bus::Node& node)
+      : node_(node), programs_(node), reader_(node.reader(bus::topics::kProcesses)) {}
+
+  void listen(milliseconds time, const bus::Stop& stop) {
+    const auto end = Clock::now() + time;
+    while (!stop.requested() && Clock::now() < end) {
+      node_.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+      poll();
+    }
+  }
+  void poll() {
+    programs_.poll();
+    for (const auto& sample : reader_.take()) {
+      if (sample.info.disposed)
+        services_.erase(sample.data.instance());
+      else
+        services_[sample.data.instance()] = sample.data;
+    }
+  }
+  /// Of those that live.
+  std::vector<v1::Processes> services() const {
+    std::vector<v1::Processes> all;
+    for (const SeenProcess& program : programs_.all())
+      if (const auto found = services_.find(program.status.instance());
+          found != services_.end() && program.age <= kLostAge)
+        all.push_back(found->second);
+    return all;
+  }
+  const Processes& programs() const { return programs_; }
+
+ private:
+  bus::Node& node_;
+  Processes programs_;
+  bus::Reader<v1::Processes> reader_;
+  std::map<std::uint64_t, v1::Processes> services_;
+};
+
+int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  Watch watch(node);
+  watch.listen(kListen, stop);
+  const std::string text = processes_table(watch.services());
+  if (text.empty()) {
+    std::cerr << "saphira: no service tells its processes; "
+              << who_is_there(options, watch.programs()) << '\n';
+    return bus::kExitFailed;
+  }
+  std::fputs(text.c_str(), stdout);
+  return bus::kExitOk;
+}
+
+int ask(const Options& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  Watch watch(node);
+  auto writer = node.writer(bus::topics::kProcessRequest);
+  auto answers = node.reader(bus::topics::kProcessAnswer);
+  v1::ProcessRequest request;
+  request.source("saphira processes");
+  request.request(node.instance());
+  request.action(asked.words[0] == "interrupt" ? v1::PROCESS_INTERRUPT
+                 : asked.words[0] == "resume"  ? v1::PROCESS_RESUME
+                                               : v1::PROCESS_SUSPEND);
+  request.service(asked.words[1]);
+  request.process(asked.words[2]);
+  request.cycles(asked.cycles);
+  const auto began = Clock::now();
+  bool written = false;
+  while (!stop.requested() && seconds_since(began) < kPatience) {
+    watch.listen(milliseconds(50), stop);
+    const auto services = watch.services();
+    const bool there = std::any_of(
+        services.begin(), services.end(),
+        [&](const v1::Processes& service) { return service.service() == request.service(); });
+    // Once it is there, so are its ears: as many as there are services.
+    if (!written && there && writer.matched() >= services.size())
+      written = writer.write(request);
+    for (const auto& sample : answers.take()) {
+      const v1::ProcessAnswer& answer = sample.data;
+      if (answer.request() != request.request())
+        continue;
+      if (!answer.done()) {
+        std::cerr << "saphira: " << answer.reason() << '\n';
+        return bus::kExitFailed;
+      }
+      // Its state is told in the cycle after that.
+      watch.listen(milliseconds(300), stop);
+      std::fputs(processes_table(watch.services()).c_str(), stdout);
+      return bus::kExitOk;
+    }
+  }
+  std::string names;
+  for (const v1::Processes& service : watch.services())
+    names += (names.empty() ? "" : ", ") + service.service();
+  std::cerr << "saphira: "
+            << (written ? "nothing was heard of the request"
+                        : "no service " + request.service() + " with processes; there are " +
+                              (names.empty() ? "none" : names))
+            << '\n';
+  return bus::kExitFailed;
+}
+
+int processes(const Options& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
+  const auto& words = asked.words;
+  if (words.empty())
+    return list(options, stop);
+  const bool action = words[0] == "interrupt" || words[0] == "resume" || words[0] == "suspend";
+  if (!action || words.size() != 3) {
+    std::cerr << "saphira: expected processes, or processes interrupt | resume | suspend SERVICE "
+                 "PROCESS\n";
+    return bus::kExitUsage;
+  }
+  return ask(asked, options, stop);
+}
+
+}  // namespace
+
+void add_processes(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("processes", "The micro-tasks of the services: list, interrupt, resume");
+  command->add_option("words", options->words, "interrupt | resume | suspend SERVICE PROCESS");
+  command->add_option("--cycles", options->cycles,
+                      "suspend: for so many cycles, not until resumed");
+  command->footer(
+      "Of the service intentions also an intention, by its name or number (saphira intentions).\n"
+      "An interrupted process puts its things away and waits for being resumed.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return processes(*options, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,337 @@
+// intentions, behaviors, why and beliefs: what the robot thinks.
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "commands.hpp"
+#include "mind.hpp"
+#include "saphira/cli/displays.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kPatience = 3.0;  // [s] for the first word
+
+struct WatchOptions {
+  bool once = false;
+  bool watch = false;
+  /// On a terminal it is shown again and again, as the windows of the manual.
+  bool live() const { return !once && (watch || isatty(STDOUT_FILENO) != 0); }
+};
+
+void add_watch_options(CLI::App& command, WatchOptions& options) {
+  command.add_flag("--once", options.once, "as it is now, also on a terminal");
+  command.add_flag("--watch,-w", options.watch, "again and again, also into a file");
+}
+
+int nobody(const bus::NodeOptions& options, const Mind& mind, const std::string& what) {
+  std::cerr << "saphira: nothing is said about " << what << "; "
+            << who_is_there(options, mind.processes()) << '\n';
+  return bus::kExitFailed;
+}
+
+/// Shows what `draw` gives, once or again and again: `draw` returns nothing until there is
+/// something to show.
+template <class Draw>
+int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOptions& watch,
+         const std::string& what, Draw draw) {
+  bus::Node node(options);
+  Mind mind(node, false);
+  std::optional<std::string> text;
+  const auto began = Clock::now();
+  while (!stop.requested() && !text) {
+    mind.listen(milliseconds(50), stop);
+    text = draw(mind);
+    if (!text && seconds_since(began) > kPatience)
+      return nobody(options, mind, what);
+  }
+  if (!watch.live() && text) {
+    std::fputs(text->c_str(), stdout);
+    return bus::kExitOk;
+  }
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  std::string shown;
+  auto changed = Clock::now();
+  while (!stop.requested()) {
+    if (text && *text != shown) {
+      shown = *text;
+      changed = Clock::now();
+      if (terminal) {
+        // Over the old picture line by line: cleared first, it would flicker.
+        std::string screen = "\x1b[H";
+        for (const char c : shown)
+          screen += c == '\n' ? "\x1b[K\n" : std::string(1, c);
+        std::fputs((screen + "\x1b[J").c_str(), stdout);
+      } else {
+        std::fputs((shown + "\n").c_str(), stdout);
+      }
+      std::fflush(stdout);
+      if (std::ferror(stdout) != 0)
+        return bus::kExitOk;  // who read our output has left
+    }
+    mind.listen(milliseconds(200), stop);
+    text = draw(mind);
+  }
+  return bus::kExitOk;
+}
+
+std::string header(const v1::Stamp& stamp) {
+  return "cycle " + std::to_string(stamp.cycle()) + "\n";
+}
+
+int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const bus::Stop& stop) {
+  return show(options, stop, watch, "intentions",
+              [](const Mind& mind) -> std::optional<std::string> {
+                const v1::Intentions* const newest = mind.intentions();
+                if (newest == nullptr)
+                  return std::nullopt;
+                return header(newest->stamp()) + intentions_display(*newest, mind.behaviors());
+              });
+}
+
+int behaviors(const std::string& name, const WatchOptions& watch, const bus::NodeOptions& options,
+              const bus::Stop& stop) {
+  return show(options, stop, watch, "behaviors",
+              [&](const Mind& mind) -> std::optional<std::string> {
+                const v1::Behaviors* const newest = mind.behaviors();
+                if (newest == nullptr)
+                  return std::nullopt;
+                if (name.empty())
+                  return header(newest->stamp()) + behaviors_display(*newest);
+                std::string names;
+                for (const v1::BehaviorState& state : newest->behaviors()) {
+                  names += (names.empty() ? "" : ", ") + state.name();
+                  if (state.name() != name && state.schema() != name)
+                    continue;
+                  const v1::IntendedBehavior* intended = nullptr;
+                  if (mind.intentions() != nullptr)
+                    for (const v1::IntendedBehavior& one : mind.intentions()->behaviors())
+                      if (one.name() == state.name())
+                        intended = &one;
+                  return header(newest->stamp()) +
+                         behavior_display(state, intended, mind.schema(state.schema()));
+                }
+                return header(newest->stamp()) + "no behavior " + name + "; there are " +
+                       (names.empty() ? "none now" : names) + "\n";
+              });
+}
+
+struct WhyOptions {
+  std::vector<std::string> words;
+  std::int64_t cycle = 0;
+  bool json = false;
+};
+
+int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bus::Stop& stop) {
+  std::vector<std::string> words = why_options.words;
+  std::optional<Wish> wish;
+  if (!words.empty()) {
+    const bool negated = words.front() == "not";
+    words.erase(words.begin());
+    wish = negated ? parse_wish(words) : std::nullopt;
+    if (!wish) {
+      std::cerr << "saphira: expected why, or why not turn left | turn right | faster | slower\n";
+      return bus::kExitUsage;
+    }
+  }
+  const bool past = why_options.cycle != 0;
+  bus::Node node(options);
+  Mind mind(node, past);
+  const auto began = Clock::now();
+  std::uint64_t cycle = 0;
+  std::pair<std::uint64_t, std::uint64_t> before;
+  auto grown = began;
+  while (!stop.requested()) {
+    mind.listen(milliseconds(50), stop);
+    const auto known = mind.known();
+    // The newest cycle comes with each; what is recalled ends with its oldest.
+    if (known.first != before.first)
+      grown = Clock::now();
+    before = known;
+    const double waited = seconds_since(began);
+    if (!past) {
+      cycle = mind.newest_cycle();
+      if ((mind.whole(cycle) && mind.knows_goals()) || waited > kPatience)
+        break;
+      if (mind.whole(cycle) && waited > 1.0)
+        break;
+      continue;
+    }
+    if (why_options.cycle > 0)
+      cycle = static_cast<std::uint64_t>(why_options.cycle);
+    else if (cycle == 0 && known.second > static_cast<std::uint64_t>(-why_options.cycle) &&
+             waited > 0.5)
+      // So long ago when it was asked, not when it was answered.
+      cycle = known.second - static_cast<std::uint64_t>(-why_options.cycle);
+    if (cycle != 0 && mind.whole(cycle) && (mind.knows_goals() || waited > 1.0))
+      break;
+    if (waited > kPatience && seconds_since(grown) > 1.0)
+      break;
+  }
+  if (stop.requested())
+    return bus::kExitFailed;
+  if (past && !mind.whole(cycle)) {
+    const auto known = mind.known();
+    if (known.second == 0)
+      return nobody(options, mind, "what has been");
+    std::cerr << "saphira: cycle "
+              << (why_options.cycle > 0 ? std::to_string(why_options.cycle)
+                                        : std::to_string(-why_options.cycle) + " ago")
+              << " is not known; recalled are " << known.first << " to " << known.second << '\n';
+    return bus::kExitFailed;
+  }
+  if (!mind.heard())
+    return nobody(options, mind, "the robot");
+  const Scene scene = mind.scene(cycle);
+  const Explanation explanation = wish ? why_not(scene, *wish) : cli::why(scene);
+  std::fputs((why_options.json ? to_json(explanation) + "\n" : to_text(explanation)).c_str(),
+             stdout);
+  return bus::kExitOk;
+}
+
+struct BeliefOptions {
+  std::vector<std::string> words;
+  WatchOptions watch;
+  bool hold = false;
+};
+
+int claim(const std::string& name, const std::string& value, bool hold,
+          const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  Mind mind(node, false);
+  auto writer = node.writer(bus::topics::kBeliefClaims);
+  v1::BeliefClaim sample;
+  sample.id().writer(node.instance());
+  sample.id().number(1);
+  sample.source("saphira beliefs");
+  sample.name(name);
+  sample.value(value);
+  sample.writer_lost(hold ? v1::WRITER_LOST_CANCEL : v1::WRITER_LOST_KEEP);
+  writer.write(sample);
+  const auto began = Clock::now();
+  while (!stop.requested()) {
+    mind.listen(milliseconds(100), stop);
+    if (mind.beliefs() != nullptr)
+      for (const v1::Belief& belief : mind.beliefs()->beliefs())
+        // As it is written back: 1 may have become 1.0.
+        if (belief.name() == name &&
+            belief.said_by().find("saphira beliefs") != std::string::npos) {
+          std::printf("%s = %s, said by %s\n", name.c_str(), belief.value().c_str(),
+                      belief.said_by().c_str());
+          std::fflush(stdout);
+          while (hold && !stop.requested())
+            mind.listen(std::chrono::seconds(1), stop);
+          if (hold) {
+            writer.dispose(sample);
+            writer.wait_acknowledged(1000);
+          }
+          return bus::kExitOk;
+        }
+    if (seconds_since(began) > kPatience) {
+      std::cerr << "saphira: nobody has taken it for true (saphira log says why); "
+                << who_is_there(options, mind.processes()) << '\n';
+      return bus::kExitFailed;
+    }
+  }
+  return bus::kExitFailed;
+}
+
+int beliefs(const BeliefOptions& belief_options, const bus::NodeOptions& options,
+            const bus::Stop& stop) {
+  const auto& words = belief_options.words;
+  if (!words.empty() && words[0] == "set") {
+    if (words.size() != 3) {
+      std::cerr << "saphira: expected beliefs set NAME VALUE, such as beliefs set door-open t\n";
+      return bus::kExitUsage;
+    }
+    return claim(words[1], words[2], belief_options.hold, options, stop);
+  }
+  if (words.size() > 1) {
+    std::cerr << "saphira: expected beliefs, beliefs NAME, or beliefs set NAME VALUE\n";
+    return bus::kExitUsage;
+  }
+  const std::string part = words.empty() ? "" : words[0];
+  return show(options, stop, belief_options.watch, "beliefs",
+              [&](const Mind& mind) -> std::optional<std::string> {
+                if (mind.beliefs() == nullptr)
+                  return std::nullopt;
+                const std::string text = beliefs_table(*mind.beliefs(), part);
+                return text.empty()
+                           ? "nothing is believed" + (part.empty() ? "" : " of " + part) + "\n"
+                           : text;
+              });
+}
+
+}  // namespace
+
+void add_intentions(CLI::App& app, Chosen& chosen) {
+  auto watch = std::make_shared<WatchOptions>();
+  CLI::App* command =
+      app.add_subcommand("intentions", "What the robot intends, as a tree down to the behaviors");
+  add_watch_options(*command, *watch);
+  command->footer(
+      "* waits for what is below it, o goes on beside it; then the schema, (the instance), and "
+      "the\n"
+      "state that comes next, or B for a behavior.");
+  command->callback([watch, &chosen] {
+    chosen.run = [watch](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return intentions(*watch, node, stop);
+    };
+  });
+}
+
+void add_behaviors(CLI::App& app, Chosen& chosen) {
+  auto watch = std::make_shared<WatchOptions>();
+  auto name = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("behaviors", "What each behavior wants, and what comes of it together");
+  command->add_option("name", *name, "one behavior: its parameters, rules and fuzzy variables");
+  add_watch_options(*command, *watch);
+  command->footer(
+      "* runs, o does not. On both channels the bar = is how active a behavior is, and < or > "
+      "which\n"
+      "way it wants to turn, or back or ahead; at the bottom what the robot is told.");
+  command->callback([watch, name, &chosen] {
+    chosen.run = [watch, name](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return behaviors(*name, *watch, node, stop);
+    };
+  });
+}
+
+void add_why(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<WhyOptions>();
+  CLI::App* command =
+      app.add_subcommand("why", "Why the robot does what it does, from the wheels to the goal");
+  command->add_option("words", options->words,
+                      "not turn left | not turn right | not faster | not slower");
+  command->add_option("--cycle", options->cycle,
+                      "of the last minute: its number, or -N for N cycles ago");
+  command->add_flag("--json", options->json, "one JSON object");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return why(*options, node, stop);
+    };
+  });
+}
+
+void add_beliefs(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<BeliefOptions>();
+  CLI::App* command =
+      app.add_subcommand("beliefs", "What activities take to be true, and who said so");
+  command->add_option("words", options->words, "[part of a] NAME | set NAME VALUE");
+  command->add_flag("--hold", options->hold, "set: until Ctrl-C, and then take it back");
+  add_watch_options(*command, options->watch);
+  command->footer("Values as in activities: t, nil, 2.5, \"text\", (a b).");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return beliefs(*options, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

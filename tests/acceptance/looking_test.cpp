@@ -1,0 +1,133 @@
+// A person looks at the running system by the command line, asks it why, and interrupts its
+// micro-tasks.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "system.hpp"
+
+namespace saphira::test {
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string text;
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class LookingTest : public testing::Test {
+ protected:
+  Outcome run(const std::vector<std::string>& words) {
+    std::vector<std::string> argv{"saphira", "--robot", system.robot(), "--domain", domain()};
+    argv.insert(argv.end(), words.begin(), words.end());
+    Process process(argv, system.folder().path("look" + std::to_string(++runs)));
+    Outcome outcome;
+    outcome.code = process.wait().value_or(-1);
+    outcome.text = process.output();
+    return outcome;
+  }
+  /// On the way to a point far down the corridor.
+  void drive() {
+    system.start_all();
+    goal = system.go_to(6.0, 0.0);
+    ASSERT_TRUE(system.wait_moving()) << system.output();
+  }
+
+  System system;
+  v1::GoalId goal;
+  int runs = 0;
+};
+
+TEST_F(LookingTest, ShowsWhatItThinksWhileItDrives) {
+  ASSERT_NO_FATAL_FAILURE(drive());
+  Outcome seen = run({"intentions"});
+  EXPECT_EQ(seen.code, 0) << seen.text;
+  EXPECT_TRUE(has(seen.text, "* go_to (")) << seen.text;
+  EXPECT_TRUE(has(seen.text, "  * GoToPos (GoToPos")) << seen.text;
+  seen = run({"behaviors"});
+  EXPECT_EQ(seen.code, 0) << seen.text;
+  EXPECT_TRUE(has(seen.text, "* GoToPos")) << seen.text;
+  EXPECT_TRUE(has(seen.text, "= Summation")) << seen.text;
+  seen = run({"behaviors", "GoToPos"});
+  EXPECT_EQ(seen.code, 0) << seen.text;
+  EXPECT_TRUE(has(seen.text, "Running   1")) << seen.text;
+  EXPECT_TRUE(has(seen.text, "\nRules\n")) << seen.text;
+  seen = run({"behaviors", "Fly"});
+  EXPECT_TRUE(has(seen.text, "no behavior Fly; there are ")) << seen.text;
+}
+
+TEST_F(LookingTest, SaysWhyFromTheWheelsToTheGoal) {
+  ASSERT_NO_FATAL_FAILURE(drive());
+  const Outcome said = run({"why", "--json"});
+  ASSERT_EQ(said.code, 0) << said.text;
+  const auto json = nlohmann::json::parse(said.text);
+  const std::string sentence = json.at("sentence");
+  EXPECT_TRUE(sentence.starts_with("The robot is told to drive ahead at ")) << sentence;
+  EXPECT_TRUE(has(sentence, "for the goal go_to(position=(6, 0) in odom), which ")) << sentence;
+  EXPECT_TRUE(has(said.text, "\"kind\":\"rule\"")) << said.text;
+  EXPECT_TRUE(has(said.text, "\"kind\":\"intention\"")) << said.text;
+  const Outcome no = run({"why", "not", "turn", "right"});
+  EXPECT_EQ(no.code, 0) << no.text;
+  EXPECT_TRUE(no.text.starts_with("It does ")) << no.text;
+  EXPECT_EQ(run({"why", "not", "fly"}).code, 2);
+
+  // The same cycle, some time later, has the same reason.
+  const std::uint64_t cycle = json.at("cycle");
+  const Outcome again = run({"why", "--json", "--cycle", std::to_string(cycle)});
+  ASSERT_EQ(again.code, 0) << again.text;
+  EXPECT_EQ(nlohmann::json::parse(again.text).at("sentence"), sentence);
+  const Outcome before = run({"why", "--cycle", "-10"});
+  EXPECT_EQ(before.code, 0) << before.text;
+  const Outcome never = run({"why", "--cycle", "999999"});
+  EXPECT_EQ(never.code, 1) << never.text;
+  EXPECT_TRUE(has(never.text, "cycle 999999 is not known; recalled are ")) << never.text;
+
+  system.goals().cancel(goal);
+  ASSERT_TRUE(system.wait_still(std::chrono::seconds(5))) << system.output();
+  const Outcome stands = run({"why"});
+  EXPECT_EQ(stands.code, 0) << stands.text;
+  EXPECT_TRUE(stands.text.starts_with("The robot stands because nobody drives it")) << stands.text;
+  EXPECT_TRUE(has(stands.text, "was canceled")) << stands.text;
+}
+
+TEST_F(LookingTest, ListsInterruptsAndResumesProcesses) {
+  ASSERT_NO_FATAL_FAILURE(drive());
+  const Outcome list = run({"processes"});
+  EXPECT_EQ(list.code, 0) << list.text;
+  for (const char* name : {"occgrid", "side-segment", "test-wall", "test-match",
+                           "execute-current-behaviors", "execute-intentions"})
+    EXPECT_TRUE(has(list.text, name)) << list.text;
+
+  // What drives is suspended: the robot stands until it is resumed.
+  for (const auto& [service, process] : {std::pair{"behaviors", "execute-current-behaviors"},
+                                         {"intentions", "execute-intentions"}}) {
+    const Outcome asked = run({"processes", "interrupt", service, process});
+    EXPECT_EQ(asked.code, 0) << asked.text;
+    EXPECT_TRUE(has(asked.text, "SUSP")) << asked.text;
+    EXPECT_TRUE(system.wait_still(std::chrono::seconds(3))) << system.output();
+    const Outcome why = run({"why"});
+    EXPECT_TRUE(why.text.starts_with("The robot stands because nobody drives it")) << why.text;
+    EXPECT_EQ(run({"processes", "resume", service, process}).code, 0);
+    EXPECT_TRUE(system.wait_moving(std::chrono::seconds(5))) << system.output();
+  }
+  const Outcome wrong = run({"processes", "suspend", "behaviors", "sleep"});
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_TRUE(has(wrong.text, "no process \"sleep\"; there are execute-current-behaviors"))
+      << wrong.text;
+  EXPECT_EQ(run({"processes", "stop", "behaviors", "x"}).code, 2);
+}
+
+TEST_F(LookingTest, SaysThatNobodyIsThere) {
+  for (const char* command : {"intentions", "behaviors", "why", "beliefs", "processes"}) {
+    const Outcome outcome = run({command});
+    EXPECT_EQ(outcome.code, 1) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "no program is on the bus")) << outcome.text;
+  }
+}
+
+}  // namespace
+}  // namespace saphira::test
