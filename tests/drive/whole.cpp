@@ -1,11 +1,17 @@
 #include "drive/whole.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/language.hpp"
+#include "saphira/intentions/navigation.hpp"
 
 namespace saphira::test {
 namespace {
@@ -57,7 +63,76 @@ std::vector<intentions::BehaviorLevel> levels_of(const behaviors::Output& output
   return levels;
 }
 
+intentions::Parameter parameter_of(const behaviors::ParameterSpec& spec) {
+  intentions::Parameter parameter;
+  parameter.name = spec.name;
+  parameter.kind = spec.kind == behaviors::Kind::number ? intentions::ArgumentKind::kNumber
+                   : spec.kind == behaviors::Kind::text ? intentions::ArgumentKind::kText
+                                                        : intentions::ArgumentKind::kPoint;
+  parameter.low = spec.low;
+  parameter.high = spec.high;
+  parameter.required = spec.required;
+  return parameter;
+}
+
+intentions::Localization localization_of(registration::State state) {
+  switch (state) {
+    case registration::State::off:
+      return intentions::Localization::kOff;
+    case registration::State::unplaced:
+      return intentions::Localization::kUnplaced;
+    case registration::State::lost:
+      return intentions::Localization::kLost;
+    case registration::State::tracking:
+      break;
+  }
+  return intentions::Localization::kTracking;
+}
+
+intentions::ExecutorOptions options_of(
+    const std::shared_ptr<const intentions::Functions>& functions) {
+  intentions::ExecutorOptions options;
+  options.functions = functions;
+  return options;
+}
+
 }  // namespace
+
+std::shared_ptr<const intentions::Functions> all_functions() {
+  auto functions = std::make_shared<intentions::Functions>(intentions::core_functions());
+  intentions::add_navigation(*functions);
+  return functions;
+}
+
+intentions::Registry shipped_schemas(const behaviors::Registry& behaviors,
+                                     const std::vector<std::string>& more) {
+  intentions::Registry registry = intentions::built_in();
+  std::vector<intentions::BehaviorSignature> signatures;
+  for (const std::string& name : behaviors.names()) {
+    signatures.push_back({name, {}});
+    for (const behaviors::ParameterSpec& spec : behaviors.find(name)->parameters)
+      signatures.back().parameters.push_back(parameter_of(spec));
+  }
+  registry.know_behaviors(std::move(signatures));
+  std::vector<std::string> paths = more;
+  for (const auto& entry : std::filesystem::directory_iterator(config_folder() + "/activities"))
+    if (entry.path().extension() == ".act")
+      paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  std::vector<intentions::ActivityFile> files;
+  for (const std::string& path : paths)
+    files.push_back({path, read_file(path)});
+  const intentions::Loaded loaded = intentions::load_activities(files, *all_functions(), registry);
+  std::string troubles;
+  for (const intentions::Diagnostic& each : loaded.troubles)
+    if (each.error)
+      troubles += each.text() + "\n";
+  if (!troubles.empty())
+    throw std::runtime_error(troubles);
+  for (const intentions::Schema& schema : loaded.schemas)
+    registry.add(schema);
+  return registry;
+}
 
 Whole::Whole(const WholeOptions& options)
     : drive_(options.drive),
@@ -69,7 +144,9 @@ Whole::Whole(const WholeOptions& options)
       registration_(
           with_sonars<registration::Settings>(drive_), map_,
           options.knows_pose ? std::optional(drive_.seen().true_pose_in_world) : std::nullopt),
-      executor_(options.schemas.value_or(intentions::built_in())) {}
+      executor_(options.schemas.value_or(shipped_schemas(
+                    options.drive.behaviors.value_or(behaviors::predefined()), options.activities)),
+                {}, options_of(all_functions())) {}
 
 void Whole::advance() {
   // What the others said in the cycle before.
@@ -90,13 +167,30 @@ void Whole::advance() {
   if (registered.state == registration::State::tracking ||
       registered.state == registration::State::off)
     inputs.robot.odom_in_map = compose(registered.pose_in_map, relative(was_in_odom, Pose{}));
+  inputs.robot.left_stalled = drive_.robot().left_stalled();
+  inputs.robot.right_stalled = drive_.robot().right_stalled();
+  drive_.robot().clear_stalls();
+  inputs.around.lps = &drive_.executive().lps();
+  inputs.around.percepts = &seen_before;
+  inputs.around.topology = topology_;
+  inputs.around.map_revision = 1;
+  inputs.around.registration.state = localization_of(registered.state);
+  inputs.around.registration.pose_in_map = registered.pose_in_map;
+  inputs.around.registration.confidence = registered.confidence;
+  if (registered.environment)
+    inputs.around.registration.environment = map_.features[*registered.environment].id;
   inputs.behaviors = levels_of(behaved);
   inputs.behaviors_cycle = seen.cycle - 1;
   inputs.events = std::exchange(events_, {});
+  inputs.claims = std::exchange(claims_, {});
+  if (!behaved.trouble.empty())
+    trouble_ = behaved.trouble;
   intentions_ = executor_.step(inputs);
   for (const intentions::GoalStatus& status : intentions_.news.changed)
     statuses_[status.id] = status;
-  drive_.intend(intended_of(intentions_.behaviors));
+  for (const intentions::Said& each : intentions_.said)
+    said_.push_back(each.text);
+  drive_.intend(intended_of(intentions_.behaviors), intentions_.behavior_control);
 
   registration_.step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings});
   percepts_ = interpretation_.step({seen.cycle, seen.pose_in_odom, seen.readings}).percepts;
@@ -132,6 +226,15 @@ void Whole::withdraw(const intentions::GoalId& goal) {
   events_.push_back(std::move(event));
 }
 
+void Whole::claim(std::string name, intentions::Value value) {
+  intentions::ClaimEvent event;
+  event.id = {2, next_goal_++};
+  event.source = "test";
+  event.name = std::move(name);
+  event.value = std::move(value);
+  claims_.push_back(std::move(event));
+}
+
 const intentions::GoalStatus& Whole::status(const intentions::GoalId& goal) const {
   static const intentions::GoalStatus unheard;
   const auto found = statuses_.find(goal);
@@ -155,7 +258,7 @@ bool Whole::at_rest() const {
 }
 
 /// The display of paper Figure 10, as it changes: nodes that come, that come to another state or
-/// label, and that go.
+/// label, and that go. The names that the forest has given are left out, since they are numbers.
 void Whole::note_transitions() {
   using intentions::IntentionNode;
   const auto line = [&](const IntentionNode& node, const std::string& what) {
@@ -171,9 +274,9 @@ void Whole::note_transitions() {
   for (const auto& [id, node] : now) {
     const auto before = nodes_.find(id);
     if (before == nodes_.end())
-      line(node, node.step.empty() ? "begins" : node.step);
-    else if (before->second.step != node.step)
-      line(node, node.step);
+      line(node, "begins, " + node.label);
+    else if (before->second.label != node.label)
+      line(node, node.label);
   }
   nodes_ = std::move(now);
 }

@@ -20,11 +20,20 @@ namespace saphira::test {
 
 struct WholeOptions {
   DriveOptions drive;
-  std::string map;         ///< a name of config/maps; empty: that of the world
-  bool knows_pose = true;  ///< registration is told where the robot starts
-  /// Else the built-in schemas and the activities of config/activities.
+  std::string map;                        ///< a name of config/maps; empty: that of the world
+  bool knows_pose = true;                 ///< registration is told where the robot starts
+  std::vector<std::string> activities{};  ///< files besides those of config/activities
+  /// Else the built-in schemas and the activities of those files.
   std::optional<intentions::Registry> schemas;
 };
+
+/// What activities can use: the core and navigation.
+std::shared_ptr<const intentions::Functions> all_functions();
+
+/// The built-in schemas, and those of config/activities and of further files. std::runtime_error
+/// where anything is wrong with a file.
+intentions::Registry shipped_schemas(const behaviors::Registry& behaviors,
+                                     const std::vector<std::string>& more = {});
 
 /// The whole robot in one loop, without the bus: simulated robot, interpretation, registration,
 /// behaviors and intentions, each of which reads what the others said in the cycle before, as the
@@ -43,6 +52,8 @@ class Whole {
   intentions::GoalId ask(std::string functor, intentions::Arguments arguments = {},
                          int priority = 0, double deadline = 0.0);
   void withdraw(const intentions::GoalId& goal);
+  /// Somebody claims it; it is heard in the next cycle.
+  void claim(std::string name, intentions::Value value);
   /// The newest word on a goal; kWaiting until there is one.
   const intentions::GoalStatus& status(const intentions::GoalId& goal) const;
   bool ended(const intentions::GoalId& goal) const;
@@ -61,6 +72,10 @@ class Whole {
 
   /// Everything that changed in the intentions since the start, a line each: "12 go_to (1:1)
   /// BEGIN".
+  /// The newest behavior that could not be made, and why; empty: none.
+  const std::string& trouble() const { return trouble_; }
+  /// All that was said to people.
+  const std::vector<std::string>& said() const { return said_; }
   const std::vector<std::string>& transitions() const { return transitions_; }
 
  private:
@@ -75,6 +90,9 @@ class Whole {
   std::vector<lps::Percept> percepts_;
   intentions::Outputs intentions_;
   std::vector<intentions::GoalEvent> events_;
+  std::vector<intentions::ClaimEvent> claims_;
+  std::vector<std::string> said_;
+  std::string trouble_;
   std::map<intentions::GoalId, intentions::GoalStatus> statuses_;
   std::uint64_t next_goal_ = 1;
   std::map<std::uint32_t, intentions::IntentionNode> nodes_;

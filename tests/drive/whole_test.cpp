@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <iostream>
+
 namespace saphira::test {
 namespace {
 
@@ -28,6 +31,18 @@ TEST(Whole, DrivesToAPointOfTheMapByWhatItBelievesAndTheSameEachTime) {
   const Pose first = run(1);
   EXPECT_EQ(run(1), first);
   EXPECT_NE(run(2), first);
+}
+
+TEST(Whole, GoesToAPlaceByItsName) {
+  Whole whole(office());
+  const auto status = whole.achieve("go-to-place", {intentions::text("place", "EJ-231")}, 3000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  if (std::getenv("SAPHIRA_TALK"))
+    for (const std::string& line : whole.transitions())
+      std::cout << line << "\n";
+  EXPECT_EQ(whole.drive().contacts(), 0);
+  EXPECT_EQ(whole.trouble(), "");
+  EXPECT_TRUE(whole.at_rest());
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ constexpr double kSameDoor = 0.5;   ///< [m] a door that is seen and one on the 
 constexpr double kBody = 0.30;      ///< [m] half of what has to be free before the robot
 constexpr double kNear = 1.2;       ///< [m] from where on the sonars tell a closed door
 constexpr double kSeenAgain = 3.0;  ///< [s] what was seen longer ago counts no more
+constexpr double kThere = 0.4;      ///< [m] so near to its point the robot is at a place
 constexpr double kVisited = 1.5;    ///< [m] around where the robot has been
 constexpr double kWayIn = 1.0;      ///< [m] behind a door where a room has been visited
 
@@ -287,13 +288,11 @@ Value leg_of(const World& world, Values arguments) {
            : region.kind == RegionKind::corridor ? "corridor-to-point"
                                                  : "to-point";
   const maps::Link& link = map.links()[link_index(world, *out, "leg")];
-  if (link.kind == LinkKind::door)
+  if (link.kind != LinkKind::meeting)
     return region.kind == RegionKind::corridor ? "corridor-to-door" : "room-to-door";
-  if (link.kind == LinkKind::opening)
-    return region.kind == RegionKind::corridor ? "corridor-to-opening" : "room-to-opening";
   if (region.kind == RegionKind::junction)
     return "on";
-  return region.kind == RegionKind::corridor ? "corridor-to-junction" : "cross";
+  return region.kind == RegionKind::corridor ? "corridor-to-junction" : "cross-region";
 }
 
 // ---- Regions and doors
@@ -358,7 +357,7 @@ double widest_gap(const lps::LocalPerceptualSpace& lps, const Pose& door_in_robo
 Value door_state(const World& world, Values arguments) {
   const maps::Link& link = link_of(world, arguments, 0, "door-state");
   const std::optional<Pose> door = in_robot(world, {link.pose_in_map, Frame::kMap});
-  if (!door || world.around.lps == nullptr)
+  if (!door || world.around.lps == nullptr || link.kind == LinkKind::meeting)
     return "unknown";
   const double bearing = std::abs(std::atan2(door->y, door->x));
   const double far = std::hypot(door->x, door->y);
@@ -575,7 +574,56 @@ void add_paths(Functions& functions) {
                "that is none of the points, or nil"});
 }
 
+/// Whether the robot is where a place is: within its region, and near its point where it has one.
+bool at_place(const World& world, const Value& place) {
+  const std::optional<Pose> robot = world.robot_in_map();
+  if (!robot || world.around.topology == nullptr)
+    return false;
+  if (place.point() != nullptr) {
+    const auto at = in_frame(place.point()->pose, place.point()->frame, Frame::kMap, world.robot);
+    return at && (at->position() - robot->position()).norm() < kThere;
+  }
+  const auto meant = place_named(*world.around.topology, place);
+  if (!meant)
+    return false;
+  if (meant->point)
+    return (*meant->point - robot->position()).norm() < kThere;
+  return std::any_of(meant->regions.begin(), meant->regions.end(), [&](std::size_t region) {
+    return maps::contains(world.around.topology->regions()[region].area, robot->position());
+  });
+}
+
+/// The words of a text, which commas or blanks separate.
+Value split(const std::string& text) {
+  Value::List words;
+  std::string word;
+  for (const char c : text + ",") {
+    if (c != ',' && c != ' ') {
+      word += c;
+      continue;
+    }
+    if (!word.empty())
+      words.emplace_back(word);
+    word.clear();
+  }
+  return Value(std::move(words));
+}
+
 void add_places(Functions& functions) {
+  functions.add(Function{
+      "at-place", 1, 1,
+      [](const World& world, Values arguments) { return yes(at_place(world, arguments[0])); },
+      "(at-place PLACE): whether the robot is there"});
+  functions.add(
+      Function{"split", 1, 1,
+               [](const World&, Values arguments) { return split(text_of(arguments, 0, "split")); },
+               "(split TEXT): its words, between commas or blanks"});
+  functions.add(Function{"link-p", 1, 1,
+                         [](const World&, Values arguments) {
+                           const Reference* const reference = arguments[0].reference();
+                           return yes(reference != nullptr && reference->kind == Kind::kLink);
+                         },
+                         "(link-p THING): whether it is a door or another way out"});
   functions.add(Function{"place-known", 1, 1,
                          [](const World& world, Values arguments) {
                            return yes(world.around.topology != nullptr &&
