@@ -56,6 +56,7 @@ struct Forest::Node {
   // Of an activity.
   double progress = 0.0;
   Ticks stepped = -1;  ///< when it was, last
+  bool gone = false;   ///< removed, in the course of a step
 };
 
 /// What an activity gets hold of: one node for one step.
@@ -239,6 +240,7 @@ std::uint32_t Forest::plant(const GoalId& goal, std::string_view name, std::stri
   node->timeout = ticks(timeout);
   node->activity = std::move(activity);
   nodes_.emplace(id, std::move(node));
+  roots_.push_back(id);
   order_is_old_ = true;
   return id;
 }
@@ -441,12 +443,17 @@ void Forest::drop(std::uint32_t id) {
   remove_children(node);
   if (Node* const parent = at(node.shown.parent))
     std::erase(parent->children, id);
+  else if (node.shown.parent == 0)
+    std::erase(roots_, id);
   if (control_owner_ == id) {
     control_owner_ = 0;
     beliefs_->unset(kBehaviorControl);
   }
   order_is_old_ = true;
-  nodes_.erase(id);
+  node.gone = true;
+  const auto found = nodes_.find(id);
+  graves_.push_back(std::move(found->second));
+  nodes_.erase(found);
 }
 
 void Forest::remove_children(Node& parent) {
@@ -533,38 +540,38 @@ void Forest::step(Ticks now, const Robot& robot) {
 void Forest::step(const World& world) {
   now_ = world.now;
   begun_ = 0;
-  if (std::exchange(order_is_old_, false)) {
-    order_.clear();
-    for (const auto& [id, node] : nodes_) {
-      if (node->activity)
-        order_.push_back(id);
-    }
-    std::stable_sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
-      return at(a)->shown.priority > at(b)->shown.priority;
-    });
+  graves_.clear();
+  if (std::exchange(order_is_old_, false))
+    sort();
+  for (Node* const node : behaviors_)
+    watch(*node, world);
+  // What comes to be in the course of the step is not in the order yet; what goes is marked.
+  for (Node* const node : order_) {
+    if (!node->gone)
+      step_one(*node, world);
   }
-  for (auto& [id, node] : nodes_) {
-    if (!node->activity)
-      watch(*node, world);
-  }
-  // What comes to be in the course of the step is not in the order yet.
-  for (std::size_t i = 0; i < order_.size(); ++i)
-    step_one(order_[i], world);
   work_off(world);
   sweep();
+}
+
+void Forest::sort() {
+  order_.clear();
+  behaviors_.clear();
+  for (const auto& [id, node] : nodes_)
+    (node->activity ? order_ : behaviors_).push_back(node.get());
+  std::stable_sort(order_.begin(), order_.end(), [](const Node* a, const Node* b) {
+    return a->shown.priority > b->shown.priority;
+  });
 }
 
 void Forest::begin(std::uint32_t id, const World& world) {
-  step_one(id, world);
+  if (Node* const node = at(id))
+    step_one(*node, world);
   work_off(world);
   sweep();
 }
 
-void Forest::step_one(std::uint32_t id, const World& world) {
-  Node* const found = at(id);
-  if (found == nullptr || !found->activity)
-    return;
-  Node& node = *found;
+void Forest::step_one(Node& node, const World& world) {
   if (node.shown.state == IntentionState::kSuspended || finished(node.shown.state))
     return;
   const bool interrupted = node.shown.state == IntentionState::kInterrupted;
@@ -611,7 +618,8 @@ void Forest::work_off(const World& world) {
       // Beyond the bound it begins in the next step.
       if (begun_ < options_.max_begun) {
         ++begun_;
-        step_one(id, world);
+        if (Node* const node = at(id))
+          step_one(*node, world);
       }
       continue;
     }
@@ -629,12 +637,12 @@ void Forest::work_off(const World& world) {
 
 void Forest::sweep() {
   std::vector<std::uint32_t> gone;
-  for (const auto& [id, node] : nodes_) {
-    if (node->shown.parent == 0 && finished(node->shown.state))
+  for (const std::uint32_t id : roots_) {
+    if (finished(at(id)->shown.state))
       gone.push_back(id);
   }
   for (const std::uint32_t id : gone) {
-    ended_[id] = nodes_.at(id)->outcome;
+    ended_[id] = at(id)->outcome;
     drop(id);
   }
 }
@@ -679,10 +687,11 @@ double Forest::progress_of(std::uint32_t id) const {
 }
 
 double Forest::level_of(std::uint32_t id) const {
-  const Node& node = *nodes_.at(id);
-  if (node.shown.state == IntentionState::kSuccess)
-    return 1.0;
-  return node.level.value_or(node.progress);
+  return level_of(*nodes_.at(id));
+}
+
+double Forest::level_of(const Node& node) {
+  return node.shown.state == IntentionState::kSuccess ? 1.0 : node.level.value_or(node.progress);
 }
 
 std::vector<IntendedBehavior> Forest::behaviors() const {
@@ -699,7 +708,7 @@ std::vector<IntentionNode> Forest::nodes() const {
   all.reserve(nodes_.size());
   for (const auto& [id, node] : nodes_) {
     all.push_back(node->shown);
-    all.back().level = level_of(id);
+    all.back().level = level_of(*node);
   }
   return all;
 }

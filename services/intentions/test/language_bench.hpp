@@ -15,7 +15,9 @@ namespace saphira::intentions {
 /// An executor with activities from a text, and a world that does as it is told.
 class Stage {
  public:
-  explicit Stage(const std::string& activities, const Functions& functions = core_functions()) {
+  explicit Stage(const std::string& activities, const Functions& functions = core_functions(),
+                 std::size_t most = 65536) {
+    options.forest.max_intentions = most;
     options.functions = std::make_shared<const Functions>(functions);
     Registry registry = built_in();
     loaded = load_text("test.act", activities, functions, registry);

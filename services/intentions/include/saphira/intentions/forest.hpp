@@ -133,7 +133,9 @@ class Forest {
   void tell_parent(const Node& node);
   void suspend(Node& node);
   void wake(Node& node);
-  void step_one(std::uint32_t id, const World& world);
+  static double level_of(const Node& node);
+  void sort();
+  void step_one(Node& node, const World& world);
   void work_off(const World& world);
   void conclude(Node& node, bool interrupted, const World& world);
   void sweep();
@@ -141,9 +143,13 @@ class Forest {
   std::shared_ptr<const Registry> registry_;
   std::shared_ptr<Beliefs> beliefs_;
   ForestOptions options_;
-  Nodes nodes_;                       ///< by number: a parent has a smaller one than its children
-  std::vector<std::uint32_t> order_;  ///< of stepping
+  Nodes nodes_;  ///< by number: a parent has a smaller one than its children
+  std::vector<std::uint32_t> roots_;
+  std::vector<Node*> order_;      ///< of stepping
+  std::vector<Node*> behaviors_;  ///< in the order in which they were intended
   bool order_is_old_ = false;
+  /// Removed since the last step: whoever is being stepped may be among them.
+  std::vector<std::unique_ptr<Node>> graves_;
   std::uint32_t last_id_ = 0;
   Ticks now_ = 0;
   std::deque<std::uint32_t> to_begin_;  ///< started, and not stepped yet

@@ -1,0 +1,48 @@
+// What deciding costs in a cycle: behaviors and intentions, without the bus.
+
+#include <cstdio>
+#include <exception>
+#include <string_view>
+
+#include "executive_bench.hpp"
+
+int main(int argc, char** argv) {
+  using namespace saphira::bench;
+  bool json = false;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string_view(argv[i]) == "--json") {
+      json = true;
+    } else {
+      std::fprintf(stderr, "usage: saphira bench executive [--json]\n");
+      return 2;
+    }
+  }
+  try {
+    const double intentions_12 = intentions_12_ms();
+    const double behaviors_10 = behaviors_10_ms();
+    const double behaviors_1000 = behaviors_1000_ms();
+    const double intentions_10000 = intentions_10000_ms();
+    const double language = language_over_cpp();
+    if (json) {
+      std::printf(
+          "{\"paper_load_ms\": %.5f, \"intentions_12_ms\": %.5f, \"behaviors_10_ms\": %.5f, "
+          "\"behaviors_1000_ms\": %.4f, \"intentions_10000_ms\": %.4f, \"language_over_cpp\": "
+          "%.3f}\n",
+          intentions_12 + behaviors_10, intentions_12, behaviors_10, behaviors_1000,
+          intentions_10000, language);
+    } else {
+      std::printf("CPU time of a cycle, without the bus\n");
+      std::printf("  12 intentions and 10 behaviors (the paper's load)  %8.3f ms\n",
+                  intentions_12 + behaviors_10);
+      std::printf("  1,000 behaviors with 5,000 rules                   %8.3f ms\n",
+                  behaviors_1000);
+      std::printf("  10,000 intentions that wait                        %8.3f ms\n",
+                  intentions_10000);
+      std::printf("  a behavior in the language over the same in C++    %8.2f\n", language);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira bench executive: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,86 @@
+// A file of activities: it compiles or has errors that name their place, and what compiles runs as
+// long as one likes without harm. The same bytes as a value of a belief.
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "saphira/base/text.hpp"
+#include "saphira/intentions/executor.hpp"
+#include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/language.hpp"
+
+using namespace saphira::intentions;
+
+namespace {
+
+void run(const Loaded& loaded) {
+  Registry registry = built_in();
+  Inputs inputs;
+  inputs.epoch = 1;
+  inputs.robot.connected = true;
+  inputs.robot.odom = 1;
+  for (const Schema& schema : loaded.schemas) {
+    GoalEvent event;
+    event.goal.id = {1, inputs.events.size() + 1};
+    event.goal.functor = schema.name;
+    for (const Parameter& parameter : schema.parameters) {
+      if (parameter.any || parameter.kind == ArgumentKind::kText)
+        event.goal.arguments.push_back(text(parameter.name, "x"));
+      else if (parameter.kind == ArgumentKind::kNumber)
+        event.goal.arguments.push_back(number(parameter.name, parameter.low));
+      else
+        event.goal.arguments.push_back(point(parameter.name, {1.0, 2.0, 0.5}, Frame::kRobot));
+    }
+    event.goal.priority = static_cast<int>(inputs.events.size());
+    inputs.events.push_back(event);
+    registry.add(schema);
+  }
+  ExecutorOptions options;
+  options.forest.max_intentions = 300;
+  options.forest.max_begun = 50;
+  Executor executor(std::move(registry), {}, options);
+  for (int i = 0; i < 30; ++i) {
+    ++inputs.cycle;
+    inputs.robot.pose_in_odom.x += 0.03;
+    inputs.robot.left_stalled = i % 7 == 3;
+    const Outputs out = executor.step(inputs);
+    inputs.events.clear();
+    inputs.behaviors.clear();
+    inputs.behaviors_cycle = inputs.cycle;
+    for (const IntendedBehavior& behavior : out.behaviors)
+      inputs.behaviors.push_back({behavior.name, i % 5 == 0 ? 1.0 : 0.5, 0.0});
+    if (out.nodes.size() > 302)
+      std::abort();
+    for (const Belief& belief : executor.beliefs().all())
+      to_text(belief.value);
+  }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view content(reinterpret_cast<const char*>(data), size);
+  static const Functions kFunctions = core_functions();
+  static const Registry kBuiltIn = built_in();
+  const Loaded loaded = load_text("fuzz.act", content, kFunctions, kBuiltIn);
+  for (const Diagnostic& trouble : loaded.troubles) {
+    if (trouble.line < 1 || trouble.column < 1 || trouble.message.empty())
+      std::abort();
+    static_cast<void>(trouble.text());
+  }
+  if (!loaded.ok() && loaded.schemas.size() > 0)
+    std::abort();
+  run(loaded);
+  try {
+    const Value value = parse_value(content);
+    if (value != parse_value(to_text(value)))
+      std::abort();
+  } catch (const saphira::FileError& error) {
+    if (error.line() < 1 || error.column() < 1)
+      std::abort();
+  }
+  return 0;
+}
