@@ -5,7 +5,12 @@
 namespace saphira::behaviors {
 namespace {
 
-constexpr std::size_t kMostRules = 64;  // the bound of BehaviorState.rules
+// The bounds of the contract.
+constexpr std::size_t kMostRules = 64;
+constexpr std::size_t kMostVariables = 64;
+constexpr std::size_t kMostParameters = 16;
+constexpr std::size_t kMostChoices = 16;
+constexpr std::size_t kMostSchemas = 1024;
 
 Frame from_bus(v1::Frame frame) {
   switch (frame) {
@@ -108,6 +113,13 @@ v1::BehaviorState to_bus(const BehaviorState& state) {
     out.value(rule.value);
     sample.rules().push_back(std::move(out));
   }
+  for (const auto& [name, value] : blended.evaluation.variables) {
+    if (sample.variables().size() == kMostVariables)
+      break;
+    sample.variables().emplace_back();
+    sample.variables().back().name(name);
+    sample.variables().back().value(value);
+  }
   return sample;
 }
 
@@ -121,7 +133,56 @@ v1::Behaviors to_bus(const Output& output) {
   sample.turn(output.blend.turn);
   sample.moving(output.blend.moving);
   sample.speed(output.blend.speed);
+  for (const Missing& missing : output.missing) {
+    sample.missing().emplace_back();
+    sample.missing().back().name(missing.name);
+    sample.missing().back().reason(missing.reason);
+  }
   sample.trouble(output.trouble);
+  return sample;
+}
+
+v1::BehaviorSchema to_bus(const Schema& schema) {
+  v1::BehaviorSchema sample;
+  sample.name(schema.name);
+  sample.summary(schema.summary);
+  sample.source(schema.source);
+  for (const ParameterSpec& spec : schema.parameters) {
+    if (sample.parameters().size() == kMostParameters)
+      break;
+    v1::BehaviorParameter out;
+    out.name(spec.name);
+    out.kind(spec.kind == Kind::point  ? v1::ARGUMENT_POINT
+             : spec.kind == Kind::text ? v1::ARGUMENT_TEXT
+                                       : v1::ARGUMENT_NUMBER);
+    out.meaning(spec.meaning);
+    out.required(spec.required);
+    out.low(spec.low);
+    out.high(spec.high);
+    out.usual(spec.usual);
+    for (const std::string& choice : spec.choices)
+      if (out.choices().size() < kMostChoices)
+        out.choices().push_back(choice);
+    sample.parameters().push_back(std::move(out));
+  }
+  for (const RuleSpec& rule : schema.rules) {
+    if (sample.rules().size() == kMostRules)
+      break;
+    v1::RuleText out;
+    out.name(rule.name);
+    out.antecedent(rule.antecedent);
+    out.action(rule.action);
+    sample.rules().push_back(std::move(out));
+  }
+  return sample;
+}
+
+v1::BehaviorSchemas to_bus(const Registry& registry, const std::string& trouble) {
+  v1::BehaviorSchemas sample;
+  for (const std::string& name : registry.names())
+    if (sample.schemas().size() < kMostSchemas)
+      sample.schemas().push_back(to_bus(*registry.find(name)));
+  sample.trouble(trouble);
   return sample;
 }
 

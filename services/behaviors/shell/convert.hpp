@@ -17,6 +17,9 @@ Intent from_bus(const v1::Intentions& intentions);
 v1::BehaviorState to_bus(const BehaviorState& state);
 /// The behaviors sample; its stamp is the caller's.
 v1::Behaviors to_bus(const Output& output);
+v1::BehaviorSchema to_bus(const Schema& schema);
+/// All of a registry; the stamp is the caller's.
+v1::BehaviorSchemas to_bus(const Registry& registry, const std::string& trouble);
 /// The motor command; its stamp, source and number are the caller's.
 v1::MotorCommand command_to_bus(const Output& output);
 

@@ -46,6 +46,7 @@ void Executive::reset() {
   instances_.clear();
   reconciled_.clear();
   reconcile_trouble_.clear();
+  missing_.clear();
 }
 
 void Executive::reset(RobotModel model) {
@@ -54,6 +55,7 @@ void Executive::reset(RobotModel model) {
   instances_.clear();
   reconciled_.clear();
   reconcile_trouble_.clear();
+  missing_.clear();
 }
 
 Output Executive::step(const Inputs& inputs) {
@@ -62,6 +64,7 @@ Output Executive::step(const Inputs& inputs) {
   if (inputs.intent != nullptr) {
     output.control = inputs.intent->control;
     output.trouble = reconcile(inputs.intent->behaviors, inputs.robot.pose_in_odom);
+    output.missing = missing_;
   }
 
   Shared shared;
@@ -112,6 +115,7 @@ std::string Executive::reconcile(const std::vector<Intended>& intended, const Po
     known.emplace(instance.intended.name, &instance);
   std::set<std::string_view> seen;
   std::string trouble;
+  missing_.clear();
   std::vector<Instance> next;
   next.reserve(intended.size());
   for (const Intended& wanted : intended) {
@@ -122,8 +126,9 @@ std::string Executive::reconcile(const std::vector<Intended>& intended, const Po
                                : nullptr;
     if (!seen.insert(wanted.name).second)
       wrong = "the name is there twice; the first one holds";
-    else
-      wrong = adopt(wanted, robot_in_odom, same, next);
+    else if (const std::size_t before = next.size();
+             !(wrong = adopt(wanted, robot_in_odom, same, next)).empty() && next.size() == before)
+      missing_.push_back({wanted.name, wrong});
     if (!wrong.empty())
       trouble += (trouble.empty() ? "" : "; ") + wanted.name + ": " + wrong;
   }

@@ -44,11 +44,18 @@ struct BehaviorState {
   Blended blended;  ///< its rules and its share; empty when it is not running
 };
 
+/// A behavior that was asked for and could not be made.
+struct Missing {
+  std::string name;  ///< of the instance
+  std::string reason;
+};
+
 struct Output {
   bool control = false;
   std::vector<BehaviorState> behaviors;  ///< by priority, highest first; then by name
   Blend blend;
-  std::string trouble;  ///< what was asked for and could not be made, and why; empty: nothing
+  std::vector<Missing> missing;
+  std::string trouble;  ///< all that is wrong, in words; empty: nothing
 
   /// The motor setpoints. Not active: the robot is not to be driven by behaviors now.
   bool active = false;
@@ -103,6 +110,7 @@ class Executive {
   std::vector<Intended> reconciled_;
   std::uint64_t reconciled_revision_ = 0;
   std::string reconcile_trouble_;
+  std::vector<Missing> missing_;
 };
 
 }  // namespace saphira::behaviors
