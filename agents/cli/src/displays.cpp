@@ -208,6 +208,8 @@ std::string intentions_display(const v1::Intentions& intentions, const v1::Behav
 }
 
 std::string behaviors_display(const v1::Behaviors& behaviors) {
+  if (behaviors.behaviors().empty() && behaviors.trouble().empty())
+    return "no behavior is intended\n";
   std::size_t width = 9;
   std::vector<std::string> names;
   for (const v1::BehaviorState& state : behaviors.behaviors()) {

@@ -36,10 +36,18 @@ std::string speed_text(double speed) {
   return format("%.2f m/s", std::abs(speed) < kNoSpeed ? 0.0 : speed);
 }
 
+/// "12 degrees"; so little that nobody sees it turn with a decimal.
+std::string angle_text(double angle) {
+  const double size = degrees(std::abs(angle));
+  const double shown = std::round(size);
+  return size < 0.95 ? format("%.1f degrees", size)
+                     : format("%.0f degree%s", shown, shown == 1.0 ? "" : "s");
+}
+
 std::string turn_text(double turn) {
   if (std::abs(turn) < kNoTurn)
     return "straight on";
-  return format("%.0f degrees to the %s", degrees(std::abs(turn)), turn > 0.0 ? "left" : "right");
+  return angle_text(turn) + " to the " + (turn > 0.0 ? "left" : "right");
 }
 
 bool has_word(const std::string& text, const std::string& word) {
@@ -94,9 +102,9 @@ std::string wish_of(const v1::BehaviorState& behavior, Channel channel) {
 std::string control_text(const v1::RuleState& rule) {
   switch (rule.action()) {
     case v1::CONTROL_TURN_LEFT:
-      return format("%.0f degrees to the left", degrees(rule.value()));
+      return angle_text(rule.value()) + " to the left";
     case v1::CONTROL_TURN_RIGHT:
-      return format("%.0f degrees to the right", degrees(rule.value()));
+      return angle_text(rule.value()) + " to the right";
     case v1::CONTROL_ACCELERATE:
       return "faster by " + speed_text(rule.value());
     case v1::CONTROL_DECELERATE:
@@ -107,14 +115,15 @@ std::string control_text(const v1::RuleState& rule) {
   return speed_text(rule.value());
 }
 
-std::string name_of(const v1::BehaviorState& behavior) {
-  return behavior.name() == behavior.schema() || behavior.schema().empty()
-             ? behavior.name()
-             : behavior.name() + " (" + behavior.schema() + ")";
+/// Whether an instance was given its name for want of a better one: its schema's with a number, as
+/// in KeepOff#3.
+bool nameless(const std::string& name, const std::string& schema) {
+  return name.empty() || name == schema || name.starts_with(schema + "#");
 }
 
-std::string name_of(const v1::IntentionNode& node) {
-  return node.name() == node.schema() || node.name().empty()
+std::string intention_name(const v1::IntentionNode& node) {
+  // The root of a goal's tree has the goal's id for a name.
+  return node.parent() == 0 || nameless(node.name(), node.schema())
              ? node.schema()
              : node.schema() + " (" + node.name() + ")";
 }
@@ -142,9 +151,12 @@ class Reason {
   double told_speed() const {
     return scene_.grant ? scene_.grant->velocity() : scene_.behaviors->speed();
   }
+  std::string name_of(const v1::BehaviorState& behavior) const;
   std::vector<Say> says(Channel channel) const;
   std::string told() const;
   std::string of_say(const Say& say, Channel channel) const;
+  std::string wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
+                    const v1::BehaviorState& behavior) const;
 
   const v1::RuleText* text_of(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
   std::string antecedent(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
@@ -174,6 +186,18 @@ class Reason {
   const Scene& scene_;
   std::set<std::uint32_t> told_nodes_;
 };
+
+std::string Reason::name_of(const v1::BehaviorState& behavior) const {
+  if (behavior.schema().empty() || behavior.name() == behavior.schema())
+    return behavior.name();
+  if (!nameless(behavior.name(), behavior.schema()))
+    return behavior.name() + " (" + behavior.schema() + ")";
+  const auto& all = scene_.behaviors->behaviors();
+  const auto alike = std::count_if(all.begin(), all.end(), [&](const v1::BehaviorState& other) {
+    return other.schema() == behavior.schema();
+  });
+  return alike == 1 ? behavior.schema() : behavior.name();
+}
 
 std::vector<Say> Reason::says(Channel channel) const {
   std::vector<Say> result;
@@ -305,14 +329,17 @@ std::string Reason::purpose(const std::vector<const v1::BehaviorState*>& behavio
     return {};
   std::vector<std::string> names;
   for (const v1::IntentionNode* one : nodes)
-    names.push_back(name_of(*one));
-  std::string text = listed(names) + (nodes.size() == 1 ? " intends " : " intend ") +
-                     (behaviors.size() == 1 ? "it" : "them");
+    names.push_back(intention_name(*one));
   const v1::IntentionNode* root = nodes.front();
   while (const v1::IntentionNode* const parent = node(root->parent()))
     root = parent;
+  // What was asked for, by itself.
+  std::string text = "this is";
+  if (root != nodes.front() || nodes.size() > 1)
+    text = listed(names) + (nodes.size() == 1 ? " intends " : " intend ") +
+           (behaviors.size() == 1 ? "it" : "them");
   if (root != nodes.front())
-    text += ", as part of " + name_of(*root) + ",";
+    text += ", as part of " + intention_name(*root) + ",";
   const std::string goal = goal_text(root->goal());
   return text + (goal.empty() ? " for a goal of which nothing is known"
                               : " for the goal " + goal + ", which " + requester(root->goal()) +
@@ -326,8 +353,21 @@ std::string Reason::of_say(const Say& say, Channel channel) const {
                       format(", %.2f", say.main_rule->strength()));
   if (say.share < 1.0 - kNoSay)
     details.push_back(format("%.0f %% of the say", 100.0 * say.share));
-  return name_of(*say.behavior) + " wants " + wish_of(*say.behavior, channel) +
+  return wish_of(*say.behavior, channel) +
          (details.empty() ? "" : " (" + listed(details, "; ") + ")");
+}
+
+/// What a behavior wants on both channels, as far as it is to be mentioned.
+std::string Reason::wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
+                          const v1::BehaviorState& behavior) const {
+  std::vector<std::string> parts;
+  for (const Say& say : speeds)
+    if (say.behavior == &behavior)
+      parts.push_back(of_say(say, Channel::speed));
+  for (const Say& say : turns)
+    if (say.behavior == &behavior)
+      parts.push_back(of_say(say, Channel::turn));
+  return name_of(behavior) + " wants " + listed(parts);
 }
 
 Cause Reason::grant_cause() const {
@@ -369,22 +409,17 @@ Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState&
 Cause Reason::goal_cause(const v1::GoalId& id) const {
   if (goal_text(id).empty())
     return {"goal", "a goal of which nothing is known", {}};
-  Cause cause{"goal", "goal " + goal_text(id) + " of " + requester(id), {}};
-  if (const v1::GoalStatus* const known = status(id)) {
-    if (!known->step().empty())
-      cause.text += ": " + known->step();
-  }
-  return cause;
+  return {"goal", "goal " + goal_text(id) + " of " + requester(id), {}};
 }
 
 std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
-  Cause cause{"intention", "for " + name_of(of), {}};
+  Cause cause{"intention", "for " + intention_name(of), {}};
   if (!of.label().empty())
     cause.text += ", at " + of.label();
   if (!of.step().empty())
     cause.text += ": " + of.step();
   if (!told_nodes_.insert(of.id()).second) {
-    cause.text = "for " + name_of(of) + ", as above";
+    cause.text = "for " + intention_name(of) + ", as above";
     return cause;
   }
   if (const v1::IntentionNode* const parent = node(of.parent())) {
@@ -412,8 +447,10 @@ Cause Reason::behavior_cause(const Say& say, Channel channel) {
   if (say.weight < kNoSay && activity_of(behavior, channel) >= kNoSay) {
     for (const v1::BehaviorState& above : scene_.behaviors->behaviors())
       if (above.running() && above.priority() < behavior.priority() &&
-          activity_of(above, channel) >= 1.0 - kNoSay)
+          activity_of(above, channel) >= 1.0 - kNoSay) {
         cause.because.push_back({"behavior", name_of(above) + " is above it and fully active", {}});
+        break;
+      }
   }
   for (const v1::RuleState& rule : behavior.rules())
     if (channel_of(rule) == channel && rule.strength() >= kNoSay)
@@ -585,21 +622,15 @@ Explanation Reason::why() {
   std::erase_if(turns, [](const Say& say) { return std::abs(say.behavior->turn()) < kNoTurn; });
   if (std::abs(turn) < kNoTurn && turns.size() < 2)
     turns.clear();
-  for (const Say& say : speeds) {
+  for (const Say& say : speeds)
     mention(say);
-    reasons.push_back(of_say(say, Channel::speed));
-  }
+  for (const Say& say : turns)
+    mention(say);
+  for (const v1::BehaviorState* behavior : mentioned)
+    reasons.push_back(wants(speeds, turns, *behavior));
   if (speeds.empty() && !guarded)
     reasons.emplace_back("no behavior wants a speed");
-  for (const Say& say : turns) {
-    mention(say);
-    const auto same = std::find_if(speeds.begin(), speeds.end(), [&](const Say& other) {
-      return other.behavior == say.behavior && other.main_rule == say.main_rule;
-    });
-    if (same == speeds.end())
-      reasons.push_back(of_say(say, Channel::turn));
-  }
-  sentence += ", because " + listed(reasons);
+  sentence += ", because " + listed(reasons, ", and ");
   if (const std::string what_for = purpose(mentioned); !what_for.empty())
     sentence += "; " + what_for;
   return finish(std::move(sentence), wheels(what));
@@ -661,7 +692,7 @@ Explanation Reason::why_not(Wish wish) {
            (rule.action() == v1::CONTROL_SPEED && rule.value() < speed - kNoSpeed);
   };
   // The best reason is of the rule that came nearest to having its way.
-  enum Rank { not_running, not_true, no_activity, suppressed, outweighed };
+  enum Rank { not_true, too_little, no_activity, suppressed, outweighed };
   struct Best {
     int rank = -1;
     double measure = 0.0;
@@ -674,12 +705,14 @@ Explanation Reason::why_not(Wish wish) {
   };
   const std::vector<Say> say = says(channel);
   for (const v1::BehaviorState& behavior : all.behaviors()) {
-    if (!behavior.running()) {
-      // Its rules are not evaluated: what they would say is known from its schema alone.
+    // What the rules of one that does not run would say is not known.
+    if (!behavior.running())
       continue;
-    }
     for (const v1::RuleState& rule : behavior.rules()) {
       if (!would(rule))
+        continue;
+      // A setpoint of a rule that does not hold is nobody's wish.
+      if (wish == Wish::faster && rule.action() == v1::CONTROL_SPEED && rule.strength() < kNoSay)
         continue;
       const std::string who =
           name_of(behavior) + " would (rule " + rule.name() + ", " + control_text(rule) + ")";
@@ -689,6 +722,9 @@ Explanation Reason::why_not(Wish wish) {
       if (rule.strength() < kNoSay) {
         const std::string text = antecedent(behavior, rule);
         consider(not_true, 0.0, who + ", but finds no cause" + (text.empty() ? "" : ": " + text),
+                 std::move(detail));
+      } else if (turning && rule.strength() * rule.value() < kNoTurn) {
+        consider(too_little, rule.value(), who + ", but that is as good as straight on",
                  std::move(detail));
       } else if (activity_of(behavior, channel) < kNoSay) {
         consider(no_activity, rule.strength(), who + ", but says itself that it does not count now",
@@ -714,17 +750,23 @@ Explanation Reason::why_not(Wish wish) {
             against = &other;
         }
         // Within one behavior, too, a rule may speak against another.
-        const std::string what =
-            against == nullptr ? "it weighs too little for it" : of_say(*against, channel);
+        const std::string what = against == nullptr ? "it weighs too little for it"
+                                                    : name_of(*against->behavior) + " wants " +
+                                                          of_say(*against, channel);
         consider(outweighed, rule.strength() * weight, who + ", but " + what, std::move(detail));
       }
     }
   }
-  if (best.rank < 0)
-    return finish(no + " because no running behavior has a rule that would" +
-                      (turning ? "" : " now") + "; it is told " +
-                      (turning ? turn_text(turn) : speed_text(speed)),
-                  wheels(told()));
+  if (best.rank < 0) {
+    std::string text = no + ", because no running behavior ";
+    text += turning ? "has a rule that would" : "wants that";
+    for (const Say& one : say)
+      if (one.weight >= kNoSay) {
+        text += "; " + name_of(*one.behavior) + " wants " + of_say(one, channel);
+        break;
+      }
+    return finish(text, wheels(told()));
+  }
   cause.because.push_back(channel_cause(channel));
   return finish(no + ": " + best.text, std::move(cause));
 }

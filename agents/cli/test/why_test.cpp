@@ -151,15 +151,14 @@ class WhyTest : public ::testing::Test {
 };
 
 const std::string kPurpose =
-    "go_to (go_to1) intends them for the goal go_to(position=(3, 1) in odom), which saphira goal "
-    "asked for.";
+    "this is for the goal go_to(position=(3, 1) in odom), which saphira goal asked for.";
 
 TEST_F(WhyTest, NamesBehaviorsRulesIntentionAndGoal) {
   EXPECT_EQ(sentence(),
             "The robot is told to drive ahead at 0.30 m/s and to turn 11 degrees to the left, "
-            "because GoToPos wants 0.30 m/s (rule Fast, 1.00), KeepOff wants 20 degrees to the "
-            "left (rule Obstacle-Right, 1.00; 70 % of the say) and GoToPos wants 10 degrees to the "
-            "right (rule Right, 1.00; 30 % of the say); " +
+            "because GoToPos wants 0.30 m/s (rule Fast, 1.00) and 10 degrees to the right (rule "
+            "Right, 1.00; 30 % of the say), and KeepOff wants 20 degrees to the left (rule "
+            "Obstacle-Right, 1.00; 70 % of the say); " +
                 kPurpose);
 }
 
@@ -190,16 +189,16 @@ TEST_F(WhyTest, DrawsTheTreeFromTheWheelsToTheGoal) {
 |- the behaviors' blend of speeds: 0.30 m/s
 |  `- GoToPos, priority 3, 100 % of the say: 0.30 m/s
 |     |- rule Fast holds to 1.00: 0.30 m/s
-|     `- for go_to (go_to1): driving to (3.00, 1.00)
+|     `- for go_to: driving to (3.00, 1.00)
 |        `- goal go_to(position=(3, 1) in odom) of saphira goal
 `- the behaviors' blend of turns: 11 degrees to the left
    |- KeepOff, priority 1, 70 % of the say: 20 degrees to the left
    |  |- rule Obstacle-Right holds to 1.00: 20 degrees to the left
    |  |  `- if front_right And Not front_left: front_right 1.00, front_left 0.00
-   |  `- for go_to (go_to1), as above
+   |  `- for go_to, as above
    `- GoToPos, priority 3, 30 % of the say: 10 degrees to the right
       |- rule Right holds to 1.00: 10 degrees to the right
-      `- for go_to (go_to1), as above
+      `- for go_to, as above
 )");
 }
 
@@ -236,11 +235,11 @@ TEST_F(WhyTest, GoesUpTheWholeChainOfIntentions) {
   EXPECT_EQ(sentence(),
             "The robot is told to drive ahead at 0.30 m/s, straight on, because GoToPos wants 0.30 "
             "m/s (rule Fast, 1.00); follow-path (follow-it) intends it, as part of "
-            "plan-and-execute (plan-and-execute1), for the goal go_to(position=(3, 1) in odom), "
+            "plan-and-execute, for the goal go_to(position=(3, 1) in odom), "
             "which saphira goal asked for.");
   EXPECT_NE(to_text(why(scene))
                 .find("|     `- for follow-path (follow-it): driving to (3.00, 1.00)\n"
-                      "|        `- for plan-and-execute (plan-and-execute1), at S12\n"
+                      "|        `- for plan-and-execute, at S12\n"
                       "|           `- goal go_to("),
             std::string::npos)
       << to_text(why(scene));
@@ -332,7 +331,7 @@ TEST_F(WhyTest, WithoutGoalsAndSchemasItTellsLess) {
   scene.schemas.clear();
   EXPECT_TRUE(sentence().ends_with("for a goal of which nothing is known.")) << sentence();
   scene.intentions.reset();
-  EXPECT_TRUE(sentence().ends_with("30 % of the say).")) << sentence();
+  EXPECT_TRUE(sentence().ends_with("70 % of the say).")) << sentence();
 }
 
 TEST_F(WhyTest, NotSinceTheOtherWeighsMore) {
@@ -367,10 +366,44 @@ TEST_F(WhyTest, NotSinceItDoesNotCountItself) {
             "itself that it does not count now.");
 }
 
+TEST_F(WhyTest, NotSinceItIsSoLittle) {
+  go().rules()[0].value(radians(0.3));
+  EXPECT_EQ(
+      sentence(Wish::turn_right),
+      "It does not turn right: GoToPos would (rule Right, 0.3 degrees to the right), but that "
+      "is as good as straight on.");
+}
+
+// A setpoint that is computed for a case that is not there is nobody's wish.
+TEST_F(WhyTest, NotFasterByARuleThatDoesNotHold) {
+  keep_off().rules().push_back(rule("slow_down", 0.0, v1::CONTROL_SPEED, 1.5));
+  EXPECT_TRUE(sentence(Wish::faster).starts_with("It does not go faster, because no running"))
+      << sentence(Wish::faster);
+  keep_off().speed_activity(1.0);
+  EXPECT_EQ(sentence(Wish::slower),
+            "It does not go slower, because no running behavior wants that; GoToPos wants 0.30 m/s "
+            "(rule Fast, 1.00).");
+}
+
+TEST_F(WhyTest, InstancesAreNamedWhereThereAreTwo) {
+  go().name("GoToPos#4");
+  EXPECT_TRUE(sentence().find("because GoToPos wants") != std::string::npos) << sentence();
+  keep_off().schema("GoToPos");
+  EXPECT_TRUE(sentence().find("because GoToPos#4 wants") != std::string::npos) << sentence();
+  EXPECT_TRUE(sentence().find("and KeepOff (GoToPos) wants") != std::string::npos) << sentence();
+}
+
 TEST_F(WhyTest, NotSinceNoRuleWould) {
   EXPECT_EQ(sentence(Wish::faster),
-            "It does not go faster because no running behavior has a rule that would now; it is "
-            "told 0.30 m/s.");
+            "It does not go faster, because no running behavior wants that; GoToPos wants 0.30 m/s "
+            "(rule Fast, 1.00).");
+  keep_off().rules().clear();
+  go().rules({rule("Left", 1.0, v1::CONTROL_TURN_LEFT, radians(10.0))});
+  EXPECT_TRUE(
+      sentence(Wish::turn_right)
+          .starts_with("It does not turn right, because no running behavior has a rule that "
+                       "would; "))
+      << sentence(Wish::turn_right);
 }
 
 TEST_F(WhyTest, ButItDoes) {

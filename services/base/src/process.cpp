@@ -20,8 +20,8 @@ void Process::set_state(int state) {
 }
 
 void Process::suspend(std::uint32_t cycles) {
-  constexpr std::uint32_t kMost = std::numeric_limits<int>::max();
-  set_state(cycles == 0 ? static_cast<int>(kSuspend) : -static_cast<int>(std::min(cycles, kMost)));
+  constexpr std::uint32_t most = std::numeric_limits<int>::max();
+  set_state(cycles == 0 ? static_cast<int>(kSuspend) : -static_cast<int>(std::min(cycles, most)));
 }
 
 void Process::step(std::uint64_t cycle) {
