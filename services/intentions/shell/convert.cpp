@@ -1,5 +1,6 @@
 #include "intentions/shell/convert.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -45,6 +46,17 @@ constexpr Table<GoalCode, v1::GoalCode, 15> kCodes = {{
     {GoalCode::kDisposed, v1::CODE_DISPOSED},
     {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
     {GoalCode::kPreempted, v1::CODE_PREEMPTED},
+}};
+constexpr Table<Trend, v1::GoalTrend, 3> kTrends = {{
+    {Trend::kSteady, v1::TREND_STEADY},
+    {Trend::kRising, v1::TREND_RISING},
+    {Trend::kFalling, v1::TREND_FALLING},
+}};
+constexpr Table<Localization, v1::RegistrationState, 4> kLocalizations = {{
+    {Localization::kOff, v1::REGISTRATION_OFF},
+    {Localization::kUnplaced, v1::REGISTRATION_UNPLACED},
+    {Localization::kLost, v1::REGISTRATION_LOST},
+    {Localization::kTracking, v1::REGISTRATION_TRACKING},
 }};
 // The bus does not tell the first step after a suspension from the ones that follow; what is
 // removed does not get there.
@@ -138,6 +150,7 @@ Goal from_bus(const v1::Goal& goal) {
   result.arguments = from_bus(goal.arguments());
   result.priority = goal.priority();
   result.deadline = goal.deadline();
+  result.level = goal.level();
   result.writer_lost =
       goal.writer_lost() == v1::WRITER_LOST_KEEP ? WriterLost::kKeep : WriterLost::kCancel;
   return result;
@@ -151,6 +164,7 @@ v1::Goal to_bus(const Goal& goal) {
   result.arguments(to_bus(goal.arguments));
   result.priority(goal.priority);
   result.deadline(goal.deadline);
+  result.level(goal.level);
   result.writer_lost(goal.writer_lost == WriterLost::kKeep ? v1::WRITER_LOST_KEEP
                                                            : v1::WRITER_LOST_CANCEL);
   return result;
@@ -166,6 +180,8 @@ GoalStatus from_bus(const v1::GoalStatus& status) {
   result.reason = status.reason();
   result.step = status.step();
   result.progress = status.progress();
+  result.level = status.level();
+  result.trend = from_bus(kTrends, status.trend(), Trend::kSteady);
   result.elapsed = status.elapsed();
   return result;
 }
@@ -181,6 +197,8 @@ v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   result.reason(status.reason);
   result.step(status.step);
   result.progress(status.progress);
+  result.level(status.level);
+  result.trend(to_bus(kTrends, status.trend));
   result.elapsed(status.elapsed);
   return result;
 }
@@ -193,6 +211,7 @@ IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {
   result.running = behavior.running();
   result.parameters = from_bus(behavior.parameters());
   result.intention = behavior.intention();
+  result.blocking = behavior.blocking();
   return result;
 }
 
@@ -204,6 +223,7 @@ v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
   result.running(behavior.running);
   result.parameters(to_bus(behavior.parameters));
   result.intention(behavior.intention);
+  result.blocking(behavior.blocking);
   return result;
 }
 
@@ -215,7 +235,10 @@ IntentionNode from_bus(const v1::IntentionNode& node) {
   result.schema = node.schema();
   result.state = from_bus(kIntentionStates, node.state(), IntentionState::kRunning);
   result.blocking = node.blocking();
+  result.label = node.label();
   result.step = node.step();
+  result.since = static_cast<Ticks>(node.since());
+  result.priority = node.priority();
   result.goal = from_bus(node.goal());
   return result;
 }
@@ -228,7 +251,10 @@ v1::IntentionNode to_bus(const IntentionNode& node) {
   result.schema(node.schema);
   result.state(to_bus(kIntentionStates, node.state));
   result.blocking(node.blocking);
+  result.label(node.label);
   result.step(node.step);
+  result.since(static_cast<std::uint64_t>(std::max<Ticks>(node.since, 0)));
+  result.priority(node.priority);
   result.goal(to_bus(node.goal));
   return result;
 }
@@ -242,6 +268,9 @@ Robot from_bus(const v1::RobotState& robot) {
   result.pose_in_odom = {pose.x(), pose.y(), pose.th()};
   result.velocity = robot.velocity();
   result.rotation_velocity = robot.rotation_velocity();
+  result.left_stalled = robot.left_stalled();
+  result.right_stalled = robot.right_stalled();
+  result.bumpers = robot.bumpers();
   return result;
 }
 
@@ -250,6 +279,88 @@ std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors) {
   result.reserve(behaviors.behaviors().size());
   for (const v1::BehaviorState& behavior : behaviors.behaviors())
     result.push_back({behavior.name(), behavior.goal(), behavior.progress()});
+  return result;
+}
+
+std::vector<BehaviorTrouble> troubles_from_bus(const v1::Behaviors& behaviors) {
+  std::vector<BehaviorTrouble> result;
+  result.reserve(behaviors.missing().size());
+  for (const v1::MissingBehavior& missing : behaviors.missing())
+    result.push_back({missing.name(), missing.reason()});
+  return result;
+}
+
+std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
+  std::vector<BehaviorSignature> result;
+  result.reserve(schemas.schemas().size());
+  for (const v1::BehaviorSchema& schema : schemas.schemas()) {
+    result.push_back({schema.name(), {}});
+    for (const v1::BehaviorParameter& parameter : schema.parameters()) {
+      Parameter& out = result.back().parameters.emplace_back();
+      out.name = parameter.name();
+      out.kind = from_bus(kKinds, parameter.kind(), ArgumentKind::kText);
+      out.low = parameter.low();
+      out.high = parameter.high();
+      out.required = parameter.required();
+    }
+  }
+  return result;
+}
+
+v1::ActivitySchema to_bus(const Schema& schema) {
+  v1::ActivitySchema result;
+  result.name(schema.name);
+  result.summary(schema.summary);
+  result.source(schema.source);
+  for (const Parameter& parameter : schema.parameters) {
+    v1::ActivityParameter out;
+    out.name(parameter.name);
+    out.kind(parameter.any                             ? v1::PARAMETER_ANY
+             : parameter.kind == ArgumentKind::kNumber ? v1::PARAMETER_NUMBER
+             : parameter.kind == ArgumentKind::kText   ? v1::PARAMETER_TEXT
+                                                       : v1::PARAMETER_POINT);
+    out.unit(parameter.unit);
+    out.required(parameter.required);
+    out.low(parameter.low);
+    out.high(parameter.high);
+    if (parameter.usual)
+      out.usual(plain(*parameter.usual));
+    else if (parameter.usual_text)
+      out.usual(*parameter.usual_text);
+    result.parameters().push_back(std::move(out));
+  }
+  return result;
+}
+
+v1::Belief to_bus(const Belief& belief) {
+  v1::Belief result;
+  result.name(belief.name);
+  result.value(to_text(belief.value));
+  result.said_by(belief.said_by);
+  result.since(static_cast<std::uint64_t>(std::max<Ticks>(belief.since, 0)));
+  return result;
+}
+
+ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind) {
+  ClaimEvent result;
+  result.kind = kind;
+  result.id = from_bus(claim.id());
+  result.source = claim.source();
+  result.name = claim.name();
+  if (kind == ClaimEvent::Kind::kSaid)
+    result.value = parse_value(claim.value(), "belief " + quoted(claim.name()));
+  return result;
+}
+
+Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle) {
+  Registered result;
+  if (registration.stamp().cycle() + kRegistrationLease < cycle)
+    return result;
+  result.state = from_bus(kLocalizations, registration.state(), Localization::kLost);
+  const v1::Pose2& pose = registration.pose_in_map();
+  result.pose_in_map = {pose.x(), pose.y(), pose.th()};
+  result.confidence = registration.confidence();
+  result.environment = registration.environment();
   return result;
 }
 

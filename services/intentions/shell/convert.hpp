@@ -35,9 +35,19 @@ v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);
 std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors);
+std::vector<BehaviorTrouble> troubles_from_bus(const v1::Behaviors& behaviors);
+std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas);
+
+v1::ActivitySchema to_bus(const Schema& schema);
+v1::Belief to_bus(const Belief& belief);
+/// FileError where the claim's value is none of the activity language; also of one that is taken
+/// back, where its value does not count.
+ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind);
 
 /// The age [cycles] from which on a sample of registration says nothing any more.
 inline constexpr std::uint64_t kRegistrationLease = 20;
+/// What it says, for the step of `cycle`: where the sample is too old, nothing.
+Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle);
 /// Where the origin of that odom frame is on the map, for the step of `cycle`; none where
 /// registration does not know, speaks of another odom frame, or has not been heard.
 std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,

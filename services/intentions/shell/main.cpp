@@ -27,6 +27,10 @@ int main(int argc, char** argv) {
             ->check(in_a_folder);
         app.add_flag("!--no-registration", options.registration,
                      "there is no registration service: do not wait for it in lockstep");
+        app.add_flag("!--no-interpretation", options.interpretation, "the same of interpretation");
+        app.add_option("--activities", options.folder,
+                       "folder of activity files; they cover shipped ones of the same name")
+            ->check(CLI::ExistingDirectory);
       },
       [&](const bus::NodeOptions& node_options, const bus::Stop& stop) {
         bus::Node node(node_options);

@@ -3,13 +3,35 @@
 #include <algorithm>
 
 #include "intentions/shell/convert.hpp"
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/language.hpp"
+#include "saphira/intentions/navigation.hpp"
 
 namespace saphira::intentions {
 namespace {
 
 /// Without a cycle for this long there is no robot, live.
 constexpr std::chrono::seconds kSilence{1};
+/// [cycles] between looks at the activity files: a second.
+constexpr std::uint64_t kLook = 10;
+constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
+constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
+
+std::vector<std::string> folders(const ShellOptions& options) {
+  std::vector<std::string> paths{activities_folder()};
+  if (!options.folder.empty())
+    paths.push_back(options.folder);
+  return paths;
+}
+
+std::shared_ptr<const Functions> all_functions() {
+  auto functions = std::make_shared<Functions>(core_functions());
+  add_navigation(*functions);
+  return functions;
+}
 
 }  // namespace
 
@@ -18,16 +40,28 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       cycle_(node),
       behaviors_(cycle_.input(bus::topics::kBehaviors)),
       registration_(options.registration ? &cycle_.input(bus::topics::kRegistration) : nullptr),
+      perception_(options.interpretation ? &cycle_.input(bus::topics::kPerception) : nullptr),
+      robot_(node),
+      maps_(node.reader(bus::topics::kMap)),
+      behavior_schemas_(node.reader(bus::topics::kBehaviorSchemas)),
+      claims_(node.reader(bus::topics::kBeliefClaims)),
       goals_(node.reader(bus::topics::kGoals)),
       intentions_(node.writer(bus::topics::kIntentions)),
       recall_(node.writer(bus::topics::kRecallIntentions)),
       statuses_(node.writer(bus::topics::kGoalStatus)),
+      schemas_(node.writer(bus::topics::kActivitySchemas)),
+      beliefs_(node.writer(bus::topics::kBeliefs)),
+      messages_(node.writer(bus::topics::kMessages)),
       memory_(options.memory_file),
-      executor_(built_in(), memory_.memory()),
+      functions_(all_functions()),
+      folders_(folders(options), functions_, built_in()),
+      executor_(built_in(), memory_.memory(), {.functions = functions_}),
       processes_(node, table_,
                  [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
                    return ask_intention(name, action, cycles);
-                 }) {}
+                 }) {
+  look();
+}
 
 bool Shell::step(const bus::Stop& stop) {
   const auto step = cycle_.next(stop, [this] { idle(); });
@@ -43,13 +77,18 @@ bool Shell::step(const bus::Stop& stop) {
   inputs.robot = from_bus(step->robot);
   if (const v1::Behaviors* const behaviors = behaviors_.value()) {
     inputs.behaviors = from_bus(*behaviors);
+    inputs.troubles = troubles_from_bus(*behaviors);
     inputs.behaviors_cycle = behaviors->stamp().cycle();
   }
   if (const v1::Registration* const registration =
-          registration_ == nullptr ? nullptr : registration_->value())
+          registration_ == nullptr ? nullptr : registration_->value()) {
     inputs.robot.odom_in_map =
         odom_in_map_from_bus(*registration, stamp_.cycle(), inputs.robot.odom);
+    inputs.around.registration = registered_from_bus(*registration, stamp_.cycle());
+  }
+  look_around(step->robot, stop, inputs.around);
   inputs.events = take_events();
+  inputs.claims = take_claims();
   processes_.step(stamp_);
   if (!execution_.works())
     inputs.hold = execution_.name() + " is suspended";
@@ -58,14 +97,19 @@ bool Shell::step(const bus::Stop& stop) {
 
   v1::Intentions sample;
   sample.stamp(stamp_);
-  sample.behavior_control(true);
+  sample.behavior_control(outputs.behavior_control);
   for (const IntendedBehavior& behavior : outputs.behaviors)
     sample.behaviors().push_back(to_bus(behavior));
   for (const IntentionNode& node : outputs.nodes)
-    sample.nodes().push_back(to_bus(node));
+    if (sample.nodes().size() < kMostNodes)
+      sample.nodes().push_back(to_bus(node));
   intentions_.write(sample);
   recall_.write(sample);
   publish(outputs.news);
+  publish(outputs.said);
+  publish_beliefs();
+  if (++steps_ % kLook == 0)
+    look();
   cycle_.done();
   return true;
 }
@@ -93,6 +137,121 @@ std::optional<std::string> Shell::ask_intention(const std::string& name, Process
   if (action == ProcessAction::resume)
     return executor_.resume(node->id) ? "" : name + " was not interrupted";
   return executor_.interrupt(node->id) ? "" : name + " is not an intention any more";
+}
+
+/// What is known beside the robot, from what came for the cycle before.
+void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surroundings& around) {
+  using Knowledge = bus::KnownRobot::Knowledge;
+  const Knowledge known = robot_.of(stamp_.epoch(), stop);
+  if (known == Knowledge::fresh)
+    lps_.emplace(lps::settings_from_bus(robot_.description()));
+  if (odom_ && *odom_ != robot.odom() && lps_)
+    lps_->reset();
+  odom_ = robot.odom();
+  if (known != Knowledge::none && lps_) {
+    lps_->update(lps::from_bus(robot.pose_in_odom()), lps::sonars_from_bus(robot), stamp_.cycle());
+    around.lps = &*lps_;
+  }
+  const v1::Perception* const perception = perception_ == nullptr ? nullptr : perception_->value();
+  percepts_.clear();
+  if (perception != nullptr && perception->odom() == robot.odom())
+    for (const v1::Percept& percept : perception->percepts())
+      percepts_.push_back(lps::from_bus(percept));
+  if (perception != nullptr)
+    around.percepts = &percepts_;
+  if (const auto map = maps_.take_newest()) {
+    topology_ = std::make_shared<const maps::Topology>(maps::from_bus(*map));
+    map_revision_ = map->revision();
+  }
+  around.topology = topology_;
+  around.map_revision = map_revision_;
+}
+
+void Shell::look() {
+  if (const auto schemas = behavior_schemas_.take_newest()) {
+    folders_.know_behaviors(from_bus(*schemas));
+    executor_.know_behaviors(from_bus(*schemas));
+    for (const Diagnostic& trouble : check_references(executor_.registry()))
+      node_.warn(trouble.text());
+  }
+  const ActivityFolders::News news = folders_.look();
+  for (const std::string& error : news.errors)
+    node_.error(error + "\nWhat this file gave before stays in use.");
+  // At the start the behaviors are not known yet, and the shipped files are as everybody has them.
+  if (steps_ > 0)
+    for (const std::string& warning : news.warnings)
+      node_.warn(warning);
+  for (const std::string& name : news.removed)
+    executor_.remove(name);
+  for (const Schema& schema : news.taken) {
+    executor_.add(schema);
+    if (steps_ > 0)
+      node_.info("took " + schema.name + " of " + schema.source);
+  }
+  if (!news.changed)
+    return;
+  v1::ActivitySchemas sample;
+  sample.stamp(stamp_);
+  for (const Schema* const schema : executor_.registry().all())
+    sample.schemas().push_back(to_bus(*schema));
+  sample.trouble(folders_.trouble());
+  schemas_.write(sample);
+}
+
+std::vector<ClaimEvent> Shell::take_claims() {
+  std::vector<ClaimEvent> events;
+  for (const auto& sample : claims_.take()) {
+    const auto kind = sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid;
+    try {
+      events.push_back(from_bus(sample.data, kind));
+    } catch (const FileError& error) {
+      node_.warn("a claim of " + quoted(sample.data.source()) + ": " + error.what());
+      continue;
+    }
+    const GoalId id = events.back().id;
+    if (kind == ClaimEvent::Kind::kSaid && sample.data.writer_lost() == v1::WRITER_LOST_CANCEL)
+      claimants_[id] = sample.info.writer;
+    else
+      claimants_.erase(id);
+  }
+  for (const bus::WriterId& lost : claims_.take_lost()) {
+    for (auto claim = claimants_.begin(); claim != claimants_.end();) {
+      if (claim->second != lost) {
+        ++claim;
+        continue;
+      }
+      ClaimEvent event;
+      event.kind = ClaimEvent::Kind::kWithdrawn;
+      event.id = claim->first;
+      events.push_back(std::move(event));
+      claim = claimants_.erase(claim);
+    }
+  }
+  return events;
+}
+
+void Shell::publish(const std::vector<Said>& said) {
+  for (const Said& one : said) {
+    v1::Message message;
+    message.stamp(stamp_);
+    message.source(node_.options().name + ": " + one.schema);
+    message.text(one.text);
+    messages_.write(message);
+    node_.info("says: " + one.text);
+  }
+}
+
+void Shell::publish_beliefs() {
+  const std::uint64_t revision = executor_.beliefs().revision();
+  if (revision == beliefs_revision_)
+    return;
+  beliefs_revision_ = revision;
+  v1::Beliefs sample;
+  sample.stamp(stamp_);
+  for (const Belief& belief : executor_.beliefs().all())
+    if (sample.beliefs().size() < kMostBeliefs)
+      sample.beliefs().push_back(to_bus(belief));
+  beliefs_.write(sample);
 }
 
 std::vector<GoalEvent> Shell::take_events() {

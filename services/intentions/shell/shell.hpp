@@ -9,7 +9,12 @@
 #include "base/shell/processes.hpp"
 #include "intentions/shell/memory_file.hpp"
 #include "saphira/bus/cycle.hpp"
+#include "saphira/bus/known_robot.hpp"
+#include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/executor.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
+#include "saphira/maps/topology.hpp"
 
 namespace saphira::intentions {
 
@@ -18,6 +23,11 @@ struct ShellOptions {
   /// Whether there is a registration service: in lockstep its samples are waited for. Without it,
   /// what is on a map cannot be found.
   bool registration = true;
+  /// The same of interpretation. Without it, activities see no doors and corridors but those of the
+  /// map.
+  bool interpretation = true;
+  /// Activities that cover shipped ones of the same name; empty: none.
+  std::string folder;
 };
 
 /// The intentions service on the bus. To be made and run in one thread.
@@ -43,18 +53,42 @@ class Shell {
 
   std::vector<GoalEvent> take_events();
   void idle();
+  std::vector<ClaimEvent> take_claims();
+  void look_around(const v1::RobotState& robot, const bus::Stop& stop, Surroundings& around);
+  /// Takes activity files that have changed.
+  void look();
   void publish(const News& news);
+  void publish(const std::vector<Said>& said);
+  void publish_beliefs();
 
   bus::Node& node_;
   bus::Cycle cycle_;
   bus::Input<v1::Behaviors>& behaviors_;
   bus::Input<v1::Registration>* registration_;  ///< null where there is no such service
+  bus::Input<v1::Perception>* perception_;
+  bus::KnownRobot robot_;
+  bus::Reader<v1::Map> maps_;
+  bus::Reader<v1::BehaviorSchemas> behavior_schemas_;
+  bus::Reader<v1::BeliefClaim> claims_;
   bus::Reader<v1::Goal> goals_;
   bus::Writer<v1::Intentions> intentions_;
   bus::Writer<v1::Intentions> recall_;
   bus::Writer<v1::GoalStatus> statuses_;
+  bus::Writer<v1::ActivitySchemas> schemas_;
+  bus::Writer<v1::Beliefs> beliefs_;
+  bus::Writer<v1::Message> messages_;
   MemoryFile memory_;
+  std::shared_ptr<const Functions> functions_;
+  ActivityFolders folders_;
   Executor executor_;
+  std::optional<lps::LocalPerceptualSpace> lps_;
+  std::optional<std::uint64_t> odom_;  ///< of the newest step
+  std::vector<lps::Percept> percepts_;
+  std::shared_ptr<const maps::Topology> topology_;
+  std::uint64_t map_revision_ = 0;
+  std::map<GoalId, bus::WriterId> claimants_;  ///< of claims that end with their writer
+  std::uint64_t steps_ = 0;
+  std::uint64_t beliefs_revision_ = 0;
   std::vector<IntentionNode> nodes_;  ///< of the newest step
   ProcessTable table_;
   /// Suspended it lets nothing be intended: the goals are suspended, and the robot is released.

@@ -13,7 +13,8 @@ namespace saphira::intentions {
 class ScriptedBus {
  public:
   explicit ScriptedBus(bus::Node& node)
-      : state_(node.writer(bus::topics::kRobotState)),
+      : description_(node.writer(bus::topics::kRobotDescription)),
+        state_(node.writer(bus::topics::kRobotState)),
         behaviors_(node.writer(bus::topics::kBehaviors)),
         intentions_(node.reader(bus::topics::kIntentions)) {}
 
@@ -24,6 +25,14 @@ class ScriptedBus {
   /// The robot's next cycle.
   void publish_state() {
     ++cycle;
+    if (std::exchange(described_, epoch) != epoch) {
+      v1::RobotDescription description;
+      description.stamp(stamp());
+      description.front_buffer(30);
+      description.side_buffer(20);
+      description.front_max_range(2.5);
+      description_.write(description);
+    }
     v1::RobotState state;
     state.stamp(stamp());
     state.odom(world.robot.odom);
@@ -58,10 +67,19 @@ class ScriptedBus {
       state.goal(level.goal);
       sample.behaviors().push_back(state);
     }
+    for (const IntendedBehavior& behavior : behaviors) {
+      if (behavior.schema != missing.first)
+        continue;
+      sample.missing().emplace_back();
+      sample.missing().back().name(behavior.name);
+      sample.missing().back().reason(missing.second);
+    }
     behaviors_.write(sample);
     return true;
   }
 
+  /// A schema of a behavior that cannot be made, and why.
+  std::pair<std::string, std::string> missing;
   std::optional<v1::Intentions> intended;  ///< the newest that were acted on
 
  private:
@@ -72,6 +90,8 @@ class ScriptedBus {
     return made;
   }
 
+  std::uint64_t described_ = 0;  ///< the epoch
+  bus::Writer<v1::RobotDescription> description_;
   bus::Writer<v1::RobotState> state_;
   bus::Writer<v1::Behaviors> behaviors_;
   bus::Reader<v1::Intentions> intentions_;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "process.hpp"
@@ -23,7 +26,12 @@ class ShellTest : public testing::Test {
  protected:
   void start(const std::string& memory_file = {}) {
     service.emplace(named("intentions"), bus);
-    shell.emplace(*service, ShellOptions{memory_file, false});
+    ShellOptions options;
+    options.memory_file = memory_file;
+    options.registration = false;
+    options.interpretation = false;
+    options.folder = folder;
+    shell.emplace(*service, options);
   }
   void kill() {
     shell.reset();
@@ -50,6 +58,7 @@ class ShellTest : public testing::Test {
   bus::GoalClient goals{requester, "a test"};
   std::optional<bus::Node> service;
   std::optional<Shell> shell;
+  std::string folder;  ///< of activities
 };
 
 v1::Goal go_to(double x, double y) {
@@ -196,6 +205,107 @@ TEST_F(ShellTest, ARefusalReachesItsRequesterWithoutARobot) {
   EXPECT_EQ(state(refused), v1::GOAL_REFUSED);
   EXPECT_EQ(state(waiting), v1::GOAL_WAITING);
   EXPECT_EQ(goals.status(waiting)->code(), v1::CODE_NO_ROBOT);
+}
+
+TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
+  const test::TempDir files;
+  folder = files.path();
+  const auto write = [&](const std::string& text, int time) {
+    const std::string path = files.path("mine.act");
+    std::ofstream(path) << text;
+    std::filesystem::last_write_time(path,
+                                     std::filesystem::file_time_type(std::chrono::seconds(time)));
+  };
+  write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"hello ~a\" who))))",
+        1);
+  auto messages = requester.reader(bus::topics::kMessages);
+  auto schemas = requester.reader(bus::topics::kActivitySchemas);
+  start();
+  v1::Goal goal;
+  goal.functor("greet");
+  goal.arguments().push_back(bus::text("who", "Karen"));
+  v1::GoalId id = goals.ask(goal);
+  for (int i = 0; i < 20; ++i)
+    cycle();
+  EXPECT_EQ(state(id), v1::GOAL_SUCCEEDED);
+  auto said = messages.take_newest();
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->text(), "hello Karen");
+  const auto known = schemas.take_newest();
+  ASSERT_TRUE(known);
+  EXPECT_EQ(known->trouble(), "");
+  EXPECT_TRUE(std::any_of(known->schemas().begin(), known->schemas().end(),
+                          [](const v1::ActivitySchema& one) { return one.name() == "greet"; }));
+
+  // A broken file says so and changes nothing; the next good one is taken.
+  write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" ", 2);
+  for (int i = 0; i < 20; ++i)
+    cycle();
+  EXPECT_NE(schemas.take_newest().value_or(v1::ActivitySchemas{}).trouble().find("mine.act:1:"),
+            std::string::npos);
+  write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" who))))", 3);
+  for (int i = 0; i < 20; ++i)
+    cycle();
+  id = goals.ask(goal);
+  for (int i = 0; i < 20; ++i)
+    cycle();
+  said = messages.take_newest();
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->text(), "bye Karen");
+}
+
+TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
+  start();
+  auto claims = requester.writer(bus::topics::kBeliefClaims);
+  auto beliefs = requester.reader(bus::topics::kBeliefs);
+  std::optional<v1::Beliefs> newest;
+  const auto find = [&](const std::string& name) -> std::optional<v1::Belief> {
+    if (auto news = beliefs.take_newest())
+      newest = std::move(news);
+    if (newest)
+      for (const v1::Belief& belief : newest->beliefs())
+        if (belief.name() == name)
+          return belief;
+    return std::nullopt;
+  };
+  v1::BeliefClaim claim;
+  claim.id().writer(7);
+  claim.id().number(1);
+  claim.source("a person");
+  claim.name("karen-is-in");
+  claim.value("(a \"b\" 2.5)");
+  claims.write(claim);
+  cycle();
+  const auto believed = find("karen-is-in");
+  ASSERT_TRUE(believed);
+  EXPECT_EQ(believed->value(), "(a b 2.5)");
+  EXPECT_EQ(believed->said_by(), "a person");
+  EXPECT_TRUE(find("connected"));
+  // What cannot be read changes nothing.
+  claim.value("(a");
+  claims.write(claim);
+  cycle();
+  EXPECT_TRUE(find("karen-is-in"));
+  claims.dispose(claim);
+  cycle();
+  EXPECT_FALSE(find("karen-is-in"));
+}
+
+TEST_F(ShellTest, ABehaviorThatThereIsNotFailsTheGoalWithTheReason) {
+  const test::TempDir files;
+  folder = files.path();
+  std::ofstream(files.path("mine.act"))
+      << "(defintention :fly :goals '((INTEND :Fly () :priority 2)))";
+  start();
+  v1::Goal goal;
+  goal.functor("fly");
+  const v1::GoalId id = goals.ask(goal);
+  robot.missing = {"Fly", "unknown schema"};
+  for (int i = 0; i < 20; ++i)
+    cycle();
+  EXPECT_EQ(state(id), v1::GOAL_FAILED);
+  EXPECT_NE(goals.status(id)->reason().find("unknown schema"), std::string::npos)
+      << goals.status(id)->reason();
 }
 
 }  // namespace

@@ -58,6 +58,15 @@ std::vector<SonarMount> mounts_from_bus(const v1::RobotDescription& description)
   return mounts;
 }
 
+LpsSettings settings_from_bus(const v1::RobotDescription& description) {
+  LpsSettings settings;
+  settings.sonars = mounts_from_bus(description);
+  settings.front_buffer = description.front_buffer();
+  settings.side_buffer = description.side_buffer();
+  settings.front_max_range = description.front_max_range();
+  return settings;
+}
+
 std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state) {
   std::vector<SonarReading> readings;
   readings.reserve(state.sonars().size());

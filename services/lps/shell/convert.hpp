@@ -18,6 +18,7 @@ PointType from_bus(v1::ArtifactType type);
 v1::ArtifactType to_bus(PointType type);
 
 std::vector<SonarMount> mounts_from_bus(const v1::RobotDescription& description);
+LpsSettings settings_from_bus(const v1::RobotDescription& description);
 std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state);
 
 Percept from_bus(const v1::Percept& percept);

@@ -19,6 +19,22 @@ constexpr const char* kGoals =
     "TEST, EXECUTE, =, WAIT-FOR, INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, "
     "SUCCEED or FAIL";
 
+constexpr const char* kIntend = "(INTEND :schema ((parameter . value) ...) :blocking t :name name)";
+
+/// What looks like a function and is about the intention itself, or evaluates only some arguments.
+struct Special {
+  const char* name;
+  Expression::Kind kind;
+  std::size_t fewest;
+  std::size_t most;
+};
+constexpr Special kSpecials[] = {
+    {"and", Expression::Kind::kAnd, 0, 64},        {"or", Expression::Kind::kOr, 0, 64},
+    {"if", Expression::Kind::kIf, 2, 3},           {"state", Expression::Kind::kStateOf, 1, 1},
+    {"level", Expression::Kind::kLevelOf, 1, 1},   {"finished", Expression::Kind::kFinished, 1, 1},
+    {"outcome", Expression::Kind::kOutcome, 0, 0}, {"reason", Expression::Kind::kReason, 0, 0},
+    {"elapsed", Expression::Kind::kElapsed, 0, 0}};
+
 bool starred(std::string_view name) {
   return name.size() > 2 && name.front() == '*' && name.back() == '*';
 }
@@ -484,13 +500,11 @@ class Compiler {
   }
 
   bool intend(const Form& form) {
-    constexpr const char* kPattern =
-        "(INTEND :schema ((parameter . value) ...) :blocking t :name name)";
     if (form.items.size() < 2 || form.items[1].is_list() ||
         form.items[1].kind == Form::Kind::kNumber || form.items[1].text.empty())
-      fail(form, std::string("expected ") + kPattern + found(form));
+      fail(form, std::string("expected ") + kIntend + found(form));
     const Parts given = parts(form, 2, {"blocking", "name", "timeout", "priority", "else"});
-    expect_items(form, given, 0, 1, kPattern);
+    expect_items(form, given, 0, 1, kIntend);
     const std::size_t at = add(Step::Op::kIntend, form);
     auto intend = std::make_shared<Intend>();
     intend->schema = form.items[1].text;
@@ -691,18 +705,6 @@ class Compiler {
       result.key = normal(result.name);
       return result;
     }
-    struct Special {
-      const char* name;
-      Kind kind;
-      std::size_t fewest;
-      std::size_t most;
-    };
-    static constexpr Special kSpecials[] = {
-        {"and", Kind::kAnd, 0, 64},        {"or", Kind::kOr, 0, 64},
-        {"if", Kind::kIf, 2, 3},           {"state", Kind::kStateOf, 1, 1},
-        {"level", Kind::kLevelOf, 1, 1},   {"finished", Kind::kFinished, 1, 1},
-        {"outcome", Kind::kOutcome, 0, 0}, {"reason", Kind::kReason, 0, 0},
-        {"elapsed", Kind::kElapsed, 0, 0}};
     bool known = false;
     for (const Special& special : kSpecials) {
       if (name == special.name) {
@@ -890,12 +892,9 @@ Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& 
         each[i].troubles.push_back(reader.trouble(
             form.line, form.column, true,
             "the activity " + quoted(schema->name) + " is in " + first->second + " already"));
-      else if (there != nullptr && there->source != files[i].name)
-        each[i].troubles.push_back(reader.trouble(
-            form.line, form.column, true,
-            quoted(schema->name) + " is " +
-                (there->source.empty() ? std::string("built in") : "in " + there->source) +
-                " already"));
+      else if (there != nullptr && there->source.empty())
+        each[i].troubles.push_back(reader.trouble(form.line, form.column, true,
+                                                  quoted(schema->name) + " is built in already"));
       else
         each[i].schemas.push_back(std::move(*schema));
     }

@@ -40,7 +40,8 @@ struct ActivityFile {
 /// Compiles activities (paper 3.3, Figure 9; the language in README.md). Nothing of a file with an
 /// error is given, so that what runs goes on. Activities may name each other across the files and
 /// what `known` has; what is named and is neither there nor a behavior that is known is an error,
-/// or a warning as long as behaviors are not known (Registry::know_behaviors).
+/// or a warning as long as behaviors are not known (Registry::know_behaviors). One of a file may
+/// cover one of another file that is known, but none that is built in.
 Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& functions,
                        const Registry& known);
 Loaded load_text(const std::string& file, std::string_view content, const Functions& functions,

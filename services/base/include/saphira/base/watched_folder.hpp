@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace saphira {
+
+/// The files of one kind in a folder, and which of them are new since the last look. For files that
+/// people change while programs run that use them.
+class WatchedFolder {
+ public:
+  /// extension: with its dot, such as ".act".
+  WatchedFolder(std::string path, std::string extension);
+
+  struct Changes {
+    std::vector<std::string> changed;  ///< names in the folder, sorted: came or were written
+    std::vector<std::string> gone;
+    bool missing = false;  ///< the folder cannot be read: nothing else is said
+    bool any() const { return !changed.empty() || !gone.empty(); }
+  };
+  /// A few microseconds a file.
+  Changes look();
+
+  const std::string& path() const { return path_; }
+  std::string path_of(const std::string& name) const;
+
+ private:
+  struct Stamp {
+    std::int64_t time = 0;
+    std::uintmax_t size = 0;
+
+    bool operator==(const Stamp&) const = default;
+  };
+  std::string path_;
+  std::string extension_;
+  std::map<std::string, Stamp> known_;
+};
+
+}  // namespace saphira

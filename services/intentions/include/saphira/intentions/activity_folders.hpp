@@ -1,0 +1,68 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "saphira/base/watched_folder.hpp"
+#include "saphira/intentions/functions.hpp"
+#include "saphira/intentions/schema.hpp"
+
+namespace saphira::intentions {
+
+/// The activity files (*.act) of folders, of which a later one covers activities of the same name
+/// in those before it. A file that is wrong changes nothing: what it gave before stays.
+class ActivityFolders {
+ public:
+  /// base: what activities may name besides each other.
+  ActivityFolders(const std::vector<std::string>& paths, std::shared_ptr<const Functions> functions,
+                  Registry base);
+
+  /// What a look has found to be new.
+  struct News {
+    bool changed = false;              ///< also where only the trouble is another
+    std::vector<Schema> taken;         ///< new, or another than before
+    std::vector<std::string> removed;  ///< activities that there are no more
+    std::vector<std::string> errors;   ///< of files that changed: file, line, column, caret
+    std::vector<std::string> warnings;
+  };
+  News look();
+
+  /// From now on a file that names another behavior is wrong.
+  void know_behaviors(std::vector<BehaviorSignature> behaviors);
+  /// What is wrong now with which files; empty: nothing.
+  std::string trouble() const;
+
+ private:
+  struct File {
+    std::string newest;  ///< content
+    std::string good;    ///< content that was taken last
+    bool taken = false;  ///< there is such
+    std::string fault;   ///< of `newest`; empty: none
+  };
+  struct Layer {
+    WatchedFolder folder;
+    std::map<std::string, File> files;  ///< by path
+    bool missing = false;
+  };
+  struct Origin {
+    std::string file;
+    std::string content;
+
+    bool operator==(const Origin&) const = default;
+  };
+  bool read(Layer& layer, News& news, std::vector<std::string>& changed);
+  std::vector<Schema> compile(Layer& layer, const Registry& known,
+                              const std::vector<std::string>& changed, News& news);
+
+  std::vector<Layer> layers_;
+  std::shared_ptr<const Functions> functions_;
+  Registry base_;
+  std::map<std::string, Origin> given_;  ///< by name: where each activity that was given is from
+};
+
+/// The folder of the shipped activities: config/activities.
+std::string activities_folder();
+
+}  // namespace saphira::intentions

@@ -1,0 +1,111 @@
+#include "saphira/intentions/activity_folders.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "saphira/intentions/functors.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ActivityFoldersTest : public ::testing::Test {
+ protected:
+  ActivityFoldersTest() {
+    fs::create_directories(shipped);
+    fs::create_directories(own);
+  }
+  ~ActivityFoldersTest() override { fs::remove_all(root); }
+
+  /// Each write of a test gets a time of its own: two within a tick of the file system's clock
+  /// would look like one.
+  void write(const fs::path& path, const std::string& content) {
+    std::ofstream(path) << content;
+    fs::last_write_time(path, fs::file_time_type(std::chrono::seconds(++time)));
+  }
+  static std::string activity(const std::string& name, const std::string& goals) {
+    return "(defintention :" + name + "\n  :goals '(" + goals + "))\n";
+  }
+  std::vector<std::string> look() {
+    news = folders->look();
+    std::vector<std::string> names;
+    for (const Schema& schema : news.taken)
+      names.push_back(schema.name);
+    return names;
+  }
+  using Names = std::vector<std::string>;
+
+  fs::path root =
+      fs::temp_directory_path() / ("saphira-activities-" + std::to_string(::getpid()) + "-" +
+                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path shipped = root / "shipped";
+  fs::path own = root / "own";
+  int time = 1000000;
+  std::optional<ActivityFolders> folders{std::in_place, Names{shipped.string(), own.string()},
+                                         std::make_shared<const Functions>(core_functions()),
+                                         built_in()};
+  ActivityFolders::News news;
+};
+
+TEST_F(ActivityFoldersTest, AChangedFileIsTakenAndNothingElse) {
+  write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 1s)"));
+  write(shipped / "b.act", activity("two", "(INTEND :one ())"));
+  EXPECT_EQ(look(), (Names{"one", "two"}));
+  EXPECT_FALSE(folders->look().changed);
+  write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 2s)"));
+  EXPECT_EQ(look(), Names{"one"});
+  fs::remove(shipped / "b.act");
+  EXPECT_EQ(look(), Names{});
+  EXPECT_EQ(news.removed, Names{"two"});
+}
+
+TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
+  write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 1s)"));
+  write(shipped / "b.act", activity("two", "(INTEND :one ())"));
+  look();
+  write(shipped / "a.act", activity("one", "(WAIT-FOR (nonsense) :timeout 1s"));
+  EXPECT_EQ(look(), Names{});
+  EXPECT_EQ(news.removed, Names{});
+  ASSERT_FALSE(news.errors.empty());
+  EXPECT_NE(news.errors[0].find((shipped / "a.act").string() + ":"), std::string::npos);
+  EXPECT_NE(folders->trouble().find("a.act"), std::string::npos);
+  // Who names what the broken file has is not wrong for that.
+  EXPECT_EQ(folders->trouble().find("b.act"), std::string::npos);
+  write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 3s)"));
+  EXPECT_EQ(look(), Names{"one"});
+  EXPECT_EQ(folders->trouble(), "");
+}
+
+TEST_F(ActivityFoldersTest, ALaterFolderCoversAnEarlierOne) {
+  write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 1s)"));
+  write(own / "mine.act", activity("one", "(WAIT-FOR nil :timeout 9s)"));
+  EXPECT_EQ(look(), Names{"one"});
+  EXPECT_EQ(news.taken[0].source, (own / "mine.act").string());
+  fs::remove(own / "mine.act");
+  EXPECT_EQ(look(), Names{"one"});
+  EXPECT_EQ(news.taken[0].source, (shipped / "a.act").string());
+}
+
+TEST_F(ActivityFoldersTest, WhatIsBuiltInIsNotCovered) {
+  write(own / "mine.act", activity("go_to", "(WAIT-FOR nil :timeout 9s)"));
+  EXPECT_EQ(look(), Names{});
+  ASSERT_EQ(news.errors.size(), 1U);
+  EXPECT_NE(news.errors[0].find("built in"), std::string::npos);
+}
+
+TEST_F(ActivityFoldersTest, AFolderThatIsNotThereIsSaid) {
+  fs::remove_all(own);
+  look();
+  EXPECT_NE(folders->trouble().find("expected a folder"), std::string::npos);
+  fs::create_directories(own);
+  look();
+  EXPECT_EQ(folders->trouble(), "");
+}
+
+}  // namespace
+}  // namespace saphira::intentions
