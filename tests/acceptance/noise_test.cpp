@@ -16,6 +16,7 @@ TEST(NoisyLine, TheRobotArrivesAtOnePercent) {
   ASSERT_TRUE(wait_until(
       [&] { return system["saphira-sim"].output().find("listening") != std::string::npos; }));
   NoisyLine line(folder.path("line"), system.simulator_socket(), 7);
+  system["saphira-sim"].expect_violations();
   line.set_probability(0.01, 0.01);
   for (const char* name : {"saphira-bridge", "saphira-behaviors", "saphira-intentions"})
     system.start(name);

@@ -9,7 +9,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 if [ "${4:-}" = robot ]; then
   bin=$1 config=$2 run=$3
   "$bin/saphira-sim" --world "$config/worlds/office.wld" --robot-file "$config/robots/pioneer.p" \
-    --socket "$run/robot" --trace "$run/trace.csv" --seed 1 &
+    --socket "$run/robot" --trace "$run/trace.csv" --seed 1 --check "$run/check" &
   exec "$bin/saphira-bridge" --link "$run/robot" --robots "$config/robots" --state "$run/state"
 fi
 if [ "${4:-}" = services ]; then
@@ -49,3 +49,9 @@ trap 'rm -rf "$run"' EXIT
 "$here/two_hosts.sh" --profile "$profile" \
   --a "'$here/system.sh' '$bin' '$config' '$run' robot" \
   --b "'$here/system.sh' '$bin' '$config' '$run' services"
+code=$?
+if grep ': violation: ' "$run/check"; then
+  echo "against the robots' protocol"
+  exit 1
+fi
+exit $code

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -56,6 +57,11 @@ void SerialLine::open_device() {
   if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
       ::ptsname_r(master_, name.data(), name.size()) != 0)
     throw std::runtime_error("no pseudo-terminal");
+  // A new one would send back what comes until whoever opens it has set it.
+  termios settings{};
+  ::tcgetattr(master_, &settings);
+  ::cfmakeraw(&settings);
+  ::tcsetattr(master_, TCSANOW, &settings);
   ::unlink(device_.c_str());
   if (::symlink(name.data(), device_.c_str()) != 0)
     throw std::runtime_error(device_ + ": cannot be made");
@@ -72,6 +78,11 @@ void SerialLine::remove() {
   close_device();
   for (Direction& direction : directions_)
     direction.waiting.clear();
+}
+
+bool SerialLine::has_robot() {
+  const std::scoped_lock lock(mutex_);
+  return robot_ >= 0;
 }
 
 void SerialLine::put_back() {

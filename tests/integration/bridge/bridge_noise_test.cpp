@@ -39,6 +39,8 @@ TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
   speeds.insert(200);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.18; })) << scene.bridge_log();
+  EXPECT_EQ(scene.simulator->violations(), "");
+  scene.simulator->expect_violations();
   line.set_probability(GetParam().to, GetParam().from);
   int moved = 0;
   for (int leg = 0; leg < 24; ++leg) {
@@ -55,6 +57,7 @@ TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
   EXPECT_TRUE(scene.bridge->running()) << scene.bridge_log();
   EXPECT_TRUE(scene.simulator->running());
   EXPECT_GT(line.hurt(), 50U);
+  EXPECT_NE(scene.simulator->violations(), "") << "the checker listens";
   if (GetParam().from < 0.05) {
     EXPECT_GT(moved, 12) << "where the robot is heard it still drives";
   }

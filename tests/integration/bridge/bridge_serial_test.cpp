@@ -24,11 +24,14 @@ struct LineScene : Scene {
   /// Until the robot drives at 0.3 m/s.
   void drive_off() {
     start_simulator();
+    ASSERT_TRUE(wait_until([this] { return line.has_robot(); }));
     start_bridge();
     forward(command, 0.3);
     drives = true;
     ASSERT_TRUE(until([&] { return state.velocity() > 0.28; })) << bridge_log();
   }
+  /// The line is about to be broken, perhaps within a packet.
+  void expect_halves() { simulator->expect_violations(); }
   bool says(const std::string& text) {
     return until([&] { return status.reason().find(text) != std::string::npos; });
   }
@@ -75,6 +78,7 @@ TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
 TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   LineScene scene;
   scene.drive_off();
+  scene.expect_halves();
   const std::uint64_t epoch = scene.state.stamp().epoch();
   const std::uint64_t odom = scene.state.odom();
   scene.line.cut(true);
@@ -98,6 +102,7 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
 TEST(BridgeSerial, ACableThatIsOutForAMoment) {
   LineScene scene;
   scene.drive_off();
+  scene.expect_halves();
   const std::uint64_t epoch = scene.state.stamp().epoch();
   scene.line.cut(true);
   scene.watch(milliseconds(250));
@@ -111,6 +116,7 @@ TEST(BridgeSerial, ACableThatIsOutForAMoment) {
 TEST(BridgeSerial, AnAdapterThatIsPulledAndPutBack) {
   LineScene scene;
   scene.drive_off();
+  scene.expect_halves();
   const std::uint64_t epoch = scene.state.stamp().epoch();
   scene.line.remove();
   ASSERT_TRUE(scene.says("there is no such line (is it plugged in?)")) << scene.status.reason();
@@ -144,6 +150,7 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   EXPECT_EQ(scene.devices.requests()[0].reason(), "no robot is connected");
   scene.drives = false;
   scene.start_simulator();
+  scene.expect_halves();
   ASSERT_TRUE(scene.until([&] {
     return scene.state.stamp().epoch() > epoch && scene.state.stamp().cycle() > 10;
   })) << scene.bridge_log();
@@ -156,6 +163,7 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
 TEST(BridgeSerial, Noise) {
   LineScene scene;
   scene.drive_off();
+  scene.expect_halves();
   scene.line.hurt_one_in(100);
   const std::size_t before = scene.states.size();
   scene.watch(milliseconds(4000));
