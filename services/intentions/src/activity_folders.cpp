@@ -36,13 +36,12 @@ bool ActivityFolders::read(Layer& layer, News& news, std::vector<std::string>& c
     const std::string path = layer.folder.path_of(name);
     File& file = layer.files[path];
     file.fault.clear();
+    changed.push_back(path);
     try {
       file.newest = read_file(path);
-      changed.push_back(path);
     } catch (const std::runtime_error& error) {
       file.newest = file.good;
       file.fault = error.what();
-      news.errors.push_back(file.fault);
     }
   }
   return other;
@@ -75,7 +74,6 @@ std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known
       if (contents[trouble.file] != file.newest)
         continue;  // an older content, which something else has broken
       file.fault += (file.fault.empty() ? "" : "\n") + text;
-      news.errors.push_back(text);
     }
     if (wrong.empty()) {
       for (const auto& [path, content] : contents) {
@@ -103,10 +101,11 @@ ActivityFolders::News ActivityFolders::look() {
     news.changed = read(layer, news, changed) || news.changed;
   if (!news.changed)
     return news;
+  std::map<std::string, std::string> faults;
   for (Layer& layer : layers_)
     for (auto& [path, file] : layer.files)
-      if (std::find(changed.begin(), changed.end(), path) == changed.end() && !file.fault.empty())
-        file.fault.clear();  // it is tried again below, and may be right by now
+      if (std::find(changed.begin(), changed.end(), path) == changed.end())
+        faults[path] = std::exchange(file.fault, {});  // it may be right by now: tried again below
   Registry all = base_;
   std::map<std::string, std::pair<Schema, Origin>> wanted;
   for (Layer& layer : layers_) {
@@ -117,6 +116,10 @@ ActivityFolders::News ActivityFolders::look() {
       wanted.insert_or_assign(name, std::pair(std::move(schema), std::move(origin)));
     }
   }
+  for (const Layer& layer : layers_)
+    for (const auto& [path, file] : layer.files)
+      if (!file.fault.empty() && file.fault != faults[path])
+        news.errors.push_back(file.fault);
   for (const auto& [name, origin] : given_)
     if (!wanted.contains(name))
       news.removed.push_back(name);
