@@ -1,11 +1,18 @@
 #include "behaviors/shell/shell.hpp"
 
 #include "behaviors/shell/convert.hpp"
+#include "behaviors/shell/plugin.hpp"
 #include "lps/shell/convert.hpp"
 
 namespace saphira::behaviors {
+namespace {
 
-Shell::Shell(bus::Node& node)
+/// [cycles] between looks at the behavior files: a second.
+constexpr std::uint64_t kLook = 10;
+
+}  // namespace
+
+Shell::Shell(bus::Node& node, const ShellOptions& options)
     : node_(node),
       cycle_(node),
       intentions_(cycle_.input(bus::topics::kIntentions)),
@@ -13,7 +20,19 @@ Shell::Shell(bus::Node& node)
       commands_(node.writer(bus::topics::kDriveBehaviors)),
       behaviors_(node.writer(bus::topics::kBehaviors)),
       recall_(node.writer(bus::topics::kRecallBehaviors)),
-      processes_(node, table_) {}
+      processes_(node, table_),
+      schemas_(node.writer(bus::topics::kBehaviorSchemas)) {
+  sources_.add(Folder(behaviors_folder()));
+  for (const std::string& path : options.plugins) {
+    Registry plugin;
+    for (const std::string& name : load_plugin(path, plugin))
+      node_.info("behavior " + name + " of " + path);
+    sources_.add(std::move(plugin));
+  }
+  if (!options.folder.empty())
+    sources_.add(Folder(options.folder));
+  look();
+}
 
 bool Shell::step(const bus::Stop& stop) {
   const auto step = cycle_.next(stop, [this] { processes_.idle(); });
@@ -54,8 +73,29 @@ bool Shell::step(const bus::Stop& stop) {
       output.inactive_reason = execution_.name() + " is suspended";
   }
   publish(output);
+  // Only now, when the robot has its command.
+  if (++steps_ % kLook == 0)
+    look();
   cycle_.done();
   return true;
+}
+
+void Shell::look() {
+  const Folder::News news = sources_.look(executive_.registry());
+  for (const std::string& fault : news.faults)
+    node_.error(fault + "\nWhat this file gave before stays in use.");
+  // At the start the shipped files are as everybody has them.
+  for (const std::string& warning : news.warnings)
+    if (steps_ > 0 || !warning.starts_with(behaviors_folder()))
+      node_.warn(warning);
+  if (steps_ > 0)
+    for (const std::string& file : news.taken)
+      node_.info("took " + file);
+  if (!news.changed)
+    return;
+  v1::BehaviorSchemas sample = to_bus(executive_.registry(), sources_.trouble());
+  sample.stamp(cycle_.stamp());
+  schemas_.write(sample);
 }
 
 void Shell::publish(const Output& output) {

@@ -3,18 +3,27 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/shell/processes.hpp"
 #include "saphira/behaviors/executive.hpp"
+#include "saphira/behaviors/folder.hpp"
 #include "saphira/bus/cycle.hpp"
 #include "saphira/bus/known_robot.hpp"
 
 namespace saphira::behaviors {
 
+struct ShellOptions {
+  /// Behaviors that cover shipped ones of the same name; empty: none.
+  std::string folder;
+  std::vector<std::string> plugins;  ///< files, see plugin.hpp
+};
+
 /// The behaviors service on the bus. To be made and run in one thread.
 class Shell {
  public:
-  explicit Shell(bus::Node& node);
+  /// std::runtime_error where a plug-in, or the shipped behaviors, cannot be had at all.
+  explicit Shell(bus::Node& node, const ShellOptions& options = {});
 
   /// Steps until stop is requested.
   void run(const bus::Stop& stop) {
@@ -26,6 +35,8 @@ class Shell {
 
  private:
   void publish(const Output& output);
+  /// Takes behavior files that have changed.
+  void look();
 
   bus::Node& node_;
   bus::Cycle cycle_;
@@ -42,7 +53,10 @@ class Shell {
 
   std::optional<std::uint64_t> odom_;  ///< of the newest step
   std::uint64_t odom_since_ = 0;       ///< cycle in which it last changed
-  Executive executive_{predefined(), RobotModel{}};
+  bus::Writer<v1::BehaviorSchemas> schemas_;
+  Sources sources_;
+  Executive executive_{Registry{}, RobotModel{}};
+  std::uint64_t steps_ = 0;
   std::uint64_t number_ = 0;  ///< of the newest motor command
   std::string trouble_;
   bool active_ = false;

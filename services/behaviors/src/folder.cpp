@@ -112,6 +112,49 @@ std::string Folder::trouble() const {
   return out;
 }
 
+void Sources::add(Registry fixed) {
+  layers_.push_back({std::move(fixed), {}});
+}
+
+void Sources::add(Folder folder) {
+  layers_.push_back({{}, std::move(folder)});
+}
+
+Folder::News Sources::look(Registry& registry) {
+  Folder::News all;
+  for (Layer& layer : layers_) {
+    if (!layer.folder)
+      continue;
+    Folder::News news = layer.folder->look(layer.schemas);
+    all.changed = all.changed || news.changed;
+    all.taken.insert(all.taken.end(), news.taken.begin(), news.taken.end());
+    all.faults.insert(all.faults.end(), news.faults.begin(), news.faults.end());
+    all.warnings.insert(all.warnings.end(), news.warnings.begin(), news.warnings.end());
+  }
+  std::map<std::string, Origin> now;
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    for (const std::string& name : layers_[i].schemas.names())
+      now[name] = {i, layers_[i].schemas.find(name)->revision};
+  for (const auto& [name, origin] : taken_)
+    if (!now.contains(name))
+      registry.remove(name);
+  for (const auto& [name, origin] : now)
+    if (const auto before = taken_.find(name); before == taken_.end() || before->second != origin)
+      registry.add(*layers_[origin.layer].schemas.find(name));
+  all.changed = all.changed || now != taken_;
+  taken_ = std::move(now);
+  return all;
+}
+
+std::string Sources::trouble() const {
+  std::string out;
+  for (const Layer& layer : layers_)
+    if (layer.folder)
+      if (const std::string one = layer.folder->trouble(); !one.empty())
+        out += (out.empty() ? "" : "\n") + one;
+  return out;
+}
+
 Registry load_behaviors(const std::string& folder) {
   Registry registry;
   const Folder::News news = Folder(folder).look(registry);

@@ -118,6 +118,7 @@ TEST(Convert, Output) {
                             Action::decelerate, Action::speed};
   for (const Action action : actions)
     state.blended.evaluation.rules.push_back({"rule", 0.9, action, 1.1});
+  state.blended.evaluation.variables = {{"too_left", 0.25}};
   output.behaviors.push_back(state);
 
   const v1::Behaviors sample = to_bus(output);
@@ -153,6 +154,10 @@ TEST(Convert, Output) {
   for (std::size_t i = 0; i < 5; ++i)
     EXPECT_EQ(b.rules()[i].action(), expected[i]);
 
+  ASSERT_EQ(b.variables().size(), 1U);
+  EXPECT_EQ(b.variables()[0].name(), "too_left");
+  EXPECT_EQ(b.variables()[0].value(), 0.25);
+
   v1::MotorCommand command = command_to_bus(output);
   EXPECT_TRUE(command.active());
   EXPECT_EQ(command.translation(), v1::TRANSLATION_VELOCITY);
@@ -164,6 +169,38 @@ TEST(Convert, Output) {
   EXPECT_FALSE(command.active());
   EXPECT_EQ(command.translation(), v1::TRANSLATION_NONE);
   EXPECT_EQ(command.rotation(), v1::ROTATION_NONE);
+}
+
+TEST(Convert, Schemas) {
+  Schema schema;
+  schema.name = "Test";
+  schema.summary = "does it";
+  schema.source = "test.beh";
+  schema.parameters = {number_parameter("speed", "m/s", 0.5, 2.0, 1.0),
+                       point_parameter("goal", "where to"),
+                       choice_parameter("side", "which", {"left", "right"})};
+  schema.rules = {{"r", "a And Not b", "Turn Left Slowly"}};
+  Registry registry;
+  registry.add(schema);
+  const v1::BehaviorSchemas sample = to_bus(registry, "bad.beh:1:1: wrong");
+  EXPECT_EQ(sample.trouble(), "bad.beh:1:1: wrong");
+  ASSERT_EQ(sample.schemas().size(), 1U);
+  const v1::BehaviorSchema& s = sample.schemas()[0];
+  EXPECT_EQ(s.name(), "Test");
+  EXPECT_EQ(s.summary(), "does it");
+  EXPECT_EQ(s.source(), "test.beh");
+  ASSERT_EQ(s.parameters().size(), 3U);
+  EXPECT_EQ(s.parameters()[0].kind(), v1::ARGUMENT_NUMBER);
+  EXPECT_EQ(s.parameters()[0].low(), 0.5);
+  EXPECT_EQ(s.parameters()[0].high(), 2.0);
+  EXPECT_EQ(s.parameters()[0].usual(), 1.0);
+  EXPECT_EQ(s.parameters()[1].kind(), v1::ARGUMENT_POINT);
+  EXPECT_TRUE(s.parameters()[1].required());
+  EXPECT_EQ(s.parameters()[2].kind(), v1::ARGUMENT_TEXT);
+  EXPECT_EQ(s.parameters()[2].choices(), (std::vector<std::string>{"left", "right"}));
+  ASSERT_EQ(s.rules().size(), 1U);
+  EXPECT_EQ(s.rules()[0].antecedent(), "a And Not b");
+  EXPECT_EQ(s.rules()[0].action(), "Turn Left Slowly");
 }
 
 TEST(Convert, NoMoreRulesThanTheContractHas) {

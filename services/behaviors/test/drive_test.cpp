@@ -340,5 +340,34 @@ TEST(Drive, AttendsAtAPosition) {
   EXPECT_NEAR(std::atan2(goal.y, goal.x), 0.0, 0.1);
 }
 
+/// The example of manual 7.2, from its file. As it is printed it turns away from what is beside it,
+/// and gets to what is straight ahead.
+TEST(Drive, TheManualsExample) {
+  struct Case {
+    const char* schema;
+    double radius;
+    Vec2 goal;
+    bool arrives;
+  };
+  for (const Case& one :
+       {Case{"myGoto", 400.0, {4.0, 0.0}, true}, Case{"myGoto", 400.0, {3.0, 3.0}, false},
+        Case{"myGotoCorrected", 0.4, {3.0, 3.0}, true},
+        Case{"myGotoCorrected", 0.4, {-3.0, 0.5}, true}}) {
+    Drive what;
+    what.goal_in_odom = one.goal;
+    what.radius = 0.81;  // where near_goal is a half the speed is none
+    what.limit = 500;
+    what.behaviors = {
+        {"go",
+         one.schema,
+         2,
+         true,
+         {point_argument("goal_pt", {one.goal.x(), one.goal.y(), 0.0}), {"radius", one.radius}}},
+        {"stop", "Stop", 3, true, {}}};
+    const DriveResult run = drive(hall(""), pioneer(), {10, 10, 0}, what);
+    EXPECT_EQ(run.arrived, one.arrives) << one.schema << " to " << one.goal.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace saphira::behaviors

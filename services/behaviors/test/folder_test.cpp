@@ -141,6 +141,28 @@ TEST_F(FolderTest, OneNameInTwoFilesIsAFault) {
             std::string::npos);
 }
 
+TEST_F(FolderTest, ALaterSourceCoversAnEarlierOneUntilItIsGone) {
+  const auto version = [](const std::string& speed) {
+    return std::move(compile(counter(speed), "fixed").schemas.front());
+  };
+  Registry fixed;
+  fixed.add(version("10 + n"));
+  Sources sources;
+  sources.add(std::move(fixed));
+  sources.add(Folder(path_.string()));
+  Executive executive({}, {});
+  EXPECT_TRUE(sources.look(executive.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(executive), 11);
+  write("mine.beh", counter("20 + n"));
+  EXPECT_TRUE(sources.look(executive.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(executive), 22);
+  EXPECT_FALSE(sources.look(executive.registry()).changed);
+  fs::remove(path_ / "mine.beh");
+  EXPECT_TRUE(sources.look(executive.registry()).changed);
+  EXPECT_DOUBLE_EQ(step(executive), 13);
+  EXPECT_EQ(sources.trouble(), "");
+}
+
 TEST_F(FolderTest, AFolderThatIsNotThereIsAFaultAndTakesNothingAway) {
   write("a.beh", counter("1"));
   Folder folder(path_.string());

@@ -1,6 +1,11 @@
 #include "behaviors/shell/shell.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
 
 namespace saphira::behaviors {
 namespace {
@@ -128,6 +133,8 @@ TEST_P(ShellTest, SaysWhatCannotBeHad) {
   step();
   EXPECT_TRUE(command.active());
   EXPECT_NE(told.trouble().find("unknown schema \"Fly\""), std::string::npos);
+  ASSERT_EQ(told.missing().size(), 1U);
+  EXPECT_NE(told.missing()[0].reason().find("unknown schema"), std::string::npos);
   EXPECT_EQ(told.behaviors().size(), 1U);
 }
 
@@ -221,6 +228,91 @@ TEST_P(ShellTest, RecallsWhatItPublished) {
   ASSERT_EQ(samples.size(), 20U);
   EXPECT_EQ(samples.front().data.stamp().cycle(), 1U);
   EXPECT_EQ(samples.back().data.stamp().cycle(), cycle);
+}
+
+/// A shell with a folder of a person's own, and the example plug-in.
+TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("saphira-shell-" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directory(folder);
+  int time = 1'000'000;
+  const auto write = [&](const std::string& text) {
+    std::ofstream(folder / "mine.beh") << text;
+    fs::last_write_time(folder / "mine.beh", fs::file_time_type(std::chrono::seconds(++time)));
+  };
+  const std::string head = "BeginBehavior ConstantVelocity\nParams\nRules\n";
+  const std::string tail = "\nUpdate\nActivity\nEndBehavior\n";
+  const auto memory = bus::make_memory_bus();
+  bus::Node bridge(named("bridge", false), memory);
+  bus::Node service(named("behaviors", false), memory);
+  auto states = bridge.writer(bus::topics::kRobotState);
+  auto descriptions = bridge.writer(bus::topics::kRobotDescription);
+  auto intentions = bridge.writer(bus::topics::kIntentions);
+  auto behaviors = bridge.reader(bus::topics::kBehaviors);
+  auto schemas = bridge.reader(bus::topics::kBehaviorSchemas);
+  Shell shell(service, {folder.string(), {SAPHIRA_EXAMPLE_PLUGIN}});
+  const auto find = [](const v1::BehaviorSchemas& all, const std::string& name) {
+    for (const v1::BehaviorSchema& schema : all.schemas())
+      if (schema.name() == name)
+        return schema;
+    return v1::BehaviorSchema();
+  };
+  std::optional<v1::BehaviorSchemas> told = schemas.take_newest();
+  ASSERT_TRUE(told);
+  EXPECT_GE(told->schemas().size(), 12U);
+  EXPECT_EQ(told->trouble(), "");
+  EXPECT_EQ(find(*told, "HoldDistance").source(), SAPHIRA_EXAMPLE_PLUGIN);
+  EXPECT_EQ(find(*told, "ConstantVelocity").parameters().size(), 1U);
+
+  bus::Stop stop;
+  std::uint64_t cycle = 0;
+  v1::RobotDescription description;
+  description.stamp().epoch(7);
+  description.max_velocity(0.4);
+  descriptions.write(description);
+  // Twice as many cycles as are between two looks.
+  const auto drive = [&] {
+    double speed = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      v1::Intentions intended;
+      intended.stamp().epoch(7);
+      intended.stamp().cycle(cycle);
+      intended.behavior_control(true);
+      intended.behaviors({behavior("ConstantVelocity", 2)});
+      v1::RobotState state;
+      state.stamp().epoch(7);
+      state.stamp().cycle(++cycle);
+      states.write(state);
+      intentions.write(intended);
+      EXPECT_TRUE(shell.step(stop));
+      if (const auto newest = behaviors.take_newest())
+        speed = newest->speed();
+    }
+    return speed;
+  };
+  EXPECT_DOUBLE_EQ(drive(), 0.2);
+  write(head + "If 1.0 Then Speed 50" + tail);
+  EXPECT_DOUBLE_EQ(drive(), 0.05);
+  told = schemas.take_newest();
+  ASSERT_TRUE(told);
+  EXPECT_EQ(find(*told, "ConstantVelocity").source(), (folder / "mine.beh").string());
+  ASSERT_EQ(find(*told, "ConstantVelocity").rules().size(), 1U);
+  EXPECT_EQ(find(*told, "ConstantVelocity").rules()[0].action(), "Speed 50");
+  write(head + "If 1.0 Then Speed" + tail);
+  EXPECT_DOUBLE_EQ(drive(), 0.05);
+  told = schemas.take_newest();
+  ASSERT_TRUE(told);
+  EXPECT_NE(told->trouble().find("mine.beh:5:1: expected a variable or a number"),
+            std::string::npos)
+      << told->trouble();
+  fs::remove_all(folder);
+}
+
+TEST(ShellFiles, APluginThatIsNoneEndsItAtItsStart) {
+  const auto memory = bus::make_memory_bus();
+  bus::Node service(named("behaviors", false), memory);
+  EXPECT_THROW(Shell(service, {"", {"/nowhere.so"}}), std::runtime_error);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,33 @@ class Folder {
   std::string path_;
   std::map<std::string, File> files_;  ///< by name
   bool missing_ = false;
+};
+
+/// Where an executive's schemas come from: layers, of which a later one covers schemas of the same
+/// name in those before it.
+class Sources {
+ public:
+  /// Schemas that stay as they are, such as those of a plug-in.
+  void add(Registry fixed);
+  void add(Folder folder);
+
+  /// Looks at the folders, and makes `registry` what the layers are now. The first look takes all.
+  Folder::News look(Registry& registry);
+  std::string trouble() const;
+
+ private:
+  struct Layer {
+    Registry schemas;
+    std::optional<Folder> folder;
+  };
+  struct Origin {
+    std::size_t layer = 0;
+    std::uint64_t revision = 0;
+
+    bool operator==(const Origin&) const = default;
+  };
+  std::vector<Layer> layers_;
+  std::map<std::string, Origin> taken_;  ///< what the registry was given
 };
 
 /// The behaviors of a folder; std::runtime_error that says all that is wrong with its files.
