@@ -270,81 +270,18 @@ int request(const std::vector<std::string>& words, const bus::NodeOptions& optio
              : bus::kExitFailed;
 }
 
-/// Drives by a route: one goal, whose point is moved on before the robot gets there, so that it
-/// does not stop in between. A way that proves blocked is left out of the next route.
-int go(const std::string& place, bool only_say, const bus::NodeOptions& options,
-       const bus::Stop& stop) {
-  constexpr double kNear = 0.6;  // [m]
+int route(const std::string& place, const bus::NodeOptions& options, const bus::Stop& stop) {
   View view(options);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
-  bus::GoalClient goals(view.node, "saphira map go");
-  maps::RouteSettings settings;
-  while (true) {
-    const maps::Topology topology(view.map);
-    const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
-    if (!found.route) {
-      std::cerr << "saphira: " << found.reason << '\n';
-      return bus::kExitFailed;
-    }
-    std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
-    std::fflush(stdout);
-    if (only_say)
-      return bus::kExitOk;
-    const std::vector<Vec2> points = found.route->points();
-    std::size_t at = 0;
-    const auto goal_at = [&] {
-      v1::Goal goal;
-      goal.functor("go_to");
-      goal.arguments({bus::point("position", points[at].x(), points[at].y(), 0.0, v1::FRAME_MAP),
-                      bus::number("radius", at + 1 < points.size() ? 0.3 : 0.2)});
-      return goal;
-    };
-    const v1::GoalId id = goals.ask(goal_at());
-    std::string last;
-    bool ended = false;
-    while (!ended) {
-      view.node.wait(milliseconds(100), &stop);
-      view.poll();
-      goals.poll();
-      if (stop.requested()) {
-        goals.cancel(id);
-        goals.delivered(1000);
-        return bus::kExitFailed;
-      }
-      if (at + 1 < points.size() && (view.position() - points[at]).norm() < kNear) {
-        ++at;
-        goals.change(id, goal_at());
-      }
-      const auto status = goals.status(id);
-      if (!status)
-        continue;
-      ended = bus::ended(status->state());
-      const std::string now = ended ? bus::describe(*status) : status->step();
-      if (now != last) {
-        std::printf("%8.1f s  %s\n", status->elapsed(), now.c_str());
-        std::fflush(stdout);
-        last = now;
-      }
-      if (status->state() == v1::GOAL_SUCCEEDED && at + 1 >= points.size())
-        return bus::kExitOk;
-      if (ended && status->state() != v1::GOAL_SUCCEEDED && status->code() != v1::CODE_BLOCKED)
-        return bus::kExitFailed;
-    }
-    // Blocked: the way out of the leg that the point is of is not to be had.
-    std::size_t passed = 0;
-    bool other_way = false;
-    for (const maps::Leg& leg : found.route->legs) {
-      passed += leg.points.size();
-      if (at >= passed || !leg.link)
-        continue;
-      const std::uint32_t gate = topology.links()[*leg.link].id;
-      other_way = gate != 0 && settings.blocked.insert(gate).second;
-      break;
-    }
-    if (!other_way)
-      return bus::kExitFailed;
+  const maps::Topology topology(view.map);
+  const maps::RouteResult found = maps::find_route(topology, view.position(), place);
+  if (!found.route) {
+    std::cerr << "saphira: " << found.reason << '\n';
+    return bus::kExitFailed;
   }
+  std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
+  return bus::kExitOk;
 }
 
 /// Explores the floor and lets registration map it; writes the map when nothing is left.
@@ -483,8 +420,8 @@ int map(const std::vector<std::string>& words, double seconds, const bus::NodeOp
       return show(rest.empty() ? "map.svg" : rest, seconds, options, stop);
     if (verb == "build" && words.size() <= 2)
       return build(rest.empty() ? "built.map" : rest, options, stop);
-    if ((verb == "go" || verb == "route") && !rest.empty())
-      return go(rest, verb == "route", options, stop);
+    if (verb == "route" && !rest.empty())
+      return route(rest, options, stop);
     return request(words, options, stop);
   } catch (const std::invalid_argument& error) {
     std::cerr << "saphira: map: " << error.what() << '\n';
@@ -512,7 +449,7 @@ constexpr const char* kMapWords = R"(
   saphira map features on | off  whether what is seen and not on the map is added to it
   saphira map snap on | off      whether what is added is aligned on right angles
   saphira map route PLACE        the way to a room, a corridor or a POS, by name or id
-  saphira map go PLACE           drives there
+                                 (saphira goal go PLACE drives there)
 )";
 
 }  // namespace
@@ -520,8 +457,7 @@ constexpr const char* kMapWords = R"(
 void add_map(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<std::vector<std::string>>();
   auto seconds = std::make_shared<double>(2.0);
-  CLI::App* command =
-      app.add_subcommand("map", "The map: look at it, draw it, change it, drive by it");
+  CLI::App* command = app.add_subcommand("map", "The map: look at it, draw it, change it");
   command->add_option("words", *words, "what to do, as below");
   command->add_option("--seconds", *seconds, "show: how long the way is followed")
       ->check(CLI::Range(0.0, 1e6))
