@@ -10,6 +10,7 @@
 #include "saphira/intentions/executor.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/language.hpp"
+#include "saphira/intentions/navigation.hpp"
 
 using namespace saphira::intentions;
 
@@ -63,7 +64,11 @@ void run(const Loaded& loaded) {
 // NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view content(reinterpret_cast<const char*>(data), size);
-  static const Functions kFunctions = core_functions();
+  static const Functions kFunctions = [] {
+    Functions all = core_functions();
+    add_navigation(all);
+    return all;
+  }();
   static const Registry kBuiltIn = built_in();
   const Loaded loaded = load_text("fuzz.act", content, kFunctions, kBuiltIn);
   for (const Diagnostic& trouble : loaded.troubles) {

@@ -316,7 +316,9 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
   node.behavior.priority = start.priority.value_or(kUsualPriority);
   node.shown.priority = node.behavior.priority;
   node.until_satisfied = start.until_satisfied;
-  for (const auto& [name, value] : start.arguments) {
+  for (const auto& each_given : start.arguments) {
+    const std::string& name = each_given.first;
+    const Value& value = each_given.second;
     std::string spelled = name;
     if (known != nullptr) {
       const auto parameter =

@@ -206,7 +206,8 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
   // What the check cannot see counts as given.
   Schema rest = schema;
   if (schema.bind) {
-    for (const auto& [name, value] : fixed) {
+    for (const auto& each_fixed : fixed) {
+      const std::string& name = each_fixed.first;
       if (std::none_of(schema.parameters.begin(), schema.parameters.end(),
                        [&](const Parameter& each) { return normal(each.name) == normal(name); }))
         throw ActivityError(schema.name + " has no argument " + quoted(name) + ": it takes " +

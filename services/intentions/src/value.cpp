@@ -155,9 +155,9 @@ Value Value::truth(bool yes) {
 }
 
 const Value::List& Value::list() const {
-  static const List kNone;
+  static const List none;
   const auto* const elements = std::get_if<std::shared_ptr<const Elements>>(&is_);
-  return elements == nullptr ? kNone : (*elements)->list;
+  return elements == nullptr ? none : (*elements)->list;
 }
 
 bool Value::operator==(const Value& other) const {

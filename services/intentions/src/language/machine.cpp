@@ -168,8 +168,8 @@ class Machine : public Activity {
     shown_waiting_ = main.waiting;
     const Step& step = program_->steps[main.at];
     const std::size_t next = main.fresh ? step.set : step.set + 1;
-    static const std::string kEnd = "END";
-    self.label(next < program_->sets.size() ? program_->sets[next].label : kEnd);
+    static const std::string end_label = "END";
+    self.label(next < program_->sets.size() ? program_->sets[next].label : end_label);
     if (!main.waiting)
       self.say(program_->sets[step.set].text);
     else if (step.op == Step::Op::kWait)
@@ -410,9 +410,10 @@ class Machine : public Activity {
     const Outcome* const outcome = self.child_outcome(thread.child);
     reason_ = outcome == nullptr ? "" : outcome->reason;
     if (state == IntentionState::kFailure || state == IntentionState::kTimeout) {
-      const GoalCode code = state == IntentionState::kTimeout  ? GoalCode::kTimeout
-                            : outcome->code == GoalCode::kNone ? GoalCode::kActivity
-                                                               : outcome->code;
+      const GoalCode code = state == IntentionState::kTimeout ? GoalCode::kTimeout
+                            : outcome == nullptr || outcome->code == GoalCode::kNone
+                                ? GoalCode::kActivity
+                                : outcome->code;
       const std::string& schema = program_->steps[thread.at].intend->schema;
       failure(thread, code, schema + ": " + reason_, self);
       return true;

@@ -312,7 +312,6 @@ Value literal(const Form& form) {
     case Form::Kind::kNumber:
       return Value(form.number);
     case Form::Kind::kText:
-      return Value(form.text);
     case Form::Kind::kKeyword:
       return Value(form.text);
     case Form::Kind::kName:
