@@ -26,7 +26,7 @@ constexpr double kForget = 300.0;   ///< [s] after which a closed way may be ope
 constexpr double kAstray = 0.5;     ///< [m] outside of its region the robot may believe to be
 constexpr double kSameDoor = 0.5;   ///< [m] a door that is seen and one on the map are the same
 constexpr double kBody = 0.30;      ///< [m] half of what has to be free before the robot
-constexpr double kNear = 1.2;       ///< [m] from where on the sonars tell a closed door
+constexpr double kNear = 1.6;       ///< [m] from where on the sonars tell a closed door
 constexpr double kSeenAgain = 3.0;  ///< [s] what was seen longer ago counts no more
 constexpr double kThere = 0.4;      ///< [m] so near to its point the robot is at a place
 constexpr double kVisited = 1.5;    ///< [m] around where the robot has been
@@ -206,9 +206,14 @@ std::vector<std::pair<Reference, double>> closed_ways(const Value& value) {
 maps::RouteSettings route_settings(const World& world) {
   maps::RouteSettings settings;
   settings.tolerance = kAstray;
-  for (const auto& [way, since] : closed_ways(world.beliefs.get(kClosedWays, world)))
-    if (current(world, way) && way.kind == Kind::kLink && seconds(world) - since < kForget)
+  for (const auto& [way, since] : closed_ways(world.beliefs.get(kClosedWays, world))) {
+    if (!current(world, way) || seconds(world) - since >= kForget)
+      continue;
+    if (way.kind == Kind::kLink)
       settings.blocked_links.insert(way.id);
+    else if (way.kind == Kind::kRegion && way.id < world.around.topology->regions().size())
+      settings.blocked.insert(world.around.topology->regions()[way.id].area.id);
+  }
   return settings;
 }
 
@@ -515,6 +520,43 @@ Value next_to_explore(const World& world, Values arguments) {
   return best ? on_map(*best) : Value();
 }
 
+/// Where to look for what registration knows: on the way to the nearest corridor, by its best guess
+/// of where the robot is. In odom; nil where there is no guess.
+Value way_to_corridor(const World& world, Values) {
+  const Registered& guess = world.around.registration;
+  if (world.around.topology == nullptr || guess.state == Localization::kNone ||
+      guess.state == Localization::kUnplaced)
+    return {};
+  constexpr double kStep = 0.7;  // [m] a nearer point is not worth driving to
+  const maps::Topology& map = *world.around.topology;
+  const Vec2 here = guess.pose_in_map.position();
+  const maps::RouteSettings settings = route_settings(world);
+  std::vector<Vec2> points;  // of the shortest way
+  double shortest = 1e9;
+  for (std::size_t i = 0; i < map.regions().size(); ++i) {
+    if (map.regions()[i].kind != RegionKind::corridor)
+      continue;
+    maps::Place place;
+    place.regions = {i};
+    const Pose& middle = map.regions()[i].area.pose_in_map;
+    place.point = maps::on_axis(map.regions()[i].area, here, 1.0);
+    if ((*place.point - here).norm() < kStep)
+      place.point = middle.position();
+    const maps::RouteResult found = maps::find_route(map, here, place, settings);
+    if (found.route && found.route->length < shortest) {
+      shortest = found.route->length;
+      points = found.route->points();
+    }
+  }
+  for (const Vec2& point : points)
+    if ((point - here).norm() > kStep) {
+      const Vec2 seen = to_frame(guess.pose_in_map, point);
+      return Value(
+          Point{compose(world.robot.pose_in_odom, {seen.x(), seen.y(), 0.0}), Frame::kOdom});
+    }
+  return {};
+}
+
 Value yes(bool truth) {
   return Value::truth(truth);
 }
@@ -569,6 +611,9 @@ void add_paths(Functions& functions) {
                          },
                          "(closed-ways-with WAY): *closed-ways* and that one, as of now"});
   functions.add(
+      Function{"way-to-corridor", 0, 0, way_to_corridor,
+               "(way-to-corridor): where to go to find out where it is, by the best guess"});
+  functions.add(
       Function{"next-to-explore", 1, 2, next_to_explore,
                "(next-to-explore VISITED [ROOMS]): the nearest end of a corridor (and room) "
                "that is none of the points, or nil"});
@@ -618,6 +663,15 @@ void add_places(Functions& functions) {
       Function{"split", 1, 1,
                [](const World&, Values arguments) { return split(text_of(arguments, 0, "split")); },
                "(split TEXT): its words, between commas or blanks"});
+  functions.add(Function{"room-p", 1, 1,
+                         [](const World& world, Values arguments) {
+                           const Reference* const reference = arguments[0].reference();
+                           return yes(reference != nullptr && reference->kind == Kind::kRegion &&
+                                      current(world, *reference) &&
+                                      region_of(world, arguments, 0, "room-p").kind ==
+                                          RegionKind::room);
+                         },
+                         "(room-p THING): whether it is a room of the map"});
   functions.add(Function{"link-p", 1, 1,
                          [](const World&, Values arguments) {
                            const Reference* const reference = arguments[0].reference();

@@ -1,0 +1,275 @@
+// The library of activities (config/activities) in the simulated office floor.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "drive/whole.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::test {
+namespace {
+
+using intentions::Frame;
+using intentions::GoalCode;
+using intentions::GoalState;
+using intentions::GoalStatus;
+using intentions::text;
+
+/// The office floor with more in it, as a file.
+std::string office_with(const std::string& name, const std::string& more) {
+  const std::string path = testing::TempDir() + "saphira-navigation-" + name + ".wld";
+  std::ofstream(path) << read_file(config_folder() + "/worlds/office-floor.wld") << "\n" << more;
+  return path;
+}
+
+WholeOptions office(std::uint64_t seed = 1, const std::string& world = "office-floor") {
+  WholeOptions options;
+  options.map = "office-floor";
+  options.drive.world = world;
+  options.drive.seed = seed;
+  return options;
+}
+
+bool is_in(const Whole& whole, const std::string& place) {
+  const auto meant = whole.topology()->place(place);
+  return std::any_of(meant->regions.begin(), meant->regions.end(), [&](std::size_t region) {
+    return maps::contains(whole.topology()->regions()[region].area, whole.truth().position());
+  });
+}
+
+bool said(const Whole& whole, const std::string& part) {
+  return std::any_of(whole.said().begin(), whole.said().end(),
+                     [&](const std::string& each) { return each.find(part) != std::string::npos; });
+}
+
+// Paper 3.5.1: the door is begun while the corridor is still followed, so that the robot does not
+// stop between the two.
+TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
+  Whole whole(office());
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
+  double slowest = 1.0;
+  bool both = false;
+  bool passed = false;
+  whole.advance_until(
+      [&] {
+        bool follows = false;
+        bool passes = false;
+        for (const auto& node : whole.intentions().nodes) {
+          follows = follows || node.schema == "FollowCorridor";
+          passes = passes || node.schema == "FollowDoor";
+        }
+        both = both || (follows && passes);
+        if (passes)
+          slowest = std::min(slowest, whole.drive().seen().velocity);
+        passed = passed || passes;
+        return whole.ended(goal);
+      },
+      3000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_TRUE(is_in(whole, "EJ-231"));
+  EXPECT_TRUE(passed);
+  EXPECT_TRUE(both);
+  EXPECT_GT(slowest, 0.1);
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+// From leg to leg of the path no cycle passes in which nobody drives.
+TEST(Navigation, OnTheWayThereIsAlwaysABehaviorThatDrives) {
+  Whole whole(office());
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
+  int idle = 0;
+  bool driving = false;
+  whole.advance_until(
+      [&] {
+        bool drives = false;
+        bool stops = false;
+        for (const auto& each : whole.intentions().behaviors) {
+          drives = drives || each.schema == "FollowCorridor" || each.schema == "FollowDoor";
+          stops = stops || (each.schema == "Stop" && each.priority == 0);
+        }
+        if (driving && !drives && !stops && !whole.ended(goal))
+          ++idle;
+        driving = driving || drives;
+        return whole.ended(goal);
+      },
+      3000);
+  EXPECT_TRUE(driving);
+  // Between the end of the path and the stop plan-and-execute comes to its end.
+  EXPECT_LE(idle, 2);
+}
+
+TEST(Navigation, APlaceThatTheMapDoesNotHaveIsRefusedInWords) {
+  Whole whole(office());
+  const GoalStatus status = whole.achieve("go-to-place", {text("place", "EJ-999")}, 100);
+  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_NE(status.reason.find("EJ-999"), std::string::npos) << status.reason;
+}
+
+const char* const kClosed247 = "door d247 16500 13100 16500 14000 90\n";
+
+TEST(Navigation, BeforeAClosedDoorItAsksAndSaysWhyNot) {
+  Whole whole(office(1, office_with("closed", kClosed247)));
+  const GoalStatus status = whole.achieve(
+      "go-to-place", {text("place", "EJ-247"), intentions::number("patience", 10.0)}, 3000);
+  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_NE(status.reason.find("door 1247"), std::string::npos) << status.reason;
+  EXPECT_TRUE(said(whole, "Please open the way"));
+  EXPECT_TRUE(whole.at_rest());
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+TEST(Navigation, WhenTheDoorIsOpenedItGoesOn) {
+  Whole whole(office(1, office_with("opened", kClosed247)));
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-247")});
+  ASSERT_TRUE(whole.advance_until([&] { return said(whole, "Please open the way"); }, 3000));
+  ASSERT_TRUE(whole.drive().scene().set_door("d247", true));
+  whole.advance_until([&] { return whole.ended(goal); }, 3000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_TRUE(is_in(whole, "EJ-247"));
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+// EJ-271 has two doors.
+TEST(Navigation, AroundAClosedDoorItReplans) {
+  Whole whole(office(1, office_with("two-doors", "door d271 28600 6000 29500 6000 -90\n")));
+  const GoalStatus status = whole.achieve("go-to-place", {text("place", "EJ-271")}, 4000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_TRUE(is_in(whole, "EJ-271"));
+  EXPECT_FALSE(said(whole, "Please open the way"));
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+TEST(Navigation, WhoIsCarriedAwayOnTheWayFindsHimselfAndArrives) {
+  Whole whole(office());
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
+  whole.advance_until([&] { return whole.cycle() >= 100; }, 200);
+  ASSERT_TRUE(whole.drive().robot().place({25.6, 12.0, kPi / 2}));
+  whole.advance_until([&] { return whole.ended(goal); }, 6000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_TRUE(is_in(whole, "EJ-231"));
+}
+
+TEST(Navigation, AMoreImportantGoalInterruptsTheJourneyWhichThenGoesOn) {
+  Whole whole(office());
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
+  whole.advance_until([&] { return whole.cycle() >= 100; }, 200);
+  const auto other =
+      whole.ask("go_to", {intentions::point("position", {17.5, 12.0, 0.0}, Frame::kMap)}, 5);
+  whole.advance_until([&] { return whole.status(goal).state == GoalState::kSuspended; }, 20);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSuspended);
+  EXPECT_NE(whole.status(goal).reason.find("go_to"), std::string::npos);
+  whole.advance_until([&] { return whole.ended(other); }, 1000);
+  EXPECT_EQ(whole.status(other).state, GoalState::kSucceeded) << whole.status(other).reason;
+  whole.advance_until([&] { return whole.ended(goal); }, 4000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_TRUE(is_in(whole, "EJ-231"));
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+// ---- Golden traces: what each activity does in a world of its own, exactly. Renewed, when it has
+// been changed deliberately, with SAPHIRA_RENEW_GOLDEN=1 in the environment of this program.
+
+struct Scenario {
+  std::string name;
+  WholeOptions options;
+  std::string functor;
+  intentions::Arguments arguments;
+  int cycles = 3000;
+};
+
+std::vector<Scenario> scenarios() {
+  std::vector<Scenario> all;
+  all.push_back({"go-to-place", office(), "go-to-place", {text("place", "EJ-231")}});
+  Scenario across{"go-to-position", office(), "go-to-place", {text("place", "start")}};
+  across.options.drive.start_in_world = Pose{19.5, 16.5, 0.0};
+  all.push_back(across);
+  Scenario library{"through-the-library", office(), "go-to-place", {text("place", "EJ-261")}};
+  library.options.drive.start_in_world = Pose{7.0, 27.5, 0.0};
+  all.push_back(library);
+  all.push_back({"closed-door",
+                 office(1, office_with("golden", kClosed247)),
+                 "go-to-place",
+                 {text("place", "EJ-247"), intentions::number("patience", 5.0)}});
+  Scenario lost{"lost", office(), "go-to-place", {text("place", "EJ-245")}};
+  lost.options.knows_pose = false;
+  all.push_back(lost);
+  all.push_back({"figure-9", office(), "plan-and-execute", {text("dest", "EJ-249")}});
+  all.push_back({"find-and-follow", office(), "find-and-follow", {}});
+  all.push_back({"patrol", office(), "patrol", {}});
+  all.push_back({"patrol-places", office(), "patrol", {text("places", "EJ-249, EJ-250")}});
+  all.push_back({"explore", office(), "explore", {}, 6000});
+  Scenario bump{"bump-and-go", office(), "bump-and-go", {intentions::number("bumps", 2)}};
+  bump.options.map = "arena";
+  bump.options.drive.world = "arena";
+  all.push_back(bump);
+  all.push_back({"attend",
+                 office(),
+                 "attend",
+                 {intentions::point("position", {17.5, 10.0, 0.0}, Frame::kMap),
+                  intentions::number("seconds", 1)}});
+  return all;
+}
+
+class Golden : public ::testing::TestWithParam<Scenario> {};
+
+/// What stands in brackets is the name that the intention was given, or none.
+std::string without_numbers(const std::string& line) {
+  std::string out = line.substr(line.find(' ') + 1);
+  const std::size_t open = out.find("(I");
+  const std::size_t close = out.find(')', open);
+  if (open != std::string::npos && out.find_first_not_of("0123456789", open + 2) == close)
+    out.erase(open + 1, close - open - 1);
+  return out;
+}
+
+TEST_P(Golden, TheTransitionsAreThoseThatAreStored) {
+  const Scenario& scenario = GetParam();
+  Whole whole(scenario.options);
+  for (int i = 0; i < 5; ++i)  // registration has looked
+    whole.advance();
+  const auto goal = whole.ask(scenario.functor, scenario.arguments);
+  whole.advance_until([&] { return whole.ended(goal); }, scenario.cycles);
+  std::string trace;
+  for (const std::string& line : whole.transitions())
+    trace += without_numbers(line) + "\n";
+  for (const std::string& line : whole.said())
+    trace += "says: " + line + "\n";
+  const GoalStatus& status = whole.status(goal);
+  trace += std::string(intentions::name_of(status.state)) + ": " + status.reason + "\n";
+  EXPECT_TRUE(whole.ended(goal));
+  EXPECT_EQ(whole.trouble(), "");
+  const char* const source = std::getenv("SAPHIRA_SOURCE_DIR");
+  ASSERT_NE(source, nullptr);
+  const std::string file = std::string(source) + "/tests/golden/" + scenario.name + ".txt";
+  if (std::getenv("SAPHIRA_RENEW_GOLDEN") != nullptr) {
+    std::ofstream(file) << trace;
+    return;
+  }
+  EXPECT_EQ(trace, read_file(file)) << "SAPHIRA_RENEW_GOLDEN=1 stores it anew";
+}
+
+INSTANTIATE_TEST_SUITE_P(Library, Golden, ::testing::ValuesIn(scenarios()), [](const auto& each) {
+  std::string name = each.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST(GoldenTraces, EveryActivityThatIsShippedIsInOne) {
+  const char* const source = std::getenv("SAPHIRA_SOURCE_DIR");
+  ASSERT_NE(source, nullptr);
+  std::string all;
+  for (const Scenario& scenario : scenarios())
+    all += read_file(std::string(source) + "/tests/golden/" + scenario.name + ".txt");
+  const intentions::Registry registry = shipped_schemas(behaviors::predefined());
+  for (const intentions::Schema* const schema : registry.all())
+    if (!schema->source.empty()) {
+      EXPECT_NE(all.find(schema->name + " ("), std::string::npos) << schema->name;
+    }
+}
+
+}  // namespace
+}  // namespace saphira::test
