@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <set>
 #include <string_view>
@@ -77,9 +78,15 @@ Output Executive::step(const Inputs& inputs) {
     if (!instance.intended.running)
       continue;
     running = true;
-    if (!std::exchange(instance.initialised, true))
-      instance.behavior->init(instance.parameters, context);
-    blended[i].evaluation = instance.behavior->update(instance.parameters, context);
+    // A plug-in may throw; the others run on, and it is asked again in the next cycle.
+    try {
+      if (!std::exchange(instance.initialised, true))
+        instance.behavior->init(instance.parameters, context);
+      blended[i].evaluation = instance.behavior->update(instance.parameters, context);
+    } catch (const std::exception& error) {
+      blended[i].evaluation = {};
+      blended[i].evaluation.trouble = error.what();
+    }
     if (const std::string wrong = check(blended[i].evaluation); !wrong.empty())
       output.trouble +=
           (output.trouble.empty() ? "" : "; ") + instance.intended.name + ": " + wrong;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <stdexcept>
+
 namespace saphira::behaviors {
 namespace {
 
@@ -169,6 +172,33 @@ TEST_F(ExecutiveTest, APointInTheRobotsFrameIsPlacedOnce) {
   robot_.pose_in_odom = {2.0, 2.0, kPi / 2};
   EXPECT_EQ(step(set).behaviors[0].blended.evaluation.rules[0].strength, 1.0);
   EXPECT_GT(step(set).blend.turn, 0.3);
+}
+
+/// A behavior of somebody's plug-in, which goes wrong.
+class Faulty : public Behavior {
+ public:
+  Evaluation update(const Parameters& parameters, const Context&) override {
+    if (parameters.number("throws") > 0.5)
+      throw std::runtime_error("no idea");
+    return {{{"go", 1.0, Action::speed, std::nan("")}, {"turn", INFINITY, Action::turn_left, 0.1}},
+            {.turn = 1.0, .speed = 1.0}};
+  }
+};
+
+TEST_F(ExecutiveTest, ABehaviorThatThrowsOrIsNotANumberDoesNotDriveAndIsTold) {
+  executive_.registry().add({"Faulty", "", {number_parameter("throws", "", 0.0, 1.0, 0.0)}, [] {
+                               return std::make_unique<Faulty>();
+                             }});
+  for (const double throws : {0.0, 1.0}) {
+    const Output output =
+        step({{"f", "Faulty", 0, true, {number("throws", throws)}}, {"p", "Probe", 1, true, {}}});
+    EXPECT_EQ(output.trouble,
+              throws > 0.0 ? "f: no idea"
+                           : "f: rule \"go\" is not a number, rule \"turn\" is not a number");
+    EXPECT_EQ(output.behaviors.size(), 2U);
+    EXPECT_EQ(counts_.updates, throws > 0.0 ? 2 : 1);
+    EXPECT_EQ(output.heading_in_odom, 0.0);
+  }
 }
 
 TEST_F(ExecutiveTest, ResetBeginsAnew) {
