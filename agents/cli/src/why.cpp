@@ -328,6 +328,7 @@ std::string Reason::purpose(const std::vector<const v1::BehaviorState*>& behavio
   if (nodes.empty())
     return {};
   std::vector<std::string> names;
+  names.reserve(nodes.size());
   for (const v1::IntentionNode* one : nodes)
     names.push_back(intention_name(*one));
   const v1::IntentionNode* root = nodes.front();
@@ -762,7 +763,10 @@ Explanation Reason::why_not(Wish wish) {
     text += turning ? "has a rule that would" : "wants that";
     for (const Say& one : say)
       if (one.weight >= kNoSay) {
-        text += "; " + name_of(*one.behavior) + " wants " + of_say(one, channel);
+        text.append("; ")
+            .append(name_of(*one.behavior))
+            .append(" wants ")
+            .append(of_say(one, channel));
         break;
       }
     return finish(text, wheels(told()));
@@ -774,7 +778,7 @@ Explanation Reason::why_not(Wish wish) {
 void draw(const Cause& cause, const std::string& indent, std::string& text) {
   for (std::size_t i = 0; i < cause.because.size(); ++i) {
     const bool last = i + 1 == cause.because.size();
-    text += indent + (last ? "`- " : "|- ") + cause.because[i].text + "\n";
+    text.append(indent).append(last ? "`- " : "|- ").append(cause.because[i].text).append("\n");
     draw(cause.because[i], indent + (last ? "   " : "|  "), text);
   }
 }
