@@ -350,6 +350,11 @@ void Executor::meet_odom(std::uint64_t odom) {
     for (auto& [id, entry] : entries_) {
       if (open(entry.status) && entry.odom && *entry.odom != odom)
         end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+      // What an activity remembers of places is in the odom that was: it begins anew.
+      if (open(entry.status) && entry.node != 0 && entry.schema->program) {
+        forest_.remove(entry.node);
+        entry.node = 0;
+      }
     }
   }
   odom_ = odom;
@@ -441,7 +446,7 @@ void Executor::replace() {
     for (auto& [other_id, other] : entries_) {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
-      if (open(other.status) && !other.schema->replaces && earlier &&
+      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier &&
           other.goal.priority <= stop.goal.priority)
         end(other, GoalState::kCanceled, GoalCode::kPreempted,
             "stopped by " + name_of_goal(stop.goal));

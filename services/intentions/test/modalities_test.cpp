@@ -317,6 +317,20 @@ TEST(Modality, PointsOnTheMapAreGivenInOdomAsRegistrationGoes) {
   EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{1.5, 3.0, 0.0}));
 }
 
+TEST(Modality, AnActivityBeginsAnewWhenDeadReckoningDoes) {
+  Stage stage(
+      activity("(= here (robot)) (EXECUTE (say \"from ~a\" here))"
+               "(INTEND :GoToPos ((goal . here)))"));
+  stage.ask(1, "it");
+  stage.step(4);
+  EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
+  stage.inputs.robot.odom = 2;
+  stage.inputs.robot.pose_in_odom = {5.0, 0.0, 0.0};
+  stage.step(4);
+  EXPECT_EQ(stage.messages, Names({"from (0, 0) in odom", "from (5, 0) in odom"}));
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point.x, 5.0);
+}
+
 TEST(Modality, ConcurrentGoalsAreUnderwayBesideTheOneThatDrives) {
   Stage stage(
       "(defintention :watch :concurrent t :goals '((WAIT-FOR stalled :forever t)))"

@@ -66,6 +66,8 @@ class Machine : public Activity {
       begun_at_ += away;
       for (Thread& thread : threads_)
         thread.since += away;
+      for (auto& [thread, since] : held_since_)
+        since += away;
     }
     for (Thread& thread : threads_)
       thread.spent = false;
