@@ -47,10 +47,7 @@ RobotModel from_bus(const v1::RobotDescription& description) {
   model.max_velocity = description.max_velocity();
   model.max_rotation_velocity = description.max_rotation_velocity();
   model.deceleration = description.deceleration();
-  model.lps.front_buffer = description.front_buffer();
-  model.lps.side_buffer = description.side_buffer();
-  model.lps.front_max_range = description.front_max_range();
-  model.lps.sonars = lps::mounts_from_bus(description);
+  model.lps = lps::settings_from_bus(description);
   return model;
 }
 
