@@ -297,7 +297,7 @@ GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, do
           spread * noise;
       image.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(rig.columns) +
                    static_cast<std::size_t>(column)] =
-          static_cast<std::uint8_t>(std::clamp(static_cast<int>(grey + 0.5), 0, 255));
+          static_cast<std::uint8_t>(std::clamp(floor_of(grey + 0.5), 0, 255));
     }
   }
   return image;

@@ -216,7 +216,7 @@ TEST(Stereo, ASeedDecidesThePicture) {
   EXPECT_NE(picture(1), picture(2));
   const std::string text = picture(1);
   EXPECT_TRUE(text.starts_with("P5\n# saphira stereo cycle=7 focal=277.12"));
-  const std::size_t pixels = 640 * 240;
+  const std::size_t pixels = std::size_t{640} * 240;
   EXPECT_EQ(text.substr(text.size() - pixels - 12, 12), "640 240\n255\n");
   // The noise is what the rig says: what differs between two seeds has twice its variance.
   Random one(1);
