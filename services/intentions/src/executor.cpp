@@ -454,6 +454,14 @@ void Executor::replace() {
   }
 }
 
+/// What an intention does, for people: one of the language says it in the words of its schema.
+std::string Executor::step_of(const IntentionNode& node) const {
+  const Schema* const schema = registry_->find(node.schema);
+  if (schema == nullptr || schema->program == nullptr || schema->summary.empty())
+    return node.step;
+  return schema->name + ": " + schema->summary;
+}
+
 Executor::Entry* Executor::best() {
   const auto rank = [](const Entry& entry) {
     return std::tuple(-static_cast<std::int64_t>(entry.goal.priority), entry.accepted, entry.order);
@@ -574,7 +582,7 @@ bool Executor::collect() {
     } else if (entry.status.state == GoalState::kUnderway) {
       entry.status.step = forest_.held(entry.node, Hold::kPerson)
                               ? "interrupted by a person; waits to be resumed"
-                              : forest_.step_of(entry.node);
+                              : step_of(forest_.foremost(entry.node));
       entry.status.progress = forest_.progress_of(entry.node);
       const double level = forest_.level_of(entry.node);
       if (entry.goal.level > 0.0 && level >= entry.goal.level) {

@@ -680,8 +680,20 @@ Activity& Forest::activity(std::uint32_t id) {
   return *node->activity;
 }
 
-const std::string& Forest::step_of(std::uint32_t id) const {
-  return nodes_.at(id)->shown.step;
+const IntentionNode& Forest::foremost(std::uint32_t id) const {
+  const Node* node = nodes_.at(id).get();
+  while (true) {
+    const Node* next = nullptr;
+    for (const std::uint32_t child : node->children) {
+      const Node* const one = at(child);
+      if (one != nullptr && one->activity != nullptr && one->shown.blocking &&
+          !finished(one->shown.state))
+        next = one;
+    }
+    if (next == nullptr)
+      return node->shown;
+    node = next;
+  }
 }
 
 double Forest::progress_of(std::uint32_t id) const {

@@ -40,7 +40,7 @@ TEST(Forest, StepsThroughTheStatesOfTheManual) {
   forest.step(5, kRobot);
   EXPECT_EQ(seen, (std::vector{IntentionState::kInit, IntentionState::kRunning,
                                IntentionState::kInterrupted, IntentionState::kResumed}));
-  EXPECT_EQ(forest.step_of(id), "at work");
+  EXPECT_EQ(forest.foremost(id).step, "at work");
 }
 
 TEST(Forest, AnInterruptedIntentionLeavesNothingRunning) {

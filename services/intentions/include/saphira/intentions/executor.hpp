@@ -137,6 +137,7 @@ class Executor {
   void pass_changes();
   void check_deadlines(const Robot& robot);
   void replace();
+  std::string step_of(const IntentionNode& node) const;
   Entry* best();
   Entry* arbitrate();
   void begin(Entry& entry);

@@ -101,7 +101,9 @@ class Forest {
   std::map<std::uint32_t, Outcome> take_ended();
   std::vector<Said> take_said();
   Activity& activity(std::uint32_t id);
-  const std::string& step_of(std::uint32_t id) const;
+  /// The deepest intention that it waits for, and those waited for in turn; itself where it waits
+  /// for none: what is being done now.
+  const IntentionNode& foremost(std::uint32_t id) const;
   double progress_of(std::uint32_t id) const;
   /// How far it is satisfied [0..1].
   double level_of(std::uint32_t id) const;
