@@ -7,8 +7,9 @@
 namespace saphira::behaviors {
 namespace {
 
-/// [cycles] between looks at the behavior files: a second.
+/// Between looks at the behavior files: in cycles, and where there are none.
 constexpr std::uint64_t kLook = 10;
+constexpr std::chrono::seconds kIdleLook{1};
 
 }  // namespace
 
@@ -35,7 +36,11 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
 }
 
 bool Shell::step(const bus::Stop& stop) {
-  const auto step = cycle_.next(stop, [this] { processes_.idle(); });
+  const auto step = cycle_.next(stop, [this] {
+    processes_.idle();
+    if (std::chrono::steady_clock::now() - looked_ >= kIdleLook)
+      look();
+  });
   if (!step)
     return false;
   processes_.step(cycle_.stamp());
@@ -81,14 +86,16 @@ bool Shell::step(const bus::Stop& stop) {
 }
 
 void Shell::look() {
+  const bool first = looked_ == std::chrono::steady_clock::time_point{};
+  looked_ = std::chrono::steady_clock::now();
   const Folder::News news = sources_.look(executive_.registry());
   for (const std::string& fault : news.faults)
     node_.error(fault + "\nWhat this file gave before stays in use.");
   // At the start the shipped files are as everybody has them.
   for (const std::string& warning : news.warnings)
-    if (steps_ > 0 || !warning.starts_with(behaviors_folder()))
+    if (!first || !warning.starts_with(behaviors_folder()))
       node_.warn(warning);
-  if (steps_ > 0)
+  if (!first)
     for (const std::string& file : news.taken)
       node_.info("took " + file);
   if (!news.changed)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -57,7 +58,8 @@ class Shell {
   Sources sources_;
   Executive executive_{Registry{}, RobotModel{}};
   std::uint64_t steps_ = 0;
-  std::uint64_t number_ = 0;  ///< of the newest motor command
+  std::chrono::steady_clock::time_point looked_;  ///< when look() was last called
+  std::uint64_t number_ = 0;                      ///< of the newest motor command
   std::string trouble_;
   bool active_ = false;
 };

@@ -3,8 +3,8 @@
 namespace saphira::behaviors {
 
 Registry predefined() {
-  static const Registry kShipped = load_behaviors(behaviors_folder());
-  return kShipped;
+  static const Registry shipped = load_behaviors(behaviors_folder());
+  return shipped;
 }
 
 }  // namespace saphira::behaviors

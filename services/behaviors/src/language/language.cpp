@@ -31,10 +31,10 @@ void in_order(std::vector<FileError>& messages) {
 }  // namespace
 
 Compiled compile(std::string_view text, const std::string& file) {
-  constexpr std::size_t kMostBytes = 1'000'000;
+  constexpr std::size_t most_bytes = 1'000'000;
   language::Messages messages(file, text);
   Compiled out;
-  if (text.size() > kMostBytes) {
+  if (text.size() > most_bytes) {
     messages.error({}, "expected a file of at most a million bytes");
   } else {
     const std::vector<language::Token> tokens = language::tokenize(text, messages);

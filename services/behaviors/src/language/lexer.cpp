@@ -91,9 +91,9 @@ class Lexer {
     if (c == '"')
       return quoted(token);
     token.kind = TokenKind::mark;
-    constexpr std::string_view kPairs[] = {
+    constexpr std::string_view pairs[] = {
         "&&", "||", "==", "!=", "<=", ">=", "->", "+=", "-=", "*=", "/="};
-    for (const std::string_view pair : kPairs)
+    for (const std::string_view pair : pairs)
       if (text_.substr(at_, 2) == pair) {
         at_ += 2;
         token.text = pair;

@@ -27,15 +27,15 @@ bool parameter_type(std::string_view word) {
 
 /// Words that end a section of the language, wherever they are.
 bool ends_section(const Token& token) {
-  constexpr std::array kWords{"BeginBehavior", "Params",   "Rules",      "Init",
-                              "Update",        "Activity", "EndBehavior"};
+  constexpr std::array keywords{"BeginBehavior", "Params",   "Rules",      "Init",
+                                "Update",        "Activity", "EndBehavior"};
   return token.kind == TokenKind::symbol &&
-         std::find(kWords.begin(), kWords.end(), token.text) != kWords.end();
+         std::find(keywords.begin(), keywords.end(), token.text) != keywords.end();
 }
 
 bool fuzzy_keyword(std::string_view word) {
-  constexpr std::array kWords{"If", "Then", "Not", "And", "Or", "Turn", "Left", "Right", "Speed"};
-  return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
+  constexpr std::array keywords{"If", "Then", "Not", "And", "Or", "Turn", "Left", "Right", "Speed"};
+  return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
 }
 
 struct Unit {
@@ -193,8 +193,6 @@ class Parser {
                 : parameter.type == Type::text ? Kind::text
                                                : Kind::number;
     spec.required = true;
-    spec.low = -1e9;
-    spec.high = 1e9;
     if (parameter.type == Type::text)
       choices(spec);
     else if (parameter.type == Type::point)
@@ -228,6 +226,8 @@ class Parser {
   /// [= usual] [from low to high] [unit]
   void number(ParsedParameter& parameter) {
     ParameterSpec& spec = parameter.spec;
+    spec.low = -1e9;
+    spec.high = 1e9;
     const Place place = now().place;
     if (accept("=")) {
       spec.usual = expect_number("the usual value");
@@ -347,14 +347,14 @@ class Parser {
       std::string_view second;
       double degrees;
     };
-    constexpr Named kNamed[] = {{"Very", "Slowly", 2.5},
-                                {"Very", "Sharply", 40.0},
-                                {"Slowly", "", 5.0},
-                                {"Moderately", "", 10.0},
-                                {"Sharply", "", 20.0}};
+    constexpr Named modifiers[] = {{"Very", "Slowly", 2.5},
+                                   {"Very", "Sharply", 40.0},
+                                   {"Slowly", "", 5.0},
+                                   {"Moderately", "", 10.0},
+                                   {"Sharply", "", 20.0}};
     RuleValue out;
     out.place = now().place;
-    for (const Named& named : kNamed)
+    for (const Named& named : modifiers)
       if (now().is(named.first) && (named.second.empty() || ahead(1).is(named.second))) {
         at_ += named.second.empty() ? 1 : 2;
         out.value = radians(named.degrees);
@@ -612,10 +612,10 @@ class Parser {
   static int binding(const Token& token) {
     if (token.kind != TokenKind::mark)
       return 0;
-    constexpr std::pair<std::string_view, int> kOperators[] = {
+    constexpr std::pair<std::string_view, int> operators[] = {
         {"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {"<", 4}, {"<=", 4}, {">", 4},
         {">=", 4}, {"+", 5},  {"-", 5},  {"*", 6},  {"/", 6}, {"%", 6}};
-    for (const auto& [text, strength] : kOperators)
+    for (const auto& [text, strength] : operators)
       if (token.text == text)
         return strength;
     return 0;
