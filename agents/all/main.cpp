@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   link.robots_folder = config + "/robots";
   // The keeper needs a process with one thread. Here the robot dies with whoever drives it.
   link.keeper = false;
+  behaviors::ShellOptions moves;
   intentions::ShellOptions goals;
   registration::ShellOptions place;
   std::string socket = sim::default_socket();
@@ -103,6 +104,9 @@ int main(int argc, char** argv) {
         app.add_flag("--free-step", link.free_step, "lockstep: step without a permit");
         app.add_option("--memory", goals.memory_file,
                        "file that remembers ended goals over a restart");
+        app.add_option("--behaviors", moves.folder, "folder of behavior files");
+        app.add_option("--plugin", moves.plugins, "shared library with behaviors in C++");
+        app.add_option("--activities", goals.folder, "folder of activity files");
         app.add_option("--map", place.map_file,
                        "map file, or the name of one that is shipped; none: an empty map");
         app.add_option("--start", place.start, "where the robot is on the map at first")
@@ -125,7 +129,7 @@ int main(int argc, char** argv) {
             [&](const bus::Stop& end) { bridge::Shell(named(options, "bridge"), link).run(end); });
         crew.add([&](const bus::Stop& end) {
           bus::Node node(named(options, "behaviors"));
-          behaviors::Shell(node).run(end);
+          behaviors::Shell(node, moves).run(end);
         });
         crew.add([&](const bus::Stop& end) {
           bus::Node node(named(options, "intentions"));

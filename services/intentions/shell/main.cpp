@@ -29,8 +29,7 @@ int main(int argc, char** argv) {
                      "there is no registration service: do not wait for it in lockstep");
         app.add_flag("!--no-interpretation", options.interpretation, "the same of interpretation");
         app.add_option("--activities", options.folder,
-                       "folder of activity files; they cover shipped ones of the same name")
-            ->check(CLI::ExistingDirectory);
+                       "folder of activity files; they cover shipped ones of the same name");
       },
       [&](const bus::NodeOptions& node_options, const bus::Stop& stop) {
         bus::Node node(node_options);
