@@ -874,6 +874,9 @@ void add_conditions(Functions& functions) {
   functions.add(Condition{"in-corridor",
                           [](const World& world) { return yes(corridor_here(world).truthy()); },
                           "whether it is in one"});
+  functions.add(Condition{"map-known",
+                          [](const World& world) { return yes(world.around.topology != nullptr); },
+                          "whether there is a map"});
   functions.add(Condition{"lost",
                           [](const World& world) {
                             return yes(world.around.registration.state == Localization::kLost);

@@ -47,11 +47,13 @@ int run(int pairs, int seeds, int only, int draw, bool json) {
       for (const std::string& line : arrival.talk)
         std::printf("%s\n", line.c_str());
       if (!json)
-        std::printf("%2d seed %d %s (%.2f, %.2f, %.0f) to %s: %s in %.0f s, %d contacts%s%s%s\n", i,
-                    seed, journey.from.c_str(), journey.start_in_world.x, journey.start_in_world.y,
-                    degrees(journey.start_in_world.th), journey.to.c_str(),
-                    good ? "arrived" : "DID NOT ARRIVE", 0.1 * static_cast<double>(arrival.cycles),
-                    arrival.contacts, good ? "" : (": " + arrival.reason).c_str(),
+        std::printf("%2d seed %d %s (%.2f, %.2f, %.0f) to %s: %s in %.0f s, %d contacts%s%s%s%s\n",
+                    i, seed, journey.from.c_str(), journey.start_in_world.x,
+                    journey.start_in_world.y, degrees(journey.start_in_world.th),
+                    journey.to.c_str(), good ? "arrived" : "DID NOT ARRIVE",
+                    0.1 * static_cast<double>(arrival.cycles), arrival.contacts,
+                    good ? "" : (": " + arrival.reason).c_str(),
+                    arrival.stopped > 0 ? ", a stop at the door" : "",
                     arrival.trouble.empty() ? "" : "; trouble: ", arrival.trouble.c_str());
       std::fflush(stdout);
     }
