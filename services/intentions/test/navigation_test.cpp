@@ -1,0 +1,168 @@
+#include "saphira/intentions/navigation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "saphira/intentions/beliefs.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+// A corridor along x with a room on each side, and a second corridor that crosses its east end.
+const char* const kMap = R"(
+CORRIDOR (1) 5000, 0, 0, 10000, 2000 "hall"
+CORRIDOR (2) 10000, 0, 90, 12000, 2000 "cross"
+OFFICE (11) 3000, 3000, 90, 4000, 4000 "north"
+DOOR (111) 3000, 1000, -90, 900 "north"
+OFFICE (12) 3000, -3000, 90, 4000, 4000 "south"
+DOOR (112) 3000, -1000, 90, 900 "south"
+DOOR (113) 4500, -1000, 90, 900 "south"
+POS (20) 8000, 0, 0 "corner"
+)";
+
+class Navigation : public testing::Test {
+ protected:
+  Navigation() {
+    add_navigation(functions);
+    around.topology = std::make_shared<const maps::Topology>(maps::parse_map(kMap, "test.map"));
+    around.map_revision = 1;
+    around.registration.state = Localization::kTracking;
+    robot.connected = true;
+    be_at({1.0, 0.0, 0.0});
+  }
+
+  /// Odom is the map's frame here.
+  void be_at(const Pose& pose) {
+    robot.pose_in_odom = pose;
+    robot.odom_in_map = Pose{};
+    around.registration.pose_in_map = pose;
+  }
+  World world() { return {robot, around, beliefs, now}; }
+  Value call(const std::string& name, const std::vector<Value>& arguments) {
+    const Function* const function = functions.function(name);
+    EXPECT_NE(function, nullptr) << name;
+    return function->call(world(), arguments);
+  }
+  Value path(const std::string& to) { return call("find-path", {condition("*cur-region*"), to}); }
+  Value condition(const std::string& name) { return functions.condition(name)->value(world()); }
+  std::string words(const Value& path) { return spoken(call("path-text", {path})); }
+
+  Functions functions = core_functions();
+  Beliefs beliefs{&functions};
+  Robot robot;
+  Surroundings around;
+  Ticks now = 1000;
+};
+
+TEST_F(Navigation, APathIsRegionsAndTheWaysBetween) {
+  const Value north = path("north");
+  EXPECT_EQ(words(north), "corridor 1 (hall), door 111 (north), room 11 (north)");
+  EXPECT_EQ(north.list().size(), 3U);
+  EXPECT_EQ(call("leg", {north}), Value("corridor-to-door"));
+  EXPECT_EQ(call("leg", {path("corner")}), Value("corridor-to-point"));
+  EXPECT_EQ(call("leg", {path("cross")}), Value("corridor-to-junction"));
+  EXPECT_TRUE(path("nowhere").nil());
+  EXPECT_EQ(spoken(call("why-no-path", {Value(), "nowhere"})), "the map has no place \"nowhere\"");
+}
+
+TEST_F(Navigation, OutOfARoomThroughItsDoor) {
+  be_at({3.0, 3.0, 0.0});
+  const Value south = path("south");
+  EXPECT_EQ(call("leg", {south}), Value("room-to-door"));
+  const Value door = south.list()[1];
+  const Value hall = south.list()[2];
+  EXPECT_EQ(call("door-direction", {door, hall}), Value("out"));
+  EXPECT_EQ(call("door-direction", {door, south.list()[0]}), Value("in"));
+}
+
+TEST_F(Navigation, AClosedWayIsLeftOutAndForgottenAfterFiveMinutes) {
+  const Value first = path("south");
+  EXPECT_EQ(words(first), "corridor 1 (hall), door 112 (south), room 12 (south)");
+  beliefs.set("*closed-ways*", call("closed-ways-with", {first.list()[1]}), "test", now);
+  const Value second = path("south");
+  EXPECT_EQ(words(second), "corridor 1 (hall), door 113 (south), room 12 (south)");
+  beliefs.set("*closed-ways*", call("closed-ways-with", {second.list()[1]}), "test", now);
+  EXPECT_TRUE(path("south").nil());
+  EXPECT_NE(spoken(call("why-no-path", {Value(), "south"})).find("not closed"), std::string::npos);
+  now += 3001;
+  EXPECT_FALSE(path("south").nil());
+}
+
+TEST_F(Navigation, APathOfAnotherRevisionOfTheMapIsNoMoreOne) {
+  const Value north = path("north");
+  EXPECT_TRUE(call("path-current", {north}).truthy());
+  around.map_revision = 2;
+  EXPECT_TRUE(call("path-current", {north}).nil());
+  EXPECT_THROW(call("leg", {north}), ActivityError);
+}
+
+TEST_F(Navigation, WithoutAPositionThereIsNoRegionAndNoPath) {
+  robot.odom_in_map.reset();
+  EXPECT_TRUE(condition("*cur-region*").nil());
+  EXPECT_TRUE(path("north").nil());
+  EXPECT_TRUE(call("next-to-explore", {Value()}).nil());
+}
+
+// Manual 8.1.3: aligned_in_lane(e, &follow_target, 80.0, 110.0).
+TEST_F(Navigation, AlignedIsWhoLooksAlongTheLaneTowardsTheTarget) {
+  const Value lane = Point{{5.0, 0.0, kPi}, Frame::kMap};
+  const Value east = Point{{9.0, 0.0, 0.0}, Frame::kMap};
+  const auto aligned = [&](double heading) {
+    be_at({2.0, 0.0, radians(heading)});
+    return *call("aligned-in-lane", {lane, east, radians(80.0), radians(110.0)}).number();
+  };
+  EXPECT_DOUBLE_EQ(aligned(0.0), 1.0);
+  EXPECT_DOUBLE_EQ(aligned(-79.0), 1.0);
+  EXPECT_NEAR(aligned(95.0), 0.5, 1e-9);
+  EXPECT_DOUBLE_EQ(aligned(180.0), 0.0);
+}
+
+TEST_F(Navigation, TheEndOfACorridorIsWhereTheRobotIsTurned) {
+  const Value hall = condition("*corridor*");
+  ASSERT_FALSE(hall.nil());
+  EXPECT_NEAR(call("lane-end", {hall}).point()->pose.x, 9.0, 1e-9);
+  be_at({1.0, 0.0, kPi});
+  EXPECT_NEAR(call("lane-end", {hall}).point()->pose.x, 1.0, 1e-9);
+}
+
+TEST_F(Navigation, ADoorIsClosedWhereTheSonarsHaveSomethingAllAcross) {
+  const Value door = path("north").list()[1];
+  EXPECT_EQ(call("door-state", {door}), Value("unknown"));
+  be_at({3.0, 0.0, kPi / 2});
+  lps::LpsSettings settings;
+  settings.sonars = {{0, {0.1, 0.1, 0.2}}, {1, {0.1, 0.0, 0.0}}, {2, {0.1, -0.1, -0.2}}};
+  lps::LocalPerceptualSpace lps(settings);
+  around.lps = &lps;
+  for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
+    lps.update(robot.pose_in_odom, {{0, 0.92, true}, {1, 0.9, true}, {2, 0.92, true}}, cycle);
+  EXPECT_EQ(call("door-state", {door}), Value("closed"));
+  lps.reset();
+  for (std::uint64_t cycle = 1; cycle < 10; ++cycle)
+    lps.update(robot.pose_in_odom, {{0, 3.0, true}, {1, 3.0, true}, {2, 3.0, true}}, cycle);
+  EXPECT_EQ(call("door-state", {door}), Value("open"));
+}
+
+TEST_F(Navigation, ExploringGoesToTheNearestEndFirstAndComesToAnEnd) {
+  Value visited;
+  double last = 0.0;
+  int places = 0;
+  for (; places < 20; ++places) {
+    const Value next = call("next-to-explore", {visited});
+    if (next.nil())
+      break;
+    const Pose at = next.point()->pose;
+    if (places == 0)
+      last = (at.position() - robot.pose_in_odom.position()).norm();
+    visited = functions.function("cons")->call(world(), std::vector<Value>{next, visited});
+  }
+  // The west end is where the robot is.
+  EXPECT_EQ(places, 3);
+  EXPECT_NEAR(last, 8.0, 0.1);
+}
+
+}  // namespace
+}  // namespace saphira::intentions
