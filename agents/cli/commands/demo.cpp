@@ -416,6 +416,13 @@ class Demo {
     const auto misused = supervisor_.misused();
     if (misused)
       trouble_ = *misused + " does not take what it is given";
+    bool crashed = false;
+    for (const Supervisor::Child& child : supervisor_.children()) {
+      if (!child.crashed)
+        continue;
+      crashed = true;
+      trouble_ += (trouble_.empty() ? "" : "; ") + child.name + " crashed: " + child.ended;
+    }
     if (interrupted)
       outcome = "interrupted; " + outcome;
     std::FILE* out = options_.json ? stderr : stdout;
@@ -434,7 +441,7 @@ class Demo {
     std::fflush(stdout);
     if (misused)
       return bus::kExitUsage;
-    return summary.arrived ? bus::kExitOk : bus::kExitFailed;
+    return summary.arrived && !crashed ? bus::kExitOk : bus::kExitFailed;
   }
 
   Options options_;

@@ -27,6 +27,13 @@ constexpr milliseconds kLastBackoff{5000};
 constexpr std::chrono::seconds kProven{10};  ///< a child that ran this long starts afresh
 constexpr std::size_t kLongestLine = 4096;   ///< longer ones are broken up
 
+bool is_crash(int status) {
+  if (!WIFSIGNALED(status))
+    return false;
+  const int by = WTERMSIG(status);
+  return by == SIGSEGV || by == SIGABRT || by == SIGBUS || by == SIGFPE || by == SIGILL;
+}
+
 std::string describe_end(int status) {
   if (WIFEXITED(status))
     return "exit code " + std::to_string(WEXITSTATUS(status));
@@ -197,6 +204,7 @@ void Supervisor::reap(std::size_t index) {
   slot.pid_fd = -1;
   slot.pid = 0;
   slot.ended = describe_end(status);
+  slot.crashed = slot.crashed || is_crash(status);
   if (stopping_)
     return;
   const auto ran = Clock::now() - slot.started;
@@ -245,7 +253,7 @@ void Supervisor::stop(milliseconds limit) {
 std::vector<Supervisor::Child> Supervisor::children() const {
   std::vector<Child> all;
   for (const Slot& slot : slots_)
-    all.push_back({slot.spec.name, slot.pid, slot.starts, slot.ended});
+    all.push_back({slot.spec.name, slot.pid, slot.starts, slot.ended, slot.crashed});
   return all;
 }
 

@@ -115,10 +115,21 @@ std::string control_text(const v1::RuleState& rule) {
   return speed_text(rule.value());
 }
 
-/// Whether an instance was given its name for want of a better one: its schema's with a number, as
-/// in KeepOff#3.
+/// A name without the number behind it that makes it unique: follow of follow#8.
+std::string without_number(const std::string& name) {
+  return name.substr(0, name.rfind('#'));
+}
+
+/// Whether an instance has its name from its schema: KeepOff#3, keep-off.
 bool nameless(const std::string& name, const std::string& schema) {
-  return name.empty() || name == schema || name.starts_with(schema + "#");
+  const auto plain = [](const std::string& text) {
+    std::string result;
+    for (const char c : text)
+      if (c != '-' && c != '_')
+        result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return result;
+  };
+  return name.empty() || plain(without_number(name)) == plain(schema);
 }
 
 std::string intention_name(const v1::IntentionNode& node) {
@@ -188,15 +199,18 @@ class Reason {
 };
 
 std::string Reason::name_of(const v1::BehaviorState& behavior) const {
-  if (behavior.schema().empty() || behavior.name() == behavior.schema())
-    return behavior.name();
-  if (!nameless(behavior.name(), behavior.schema()))
-    return behavior.name() + " (" + behavior.schema() + ")";
+  const auto short_name = [](const v1::BehaviorState& one) {
+    if (nameless(one.name(), one.schema()))
+      return one.schema();
+    const std::string name = without_number(one.name());
+    return one.schema().empty() ? name : name + " (" + one.schema() + ")";
+  };
+  const std::string name = short_name(behavior);
   const auto& all = scene_.behaviors->behaviors();
   const auto alike = std::count_if(all.begin(), all.end(), [&](const v1::BehaviorState& other) {
-    return other.schema() == behavior.schema();
+    return short_name(other) == name;
   });
-  return alike == 1 ? behavior.schema() : behavior.name();
+  return alike == 1 ? name : behavior.name();
 }
 
 std::vector<Say> Reason::says(Channel channel) const {

@@ -115,6 +115,19 @@ TEST_F(SupervisorTest, SaysWhatCannotRun) {
   EXPECT_TRUE(said("a|cannot run /no/such/program: No such file or directory")) << all();
 }
 
+TEST_F(SupervisorTest, TellsACrashFromBeingKilled) {
+  Supervisor supervisor(
+      {shell("killed", "kill -TERM $$"), shell("crashed",
+                                               "trap 'kill -ABRT $$' TERM; echo up; "
+                                               "while :; do sleep 0.01; done")},
+      keep());
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return said("crashed|up"); })) << all();
+  supervisor.stop();
+  EXPECT_FALSE(supervisor.children()[0].crashed);
+  EXPECT_TRUE(supervisor.children()[1].crashed);
+}
+
 TEST_F(SupervisorTest, StopsInReverseOrder) {
   const std::string script = "trap 'echo bye; exit 0' TERM; echo up; while :; do sleep 0.01; done";
   Supervisor supervisor({shell("a", script), shell("b", script), shell("c", script)}, keep());

@@ -385,12 +385,16 @@ TEST_F(WhyTest, NotFasterByARuleThatDoesNotHold) {
             "(rule Fast, 1.00).");
 }
 
-TEST_F(WhyTest, InstancesAreNamedWhereThereAreTwo) {
-  go().name("GoToPos#4");
-  EXPECT_TRUE(sentence().find("because GoToPos wants") != std::string::npos) << sentence();
+TEST_F(WhyTest, BehaviorsAreNamedAsShortAsCanBe) {
+  go().name("go-to-pos#4");
+  EXPECT_NE(sentence().find("because GoToPos wants"), std::string::npos) << sentence();
+  keep_off().name("steer#5");
+  EXPECT_NE(sentence().find("and steer (KeepOff) wants"), std::string::npos) << sentence();
+  // Two that would have the same name.
   keep_off().schema("GoToPos");
-  EXPECT_TRUE(sentence().find("because GoToPos#4 wants") != std::string::npos) << sentence();
-  EXPECT_TRUE(sentence().find("and KeepOff (GoToPos) wants") != std::string::npos) << sentence();
+  keep_off().name("GoToPos#5");
+  EXPECT_NE(sentence().find("because go-to-pos#4 wants"), std::string::npos) << sentence();
+  EXPECT_NE(sentence().find("and GoToPos#5 wants"), std::string::npos) << sentence();
 }
 
 TEST_F(WhyTest, NotSinceNoRuleWould) {

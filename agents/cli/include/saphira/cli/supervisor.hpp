@@ -38,7 +38,8 @@ class Supervisor {
     std::string name;
     pid_t pid = 0;  ///< 0: not running now
     int starts = 0;
-    std::string ended;  ///< how it ended last, in words
+    std::string ended;     ///< how it ended last, in words
+    bool crashed = false;  ///< at some time, by a fault of its own
   };
 
   Supervisor(std::vector<ChildSpec> children, Print print);
@@ -73,6 +74,7 @@ class Supervisor {
     std::optional<Clock::time_point> due;  ///< when to start it again
     std::chrono::milliseconds backoff{};
     bool misused = false;
+    bool crashed = false;
   };
   struct Stream {
     int fd;
