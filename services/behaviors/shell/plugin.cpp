@@ -40,8 +40,11 @@ std::vector<std::string> load_plugin(const std::string& path, Registry& registry
   for (const std::string& name : names) {
     Schema schema = *added.find(name);
     schema.source = path;
-    if (!schema.make)
-      throw std::runtime_error(path + ": the behavior \"" + name + "\" has no way to be made");
+    if (!schema.make) {
+      std::string what = path;
+      what.append(": the behavior \"").append(name).append("\" has no way to be made");
+      throw std::runtime_error(what);
+    }
     registry.add(std::move(schema));
   }
   return names;

@@ -26,8 +26,10 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
   sources_.add(Folder(behaviors_folder()));
   for (const std::string& path : options.plugins) {
     Registry plugin;
+    std::string names;
     for (const std::string& name : load_plugin(path, plugin))
-      node_.info("behavior " + name + " of " + path);
+      names.append(names.empty() ? "" : ", ").append(name);
+    node_.info(path + " gives " + names);
     sources_.add(std::move(plugin));
   }
   if (!options.folder.empty())

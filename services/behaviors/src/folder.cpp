@@ -80,8 +80,11 @@ void Folder::take(const std::string& name, File& file, Registry& registry, News&
   for (const FileError& one : compiled.errors)
     fault(one.what());
   for (const Schema& schema : compiled.schemas)
-    if (const std::string other = owner(schema.name, name); !other.empty())
-      fault(path + ": the behavior \"" + schema.name + "\" is in " + other + " already");
+    if (const std::string other = owner(schema.name, name); !other.empty()) {
+      std::string what = path;
+      what.append(": the behavior \"").append(schema.name).append("\" is in ").append(other);
+      fault(what.append(" already"));
+    }
   if (!file.fault.empty())
     return;
   std::vector<std::string> names;
