@@ -1,67 +1,32 @@
 #include "saphira/behaviors/folder.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include "saphira/base/places.hpp"
 #include "saphira/behaviors/language.hpp"
 
 namespace saphira::behaviors {
 
-namespace fs = std::filesystem;
-
 Folder::News Folder::look(Registry& registry) {
   News news;
-  std::error_code error;
-  fs::directory_iterator entries(path_, error);
-  const bool missing = static_cast<bool>(error);
-  if (missing != missing_) {
-    news.changed = true;
-    missing_ = missing;
-    if (missing)
-      news.faults.push_back(path_ + ": expected a folder of behavior files: " + error.message());
-  }
-  // A folder that cannot be read takes nothing away.
-  if (missing)
-    return news;
-
-  std::map<std::string, Stamp> there;
-  for (; entries != fs::directory_iterator(); entries.increment(error)) {
-    const fs::directory_entry& entry = *entries;
-    if (entry.path().extension() != ".beh" || !entry.is_regular_file(error))
-      continue;
-    Stamp stamp;
-    stamp.time = entry.last_write_time(error).time_since_epoch().count();
-    stamp.size = entry.file_size(error);
-    there[entry.path().filename().string()] = stamp;
-    if (error)
-      break;
-  }
-  for (auto file = files_.begin(); file != files_.end();) {
-    if (there.contains(file->first)) {
-      ++file;
-      continue;
-    }
-    for (const std::string& schema : file->second.schemas)
+  const WatchedFolder::Changes changes = folder_.look();
+  news.changed = changes.any() || changes.missing != missing_;
+  if (changes.missing && !missing_)
+    news.faults.push_back(path() + ": expected a folder of behavior files");
+  missing_ = changes.missing;
+  for (const std::string& name : changes.gone) {
+    for (const std::string& schema : files_[name].schemas)
       registry.remove(schema);
-    news.changed = true;
-    file = files_.erase(file);
+    files_.erase(name);
   }
-  for (const auto& [name, stamp] : there) {
-    File& file = files_[name];
-    if (file.stamp == stamp)
-      continue;
-    file.stamp = stamp;
-    news.changed = true;
-    take(name, file, registry, news);
-  }
+  for (const std::string& name : changes.changed)
+    take(name, files_[name], registry, news);
   return news;
 }
 
 void Folder::take(const std::string& name, File& file, Registry& registry, News& news) {
-  const std::string path = (fs::path(path_) / name).string();
+  const std::string path = folder_.path_of(name);
   const auto fault = [&](const std::string& what) {
     if (file.fault.empty())
       file.fault = what;
@@ -108,7 +73,7 @@ std::string Folder::owner(const std::string& schema, const std::string& but) con
 }
 
 std::string Folder::trouble() const {
-  std::string out = missing_ ? path_ + ": expected a folder of behavior files" : "";
+  std::string out = missing_ ? path() + ": expected a folder of behavior files" : "";
   for (const auto& [name, file] : files_)
     if (!file.fault.empty())
       out += (out.empty() ? "" : "\n") + file.fault;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/watched_folder.hpp"
 #include "saphira/behaviors/behavior.hpp"
 
 namespace saphira::behaviors {
@@ -13,7 +14,7 @@ namespace saphira::behaviors {
 /// The behavior files (*.beh) of a folder, and what they have given a registry.
 class Folder {
  public:
-  explicit Folder(std::string path) : path_(std::move(path)) {}
+  explicit Folder(std::string path) : folder_(std::move(path), ".beh") {}
 
   /// What a look has found to be new.
   struct News {
@@ -27,26 +28,19 @@ class Folder {
   /// changes nothing: what it gave before stays. What a file that is gone gave is taken away.
   News look(Registry& registry);
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return folder_.path(); }
   /// What is wrong now with which files; empty: nothing.
   std::string trouble() const;
 
  private:
-  struct Stamp {
-    std::int64_t time = 0;
-    std::uintmax_t size = 0;
-
-    bool operator==(const Stamp&) const = default;
-  };
   struct File {
-    Stamp stamp;
     std::vector<std::string> schemas;  ///< that it has given
     std::string fault;                 ///< the first one; empty: none
   };
   void take(const std::string& name, File& file, Registry& registry, News& news);
   std::string owner(const std::string& schema, const std::string& but) const;
 
-  std::string path_;
+  WatchedFolder folder_;
   std::map<std::string, File> files_;  ///< by name
   bool missing_ = false;
 };
