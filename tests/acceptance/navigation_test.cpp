@@ -1,0 +1,48 @@
+// "Go to room N2" over the whole system: the goal on the bus, the activities from their files, the
+// behaviors that they intend, the map and what is seen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "system.hpp"
+
+namespace saphira::test {
+namespace {
+
+TEST(NavigationAcceptance, GoesToARoomByItsName) {
+  System system;
+  auto intentions = system.node().reader(bus::topics::kIntentions);
+  system.start_all();
+  v1::Goal goal;
+  goal.functor("go-to-place");
+  goal.arguments({bus::text("place", "N2")});
+  const v1::GoalId id = system.goals().ask(goal);
+  std::set<std::string> schemas;
+  std::optional<v1::GoalStatus> status;
+  const bool ended = wait_until(
+      [&] {
+        for (const auto& sample : intentions.take())
+          for (const v1::IntentionNode& node : sample.data.nodes())
+            schemas.insert(node.schema());
+        system.goals().poll();
+        status = system.goals().status(id);
+        return status && bus::ended(status->state());
+      },
+      std::chrono::minutes(2));
+  ASSERT_TRUE(ended) << system.output();
+  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
+  EXPECT_NE(status->reason().find("N2"), std::string::npos) << status->reason();
+  for (const char* schema : {"go-to-place", "plan-and-execute", "monitor-planex", "follow-path",
+                             "corridor-to-door", "through-door", "FollowCorridor", "FollowDoor"})
+    EXPECT_TRUE(schemas.contains(schema)) << schema;
+  const Truth truth = system.truth();
+  EXPECT_EQ(truth.contacts, 0);
+  EXPECT_GT(truth.x, 4.5);
+  EXPECT_LT(truth.x, 9.0);
+  EXPECT_GT(truth.y, 8.0);
+  EXPECT_TRUE(system.wait_still(std::chrono::seconds(5)));
+}
+
+}  // namespace
+}  // namespace saphira::test
