@@ -457,9 +457,9 @@ void Executor::replace() {
 /// What an intention does, for people: one of the language says it in the words of its schema.
 std::string Executor::step_of(const IntentionNode& node) const {
   const Schema* const schema = registry_->find(node.schema);
-  if (schema == nullptr || schema->program == nullptr || schema->summary.empty())
+  if (schema == nullptr || schema->program == nullptr)
     return node.step;
-  return schema->name + ": " + schema->summary;
+  return schema->summary.empty() ? schema->name : schema->name + ": " + schema->summary;
 }
 
 Executor::Entry* Executor::best() {
