@@ -459,7 +459,10 @@ std::string Executor::step_of(const IntentionNode& node) const {
   const Schema* const schema = registry_->find(node.schema);
   if (schema == nullptr || schema->program == nullptr)
     return node.step;
-  return schema->summary.empty() ? schema->name : schema->name + ": " + schema->summary;
+  if (!schema->summary.empty())
+    return schema->name + ": " + schema->summary;
+  // Its step is what it waits for, or a goal as it is written, which is no reading for people.
+  return node.step.empty() || node.step.front() == '(' ? schema->name : node.step;
 }
 
 Executor::Entry* Executor::best() {
