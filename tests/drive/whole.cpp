@@ -120,6 +120,7 @@ intentions::Registry shipped_schemas(const behaviors::Registry& behaviors,
       paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end());
   std::vector<intentions::ActivityFile> files;
+  files.reserve(paths.size());
   for (const std::string& path : paths)
     files.push_back({path, read_file(path)});
   const intentions::Loaded loaded = intentions::load_activities(files, *all_functions(), registry);

@@ -30,6 +30,8 @@ constexpr double kNear = 1.6;       ///< [m] from where on the sonars tell a clo
 constexpr double kSeenAgain = 3.0;  ///< [s] what was seen longer ago counts no more
 constexpr double kThere = 0.4;      ///< [m] so near to its point the robot is at a place
 constexpr double kVisited = 1.5;    ///< [m] around where the robot has been
+constexpr double kDeep = 0.2;       ///< [m] before and behind a doorway, what stands in it
+constexpr double kStep = 0.7;       ///< [m] a nearer point is not worth driving to
 constexpr double kWayIn = 1.0;      ///< [m] behind a door where a room has been visited
 
 const char* const kClosedWays = "*closed-ways*";
@@ -345,7 +347,6 @@ Value door_pose(const World& world, Values arguments) {
 
 /// The widest gap between what stands in the doorway [m], as the obstacle memory has it.
 double widest_gap(const lps::LocalPerceptualSpace& lps, const Pose& door_in_robot, double width) {
-  constexpr double kDeep = 0.2;  // [m] before and behind the doorway
   std::vector<double> at{-width / 2, width / 2};
   for (const Vec2& point : lps.obstacles()) {
     const Vec2 inside = to_frame(door_in_robot, point);
@@ -527,7 +528,6 @@ Value way_to_corridor(const World& world, Values) {
   if (world.around.topology == nullptr || guess.state == Localization::kNone ||
       guess.state == Localization::kUnplaced)
     return {};
-  constexpr double kStep = 0.7;  // [m] a nearer point is not worth driving to
   const maps::Topology& map = *world.around.topology;
   const Vec2 here = guess.pose_in_map.position();
   const maps::RouteSettings settings = route_settings(world);
