@@ -11,6 +11,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(500);
+// No more often than this does a node that has nothing to step look around.
+constexpr auto kSpin = std::chrono::microseconds(50);
+constexpr auto kLook = std::chrono::milliseconds(5);
 // Seconds without a step before the status says what is waited for.
 constexpr double kQuietLive = 0.5;
 constexpr double kQuietLockstep = 2.0;
@@ -241,6 +244,7 @@ struct Cycle::Impl {
   std::uint64_t degraded_until = 0;
   Clock::time_point waiting_since = Clock::now();
   Clock::time_point began;
+  Clock::time_point looked;  // around, by a step or by `idle`
   std::uint64_t timed = 0;
   double total_ms = 0.0;
   double max_ms = 0.0;
@@ -268,10 +272,22 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       self.began = Clock::now();
       return step;
     }
+    if (self.lockstep && self.node.spin(kSpin)) {
+      self.node.clear_wake();
+      continue;
+    }
+    // Samples come one by one: who looks around after each of them does little else in lockstep.
+    const auto rest =
+        std::chrono::ceil<std::chrono::milliseconds>(self.looked + kLook - Clock::now());
+    if (rest.count() > 0) {
+      self.node.wait(rest, &stop);
+      continue;
+    }
     self.note_waiting();
     self.publish_status();
     if (idle)
       idle();
+    self.looked = Clock::now();
     self.node.wait(kIdle, &stop);
   }
   return {};
@@ -284,6 +300,7 @@ void Cycle::done() {
   impl_->max_ms = std::max(impl_->max_ms, ms);
   // After the step, not before it: what it costs must not delay the robot.
   impl_->publish_status();
+  impl_->looked = Clock::now();
 }
 
 bool Cycle::connected() const {

@@ -9,6 +9,7 @@ namespace {
 
 /// Between looks at the behavior files: in cycles, and where there are none.
 constexpr std::uint64_t kLook = 10;
+constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
 constexpr std::chrono::seconds kIdleLook{1};
 
 }  // namespace
@@ -81,7 +82,7 @@ bool Shell::step(const bus::Stop& stop) {
   }
   publish(output);
   // Only now, when the robot has its command.
-  if (++steps_ % kLook == 0)
+  if (++steps_ % (node_.options().lockstep ? kLookInLockstep : kLook) == 0)
     look();
   cycle_.done();
   return true;

@@ -17,8 +17,9 @@ namespace {
 constexpr std::chrono::seconds kSilence{1};
 /// [cycles] between looks at the activity files: a second.
 constexpr std::uint64_t kLook = 10;
-constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
-constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
+constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
+constexpr std::size_t kMostNodes = 1024;        // the bound of Intentions.nodes
+constexpr std::size_t kMostBeliefs = 1024;      // of Beliefs.beliefs
 
 std::vector<std::string> folders(const ShellOptions& options) {
   std::vector<std::string> paths{activities_folder()};
@@ -108,7 +109,7 @@ bool Shell::step(const bus::Stop& stop) {
   publish(outputs.news);
   publish(outputs.said);
   publish_beliefs();
-  if (++steps_ % kLook == 0)
+  if (++steps_ % (node_.options().lockstep ? kLookInLockstep : kLook) == 0)
     look();
   cycle_.done();
   return true;

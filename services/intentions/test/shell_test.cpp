@@ -239,12 +239,12 @@ TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
 
   // A broken file says so and changes nothing; the next good one is taken.
   write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" ", 2);
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < 120; ++i)
     cycle();
   EXPECT_NE(schemas.take_newest().value_or(v1::ActivitySchemas{}).trouble().find("mine.act:1:"),
             std::string::npos);
   write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" who))))", 3);
-  for (int i = 0; i < 20; ++i)
+  for (int i = 0; i < 120; ++i)
     cycle();
   id = goals.ask(goal);
   for (int i = 0; i < 20; ++i)

@@ -91,9 +91,11 @@ Percept from_bus(const v1::Percept& percept) {
   result.confidence = percept.confidence();
   result.since = percept.since();
   result.seen = percept.seen();
-  result.readings.reserve(percept.readings().size());
-  for (const v1::ReadingId& reading : percept.readings())
-    result.readings.push_back({reading.cycle(), reading.sonar()});
+  const std::size_t count =
+      std::min(percept.reading_cycles().size(), percept.reading_sonars().size());
+  result.readings.reserve(count);
+  for (std::size_t i = 0; i < count; ++i)
+    result.readings.push_back({percept.reading_cycles()[i], percept.reading_sonars()[i]});
   return result;
 }
 
@@ -114,12 +116,12 @@ v1::Percept to_bus(const Percept& percept) {
   result.since(percept.since);
   result.seen(percept.seen);
   const std::size_t count = std::min(percept.readings.size(), kMostReadings);
+  result.reading_cycles().reserve(count);
+  result.reading_sonars().reserve(count);
   for (auto reading = percept.readings.end() - static_cast<std::ptrdiff_t>(count);
        reading != percept.readings.end(); ++reading) {
-    v1::ReadingId id;
-    id.cycle(reading->cycle);
-    id.sonar(static_cast<std::uint8_t>(reading->sonar));
-    result.readings().push_back(id);
+    result.reading_cycles().push_back(reading->cycle);
+    result.reading_sonars().push_back(static_cast<std::uint8_t>(reading->sonar));
   }
   return result;
 }

@@ -45,9 +45,9 @@ TEST(Convert, OfManyReadingsTheNewest) {
   for (std::uint64_t cycle = 1; cycle <= 1000; ++cycle)
     percept.readings.push_back({cycle, 0});
   const v1::Percept sample = to_bus(percept);
-  EXPECT_EQ(sample.readings().size(), 64U);
-  EXPECT_EQ(sample.readings().front().cycle(), 937U);
-  EXPECT_EQ(sample.readings().back().cycle(), 1000U);
+  EXPECT_EQ(sample.reading_cycles().size(), 64U);
+  EXPECT_EQ(sample.reading_cycles().front(), 937U);
+  EXPECT_EQ(sample.reading_cycles().back(), 1000U);
 }
 
 TEST(Convert, Readings) {

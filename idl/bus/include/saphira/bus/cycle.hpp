@@ -125,7 +125,7 @@ class Cycle {
 
   /// Waits for the next step; nothing when stop was requested. Publishes the node's status while it
   /// waits, and sets its state, reason and counters. `idle` is called whenever the node woke
-  /// without a step being due, and at least twice a second.
+  /// without a step being due (within 5 ms), and at least twice a second.
   std::optional<Step> next(const Stop& stop, const std::function<void()>& idle = {});
   /// Ends the step that next() began: counts its time.
   void done();
