@@ -12,7 +12,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(500);
 // No more often than this does a node that has nothing to step look around.
-constexpr auto kSpin = std::chrono::microseconds(50);
+constexpr auto kSpin = std::chrono::microseconds(200);
 constexpr auto kLook = std::chrono::milliseconds(5);
 // Seconds without a step before the status says what is waited for.
 constexpr double kQuietLive = 0.5;
@@ -262,6 +262,8 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
   self.waiting_since = Clock::now();
   self.quiet = false;
   while (!stop.requested()) {
+    if (self.lockstep)
+      self.node.rouse();
     self.drain();
     auto step = self.lockstep ? self.due_lockstep() : self.due_live();
     if (step) {

@@ -36,12 +36,22 @@ class Wake {
 
   void signal();
   void clear();
+  /// Its thread does not sleep, and looks at pending() by itself: signals need not wake it.
+  void rouse() { asleep_.store(false); }
+  /// Its thread is about to poll fd(). False where something is pending already: then fd() may not
+  /// say so.
+  bool rest() {
+    asleep_.store(true);
+    return !pending_.load();
+  }
   bool pending() const { return pending_.load(std::memory_order_acquire); }
   int fd() const { return fd_; }
 
  private:
   int fd_;
   std::atomic<bool> pending_{false};
+  std::atomic<bool> asleep_{true};
+  std::atomic<bool> written_{false};  ///< fd() is readable
 };
 
 /// One node's side of a bus.

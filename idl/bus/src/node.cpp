@@ -149,6 +149,10 @@ void Node::clear_wake() {
 }
 
 bool Node::wait(std::chrono::milliseconds timeout, const Stop* stop) {
+  if (!impl_->wake->rest()) {
+    impl_->wake->clear();
+    return true;
+  }
   const auto end = Clock::now() + timeout;
   std::array<pollfd, 2> fds{{{impl_->wake->fd(), POLLIN, 0}, {-1, POLLIN, 0}}};
   if (stop != nullptr)
@@ -169,12 +173,18 @@ bool Node::wait(std::chrono::milliseconds timeout, const Stop* stop) {
 
 bool Node::spin(std::chrono::microseconds limit) {
   const auto end = Clock::now() + limit;
+  impl_->wake->rouse();
   while (!impl_->wake->pending()) {
     if (Clock::now() >= end)
-      return false;
+      return !impl_->wake->rest();
     sched_yield();
   }
+  impl_->wake->rest();
   return true;
+}
+
+void Node::rouse() {
+  impl_->wake->rouse();
 }
 
 const NodeOptions& Node::options() const {

@@ -18,20 +18,24 @@ Wake::~Wake() {
 }
 
 void Wake::signal() {
-  if (pending_.exchange(true))
+  // First the flag, then whether it sleeps; rest() the other way round: one of both sees the other.
+  if (pending_.exchange(true) || !asleep_.load())
     return;
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(fd_, &one, sizeof one);
+  written_.store(true);
 }
 
 void Wake::clear() {
-  if (!pending_.load())
+  if (!pending_.load() && !written_.load())
     return;
   // First the descriptor, then the flag: a signal in between writes nothing, but what it announces
   // is there already when the caller takes. The other way round its write would be read away and
   // the flag left standing, for ever.
-  std::uint64_t count = 0;
-  [[maybe_unused]] const auto got = read(fd_, &count, sizeof count);
+  if (written_.exchange(false)) {
+    std::uint64_t count = 0;
+    [[maybe_unused]] const auto got = read(fd_, &count, sizeof count);
+  }
   pending_.store(false);
 }
 

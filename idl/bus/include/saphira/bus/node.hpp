@@ -80,6 +80,9 @@ class Node {
   /// knows that an answer is a fraction of a millisecond away, which a sleep and a wake would
   /// lengthen by half. True where there is one; it is not cleared.
   bool spin(std::chrono::microseconds limit);
+  /// Until the next wait(): what comes need not wake this thread, which is at work and will look by
+  /// itself. Not for who polls wake_fd.
+  void rouse();
 
   const NodeOptions& options() const;
   /// Random, one a process start: ServiceStatus.instance, and the writer part of goal ids.
