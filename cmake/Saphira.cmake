@@ -70,7 +70,8 @@ function(saphira_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [TIMEOUT s])
+# saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [ALONE] [TIMEOUT s])
+# ALONE: no other test runs beside it: for serial lines in real time, which starve otherwise.
 # DDS: the test talks on the bus; it gets a domain of its own, on loopback.
 define_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN BRIEF_DOCS "next free DDS domain of a test")
 set_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN 20)
@@ -78,7 +79,7 @@ function(saphira_test name)
   if(NOT SAPHIRA_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "DDS" "TIMEOUT" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(arg "DDS;ALONE" "TIMEOUT" "SOURCES;LINK" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -93,7 +94,7 @@ function(saphira_test name)
     list(APPEND environment "SAPHIRA_DOMAIN=${domain}")
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}."
-    TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT})
+    TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE})
   # Apart, since gtest_discover_tests takes a property that is a list to pieces.
   set(setter "${CMAKE_CURRENT_BINARY_DIR}/${name}_environment.cmake")
   file(WRITE "${setter}" "if(${name}_tests)
