@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/functors.hpp"
-#include "saphira/intentions/language.hpp"
 #include "saphira/intentions/navigation.hpp"
 
 namespace saphira::test {
@@ -98,14 +97,7 @@ intentions::ExecutorOptions options_of(
 
 }  // namespace
 
-std::shared_ptr<const intentions::Functions> all_functions() {
-  auto functions = std::make_shared<intentions::Functions>(intentions::core_functions());
-  intentions::add_navigation(*functions);
-  return functions;
-}
-
-intentions::Registry shipped_schemas(const behaviors::Registry& behaviors,
-                                     const std::vector<std::string>& more) {
+intentions::Registry shipped_schemas(const behaviors::Registry& behaviors) {
   intentions::Registry registry = intentions::built_in();
   std::vector<intentions::BehaviorSignature> signatures;
   for (const std::string& name : behaviors.names()) {
@@ -114,23 +106,13 @@ intentions::Registry shipped_schemas(const behaviors::Registry& behaviors,
       signatures.back().parameters.push_back(parameter_of(spec));
   }
   registry.know_behaviors(std::move(signatures));
-  std::vector<std::string> paths = more;
-  for (const auto& entry : std::filesystem::directory_iterator(config_folder() + "/activities"))
-    if (entry.path().extension() == ".act")
-      paths.push_back(entry.path().string());
-  std::sort(paths.begin(), paths.end());
-  std::vector<intentions::ActivityFile> files;
-  files.reserve(paths.size());
-  for (const std::string& path : paths)
-    files.push_back({path, read_file(path)});
-  const intentions::Loaded loaded = intentions::load_activities(files, *all_functions(), registry);
-  std::string troubles;
-  for (const intentions::Diagnostic& each : loaded.troubles)
-    if (each.error)
-      troubles += each.text() + "\n";
-  if (!troubles.empty())
-    throw std::runtime_error(troubles);
-  for (const intentions::Schema& schema : loaded.schemas)
+  const intentions::ActivityFolders::News news =
+      intentions::ActivityFolders({intentions::activities_folder()}, intentions::all_functions(),
+                                  registry)
+          .look();
+  if (!news.errors.empty())
+    throw std::runtime_error(news.errors.front());
+  for (const intentions::Schema& schema : news.taken)
     registry.add(schema);
   return registry;
 }
@@ -145,9 +127,9 @@ Whole::Whole(const WholeOptions& options)
       registration_(
           with_sonars<registration::Settings>(drive_), map_,
           options.knows_pose ? std::optional(drive_.seen().true_pose_in_world) : std::nullopt),
-      executor_(options.schemas.value_or(shipped_schemas(
-                    options.drive.behaviors.value_or(behaviors::predefined()), options.activities)),
-                {}, options_of(all_functions())) {}
+      executor_(options.schemas.value_or(
+                    shipped_schemas(options.drive.behaviors.value_or(behaviors::predefined()))),
+                {}, options_of(intentions::all_functions())) {}
 
 void Whole::advance() {
   // What the others said in the cycle before.

@@ -20,20 +20,15 @@ namespace saphira::test {
 
 struct WholeOptions {
   DriveOptions drive;
-  std::string map;                        ///< a name of config/maps; empty: that of the world
-  bool knows_pose = true;                 ///< registration is told where the robot starts
-  std::vector<std::string> activities{};  ///< files besides those of config/activities
-  /// Else the built-in schemas and the activities of those files.
+  std::string map;         ///< a name of config/maps; empty: that of the world
+  bool knows_pose = true;  ///< registration is told where the robot starts
+  /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
 };
 
-/// What activities can use: the core and navigation.
-std::shared_ptr<const intentions::Functions> all_functions();
-
-/// The built-in schemas, and those of config/activities and of further files. std::runtime_error
-/// where anything is wrong with a file.
-intentions::Registry shipped_schemas(const behaviors::Registry& behaviors,
-                                     const std::vector<std::string>& more = {});
+/// The built-in schemas, and those of config/activities. std::runtime_error where anything is wrong
+/// with a file.
+intentions::Registry shipped_schemas(const behaviors::Registry& behaviors);
 
 /// The whole robot in one loop, without the bus: simulated robot, interpretation, registration,
 /// behaviors and intentions, each of which reads what the others said in the cycle before, as the

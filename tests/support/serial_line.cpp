@@ -141,9 +141,11 @@ bool SerialLine::give(int fd, int direction) {
 
 void SerialLine::run() {
   auto next_try = Clock::now();
-  while (!stop_) {
-    std::array<pollfd, 2> fds{{{-1, POLLIN, 0}, {-1, POLLIN, 0}}};
+  // What was sent still goes through: otherwise the robot would be left with half a packet.
+  for (bool done = false; !done;) {
+    const bool stop = stop_;
     bool busy = false;
+    std::array<pollfd, 2> fds{{{-1, POLLIN, 0}, {-1, POLLIN, 0}}};
     {
       const std::scoped_lock lock(mutex_);
       if (robot_ < 0 && Clock::now() >= next_try) {
@@ -154,14 +156,13 @@ void SerialLine::run() {
       fds[1].fd = robot_;
       busy = !directions_[0].waiting.empty() || !directions_[1].waiting.empty();
     }
-    if (!listened_)
-      fds[0].events = 0;  // the hang-up is told all the same
     ::poll(fds.data(), fds.size(), static_cast<int>((busy ? kTick : kRetry / 2).count()));
     const std::scoped_lock lock(mutex_);
     listened_ = fds[0].fd >= 0 && (fds[0].revents & POLLHUP) == 0;
     if (!listened_)
       std::this_thread::sleep_for(kTick);  // a poll of what has hung up waits for nothing
-    if (listened_ && (fds[0].revents & POLLIN) != 0 && fds[0].fd == master_)
+    const bool comes = (fds[0].revents & POLLIN) != 0 && fds[0].fd == master_;
+    if (comes)
       take(master_, 0);
     bool robot_is_there = true;
     if (fds[1].revents != 0 && robot_ >= 0)
@@ -173,6 +174,7 @@ void SerialLine::run() {
       ::close(robot_);
       robot_ = -1;
     }
+    done = stop && !comes && directions_[0].waiting.empty();
   }
 }
 

@@ -46,6 +46,8 @@ namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::uint32_t kMaxDomain = 232;
 // How many programs of one machine can be found by a peer that knows nothing but its address.
 constexpr std::uint32_t kProgramsPerPeer = 12;
@@ -59,6 +61,8 @@ constexpr int kLease = 10000;
 constexpr int kAnnouncement = 250;
 // By unicast to every place where a peer may be: less often, for the sake of a radio.
 constexpr int kPeerAnnouncement = 500;
+// Until an endpoint that does not match is told by its policy alone: it is usually known sooner.
+constexpr std::chrono::seconds kUnexplained{2};
 
 Duration_t milliseconds(int ms) {
   return {ms / 1000, static_cast<std::uint32_t>(ms % 1000) * 1000000U};
@@ -255,10 +259,11 @@ class Discovery : public fdds::DomainParticipantListener {
   }
 
   // Fast DDS found an endpoint on the other side of this topic that does not match, by this policy.
-  // It says so again at each announcement, and may say so before the endpoint of ours is made.
+  // It says so again at each announcement, and may say so before the endpoint of ours is made or
+  // the other's is told.
   void add_incompatible(const std::string& topic, bool own_writes, fdds::QosPolicyId_t policy) {
     const std::scoped_lock lock(mutex_);
-    incompatible_.insert({topic, own_writes, policy_name(policy)});
+    incompatible_.try_emplace({topic, own_writes, policy_name(policy)}, Clock::now());
     wake_->signal();
   }
   void add_own(const EndpointEntry& own) {
@@ -283,8 +288,9 @@ class Discovery : public fdds::DomainParticipantListener {
   std::vector<std::string> take_troubles() {
     const std::scoped_lock lock(mutex_);
     std::vector<std::string> texts;
-    for (const auto& found : std::exchange(incompatible_, {}))
-      tell_incompatible(found, texts);
+    std::erase_if(incompatible_, [&](const auto& item) {
+      return tell_incompatible(item.first, Clock::now() - item.second > kUnexplained, texts);
+    });
     // Fast DDS says nothing where only the names of the types differ.
     if (std::exchange(type_check_due_, false)) {
       for (const auto& own : own_)
@@ -336,8 +342,9 @@ class Discovery : public fdds::DomainParticipantListener {
     auto operator<=>(const Incompatible&) const = default;
   };
 
-  // Each pair of endpoints once; where no pair explains it, the policy once.
-  void tell_incompatible(const Incompatible& found, std::vector<std::string>& texts) {
+  // Each pair of endpoints once; where no pair explains it in time, the policy once. False: not
+  // yet.
+  bool tell_incompatible(const Incompatible& found, bool late, std::vector<std::string>& texts) {
     bool explained = false;
     for (const auto& own : own_) {
       if (own.topic != found.topic || own.writer != found.own_writes)
@@ -354,9 +361,10 @@ class Discovery : public fdds::DomainParticipantListener {
                           " does not match, " + why);
       }
     }
-    if (!explained && told_.insert({found.topic, found.policy}).second)
+    if (!explained && late && told_.insert({found.topic, found.policy}).second)
       texts.push_back("topic " + found.topic + ": " + (found.own_writes ? "a reader" : "a writer") +
                       " does not match, " + found.policy);
+    return explained || late;
   }
 
   template <class Proxy>
@@ -393,6 +401,8 @@ class Discovery : public fdds::DomainParticipantListener {
           type_check_due_ = true;
           wake_->signal();
         }
+      if (!incompatible_.empty())
+        wake_->signal();
     }
     changed();
   }
@@ -408,7 +418,7 @@ class Discovery : public fdds::DomainParticipantListener {
   std::map<rtps::GuidPrefix_t, Program> programs_;
   std::map<rtps::GUID_t, EndpointEntry> endpoints_;
   std::vector<EndpointEntry> own_;
-  std::set<Incompatible> incompatible_;
+  std::map<Incompatible, Clock::time_point> incompatible_;  // since when
   std::set<std::pair<std::string, std::string>> told_;
   bool type_check_due_ = false;
 };

@@ -18,20 +18,15 @@ constexpr std::chrono::seconds kSilence{1};
 /// [cycles] between looks at the activity files: a second.
 constexpr std::uint64_t kLook = 10;
 constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
-constexpr std::size_t kMostNodes = 1024;        // the bound of Intentions.nodes
-constexpr std::size_t kMostBeliefs = 1024;      // of Beliefs.beliefs
+constexpr std::chrono::milliseconds kMapWait{100};
+constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
+constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
 
 std::vector<std::string> folders(const ShellOptions& options) {
   std::vector<std::string> paths{activities_folder()};
   if (!options.folder.empty())
     paths.push_back(options.folder);
   return paths;
-}
-
-std::shared_ptr<const Functions> all_functions() {
-  auto functions = std::make_shared<Functions>(core_functions());
-  add_navigation(*functions);
-  return functions;
 }
 
 }  // namespace
@@ -160,12 +155,34 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
       percepts_.push_back(lps::from_bus(percept));
   if (perception != nullptr)
     around.percepts = &percepts_;
-  if (const auto map = maps_.take_newest()) {
-    topology_ = std::make_shared<const maps::Topology>(maps::from_bus(*map));
-    map_revision_ = map->revision();
-  }
+  const v1::Registration* const registration =
+      registration_ == nullptr ? nullptr : registration_->value();
+  take_map(registration == nullptr ? std::nullopt : std::optional(registration->map_revision()),
+           stop);
   around.topology = topology_;
   around.map_revision = map_revision_;
+}
+
+/// The map goes another way than what is cyclic. In lockstep it is the one that registration had in
+/// the cycle before: one that has not come is waited for, one that is newer waits.
+void Shell::take_map(std::optional<std::uint64_t> revision, const bus::Stop& stop) {
+  const bool exact = node_.options().lockstep && revision;
+  while (true) {
+    for (auto& sample : maps_.take())
+      if (!sample.info.disposed)
+        newer_maps_.push_back(std::move(sample.data));
+    while (!newer_maps_.empty() &&
+           (!exact || newer_maps_.front().revision() <= *revision || topology_ == nullptr)) {
+      const v1::Map& map = newer_maps_.front();
+      topology_ = std::make_shared<const maps::Topology>(maps::from_bus(map));
+      map_revision_ = map.revision();
+      newer_maps_.pop_front();
+    }
+    const bool here = topology_ != nullptr && (!exact || map_revision_ >= *revision);
+    if (!exact || here || !newer_maps_.empty() || stop.requested())
+      return;
+    node_.wait(kMapWait, &stop);
+  }
 }
 
 void Shell::look() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -54,6 +55,7 @@ class Shell {
   std::vector<GoalEvent> take_events();
   void idle();
   std::vector<ClaimEvent> take_claims();
+  void take_map(std::optional<std::uint64_t> revision, const bus::Stop& stop);
   void look_around(const v1::RobotState& robot, const bus::Stop& stop, Surroundings& around);
   /// Takes activity files that have changed.
   void look();
@@ -86,6 +88,7 @@ class Shell {
   std::vector<lps::Percept> percepts_;
   std::shared_ptr<const maps::Topology> topology_;
   std::uint64_t map_revision_ = 0;
+  std::deque<v1::Map> newer_maps_;             ///< lockstep: than the cycle that is stepped
   std::map<GoalId, bus::WriterId> claimants_;  ///< of claims that end with their writer
   std::uint64_t steps_ = 0;
   std::uint64_t beliefs_revision_ = 0;

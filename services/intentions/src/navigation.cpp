@@ -905,4 +905,10 @@ void add_navigation(Functions& functions) {
   add_conditions(functions);
 }
 
+std::shared_ptr<const Functions> all_functions() {
+  auto functions = std::make_shared<Functions>(core_functions());
+  add_navigation(*functions);
+  return functions;
+}
+
 }  // namespace saphira::intentions

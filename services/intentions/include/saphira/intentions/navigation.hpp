@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "saphira/intentions/functions.hpp"
 
 namespace saphira::intentions {
@@ -11,5 +13,8 @@ namespace saphira::intentions {
 /// point where the place has one. It is good for one revision of the map. Ways that proved closed
 /// are in the environment variable *closed-ways*; `find-path` leaves them out for five minutes.
 void add_navigation(Functions& functions);
+
+/// core_functions() and these: all that the shipped activities use.
+std::shared_ptr<const Functions> all_functions();
 
 }  // namespace saphira::intentions
