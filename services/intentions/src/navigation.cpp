@@ -13,6 +13,7 @@
 #include "saphira/lps/percept.hpp"
 #include "saphira/maps/route.hpp"
 #include "saphira/maps/topology.hpp"
+#include "seeing.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -133,6 +134,10 @@ std::optional<Point> place_of(const World& world, const Value& value) {
     const lps::Percept* const seen = percept(world, reference->id);
     return seen == nullptr ? std::nullopt : std::optional(Point{seen->pose_in_odom, Frame::kOdom});
   }
+  if (reference->kind == Kind::kThing) {
+    const lps::SeenThing* const seen = seen_thing(world, reference->id);
+    return seen == nullptr ? std::nullopt : std::optional(Point{seen->pose_in_odom, Frame::kOdom});
+  }
   if (!current(world, *reference))
     return std::nullopt;
   const maps::Topology& map = *world.around.topology;
@@ -173,6 +178,8 @@ std::optional<maps::Place> place_named(const maps::Topology& map, const Value& v
   return std::nullopt;
 }
 
+}  // namespace
+
 std::string name_of(const World& world, const Value& value) {
   const Reference* const reference = value.reference();
   if (reference != nullptr && current(world, *reference)) {
@@ -192,6 +199,8 @@ std::string name_of(const World& world, const Value& value) {
   }
   return spoken(value);
 }
+
+namespace {
 
 // ---- Paths
 
@@ -574,6 +583,12 @@ void add_paths(Functions& functions) {
                            return Value(route(world, arguments[0], arguments[1]).reason);
                          },
                          "(why-no-path FROM TO): the reason why find-path gives nil"});
+  functions.add(Function{"way-length", 2, 2,
+                         [](const World& world, Values arguments) {
+                           const maps::RouteResult found = route(world, arguments[0], arguments[1]);
+                           return found.route ? Value(found.route->length) : Value();
+                         },
+                         "(way-length FROM TO): of the way that find-path finds [m], or nil"});
   functions.add(Function{"path-current", 1, 1,
                          [](const World& world, Values arguments) {
                            for (const Value& each : arguments[0].list())
@@ -844,16 +859,22 @@ void add_corridors(Functions& functions) {
       "seen", 1, 1,
       [](const World& world, Values arguments) {
         const std::string& what = text_of(arguments, 0, "seen");
+        if (const std::optional<Value> thing = nearest_seen(world, what))
+          return *thing;
         const PointType type = what == "door"       ? PointType::door
                                : what == "corridor" ? PointType::corridor
                                : what == "junction" ? PointType::junction
                                : what == "wall"     ? PointType::wall
                                                     : PointType::invalid;
         if (type == PointType::invalid)
-          throw ActivityError("seen: expected door, corridor, junction or wall, found " + what);
+          throw ActivityError(
+              "seen: expected door, corridor, junction, wall, person, blob, blob-a, blob-b or "
+              "blob-c, found " +
+              what);
         return seen_value(nearest(world, type, [](const auto&, const auto&) { return true; }));
       },
-      "(seen KIND): the nearest door, corridor, junction or wall, or nil"});
+      "(seen KIND): the nearest door, corridor, junction, wall, person, blob or blob-a to -c, "
+      "or nil"});
 }
 
 void add_conditions(Functions& functions) {
@@ -903,6 +924,7 @@ void add_navigation(Functions& functions) {
   add_places(functions);
   add_corridors(functions);
   add_conditions(functions);
+  add_seeing(functions);
 }
 
 std::shared_ptr<const Functions> all_functions() {

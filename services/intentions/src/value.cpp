@@ -24,7 +24,8 @@ constexpr std::pair<Reference::Kind, const char*> kKinds[] = {
     {Reference::Kind::kRegion, "region"},
     {Reference::Kind::kLink, "link"},
     {Reference::Kind::kArtifact, "artifact"},
-    {Reference::Kind::kPercept, "percept"}};
+    {Reference::Kind::kPercept, "percept"},
+    {Reference::Kind::kThing, "thing"}};
 
 const char* name_of(Reference::Kind kind) {
   for (const auto& [each, name] : kKinds) {

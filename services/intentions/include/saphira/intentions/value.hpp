@@ -26,11 +26,12 @@ struct Reference {
     kRegion,    ///< maps::Topology::regions(), by index
     kLink,      ///< maps::Topology::links(), by index
     kArtifact,  ///< by the artifact's id on the map
-    kPercept    ///< lps::Percept::id
+    kPercept,   ///< lps::Percept::id
+    kThing      ///< lps::SeenThing::id
   };
   Kind kind = Kind::kArtifact;
   std::uint64_t id = 0;
-  std::uint64_t revision = 0;  ///< of the map; 0 of percepts
+  std::uint64_t revision = 0;  ///< of the map; 0 of what is perceived
 
   bool operator==(const Reference&) const = default;
 };

@@ -10,6 +10,7 @@
 namespace saphira::lps {
 class LocalPerceptualSpace;
 struct Percept;
+struct SeenThing;
 }  // namespace saphira::lps
 namespace saphira::maps {
 class Topology;
@@ -53,6 +54,9 @@ struct Registered {
 struct Surroundings {
   const lps::LocalPerceptualSpace* lps = nullptr;       ///< none: nothing is sensed
   const std::vector<lps::Percept>* percepts = nullptr;  ///< none: no interpretation
+  /// People and colours; none: there is no camera, or nobody looks.
+  const std::vector<lps::SeenThing>* things = nullptr;
+  std::uint64_t cycle = 0;  ///< of the robot, by which what is perceived counts
   Registered registration;
   std::shared_ptr<const maps::Topology> topology;  ///< none: no map
   std::uint64_t map_revision = 0;
