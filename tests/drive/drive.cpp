@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "behaviors/test/robot_model.hpp"
 #include "saphira/base/places.hpp"
 
 namespace saphira::test {
@@ -17,19 +18,6 @@ protocol::RobotParameters parameters_of(const DriveOptions& options) {
   return parameters;
 }
 
-behaviors::RobotModel model_of(const protocol::RobotParameters& parameters) {
-  behaviors::RobotModel model;
-  model.radius = parameters.radius;
-  model.max_velocity = parameters.max_velocity;
-  model.max_rotation_velocity = parameters.max_rotation_velocity;
-  model.lps.front_buffer = static_cast<std::size_t>(parameters.front_buffer);
-  model.lps.side_buffer = static_cast<std::size_t>(parameters.side_buffer);
-  model.lps.front_max_range = parameters.front_max_range;
-  for (const protocol::SonarUnit& unit : parameters.sonars)
-    model.lps.sonars.push_back({unit.number, unit.pose_in_robot});
-  return model;
-}
-
 }  // namespace
 
 Drive::Drive(const DriveOptions& options)
@@ -40,7 +28,8 @@ Drive::Drive(const DriveOptions& options)
                                options.start_in_world.value_or(world_.start.value_or(Pose{})),
                                options.seed)),
       sonars_(scene_, robot_->number(), parameters_, options.sonar, options.seed),
-      executive_(options.behaviors.value_or(behaviors::predefined()), model_of(parameters_)) {
+      executive_(options.behaviors.value_or(behaviors::predefined()),
+                 behaviors::model_of(parameters_)) {
   seen_.pose_in_odom = robot_->pose_in_odom();
   seen_.true_pose_in_world = robot_->pose_in_world();
 }

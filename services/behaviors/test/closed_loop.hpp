@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "saphira/behaviors/executive.hpp"
-#include "saphira/protocol/parameters.hpp"
+#include "robot_model.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
@@ -17,19 +16,6 @@
 
 // The executive and the simulated robot in one loop, without packets: what the behaviors are worth.
 namespace saphira::behaviors {
-
-inline RobotModel model_of(const protocol::RobotParameters& parameters) {
-  RobotModel model;
-  model.radius = parameters.radius;
-  model.max_velocity = parameters.max_velocity;
-  model.max_rotation_velocity = parameters.max_rotation_velocity;
-  model.lps.front_buffer = static_cast<std::size_t>(parameters.front_buffer);
-  model.lps.side_buffer = static_cast<std::size_t>(parameters.side_buffer);
-  model.lps.front_max_range = parameters.front_max_range;
-  for (const protocol::SonarUnit& unit : parameters.sonars)
-    model.lps.sonars.push_back({unit.number, unit.pose_in_robot});
-  return model;
-}
 
 struct Drive {
   Vec2 goal_in_odom{0.0, 0.0};  ///< odom begins at the start, looking along the start's heading

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "pioneer.hpp"
+
 namespace saphira::behaviors {
 namespace {
 
@@ -13,14 +15,6 @@ Argument number(std::string name, double value) {
 }
 Argument point(std::string name, Pose pose, Frame frame = Frame::odom) {
   return {std::move(name), PlacedPoint{pose, frame}};
-}
-
-RobotModel pioneer() {
-  RobotModel model;
-  const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
-  for (int i = 0; i < 7; ++i)
-    model.lps.sonars.push_back({i, {0.1, 0.0, radians(bearings[i])}});
-  return model;
 }
 
 /// Counts what is done with it.

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <map>
 
+#include "pioneer.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/behaviors/executive.hpp"
 #include "saphira/behaviors/folder.hpp"
 
 // What each shipped behavior does in a scripted world, cycle by cycle, beside what it did when
@@ -21,14 +21,6 @@ constexpr int kCycles = 60;
 std::string source_dir() {
   const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
   return dir == nullptr ? "." : dir;
-}
-
-RobotModel pioneer() {
-  RobotModel model;
-  const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
-  for (int i = 0; i < 7; ++i)
-    model.lps.sonars.push_back({i, {0.1, 0.0, radians(bearings[i])}});
-  return model;
 }
 
 /// The robot goes ahead in a long bow, something comes near on its right and then ahead, and goes

@@ -2,18 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "saphira/behaviors/executive.hpp"
+#include "pioneer.hpp"
 
 namespace saphira::behaviors {
 namespace {
-
-RobotModel pioneer() {
-  RobotModel model;
-  const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
-  for (int i = 0; i < 7; ++i)
-    model.lps.sonars.push_back({i, {0.1, 0.0, radians(bearings[i])}});
-  return model;
-}
 
 TEST(Plugin, TheExampleRunsAmongTheOthers) {
   Registry registry = predefined();

@@ -5,10 +5,10 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "behaviors/test/pioneer.hpp"
 #include "behaviors_in_cpp.hpp"
 #include "executive_bench.hpp"
 #include "saphira/base/random.hpp"
-#include "saphira/behaviors/executive.hpp"
 #include "saphira/behaviors/language.hpp"
 
 namespace saphira::bench {
@@ -19,14 +19,6 @@ using namespace behaviors;
 /// Of this process [s]: what others do on the machine does not count.
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-RobotModel pioneer() {
-  RobotModel model;
-  const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
-  for (int i = 0; i < 7; ++i)
-    model.lps.sonars.push_back({i, {0.1, 0.0, radians(bearings[i])}});
-  return model;
 }
 
 /// What the seven sonars hear in a cluttered room.
