@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "saphira/base/text.hpp"
+#include "broken_text.hpp"
 #include "saphira/sim/scene.hpp"
 
 namespace saphira::sim {
@@ -56,41 +56,35 @@ TEST(Movable, IsReadInItsFrame) {
   EXPECT_EQ(it.movable.robots.at(0), (Pose{3.0, 4.0, kPi}));
 }
 
-struct Broken {
+/// A mistake in the line behind the world's size.
+struct BrokenLine {
   const char* text;
   int column;
   const char* expected;
 };
 
-class BrokenThing : public ::testing::TestWithParam<Broken> {};
+class BrokenThing : public ::testing::TestWithParam<BrokenLine> {};
 
 TEST_P(BrokenThing, SaysWhereAndWhatWasExpected) {
-  try {
-    world(GetParam().text);
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), 2) << error.what();
-    EXPECT_EQ(error.column(), GetParam().column) << error.what();
-    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos)
-        << error.what();
-  }
+  test::expect_mistake({GetParam().text, 2, GetParam().column, GetParam().expected}, world);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Files, BrokenThing,
     ::testing::Values(
-        Broken{"person", 7, "a name"}, Broken{"person ann x 0", 12, "x of the person"},
-        Broken{"walk 0 0 800", 1, "person before this walk"},
-        Broken{"person ann 0 0 walk 1 1 0", 25, "speed"},
-        Broken{"person ann 0 0 repeat", 16, "walk or wait"},
-        Broken{"person ann 0 0 person ann 1 1", 23, "another name"},
-        Broken{"door d 0 0 5 0 90", 14, "wider"}, Broken{"door d 0 0 900 0 200", 18, "swing"},
-        Broken{"door d 0 0 900 0 90 open 5 close 4", 34, "in order"},
-        Broken{"door d 0 0 900 0 90 period 5", 21, "open or close"},
-        Broken{"door d 0 0 900 0 90 open 5 period 4", 35, "no shorter"},
-        Broken{"box b 0 0 0 600", 16, "width"}, Broken{"box b 0 0 0 600 0 5", 17, "width"},
-        Broken{"post p 0 0", 11, "radius"}, Broken{"color red", 1, "before this color"},
-        Broken{"robot 0 0", 10, "theta"}, Broken{"tall 5", 1, "before this tall"}));
+        BrokenLine{"person", 7, "a name"}, BrokenLine{"person ann x 0", 12, "x of the person"},
+        BrokenLine{"walk 0 0 800", 1, "person before this walk"},
+        BrokenLine{"person ann 0 0 walk 1 1 0", 25, "speed"},
+        BrokenLine{"person ann 0 0 repeat", 16, "walk or wait"},
+        BrokenLine{"person ann 0 0 person ann 1 1", 23, "another name"},
+        BrokenLine{"door d 0 0 5 0 90", 14, "wider"},
+        BrokenLine{"door d 0 0 900 0 200", 18, "swing"},
+        BrokenLine{"door d 0 0 900 0 90 open 5 close 4", 34, "in order"},
+        BrokenLine{"door d 0 0 900 0 90 period 5", 21, "open or close"},
+        BrokenLine{"door d 0 0 900 0 90 open 5 period 4", 35, "no shorter"},
+        BrokenLine{"box b 0 0 0 600", 16, "width"}, BrokenLine{"box b 0 0 0 600 0 5", 17, "width"},
+        BrokenLine{"post p 0 0", 11, "radius"}, BrokenLine{"color red", 1, "before this color"},
+        BrokenLine{"robot 0 0", 10, "theta"}, BrokenLine{"tall 5", 1, "before this tall"}));
 
 TEST(Movable, PeopleWalkByTheirScripts) {
   const World it =

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "broken_text.hpp"
 #include "saphira/base/random.hpp"
-#include "saphira/base/text.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -68,25 +68,12 @@ TEST(World, PushesAreNestedAndPopped) {
   near(world.segments[3].to, 1.0, 0.0);
 }
 
-struct Broken {
-  const char* text;
-  int line;
-  int column;
-  const char* expected;
-};
+using test::Broken;
 
 class BrokenWorld : public ::testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenWorld, SaysWhereAndWhatWasExpected) {
-  try {
-    parse_world(GetParam().text, "broken.wld");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), GetParam().line) << error.what();
-    EXPECT_EQ(error.column(), GetParam().column) << error.what();
-    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos)
-        << error.what();
-  }
+  test::expect_mistake(GetParam(), [](const char* text) { parse_world(text, "broken.wld"); });
 }
 
 INSTANTIATE_TEST_SUITE_P(

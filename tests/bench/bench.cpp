@@ -6,8 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,14 +17,6 @@
 namespace saphira::bench {
 
 namespace fs = std::filesystem;
-
-double percentile(std::vector<double> values, double p) {
-  if (values.empty())
-    return std::nan("");
-  std::sort(values.begin(), values.end());
-  const double at = p * static_cast<double>(values.size());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(at))];
-}
 
 namespace {
 

@@ -8,8 +8,6 @@
 /// What the benchmark programs share.
 namespace saphira::bench {
 
-double percentile(std::vector<double> values, double p);
-
 /// A child with its output dropped; terminated with the object.
 class Child {
  public:

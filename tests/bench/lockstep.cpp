@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench.hpp"
+#include "support/quantile.hpp"
 
 namespace {
 
@@ -36,8 +37,8 @@ int main(int argc, char** argv) {
     std::printf("seed %d: one process %.0f x real time, separate processes %.0f x\n", i,
                 single.back(), separate.back());
   }
-  const double single_x = saphira::bench::percentile(single, 0.5);
-  const double separate_x = saphira::bench::percentile(separate, 0.5);
+  const double single_x = saphira::test::quantile(single, 0.5);
+  const double separate_x = saphira::test::quantile(separate, 0.5);
   std::printf("median: one process %.0f x (limit 300), separate processes %.0f x (limit 100)\n",
               single_x, separate_x);
   if (json)

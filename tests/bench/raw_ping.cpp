@@ -36,6 +36,7 @@
 #include "bench.hpp"
 #include "motionPubSubTypes.h"
 #include "robotPubSubTypes.h"
+#include "support/quantile.hpp"
 
 namespace {
 
@@ -207,8 +208,8 @@ int main(int argc, char** argv) {
   int code = 0;
   try {
     const auto us = ping(domain, hz, count);
-    const double p50 = saphira::bench::percentile(us, 0.5);
-    const double p99 = saphira::bench::percentile(us, 0.99);
+    const double p50 = saphira::test::quantile(us, 0.5);
+    const double p99 = saphira::test::quantile(us, 0.99);
     if (json)
       std::printf("%s\n",
                   nlohmann::json{{"us", us}, {"p50_us", p50}, {"p99_us", p99}}.dump().c_str());

@@ -28,6 +28,7 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "serial_line.hpp"
+#include "support/quantile.hpp"
 
 using namespace saphira;
 using Clock = std::chrono::steady_clock;
@@ -196,8 +197,8 @@ int report_serial(const std::vector<double>& ours, int unanswered, int baud, boo
   const std::size_t bytes =
       protocol::encode(information(0)).size() + protocol::encode(protocol::Heading{1.0}).size();
   const double bound = static_cast<double>(bytes) * 1e7 / baud;
-  const double p50 = bench::percentile(ours, 0.5);
-  const double p99 = bench::percentile(ours, 0.99);
+  const double p50 = test::quantile(ours, 0.5);
+  const double p99 = test::quantile(ours, 0.99);
   std::printf("%zu reactions over %d baud, %d without an answer\n", ours.size(), baud, unanswered);
   std::printf("packet to command   p50 %6.1f ms   p99 %6.1f ms\n", p50 / 1000.0, p99 / 1000.0);
   std::printf("the line alone          %6.1f ms   (%zu bytes)\n", bound / 1000.0, bytes);
@@ -289,10 +290,10 @@ int main(int argc, char** argv) {
     while (ping.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
       paced(take, 1);
     const auto raw = nlohmann::json::parse(ping.get()).at("us").get<std::vector<double>>();
-    const double p50 = bench::percentile(ours, 0.5);
-    const double p99 = bench::percentile(ours, 0.99);
-    const double raw50 = bench::percentile(raw, 0.5);
-    const double raw99 = bench::percentile(raw, 0.99);
+    const double p50 = test::quantile(ours, 0.5);
+    const double p99 = test::quantile(ours, 0.99);
+    const double raw50 = test::quantile(raw, 0.5);
+    const double raw99 = test::quantile(raw, 0.99);
     std::printf("%zu reactions at %.0f Hz, %d without an answer\n", ours.size(), hz, unanswered);
     std::printf("packet to command   p50 %6.0f us   p99 %6.0f us\n", p50, p99);
     std::printf("raw two-hop ping    p50 %6.0f us   p99 %6.0f us\n", raw50, raw99);

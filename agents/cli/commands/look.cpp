@@ -1,9 +1,8 @@
 // list and echo: the bus as it is.
-#include <array>
-#include <cstdio>
 #include <iostream>
 
 #include "commands.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "watch.hpp"
 
@@ -17,12 +16,6 @@ using std::chrono::milliseconds;
 /// period of 250 ms and its round trips.
 constexpr milliseconds kDiscovery{1000};
 
-std::string short_number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
-}
-
 std::string describe(const bus::EndpointEntry& endpoint) {
   std::string text = endpoint.program.empty() ? "?" : endpoint.program;
   if (endpoint.pid != 0)
@@ -35,7 +28,7 @@ std::string describe(const bus::EndpointEntry& endpoint) {
 std::string qos_of(const bus::EndpointEntry& endpoint) {
   std::string text = (endpoint.reliable ? "reliable " : "best effort ") + endpoint.durability;
   if (endpoint.deadline > 0.0)
-    text += ", deadline " + short_number(endpoint.deadline) + " s";
+    text += ", deadline " + plain(endpoint.deadline) + " s";
   if (endpoint.liveliness != "automatic" && !endpoint.liveliness.empty())
     text += ", " + endpoint.liveliness;
   if (endpoint.ownership != "shared" && !endpoint.ownership.empty())

@@ -3,10 +3,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::cli {
@@ -40,12 +40,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
       return parts;
     text.remove_prefix(end + 1);
   }
-}
-
-std::string plain(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g", value);
-  return text.data();
 }
 
 const char* name_of(v1::Frame frame) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "broken_text.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::protocol {
@@ -322,26 +323,12 @@ TEST(Parameters, KeywordsInAnyCaseAndOrder) {
   EXPECT_EQ(p.sonars.size(), 1U);
 }
 
-struct Broken {
-  const char* text;
-  int line;
-  int column;
-  const char* expected;
-};
+using test::Broken;
 
 class BrokenParameters : public ::testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenParameters, SayWhereAndWhatWasExpected) {
-  try {
-    parse_parameters(GetParam().text, "broken.p");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.file(), "broken.p");
-    EXPECT_EQ(error.line(), GetParam().line) << error.what();
-    EXPECT_EQ(error.column(), GetParam().column) << error.what();
-    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos)
-        << error.what();
-  }
+  test::expect_mistake(GetParam(), [](const char* text) { parse_parameters(text, "broken.p"); });
 }
 
 INSTANTIATE_TEST_SUITE_P(

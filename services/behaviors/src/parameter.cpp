@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
+
+#include "saphira/base/numbers.hpp"
 
 namespace saphira::behaviors {
 namespace {
@@ -19,12 +20,6 @@ const char* name_of(Kind kind) {
       return "a point";
   }
   return "";
-}
-
-std::string plain(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
 }
 
 bool finite(const Pose& pose) {

@@ -110,10 +110,4 @@ std::string quoted(std::string_view text) {
   return result + (text.size() > longest ? "...\"" : "\"");
 }
 
-std::string plain(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 }  // namespace saphira::intentions

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::intentions {
@@ -16,12 +17,6 @@ constexpr GoalCode kCodes[] = {
     GoalCode::kNone,       GoalCode::kUnknownFunctor, GoalCode::kBadArgument, GoalCode::kChanged,
     GoalCode::kTooMany,    GoalCode::kDeadline,       GoalCode::kBlocked,     GoalCode::kNoRobot,
     GoalCode::kNoPosition, GoalCode::kDisposed,       GoalCode::kWriterLost,  GoalCode::kPreempted};
-
-std::string exact(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 std::string write_id(const GoalId& id) {
   char text[48];

@@ -1,20 +1,14 @@
 #include "saphira/intentions/value.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "language/reader.hpp"
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::intentions {
 namespace {
-
-std::string exact(double value) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value);
-  return {text, end.ptr};
-}
 
 const char* name_of(Frame frame) {
   return frame == Frame::kRobot ? "robot" : frame == Frame::kOdom ? "odom" : "map";

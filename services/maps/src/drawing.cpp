@@ -3,10 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::maps {
@@ -21,15 +21,7 @@ constexpr std::array<std::string_view, 5> kColors{"#0072b2", "#d55e00", "#009e73
                                                   "#56b4e9"};
 
 std::string number(double value) {
-  std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, 3);
-  std::string text(buffer.data(), end.ptr);
-  while (text.back() == '0')
-    text.pop_back();
-  if (text.back() == '.')
-    text.pop_back();
-  return text == "-0" ? "0" : text;
+  return decimal(value, 3);
 }
 
 std::string escaped(std::string_view text) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::maps {
@@ -98,8 +99,8 @@ class Scanner {
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
       fail("expected a number (" + std::string(what) + "), found \"" + std::string(text) + "\"");
     if (value < low || value > high)
-      fail("expected " + std::string(what) + " between " + plain(low) + " and " + plain(high) +
-           ", found " + std::string(text));
+      fail("expected " + std::string(what) + " between " + decimal(low, 0) + " and " +
+           decimal(high, 0) + ", found " + std::string(text));
     return value;
   }
 
@@ -122,13 +123,6 @@ class Scanner {
   /// At the token read last.
   [[noreturn]] void fail(const std::string& message) const {
     throw FileError(file_, number_, static_cast<int>(began_) + 1, message, line_);
-  }
-
-  static std::string plain(double value) {
-    std::array<char, 32> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                   std::chars_format::fixed, 0);
-    return {buffer.data(), end.ptr};
   }
 
  private:
@@ -216,25 +210,12 @@ Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int 
   return feature;
 }
 
-// Without an exponent, without zeros at the end.
-std::string number(double value, int digits) {
-  std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::fixed, digits);
-  std::string text(buffer.data(), end.ptr);
-  while (text.back() == '0')
-    text.pop_back();
-  if (text.back() == '.')
-    text.pop_back();
-  return text == "-0" ? "0" : text;
-}
-
 std::string millimetres(double metres, double low) {
   const double value = metres / kMillimetre;
   // Written with three digits behind the point, so what counts is what these say.
   if (!(std::round(value * 1000.0) / 1000.0 >= low && value <= kMax))
     throw std::invalid_argument("a place or size that a map file does not hold");
-  return number(value, 3);
+  return decimal(value, 3);
 }
 
 std::string line_of(const Feature& feature) {
@@ -250,7 +231,7 @@ std::string line_of(const Feature& feature) {
     out += " (" + std::to_string(feature.id) + ")";
   out += " " + millimetres(feature.pose_in_map.x, -kMax) + ", " +
          millimetres(feature.pose_in_map.y, -kMax) + ", " +
-         number(degrees(norm2_angle(feature.pose_in_map.th)), 6);
+         decimal(degrees(norm2_angle(feature.pose_in_map.th)), 6);
   if (form.length)
     out += ", " + millimetres(feature.length, 1);
   if (form.width)

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "broken_text.hpp"
 #include "saphira/base/random.hpp"
-#include "saphira/base/text.hpp"
 
 namespace saphira::maps {
 namespace {
@@ -127,25 +127,12 @@ TEST(Map, WhatNoFileHoldsIsNotWritten) {
   EXPECT_THROW(to_text({{wrong}}), std::invalid_argument);
 }
 
-struct Broken {
-  const char* text;
-  int line;
-  int column;
-  const char* expected;
-};
+using test::Broken;
 
 class BrokenMap : public ::testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenMap, SaysWhereAndWhatWasExpected) {
-  try {
-    parse_map(GetParam().text, "broken.map");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), GetParam().line) << error.what();
-    EXPECT_EQ(error.column(), GetParam().column) << error.what();
-    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos)
-        << error.what();
-  }
+  test::expect_mistake(GetParam(), [](const char* text) { parse_map(text, "broken.map"); });
 }
 
 INSTANTIATE_TEST_SUITE_P(

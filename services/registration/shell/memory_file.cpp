@@ -1,9 +1,9 @@
 #include "registration/shell/memory_file.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::registration {
@@ -13,11 +13,8 @@ constexpr std::string_view kMapFollows = "\nmap\n";
 
 std::string write(const char* word, const double* values, std::size_t count) {
   std::string line = word;
-  for (std::size_t i = 0; i < count; ++i) {
-    char text[40];
-    std::snprintf(text, sizeof text, " %.17g", values[i]);
-    line += text;
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    line += " " + exact(values[i]);
   return line + "\n";
 }
 

@@ -6,6 +6,7 @@
 
 #include "localization/patrol.hpp"
 #include "saphira/base/random.hpp"
+#include "support/quantile.hpp"
 
 namespace saphira::test {
 namespace {

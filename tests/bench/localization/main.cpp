@@ -10,6 +10,7 @@
 
 #include "localization/patrol.hpp"
 #include "saphira/base/places.hpp"
+#include "support/quantile.hpp"
 
 namespace {
 

@@ -1,6 +1,5 @@
 #include "localization/patrol.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -40,14 +39,6 @@ const registration::Output& Localizer::advance() {
 void Offs::add(const Pose& believed, const Pose& truth) {
   position.push_back((believed.position() - truth.position()).norm());
   heading.push_back(std::abs(norm2_angle(believed.th - truth.th)));
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty())
-    return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
 }
 
 std::vector<Vec2> office_tour(bool library) {

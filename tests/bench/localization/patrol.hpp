@@ -49,8 +49,6 @@ struct Offs {
   std::vector<double> heading;   // [rad]
   void add(const Pose& believed, const Pose& truth);
 };
-/// The value that a share of them does not exceed; 0 of none.
-double quantile(std::vector<double> values, double share);
 
 /// Round the corridors of the office floor; `library`: and through the library, where the map has
 /// no furniture.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "perception/score.hpp"
+#include "support/quantile.hpp"
 
 // saphira-bench-perception: what interpretation sees against what is there, and what it costs.
 
@@ -92,7 +93,7 @@ struct Result {
   std::uint64_t cells = 0;
   std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
   std::vector<double> door_place, door_place_sigmas, door_width, end_place, end_place_sigmas;
-  std::array<GridScore, 2> grids;  // muriel, cone
+  std::array<GridScore, 2> grids;  // see compare_grids
 };
 
 void append(std::vector<double>& all, const std::vector<double>& more) {
@@ -151,32 +152,6 @@ void percepts(const Options& options, int seed, Result& result) {
   for (const auto& [id, cycle] : score.missed())
     std::fprintf(stderr, "seed %d cycle %llu: door %u passed and not found\n", seed,
                  static_cast<unsigned long long>(cycle), id);
-}
-
-// Both grids from the same readings at the true pose: what is compared is the model alone.
-void grids(const Options& options, int seed, Result& result) {
-  Drive drive(drive_options(options, seed, 1.0));
-  interpretation::Settings settings = settings_of(drive);
-  settings.grid.window = 100.0;
-  interpretation::Interpretation muriel(settings);
-  settings.grid.model = interpretation::GridModel::cone;
-  interpretation::Interpretation cone(settings);
-  Tour tour(patrol(options.world), true);
-  std::vector<Vec2> path;
-  while (static_cast<double>(drive.seen().cycle) < options.seconds * 10.0) {
-    tour.act(drive, drive.seen().true_pose_in_world);
-    const Seen& seen = drive.advance();
-    const interpretation::Inputs inputs{
-        seen.cycle, seen.pose_in_odom, seen.readings,
-        compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))};
-    muriel.step(inputs);
-    cone.step(inputs);
-    if (seen.cycle % 10 == 0)
-      path.push_back(seen.true_pose_in_world.position());
-  }
-  const maps::Map map = map_of(options.world);
-  result.grids = {score_grid(muriel.grid(), drive.world(), map, path),
-                  score_grid(cone.grid(), drive.world(), map, path)};
 }
 
 void print(const Options& options, const Result& result) {
@@ -263,7 +238,8 @@ int main(int argc, char** argv) {
   Result result;
   for (int seed = 1; seed <= options.seeds; ++seed)
     percepts(options, seed, result);
-  grids(options, 1, result);
+  result.grids = compare_grids(drive_options(options, 1, 1.0),
+                               static_cast<std::uint64_t>(options.seconds * 10.0));
   print(options, result);
   return 0;
 }

@@ -163,31 +163,8 @@ TEST(Perception, IsTheSameEachTimeToTheLastBit) {
   EXPECT_EQ(first, once());
 }
 
-// Of both models the same readings at the true pose.
 TEST(Perception, TheGridKeepsWallsAndDoorways) {
-  DriveOptions options;
-  Drive drive(options);
-  interpretation::Settings settings = settings_of(drive);
-  settings.grid.window = 100.0;
-  interpretation::Interpretation muriel(settings);
-  settings.grid.model = interpretation::GridModel::cone;
-  interpretation::Interpretation cone(settings);
-  Tour tour(patrol("office-floor"), true);
-  std::vector<Vec2> path;
-  while (drive.seen().cycle < 3000) {
-    tour.act(drive, drive.seen().true_pose_in_world);
-    const Seen& seen = drive.advance();
-    const interpretation::Inputs inputs{
-        seen.cycle, seen.pose_in_odom, seen.readings,
-        compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))};
-    muriel.step(inputs);
-    cone.step(inputs);
-    if (seen.cycle % 10 == 0)
-      path.push_back(seen.true_pose_in_world.position());
-  }
-  const maps::Map map = map_of("office-floor");
-  const GridScore ours = score_grid(muriel.grid(), drive.world(), map, path);
-  const GridScore theirs = score_grid(cone.grid(), drive.world(), map, path);
+  const auto [ours, theirs] = compare_grids({}, 3000);
   EXPECT_GT(ours.walls, 0.85);
   EXPECT_GT(ours.walls, theirs.walls);
   EXPECT_LT(ours.doorways, theirs.doorways);

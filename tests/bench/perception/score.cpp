@@ -316,11 +316,29 @@ interpretation::Settings settings_of(const Drive& drive) {
   return settings;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty())
-    return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles) {
+  Drive drive(options);
+  interpretation::Settings settings = settings_of(drive);
+  settings.grid.window = 100.0;
+  interpretation::Interpretation muriel(settings);
+  settings.grid.model = interpretation::GridModel::cone;
+  interpretation::Interpretation cone(settings);
+  Tour tour(patrol(options.world), true);
+  std::vector<Vec2> path;
+  while (drive.seen().cycle < cycles) {
+    tour.act(drive, drive.seen().true_pose_in_world);
+    const Seen& seen = drive.advance();
+    const interpretation::Inputs inputs{
+        seen.cycle, seen.pose_in_odom, seen.readings,
+        compose(seen.true_pose_in_world, relative(seen.pose_in_odom, Pose{}))};
+    muriel.step(inputs);
+    cone.step(inputs);
+    if (seen.cycle % 10 == 0)
+      path.push_back(seen.true_pose_in_world.position());
+  }
+  const maps::Map map = map_of(options.world);
+  return {score_grid(muriel.grid(), drive.world(), map, path),
+          score_grid(cone.grid(), drive.world(), map, path)};
 }
 
 }  // namespace saphira::test

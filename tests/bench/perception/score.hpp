@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -88,6 +89,9 @@ struct GridScore {
 };
 GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
                      const maps::Map& map, const std::vector<Vec2>& path);
+/// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: what is
+/// compared is the model alone.
+std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles);
 
 /// The points of a patrol of a world of config/worlds that goes through all its corridors.
 std::vector<Vec2> patrol(const std::string& world);
@@ -95,7 +99,5 @@ std::vector<Vec2> patrol(const std::string& world);
 maps::Map map_of(const std::string& world);
 
 interpretation::Settings settings_of(const Drive& drive);
-
-double quantile(std::vector<double> values, double share);
 
 }  // namespace saphira::test

@@ -12,9 +12,11 @@
 #include "saphira/base/text.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/registration/scan_mapping.hpp"
+#include "support/quantile.hpp"
 
 using namespace saphira;
 using namespace saphira::bench;
+using saphira::test::quantile;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
@@ -49,14 +51,6 @@ constexpr Published kPublished[] = {
     {"hospital", "GMapping, 50 particles", 0.637, 2.638},
     {"hospital", "graph mapping", 0.143, 0.180},
 };
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty())
-    return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 class Report {
  public:

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::intentions {
@@ -112,7 +113,5 @@ std::string describe(const GoalId& id);
 /// What somebody wrote, in quotes, made fit for a message: cut to 40 characters, no control
 /// characters.
 std::string quoted(std::string_view text);
-/// A number as people write it, such as 0.25.
-std::string plain(double value);
 
 }  // namespace saphira::intentions
