@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "saphira/vision/picture.hpp"
+
+namespace saphira::vision {
+
+struct CensusSettings {
+  int most = 64;        ///< [pixels] of disparity: what is nearer is not matched
+  int half_window = 4;  ///< [pixels] the costs of 9 x 9 pixels are added up
+};
+
+/// Disparities of the left picture, of rows `first_row` on.
+struct DisparityMap {
+  int columns = 0;
+  int first_row = 0;
+  int rows = 0;
+  std::vector<float> disparities;  ///< [pixels] below 0: none
+
+  std::optional<double> at(int column, int row) const {
+    const float value =
+        disparities[static_cast<std::size_t>(row - first_row) * static_cast<std::size_t>(columns) +
+                    static_cast<std::size_t>(column)];
+    return value < 0.0F ? std::nullopt : std::optional(static_cast<double>(value));
+  }
+};
+
+/// Ranges by the census of Zabih and Woodfill, as Flakey's (paper 2.1): a pixel is a word of which
+/// of its neighbours are darker; words are compared by the number of bits in which they differ,
+/// added up over a window. What does not match the same from the right picture to the left is left
+/// out; a parabola through the costs gives fractions of a pixel.
+class Census {
+ public:
+  explicit Census(const CensusSettings& settings = {}) : settings_(settings) {}
+
+  /// Of the rows from `first_row` to before `last_row`, as far as the window lies in the pictures.
+  const DisparityMap& match(const ImageView& left, const ImageView& right, int first_row,
+                            int last_row);
+
+ private:
+  using Words = std::vector<std::uint32_t>;
+
+  void add_differences(const Words& left, const Words& right, int row, bool add);
+  void match_row(float* out);
+
+  CensusSettings settings_;
+  DisparityMap map_;
+  int columns_ = 0;
+  Words left_;
+  Words right_;
+  // [disparity][column of the left picture]
+  std::vector<std::int16_t> sums_;  ///< of the differences in the window's rows
+  std::vector<std::int16_t> cost_;
+  std::vector<std::int16_t> best_cost_, best_at_, before_, after_, last_;
+  std::vector<std::int16_t> right_cost_, right_at_;
+};
+
+}  // namespace saphira::vision

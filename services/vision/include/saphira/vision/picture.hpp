@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira::vision {
+
+/// A grey picture in somebody's memory, its rows from the top.
+struct ImageView {
+  const std::uint8_t* pixels = nullptr;
+  int columns = 0;
+  int rows = 0;
+  int stride = 0;  ///< [bytes] from a row to the next
+
+  const std::uint8_t* row(int index) const {
+    return pixels + static_cast<std::ptrdiff_t>(index) * stride;
+  }
+};
+
+/// Two pinhole cameras side by side that look straight ahead, parallel to the floor.
+struct Rig {
+  double focal = 277.128129;  ///< [pixels]
+  double baseline = 0.12;     ///< [m]
+  double height = 1.0;        ///< [m] above the floor
+  double forward = 0.0;       ///< [m] before the robot's centre
+
+  bool operator==(const Rig&) const = default;
+};
+
+/// What both cameras saw in one cycle: the left picture on the left of one.
+struct StereoPicture {
+  std::uint64_t cycle = 0;
+  Rig rig;
+  int columns = 0;  ///< of each picture
+  int rows = 0;
+  std::vector<std::uint8_t> pixels;
+
+  ImageView left() const { return {pixels.data(), columns, rows, 2 * columns}; }
+  ImageView right() const { return {pixels.data() + columns, columns, rows, 2 * columns}; }
+};
+
+/// Makes pictures of a stream of PGM files with the comment that sim/README.md describes.
+class PictureStream {
+ public:
+  void feed(std::string_view bytes);
+  /// The next picture that is whole. FileError where the stream is none of such pictures; it is of
+  /// no use from there on.
+  std::optional<StereoPicture> take();
+  void clear() { waiting_.clear(); }
+
+ private:
+  std::string waiting_;
+};
+
+}  // namespace saphira::vision

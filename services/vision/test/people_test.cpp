@@ -1,0 +1,92 @@
+#include "saphira/vision/people.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include "seen.hpp"
+
+namespace saphira::vision {
+namespace {
+
+std::vector<Sight> people_in(const std::string& things, const Pose& robot = {2.0, 3.0, 0.0}) {
+  const sim::World world = room(things);
+  sim::Scene scene(world);
+  scene.add_robot({}, robot, 1);
+  Random random(5);
+  Census census;
+  return find_people(bands(census, picture(scene, random)));
+}
+
+TEST(People, AreFoundWhereTheyStand) {
+  for (const auto& [away, aside] :
+       {std::pair{1.2, 0.0}, {2.0, 0.5}, {2.5, -0.8}, {3.5, 0.7}, {4.0, 0.0}, {5.0, -1.0}}) {
+    const auto found = people_in("person ann " + std::to_string(2000 + int(1000 * away)) + " " +
+                                 std::to_string(3000 + int(1000 * aside)));
+    ASSERT_EQ(found.size(), 1U) << away << " m away, " << aside << " m aside";
+    EXPECT_NEAR(found[0].place_in_robot.x(), away, 3.0 * found[0].sigma_range) << away;
+    EXPECT_NEAR(found[0].place_in_robot.y(), aside, 3.0 * found[0].sigma_across) << away;
+    EXPECT_NEAR(found[0].width, 0.5, 0.2) << away;
+  }
+}
+
+TEST(People, TwoAreTwo) {
+  EXPECT_EQ(people_in("person ann 5000 2400 person ben 5200 3600").size(), 2U);
+}
+
+// A false person is followed: walls, doors, boxes, posts and robots are none.
+TEST(People, WhatIsNoneIsNoPerson) {
+  const char* const things[] = {
+      "",
+      "box crate 4000 3000 0 400 600 5",
+      "box cupboard 5000 3000 20 600 1200 50 tall 2000",
+      "post can 4000 3000 250",
+      "post pillar 4500 3000 60 tall 2200",
+      "5000 2000 5000 3500",
+      "5000 3200 5000 6000 5000 0 5000 2400",  // an opening
+      "door d 5000 2500 5000 3400 -90",
+  };
+  for (const char* const each : things)
+    for (const double heading : {0.0, 25.0, -40.0})
+      EXPECT_TRUE(people_in(each, {2.0, 3.0, radians(heading)}).empty())
+          << each << ", heading " << heading;
+}
+
+TEST(People, WhoIsBehindSomethingIsNotInView) {
+  const sim::World world =
+      room("person ann 7000 3000 box cupboard 4000 3000 0 300 1200 50 tall 2000");
+  sim::Scene scene(world);
+  scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
+  Random random(5);
+  Census census;
+  const Bands seen = bands(census, picture(scene, random));
+  EXPECT_FALSE(in_view(seen, {5.0, 0.0}));
+  EXPECT_TRUE(in_view(seen, {4.0, 1.5}));
+  EXPECT_FALSE(in_view(seen, {4.0, 4.0}));
+  EXPECT_FALSE(in_view(seen, {-2.0, 0.0}));
+}
+
+// Not a bound that a busy machine could miss: only that it is no slideshow.
+TEST(People, APairIsQuicklyDone) {
+  const sim::World world = room("person ann 5000 3000");
+  sim::Scene scene(world);
+  scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
+  Random random(5);
+  const StereoPicture pair = picture(scene, random);
+  Census census;
+  double least = 1e9;
+  for (int i = 0; i < 10; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(find_people(bands(census, pair)).size(), 1U);
+    least = std::min(
+        least, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  RecordProperty("milliseconds", static_cast<int>(1000.0 * least));
+  std::cout << "people in a pair: " << 1000.0 * least << " ms\n";
+  EXPECT_LT(least, 1.0);
+}
+
+}  // namespace
+}  // namespace saphira::vision
