@@ -170,11 +170,13 @@ TEST(LaterServer, PacketsOnRequest) {
   b.send(protocol::IoRequest{2});
   b.send(protocol::DigitalOutput{0xFF, 0x0F});
   b.server_.devices().set_digital_input(0x12);
+  b.server_.devices().set_analog(0x80);
   b.advance(0.5);
   const auto io = b.last<protocol::IoPacket>(&count);
   EXPECT_EQ(count, 5);
   EXPECT_EQ(io.digital_outputs, Bytes{0x0F});
   EXPECT_EQ(io.digital_inputs, Bytes{0x12});
+  EXPECT_EQ(io.analogs, std::vector<std::uint16_t>{0x200});
   b.send(protocol::BatteryRequest{1});
   EXPECT_EQ(b.last<protocol::BatteryPacket>().batteries, 1);
   EXPECT_TRUE(b.server_.is_open());

@@ -41,13 +41,33 @@ class BeeClient {
       return std::to_string(count) + " sonar readings";
     if (body->size() < 20U + 3U * static_cast<std::size_t>(count) + 5U)
       return "too short";
-    moving = (*body)[0] == 0x33;
+    moving_ = (*body)[0] == 0x33;
     return {};
   }
 
-  bool moving = false;
+  // A metre in six seconds; empty, or what is wrong with which packet.
+  std::string drive_a_metre() {
+    send(packet(4, 1));  // ENABLE
+    for (int i = 0; i < 60; ++i) {
+      if (i % 10 == 0)
+        send(packet(Wire{0}));  // PULSE
+      if (i == 5)
+        send(packet(11, 200));  // VEL [mm/s]
+      if (i == 55)
+        send(packet(11, 0));
+      std::string fault = cycle();
+      if (fault.empty() && i == 4 && moving_)
+        fault = "moves before it is told to";
+      if (fault.empty() && i == 40 && !moving_)
+        fault = "does not move";
+      if (!fault.empty())
+        return "packet " + std::to_string(i) + ": " + fault;
+    }
+    return {};
+  }
 
  private:
+  bool moving_ = false;
   Line& line_;
   int fewest_;
   int most_;

@@ -76,6 +76,22 @@ class PlayerClient {
     return true;
   }
 
+  // Sonars and motors on, and what is seen for 1.5 s; false where the robot fell silent.
+  bool switch_on() {
+    sonars(true);
+    motors(true);
+    return cycles(15);
+  }
+  bool drive_a_metre() {
+    for (int i = 0; i < 200 && x < 950.0; ++i) {
+      set_speed(200, 0);
+      if (!cycle())
+        return false;
+    }
+    stop();
+    return cycles(15);
+  }
+
   double x = 0.0;  // mm
   bool warned = false;
   int tainted = 0;  // odometry steps that it throws away
@@ -83,6 +99,13 @@ class PlayerClient {
   const KnownRobot* known() const { return known_; }
 
  private:
+  bool cycles(int count) {
+    for (int i = 0; i < count; ++i)
+      if (!cycle())
+        return false;
+    return true;
+  }
+
   void take(const Wire& body) {
     const auto u16 = [&](std::size_t at) { return body[at] | body[at + 1] << 8; };
     // It keeps 12 bits of the position.

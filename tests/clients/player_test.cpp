@@ -18,21 +18,12 @@ TEST_P(Player, ConnectsDrivesSeesAndStops) {
   PlayerClient client(line);
   ASSERT_EQ(client.connect(), "");
   EXPECT_FALSE(client.warned);
-  client.sonars(true);
-  client.motors(true);
-  for (int i = 0; i < 15; ++i)
-    ASSERT_TRUE(client.cycle());
+  ASSERT_TRUE(client.switch_on());
   const KnownRobot& known = *client.known();
   ASSERT_TRUE(client.ranges.contains(known.front));
   EXPECT_NEAR(client.ranges.at(known.front), 3000.0 - known.front_x, 150.0);
 
-  for (int i = 0; i < 200 && client.x < 950.0; ++i) {
-    client.set_speed(200, 0);
-    ASSERT_TRUE(client.cycle());
-  }
-  client.stop();
-  for (int i = 0; i < 15; ++i)
-    ASSERT_TRUE(client.cycle());
+  ASSERT_TRUE(client.drive_a_metre());
   EXPECT_EQ(client.tainted, 0);
   EXPECT_NEAR(client.x / 1000.0, line.robot().pose_in_world().x - line.start().x, 0.06);
   EXPECT_GT(client.x, 950.0);

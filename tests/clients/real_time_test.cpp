@@ -128,19 +128,10 @@ TEST_P(PlayerInRealTime, ConnectsDrivesSeesAndStops) {
   PlayerClient client(*line_);
   ASSERT_EQ(client.connect(), "");
   EXPECT_FALSE(client.warned);
-  client.sonars(true);
-  client.motors(true);
-  for (int i = 0; i < 15; ++i)
-    ASSERT_TRUE(client.cycle());
+  ASSERT_TRUE(client.switch_on());
   const KnownRobot& known = *client.known();
   EXPECT_NEAR(client.ranges.at(known.front), 3000.0 - known.front_x, 150.0);
-  for (int i = 0; i < 200 && client.x < 950.0; ++i) {
-    client.set_speed(200, 0);
-    ASSERT_TRUE(client.cycle());
-  }
-  client.stop();
-  for (int i = 0; i < 15; ++i)
-    ASSERT_TRUE(client.cycle());
+  ASSERT_TRUE(client.drive_a_metre());
   EXPECT_EQ(client.tainted, 0);
   EXPECT_NEAR(client.x / 1000.0, truth().pose_in_world.x - kStart.x, 0.06);
   EXPECT_NEAR(truth().velocity, 0.0, 1e-6);
@@ -165,16 +156,7 @@ class BeeInRealTime : public RealTime {};
 TEST_P(BeeInRealTime, EveryPacketObeys) {
   BeeClient client(*line_, 2, 3);
   ASSERT_TRUE(client.connect());
-  client.send(packet(4, 1));
-  for (int i = 0; i < 60; ++i) {
-    if (i % 10 == 0)
-      client.send(packet(Wire{0}));
-    if (i == 5)
-      client.send(packet(11, 200));
-    if (i == 55)
-      client.send(packet(11, 0));
-    ASSERT_EQ(client.cycle(), "") << "packet " << i;
-  }
+  ASSERT_EQ(client.drive_a_metre(), "");
   EXPECT_NEAR(truth().pose_in_world.x - kStart.x, 1.0, 0.15);
   client.send(packet(Wire{2}));
   line_->wait(0.3);

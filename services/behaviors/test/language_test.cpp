@@ -326,5 +326,19 @@ TEST(Language, BottomlessTextsAreTold) {
     EXPECT_FALSE(compile(text, "deep.beh").errors.empty());
 }
 
+TEST(Language, EveryFunctionIsDescribed) {
+  const std::string description = read_file(source_dir() + "/services/behaviors/LANGUAGE.md");
+  const std::vector<std::string> functions = language_functions();
+  EXPECT_GT(functions.size(), 20U);
+  for (const std::string& function : functions) {
+    const std::string name = function.substr(0, function.find('('));
+    // The fields of sfRobot stand there as ".rv".
+    const std::size_t point = name.find('.');
+    EXPECT_NE(description.find(point == std::string::npos ? name : name.substr(point)),
+              std::string::npos)
+        << function;
+  }
+}
+
 }  // namespace
 }  // namespace saphira::behaviors

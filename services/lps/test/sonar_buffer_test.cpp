@@ -95,6 +95,17 @@ TEST(FrontBuffer, FartherThanItsRangeIsAMiss) {
   EXPECT_EQ(valid(lps.front()), 1U);
 }
 
+TEST(SonarBuffers, AreAsLongAsTheyAreSet) {
+  LocalPerceptualSpace lps(pioneer());
+  lps.set_front_buffer(2);
+  lps.set_side_buffer(1);
+  lps.update({}, {{3, 1.0, true}, {3, 1.1, true}, {3, 1.2, true}}, 1);
+  lps.update({}, {{0, 1.0, true}, {0, 1.1, true}, {6, 1.0, true}, {6, 1.1, true}}, 2);
+  EXPECT_EQ(lps.front().entries().size(), 2U);
+  EXPECT_EQ(lps.left().entries().size(), 1U);
+  EXPECT_EQ(lps.right().entries().size(), 1U);
+}
+
 TEST(SideBuffers, TakeOnlyEchoesOfTheirSide) {
   LocalPerceptualSpace lps(pioneer());
   lps.update({}, {{0, 1.5, true}, {0, 5.0, false}, {6, 0.5, true}}, 1);

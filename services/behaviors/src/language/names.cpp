@@ -53,10 +53,6 @@ std::string meant(const std::string& name, const std::vector<std::string>& names
 
 }  // namespace
 
-std::span<const Quick> quick_functions() {
-  return kQuick;
-}
-
 const Quick* find_quick(std::string_view name) {
   const auto* const found = std::ranges::find(kQuick, name, &Quick::name);
   return found == std::end(kQuick) ? nullptr : found;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +27,6 @@ struct Quick {
   int arguments;
   Op op;
 };
-std::span<const Quick> quick_functions();
 /// Null where there is none of that name.
 const Quick* find_quick(std::string_view name);
 const Function* find_function(std::string_view name);

@@ -86,8 +86,6 @@ class Devices {
   std::uint8_t digital_output() const { return digital_output_; }
   const Gripper& gripper() const { return gripper_; }
   int bump_stall() const { return bump_stall_; }  ///< bit 0: the front bumpers stall, 1: the rear
-  /// [20 ms] that its sounds still take.
-  int sounding() const { return sounding_; }
 
   // What the world does to it.
   void set_digital_input(std::uint8_t bits) { digital_input_ = bits; }

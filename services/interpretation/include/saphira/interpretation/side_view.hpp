@@ -88,7 +88,6 @@ class SideView {
   void clear();
 
   const std::vector<Wall>& walls() const { return walls_; }
-  const std::deque<Return>& returns() const { return returns_; }
 
  private:
   struct Candidate {
