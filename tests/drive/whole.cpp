@@ -129,7 +129,8 @@ Whole::Whole(const WholeOptions& options)
           options.knows_pose ? std::optional(drive_.seen().true_pose_in_world) : std::nullopt),
       executor_(options.schemas.value_or(
                     shipped_schemas(options.drive.behaviors.value_or(behaviors::predefined()))),
-                {}, options_of(intentions::all_functions())) {}
+                {}, options_of(intentions::all_functions())),
+      sees_(options.sees) {}
 
 void Whole::advance() {
   // What the others said in the cycle before.
@@ -155,6 +156,9 @@ void Whole::advance() {
   drive_.robot().clear_stalls();
   inputs.around.lps = &drive_.executive().lps();
   inputs.around.percepts = &seen_before;
+  if (sees_)
+    inputs.around.things = &things_;
+  inputs.around.cycle = seen.cycle;
   inputs.around.topology = topology_;
   inputs.around.map_revision = 1;
   inputs.around.registration.state = localization_of(registered.state);
@@ -177,6 +181,8 @@ void Whole::advance() {
 
   registration_.step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings});
   percepts_ = interpretation_.step({seen.cycle, seen.pose_in_odom, seen.readings}).percepts;
+  if (sees_)
+    things_ = sees_(drive_);
   note_transitions();
 }
 

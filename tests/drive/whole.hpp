@@ -12,6 +12,7 @@
 #include "drive/drive.hpp"
 #include "saphira/intentions/executor.hpp"
 #include "saphira/interpretation/interpretation.hpp"
+#include "saphira/lps/seen_thing.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/registration/registration.hpp"
@@ -24,6 +25,8 @@ struct WholeOptions {
   bool knows_pose = true;  ///< registration is told where the robot starts
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
+  /// What a camera sees after a cycle. None: there is no camera.
+  std::function<std::vector<lps::SeenThing>(Drive&)> sees;
 };
 
 /// The built-in schemas, and those of config/activities. std::runtime_error where anything is wrong
@@ -83,6 +86,8 @@ class Whole {
   registration::Registration registration_;
   intentions::Executor executor_;
   std::vector<lps::Percept> percepts_;
+  std::function<std::vector<lps::SeenThing>(Drive&)> sees_;
+  std::vector<lps::SeenThing> things_;
   intentions::Outputs intentions_;
   std::vector<intentions::GoalEvent> events_;
   std::vector<intentions::ClaimEvent> claims_;

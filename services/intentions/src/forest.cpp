@@ -8,6 +8,8 @@
 
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/functions.hpp"
+#include "saphira/intentions/navigation.hpp"
+#include "seeing.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -31,6 +33,24 @@ Ticks ticks(double seconds) {
 
 constexpr const char* kBehaviorControl = "*behavior-control*";
 
+constexpr std::size_t kManyWords = 40;  ///< letters of a value; of more there is the beginning
+
+std::string in_words(const Bindings& arguments, const World& world) {
+  std::string text;
+  for (const auto& [name, value] : arguments) {
+    std::string words = value.list().empty() ? name_of(world, value)
+                                             : std::to_string(value.list().size()) + " values";
+    if (words.size() > kManyWords) {
+      std::size_t end = kManyWords - 3;
+      while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0U) == 0x80U)
+        --end;  // not within a letter of several bytes
+      words = words.substr(0, end) + "...";
+    }
+    text += (text.empty() ? "" : ", ") + name + "=" + words;
+  }
+  return text;
+}
+
 }  // namespace
 
 struct Forest::Node {
@@ -51,6 +71,8 @@ struct Forest::Node {
   IntendedBehavior behavior;
   Arguments given;      ///< its parameters with the frames that they were given in
   bool on_map = false;  ///< some of them are on the map
+  /// What those are that move: of each parameter lps::SeenThing::id, or 0.
+  std::vector<std::uint64_t> things;
   bool until_satisfied = false;
   Ticks since = 0;  ///< when its parameters were intended
   // Of an activity.
@@ -192,7 +214,7 @@ class Forest::Handle : public Self {
   }
 
   void say(std::string step) override { node_.shown.step = std::move(step); }
-  void progress(double done) override { node_.progress = std::clamp(done, 0.0, 1.0); }
+  void progress(double done) override { node_.progress = done >= 0.0 ? std::min(done, 1.0) : 0.0; }
   void succeed(std::string reason) override {
     node_.outcome = {IntentionState::kSuccess, GoalCode::kNone, std::move(reason)};
   }
@@ -294,6 +316,7 @@ std::uint32_t Forest::start(Node& parent, const Start& start, const World& world
     return id;
   }
   child.activity = std::move(activity);
+  child.shown.arguments = in_words(start.arguments, world);
   child.shown.priority =
       start.priority.value_or(schema->priority != 0 ? schema->priority : parent.shown.priority);
   to_begin_.push_back(id);
@@ -333,7 +356,15 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
     if (value.nil())
       continue;  // not given
     Argument argument;
-    if (!to_argument(spelled, value, argument))
+    const Reference* const reference = value.reference();
+    const bool moves = reference != nullptr && reference->kind == Reference::Kind::kThing;
+    if (moves) {
+      const lps::SeenThing* const thing = seen_thing(world, reference->id);
+      if (thing == nullptr)
+        throw ActivityError("behavior " + node.behavior.schema + ": what " + quoted(name) +
+                            " means is not seen any more");
+      argument = point(spelled, thing->pose_in_odom);
+    } else if (!to_argument(spelled, value, argument))
       throw ActivityError("behavior " + node.behavior.schema + ": parameter " + quoted(name) +
                           " cannot be " + kind_of(value));
     if (argument.kind == ArgumentKind::kPoint && argument.frame == Frame::kRobot) {
@@ -343,6 +374,7 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
     node.on_map =
         node.on_map || (argument.kind == ArgumentKind::kPoint && argument.frame == Frame::kMap);
     node.given.push_back(std::move(argument));
+    node.things.push_back(moves ? reference->id : 0);
   }
   node.since = world.now;
   node.level = 0.0;
@@ -350,11 +382,17 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
     throw ActivityError("the robot does not know where it is on the map", GoalCode::kNoPosition);
 }
 
-/// Puts what is on the map where it is in odom now. Where that is not known, it stays where it was;
-/// false where it has never been known.
+/// Puts what is on the map, and what moves, where it is in odom now. Where that is not known, it
+/// stays where it was; false where it has never been known.
 bool Forest::place(Node& node, const World& world) {
   if (node.behavior.parameters.empty())
     node.behavior.parameters = node.given;
+  for (std::size_t i = 0; i < node.things.size(); ++i) {
+    const lps::SeenThing* const thing =
+        node.things[i] == 0 ? nullptr : seen_thing(world, node.things[i]);
+    if (thing != nullptr)
+      node.behavior.parameters[i].point = thing->pose_in_odom;
+  }
   if (!node.on_map)
     return true;
   bool placed = true;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/intentions/beliefs.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -357,6 +359,32 @@ void add_points(Functions& functions) {
                          "(offset point forward left [turn]): another, as seen from a point"});
 }
 
+void add_beliefs(Functions& functions) {
+  functions.add(Function{"belief", 1, 1,
+                         [](const World& world, Values a) {
+                           return world.beliefs.get(normal(text_of(a, 0, "belief")), world);
+                         },
+                         "(belief 'name): what is known under that name, such as a claim"});
+  functions.add(Function{
+      "belief-since", 1, 1,
+      [](const World& world, Values a) {
+        const Belief* const belief = world.beliefs.stored(normal(text_of(a, 0, "belief-since")));
+        return belief == nullptr ? Value() : Value(kTick * static_cast<double>(belief->since));
+      },
+      "(belief-since 'name): when it was said, as (now) [s]; nil: it was not"});
+  functions.add(Function{"yes", 1, 1,
+                         [](const World&, Values a) {
+                           const std::string* const text = a[0].text();
+                           return Value::truth(a[0].is_t() ||
+                                               (text != nullptr && normal(*text) == "yes"));
+                         },
+                         "(yes answer): whether it is t or yes"});
+  functions.add(Function{
+      "now", 0, 0,
+      [](const World& world, Values) { return Value(kTick * static_cast<double>(world.now)); },
+      "(now): the robot's time since the service began [s]"});
+}
+
 void add_conditions(Functions& functions) {
   const auto add = [&](const char* name, const char* summary, auto test) {
     functions.add(
@@ -454,6 +482,7 @@ Functions core_functions() {
   add_numbers(functions);
   add_lists(functions);
   add_points(functions);
+  add_beliefs(functions);
   add_conditions(functions);
   functions.add(Action{"say", 1, 64,
                        [](Effects& effects, Values arguments) {
@@ -461,6 +490,12 @@ Functions core_functions() {
                          return Value();
                        },
                        "(say \"to ~a\" x) says it to people"});
+  functions.add(Action{"believe", 2, 2,
+                       [](Effects& effects, Values arguments) {
+                         effects.believe(text_of(arguments, 0, "believe"), arguments[1]);
+                         return arguments[1];
+                       },
+                       "(believe name value): as setq of a variable whose name is computed"});
   return functions;
 }
 

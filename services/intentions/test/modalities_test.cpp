@@ -33,7 +33,7 @@ TEST(Modality, WhatFailsCanBeGoneAround) {
   ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(5);
-  EXPECT_EQ(stage.messages, Names({"because part: no way", "not stalled"}));
+  EXPECT_EQ(stage.messages, Names({"because no way", "not stalled"}));
   EXPECT_EQ(stage.status(1).reason, "failure");
 }
 
@@ -366,6 +366,37 @@ TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
   stage.ask(2, "it");
   stage.step(3);
   EXPECT_EQ(stage.status(2).reason, "new");
+}
+
+TEST(Modality, HowMuchIsDoneIsItsOwnOrTheLevel) {
+  Stage stage(activity("(= x 0.25) (WAIT-FOR stalled :forever t)", ":level x") +
+              "(defintention :with :level 0.25 :progress (/ nothing 2) :concurrent t"
+              " :goals '((= nothing 1.5) (WAIT-FOR stalled :forever t)))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.ask(2, "with");
+  stage.step(12);
+  EXPECT_EQ(stage.status(1).progress, 0.25);
+  EXPECT_EQ(stage.status(2).level, 0.25);
+  EXPECT_EQ(stage.status(2).progress, 0.75);
+}
+
+// A question counts what is said from then on, also what has been said before in the same words.
+TEST(Modality, WhenABeliefWasSaid) {
+  Stage stage(
+      activity("(= since (now)) (= name (format \"an~a\" 'swer))"
+               "(WAIT-FOR (and (belief-since name) (>= (belief-since name) since)) :timeout 60s)"
+               "(EXECUTE (believe (format \"*~a*\" 'kept) (belief name)))"
+               "(SUCCEED \"~a ~a ~a\" (yes (belief name)) *kept* (yes (belief 'other)))"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 1}, "a person", "answer", "yes"});
+  stage.step(3);
+  stage.ask(1, "it");
+  stage.step(5);
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid, {9, 2}, "a person", "answer", "Yes"});
+  stage.step(4);
+  EXPECT_EQ(stage.status(1).reason, "t Yes nil");
 }
 
 TEST(Modality, ClaimsOfThirdPartiesAreBeliefs) {

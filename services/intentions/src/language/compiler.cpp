@@ -136,7 +136,8 @@ class Compiler {
     program_->name = form.items[1].text;
     const Parts given = parts(
         form, 2,
-        {"params", "goals", "timeout", "priority", "concurrent", "level", "documentation", "doc"});
+        {"params", "goals", "timeout", "priority", "concurrent", "level", "progress",
+         "documentation", "doc"});
     if (!given.items.empty())
       fail(*given.items[0], "expected :params, :goals or another option" + found(*given.items[0]));
     if (const Form* const params = given.option("params"))
@@ -160,6 +161,8 @@ class Compiler {
       fail(form, "expected :goals '(...)");
     if (const Form* const level = given.option("level"))
       program_->level = expression(*level, false);
+    if (const Form* const progress = given.option("progress"))
+      program_->progress = expression(*progress, false);
     body(*goals);
     for (const auto& [name, use] : pending_) {
       if (!assigned_.contains(name))
@@ -695,8 +698,9 @@ class Compiler {
     }
     if (name == "setq")
       return set(form, actions);
-    if (name == "belief") {
-      expect(1, 1);
+    // Of a name that is not computed: found without a call.
+    if (name == "belief" && given == 1 &&
+        (form.items[1].quoted || form.items[1].kind == Form::Kind::kText)) {
       result.kind = Kind::kBelief;
       const Value what = literal(form.items[1]);
       if (what.text() == nullptr)

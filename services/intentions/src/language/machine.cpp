@@ -149,16 +149,21 @@ class Machine : public Activity {
     if (over_)
       return;
     show(self);
-    if (program_->level) {
-      try {
-        const Value level = value(*program_->level, self);
-        self.level(level.number() != nullptr ? *level.number() : level.truthy() ? 1.0 : 0.0);
-      } catch (const ActivityError&) {
-        self.level(0.0);  // what it is measured by is not there
-      }
-    } else {
-      const Thread& main = threads_.front();
-      self.level(main.child != 0 ? self.child_level(main.child) : 0.0);
+    const Thread& main = threads_.front();
+    const double level = program_->level   ? degree(*program_->level, self)
+                         : main.child != 0 ? self.child_level(main.child)
+                                           : 0.0;
+    self.level(level);
+    self.progress(program_->progress ? degree(*program_->progress, self) : level);
+  }
+
+  /// How far something is so [0..1]; 0 where what it is measured by is not there.
+  double degree(const Expression& expression, Self& self) {
+    try {
+      const Value is = value(expression, self);
+      return is.number() != nullptr ? *is.number() : is.truthy() ? 1.0 : 0.0;
+    } catch (const ActivityError&) {
+      return 0.0;
     }
   }
 
@@ -417,7 +422,10 @@ class Machine : public Activity {
                                 ? GoalCode::kActivity
                                 : outcome->code;
       const std::string& schema = program_->steps[thread.at].intend->schema;
-      failure(thread, code, schema + ": " + reason_, self);
+      // Upwards with where it comes from; to this intention without, for what people are told.
+      const std::string bare = reason_;
+      failure(thread, code, schema + ": " + bare, self);
+      reason_ = bare;
       return true;
     }
     go_behind(thread);

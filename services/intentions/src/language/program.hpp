@@ -141,6 +141,7 @@ struct Program {
   std::size_t parameters = 0;
   std::vector<Value> usual;  ///< defaults of the parameters
   std::optional<Expression> level;
+  std::optional<Expression> progress;
   double timeout = 0.0;  ///< [s] 0: none
   std::vector<Mention> mentions;
 };

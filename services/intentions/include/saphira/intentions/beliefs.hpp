@@ -51,6 +51,8 @@ class Beliefs {
   /// nil where nothing is known.
   Value get(std::string_view name, const World& world) const;
   bool known(std::string_view name) const;
+  /// What activities have set or others claim under a name, the newest of it; nullptr: nothing.
+  const Belief* stored(std::string_view name) const;
   /// By name.
   std::vector<Belief> all() const;
   /// Larger whenever all() has changed.
@@ -61,8 +63,6 @@ class Beliefs {
     GoalId id;
     Belief belief;
   };
-  const Belief* stored(std::string_view name) const;
-
   const Functions* functions_;
   std::map<std::string, Belief, std::less<>> set_;
   std::map<std::string, std::vector<Claim>, std::less<>> claims_;  ///< oldest first

@@ -20,6 +20,7 @@ struct IntentionNode {
   std::uint32_t parent = 0;  ///< 0: none
   std::string name;
   std::string schema;
+  std::string arguments;  ///< what it was begun with, in words; of a root its goal says it
   IntentionState state = IntentionState::kInit;
   bool blocking = true;
   std::string label;  ///< the state that comes next; B: a behavior

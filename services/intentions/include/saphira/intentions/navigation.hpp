@@ -14,6 +14,9 @@ namespace saphira::intentions {
 /// are in the environment variable *closed-ways*; `find-path` leaves them out for five minutes.
 void add_navigation(Functions& functions);
 
+/// What a value is called: what there is on the map by its name.
+std::string name_of(const World& world, const Value& value);
+
 /// core_functions() and these: all that the shipped activities use.
 std::shared_ptr<const Functions> all_functions();
 
