@@ -24,8 +24,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstBackoff{100};
 constexpr milliseconds kLastBackoff{5000};
-constexpr std::chrono::seconds kProven{10};  ///< a child that ran this long starts afresh
-constexpr std::size_t kLongestLine = 4096;   ///< longer ones are broken up
+constexpr std::size_t kLongestLine = 4096;  ///< longer ones are broken up
 
 bool is_crash(int status) {
   if (!WIFSIGNALED(status))
@@ -70,7 +69,8 @@ milliseconds until(Supervisor::Clock::time_point when) {
 
 }  // namespace
 
-Supervisor::Supervisor(std::vector<ChildSpec> children, Print print) : print_(std::move(print)) {
+Supervisor::Supervisor(std::vector<ChildSpec> children, Print print, milliseconds proven)
+    : print_(std::move(print)), proven_(proven) {
   for (ChildSpec& spec : children)
     slots_.push_back({std::move(spec), 0, -1, 0, {}, {}, {}, {}, false});
 }
@@ -94,7 +94,7 @@ void Supervisor::launch(std::size_t index) {
   const std::vector<char*> env = pointers(environment);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw std::runtime_error(std::string("no pipe: ") + strerror(errno));
+    throw std::runtime_error(slot.spec.name + " cannot be started, no pipe: " + strerror(errno));
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid < 0) {
@@ -141,7 +141,26 @@ void Supervisor::step(milliseconds timeout, std::initializer_list<int> wake_fds)
   poll_once(timeout, wake_fds);
   for (std::size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].due && Clock::now() >= *slots_[i].due)
-      launch(i);
+      launch_again(i);
+}
+
+void Supervisor::launch_again(std::size_t index) {
+  Slot& slot = slots_[index];
+  try {
+    launch(index);
+  } catch (const std::exception& error) {
+    // The machine has no process, descriptor or memory left for it now: the others go on.
+    const milliseconds delay = put_off(slot, false);
+    say(std::string(error.what()) + "; tried again in " + std::to_string(delay.count()) + " ms");
+  }
+}
+
+milliseconds Supervisor::put_off(Slot& slot, bool proven) {
+  slot.backoff = proven || slot.backoff == milliseconds(0)
+                     ? kFirstBackoff
+                     : std::min(slot.backoff * 2, kLastBackoff);
+  slot.due = Clock::now() + slot.backoff;
+  return slot.backoff;
 }
 
 void Supervisor::poll_once(milliseconds timeout, std::initializer_list<int> wake_fds) {
@@ -207,18 +226,15 @@ void Supervisor::reap(std::size_t index) {
   slot.crashed = slot.crashed || is_crash(status);
   if (stopping_)
     return;
-  const auto ran = Clock::now() - slot.started;
-  slot.misused = WIFEXITED(status) && WEXITSTATUS(status) == 2 && slot.starts == 1;
+  const bool proven = Clock::now() - slot.started >= proven_;
+  slot.misused = WIFEXITED(status) && WEXITSTATUS(status) == 2 && slot.starts == 1 && !proven;
   if (!slot.spec.restart || slot.misused) {
     say(slot.spec.name + " ended: " + slot.ended);
     return;
   }
-  slot.backoff = ran >= kProven || slot.backoff == milliseconds(0)
-                     ? kFirstBackoff
-                     : std::min(slot.backoff * 2, kLastBackoff);
-  slot.due = Clock::now() + slot.backoff;
+  const milliseconds delay = put_off(slot, proven);
   say(slot.spec.name + " ended: " + slot.ended + "; started again in " +
-      std::to_string(slot.backoff.count()) + " ms");
+      std::to_string(delay.count()) + " ms");
 }
 
 void Supervisor::stop(milliseconds limit) {

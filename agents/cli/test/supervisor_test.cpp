@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -97,6 +98,49 @@ TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {
   EXPECT_TRUE(supervisor.finished());
   EXPECT_EQ(supervisor.children().at(0).starts, 1);
   EXPECT_EQ(lines_, (std::vector<std::string>{"a|bad option", "|a ended: exit code 2"}));
+}
+
+TEST_F(SupervisorTest, StartsAgainWhatEndsLateAsIfMisused) {
+  // It ran, so what it was given is right.
+  Supervisor supervisor({shell("a", "sleep 0.1; exit 2")}, keep(), milliseconds(50));
+  supervisor.start();
+  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
+  EXPECT_FALSE(supervisor.misused().has_value());
+  EXPECT_TRUE(said("|a ended: exit code 2; started again in 100 ms")) << all();
+}
+
+/// No descriptor more than there are, as long as it lives.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit few = before_;
+    few.rlim_cur = 3;
+    setrlimit(RLIMIT_NOFILE, &few);
+  }
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(SupervisorTest, TriesAgainWhatCannotBeStartedNow) {
+  Supervisor supervisor({shell("a", "exec sleep 60"), shell("b", "exec sleep 60")}, keep());
+  supervisor.start();
+  const pid_t other = supervisor.children().at(1).pid;
+  const std::string words = "|a cannot be started, no pipe: Too many open files; tried again in ";
+  {
+    const NoMoreFiles now;
+    kill(supervisor.children().at(0).pid, SIGKILL);
+    EXPECT_TRUE(run_until(supervisor, [&] { return said(words + "400 ms"); })) << all();
+  }
+  EXPECT_TRUE(said(words + "200 ms")) << all();
+  EXPECT_EQ(supervisor.children().at(0).pid, 0);
+  EXPECT_FALSE(supervisor.finished());
+  EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
+  EXPECT_EQ(supervisor.children().at(1).pid, other);
 }
 
 TEST_F(SupervisorTest, DoesNotStartAgainWhatMayEnd) {

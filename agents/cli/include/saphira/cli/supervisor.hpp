@@ -23,9 +23,10 @@ struct ChildSpec {
 };
 
 /// Runs programs: starts them in order, prints what they print line by line, starts again what
-/// ends (after 100 ms, then twice as long each time up to 5 s; back to 100 ms once it has run for
-/// 10 s), and stops all in the reverse order. The children get SIGTERM from the kernel when the
-/// supervisor dies, and a process group each, so that Ctrl-C reaches the supervisor alone.
+/// ends (after 100 ms, then twice as long each time up to 5 s; back to 100 ms once it has proven
+/// itself by running for 10 s), and stops all in the reverse order. The children get SIGTERM from
+/// the kernel when the supervisor dies, and a process group each, so that Ctrl-C reaches the
+/// supervisor alone.
 ///
 /// For one thread, which must outlive the children (PR_SET_PDEATHSIG is about the thread).
 class Supervisor {
@@ -42,7 +43,8 @@ class Supervisor {
     bool crashed = false;  ///< at some time, by a fault of its own
   };
 
-  Supervisor(std::vector<ChildSpec> children, Print print);
+  Supervisor(std::vector<ChildSpec> children, Print print,
+             std::chrono::milliseconds proven = std::chrono::seconds(10));
   /// Stops what still runs.
   ~Supervisor();
   Supervisor(const Supervisor&) = delete;
@@ -50,15 +52,16 @@ class Supervisor {
 
   /// Starts every child. std::runtime_error when one cannot be started at all.
   void start();
-  /// Waits for something to do, for one of `wake_fds` or the timeout, and does what is due.
+  /// Waits for something to do, for one of `wake_fds` or the timeout, and does what is due. What
+  /// cannot be started again now is tried again later.
   void step(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
   /// SIGTERM to each in the reverse order, the next one when it has ended; SIGKILL to what is left
   /// after `limit`.
   void stop(std::chrono::milliseconds limit = std::chrono::seconds(2));
 
   std::vector<Child> children() const;
-  /// A child that ended with a usage error (exit code 2) right after its first start: what it was
-  /// given is wrong, so to start it again is of no use.
+  /// A child that ended with a usage error (exit code 2) right after its first start, before it
+  /// had proven itself: what it was given is wrong, so to start it again is of no use.
   std::optional<std::string> misused() const;
   /// Whether no child runs and none will be started again.
   bool finished() const;
@@ -83,6 +86,9 @@ class Supervisor {
   };
 
   void launch(std::size_t index);
+  void launch_again(std::size_t index);
+  /// When to start it again: later each time, unless it had `proven` itself. Returns the delay.
+  std::chrono::milliseconds put_off(Slot& slot, bool proven);
   void poll_once(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
   bool read_stream(Stream& stream);
   void reap(std::size_t index);
@@ -91,6 +97,7 @@ class Supervisor {
   std::vector<Slot> slots_;
   std::vector<Stream> streams_;  ///< outlive their child: a grandchild may hold them
   Print print_;
+  std::chrono::milliseconds proven_;  ///< a child that ran this long starts afresh
   bool stopping_ = false;
 };
 
