@@ -4,19 +4,13 @@
 #include <charconv>
 #include <cstdio>
 #include <map>
+#include <optional>
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::intentions {
 namespace {
-
-constexpr GoalState kStates[] = {GoalState::kRefused, GoalState::kSucceeded, GoalState::kFailed,
-                                 GoalState::kCanceled};
-constexpr GoalCode kCodes[] = {
-    GoalCode::kNone,       GoalCode::kUnknownFunctor, GoalCode::kBadArgument, GoalCode::kChanged,
-    GoalCode::kTooMany,    GoalCode::kDeadline,       GoalCode::kBlocked,     GoalCode::kNoRobot,
-    GoalCode::kNoPosition, GoalCode::kDisposed,       GoalCode::kWriterLost,  GoalCode::kPreempted};
 
 std::string write_id(const GoalId& id) {
   char text[48];
@@ -42,14 +36,24 @@ GoalId read_id(LineReader& reader) {
   return id;
 }
 
-template <class Enum, std::size_t size>
-Enum read_name(LineReader& reader, std::string_view what, const Enum (&values)[size]) {
-  const std::string_view word = reader.word(what);
-  for (const Enum value : values) {
-    if (word == name_of(value))
-      return value;
+/// The value that name_of gives that name; none where there is no such value. Values are numbered
+/// from 0 without gaps.
+template <class Enum>
+std::optional<Enum> value_named(std::string_view name) {
+  for (int i = 0; name_of(static_cast<Enum>(i)) != std::string_view("?"); ++i) {
+    if (name == name_of(static_cast<Enum>(i)))
+      return static_cast<Enum>(i);
   }
-  reader.fail("expected " + std::string(what) + ", found \"" + std::string(word) + "\"");
+  return std::nullopt;
+}
+
+template <class Enum>
+Enum read_name(LineReader& reader, std::string_view what) {
+  const std::string_view word = reader.word(what);
+  const std::optional<Enum> value = value_named<Enum>(word);
+  if (!value)
+    reader.fail("expected " + std::string(what) + ", found \"" + std::string(word) + "\"");
+  return *value;
 }
 
 Pose read_pose(LineReader& reader) {
@@ -58,6 +62,20 @@ Pose read_pose(LineReader& reader) {
   pose.y = reader.number("y [m]");
   pose.th = reader.number("th [rad]");
   return pose;
+}
+
+/// What is behind the id.
+void read_placement(LineReader& reader, Placement& placement) {
+  placement.epoch = read_count(reader, "the epoch of acceptance", 10);
+  placement.cycle = read_count(reader, "the cycle of acceptance", 10);
+  placement.odom = read_count(reader, "the number of the odom frame", 10);
+  while (!reader.at_end()) {
+    Placement::Point point;
+    point.name = reader.word("the name of a point");
+    point.given = read_pose(reader);
+    point.in_odom = read_pose(reader);
+    placement.points.push_back(std::move(point));
+  }
 }
 
 }  // namespace
@@ -88,6 +106,7 @@ Memory read_journal(const std::string& file, std::string_view content) {
   const std::size_t whole = content.rfind('\n');
   content = whole == std::string_view::npos ? std::string_view() : content.substr(0, whole + 1);
   std::map<GoalId, Placement> placements;
+  std::map<GoalId, FileError> unreadable;  // of placements: what has been superseded does not count
   std::vector<Ending> endings;
   for (const Line& line : split_lines(content)) {
     LineReader reader(file, line);
@@ -95,31 +114,33 @@ Memory read_journal(const std::string& file, std::string_view content) {
     if (kind == "placed") {
       Placement placement;
       placement.id = read_id(reader);
-      placement.epoch = read_count(reader, "the epoch of acceptance", 10);
-      placement.cycle = read_count(reader, "the cycle of acceptance", 10);
-      placement.odom = read_count(reader, "the number of the odom frame", 10);
-      while (!reader.at_end()) {
-        Placement::Point point;
-        point.name = reader.word("the name of a point");
-        point.given = read_pose(reader);
-        point.in_odom = read_pose(reader);
-        placement.points.push_back(std::move(point));
+      unreadable.erase(placement.id);
+      try {
+        read_placement(reader, placement);
+        placements[placement.id] = std::move(placement);
+      } catch (const FileError& error) {
+        unreadable.emplace(placement.id, error);
       }
-      placements[placement.id] = std::move(placement);
     } else if (kind == "ended") {
       Ending ending;
       ending.id = read_id(reader);
-      ending.state = read_name(reader, "the state at the end, such as succeeded", kStates);
-      ending.code = read_name(reader, "a code, such as none", kCodes);
+      ending.state = read_name<GoalState>(reader, "the state at the end, such as succeeded");
+      if (!ended(ending.state))
+        reader.fail(std::string("expected the state at the end, such as succeeded, found \"") +
+                    name_of(ending.state) + "\"");
+      ending.code = read_name<GoalCode>(reader, "a code, such as none");
       const std::string_view code = line.words.at(4).text;
       const auto begin = static_cast<std::size_t>(code.data() + code.size() - line.text.data());
       ending.reason = line.text.substr(std::min(begin + 1, line.text.size()));
       placements.erase(ending.id);
+      unreadable.erase(ending.id);
       endings.push_back(std::move(ending));
     } else {
       reader.fail("expected \"placed\" or \"ended\", found \"" + std::string(kind) + "\"");
     }
   }
+  if (!unreadable.empty())
+    throw FileError(unreadable.begin()->second);
   Memory memory;
   for (auto& [id, placement] : placements)
     memory.placements.push_back(std::move(placement));

@@ -10,6 +10,7 @@ namespace {
 
 /// Farther away than any robot goes [m]: a point beyond it is a mistake, such as millimeters.
 constexpr double kFarthest = 10e3;
+constexpr double kMostTurns = 1e3;  ///< [rad] of a heading that somebody has added up
 
 /// Without its hyphens: the same for follow-corridor and FollowCorridor.
 std::string joined(std::string_view name) {
@@ -20,7 +21,8 @@ std::string joined(std::string_view name) {
 
 std::string expected(const Parameter& parameter) {
   if (parameter.any)
-    return "a value";
+    return "a number, a text or a point, within " + plain(kFarthest) + " m and " +
+           plain(kMostTurns) + " rad";
   const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
   switch (parameter.kind) {
     case ArgumentKind::kNumber:
@@ -43,26 +45,26 @@ std::string came(const Argument& argument) {
       const char* const frame = argument.frame == Frame::kRobot  ? "robot"
                                 : argument.frame == Frame::kOdom ? "odom"
                                                                  : "map";
-      return "the point (" + plain(argument.point.x) + ", " + plain(argument.point.y) + ") in " +
-             frame;
+      return "the point (" + plain(argument.point.x) + ", " + plain(argument.point.y) + ", " +
+             plain(argument.point.th) + ") in " + frame;
     }
   }
   return "?";
 }
 
+/// False for what is not a number, as all comparisons here.
 bool fits(const Parameter& parameter, const Argument& argument) {
-  if (parameter.any)
-    return argument.kind != ArgumentKind::kNumber || std::isfinite(argument.number);
-  if (argument.kind != parameter.kind)
+  if (!parameter.any && argument.kind != parameter.kind)
     return false;
-  switch (parameter.kind) {
-    case ArgumentKind::kNumber:  // false for NaN
-      return argument.number >= parameter.low && argument.number <= parameter.high;
+  switch (argument.kind) {
+    case ArgumentKind::kNumber:
+      return parameter.any ? std::isfinite(argument.number)
+                           : argument.number >= parameter.low && argument.number <= parameter.high;
     case ArgumentKind::kText:
       return true;
     case ArgumentKind::kPoint:
-      return std::isfinite(argument.point.th) && std::abs(argument.point.x) <= kFarthest &&
-             std::abs(argument.point.y) <= kFarthest;
+      return std::abs(argument.point.x) <= kFarthest && std::abs(argument.point.y) <= kFarthest &&
+             std::abs(argument.point.th) <= kMostTurns;
   }
   return false;
 }

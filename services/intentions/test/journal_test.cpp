@@ -20,6 +20,42 @@ TEST(Journal, ReadsWhatItWrote) {
   EXPECT_EQ(memory.placements, std::vector{kPlacement});
 }
 
+TEST(Journal, ReadsEveryStateAndCodeThatAGoalCanEndWith) {
+  const auto known = [](const char* name) { return name != std::string("?"); };
+  int states = 0;
+  for (int i = 0; known(name_of(static_cast<GoalState>(i))); ++i) {
+    Ending ending = kEnding;
+    ending.state = static_cast<GoalState>(i);
+    if (!ended(ending.state)) {
+      EXPECT_THROW(read_journal("memory", write_line(ending)), FileError) << i;
+      continue;
+    }
+    EXPECT_EQ(read_journal("memory", write_line(ending)).endings, std::vector{ending});
+    ++states;
+  }
+  EXPECT_EQ(states, 4);
+  int codes = 0;
+  for (; known(name_of(static_cast<GoalCode>(codes))); ++codes) {
+    Ending ending = kEnding;
+    ending.code = static_cast<GoalCode>(codes);
+    EXPECT_EQ(read_journal("memory", write_line(ending)).endings, std::vector{ending});
+  }
+  EXPECT_EQ(codes, static_cast<int>(GoalCode::kPreempted) + 1);
+}
+
+// A goal that is over, or was placed anew, is not to keep the service from its start.
+TEST(Journal, WhatHasBeenSupersededNeedNotBeReadable) {
+  const std::string bad = "placed 3 4 1 12 2 position nan 0 0 0 0 1e13\n";
+  EXPECT_THROW(read_journal("memory", bad), FileError);
+  EXPECT_THROW(read_journal("memory", bad + write_line(kEnding)), FileError);
+  EXPECT_EQ(read_journal("memory", bad + write_line(kPlacement)).placements,
+            std::vector{kPlacement});
+  EXPECT_THROW(read_journal("memory", write_line(kPlacement) + bad), FileError);
+  Ending ending = kEnding;
+  ending.id = kPlacement.id;
+  EXPECT_EQ(read_journal("memory", bad + write_line(ending)).endings, std::vector{ending});
+}
+
 TEST(Journal, TheNewestPlacementCountsAndAnEndingEndsIt) {
   Placement again = kPlacement;
   again.cycle = 90;

@@ -41,7 +41,7 @@ TEST(Schema, SaysWhatWasExpectedAndWhatCame) {
             "argument \"speed\" is given twice");
   EXPECT_EQ(complaint("go_to", {point("position", {1e5, 0, 0}, Frame::kMap)}),
             "argument \"position\": expected a point, within 10000 "
-            "m, got the point (100000, 0) in map");
+            "m, got the point (100000, 0, 0) in map");
   EXPECT_EQ(complaint("turn_to", {}),
             "turn_to: expected either \"heading\" (a number) or \"position\" (a point), got "
             "neither");
@@ -55,6 +55,30 @@ TEST(Schema, RefusesWhatIsNoNumber) {
     EXPECT_NE(complaint("go_to", {point("position", {wrong, 0, 0})}), "");
     EXPECT_NE(complaint("go_to", {point("position", {0, wrong, 0})}), "");
     EXPECT_NE(complaint("go_to", {point("position", {0, 0, wrong})}), "");
+  }
+}
+
+// What a file that remembers goals could not be read with again, also where every kind is taken.
+TEST(Schema, RefusesPointsThatAreNowhere) {
+  Schema schema;
+  schema.name = "it";
+  for (const bool any : {false, true}) {
+    Parameter parameter;
+    parameter.name = "where";
+    parameter.kind = ArgumentKind::kPoint;
+    parameter.any = any;
+    schema.parameters = {parameter};
+    const auto refused = [&](const Pose& pose) {
+      Arguments complete;
+      return !check_arguments(schema, {point("where", pose, Frame::kRobot)}, complete).empty();
+    };
+    EXPECT_FALSE(refused({10e3, -10e3, -1e3}));
+    for (const double wrong : {std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::infinity(), 1e13}) {
+      EXPECT_TRUE(refused({wrong, 0, 0})) << wrong << any;
+      EXPECT_TRUE(refused({0, -wrong, 0})) << wrong << any;
+      EXPECT_TRUE(refused({0, 0, wrong})) << wrong << any;
+    }
   }
 }
 
