@@ -16,14 +16,6 @@ namespace {
 
 using std::chrono::seconds;
 
-void drive(v1::MotorCommand& command, double velocity, double rotation) {
-  command.active(true);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-  command.rotation_velocity(rotation);
-}
-
 TEST(ForeignRobotTest, IsDrivenByOurBridge) {
   ForeignRobot robot;
   Scene scene;
@@ -37,13 +29,13 @@ TEST(ForeignRobotTest, IsDrivenByOurBridge) {
   EXPECT_NEAR(scene.state.sonars()[5].range(), 3.05, 0.01);
   EXPECT_NEAR(scene.state.battery(), 13.0, 1e-6);
 
-  drive(scene.command, 0.25, 0.0);
+  forward(scene.command, 0.25, 0.0);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return robot.velocity() == 250.0; })) << scene.bridge_log();
   EXPECT_TRUE(robot.motors());
   ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 1.0; }));
   EXPECT_NEAR(scene.state.pose_in_odom().x(), robot.x() / 1000.0, 0.1);
-  drive(scene.command, 0.0, radians(30.0));
+  forward(scene.command, 0.0, radians(30.0));
   ASSERT_TRUE(scene.until([&] { return scene.state.rotation_velocity() > radians(25.0); }));
   EXPECT_NEAR(robot.rotation(), 30.0, 1.0);
 
@@ -60,7 +52,7 @@ TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
   Scene scene;
   scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
   scene.start_bridge();
-  drive(scene.command, 0.2, 0.0);
+  forward(scene.command, 0.2, 0.0);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << scene.bridge_log();
   scene.bridge->signal(SIGKILL);
@@ -82,7 +74,7 @@ TEST_P(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
   scene.robot_port = scene.folder.path("watched");
   scene.start_bridge();
   ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  drive(scene.command, 0.15, 0.2);
+  forward(scene.command, 0.15, 0.2);
   scene.drives = true;
   ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.3; }))
       << scene.bridge_log();

@@ -12,12 +12,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-void forward(v1::MotorCommand& command, double velocity) {
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-}
-
 /// A scene whose robot drives at 0.3 m/s.
 void start(Scene& scene) {
   scene.start_simulator();

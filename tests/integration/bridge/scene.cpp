@@ -137,6 +137,14 @@ std::vector<sim::TraceRow> Scene::trace() const {
   return rows;
 }
 
+void forward(v1::MotorCommand& command, double velocity, double rotation) {
+  command.active(true);
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.velocity(velocity);
+  command.rotation(v1::ROTATION_VELOCITY);
+  command.rotation_velocity(rotation);
+}
+
 std::uint64_t stood_still(const std::vector<sim::TraceRow>& rows, std::uint64_t cycle) {
   for (const sim::TraceRow& row : rows) {
     if (row.cycle >= cycle && std::abs(row.velocity) < 1e-3 &&

@@ -76,6 +76,9 @@ class Scene {
   std::chrono::steady_clock::time_point published_;
 };
 
+/// Makes the command one of speeds: [m/s], and [rad/s] counter-clockwise.
+void forward(v1::MotorCommand& command, double velocity, double rotation = 0.0);
+
 /// The true cycle in which the robot first stood still at or after `cycle`; 0 where it did not.
 std::uint64_t stood_still(const std::vector<sim::TraceRow>& rows, std::uint64_t cycle);
 
