@@ -2,35 +2,16 @@
 #include <array>
 #include <cmath>
 
-#include "ast.hpp"
+#include "c_parser.hpp"
 
 namespace saphira::behaviors::language {
 namespace {
 
-constexpr int kDeepest = 100;
 constexpr std::size_t kMostRules = 64;       // the bound of BehaviorState.rules on the bus
 constexpr std::size_t kMostParameters = 16;  // the bound of BehaviorSchema.parameters
 
-/// Thrown where a sentence cannot be read on; caught where the next one begins.
-struct SyntaxError {
-  Place place;
-  std::string message;
-};
-
-bool names_type(std::string_view word) {
-  return word == "int" || word == "float" || word == "double" || word == "point";
-}
-
 bool parameter_type(std::string_view word) {
   return word == "sfINT" || word == "sfFLOAT" || word == "sfPTR" || word == "sfTEXT";
-}
-
-/// Words that end a section of the language, wherever they are.
-bool ends_section(const Token& token) {
-  constexpr std::array keywords{"BeginBehavior", "Params",   "Rules",      "Init",
-                                "Update",        "Activity", "EndBehavior"};
-  return token.kind == TokenKind::symbol &&
-         std::find(keywords.begin(), keywords.end(), token.text) != keywords.end();
 }
 
 bool fuzzy_keyword(std::string_view word) {
@@ -52,15 +33,16 @@ constexpr Unit kUnits[] = {{"mm", "m", 1000.0},
 class Parser {
  public:
   Parser(const std::vector<Token>& tokens, Messages& messages)
-      : tokens_(tokens), messages_(messages) {}
+      : cursor_(tokens), messages_(messages) {}
 
   std::vector<ParsedBehavior> all() {
     std::vector<ParsedBehavior> behaviors;
-    while (!at_end() && !messages_.full()) {
-      if (!now().is("BeginBehavior")) {
-        messages_.error(now().place, "expected \"BeginBehavior\", found " + found(now()));
-        while (!at_end() && !now().is("BeginBehavior"))
-          ++at_;
+    while (!cursor_.at_end() && !messages_.full()) {
+      if (!cursor_.now().is("BeginBehavior")) {
+        messages_.error(cursor_.now().place,
+                        "expected \"BeginBehavior\", found " + found(cursor_.now()));
+        while (!cursor_.at_end() && !cursor_.now().is("BeginBehavior"))
+          cursor_.skip();
         continue;
       }
       behaviors.push_back(behavior());
@@ -69,90 +51,57 @@ class Parser {
   }
 
  private:
-  const Token& now() const { return tokens_[at_]; }
-  const Token& ahead(std::size_t n) const { return tokens_[std::min(at_ + n, tokens_.size() - 1)]; }
-  bool at_end() const { return now().kind == TokenKind::end; }
-  const Token& take() {
-    const Token& token = now();
-    if (!at_end())
-      ++at_;
-    return token;
-  }
-  bool accept(std::string_view what) {
-    if (!now().is(what))
-      return false;
-    ++at_;
-    return true;
-  }
-  [[noreturn]] void expected(const std::string& what) const {
-    throw SyntaxError{now().place, "expected " + what + ", found " + found(now())};
-  }
-  void expect(std::string_view what) {
-    if (!accept(what))
-      expected("\"" + std::string(what) + "\"");
-  }
-  const Token& expect_symbol(const std::string& what) {
-    if (now().kind != TokenKind::symbol || ends_section(now()))
-      expected(what);
-    return take();
-  }
-  double expect_number(const std::string& what) {
-    const bool negative = accept("-");
-    if (now().kind != TokenKind::number)
-      expected(what);
-    const double value = take().value;
-    return negative ? -value : value;
-  }
   void report(const SyntaxError& error) { messages_.error(error.place, error.message); }
 
   /// Reads sentences until the section ends. After one that cannot be read, goes on where
   /// `begins` says that another one does.
   template <class Sentence, class Begins>
   void section(Sentence&& sentence, Begins&& begins) {
-    while (!at_end() && !ends_section(now()) && !messages_.full()) {
-      const std::size_t before = at_;
-      naming_.clear();
+    while (!cursor_.at_end() && !ends_section(cursor_.now()) && !messages_.full()) {
+      const std::size_t before = cursor_.place();
+      c_.naming().clear();
       try {
         sentence();
       } catch (const SyntaxError& error) {
         report(error);
-        lost_.insert(lost_.end(), naming_.begin(), naming_.end());
-        if (at_ == before)
-          ++at_;
-        while (!at_end() && !ends_section(now()) && !begins())
-          ++at_;
+        lost_.insert(lost_.end(), c_.naming().begin(), c_.naming().end());
+        if (cursor_.place() == before)
+          cursor_.skip();
+        while (!cursor_.at_end() && !ends_section(cursor_.now()) && !begins())
+          cursor_.skip();
       }
     }
   }
 
   ParsedBehavior behavior() {
     ParsedBehavior out;
-    take();
-    out.place = now().place;
+    cursor_.take();
+    out.place = cursor_.now().place;
     try {
-      out.name = std::string(expect_symbol("the name of the behavior").text);
-      if (now().kind == TokenKind::text)
-        out.summary = std::string(take().text);
-      if (!ends_section(now()))
-        expected("\"Params\"");
+      out.name = std::string(cursor_.expect_symbol("the name of the behavior").text);
+      if (cursor_.now().kind == TokenKind::text)
+        out.summary = std::string(cursor_.take().text);
+      if (!ends_section(cursor_.now()))
+        cursor_.expected("\"Params\"");
     } catch (const SyntaxError& error) {
       report(error);
-      while (!at_end() && !ends_section(now()))
-        ++at_;
+      while (!cursor_.at_end() && !ends_section(cursor_.now()))
+        cursor_.skip();
     }
     head("Params", true);
-    section([&] { parameter(out); }, [&] { return parameter_type(now().text); });
+    section([&] { parameter(out); }, [&] { return parameter_type(cursor_.now().text); });
     head("Rules", true);
-    section([&] { rule(out); }, [&] { return now().is("If"); });
+    section([&] { rule(out); }, [&] { return cursor_.now().is("If"); });
     if (head("Init", false))
-      section([&] { out.init.push_back(statement()); }, [&] { return after_statement(); });
+      section([&] { out.init.push_back(c_.statement()); }, [&] { return c_.after_statement(); });
     head("Update", true);
-    section([&] { out.update.push_back(statement()); }, [&] { return after_statement(); });
+    section([&] { out.update.push_back(c_.statement()); }, [&] { return c_.after_statement(); });
     head("Activity", true);
     section([&] { activity(out); },
-            [&] { return channel(now().text) && now().kind == TokenKind::symbol; });
-    if (!accept("EndBehavior"))
-      messages_.error(now().place, "expected \"EndBehavior\", found " + found(now()));
+            [&] { return channel(cursor_.now().text) && cursor_.now().kind == TokenKind::symbol; });
+    if (!cursor_.accept("EndBehavior"))
+      messages_.error(cursor_.now().place,
+                      "expected \"EndBehavior\", found " + found(cursor_.now()));
     out.lost = std::move(lost_);
     lost_.clear();
     return out;
@@ -160,10 +109,11 @@ class Parser {
 
   /// The word that begins a section. Where it is not there the section is taken to be empty.
   bool head(std::string_view word, bool required) {
-    if (accept(word))
+    if (cursor_.accept(word))
       return true;
     if (required && !messages_.full())
-      messages_.error(now().place, "expected \"" + std::string(word) + "\", found " + found(now()));
+      messages_.error(cursor_.now().place,
+                      "expected \"" + std::string(word) + "\", found " + found(cursor_.now()));
     return false;
   }
 
@@ -171,23 +121,24 @@ class Parser {
 
   void parameter(ParsedBehavior& out) {
     ParsedParameter parameter;
-    if (!parameter_type(now().text))
-      expected("\"sfINT\", \"sfFLOAT\", \"sfPTR\" or \"sfTEXT\"");
-    const std::string_view type = take().text;
+    if (!parameter_type(cursor_.now().text))
+      cursor_.expected("\"sfINT\", \"sfFLOAT\", \"sfPTR\" or \"sfTEXT\"");
+    const std::string_view type = cursor_.take().text;
     parameter.type = type == "sfINT"    ? Type::integer
                      : type == "sfPTR"  ? Type::point
                      : type == "sfTEXT" ? Type::text
                                         : Type::real;
-    parameter.place = now().place;
+    parameter.place = cursor_.now().place;
     ParameterSpec& spec = parameter.spec;
-    spec.name = std::string(expect_symbol("the name of the parameter").text);
-    naming_.push_back(spec.name);
+    spec.name = std::string(cursor_.expect_symbol("the name of the parameter").text);
+    c_.naming().push_back(spec.name);
     // An underscore that the print has lost.
-    while (now().kind == TokenKind::symbol && !ends_section(now()) && !parameter_type(now().text) &&
-           !now().is("from") && !now().is("optional") && !is_unit()) {
-      spec.name += "_" + std::string(now().text);
-      messages_.warn(now().place, "two names in a row are taken for \"" + spec.name + "\"");
-      take();
+    while (cursor_.now().kind == TokenKind::symbol && !ends_section(cursor_.now()) &&
+           !parameter_type(cursor_.now().text) && !cursor_.now().is("from") &&
+           !cursor_.now().is("optional") && !is_unit()) {
+      spec.name += "_" + std::string(cursor_.now().text);
+      messages_.warn(cursor_.now().place, "two names in a row are taken for \"" + spec.name + "\"");
+      cursor_.take();
     }
     spec.kind = parameter.type == Type::point  ? Kind::point
                 : parameter.type == Type::text ? Kind::text
@@ -196,11 +147,11 @@ class Parser {
     if (parameter.type == Type::text)
       choices(spec);
     else if (parameter.type == Type::point)
-      spec.required = !accept("optional");
+      spec.required = !cursor_.accept("optional");
     else
       number(parameter);
-    if (now().kind == TokenKind::text)
-      spec.meaning += (spec.meaning.empty() ? "" : ", ") + std::string(take().text);
+    if (cursor_.now().kind == TokenKind::text)
+      spec.meaning += (spec.meaning.empty() ? "" : ", ") + std::string(cursor_.take().text);
     if (out.parameters.size() == kMostParameters)
       throw SyntaxError{parameter.place,
                         "expected at most " + std::to_string(kMostParameters) + " parameters"};
@@ -209,18 +160,18 @@ class Parser {
 
   void choices(ParameterSpec& spec) {
     spec.required = false;
-    expect("=");
+    cursor_.expect("=");
     do {
-      if (now().kind != TokenKind::text)
-        expected("a choice, such as \"left\"");
-      spec.choices.emplace_back(take().text);
-    } while (accept("|"));
+      if (cursor_.now().kind != TokenKind::text)
+        cursor_.expected("a choice, such as \"left\"");
+      spec.choices.emplace_back(cursor_.take().text);
+    } while (cursor_.accept("|"));
   }
 
   bool is_unit() const {
-    return now().kind == TokenKind::symbol &&
+    return cursor_.now().kind == TokenKind::symbol &&
            std::any_of(std::begin(kUnits), std::end(kUnits),
-                       [&](const Unit& unit) { return unit.inside == now().text; });
+                       [&](const Unit& unit) { return unit.inside == cursor_.now().text; });
   }
 
   /// [= usual] [from low to high] [unit]
@@ -228,29 +179,29 @@ class Parser {
     ParameterSpec& spec = parameter.spec;
     spec.low = -1e9;
     spec.high = 1e9;
-    const Place place = now().place;
-    if (accept("=")) {
-      spec.usual = expect_number("the usual value");
+    const Place place = cursor_.now().place;
+    if (cursor_.accept("=")) {
+      spec.usual = cursor_.expect_number("the usual value");
       spec.required = false;
     }
-    if (accept("from")) {
-      spec.low = expect_number("the lowest value");
-      expect("to");
-      spec.high = expect_number("the highest value");
+    if (cursor_.accept("from")) {
+      spec.low = cursor_.expect_number("the lowest value");
+      cursor_.expect("to");
+      spec.high = cursor_.expect_number("the highest value");
       if (spec.low > spec.high)
         throw SyntaxError{place, "expected the lower limit before the higher one"};
     }
     if (!spec.required && (spec.usual < spec.low || spec.usual > spec.high))
       throw SyntaxError{place, "expected a usual value within the limits"};
     if (is_unit()) {
-      const std::string_view name = take().text;
+      const std::string_view name = cursor_.take().text;
       const Unit& unit = *std::find_if(std::begin(kUnits), std::end(kUnits),
                                        [&](const Unit& u) { return u.inside == name; });
       parameter.factor = unit.factor;
       spec.meaning = unit.outside;
-      if (accept("/")) {
-        if (!accept("s"))
-          expected("\"s\"");
+      if (cursor_.accept("/")) {
+        if (!cursor_.accept("s"))
+          cursor_.expected("\"s\"");
         spec.meaning += "/s";
       }
     }
@@ -262,40 +213,42 @@ class Parser {
 
   void rule(ParsedBehavior& out) {
     ParsedRule rule;
-    rule.place = now().place;
+    rule.place = cursor_.now().place;
     rule.name = "rule_" + std::to_string(out.rules.size() + 1);
-    if ((now().kind == TokenKind::symbol && !now().is("If")) || now().kind == TokenKind::text) {
-      rule.name = std::string(take().text);
-      if (!now().is("If"))
-        expected("\"If\" after the name of a rule");
+    if ((cursor_.now().kind == TokenKind::symbol && !cursor_.now().is("If")) ||
+        cursor_.now().kind == TokenKind::text) {
+      rule.name = std::string(cursor_.take().text);
+      if (!cursor_.now().is("If"))
+        cursor_.expected("\"If\" after the name of a rule");
     }
-    expect("If");
-    const std::size_t begin = at_;
+    cursor_.expect("If");
+    const std::size_t begin = cursor_.place();
     rule.antecedent = either(0);
-    rule.antecedent_text = words(begin, at_);
-    if (!now().is("Then"))
-      expected("\"Then\", \"And\" or \"Or\"");
-    take();
+    rule.antecedent_text = cursor_.words(begin, cursor_.place());
+    if (!cursor_.now().is("Then"))
+      cursor_.expected("\"Then\", \"And\" or \"Or\"");
+    cursor_.take();
     control(out, std::move(rule));
   }
 
   void control(ParsedBehavior& out, ParsedRule rule) {
-    const std::size_t begin = at_;
-    if (accept("Turn")) {
-      if (accept("Left")) {
+    const std::size_t begin = cursor_.place();
+    if (cursor_.accept("Turn")) {
+      if (cursor_.accept("Left")) {
         rule.kind = ParsedRule::Kind::left;
-      } else if (accept("Right")) {
+      } else if (cursor_.accept("Right")) {
         rule.kind = ParsedRule::Kind::right;
       } else {
-        if (now().kind != TokenKind::symbol || fuzzy_keyword(now().text) || ends_section(now()))
-          expected("\"Left\", \"Right\" or a variable");
+        if (cursor_.now().kind != TokenKind::symbol || fuzzy_keyword(cursor_.now().text) ||
+            ends_section(cursor_.now()))
+          cursor_.expected("\"Left\", \"Right\" or a variable");
         rule.kind = ParsedRule::Kind::either;
         rule.value = value("a variable");
       }
       rule.modifier = modifier();
-      rule.action_text = words(begin, at_);
+      rule.action_text = cursor_.words(begin, cursor_.place());
       // As the grammar is printed, a turn and a speed can follow one antecedent.
-      const bool both = now().is("Speed");
+      const bool both = cursor_.now().is("Speed");
       ParsedRule second = rule;
       push(out, std::move(rule));
       if (!both)
@@ -310,17 +263,17 @@ class Parser {
   }
 
   void speed(ParsedBehavior& out, ParsedRule rule) {
-    const std::size_t begin = at_;
-    if (accept("Speed"))
+    const std::size_t begin = cursor_.place();
+    if (cursor_.accept("Speed"))
       rule.kind = ParsedRule::Kind::speed;
-    else if (accept("Accel"))
+    else if (cursor_.accept("Accel"))
       rule.kind = ParsedRule::Kind::accelerate;
-    else if (accept("Decel"))
+    else if (cursor_.accept("Decel"))
       rule.kind = ParsedRule::Kind::decelerate;
     else
-      expected("\"Turn\", \"Speed\", \"Accel\" or \"Decel\"");
+      cursor_.expected("\"Turn\", \"Speed\", \"Accel\" or \"Decel\"");
     rule.value = value("a variable or a number");
-    rule.action_text = words(begin, at_);
+    rule.action_text = cursor_.words(begin, cursor_.place());
     push(out, std::move(rule));
   }
 
@@ -332,11 +285,12 @@ class Parser {
 
   RuleValue value(const std::string& what) {
     RuleValue value;
-    value.place = now().place;
-    if (now().kind == TokenKind::symbol && !fuzzy_keyword(now().text) && !ends_section(now()))
-      value.name = std::string(take().text);
+    value.place = cursor_.now().place;
+    if (cursor_.now().kind == TokenKind::symbol && !fuzzy_keyword(cursor_.now().text) &&
+        !ends_section(cursor_.now()))
+      value.name = std::string(cursor_.take().text);
     else
-      value.value = expect_number(what);
+      value.value = cursor_.expect_number(what);
     return value;
   }
 
@@ -353,34 +307,24 @@ class Parser {
                                    {"Moderately", "", 10.0},
                                    {"Sharply", "", 20.0}};
     RuleValue out;
-    out.place = now().place;
+    out.place = cursor_.now().place;
     for (const Named& named : modifiers)
-      if (now().is(named.first) && (named.second.empty() || ahead(1).is(named.second))) {
-        at_ += named.second.empty() ? 1 : 2;
+      if (cursor_.now().is(named.first) &&
+          (named.second.empty() || cursor_.ahead(1).is(named.second))) {
+        cursor_.skip(named.second.empty() ? 1 : 2);
         out.value = radians(named.degrees);
         return out;
       }
-    if (now().is("Very")) {
-      take();
-      expected("\"Slowly\" or \"Sharply\"");
+    if (cursor_.now().is("Very")) {
+      cursor_.take();
+      cursor_.expected("\"Slowly\" or \"Sharply\"");
     }
     // Another symbol is a variable, unless it is the name of the next rule.
-    if (now().kind != TokenKind::symbol || fuzzy_keyword(now().text) || ends_section(now()) ||
-        now().is("Accel") || now().is("Decel") || ahead(1).is("If"))
+    if (cursor_.now().kind != TokenKind::symbol || fuzzy_keyword(cursor_.now().text) ||
+        ends_section(cursor_.now()) || cursor_.now().is("Accel") || cursor_.now().is("Decel") ||
+        cursor_.ahead(1).is("If"))
       return {};
-    out.name = std::string(take().text);
-    return out;
-  }
-
-  /// The tokens of a sentence as text.
-  std::string words(std::size_t begin, std::size_t end) const {
-    std::string out;
-    for (std::size_t i = begin; i < end && out.size() < 200; ++i) {
-      const Token& token = tokens_[i];
-      const bool tight =
-          out.empty() || token.is(")") || tokens_[i - 1].is("(") || tokens_[i - 1].is("-");
-      out += (tight ? "" : " ") + std::string(token.text);
-    }
+    out.name = std::string(cursor_.take().text);
     return out;
   }
 
@@ -388,14 +332,14 @@ class Parser {
 
   FuzzyExpression either(int depth) {
     FuzzyExpression left = both(depth);
-    while (now().is("Or"))
+    while (cursor_.now().is("Or"))
       left = joined(FuzzyExpression::Kind::either, std::move(left), [&] { return both(depth); });
     return left;
   }
 
   FuzzyExpression both(int depth) {
     FuzzyExpression left = inverted(depth);
-    while (now().is("And"))
+    while (cursor_.now().is("And"))
       left = joined(FuzzyExpression::Kind::both, std::move(left), [&] { return inverted(depth); });
     return left;
   }
@@ -404,55 +348,51 @@ class Parser {
   FuzzyExpression joined(FuzzyExpression::Kind kind, FuzzyExpression left, Next&& next) {
     FuzzyExpression out;
     out.kind = kind;
-    out.place = take().place;
+    out.place = cursor_.take().place;
     FuzzyExpression right = next();
     out.depth = 1 + std::max(left.depth, right.depth);
-    too_deep(out.depth, out.place);
+    limit_depth(out.depth, out.place);
     out.parts.push_back(std::move(left));
     out.parts.push_back(std::move(right));
     return out;
   }
 
-  static void too_deep(int depth, const Place& place) {
-    if (depth > kDeepest)
-      throw SyntaxError{place, "expected something simpler: this is more than " +
-                                   std::to_string(kDeepest) + " levels deep"};
-  }
-
   FuzzyExpression inverted(int depth) {
-    too_deep(depth, now().place);
+    limit_depth(depth, cursor_.now().place);
     FuzzyExpression out;
-    out.place = now().place;
-    if (accept("Not")) {
+    out.place = cursor_.now().place;
+    if (cursor_.accept("Not")) {
       out.kind = FuzzyExpression::Kind::invert;
       out.parts.push_back(inverted(depth + 1));
       out.depth = 1 + out.parts.front().depth;
       return out;
     }
-    if (accept("(")) {
+    if (cursor_.accept("(")) {
       out = either(depth + 1);
-      if (!now().is(")"))
-        expected("\")\", \"And\" or \"Or\"");
-      take();
+      if (!cursor_.now().is(")"))
+        cursor_.expected("\")\", \"And\" or \"Or\"");
+      cursor_.take();
       return out;
     }
-    if (now().kind == TokenKind::number) {
-      out.value = take().value;
+    if (cursor_.now().kind == TokenKind::number) {
+      out.value = cursor_.take().value;
       if (out.value < 0.0 || out.value > 1.0)
         throw SyntaxError{out.place, "expected a fuzzy value from 0 to 1"};
       return out;
     }
-    if (now().kind != TokenKind::symbol || fuzzy_keyword(now().text) || ends_section(now()))
-      expected("a fuzzy variable, a number from 0 to 1, \"Not\" or \"(\"");
+    if (cursor_.now().kind != TokenKind::symbol || fuzzy_keyword(cursor_.now().text) ||
+        ends_section(cursor_.now()))
+      cursor_.expected("a fuzzy variable, a number from 0 to 1, \"Not\" or \"(\"");
     out.kind = FuzzyExpression::Kind::name;
-    out.name = std::string(take().text);
+    out.name = std::string(cursor_.take().text);
     // An underscore that the print has lost. What begins the next sentence is a keyword, or in the
     // rules the name of a rule, which is followed by "If".
-    while (now().kind == TokenKind::symbol && !fuzzy_keyword(now().text) && !channel(now().text) &&
-           !ends_section(now()) && !ahead(1).is("If")) {
-      out.name += "_" + std::string(now().text);
-      messages_.warn(now().place, "two names in a row are taken for \"" + out.name + "\"");
-      take();
+    while (cursor_.now().kind == TokenKind::symbol && !fuzzy_keyword(cursor_.now().text) &&
+           !channel(cursor_.now().text) && !ends_section(cursor_.now()) &&
+           !cursor_.ahead(1).is("If")) {
+      out.name += "_" + std::string(cursor_.now().text);
+      messages_.warn(cursor_.now().place, "two names in a row are taken for \"" + out.name + "\"");
+      cursor_.take();
     }
     return out;
   }
@@ -465,10 +405,10 @@ class Parser {
 
   void activity(ParsedBehavior& out) {
     ParsedActivity activity;
-    activity.place = now().place;
-    if (now().kind != TokenKind::symbol || !channel(now().text))
-      expected("\"Turn\", \"Speed\", \"Goal\" or \"Progress\"");
-    activity.channel = std::string(take().text);
+    activity.place = cursor_.now().place;
+    if (cursor_.now().kind != TokenKind::symbol || !channel(cursor_.now().text))
+      cursor_.expected("\"Turn\", \"Speed\", \"Goal\" or \"Progress\"");
+    activity.channel = std::string(cursor_.take().text);
     for (const ParsedActivity& other : out.activity)
       if (other.channel == activity.channel)
         throw SyntaxError{activity.place, "\"" + activity.channel + "\" is there twice"};
@@ -476,246 +416,10 @@ class Parser {
     out.activity.push_back(std::move(activity));
   }
 
-  // C -------------------------------------------------------------------------------------------
-
-  bool after_statement() {
-    if (!now().is(";") && !now().is("}"))
-      return false;
-    ++at_;
-    return true;
-  }
-
-  Statement statement(int depth = 0) {
-    too_deep(depth, now().place);
-    Statement out;
-    out.place = now().place;
-    if (accept(";"))
-      return out;
-    if (accept("{")) {
-      while (!now().is("}")) {
-        if (at_end() || ends_section(now()))
-          expected("\"}\"");
-        out.body.push_back(statement(depth + 1));
-      }
-      take();
-      return out;
-    }
-    if (accept("if")) {
-      out.kind = Statement::Kind::choice;
-      expect("(");
-      out.value = expression();
-      expect(")");
-      out.body.push_back(statement(depth + 1));
-      if (accept("else"))
-        out.otherwise.push_back(statement(depth + 1));
-      return out;
-    }
-    if (now().kind != TokenKind::symbol || ends_section(now()))
-      expected("a statement");
-    for (const char* const loop : {"while", "for", "do", "goto", "switch", "return", "break"})
-      if (now().is(loop))
-        throw SyntaxError{now().place,
-                          "expected a declaration, an assignment, a call or \"if\"; "
-                          "there is no \"" +
-                              std::string(loop) + "\" in this language"};
-    if (names_type(now().text) && ahead(1).kind == TokenKind::symbol)
-      return declaration();
-    if (ahead(1).is("=") || assigns_with(ahead(1)))
-      out = assignment();
-    else {
-      out.kind = Statement::Kind::expression;
-      out.value = expression();
-      if (out.value->kind != Expression::Kind::call)
-        throw SyntaxError{out.place, "expected an assignment or a call"};
-    }
-    expect(";");
-    return out;
-  }
-
-  static bool assigns_with(const Token& token) {
-    return token.is("+=") || token.is("-=") || token.is("*=") || token.is("/=");
-  }
-
-  Statement assignment() {
-    Statement out;
-    out.kind = Statement::Kind::assign;
-    out.place = now().place;
-    const Token& name = take();
-    out.name = std::string(name.text);
-    naming_.push_back(out.name);
-    const Token& sign = take();
-    Expression right = expression();
-    if (!sign.is("=")) {
-      Expression both;
-      both.kind = Expression::Kind::binary;
-      both.place = sign.place;
-      both.text = std::string(sign.text.substr(0, 1));
-      Expression left;
-      left.kind = Expression::Kind::name;
-      left.place = name.place;
-      left.text = out.name;
-      both.depth = 1 + right.depth;
-      both.parts.push_back(std::move(left));
-      both.parts.push_back(std::move(right));
-      right = std::move(both);
-    }
-    out.value = std::move(right);
-    return out;
-  }
-
-  /// Several in one statement become a block.
-  Statement declaration() {
-    Statement out;
-    out.place = now().place;
-    const std::string_view word = take().text;
-    const Type type = word == "int" ? Type::integer : word == "point" ? Type::point : Type::real;
-    do {
-      Statement one;
-      one.kind = Statement::Kind::declare;
-      one.place = now().place;
-      one.type = type;
-      one.name = std::string(expect_symbol("the name of a variable").text);
-      naming_.push_back(one.name);
-      if (accept("="))
-        one.value = expression();
-      out.body.push_back(std::move(one));
-    } while (accept(","));
-    if (!now().is(";"))
-      expected("\";\", \",\" or \"=\"");
-    take();
-    return out;
-  }
-
-  Expression expression(int depth = 0) {
-    too_deep(depth, now().place);
-    Expression condition = binary(0, depth);
-    if (!now().is("?"))
-      return condition;
-    Expression out;
-    out.kind = Expression::Kind::conditional;
-    out.place = take().place;
-    out.parts.push_back(std::move(condition));
-    out.parts.push_back(expression(depth + 1));
-    expect(":");
-    out.parts.push_back(expression(depth + 1));
-    deepen(out);
-    return out;
-  }
-
-  static void deepen(Expression& out) {
-    for (const Expression& part : out.parts)
-      out.depth = std::max(out.depth, 1 + part.depth);
-    too_deep(out.depth, out.place);
-  }
-
-  /// How tightly an operator binds; 0: not one.
-  static int binding(const Token& token) {
-    if (token.kind != TokenKind::mark)
-      return 0;
-    constexpr std::pair<std::string_view, int> operators[] = {
-        {"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {"<", 4}, {"<=", 4}, {">", 4},
-        {">=", 4}, {"+", 5},  {"-", 5},  {"*", 6},  {"/", 6}, {"%", 6}};
-    for (const auto& [text, strength] : operators)
-      if (token.text == text)
-        return strength;
-    return 0;
-  }
-
-  Expression binary(int least, int depth) {
-    Expression left = unary(depth + 1);
-    while (binding(now()) > least) {
-      Expression out;
-      out.kind = Expression::Kind::binary;
-      out.place = now().place;
-      const int strength = binding(now());
-      out.text = std::string(take().text);
-      out.parts.push_back(std::move(left));
-      out.parts.push_back(binary(strength, depth + 1));
-      deepen(out);
-      left = std::move(out);
-    }
-    return left;
-  }
-
-  Expression unary(int depth) {
-    too_deep(depth, now().place);
-    Expression out;
-    out.place = now().place;
-    if (now().is("+")) {
-      take();
-      return unary(depth + 1);
-    }
-    if (now().is("-") || now().is("!")) {
-      out.kind = take().is("-") ? Expression::Kind::negate : Expression::Kind::invert;
-      out.parts.push_back(unary(depth + 1));
-      deepen(out);
-      return out;
-    }
-    if (now().is("(") && names_type(ahead(1).text) && ahead(2).is(")")) {
-      out.kind = Expression::Kind::cast;
-      out.type = ahead(1).is("int") ? Type::integer : Type::real;
-      at_ += 3;
-      out.parts.push_back(unary(depth + 1));
-      deepen(out);
-      return out;
-    }
-    return primary(depth);
-  }
-
-  Expression primary(int depth) {
-    Expression out;
-    out.place = now().place;
-    if (now().kind == TokenKind::number) {
-      out.whole = now().whole;
-      out.value = take().value;
-      return out;
-    }
-    if (now().kind == TokenKind::text) {
-      out.kind = Expression::Kind::text;
-      out.text = std::string(take().text);
-      return out;
-    }
-    if (accept("(")) {
-      out = expression(depth + 1);
-      if (!now().is(")"))
-        expected("\")\" or an operator");
-      take();
-      return out;
-    }
-    if (now().kind != TokenKind::symbol || ends_section(now()))
-      expected("a number, a variable, a call or \"(\"");
-    out.text = std::string(take().text);
-    if (accept("(")) {
-      out.kind = Expression::Kind::call;
-      if (!accept(")")) {
-        do
-          out.parts.push_back(expression(depth + 1));
-        while (accept(","));
-        if (!now().is(")"))
-          expected("\")\", \",\" or an operator");
-        take();
-      }
-      deepen(out);
-      return out;
-    }
-    out.kind = Expression::Kind::name;
-    if (accept(".") || accept("->")) {
-      Expression field;
-      field.kind = Expression::Kind::field;
-      field.place = out.place;
-      field.text = std::string(expect_symbol("the name of a field").text);
-      field.parts.push_back(std::move(out));
-      deepen(field);
-      return field;
-    }
-    return out;
-  }
-
-  const std::vector<Token>& tokens_;
+  Cursor cursor_;
   Messages& messages_;
-  std::size_t at_ = 0;
-  std::vector<std::string> naming_;  ///< what the sentence declares or sets
-  std::vector<std::string> lost_;    ///< of sentences that could not be read
+  CParser c_{cursor_};
+  std::vector<std::string> lost_;  ///< of sentences that could not be read
 };
 
 }  // namespace
