@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "intentions/shell/convert.hpp"
 #include "saphira/bus/node.hpp"
@@ -16,7 +18,20 @@ class ScriptedBus {
       : description_(node.writer(bus::topics::kRobotDescription)),
         state_(node.writer(bus::topics::kRobotState)),
         behaviors_(node.writer(bus::topics::kBehaviors)),
-        intentions_(node.reader(bus::topics::kIntentions)) {}
+        schemas_(node.writer(bus::topics::kBehaviorSchemas)),
+        intentions_(node.reader(bus::topics::kIntentions)) {
+    have({});
+  }
+
+  /// Says that there are these behaviors; of none nobody learns anything.
+  void have(const std::vector<std::string>& names) {
+    v1::BehaviorSchemas sample;
+    for (const std::string& name : names) {
+      sample.schemas().emplace_back();
+      sample.schemas().back().name(name);
+    }
+    schemas_.write(sample);
+  }
 
   ScriptedRobot world;
   std::uint64_t epoch = 100;
@@ -94,6 +109,7 @@ class ScriptedBus {
   bus::Writer<v1::RobotDescription> description_;
   bus::Writer<v1::RobotState> state_;
   bus::Writer<v1::Behaviors> behaviors_;
+  bus::Writer<v1::BehaviorSchemas> schemas_;
   bus::Reader<v1::Intentions> intentions_;
 };
 
