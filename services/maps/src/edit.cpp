@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "saphira/base/numbers.hpp"
+
 namespace saphira::maps {
 
 namespace {
@@ -26,6 +28,13 @@ std::optional<std::string> problem(const Feature& feature) {
     return error.what();
   }
   return std::nullopt;
+}
+
+std::optional<std::string> problem(const Pose& pose_in_map) {
+  if (!problem(Feature{PointType::position, 1, pose_in_map, 0.0, 0.0, ""}))
+    return std::nullopt;
+  return "expected a place within 10 km [m] of the map's origin and a heading [rad], got " +
+         plain(pose_in_map.x) + ", " + plain(pose_in_map.y) + ", " + plain(pose_in_map.th);
 }
 
 bool same(const Feature& a, const Feature& b, const Sameness& sameness) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 namespace saphira::maps {
@@ -39,6 +40,22 @@ TEST(Editor, IdsStayAndAreNotGivenAgain) {
   EXPECT_FALSE(editor.change(9, door));
   // What was removed and what was there before: the file says the same, but for the wall's id.
   EXPECT_NO_THROW(parse_map(to_text(editor.map()), "m"));
+}
+
+TEST(Problem, APlaceIsFiniteAndNearEnough) {
+  EXPECT_FALSE(problem(Pose{}));
+  EXPECT_FALSE(problem(Pose{-9999.0, 9999.0, 100.0}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double wrong : {nan, infinite, -infinite, 1e13, -10001.0}) {
+    EXPECT_TRUE(problem(Pose{wrong, 0.0, 0.0})) << wrong;
+    EXPECT_TRUE(problem(Pose{0.0, wrong, 0.0})) << wrong;
+  }
+  EXPECT_TRUE(problem(Pose{0.0, 0.0, nan}));
+  EXPECT_TRUE(problem(Pose{0.0, 0.0, infinite}));
+  EXPECT_EQ(*problem(Pose{1e13, 0.0, 0.0}),
+            "expected a place within 10 km [m] of the map's origin and a heading [rad], got "
+            "1e+13, 0, 0");
 }
 
 TEST(Editor, RevisionsCountChanges) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "saphira/base/numbers.hpp"
+
 namespace saphira::registration {
 namespace {
 
@@ -14,6 +16,9 @@ using maps::Feature;
 constexpr double kOnWall = 0.25;   // [m] a door is on a wall that is as near as this
 constexpr double kBeyond = 0.1;    // [m] what begins so near behind a side is open to it
 constexpr double kShortest = 0.1;  // [m] of surfaces that are kept
+// Of a field, which has one number for each of them and up to 24 bytes for each cell of 0.1 m.
+constexpr std::size_t kMostSurfaces = 65000;
+constexpr double kMostArea = 250e3;  // [m2]
 
 struct Interval {
   double from;
@@ -84,6 +89,20 @@ std::vector<Interval> without(double length, std::vector<Interval> holes) {
 Surface surface(const Vec2& from, const Vec2& to, const Vec2& free, std::size_t feature) {
   const Vec2 way = to - from;
   return {from, to, std::atan2(way.y(), way.x()), way.norm(), free, feature, false, false};
+}
+
+/// The lower and the upper corner of all surfaces.
+std::pair<Vec2, Vec2> extent(const LineMap& lines) {
+  if (lines.empty())
+    return {{0.0, 0.0}, {0.0, 0.0}};
+  Vec2 low = lines.surfaces().front().from;
+  Vec2 high = low;
+  for (const Surface& surface : lines.surfaces())
+    for (const Vec2& end : {surface.from, surface.to}) {
+      low = low.cwiseMin(end);
+      high = high.cwiseMax(end);
+    }
+  return {low, high};
 }
 
 struct Side {
@@ -180,20 +199,26 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
   }
 }
 
+std::optional<std::string> problem(const LineMap& lines) {
+  if (lines.surfaces().size() > kMostSurfaces)
+    return "expected a map of at most 65000 walls, got " + std::to_string(lines.surfaces().size());
+  const auto [low, high] = extent(lines);
+  const Vec2 size = high - low;
+  if (!(size.x() * size.y() <= kMostArea))
+    return "expected a map of at most " + plain(kMostArea / 1e4) +
+           " ha, as 500 m by 500 m, got one of " + plain(size.x()) + " m by " + plain(size.y()) +
+           " m";
+  return std::nullopt;
+}
+
 Field::Field(const maps::Map& map, const LineMap& lines) {
-  if (lines.surfaces().size() >= kNone)
-    throw std::invalid_argument("a map of more than 65000 walls");
+  if (const auto why = problem(lines))
+    throw std::invalid_argument(*why);
   for (const Surface& surface : lines.surfaces())
     lines_.push_back({surface.from, (surface.to - surface.from) / surface.length, surface.length});
   if (lines_.empty())
     return;
-  Vec2 low = lines.surfaces().front().from;
-  Vec2 high = low;
-  for (const Surface& surface : lines.surfaces())
-    for (const Vec2& end : {surface.from, surface.to}) {
-      low = low.cwiseMin(end);
-      high = high.cwiseMax(end);
-    }
+  const auto [low, high] = extent(lines);
   corner_ = low - Vec2(kMargin, kMargin);
   columns_ = static_cast<int>((high.x() - low.x() + 2.0 * kMargin) / kCell) + 1;
   rows_ = static_cast<int>((high.y() - low.y() + 2.0 * kMargin) / kCell) + 1;

@@ -34,6 +34,17 @@ TEST(LineMap, ACorridorIsItsSidesWithoutDoorsAndJunctions) {
   EXPECT_NEAR(lines.openings()[1].width, 2.0, 1e-9);
 }
 
+TEST(Field, IsOfMapsOfASensibleSize) {
+  const auto of = [](const std::string& text) { return LineMap(maps::parse_map(text, "a.map")); };
+  EXPECT_FALSE(problem(of("")));
+  EXPECT_FALSE(problem(of("CORRIDOR (1) 0, 0, 0, 9000000, 2000\n")));
+  const std::string large = "OFFICE (1) 0, 0, 0, 2000000, 2000000\n";
+  EXPECT_EQ(problem(of(large)),
+            "expected a map of at most 25 ha, as 500 m by 500 m, got one of 2000 m by 2000 m");
+  const maps::Map map = maps::parse_map(large, "a.map");
+  EXPECT_THROW(Field(map, LineMap(map)), std::invalid_argument);
+}
+
 TEST(Field, TellsTheNearestWallOfTheOfficeFloor) {
   const maps::Map map = map_of("office-floor");
   const LineMap lines(map);

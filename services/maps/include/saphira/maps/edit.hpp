@@ -12,6 +12,9 @@ namespace saphira::maps {
 /// Why a feature cannot be part of a map, in words; none where it can.
 std::optional<std::string> problem(const Feature& feature);
 
+/// Why nothing can be there on a map, in words; none where something can.
+std::optional<std::string> problem(const Pose& pose_in_map);
+
 /// How near two features must be to be the same thing.
 struct Sameness {
   double distance = 0.5;         ///< [m] across a line, or between two points

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
@@ -47,10 +48,14 @@ class LineMap {
   std::vector<Opening> openings_;
 };
 
+/// Why no robot can be registered on a map of these lines, in words; none where one can.
+std::optional<std::string> problem(const LineMap& lines);
+
 /// The nearest surface to any point of the map, from a grid of which is the nearest: the distance
 /// to that one is exact.
 class Field {
  public:
+  /// std::invalid_argument where there is a `problem`.
   Field(const maps::Map& map, const LineMap& lines);
 
   struct Nearest {
