@@ -1,15 +1,21 @@
 #include "registration/shell/memory_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/maps/edit.hpp"
 
 namespace saphira::registration {
 namespace {
 
 constexpr std::string_view kMapFollows = "\nmap\n";
+constexpr long kMostOdom = 1L << 53;  // what a double counts to
 
 std::string write(const char* word, const double* values, std::size_t count) {
   std::string line = word;
@@ -31,6 +37,71 @@ Pose read_pose(LineReader& reader) {
   return pose;
 }
 
+/// Blanks, semicolons and line breaks as %20: one word, whatever the name. Nothing where it is
+/// empty.
+std::string to_word(const std::string& name) {
+  std::string word;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte > 0x20 && byte != 0x7F && c != ';' && c != '%') {
+      word += c;
+      continue;
+    }
+    char code[4];
+    std::snprintf(code, sizeof code, "%%%02X", byte);
+    word += code;
+  }
+  return word;
+}
+
+std::string read_name(LineReader& reader) {
+  if (reader.at_end())
+    return "";
+  const std::string_view word = reader.word("a name");
+  std::string name;
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    if (word[i] != '%') {
+      name += word[i];
+      continue;
+    }
+    const std::string_view code = word.substr(i + 1, 2);
+    unsigned byte = 0;
+    const auto [end, error] = std::from_chars(code.data(), code.data() + code.size(), byte, 16);
+    if (code.size() != 2 || error != std::errc() || end != code.data() + code.size())
+      reader.fail("expected two hexadecimal digits after %");
+    name += static_cast<char>(byte);
+    i += 2;
+  }
+  return name;
+}
+
+/// Closes itself.
+class File {
+ public:
+  File(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
+  ~File() {
+    if (fd_ >= 0)
+      ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  bool write(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t n = ::write(fd_, text.data(), text.size());
+      if (n < 0)
+        return false;
+      text.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return true;
+  }
+  /// Waits until it is on the disk.
+  bool sync() const { return ::fsync(fd_) == 0; }
+
+ private:
+  int fd_;
+};
+
 }  // namespace
 
 std::string to_text(const Remembered& remembered) {
@@ -44,7 +115,9 @@ std::string to_text(const Remembered& remembered) {
   text += write("covariance", memory.covariance.data(), 16);
   text += write("drift", &memory.drift, 1);
   text += write("confidence", &memory.confidence, 1);
-  text += "source " + remembered.source;
+  text += "option " + to_word(remembered.option) + "\n";
+  text += "source " + to_word(remembered.source) + "\n";
+  text += "changed " + std::string(remembered.changed ? "1" : "0");
   return text + std::string(kMapFollows) + maps::to_text(remembered.map);
 }
 
@@ -58,13 +131,15 @@ Remembered parse_remembered(std::string_view text, const std::string& file) {
     const std::string_view word = reader.word("what the line says");
     if (word == "odom") {
       memory.odom = static_cast<decltype(memory.odom)>(
-          std::stoull(std::string(reader.word("the number of the odom frame"))));
+          reader.integer("the number of the odom frame", 0, kMostOdom));
     } else if (word == "placed") {
       memory.placed = reader.integer("0 or 1", 0, 1) == 1;
     } else if (word == "pose_in_odom") {
       memory.pose_in_odom = read_pose(reader);
     } else if (word == "pose_in_map") {
       memory.pose_in_map = read_pose(reader);
+      if (const auto why = maps::problem(memory.pose_in_map))
+        reader.fail(*why);
     } else if (word == "covariance") {
       for (Eigen::Index i = 0; i < 16; ++i)
         memory.covariance.data()[i] = reader.number("a variance");
@@ -73,13 +148,15 @@ Remembered parse_remembered(std::string_view text, const std::string& file) {
     } else if (word == "confidence") {
       memory.confidence = reader.number("the confidence", 0.0, 1.0);
     } else if (word == "source") {
-      // The rest of the line: a path may have blanks.
-      while (!reader.at_end())
-        result.source += (result.source.empty() ? "" : " ") + std::string(reader.word("a path"));
+      result.source = read_name(reader);
+    } else if (word == "option") {
+      result.option = read_name(reader);
+    } else if (word == "changed") {
+      result.changed = reader.integer("0 or 1", 0, 1) == 1;
     } else {
       reader.fail(
           "expected one of odom, placed, pose_in_odom, pose_in_map, covariance, drift, "
-          "confidence, source");
+          "confidence, option, source, changed");
     }
     reader.expect_end();
   }
@@ -98,15 +175,18 @@ std::optional<Remembered> load_remembered(const std::string& path) {
   return parse_remembered(read_file(path), path);
 }
 
-bool save_remembered(const std::string& path, const Remembered& remembered) {
+bool save_text(const std::string& path, const std::string& text) {
   const std::string fresh = path + ".new";
   {
-    std::ofstream file(fresh, std::ios::trunc);
-    file << to_text(remembered);
-    if (!file.flush())
+    const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
+    // The content before the name: else a power cut may leave the name of an empty file.
+    if (!file.write(text) || !file.sync())
       return false;
   }
-  return std::rename(fresh.c_str(), path.c_str()) == 0;
+  if (std::rename(fresh.c_str(), path.c_str()) != 0)
+    return false;
+  const auto folder = std::filesystem::path(path).parent_path();
+  return File(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY).sync();
 }
 
 }  // namespace saphira::registration

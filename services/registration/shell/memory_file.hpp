@@ -12,17 +12,21 @@ namespace saphira::registration {
 /// What outlives the service: the pose, and the map as it has become.
 struct Remembered {
   Memory memory;
-  std::string source;  ///< where the map came from before it was changed
+  std::string option;    ///< the map that the service was started with
+  std::string source;    ///< where this map came from: that one, or another that was loaded since
+  bool changed = false;  ///< since it came from there
   maps::Map map;
 };
 
+/// std::invalid_argument where the map is none that a file holds.
 std::string to_text(const Remembered& remembered);
 /// FileError with line and column where the text is none of ours.
 Remembered parse_remembered(std::string_view text, const std::string& file);
 
 /// Nothing where there is no such file. FileError as above.
 std::optional<Remembered> load_remembered(const std::string& path);
-/// Replaces the file in one go: a reader finds the old one or the new one. False where it cannot.
-bool save_remembered(const std::string& path, const Remembered& remembered);
+/// Replaces the file in one go: whoever reads it finds the old one or the new one, also after the
+/// power was cut. Waits for the disk. False where it cannot.
+bool save_text(const std::string& path, const std::string& text);
 
 }  // namespace saphira::registration

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "lps/shell/convert.hpp"
@@ -13,6 +14,12 @@ namespace saphira::registration {
 namespace {
 
 constexpr std::chrono::seconds kSaveEvery{1};
+/// Throws where no robot can be registered on the map.
+void check(const maps::Map& map) {
+  if (const auto why = problem(LineMap(map)))
+    throw std::invalid_argument(*why);
+}
+
 constexpr const char* kBuilding = "the map is being built: switch that off first (features off)";
 
 }  // namespace
@@ -41,7 +48,7 @@ std::optional<Pose> start_pose(const std::string& start, const maps::Map& map) {
     if (error != std::errc{})
       break;
     at = next;
-    if (i == 2 && at == end)
+    if (i == 2 && at == end && !maps::problem(Pose{values[0], values[1], values[2]}))
       return Pose{values[0], values[1], norm2_angle(values[2])};
   }
   throw std::invalid_argument("start \"" + start +
@@ -62,35 +69,53 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       processes_(node, table_) {
   if (!options_.map_file.empty()) {
     editor_.replace(maps::load_map(options_.map_file));
+    if (const auto why = problem(LineMap(editor_.map())))
+      throw std::invalid_argument(options_.map_file + ": " + *why);
     source_ = options_.map_file;
   }
   start_ = start_pose(options_.start, editor_.map());
   pose_in_map_ = start_.value_or(Pose{});
   if (!options_.memory_file.empty())
-    remembered_ = load_remembered(options_.memory_file);
-  // Somebody wants another map than that of the memory: the memory is of another place.
-  if (remembered_ && remembered_->source != source_)
-    remembered_.reset();
-  if (remembered_) {
-    changed_ = remembered_->map != editor_.map();
-    editor_.replace(remembered_->map);
-  }
+    recall();
   adds_features_ = options.add_features.value_or(editor_.map().features.empty());
   snaps_ = options.snap;
   publish_map();
+}
+
+/// Takes up what the memory file holds, where that is of use. No memory is bad enough not to begin.
+void Shell::recall() {
+  try {
+    remembered_ = load_remembered(options_.memory_file);
+    if (remembered_)
+      check(remembered_->map);
+  } catch (const std::exception& error) {
+    remembered_.reset();
+    node_.warn(options_.memory_file + " is of no use, it begins anew: " + error.what());
+  }
+  // Somebody wants another map than when it was written: the memory is of another place.
+  if (remembered_ && remembered_->option != options_.map_file)
+    remembered_.reset();
+  if (!remembered_)
+    return;
+  if (remembered_->source != source_)
+    start_.reset();
+  editor_.replace(remembered_->map);
+  source_ = remembered_->source;
+  changed_ = remembered_->changed;
 }
 
 void Shell::begin() {
   Settings settings;
   settings.sonars = lps::mounts_from_bus(robot_.description());
   std::optional<Memory> memory;
+  const bool first = !registration_;
   if (registration_)
     memory = registration_->save();
   else if (remembered_)
     memory = remembered_->memory;
   remembered_.reset();
-  registration_.emplace(settings, editor_.map(), start_);
-  on_ = true;
+  // Later it may be anywhere.
+  registration_.emplace(settings, editor_.map(), first ? start_ : std::nullopt);
   if (memory && memory->placed)
     registration_->restore(*memory);
   if (!builder_)
@@ -197,6 +222,12 @@ bool Shell::grow(const std::vector<lps::Percept>& percepts,
   if (!builder_ || !builder_->step({cycle_.stamp().cycle(), odom_, pose_in_odom_, percepts,
                                     readings, pose_in_map}))
     return false;
+  if (const auto why = problem(LineMap(builder_->map()))) {
+    if (!std::exchange(too_large_, true))
+      node_.warn("what is seen is not added to the map any more: " + *why);
+    return false;
+  }
+  too_large_ = false;
   editor_.replace(builder_->map());
   changed_ = true;
   return true;
@@ -240,38 +271,49 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
   }
   switch (request.action()) {
     case v1::REGISTRATION_LOAD: {
-      maps::Map map = maps::parse_map(request.text(), request.name());
-      editor_.replace(std::move(map));
+      maps::Editor editor = editor_;
+      editor.replace(maps::parse_map(request.text(), request.name()));
+      use(std::move(editor));
       source_ = request.name();
       changed_ = false;
-      map_changed();
+      start_.reset();
       return 0;
     }
-    case v1::REGISTRATION_DELETE:
-      editor_.replace({});
+    case v1::REGISTRATION_DELETE: {
+      maps::Editor editor = editor_;
+      editor.replace({});
+      use(std::move(editor));
       source_.clear();
       changed_ = false;
-      map_changed();
+      start_.reset();
       return 0;
+    }
     case v1::REGISTRATION_PUT: {
       const maps::Feature feature = maps::from_bus(request.artifact());
       std::uint32_t id = feature.id;
-      if (id == 0 || !editor_.change(id, feature))
-        id = editor_.add(feature);
+      maps::Editor editor = editor_;
+      if (id == 0 || !editor.change(id, feature))
+        id = editor.add(feature);
+      use(std::move(editor));
       changed_ = true;
-      map_changed();
       return id;
     }
-    case v1::REGISTRATION_REMOVE:
-      if (!editor_.remove(request.artifact().id()))
+    case v1::REGISTRATION_REMOVE: {
+      maps::Editor editor = editor_;
+      if (!editor.remove(request.artifact().id()))
         throw std::invalid_argument("no artifact (" + std::to_string(request.artifact().id()) +
                                     ") in the map");
+      use(std::move(editor));
       changed_ = true;
-      map_changed();
       return request.artifact().id();
-    case v1::REGISTRATION_PLACE:
-      placed().set_pose(lps::from_bus(request.pose_in_map()));
+    }
+    case v1::REGISTRATION_PLACE: {
+      const Pose pose_in_map = lps::from_bus(request.pose_in_map());
+      if (const auto why = maps::problem(pose_in_map))
+        throw std::invalid_argument(*why);
+      placed().set_pose(pose_in_map);
       return 0;
+    }
     case v1::REGISTRATION_FIND:
       placed().forget_pose();
       return 0;
@@ -296,12 +338,17 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
                               std::to_string(static_cast<int>(request.action())) + " is");
 }
 
-/// By somebody else than the builder, which begins anew with it.
-void Shell::map_changed() {
+/// The map from now on, by somebody else than the builder, which begins anew with it. Where it
+/// throws, nothing has changed.
+void Shell::use(maps::Editor editor) {
+  check(editor.map());
+  if (registration_)
+    registration_->set_map(editor.map());
+  editor_ = std::move(editor);
+  too_large_ = false;
   if (!registration_)
     return;
   building_ = false;
-  registration_->set_map(editor_.map());
   set_builder();
 }
 
@@ -321,16 +368,31 @@ void Shell::remember() {
   saved_ = Clock::now();
   if (!registration_)
     return;
-  Remembered now{registration_->save(), source_, editor_.map()};
+  using namespace std::chrono_literals;
+  if (saving_.valid() && saving_.wait_for(0s) != std::future_status::ready)
+    return;
+  if (saving_.valid())
+    tell_saved(saving_.get());
+  Remembered now{registration_->save(), options_.map_file, source_, changed_, editor_.map()};
   if (building_) {
     now.memory.placed = true;
     now.memory.odom = odom_;
     now.memory.pose_in_map = pose_in_map_;
     now.memory.pose_in_odom = pose_in_odom_;
   }
-  if (!save_remembered(options_.memory_file, now))
+  try {
+    // A disk may take longer than a cycle.
+    saving_ = std::async(std::launch::async, save_text, options_.memory_file, to_text(now));
+  } catch (const std::exception& error) {
+    tell_saved(false);
+  }
+}
+
+void Shell::tell_saved(bool good) {
+  if (saves_ && !good)
     node_.warn(options_.memory_file +
-               ": cannot be written: a restart will not know where the robot is");
+               " cannot be written: a restart will not know where the robot is");
+  saves_ = good;
 }
 
 }  // namespace saphira::registration

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,7 +58,8 @@ class Shell {
   void take_requests();
   /// Does it; throws what is told to the one who asked.
   std::uint32_t act(const v1::RegistrationRequest& request);
-  void map_changed();
+  void recall();
+  void use(maps::Editor editor);
   void set_builder();
   v1::Registration registered(const bus::Step& step, const std::vector<lps::Percept>& percepts);
   v1::Registration built(const bus::Step& step, const std::vector<lps::Percept>& percepts);
@@ -66,6 +68,7 @@ class Shell {
   void end_building();
   void publish_map();
   void remember();
+  void tell_saved(bool good);
 
   bus::Node& node_;
   ShellOptions options_;
@@ -84,9 +87,9 @@ class Shell {
   ProcessesOnBus processes_;
 
   maps::Editor editor_;
-  std::string source_;    ///< where the map came from
-  bool changed_ = false;  ///< the map, since it came from there
-  std::optional<Pose> start_;
+  std::string source_;                    ///< where the map came from
+  bool changed_ = false;                  ///< the map, since it came from there
+  std::optional<Pose> start_;             ///< on the map that the service was started with
   std::optional<Remembered> remembered_;  ///< until it is used
   std::optional<Registration> registration_;
   bool on_ = true;  ///< somebody may have switched it off
@@ -99,7 +102,10 @@ class Shell {
   Pose pose_in_odom_;
   Pose pose_in_map_;  ///< as it was told in the newest step; before that, the start
   std::uint64_t published_revision_ = 0;
+  bool too_large_ = false;  ///< the map would be, if it grew further
   Clock::time_point saved_ = Clock::now();
+  std::future<bool> saving_;  ///< waits for the disk
+  bool saves_ = true;         ///< as it was told
   State told_ = State::unplaced;
 };
 

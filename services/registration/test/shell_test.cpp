@@ -3,10 +3,13 @@
 #include "registration/shell/shell.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 
 #include "drive/drive.hpp"
 #include "interpretation/shell/shell.hpp"
@@ -14,6 +17,30 @@
 #include "maps/shell/convert.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+
+namespace {
+
+/// What was brought to the disk, and what the file that is named there held then.
+struct Synced {
+  std::string path;
+  std::string target;  ///< the content of the file that is to be replaced
+};
+std::vector<Synced> synced;
+std::string watched;
+
+}  // namespace
+
+/// Instead of the C library's.
+extern "C" int fsync(int fd) {
+  if (!watched.empty()) {
+    std::error_code none;
+    Synced now{std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(fd), none), ""};
+    std::ifstream file(watched);
+    std::getline(file, now.target);
+    synced.push_back(now);
+  }
+  return static_cast<int>(syscall(SYS_fsync, fd));
+}
 
 namespace saphira::registration {
 namespace {
@@ -46,9 +73,11 @@ class Folder {
 
 class RegistrationShell : public testing::Test {
  protected:
-  RegistrationShell() {
+  RegistrationShell() { describe(); }
+
+  void describe() {
     v1::RobotDescription description;
-    description.stamp().epoch(7);
+    description.stamp().epoch(epoch);
     description.radius(0.22);
     for (const lps::SonarMount& mount : drive.mounts()) {
       v1::SonarPose pose;
@@ -68,8 +97,9 @@ class RegistrationShell : public testing::Test {
   void cycle() {
     const test::Seen& seen = drive.advance();
     v1::RobotState state;
-    state.stamp().epoch(7);
-    state.stamp().cycle(seen.cycle);
+    state.stamp().epoch(epoch);
+    const std::uint64_t now = seen.cycle - before_epoch;
+    state.stamp().cycle(now);
     state.odom(odom);
     state.pose_in_odom(lps::to_bus(seen.pose_in_odom));
     for (const lps::SonarReading& reading : seen.readings) {
@@ -87,8 +117,32 @@ class RegistrationShell : public testing::Test {
       const auto newest = registrations.take_newest();
       ASSERT_TRUE(newest);
       registration = *newest;
-    } while (registration.stamp().cycle() < seen.cycle);
-    ASSERT_EQ(registration.stamp().cycle(), seen.cycle);
+    } while (registration.stamp().epoch() < epoch || registration.stamp().cycle() < now);
+    ASSERT_EQ(registration.stamp().cycle(), now);
+  }
+
+  /// The link to the robot was lost, and is there again.
+  void reconnect() {
+    ++epoch;
+    before_epoch = drive.seen().cycle;
+    describe();
+  }
+
+  /// The service ends when all that was until now is in the memory, and another one begins.
+  void restart(const ShellOptions& options) {
+    const std::string file = options.memory_file;
+    // The first one may have been under way before.
+    for (int saves = 0; saves < 2; ++saves) {
+      std::filesystem::remove(file);
+      const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+      while (!std::filesystem::exists(file) && std::chrono::steady_clock::now() < limit)
+        cycle();
+      ASSERT_TRUE(std::filesystem::exists(file));
+    }
+    shell.reset();
+    service.reset();
+    start(options);
+    cycle();
   }
 
   /// Through the corridor of the office to and fro, by where the service says the robot is.
@@ -142,6 +196,8 @@ class RegistrationShell : public testing::Test {
   v1::Registration registration;
   std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
   std::uint64_t asked = 0;
+  std::uint64_t epoch = 7;
+  std::uint64_t before_epoch = 0;  ///< cycles of the robot
 };
 
 TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
@@ -279,6 +335,132 @@ TEST_F(RegistrationShell, TakesRequestsAndSaysWhyNot) {
   EXPECT_TRUE(maps.take_newest()->artifacts().empty());
 }
 
+TEST_F(RegistrationShell, RefusesPlacesThatAreNone) {
+  start({map_path("office"), "start", ""});
+  cycle();
+  const v1::Registration before = registration;
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_PLACE);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Pose& wrong : {Pose{nan, 7.0, 1.0}, Pose{5.0, 1e13, 1.0}, Pose{5.0, 7.0, nan}}) {
+    request.pose_in_map(lps::to_bus(wrong));
+    const auto answer = ask(request);
+    EXPECT_FALSE(answer.done());
+    EXPECT_NE(answer.reason().find("within 10 km"), std::string::npos) << answer.reason();
+  }
+  EXPECT_NEAR(registration.pose_in_map().x(), before.pose_in_map().x(), 0.1);
+  EXPECT_NEAR(registration.pose_in_map().y(), before.pose_in_map().y(), 0.1);
+}
+
+TEST_F(RegistrationShell, AMapThatIsTooLargeChangesNothing) {
+  start({map_path("office"), "start", ""});
+  cycle();
+  const auto before = maps.take_newest();
+  ASSERT_TRUE(before);
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_LOAD);
+  request.name("campus.map");
+  request.text("OFFICE (1) 0, 0, 0, 2000000, 2000000\n");
+  EXPECT_NE(ask(request).reason().find("at most 25 ha"), std::string::npos);
+  request.action(v1::REGISTRATION_PUT);
+  request.artifact().type(v1::ARTIFACT_OBJECT);
+  request.artifact().pose_in_map(lps::to_bus(Pose{9000.0, 9000.0, 0.0}));
+  request.artifact().length(1.0);
+  request.artifact().width(1.0);
+  EXPECT_NE(ask(request).reason().find("at most 25 ha"), std::string::npos);
+  EXPECT_FALSE(maps.take_newest()) << "nothing has changed";
+  EXPECT_EQ(registration.map_revision(), before->revision());
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+}
+
+TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
+  const ShellOptions given{map_path("office"), "start", folder.path("memory")};
+  start(given);
+  cycle();
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_LOAD);
+  request.name("a;b  c.map");
+  request.text("CORRIDOR (5) 0, 0, 0, 30000, 2000 \"hall\"\nWALL 0, 5000, 0, 3000\n");
+  EXPECT_TRUE(ask(request).done());
+  request.action(v1::REGISTRATION_PLACE);
+  request.pose_in_map(lps::to_bus(Pose{-3.0, 0.2, 0.1}));
+  EXPECT_TRUE(ask(request).done());
+  maps.take_newest();
+  restart(given);
+  auto map = maps.take_newest();
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->source(), "a;b  c.map");
+  EXPECT_FALSE(map->changed());
+  EXPECT_EQ(map->artifacts().size(), 2U);
+  EXPECT_NEAR(registration.pose_in_map().x(), -3.0, 0.1);
+  // What was asked for on the command line counts again when it is another.
+  ShellOptions other = given;
+  other.map_file = map_path("loop");
+  restart(given);
+  shell.reset();
+  service.reset();
+  start(other);
+  map = maps.take_newest();
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->source(), other.map_file);
+}
+
+TEST_F(RegistrationShell, ARestartKnowsThatTheMapWasDeleted) {
+  const ShellOptions given{map_path("office"), "start", folder.path("memory")};
+  start(given);
+  cycle();
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_DELETE);
+  EXPECT_TRUE(ask(request).done());
+  restart(given);
+  const auto map = maps.take_newest();
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->source(), "");
+  EXPECT_TRUE(map->artifacts().empty());
+}
+
+TEST_F(RegistrationShell, ABadMemoryIsNone) {
+  const std::string option = "option " + map_path("office") + "\n";
+  for (const std::string& text : {std::string(), option + "odom 99999999999999999999999\nmap\n",
+                                  option + "odom 1\nplaced 1\npose_in_map nan 0 0\nmap\n",
+                                  option + "odom 1\nplaced 1\npose_in_map 1e11 0 0\nmap\n",
+                                  option + "odom 1\nmap\nOFFICE (1) 0, 0, 0, 2000000, 2000000\n"}) {
+    std::ofstream(folder.path("memory")) << text;
+    start({map_path("office"), "start", folder.path("memory")});
+    const auto map = maps.take_newest();
+    ASSERT_TRUE(map) << text;
+    EXPECT_EQ(map->source(), map_path("office"));
+    shell.reset();
+    service.reset();
+  }
+  start({map_path("office"), "start", folder.path("memory")});
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
+}
+
+TEST_F(RegistrationShell, WhatWasSaidOutlastsTheLink) {
+  start({map_path("office"), "start", ""});
+  cycle();
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_SWITCH);
+  request.on(false);
+  EXPECT_TRUE(ask(request).done());
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
+  reconnect();
+  cycle();
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
+  request.on(true);
+  EXPECT_TRUE(ask(request).done());
+  request.action(v1::REGISTRATION_FIND);
+  EXPECT_TRUE(ask(request).done());
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_UNPLACED);
+  reconnect();
+  cycle();
+  EXPECT_EQ(registration.state(), v1::REGISTRATION_UNPLACED) << "it may be far from the start";
+}
+
 TEST_F(RegistrationShell, BuildsAnEmptyMapAndRefusesWhatWouldBeLost) {
   start({"", "start", ""});
   cycle();
@@ -315,6 +497,8 @@ TEST(StartPose, IsAPlaceOrAPose) {
   EXPECT_FALSE(start_pose("unknown", map));
   EXPECT_EQ(start_pose("1.5,-2,0.5", {}), (Pose{1.5, -2.0, 0.5}));
   EXPECT_THROW(start_pose("1.5,-2", {}), std::invalid_argument);
+  EXPECT_THROW(start_pose("1.5,nan,0", {}), std::invalid_argument);
+  EXPECT_THROW(start_pose("1.5,-1e13,0", {}), std::invalid_argument);
   EXPECT_THROW(start_pose("kitchen", map), std::invalid_argument);
 }
 
@@ -328,10 +512,12 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   a.memory.drift = -0.001;
   a.memory.confidence = 0.5;
   a.memory.placed = true;
-  a.source = "/some where/a.map";
+  a.option = "/some where/a.map";
+  a.source = "an; \"other\"  50%\nmap\n one ";
+  a.changed = true;
   a.map = maps::load_map(map_path("office"));
   EXPECT_FALSE(load_remembered(folder.path("memory")));
-  ASSERT_TRUE(save_remembered(folder.path("memory"), a));
+  ASSERT_TRUE(save_text(folder.path("memory"), to_text(a)));
   const auto b = load_remembered(folder.path("memory"));
   ASSERT_TRUE(b);
   EXPECT_EQ(b->memory.odom, a.memory.odom);
@@ -341,10 +527,30 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   EXPECT_EQ(b->memory.drift, a.memory.drift);
   EXPECT_EQ(b->memory.confidence, a.memory.confidence);
   EXPECT_EQ(b->memory.placed, a.memory.placed);
+  EXPECT_EQ(b->option, a.option);
   EXPECT_EQ(b->source, a.source);
+  EXPECT_EQ(b->changed, a.changed);
   EXPECT_EQ(b->map, a.map);
   EXPECT_THROW(parse_remembered("odom 1\nnonsense 2\nmap\n", "m"), FileError);
   EXPECT_THROW(parse_remembered("odom 1\n", "m"), FileError);
+  EXPECT_THROW(parse_remembered("odom x\nmap\n", "m"), FileError);
+  EXPECT_THROW(parse_remembered("source a%2\nmap\n", "m"), FileError);
+}
+
+TEST(MemoryFile, IsOnTheDiskBeforeItReplacesTheOldOne) {
+  Folder folder;
+  const std::string path = folder.path("memory");
+  ASSERT_TRUE(save_text(path, "old\n"));
+  watched = path;
+  synced.clear();
+  ASSERT_TRUE(save_text(path, "new\n"));
+  watched.clear();
+  ASSERT_EQ(synced.size(), 2U);
+  EXPECT_EQ(synced[0].path, path + ".new");
+  EXPECT_EQ(synced[0].target, "old");
+  EXPECT_EQ(synced[1].path, std::filesystem::path(path).parent_path());
+  EXPECT_EQ(synced[1].target, "new");
+  EXPECT_FALSE(save_text(folder.path("nowhere/memory"), "new\n"));
 }
 
 }  // namespace
