@@ -81,6 +81,9 @@ bool partitions_meet(const std::string& one, const std::string& other);
 
 std::string host_name();
 
+/// Whether a node of this program that has ended was at work: had a cycle of a robot.
+std::atomic<bool>& has_worked();
+
 /// A node's transport, for tests that need a QoS that no name has.
 Transport& transport_of(Node& node);
 

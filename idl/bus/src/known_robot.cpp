@@ -20,7 +20,9 @@ KnownRobot::Knowledge KnownRobot::of(std::uint64_t epoch, const Stop& stop) {
   if (description_ && description_->stamp().epoch() == epoch)
     return Knowledge::same;
   bool here = take(epoch);
-  while (!here && node_.options().lockstep && !stop.requested()) {
+  // The description of an epoch that was left is replaced by the next one's, and comes no more.
+  const auto may_come = [&] { return !newest_ || newest_->stamp().epoch() < epoch; };
+  while (!here && may_come() && node_.options().lockstep && !stop.requested()) {
     node_.publish_status();
     node_.wait(std::chrono::milliseconds(500), &stop);
     here = take(epoch);

@@ -124,6 +124,8 @@ Node::Node(NodeOptions options, std::shared_ptr<MemoryBus> memory)
 }
 
 Node::~Node() {
+  if (impl_->status.stamp().cycle() > 0)
+    internal::has_worked() = true;
   // Gone in good order: nobody has to wait until the status is old.
   if (impl_->published) {
     impl_->status_writer->dispose(impl_->status);
@@ -236,6 +238,11 @@ namespace internal {
 
 Transport& transport_of(Node& node) {
   return node.transport();
+}
+
+std::atomic<bool>& has_worked() {
+  static std::atomic<bool> worked{false};
+  return worked;
 }
 
 std::string host_name() {

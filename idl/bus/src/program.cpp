@@ -5,6 +5,7 @@
 #include <exception>
 #include <map>
 
+#include "internal.hpp"
 #include "log.hpp"
 #include "saphira/base/text.hpp"
 
@@ -54,20 +55,29 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }
+  internal::has_worked() = false;
+  std::string what;
+  std::string usage;  // what of that is told to the person who gave us something wrong
   try {
     Stop stop;
     stop_on_signals(stop);
     return body(options, stop);
   } catch (const FileError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitUsage;
+    usage = what = error.what();
   } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "saphira-%s: %s\n", options.name.c_str(), error.what());
-    return kExitUsage;
+    what = error.what();
+    usage = "saphira-" + options.name + ": " + what;
   } catch (const std::exception& error) {
-    internal::write_log(v1::LOG_ERROR, options.name + ": " + error.what());
-    return kExitBroken;
+    what = error.what();
   }
+  // What a person gave is read before the work begins. Later the mistake is ours, and whoever
+  // started us may do so again.
+  if (!usage.empty() && !internal::has_worked()) {
+    std::fprintf(stderr, "%s\n", usage.c_str());
+    return kExitUsage;
+  }
+  internal::write_log(v1::LOG_ERROR, options.name + ": " + what);
+  return kExitBroken;
 }
 
 }  // namespace saphira::bus

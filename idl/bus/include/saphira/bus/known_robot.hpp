@@ -9,7 +9,8 @@ namespace saphira::bus {
 
 /// The description of the robot that a service steps for. It is written before the first state of
 /// an epoch, but on another topic: it may come later. Live, there is no step until it is there; in
-/// lockstep it is waited for, since what the robot does must not depend on it.
+/// lockstep it is waited for, since what the robot does must not depend on it, unless a later epoch
+/// has begun: then what is stepped concerns nobody any more.
 class KnownRobot {
  public:
   explicit KnownRobot(Node& node);

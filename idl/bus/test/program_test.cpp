@@ -1,0 +1,61 @@
+#include "saphira/bus/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "harness.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/cycle.hpp"
+
+namespace saphira::bus::test {
+namespace {
+
+int run(const std::function<int(const NodeOptions&, const Stop&)>& body) {
+  std::string name = "saphira-test";
+  char* argv[] = {name.data(), nullptr};
+  return run_program(1, argv, "test", "A test", {}, body);
+}
+
+/// Steps once, as a service does.
+void step(const NodeOptions& options, const Stop& stop) {
+  const auto bus = make_memory_bus();
+  Node bridge(options, bus);
+  auto robot = bridge.writer(topics::kRobotState);
+  Node node(options, bus);
+  Cycle cycle(node);
+  robot.write(robot_state(1, 1));
+  ASSERT_TRUE(cycle.next(stop));
+  cycle.done();
+}
+
+TEST(Program, AMistakeInWhatAPersonGaveIsAUsageError) {
+  EXPECT_EQ(run([](const NodeOptions& options, const Stop&) -> int {
+              Node node(options, make_memory_bus());
+              throw FileError("a.map", 1, 2, "expected a number");
+            }),
+            kExitUsage);
+  EXPECT_EQ(run([](const NodeOptions&, const Stop&) -> int {
+              throw std::invalid_argument("--start: expected a place");
+            }),
+            kExitUsage);
+  EXPECT_EQ(run([](const NodeOptions&, const Stop&) -> int { throw std::runtime_error("no bus"); }),
+            kExitBroken);
+}
+
+// Whoever supervises a service starts it again after the one, and gives up after the other.
+TEST(Program, TheSameIsOurMistakeWhereTheServiceWasAtWork) {
+  EXPECT_EQ(run([](const NodeOptions& options, const Stop& stop) -> int {
+              step(options, stop);
+              throw std::invalid_argument("a bug");
+            }),
+            kExitBroken);
+  EXPECT_EQ(run([](const NodeOptions&, const Stop&) -> int {
+              throw FileError("a.map", 1, 2, "expected a number");
+            }),
+            kExitUsage)
+      << "of another run";
+}
+
+}  // namespace
+}  // namespace saphira::bus::test
