@@ -523,8 +523,9 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
     set_common_qos(qos, policies, policies.writer_depth);
     qos.reliability().max_blocking_time = milliseconds(100);
     qos.publish_mode().kind = fdds::SYNCHRONOUS_PUBLISH_MODE;
-    // A writer that ends withdraws nothing by that: withdrawing is said.
-    qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
+    // dispose() is to withdraw and to forget. A writer that ends withdraws nothing by that (Fast
+    // DDS does not unregister then).
+    qos.writer_data_lifecycle().autodispose_unregistered_instances = true;
     if (policies.heartbeat_ms > 0)
       qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(policies.heartbeat_ms);
     auto* dds_topic = bus_->topic(topic, type.name);
@@ -551,7 +552,8 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
     // An instance that another writer has written is withdrawn as well: it has to be made known
     // here first.
     writer_->register_instance(const_cast<void*>(sample));
-    return writer_->dispose(const_cast<void*>(sample), fdds::HANDLE_NIL) ==
+    // Not only dispose(): after that Fast DDS keeps the instance for ever, here and at the readers.
+    return writer_->unregister_instance(const_cast<void*>(sample), fdds::HANDLE_NIL) ==
            ReturnCode_t::RETCODE_OK;
   }
   bool wait_acknowledged(int timeout_ms) override {

@@ -22,17 +22,18 @@ std::uint64_t next_number() {
 
 }  // namespace
 
-GoalClient::GoalClient(Node& node, std::string requester)
+GoalClient::GoalClient(Node& node, std::string requester, std::chrono::milliseconds keep)
     : node_(node),
       requester_(std::move(requester)),
       writer_(node.writer(topics::kGoals)),
-      reader_(node.reader(topics::kGoalStatus)) {}
+      reader_(node.reader(topics::kGoalStatus)),
+      keep_(keep) {}
 
 v1::GoalId GoalClient::ask(v1::Goal goal) {
   v1::GoalId id;
   id.writer(node_.instance());
   id.number(next_number());
-  own_[key_of(id)] = true;
+  own_[key_of(id)];
   change(id, std::move(goal));
   return id;
 }
@@ -50,15 +51,39 @@ void GoalClient::cancel(const v1::GoalId& id) {
   goal.id(id);
   if (!writer_.dispose(goal))
     throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
+  if (const auto own = own_.find(key_of(id)); own != own_.end() && !own->second)
+    own->second = Clock::now();
 }
 
 void GoalClient::poll() {
   for (const auto& sample : reader_.take()) {
     const Key key = key_of(sample.data.id());
+    const auto own = own_.find(key);
     if (!sample.info.disposed)
       known_[key] = sample.data;
-    else if (!own_.contains(key))
+    else if (own == own_.end())
       known_.erase(key);
+    if (own != own_.end() && !own->second && ended(sample.data.state()))
+      own->second = Clock::now();
+  }
+  forget();
+}
+
+/// Who asks for months asks for much.
+void GoalClient::forget() {
+  const auto long_ago = Clock::now() - keep_;
+  for (auto own = own_.begin(); own != own_.end();) {
+    if (!own->second || *own->second > long_ago) {
+      ++own;
+      continue;
+    }
+    v1::Goal goal;
+    goal.id().writer(own->first.first);
+    goal.id().number(own->first.second);
+    if (!writer_.dispose(goal))
+      return;  // the bus is full: later
+    known_.erase(own->first);
+    own = own_.erase(own);
   }
 }
 
@@ -78,7 +103,6 @@ std::vector<v1::GoalStatus> GoalClient::statuses() const {
 }
 
 bool GoalClient::delivered(int timeout_ms) {
-  using Clock = std::chrono::steady_clock;
   const auto limit = Clock::now() + std::chrono::milliseconds(timeout_ms);
   const auto left = [&] {
     const auto rest = std::chrono::duration_cast<std::chrono::milliseconds>(limit - Clock::now());

@@ -156,7 +156,9 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
   common.type->copy(sample, copy.get());
   const Item item{std::move(copy), common.type->key(sample), id, disposed};
   const std::scoped_lock lock(common.bus->mutex);
-  if (common.policies.transient_local) {
+  if (disposed) {
+    std::erase_if(history, [&](const Item& old) { return old.key == item.key; });
+  } else if (common.policies.transient_local) {
     history.push_back(item);
     keep_last(history, item.key, common.policies.writer_depth);
   }

@@ -1,6 +1,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 
 #include "harness.hpp"
@@ -107,6 +108,39 @@ TEST_P(Bus, LateReaderDoesNotSeeWhatWasWithdrawn) {
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples[0].data.id().number(), 2U);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// Of this process [MB].
+double resident() {
+  std::ifstream file("/proc/self/statm");
+  double total = 0.0;
+  double pages = 0.0;
+  file >> total >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+TEST_P(Bus, WhatWasWithdrawnCostsNoMemory) {
+  auto a = node("a");
+  auto b = node("b");
+  auto writer = a->writer(topics::kGoals);
+  auto reader = b->reader(topics::kGoals);
+  const auto ask_and_withdraw = [&](std::uint64_t from, std::uint64_t to) {
+    for (std::uint64_t number = from; number < to; ++number) {
+      ASSERT_TRUE(writer.write(goal(number)));
+      ASSERT_TRUE(writer.dispose(goal(number)));
+      if (number % 100 == 0)
+        reader.take();
+    }
+    ASSERT_TRUE(writer.wait_acknowledged(10000));
+    reader.take();
+  };
+  ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
+  ask_and_withdraw(0, 1000);
+  const double before = resident();
+  ask_and_withdraw(1000, 9000);
+  EXPECT_LT(resident() - before, 3.0) << "[MB] of 8000 goals";
+}
+#endif
 
 TEST_P(Bus, WriterThatEndsIsLostByItsName) {
   auto a = node("a");

@@ -77,6 +77,39 @@ TEST(GoalClient, KnowsTheNewestStatusAndKeepsItsOwn) {
   EXPECT_FALSE(client.status(foreign.id()));
 }
 
+TEST(GoalClient, ForgetsWhatEndedLongAgo) {
+  const auto bus = make_memory_bus();
+  Node service(named("intentions"), bus);
+  auto goals = service.reader(topics::kGoals);
+  auto statuses = service.writer(topics::kGoalStatus);
+  Node agent(named("agent"), bus);
+  GoalClient client(agent, "an agent", std::chrono::milliseconds(0));
+  const v1::GoalId underway = client.ask(v1::Goal());
+  const v1::GoalId done = client.ask(v1::Goal());
+  const v1::GoalId canceled = client.ask(v1::Goal());
+  EXPECT_EQ(goals.take().size(), 3U);
+  v1::GoalStatus status;
+  status.id(underway);
+  status.state(v1::GOAL_UNDERWAY);
+  statuses.write(status);
+  status.id(done);
+  status.state(v1::GOAL_SUCCEEDED);
+  statuses.write(status);
+  client.cancel(canceled);
+  EXPECT_EQ(goals.take().size(), 1U);
+  client.poll();
+  EXPECT_TRUE(client.status(underway));
+  EXPECT_FALSE(client.status(done));
+  EXPECT_EQ(client.statuses().size(), 1U);
+  const auto withdrawn = goals.take();
+  ASSERT_EQ(withdrawn.size(), 1U);
+  EXPECT_TRUE(withdrawn[0].info.disposed);
+  EXPECT_EQ(withdrawn[0].data.id(), done);
+  // Of what is forgotten, nothing is withdrawn again.
+  client.poll();
+  EXPECT_TRUE(goals.take().empty());
+}
+
 TEST(GoalClient, NoTwoGoalsHaveTheSameId) {
   const auto bus = make_memory_bus();
   Node one(named("one"), bus);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -23,11 +24,14 @@ namespace saphira::bus {
 ///   while (...) { node.wait(500ms); goals.poll(); auto status = goals.status(id); ... }
 ///
 /// The goals live with the client: when it is destroyed without cancel, or its process dies, each
-/// goal's writer_lost says what becomes of it.
+/// goal's writer_lost says what becomes of it. A goal that has ended, or was canceled, is forgotten
+/// some minutes later, here and on the bus.
 class GoalClient {
  public:
-  /// requester: who asks, for people.
-  GoalClient(Node& node, std::string requester);
+  /// requester: who asks, for people. keep: how long the end of a goal of one's own is known; not
+  /// shorter than the minute in which its status is known to everybody.
+  GoalClient(Node& node, std::string requester,
+             std::chrono::milliseconds keep = std::chrono::minutes(5));
 
   /// Asks for a goal; fills in its id and, where it names none, its requester.
   /// std::runtime_error where the bus did not take it.
@@ -37,7 +41,8 @@ class GoalClient {
   /// Withdraws a goal: also one of another client, by its id.
   void cancel(const v1::GoalId& id);
 
-  /// Takes in what has come on goals/status. Call after each Node::wait.
+  /// Takes in what has come on goals/status, and forgets what ended long ago. Call after each
+  /// Node::wait.
   void poll();
   /// What is known of a goal, by anybody; nothing before its first status.
   std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
@@ -50,13 +55,19 @@ class GoalClient {
 
  private:
   using Key = std::pair<std::uint64_t, std::uint64_t>;
+  using Clock = std::chrono::steady_clock;
+
+  void forget();
 
   Node& node_;
   std::string requester_;
   Writer<v1::Goal> writer_;
   Reader<v1::GoalStatus> reader_;
   std::map<Key, v1::GoalStatus> known_;
-  std::map<Key, bool> own_;  ///< ids that this client asked for: kept after their withdrawal
+  std::chrono::milliseconds keep_;
+  /// What this client asked for, and since when that is over. Its status is kept though the service
+  /// has withdrawn it.
+  std::map<Key, std::optional<Clock::time_point>> own_;
 };
 
 v1::Argument number(const std::string& name, double value);
