@@ -109,8 +109,28 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
   }
   out.motor_packets_per_s(short_of<std::uint16_t>(state.motor_packets_per_s));
   out.sonar_readings_per_s(short_of<std::uint16_t>(state.sonar_readings_per_s));
-  out.vision_packets_per_s(0);
+  out.vision_packets_per_s(0);  // Shell counts them
   out.bad_packets(static_cast<std::uint32_t>(bad_packets));
+  return out;
+}
+
+v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
+  using Mode = protocol::VisionChannel::Mode;
+  v1::VisionChannels out;
+  for (const protocol::VisionChannel& channel : packet.channels) {
+    v1::VisionChannel each;
+    each.mode(channel.mode == Mode::kLine          ? v1::VISION_LINE
+              : channel.mode == Mode::kBlobWithBox ? v1::VISION_BLOB_BOX
+                                                   : v1::VISION_BLOB);
+    each.x(channel.x);
+    each.y(channel.y);
+    each.area(channel.area);
+    each.width(channel.width);
+    each.height(channel.height);
+    each.first(channel.first);
+    each.count(channel.count);
+    out.channels().push_back(each);
+  }
   return out;
 }
 

@@ -11,7 +11,9 @@
 #include "saphira/authority/guard.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
+#include "vision.h"
 
 namespace saphira::bridge {
 
@@ -23,6 +25,7 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
                             const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
                             const std::string& link, bool lockstep);
 v1::Pose2 to_bus(const Pose& pose);
+v1::VisionChannels to_bus(const protocol::VisionPacket& packet);
 
 /// A grant, what the guard did to it, the velocity that was sent, who was refused.
 v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarded,

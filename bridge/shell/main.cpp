@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   double quiet_ms = options.quiet * 1000.0;
   bool no_guard = false;
   bool no_keeper = false;
+  bool vision = false;
+  std::vector<std::string> said;
   return saphira::bus::run_program(
       argc, argv, "bridge", "Connects one robot server to the bus and decides who drives it.",
       [&](CLI::App& app) {
@@ -28,12 +30,23 @@ int main(int argc, char** argv) {
                        "file that keeps the robot's position over a restart");
         app.add_flag("--free-step", options.free_step, "lockstep: step without a permit");
         app.add_flag("--no-keeper", no_keeper, "no second process that stops the robot");
+        app.add_flag("--vision", vision,
+                     "the robot has a Fast Track vision system: asks for boxes around its blobs "
+                     "and publishes its packets");
+        app.add_option("--vision-say", said,
+                       "further words to it (manual 9.1), such as pioneer_a_color=orange for a "
+                       "simulator's channel A")
+            ->needs("--vision");
       },
       [&](const saphira::bus::NodeOptions& node, const saphira::bus::Stop& stop) {
         options.lease = lease_ms / 1000.0;
         options.quiet = quiet_ms / 1000.0;
         options.guard = !no_guard;
         options.keeper = !no_keeper;
+        if (vision) {
+          options.vision = {"pioneer_a_mode=2", "pioneer_b_mode=2", "pioneer_c_mode=2"};
+          options.vision.insert(options.vision.end(), said.begin(), said.end());
+        }
         return saphira::bridge::Shell(node, options).run(stop);
       });
 }

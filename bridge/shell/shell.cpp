@@ -33,8 +33,10 @@ constexpr std::chrono::microseconds kSpin{500};
 constexpr double kBeat = 0.05;         // [s] of the keeper
 constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
 constexpr double kHoldOff = 2.0;       // [s] until a robot that could not be served is tried again
-constexpr std::uint64_t kMotorsCycles = 10;  // then the motors should be on
-constexpr double kCycle = 0.1;               // [s] manual 2.1.1
+constexpr std::uint64_t kMotorsCycles = 10;   // then the motors should be on
+constexpr std::uint64_t kSecond = 10;         // [cycles]
+constexpr std::uint64_t kVisionSilence = 20;  // [cycles] then the camera is asked again
+constexpr double kCycle = 0.1;                // [s] manual 2.1.1
 
 double steady() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -106,6 +108,8 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
   drives_.push_back({Role::teleop, node_.reader(bus::topics::kDriveTeleop), {}, false});
   drives_.push_back({Role::direct, node_.reader(bus::topics::kDriveDirect), {}, false});
   drives_.push_back({Role::behaviors, node_.reader(bus::topics::kDriveBehaviors), {}, false});
+  if (!options_.vision.empty())
+    channels_writer_.emplace(node_.writer(bus::topics::kVisionChannels));
   for (authority::GuardSettings& settings : guards_)
     settings.enabled = options_.guard;
 
@@ -308,6 +312,8 @@ void Shell::other(const protocol::ServerPacket& any, protocol::ByteView body, do
     serial_data_writer_.write(data);
     return;
   }
+  if (const auto* seen = std::get_if<protocol::VisionPacket>(&any); seen && channels_writer_)
+    return vision(*seen);
   const bool is_configuration = std::holds_alternative<protocol::ConfigPacket>(any);
   if (is_configuration && !reflector_.devices().reports().configuration)
     told(std::get<protocol::ConfigPacket>(any));
@@ -317,6 +323,27 @@ void Shell::other(const protocol::ServerPacket& any, protocol::ByteView body, do
     reflector_.devices().reflect(any);
   else
     reflector_.devices().unread(body[0]);
+}
+
+/// Until it sends packets: a word may be lost on a serial line.
+void Shell::ask_vision(double now) {
+  if (!channels_writer_ || !vision_packets_.empty() ||
+      (vision_asked_ != 0 && stamp_.cycle() < vision_asked_ + kVisionSilence))
+    return;
+  vision_asked_ = stamp_.cycle();
+  for (const std::string& text : options_.vision)
+    send(protocol::encode(protocol::VisionCommand({text.begin(), text.end()})), now);
+}
+
+void Shell::vision(const protocol::VisionPacket& packet) {
+  if (stamp_.cycle() == 0)
+    return;  // the robot's place is not known yet
+  vision_packets_.push_back(stamp_.cycle());
+  v1::VisionChannels channels = to_bus(packet);
+  channels.stamp(stamp_);
+  channels.odom(newest_state_.odom());
+  channels.pose_in_odom(newest_state_.pose_in_odom());
+  channels_writer_->write(channels);
 }
 
 void Shell::told(const protocol::ConfigPacket& robot) {
@@ -371,6 +398,8 @@ void Shell::opened(double now) {
   last_epoch_ = epoch_;
   stamp_.epoch(epoch_);
   stamp_.cycle(0);
+  vision_packets_.clear();
+  vision_asked_ = 0;
   body_ = to_body(reflector_.parameters());
   echoes_.clear();
   reflector_.open(time(), memory_, std::max(epoch_, last_odom_ + 1), slack_);
@@ -399,7 +428,11 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   const reflector::State& state =
       reflector_.packet(packet, time(), std::max(epoch_, last_odom_ + 1));
   newest_state_ = to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_);
+  while (!vision_packets_.empty() && vision_packets_.front() + kSecond < stamp_.cycle())
+    vision_packets_.pop_front();
+  newest_state_.vision_packets_per_s(static_cast<std::uint16_t>(vision_packets_.size()));
   state_writer_.write(newest_state_);
+  ask_vision(now);
 
   last_packet_ = now;
   link_silent_ = false;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +29,10 @@ struct BridgeOptions {
   bool guard = true;
   std::string state_file;  ///< keeps the odom frame over a restart; empty: none
   bool free_step = false;  ///< lockstep: step without a permit
-  bool keeper = true;      ///< needs a process with one thread: not where services share a process
+  /// What is said to the camera of a Fast Track vision system at the start (manual 9.1), such as
+  /// "pioneer_a_mode=2"; empty: it is not asked for packets.
+  std::vector<std::string> vision;
+  bool keeper = true;  ///< needs a process with one thread: not where services share a process
 };
 
 /// The bridge as a service: one robot server on one side, the bus on the other.
@@ -54,6 +58,8 @@ class Shell {
   void packet(const protocol::Bytes& body, double now);
   void opened(double now);
   void information(const protocol::InformationPacket& packet, double now);
+  void ask_vision(double now);
+  void vision(const protocol::VisionPacket& packet);
   void other(const protocol::ServerPacket& any, protocol::ByteView body, double now);
   void told(const protocol::ConfigPacket& robot);
   bool motors_off() const;
@@ -98,6 +104,7 @@ class Shell {
   std::vector<Drive> drives_;
   bus::Writer<v1::Devices> devices_writer_;
   bus::Writer<v1::SerialData> serial_data_writer_;
+  std::optional<bus::Writer<v1::VisionChannels>> channels_writer_;  ///< where there is a camera
   bus::Reader<v1::ServoCommand> servo_;
   bus::Reader<v1::GripperCommand> gripper_;
   bus::Reader<v1::DigitalOutputCommand> output_;
@@ -167,6 +174,8 @@ class Shell {
   std::uint64_t late_ = 0;
   std::uint64_t malformed_ = 0;
   std::uint64_t steps_ = 0;
+  std::uint64_t vision_asked_ = 0;            ///< cycle
+  std::deque<std::uint64_t> vision_packets_;  ///< cycles of those of the last second
 };
 
 }  // namespace saphira::bridge

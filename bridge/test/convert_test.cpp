@@ -252,5 +252,25 @@ TEST(Convert, ReadingsForTheGuard) {
   EXPECT_EQ(silent, std::vector<int>{0});
 }
 
+TEST(Convert, VisionChannels) {
+  protocol::VisionPacket packet;
+  using Mode = protocol::VisionChannel::Mode;
+  packet.channels[0] = {Mode::kBlobWithBox, -12, 5, 300, 20, 10, 0, 0};
+  packet.channels[1] = {Mode::kLine, 7, 0, 0, 0, 0, 3, 12};
+  packet.channels[2] = {Mode::kBlob, 1, 2, 3, 0, 0, 0, 0};
+  const v1::VisionChannels sample = to_bus(packet);
+  ASSERT_EQ(sample.channels().size(), 3U);
+  EXPECT_EQ(sample.channels()[0].mode(), v1::VISION_BLOB_BOX);
+  EXPECT_EQ(sample.channels()[0].x(), -12);
+  EXPECT_EQ(sample.channels()[0].y(), 5);
+  EXPECT_EQ(sample.channels()[0].area(), 300);
+  EXPECT_EQ(sample.channels()[0].height(), 20);
+  EXPECT_EQ(sample.channels()[0].width(), 10);
+  EXPECT_EQ(sample.channels()[1].mode(), v1::VISION_LINE);
+  EXPECT_EQ(sample.channels()[1].first(), 3);
+  EXPECT_EQ(sample.channels()[1].count(), 12);
+  EXPECT_EQ(sample.channels()[2].mode(), v1::VISION_BLOB);
+}
+
 }  // namespace
 }  // namespace saphira::bridge

@@ -28,6 +28,8 @@ int main(int argc, char** argv) {
         app.add_flag("!--no-registration", options.registration,
                      "there is no registration service: do not wait for it in lockstep");
         app.add_flag("!--no-interpretation", options.interpretation, "the same of interpretation");
+        app.add_flag("--vision", options.vision,
+                     "there is a vision service: wait for it in lockstep");
         app.add_option("--activities", options.folder,
                        "folder of activity files; they cover shipped ones of the same name");
       },

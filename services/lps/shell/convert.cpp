@@ -126,4 +126,41 @@ v1::Percept to_bus(const Percept& percept) {
   return result;
 }
 
+SeenThing from_bus(const v1::SeenThing& thing) {
+  SeenThing result;
+  result.id = thing.id();
+  result.kind = thing.kind() == v1::SEEN_BLOB ? SeenThing::Kind::blob : SeenThing::Kind::person;
+  result.channel = result.kind == SeenThing::Kind::blob ? thing.channel() : -1;
+  result.pose_in_odom = from_bus(thing.pose_in_odom());
+  result.velocity_in_odom = {thing.velocity_x(), thing.velocity_y()};
+  result.range_known = thing.range_known();
+  result.sigma = thing.sigma();
+  result.width = thing.width();
+  result.height = thing.height();
+  result.area = thing.area();
+  result.confidence = thing.confidence();
+  result.since = thing.since();
+  result.seen = thing.seen();
+  return result;
+}
+
+v1::SeenThing to_bus(const SeenThing& thing) {
+  v1::SeenThing result;
+  result.id(thing.id);
+  result.kind(thing.kind == SeenThing::Kind::blob ? v1::SEEN_BLOB : v1::SEEN_PERSON);
+  result.channel(static_cast<std::uint8_t>(std::max(0, thing.channel)));
+  result.pose_in_odom(to_bus(thing.pose_in_odom));
+  result.velocity_x(thing.velocity_in_odom.x());
+  result.velocity_y(thing.velocity_in_odom.y());
+  result.range_known(thing.range_known);
+  result.sigma(thing.sigma);
+  result.width(thing.width);
+  result.height(thing.height);
+  result.area(thing.area);
+  result.confidence(thing.confidence);
+  result.since(thing.since);
+  result.seen(thing.seen);
+  return result;
+}
+
 }  // namespace saphira::lps

@@ -6,6 +6,8 @@
 #include "robot.h"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
+#include "saphira/lps/seen_thing.hpp"
+#include "vision.h"
 
 /// Between the types of the bus and those of the LPS, which every service has: pure functions,
 /// nothing else.
@@ -24,5 +26,8 @@ std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state);
 Percept from_bus(const v1::Percept& percept);
 /// Of the readings the newest, as many as the contract takes.
 v1::Percept to_bus(const Percept& percept);
+
+SeenThing from_bus(const v1::SeenThing& thing);
+v1::SeenThing to_bus(const SeenThing& thing);
 
 }  // namespace saphira::lps

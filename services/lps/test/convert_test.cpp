@@ -40,6 +40,39 @@ TEST(Convert, PerceptsRoundTrip) {
     }
 }
 
+TEST(Convert, SeenThings) {
+  SeenThing thing;
+  thing.id = 7;
+  thing.pose_in_odom = {1.0, 2.0, 0.3};
+  thing.velocity_in_odom = {0.4, -0.5};
+  thing.range_known = false;
+  thing.sigma = 0.2;
+  thing.width = 0.5;
+  thing.height = 1.7;
+  thing.area = 0.1;
+  thing.confidence = 0.8;
+  thing.since = 10;
+  thing.seen = 12;
+  for (const int channel : {-1, 0, 1, 2}) {
+    thing.kind = channel < 0 ? SeenThing::Kind::person : SeenThing::Kind::blob;
+    thing.channel = channel;
+    const SeenThing back = from_bus(to_bus(thing));
+    EXPECT_EQ(back.id, thing.id);
+    EXPECT_EQ(back.kind, thing.kind);
+    EXPECT_EQ(back.channel, thing.channel);
+    EXPECT_EQ(back.pose_in_odom, thing.pose_in_odom);
+    EXPECT_EQ(back.velocity_in_odom, thing.velocity_in_odom);
+    EXPECT_EQ(back.range_known, thing.range_known);
+    EXPECT_EQ(back.sigma, thing.sigma);
+    EXPECT_EQ(back.width, thing.width);
+    EXPECT_EQ(back.height, thing.height);
+    EXPECT_EQ(back.area, thing.area);
+    EXPECT_EQ(back.confidence, thing.confidence);
+    EXPECT_EQ(back.since, thing.since);
+    EXPECT_EQ(back.seen, thing.seen);
+  }
+}
+
 TEST(Convert, OfManyReadingsTheNewest) {
   Percept percept;
   for (std::uint64_t cycle = 1; cycle <= 1000; ++cycle)

@@ -94,10 +94,13 @@ void Census::match_row(float* out) {
       right_best[i] = better ? from[i] : right_best[i];
     }
   }
+  const int side = 2 * half + 1;
+  const auto most = static_cast<std::int16_t>(settings_.worst * side * side *
+                                              static_cast<double>(kNeighbours.size()));
   for (int column = 0; column < columns_; ++column) {
     const auto i = static_cast<std::size_t>(column);
     out[column] = -1.0F;
-    if (best_cost_[i] == kWorst || best_at_[i] == 0)
+    if (best_cost_[i] > most || best_at_[i] == 0)
       continue;
     const int other = column - best_at_[i];
     if (other < 0 || std::abs(right_at_[static_cast<std::size_t>(other)] - best_at_[i]) > 1)

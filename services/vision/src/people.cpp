@@ -15,6 +15,7 @@ constexpr double kGap = radians(2.0);     // what is not matched for so wide doe
 constexpr double kBeside = radians(4.0);  // so far beside a shape its background is looked for
 constexpr double kTellsRound = 0.15;      // [m] of two sigmas of a range
 constexpr double kSigmaDisparity = 0.3;   // [pixels]
+constexpr double kTooNear = 1.2;          // [m]
 constexpr double kNearestTorso = 0.8;     // [m] of a torso that lies in the picture
 
 double median(std::vector<double>& values) {
@@ -131,7 +132,7 @@ class Shapes {
       if (!band_[i])
         continue;
       if (std::abs(bearing(i) - edge) > kBeside)
-        return 1;
+        return range > kTooNear ? 1 : 0;  // nothing, or so near that it does not match
       const double behind = depth(i) - range;
       if (std::abs(behind) > settings_.apart)
         return behind > 0.0 ? 1 : -1;

@@ -146,6 +146,8 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
     track.missed = 0.0;
     lps::SeenThing& thing = track.thing;
     thing.confidence += kLearn * (sight.evidence - thing.confidence);
+    track.told =
+        track.told || (track.sights >= settings_.confirm && thing.confidence >= settings_.sure);
     thing.area = sight.area;
     const auto blend = [](double& old, double now) {
       if (now > 0.0)
@@ -168,7 +170,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
     const double unseen = seconds(track.thing.seen, cycle);
     if (track.thing.kind != kind)
       return false;
-    if (track.sights < settings_.confirm)
+    if (!track.told)
       return unseen > kTentative;
     return track.missed > settings_.forget_in_view || unseen > settings_.forget_out_of_view;
   });
@@ -184,7 +186,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
 std::vector<lps::SeenThing> Tracker::things(std::uint64_t cycle, const Pose& robot) const {
   std::vector<lps::SeenThing> things;
   for (Track track : tracks_) {
-    if (track.sights < settings_.confirm)
+    if (!track.told)
       continue;
     predict(track, cycle);
     lps::SeenThing& thing = track.thing;

@@ -9,6 +9,7 @@
 #include "robot.h"
 #include "saphira/bus/qos.hpp"
 #include "system.h"
+#include "vision.h"
 
 namespace saphira::bus {
 
@@ -43,6 +44,8 @@ inline constexpr Topic<v1::Grant> kGrant{"drive/grant", Qos::cyclic};
 inline constexpr Topic<v1::StepPermit> kStepPermit{"lockstep/permit", Qos::latched};
 inline constexpr Topic<v1::Perception> kPerception{"perception", Qos::cyclic};
 inline constexpr Topic<v1::GridTile> kGrid{"perception/grid", Qos::latched};
+inline constexpr Topic<v1::VisionChannels> kVisionChannels{"vision/channels", Qos::cyclic};
+inline constexpr Topic<v1::Vision> kVision{"vision", Qos::cyclic};
 inline constexpr Topic<v1::Map> kMap{"map", Qos::latched};
 inline constexpr Topic<v1::Registration> kRegistration{"registration", Qos::cyclic};
 inline constexpr Topic<v1::RegistrationRequest> kRegistrationRequest{"registration/request",
@@ -96,6 +99,8 @@ void for_each_topic(F&& f) {
   f(kStepPermit);
   f(kPerception);
   f(kGrid);
+  f(kVisionChannels);
+  f(kVision);
   f(kMap);
   f(kRegistration);
   f(kRegistrationRequest);

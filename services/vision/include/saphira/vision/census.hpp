@@ -11,6 +11,7 @@ namespace saphira::vision {
 struct CensusSettings {
   int most = 64;        ///< [pixels] of disparity: what is nearer is not matched
   int half_window = 4;  ///< [pixels] the costs of 9 x 9 pixels are added up
+  double worst = 0.3;   ///< [0..1] of the bits may differ: what differs more is no match
 };
 
 /// Disparities of the left picture, of rows `first_row` on.

@@ -17,8 +17,9 @@ struct TrackerSettings {
   /// [m/s2] What is seen in directions alone is taken to stand, or no place would come of them.
   double direction_acceleration = 0.01;
   double fastest = 2.0;  ///< [m/s]
-  double gate = 9.2;  ///< squared distance in sigmas from where a sight may still be the same one
-  int confirm = 3;    ///< so many sights make one that is told of
+  double gate = 9.2;   ///< squared distance in sigmas from where a sight may still be the same one
+  int confirm = 3;     ///< so many sights make one that is told of,
+  double sure = 0.45;  ///< if they are so sure
   double forget_in_view = 2.0;       ///< [s] without a sight where it should be seen
   double forget_out_of_view = 15.0;  ///< [s] without a sight where it cannot be
   double coast = 1.5;  ///< [s] out of sight it goes on so long as it went, and slows down then
@@ -51,6 +52,7 @@ class Tracker {
     Covariance covariance = Covariance::Identity();
     std::uint64_t at = 0;  // cycle of the state
     bool ranged = true;    // its newest sight
+    bool told = false;
     int sights = 0;
     double missed = 0.0;  // [s] where it should have been seen
   };

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "saphira/vision/blobs.hpp"
+#include "saphira/vision/people.hpp"
+#include "saphira/vision/picture.hpp"
+#include "saphira/vision/tracker.hpp"
+
+namespace saphira::vision {
+
+/// From what cameras show to the people and colours around the robot. Each camera is optional, and
+/// takes its pictures when it likes; for each one must know the cycle and where the robot was then.
+class Vision {
+ public:
+  explicit Vision(const ColorCamera& camera = {}) : camera_(camera) {}
+
+  void see(const StereoPicture& picture, const Pose& robot_in_odom);
+  /// What a stereo system has made of it already.
+  void see(const Bands& bands, std::uint64_t cycle, const Pose& robot_in_odom);
+  void see(const Channels& channels, std::uint64_t cycle, const Pose& robot_in_odom);
+
+  /// What there is, where it is believed to be in that cycle, by id.
+  std::vector<lps::SeenThing> things(std::uint64_t cycle, const Pose& robot_in_odom) const {
+    return tracker_.things(cycle, robot_in_odom);
+  }
+
+  /// Another origin of odom: what was seen is elsewhere. Ids go on.
+  void reset() { tracker_.reset(); }
+
+ private:
+  ColorCamera camera_;
+  Census census_;
+  Tracker tracker_;
+};
+
+}  // namespace saphira::vision

@@ -1,0 +1,39 @@
+#include "vision/shell/convert.hpp"
+
+#include "lps/shell/convert.hpp"
+
+namespace saphira::vision {
+namespace {
+
+constexpr std::size_t kMostThings = 64;  // the bound of Vision.things
+
+}  // namespace
+
+Channels from_bus(const v1::VisionChannels& channels) {
+  Channels out;
+  for (std::size_t i = 0; i < out.size() && i < channels.channels().size(); ++i) {
+    const v1::VisionChannel& channel = channels.channels()[i];
+    if (channel.mode() == v1::VISION_LINE)
+      continue;
+    out[i].x = channel.x();
+    out[i].y = channel.y();
+    out[i].area = channel.area();
+    if (channel.mode() == v1::VISION_BLOB_BOX) {
+      out[i].width = channel.width();
+      out[i].height = channel.height();
+    }
+  }
+  return out;
+}
+
+v1::Vision to_bus(const std::vector<lps::SeenThing>& things) {
+  v1::Vision sample;
+  for (const lps::SeenThing& thing : things) {
+    if (sample.things().size() == kMostThings)
+      break;
+    sample.things().push_back(lps::to_bus(thing));
+  }
+  return sample;
+}
+
+}  // namespace saphira::vision

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "saphira/vision/picture.hpp"
+
+namespace saphira::vision {
+
+/// The pictures of a stereo socket (sim/README.md, Vision), read in a thread of its own; it
+/// connects anew by itself.
+class Pictures {
+ public:
+  /// An empty path: there are none.
+  explicit Pictures(std::string path);
+  ~Pictures();
+  Pictures(const Pictures&) = delete;
+  Pictures& operator=(const Pictures&) = delete;
+
+  /// The newest one of no later cycle, and drops those before it; waits so long for that of the
+  /// cycle itself, where the socket is connected.
+  std::optional<StereoPicture> take(std::uint64_t cycle, std::chrono::milliseconds wait = {});
+  bool connected() const;
+  /// Why there are no pictures, in words; empty: they come.
+  std::string trouble() const;
+
+ private:
+  void run();
+  void read(int fd);
+  void say(bool connected, std::string trouble);
+  bool pause(int milliseconds) const;  ///< true where the end was asked for
+
+  std::string path_;
+  int stop_ = -1;  ///< an eventfd
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<StereoPicture> pictures_;
+  bool connected_ = false;
+  std::string trouble_;
+  std::thread thread_;
+};
+
+}  // namespace saphira::vision

@@ -1,0 +1,111 @@
+// What people and colours the robot sees while it drives about: right ones, and no others.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+
+#include "drive/drive.hpp"
+#include "drive/vision_eyes.hpp"
+
+namespace saphira::test {
+namespace {
+
+using Kind = lps::SeenThing::Kind;
+
+struct Count {
+  int reported = 0;  // people, cycle by cycle
+  int right = 0;     // of them, who is there, or was a moment ago
+  int visible = 0;
+  int found = 0;  // of them
+};
+
+// Who stands within its view, and nobody and no wall before; other things do not count.
+bool visible(Drive& drive, const Vec2& at) {
+  const Pose robot = drive.seen().true_pose_in_world;
+  const Vec2 in_robot = to_frame(robot, at);
+  const double far = in_robot.norm();
+  for (const sim::Person& other : drive.scene().persons()) {
+    const Vec2 before = to_frame(robot, other.at);
+    if (before.norm() < far - 0.1 &&
+        std::abs(std::atan2(before.y(), before.x()) - std::atan2(in_robot.y(), in_robot.x())) <
+            2.0 * other.plan->radius / before.norm())
+      return false;
+  }
+  return in_robot.x() > 0.8 && far < 5.5 &&
+         std::abs(std::atan2(in_robot.y(), in_robot.x())) < radians(22.0) &&
+         !sim::cast_ray(drive.world().segments, robot.position(), (at - robot.position()) / far,
+                        far);
+}
+
+// Drives round those points, or stands.
+Count watch(Stereo stereo, const std::string& world, const std::vector<Vec2>& points, int cycles) {
+  DriveOptions options;
+  options.world = world;
+  Drive drive(options);
+  const auto eyes = vision_eyes(stereo);
+  Count count;
+  std::size_t next = 0;
+  int since = 0;
+  for (int cycle = 0; cycle < cycles; ++cycle) {
+    if (!points.empty()) {
+      const Pose pose = drive.seen().true_pose_in_world;
+      if (++since > 150 || (points[next] - pose.position()).norm() < 0.4) {
+        next = (next + 1) % points.size();
+        since = 0;
+      }
+      drive.go_to(
+          to_frame(compose(pose, relative(drive.seen().pose_in_odom, Pose{})), points[next]));
+    }
+    drive.advance();
+    const auto things = eyes(drive);
+    const Pose now =
+        compose(drive.seen().true_pose_in_world, relative(drive.seen().pose_in_odom, Pose{}));
+    const auto near = [&](const lps::SeenThing& thing, const Vec2& at) {
+      return thing.kind == Kind::person &&
+             (transform(now, thing.pose_in_odom.position()) - at).norm() < 0.6;
+    };
+    for (const lps::SeenThing& thing : things) {
+      if (thing.kind != Kind::person || thing.seen != drive.seen().cycle)
+        continue;
+      ++count.reported;
+      const bool right =
+          std::any_of(drive.scene().persons().begin(), drive.scene().persons().end(),
+                      [&](const sim::Person& person) { return near(thing, person.at); });
+      count.right += right;
+      if (!right && std::getenv("SAPHIRA_TALK"))
+        std::cout << cycle << " robot " << drive.seen().true_pose_in_world.x << " "
+                  << drive.seen().true_pose_in_world.y << " nobody at "
+                  << transform(now, thing.pose_in_odom.position()).transpose() << " id " << thing.id
+                  << " confidence " << thing.confidence << " width " << thing.width << "\n";
+    }
+    for (const sim::Person& person : drive.scene().persons())
+      if (visible(drive, person.at)) {
+        ++count.visible;
+        count.found += std::any_of(things.begin(), things.end(), [&](const lps::SeenThing& thing) {
+          return near(thing, person.at);
+        });
+      }
+  }
+  std::cout << world << ": people reported " << count.reported << ", right " << count.right
+            << ", visible " << count.visible << ", found " << count.found << "\n";
+  return count;
+}
+
+const std::vector<Vec2> kFloor{
+    {18.5, 25.0}, {12.0, 25.0}, {20.0, 25.0}, {17.5, 16.0}, {17.5, 25.0}};
+
+TEST(VisionEyes, SeeNobodyWhereNobodyIs) {
+  const Count count = watch(Stereo::pictures, "office-floor", kFloor, 300);
+  EXPECT_EQ(count.reported, 0);
+}
+
+TEST(VisionEyes, SeeVisitors) {
+  const Count count = watch(Stereo::pictures, "visitors", {}, 300);
+  EXPECT_GT(count.visible, 50);
+  EXPECT_GT(count.right, 0.97 * count.reported);
+  EXPECT_GT(count.found, 0.8 * count.visible);
+}
+
+}  // namespace
+}  // namespace saphira::test
