@@ -31,7 +31,9 @@ void Beliefs::look(const World& world) {
 void Beliefs::set(std::string_view name, Value value, std::string_view who, Ticks now) {
   std::string key = normal(name);
   const auto found = set_.find(key);
-  if (found != set_.end() && found->second.value == value && found->second.said_by == who)
+  // Said again, it is news where a claim has covered it meanwhile.
+  if (found != set_.end() && found->second.value == value && found->second.said_by == who &&
+      stored(key) == &found->second)
     return;
   if (found == set_.end() && set_.size() >= kMostSet)
     return;

@@ -88,7 +88,23 @@ void Executor::remember(const Ending& ending) {
 News Executor::hear(const std::vector<GoalEvent>& events) {
   for (const GoalEvent& event : events)
     take_in(event);
+  forget_ended();
   return take_news();
+}
+
+/// Withdraws what has ended long ago, and the oldest where there are too many: without a robot no
+/// time passes. Not before it has been told.
+void Executor::forget_ended() {
+  while (!ended_order_.empty()) {
+    const auto oldest = entries_.find(ended_order_.front());
+    const std::optional<GoalStatus>& told = oldest->second.published;
+    const bool many = ended_order_.size() > options_.max_shown && told && !open(*told);
+    if (!many && seconds(now_ - oldest->second.ended) < options_.keep_ended)
+      return;
+    withdrawn_.push_back(oldest->first);
+    entries_.erase(oldest);
+    ended_order_.pop_front();
+  }
 }
 
 News Executor::robot_gone() {
@@ -138,13 +154,7 @@ Outputs Executor::step(const Inputs& inputs) {
     if (const Entry* const next = arbitrate())
       forest_.begin(next->node, world);
   }
-  for (auto entry = entries_.begin(); entry != entries_.end();) {
-    const bool old =
-        !open(entry->second.status) && seconds(now_ - entry->second.ended) >= options_.keep_ended;
-    if (old)
-      withdrawn_.push_back(entry->first);
-    entry = old ? entries_.erase(entry) : std::next(entry);
-  }
+  forget_ended();
   for (auto& [id, entry] : entries_)
     measure(entry);
   return {forest_.behaviors(), forest_.nodes(), take_news(), forest_.behavior_control(),
@@ -184,9 +194,14 @@ void Executor::take_in(const GoalEvent& event) {
 void Executor::take_written(const Goal& goal) {
   const auto found = entries_.find(goal.id);
   if (found != entries_.end()) {
-    if (open(found->second.status) && goal != found->second.goal)
-      change(found->second, goal);
-    return;  // an ended goal stays ended: its id is used up
+    Entry& entry = found->second;
+    if (!open(entry.status))
+      return;  // an ended goal stays ended: its id is used up
+    if (goal != entry.goal)
+      change(entry, goal);
+    else
+      entry.refusal.clear();  // taken back
+    return;
   }
   Entry& entry = entries_[goal.id];
   entry.goal = goal;
@@ -202,6 +217,7 @@ void Executor::take_written(const Goal& goal) {
     entry.status.reason = done->second.reason;
     entry.status.progress = done->second.state == GoalState::kSucceeded ? 1.0 : 0.0;
     entry.ended = now_;
+    ended_order_.push_back(goal.id);
     return;
   }
   GoalCode code = GoalCode::kNone;
@@ -259,9 +275,12 @@ void Executor::change(Entry& entry, const Goal& goal) {
   if (!wrong.empty()) {
     // What is not understood never replaces what is: the goal goes on as it was.
     entry.status.code = code;
-    entry.status.reason = "goes on unchanged, the change was refused: " + wrong;
+    entry.refusal = wrong;
+    if (entry.status.state == GoalState::kUnderway)
+      entry.status.reason.clear();
     return;
   }
+  entry.refusal.clear();
   const bool other = goal.functor != entry.goal.functor;
   const bool arguments = other || goal.arguments != entry.goal.arguments;
   if (other && entry.node != 0) {
@@ -307,6 +326,7 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
     forest_.remove(entry.node);
   entry.node = 0;
   entry.ended = now_;
+  ended_order_.push_back(entry.goal.id);
   entry.status.state = state;
   entry.status.code = code;
   entry.status.reason = reason.empty() ? name_of(state) : std::move(reason);
@@ -423,7 +443,8 @@ void Executor::check_deadlines(const Robot& robot) {
     if (seconds(now_ - entry.accepted) + 0.5 * kTick < entry.goal.deadline)
       continue;
     std::string success;
-    if (entry.node != 0)
+    if (entry.status.state == GoalState::kUnderway && entry.node != 0 &&
+        !forest_.held(entry.node, Hold::kPerson))
       success = forest_.activity(entry.node).at_deadline(robot);
     if (!success.empty()) {
       end(entry, GoalState::kSucceeded, GoalCode::kNone, std::move(success));
@@ -512,7 +533,7 @@ void Executor::begin(Entry& entry) {
   if (entry.node == 0)
     entry.node = forest_.plant(entry.goal.id, describe(entry.goal.id), entry.goal.functor,
                                entry.schema->make(entry.arguments), entry.schema->priority,
-                               entry.schema->timeout);
+                               entry.schema->timeout, entry.schema->concurrent);
 }
 
 /// Those that are underway beside the one that drives, from the cycle on in which they came.
@@ -602,12 +623,19 @@ bool Executor::collect() {
 News Executor::take_news() {
   News news;
   for (auto& [id, entry] : entries_) {
-    const bool due = open(entry.status) && now_ - entry.published_at >= kStatusPeriod;
-    if (entry.published && !due && !differs(*entry.published, entry.status))
+    std::optional<GoalStatus> refused;
+    if (!entry.refusal.empty()) {
+      refused = entry.status;
+      refused->reason += (refused->reason.empty() ? "goes on unchanged, " : "; ");
+      refused->reason += "the change was refused: " + entry.refusal;
+    }
+    const GoalStatus& status = refused ? *refused : entry.status;
+    const bool due = open(status) && now_ - entry.published_at >= kStatusPeriod;
+    if (entry.published && !due && !differs(*entry.published, status))
       continue;
-    entry.published = entry.status;
+    entry.published = status;
     entry.published_at = now_;
-    news.changed.push_back(entry.status);
+    news.changed.push_back(status);
   }
   news.withdrawn = std::exchange(withdrawn_, {});
   news.placed = std::exchange(placed_, {});

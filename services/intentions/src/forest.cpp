@@ -32,6 +32,7 @@ Ticks ticks(double seconds) {
 }
 
 constexpr const char* kBehaviorControl = "*behavior-control*";
+constexpr const char* kMustNotDrive = "a concurrent activity does not drive";
 
 constexpr std::size_t kManyWords = 40;  ///< letters of a value; of more there is the beginning
 
@@ -59,6 +60,7 @@ struct Forest::Node {
   std::vector<std::uint32_t> children;
   std::uint32_t root = 0;
   std::size_t depth = 0;
+  bool concurrent = false;  ///< must not drive, as its root
   unsigned holds = 0;
   bool suspended = false;  ///< by its own holds or with its parent
   Ticks suspended_at = 0;
@@ -77,8 +79,9 @@ struct Forest::Node {
   Ticks since = 0;  ///< when its parameters were intended
   // Of an activity.
   double progress = 0.0;
-  Ticks stepped = -1;  ///< when it was, last
-  bool gone = false;   ///< removed, in the course of a step
+  Ticks stepped = -1;                  ///< when it was, last
+  bool gone = false;                   ///< removed, in the course of a step
+  std::optional<std::string> trouble;  ///< with a behavior that it has begun
 };
 
 /// What an activity gets hold of: one node for one step.
@@ -94,6 +97,8 @@ class Forest::Handle : public Self {
 
   void intend_behavior(std::string_view label, std::string_view schema, int priority,
                        Arguments parameters) override {
+    if (node_.concurrent)
+      throw ActivityError(kMustNotDrive);
     Node* child = forest_.child_of(node_, label);
     if (child != nullptr && child->behavior.schema == schema &&
         child->behavior.priority == priority && child->behavior.parameters == parameters)
@@ -208,8 +213,14 @@ class Forest::Handle : public Self {
         {node_.shown.id, node_.shown.schema, std::move(text), node_.shown.goal});
   }
   void believe(const std::string& name, Value value) override {
-    if (normal(name) == kBehaviorControl)
-      forest_.control_owner_ = value.nil() ? node_.root : 0;
+    if (normal(name) == kBehaviorControl) {
+      if (value.nil())
+        forest_.control_off_.insert(node_.root);
+      else
+        forest_.control_off_.erase(node_.root);
+      if (!forest_.behavior_control())
+        value = Value();  // another one still wants it off
+    }
     forest_.beliefs_->set(name, std::move(value), node_.shown.schema, world_.now);
   }
 
@@ -248,7 +259,8 @@ Forest::Node* Forest::at(std::uint32_t id) const {
 }
 
 std::uint32_t Forest::plant(const GoalId& goal, std::string_view name, std::string_view schema,
-                            std::unique_ptr<Activity> activity, int priority, double timeout) {
+                            std::unique_ptr<Activity> activity, int priority, double timeout,
+                            bool concurrent) {
   auto node = std::make_unique<Node>();
   const std::uint32_t id = ++last_id_;
   node->shown.id = id;
@@ -260,6 +272,7 @@ std::uint32_t Forest::plant(const GoalId& goal, std::string_view name, std::stri
   node->root = id;
   node->begun = now_;
   node->timeout = ticks(timeout);
+  node->concurrent = concurrent;
   node->activity = std::move(activity);
   nodes_.emplace(id, std::move(node));
   roots_.push_back(id);
@@ -281,6 +294,7 @@ Forest::Node& Forest::add(Node& parent, std::string_view name, std::string_view 
   node->shown.since = now_;
   node->root = parent.root;
   node->depth = parent.depth + 1;
+  node->concurrent = parent.concurrent;
   parent.children.push_back(id);
   order_is_old_ = true;
   return *nodes_.emplace(id, std::move(node)).first->second;
@@ -324,6 +338,8 @@ std::uint32_t Forest::start(Node& parent, const Start& start, const World& world
 }
 
 void Forest::make_behavior(Node& node, const Start& start, const World& world) {
+  if (node.concurrent)
+    throw ActivityError(kMustNotDrive);
   const BehaviorSignature* const known = registry_->behavior(start.schema);
   if (known == nullptr && registry_->knows_behaviors())
     throw ActivityError("there is neither an activity nor a behavior " +
@@ -448,15 +464,15 @@ void Forest::resume(std::uint32_t id, Hold why) {
 }
 
 void Forest::wake(Node& node) {
-  if (finished(node.shown.state) || node.holds != 0)
+  if (!node.suspended || finished(node.shown.state) || node.holds != 0)
     return;
-  if (node.suspended)
-    node.begun += now_ - node.suspended_at;
+  node.begun += now_ - node.suspended_at;
   node.suspended = false;
   if (!node.activity) {
     node.shown.state = IntentionState::kRunning;
     node.since = now_ + 1;
     node.level = 0.0;
+    woken_.push_back(node.shown.id);
     return;
   }
   node.shown.state = IntentionState::kResumed;
@@ -485,10 +501,8 @@ void Forest::drop(std::uint32_t id) {
     std::erase(parent->children, id);
   else if (node.shown.parent == 0)
     std::erase(roots_, id);
-  if (control_owner_ == id) {
-    control_owner_ = 0;
+  if (control_off_.erase(id) > 0 && control_off_.empty())
     beliefs_->unset(kBehaviorControl);
-  }
   order_is_old_ = true;
   node.gone = true;
   const auto found = nodes_.find(id);
@@ -511,14 +525,15 @@ Forest::Node* Forest::child_of(const Node& parent, std::string_view label) const
   return nullptr;
 }
 
-/// What has that name among what `top` has begun, the nearest to it first; not `seeker` itself.
+/// What has that name among what `top` has begun, the nearest to it first, of those the newest; not
+/// `seeker` itself.
 Forest::Node* Forest::named(const Node& top, std::string_view name, const Node& seeker) const {
   std::deque<const Node*> open = {&top};
   while (!open.empty()) {
     const Node* const node = open.front();
     open.pop_front();
-    for (const std::uint32_t id : node->children) {
-      Node* const child = at(id);
+    for (auto id = node->children.rbegin(); id != node->children.rend(); ++id) {
+      Node* const child = at(*id);
       if (child != &seeker && !finished(child->shown.state) && normal(child->shown.name) == name)
         return child;
       open.push_back(child);
@@ -549,10 +564,14 @@ void Forest::hear(const std::vector<BehaviorLevel>& levels, Ticks tick) {
 void Forest::hear(const std::vector<BehaviorTrouble>& troubles) {
   for (const BehaviorTrouble& trouble : troubles) {
     for (auto& [id, node] : nodes_) {
-      if (node->activity || node->behavior.name != trouble.name || finished(node->shown.state))
+      if (node->activity || node->behavior.name != trouble.name || node->suspended ||
+          finished(node->shown.state))
         continue;
       node->shown.state = IntentionState::kFailure;
       node->outcome = {IntentionState::kFailure, GoalCode::kActivity, trouble.reason};
+      Node& parent = *at(node->shown.parent);
+      if (!parent.suspended && !parent.activity->waits_for(id))
+        parent.trouble = node->behavior.schema + ": " + trouble.reason;
     }
   }
 }
@@ -591,7 +610,7 @@ void Forest::step(const World& world) {
       step_one(*node, world);
   }
   work_off(world);
-  sweep();
+  end_cycle(world);
 }
 
 void Forest::sort() {
@@ -605,10 +624,12 @@ void Forest::sort() {
 }
 
 void Forest::begin(std::uint32_t id, const World& world) {
-  if (Node* const node = at(id))
+  Node* const node = at(id);
+  if (node != nullptr &&
+      (node->stepped != world.now || node->shown.state != IntentionState::kRunning))
     step_one(*node, world);
   work_off(world);
-  sweep();
+  end_cycle(world);
 }
 
 void Forest::step_one(Node& node, const World& world) {
@@ -617,7 +638,13 @@ void Forest::step_one(Node& node, const World& world) {
   const bool interrupted = node.shown.state == IntentionState::kInterrupted;
   node.stepped = world.now;
   Handle handle(*this, node, world);
-  node.activity->step(handle);
+  try {
+    if (node.trouble)
+      throw ActivityError(*node.trouble);
+    node.activity->step(handle);
+  } catch (const ActivityError& error) {
+    handle.fail(error.code(), error.what());
+  }
   conclude(node, interrupted, world);
 }
 
@@ -675,7 +702,13 @@ void Forest::work_off(const World& world) {
   }
 }
 
-void Forest::sweep() {
+/// Removes the roots that have ended, and brings up to date what this cycle has changed too late
+/// for watch().
+void Forest::end_cycle(const World& world) {
+  for (const std::uint32_t id : std::exchange(woken_, {})) {
+    if (Node* const node = at(id))
+      place(*node, world);
+  }
   std::vector<std::uint32_t> gone;
   for (const std::uint32_t id : roots_) {
     if (finished(at(id)->shown.state))
@@ -701,7 +734,7 @@ std::size_t Forest::size() const {
 }
 
 bool Forest::behavior_control() const {
-  return control_owner_ == 0;
+  return control_off_.empty();
 }
 
 std::map<std::uint32_t, Outcome> Forest::take_ended() {

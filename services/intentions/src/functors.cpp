@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace saphira::intentions {
 namespace {
@@ -97,23 +98,18 @@ std::string why_not_moving(const Robot& robot) {
   return robot.has_power ? "" : "; the motors have no power";
 }
 
-/// Whether to go on: the robot stands while it does not know where it is on the map, and gives up
-/// when that lasts for longer than its patience.
-bool wait_for_position(Self& self, bool known, std::optional<Ticks>& since, double patience) {
-  if (known) {
-    since.reset();
-    return true;
-  }
+/// The robot stands while it does not know where it is on the map, and gives up when that lasts for
+/// longer than its patience.
+void wait_for_position(Self& self, std::optional<Ticks>& since, double patience) {
   for (const char* label : {"AvoidCollision", "KeepOff", "GoToPos", "TurnTo"})
     self.drop_behavior(label);
   self.intend_behavior("Stop", "Stop", kRest, {});
   self.say("waits to know where it is on the map");
-  if (!since)
+  if (!since || begins(self))
     since = self.now();
   if (static_cast<double>(self.now() - *since) * kTick >= patience)
     self.fail(GoalCode::kNoPosition,
               format("the robot has not known where it is on the map for %.0f s", patience));
-  return false;
 }
 
 /// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop for where none of them has
@@ -131,16 +127,21 @@ class GoTo : public Activity {
     if (self.state() == IntentionState::kInterrupted)
       return;
     const std::optional<Pose> target = in_odom(target_, self.robot());
-    if (!wait_for_position(self, target.has_value(), waiting_since_, watchdog_.patience()))
+    if (!target) {
+      wait_for_position(self, waiting_since_, watchdog_.patience());
       return;
+    }
+    const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
     const double left = distance(self.robot().pose_in_odom, *target);
-    if (new_target_ || begins(self)) {
+    const bool begun = new_target_ || begins(self);
+    if (begun) {
       if (new_target_)
         whole_way_ = left;
       new_target_ = false;
       there_ = false;
-      watchdog_.restart(left, self.now());
     }
+    if (begun || waited)
+      watchdog_.restart(left, self.now());
     // The behavior's own word, within reason: it may be content a little before the radius.
     if (left <= radius_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * radius_))
       there_ = true;
@@ -268,16 +269,17 @@ class TurnTo : public Activity {
       target_ = point("heading", {pose.x + kFar * std::cos(*heading_),
                                   pose.y + kFar * std::sin(*heading_), 0.0});
     const std::optional<Pose> target = in_odom(target_, self.robot());
-    if (!wait_for_position(self, target.has_value(), waiting_since_, watchdog_.patience()))
+    if (!target) {
+      wait_for_position(self, waiting_since_, watchdog_.patience());
       return;
+    }
+    const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
     const double toward = std::atan2(target->y - pose.y, target->x - pose.x);
     const double left = std::abs(norm2_angle(toward - pose.th));
-    if (new_target_ || begins(self)) {
-      if (new_target_)
-        whole_turn_ = left;
-      new_target_ = false;
+    if (new_target_)
+      whole_turn_ = left;
+    if (std::exchange(new_target_, false) || begins(self) || waited)
       watchdog_.restart(left, self.now());
-    }
     self.intend_behavior("TurnTo", "TurnTo", kTask,
                          {point("goal", *target), number("success_angle", angle_),
                           number("turn_speed", turn_speed_)});

@@ -39,8 +39,14 @@ class Bench {
   }
   void step_without_moving() {
     ++cycle;
-    out = executor.step(
-        {epoch, cycle, world.robot, world.levels, cycle - 1, std::exchange(events, {})});
+    out = executor.step({epoch,
+                         cycle,
+                         world.robot,
+                         world.levels,
+                         cycle - 1,
+                         std::exchange(events, {}),
+                         {},
+                         std::exchange(troubles, {})});
     note(out.news);
   }
   void hear() { note(executor.hear(std::exchange(events, {}))); }
@@ -65,6 +71,7 @@ class Bench {
   std::uint64_t epoch = 100;
   std::uint64_t cycle = 0;
   std::vector<GoalEvent> events;
+  std::vector<BehaviorTrouble> troubles;  ///< of the next step
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them
   std::size_t published = 0;

@@ -230,6 +230,31 @@ TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
   EXPECT_EQ(bench.out.behaviors, before);
 }
 
+// Also where the goal waits, or waits for a robot, and has something to say of its own.
+TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
+  Bench bench;
+  const std::string refused =
+      "the change was refused: argument \"position\": expected a point, within 10000 m, got 3";
+  bench.ask(1, "go_to", kFar);
+  bench.ask(2, "go_to", kFar);
+  bench.step();
+  for (const std::uint64_t id : {1U, 2U})
+    bench.ask(id, "go_to", {number("position", 3.0)});
+  bench.step();
+  EXPECT_EQ(bench.status(1).reason, "goes on unchanged, " + refused);
+  EXPECT_EQ(bench.status(2).reason,
+            "waits for goal 1:1 (go_to) of \"somebody\", which came first; " + refused);
+  bench.world.robot.connected = false;
+  bench.step();
+  EXPECT_EQ(bench.status(1).reason, "the robot is not connected; goes on when it is; " + refused);
+  EXPECT_EQ(bench.status(2).reason, "waits for the robot; " + refused);
+  bench.ask(1, "go_to", kFar);
+  bench.ask(2, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.status(1).reason, "the robot is not connected; goes on when it is");
+  EXPECT_EQ(bench.status(2).reason, "waits for the robot");
+}
+
 TEST(Executor, AnEndedGoalStaysEnded) {
   Bench bench;
   bench.ask(1, "stop", {});
@@ -260,6 +285,27 @@ TEST(Executor, AnEndedGoalIsKeptForAMinute) {
   bench.step();
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
   EXPECT_TRUE(bench.out.behaviors.empty());
+}
+
+// Without a robot no time passes, and a requester may go on and on.
+TEST(Executor, SoManyEndedGoalsAreKept) {
+  ExecutorOptions options;
+  options.max_shown = 3;
+  Bench bench({}, options);
+  for (std::uint64_t id = 1; id <= 8; ++id)
+    bench.ask(id, "fly", {});
+  bench.hear();
+  EXPECT_EQ(bench.statuses.size(), 8U) << "each has been told";
+  bench.ask(9, "fly", {});
+  bench.hear();
+  bench.hear();
+  ASSERT_EQ(bench.statuses.size(), 3U);
+  EXPECT_EQ(bench.statuses.begin()->first, 7U) << "the oldest are gone";
+  bench.ask(1, "fly", {});
+  bench.hear();
+  EXPECT_EQ(bench.state(1), GoalState::kRefused);
+  bench.step();
+  EXPECT_EQ(bench.statuses.size(), 3U);
 }
 
 TEST(Executor, PublishesOnChangeAndOnceASecond) {

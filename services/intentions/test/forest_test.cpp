@@ -5,6 +5,8 @@
 #include <functional>
 #include <utility>
 
+#include "saphira/intentions/beliefs.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -41,6 +43,37 @@ TEST(Forest, StepsThroughTheStatesOfTheManual) {
   EXPECT_EQ(seen, (std::vector{IntentionState::kInit, IntentionState::kRunning,
                                IntentionState::kInterrupted, IntentionState::kResumed}));
   EXPECT_EQ(forest.foremost(id).step, "at work");
+}
+
+TEST(Forest, WhatIsNotInterruptedIsNotResumed) {
+  Forest forest;
+  std::vector<IntentionState> seen;
+  const auto id =
+      forest.plant({1, 1}, "it", "test", act([&](Self& self) { seen.push_back(self.state()); }));
+  forest.step(1, kRobot);
+  forest.resume(id);
+  forest.step(2, kRobot);
+  EXPECT_EQ(seen, (std::vector{IntentionState::kInit, IntentionState::kRunning}));
+}
+
+TEST(Forest, AFirstStepOutOfTurnIsNoSecondOne) {
+  Forest forest;
+  int steps = 0;
+  const auto act_once = [&](Self&) { ++steps; };
+  const Surroundings nothing;
+  const Beliefs beliefs;
+  const World world{kRobot, nothing, beliefs, 1};
+  const auto id = forest.plant({1, 1}, "it", "test", act(act_once));
+  forest.step(world);
+  forest.begin(id, world);
+  EXPECT_EQ(steps, 1);
+  forest.begin(forest.plant({1, 2}, "it", "test", act(act_once)), world);
+  EXPECT_EQ(steps, 2);
+  // Interrupted and resumed within the cycle, it would leave a gap in what is intended.
+  forest.interrupt(id);
+  forest.resume(id);
+  forest.begin(id, world);
+  EXPECT_EQ(steps, 3);
 }
 
 TEST(Forest, AnInterruptedIntentionLeavesNothingRunning) {

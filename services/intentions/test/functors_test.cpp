@@ -135,6 +135,62 @@ TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
   EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
 }
 
+TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
+  Bench bench;
+  bench.world.robot.odom_in_map = Pose{};
+  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::kMap), number("patience", 3.0)});
+  bench.step();
+  const auto wait = [&](int cycles, bool known) {
+    bench.world.held = true;
+    bench.world.robot.odom_in_map = known ? std::optional(Pose{}) : std::nullopt;
+    for (int i = 0; i < cycles; ++i)
+      bench.step();
+  };
+  wait(20, false);
+  wait(20, true);
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
+  // And that before an interruption is none of the time behind it.
+  wait(20, false);
+  bench.ask(2, "drive", {number("speed", 0.0)}, 5);
+  wait(20, false);
+  EXPECT_EQ(bench.state(1), GoalState::kSuspended);
+  bench.dispose(2);
+  wait(20, false);
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
+  wait(15, false);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
+}
+
+TEST(TurnTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
+  Bench bench;
+  bench.world.robot.odom_in_map = Pose{};
+  bench.world.held = true;
+  bench.ask(1, "turn_to",
+            {point("position", {0.0, 5.0, 0.0}, Frame::kMap), number("patience", 3.0)});
+  for (int i = 0; i < 45; ++i) {
+    bench.world.robot.odom_in_map = i < 20 ? std::nullopt : std::optional(Pose{});
+    bench.step();
+  }
+  EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
+}
+
+// Without AvoidCollision the others would drive on.
+TEST(Functors, FailWhereOneOfTheirBehaviorsCannotBeMade) {
+  for (const char* const missing : {"AvoidCollision", "ConstantVelocity", "Stop"}) {
+    Bench bench;
+    bench.ask(1, "drive", {number("speed", 0.2)});
+    bench.step();
+    for (const IntendedBehavior& behavior : bench.out.behaviors)
+      if (behavior.schema == missing)
+        bench.troubles.push_back({behavior.name, "its file is broken"});
+    bench.step();
+    EXPECT_EQ(bench.state(1), GoalState::kFailed);
+    EXPECT_EQ(bench.status(1).code, GoalCode::kActivity);
+    EXPECT_EQ(bench.status(1).reason, std::string(missing) + ": its file is broken");
+    EXPECT_TRUE(bench.out.behaviors.empty());
+  }
+}
+
 TEST(GoTo, GivesUpWhenItComesNoNearer) {
   Bench bench;
   bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
@@ -164,6 +220,27 @@ TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
   EXPECT_EQ(bench.status(1).elapsed, 3.0);
   EXPECT_EQ(bench.status(1).reason, "drove 0.58 m until the deadline");
+}
+
+TEST(Drive, ThatDoesNotDriveAtItsDeadlineHasFailed) {
+  Bench bench;
+  Goal goal = bench.goal(1, "drive", {number("speed", 0.2)});
+  goal.deadline = 3.0;
+  bench.write(goal);
+  bench.step();
+  bench.ask(2, "drive", {number("speed", 0.1)}, 5);
+  for (int i = 0; i < 40; ++i)
+    bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kFailed);
+  EXPECT_EQ(bench.status(1).code, GoalCode::kDeadline);
+
+  Bench held;
+  held.write(goal);
+  held.step();
+  ASSERT_TRUE(held.executor.interrupt(held.out.nodes.at(0).id));
+  for (int i = 0; i < 40; ++i)
+    held.step();
+  EXPECT_EQ(held.status(1).code, GoalCode::kDeadline);
 }
 
 TEST(Drive, GivesUpWhenItDoesNotMove) {

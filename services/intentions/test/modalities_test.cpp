@@ -13,6 +13,15 @@ std::string activity(const std::string& goals, const std::string& rest = "") {
   return "(defintention :it " + rest + " :goals '(" + goals + "))";
 }
 
+void claim(Stage& stage, const std::string& name, bool holds) {
+  stage.inputs.claims.push_back({ClaimEvent::Kind::kSaid,
+                                 {9, name.size() > 1 ? std::uint64_t(name[1]) : 1U},
+                                 "somebody",
+                                 name,
+                                 Value::truth(holds)});
+  stage.step();
+}
+
 TEST(Modality, TestFailsWithAReasonUpToTheGoal) {
   Stage stage(
       "(defintention :it :goals '((INTEND :part ())))"
@@ -104,6 +113,105 @@ TEST(Modality, AndJoinsSplitDoesNot) {
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
 }
 
+TEST(Modality, AReasonThatCannotBeComputedFails) {
+  Stage stage(activity("(INTEND :part () :else (EXECUTE (say \"~a\" (reason))))") +
+              "(defintention :part :goals '((= x nil) (SUCCEED \"~a\" (+ 1 x))))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(5);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.messages.size(), 1U);
+}
+
+// What a SPLIT has begun ends, and is interrupted, with the goal that it stands in.
+TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
+  const std::string aside = "(SPLIT (SEQ (INTEND :Watch () :blocking nil) (INTEND :Follow ())))";
+  const std::string rest = "(WAIT-FOR *x* :forever t)";
+  Stage preserve(activity("(PRESERVE (not stalled) " + aside + rest +
+                          " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
+  preserve.ask(1, "it");
+  preserve.step(2);
+  EXPECT_EQ(preserve.behaviors(), Names({"Watch", "Follow"}));
+  preserve.inputs.robot.left_stalled = true;
+  preserve.step();
+  EXPECT_EQ(preserve.messages, Names({"broken"}));
+  EXPECT_TRUE(preserve.behaviors().empty());
+
+  // Also when it is over itself, and what it has begun goes on.
+  Stage over(activity("(PRESERVE (not stalled) (SPLIT (INTEND :Watch () :blocking nil))" + rest +
+                      " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
+  over.ask(1, "it");
+  over.step(2);
+  EXPECT_EQ(over.behaviors(), Names({"Watch"}));
+  over.inputs.robot.left_stalled = true;
+  over.step();
+  EXPECT_TRUE(over.behaviors().empty());
+
+  Stage all(activity("(AND (SEQ " + aside + ") (SEQ " + rest +
+                     " (FAIL \"no\")) :else (= y 1)) (WAIT-FOR nil :forever t)"));
+  all.ask(1, "it");
+  all.step(2);
+  EXPECT_EQ(all.behaviors(), Names({"Watch", "Follow"}));
+  claim(all, "*x*", true);
+  EXPECT_TRUE(all.behaviors().empty());
+  EXPECT_EQ(all.status(1).state, GoalState::kUnderway);
+
+  Stage maintain(
+      activity("(MAINTAIN (not stalled) :by (SEQ (SPLIT (INTEND :Back ()))"
+               " (WAIT-FOR (not stalled) :forever t)) " +
+               aside + rest + ") (WAIT-FOR nil :forever t)"));
+  maintain.ask(1, "it");
+  maintain.step(2);
+  for (int i = 0; i < 2; ++i) {
+    maintain.inputs.robot.left_stalled = true;
+    maintain.step(3);
+    EXPECT_EQ(maintain.behaviors(), Names({"Back"}));
+    maintain.inputs.robot.left_stalled = false;
+    maintain.step(2);
+    EXPECT_EQ(maintain.behaviors(), Names({"Watch", "Follow"}));
+  }
+}
+
+TEST(Modality, ASplitGoesOnBehindTheGoalThatItStoodIn) {
+  Stage stage(
+      activity("(SPLIT (INTEND :Watch ()))"
+               "(PRESERVE (not stalled) (AND (SPLIT (INTEND :Follow ())) (= y 1))"
+               " (WAIT-FOR *x* :forever t))"
+               "(PRESERVE (not stalled) (WAIT-FOR nil :forever t) :else (= y 2))"
+               "(WAIT-FOR nil :forever t)"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(3);
+  claim(stage, "*x*", true);
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"}));
+  stage.inputs.robot.left_stalled = true;
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.behaviors(), Names({"Watch", "Follow"})) << "they do not stand in what failed";
+}
+
+TEST(Modality, AGotoLeavesWhatItStandsIn) {
+  for (const std::string goal :
+       {"(AND (SEQ (WAIT-FOR *x* :forever t) (GOTO :end)) (INTEND :Follow ()))",
+        "(PRESERVE t (AND (SEQ (WAIT-FOR *x* :forever t) (GOTO :end)) (INTEND :Follow ())))",
+        "(MAINTAIN (not *x*) :by (GOTO :end) (INTEND :Follow ()))"}) {
+    SCOPED_TRACE(goal);
+    Stage stage(activity(goal + "(EXECUTE (say \"joined\"))"
+                                "(:end (EXECUTE (say \"end\"))) (WAIT-FOR stalled :forever t)"));
+    ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+    stage.ask(1, "it");
+    stage.step(2);
+    EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
+    claim(stage, "*x*", true);
+    EXPECT_TRUE(stage.behaviors().empty());
+    stage.step(4);
+    EXPECT_EQ(stage.messages, Names({"end"})) << "once, and nothing that stands before it";
+    EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+    EXPECT_EQ(stage.display(), "* it END");
+  }
+}
+
 TEST(Modality, AndFailsWithOneOfItsGoalsAndEndsTheOthers) {
   Stage stage(activity("(AND (INTEND :Follow ()) (INTEND :part ())"
                        " :else (EXECUTE (say \"~a\" (reason)))) (WAIT-FOR stalled)",
@@ -148,6 +256,16 @@ TEST(Modality, UnintendEndsTheNearestOfThatNameAndWhoWaitedGoesOn) {
   EXPECT_TRUE(stage.behaviors().empty());
   stage.step();
   EXPECT_EQ(stage.status(1).reason, "removed");
+}
+
+TEST(Modality, UnintendMeansTheNewestAsStateDoes) {
+  Stage stage(activity(
+      "((INTEND :Follow () :blocking nil :name way) (INTEND :Go () :blocking nil :name way)"
+      " (UNINTEND 'way)) (WAIT-FOR nil :forever t)"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
 }
 
 TEST(Modality, AnActivityMayEndWhatItStandsIn) {
@@ -195,6 +313,47 @@ TEST(Modality, MaintainRestoresAndGoesOn) {
   stage.step(8);
   EXPECT_EQ(stage.messages, Names({"walked", "there"}));
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+}
+
+TEST(Modality, MaintainWithinMaintainGoesOnWhenBothHold) {
+  Stage stage(
+      activity("(MAINTAIN *a* :by (INTEND :ByA () :blocking t)"
+               " (MAINTAIN *b* :by (INTEND :ByB ())"
+               "  (AND (SEQ (INTEND :Watch () :blocking nil) (= y 1)) (INTEND :GoToPos ()))))"));
+  claim(stage, "*a*", true);
+  claim(stage, "*b*", true);
+  stage.ask(1, "it");
+  stage.step(2);
+  EXPECT_EQ(stage.behaviors(), Names({"Watch", "GoToPos"}));
+  claim(stage, "*b*", false);
+  EXPECT_EQ(stage.behaviors(), Names({"ByB"})) << "also what a branch that is over has begun";
+  claim(stage, "*a*", false);
+  EXPECT_EQ(stage.behaviors(), Names({"ByA"})) << "what restores the inner one waits too";
+  claim(stage, "*a*", true);
+  stage.satisfy("ByA", 1.0);
+  stage.step(4);
+  EXPECT_EQ(stage.behaviors(), Names({"ByB"})) << "the inner condition does not hold yet";
+  claim(stage, "*b*", true);
+  stage.satisfy("ByB", 1.0);
+  stage.step(4);
+  EXPECT_EQ(stage.behaviors(), Names({"Watch", "GoToPos"}));
+}
+
+TEST(Modality, WhatGoesOnHasItsPointsWhereTheyAreNow) {
+  Stage stage(
+      activity("(MAINTAIN (not stalled) :by (WAIT-FOR (not stalled) :forever t)"
+               " (INTEND :GoToPos ((goal . p))))",
+               ":params ((p :point))"));
+  stage.inputs.robot.odom_in_map = Pose{};
+  stage.ask(1, "it", {point("p", {3.0, 0.0, 0.0}, Frame::kMap)});
+  stage.step(2);
+  stage.inputs.robot.left_stalled = true;
+  stage.step(2);
+  EXPECT_TRUE(stage.behaviors().empty());
+  stage.inputs.robot.left_stalled = false;
+  stage.inputs.robot.odom_in_map = Pose{1.0, 0.0, 0.0};
+  stage.step();
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{2.0, 0.0, 0.0}));
 }
 
 TEST(Modality, MaintainFailsWhereItCannotRestore) {
@@ -292,6 +451,41 @@ TEST(Modality, BehaviorControlIsBackWhenItsGoalIsOver) {
   EXPECT_TRUE(stage.out.behavior_control);
 }
 
+TEST(Modality, BehaviorControlIsBackWhenNobodyWantsItOff) {
+  Stage stage(
+      "(defintention :it :concurrent t"
+      " :goals '((EXECUTE (setq *behavior-control* nil)) (WAIT-FOR *x* :forever t)"
+      "          (EXECUTE (setq *behavior-control* t)) (WAIT-FOR nil :forever t)))");
+  stage.ask(1, "it");
+  stage.step();
+  stage.ask(2, "it");
+  stage.step();
+  stage.dispose(2);
+  stage.step();
+  EXPECT_FALSE(stage.out.behavior_control);
+  stage.ask(3, "it");
+  stage.step();
+  claim(stage, "*x*", true);
+  stage.step(2);
+  EXPECT_TRUE(stage.out.behavior_control);
+  EXPECT_TRUE(stage.belief("*behavior-control*").truthy());
+}
+
+TEST(Modality, ABehaviorThatCannotBeMadeFailsAlsoWhoDoesNotWaitForIt) {
+  Stage stage(activity("(INTEND :part () :else (EXECUTE (say \"~a\" (reason))))") +
+              "(defintention :part :goals '((INTEND :Avoid () :blocking nil)"
+              "                             (INTEND :near () :blocking 0.5)"
+              "                             (WAIT-FOR nil :forever t)))"
+              "(defintention :near :level 1 :goals '((INTEND :GoToPos ())))");
+  stage.ask(1, "it");
+  stage.step(4);
+  EXPECT_EQ(stage.behaviors(), Names({"Avoid", "GoToPos"}));
+  stage.inputs.troubles = {{stage.out.behaviors.at(0).name, "it is broken"}};
+  stage.step();
+  EXPECT_EQ(stage.messages, Names({"Avoid: it is broken"}));
+  EXPECT_TRUE(stage.behaviors().empty());
+}
+
 TEST(Modality, ABehaviorThatCannotBeMadeFailsItsIntention) {
   Stage stage(activity("(INTEND :Fly () :name fly)"));
   stage.ask(1, "it");
@@ -345,6 +539,37 @@ TEST(Modality, ConcurrentGoalsAreUnderwayBesideTheOneThatDrives) {
   stage.step();
   EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
   EXPECT_EQ(stage.status(2).state, GoalState::kUnderway);
+}
+
+TEST(Modality, AConcurrentActivityDoesNotDrive) {
+  Stage stage(
+      "(defintention :behavior :concurrent t :goals '((INTEND :Follow () :blocking nil)))"
+      "(defintention :within :concurrent t :goals '((INTEND :drives ())))"
+      "(defintention :drives :goals '((INTEND :Follow ())))"
+      "(defintention :functor :concurrent t :goals '((INTEND :drive ((speed . 0.1)))))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "behavior");
+  stage.ask(2, "within");
+  stage.ask(3, "functor");
+  stage.ask(4, "drives");
+  stage.step(3);
+  EXPECT_EQ(stage.status(1).reason, "a concurrent activity does not drive");
+  EXPECT_EQ(stage.status(2).reason, "drives: a concurrent activity does not drive");
+  EXPECT_EQ(stage.status(3).reason, "drive: a concurrent activity does not drive");
+  EXPECT_EQ(stage.status(4).state, GoalState::kUnderway);
+  EXPECT_EQ(stage.behaviors(), Names({"Follow"}));
+}
+
+TEST(Modality, TheEndOfAConcurrentGoalIsNoStepForTheOneThatDrives) {
+  Stage stage(activity("(:again (EXECUTE (say \"tick\")) (GOTO :again))") +
+              "(defintention :watch :concurrent t :goals '((WAIT-FOR stalled :forever t)))");
+  stage.ask(1, "it");
+  stage.ask(2, "watch");
+  stage.step(3);
+  stage.inputs.robot.left_stalled = true;
+  stage.step();
+  EXPECT_EQ(stage.status(2).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.messages.size(), 4U);
 }
 
 TEST(Modality, WhatRunsGoesOnWithTheSchemaThatItBeganWith) {
@@ -418,7 +643,26 @@ TEST(Modality, ClaimsOfThirdPartiesAreBeliefs) {
   EXPECT_TRUE(stage.belief("door_open").nil());
 }
 
+TEST(Modality, WhatAnActivityHasSaidIsNewsAlsoWhereItSaysItAgain) {
+  Beliefs beliefs;
+  beliefs.set("*x*", 1.0, "it", 1);
+  const std::uint64_t revision = beliefs.revision();
+  beliefs.set("*x*", 1.0, "it", 2);
+  EXPECT_EQ(beliefs.revision(), revision);
+  beliefs.take({ClaimEvent::Kind::kSaid, {9, 1}, "somebody", "*x*", 2.0}, 3);
+  EXPECT_EQ(*beliefs.stored("*x*")->value.number(), 2.0);
+  beliefs.set("*x*", 1.0, "it", 4);
+  EXPECT_EQ(*beliefs.stored("*x*")->value.number(), 1.0);
+}
+
 TEST(Modality, NothingGrowsWithoutBound) {
+  Stage round(activity("(:again (SPLIT (INTEND :part ()))) (GOTO :again)") +
+              "(defintention :part :goals '((SUCCEED)))");
+  round.ask(1, "it");
+  round.step(2500);
+  EXPECT_EQ(round.status(1).state, GoalState::kUnderway) << round.status(1).reason;
+  EXPECT_LT(round.out.nodes.size(), 10U);
+
   Stage deep("(defintention :it :goals '((INTEND :it ())))");
   deep.ask(1, "it");
   deep.step(3);

@@ -64,10 +64,10 @@ class Machine : public Activity {
     if (suspended_at_) {
       const Ticks away = self.now() - *std::exchange(suspended_at_, std::nullopt);
       begun_at_ += away;
-      for (Thread& thread : threads_)
+      for (Thread& thread : threads_) {
         thread.since += away;
-      for (auto& [thread, since] : held_since_)
-        since += away;
+        thread.held_since += away;
+      }
     }
     for (Thread& thread : threads_)
       thread.spent = false;
@@ -75,6 +75,12 @@ class Machine : public Activity {
   }
 
   void child_ended(Self& self) override { go_on(self); }
+
+  bool waits_for(std::uint32_t child) const override {
+    return std::any_of(threads_.begin(), threads_.end(), [&](const Thread& thread) {
+      return thread.waiting && thread.child == child;
+    });
+  }
 
  private:
   struct Child {
@@ -84,13 +90,17 @@ class Machine : public Activity {
   struct Thread {
     std::size_t id = 0;
     std::size_t parent = 0;  ///< that waits for it; 0: none
-    std::size_t at = 0;      ///< the step
-    bool waiting = false;    ///< in the step, which has been begun
-    bool spent = false;      ///< a goal-set has been begun in this cycle
-    bool fresh = true;       ///< before a goal-set
-    bool held = false;       ///< by a MAINTAIN whose condition does not hold
+    /// In whose AND, PRESERVE or MAINTAIN it stands, also where it is not waited for: what ends or
+    /// interrupts that goal reaches it. 0: in none.
+    std::size_t owner = 0;
+    std::size_t at = 0;    ///< the step
+    bool waiting = false;  ///< in the step, which has been begun
+    bool spent = false;    ///< a goal-set has been begun in this cycle
+    bool fresh = true;     ///< before a goal-set
+    int holds = 0;         ///< the MAINTAINs around it whose conditions do not hold
+    Ticks held_since = 0;
     bool over = false;
-    bool restores = false;  ///< it is the :by of a MAINTAIN
+    bool restores = false;  ///< it stands in the :by of its owner's MAINTAIN
     Ticks since = 0;        ///< when the waiting began
     Ticks limit = 0;        ///< of the waiting; 0: none
     std::uint32_t child = 0;
@@ -144,7 +154,12 @@ class Machine : public Activity {
       moved = false;
       for (auto thread = threads_.begin(); thread != threads_.end() && !over_; ++thread)
         moved = run(*thread, self) || moved;
-      threads_.remove_if([](const Thread& thread) { return thread.over && thread.parent == 0; });
+      for (auto thread = threads_.begin(); thread != threads_.end();) {
+        const bool gone = thread->over && thread->parent == 0;
+        if (gone)
+          bequeath(*thread);
+        thread = gone ? threads_.erase(thread) : std::next(thread);
+      }
     }
     if (over_)
       return;
@@ -188,7 +203,7 @@ class Machine : public Activity {
   /// Runs a thread until it has to wait; whether it moved.
   bool run(Thread& thread, Self& self) {
     bool moved = false;
-    while (!thread.over && !thread.held && !over_) {
+    while (!thread.over && thread.holds == 0 && !over_) {
       if (thread.waiting) {
         if (!poll(thread, self))
           return moved;
@@ -262,7 +277,7 @@ class Machine : public Activity {
         await(thread, self);
         return;
       case Step::Op::kEndThread:
-        end(thread);
+        thread.over = true;
         return;
       case Step::Op::kEndSet:
         if (step.set + 1 >= program_->sets.size()) {
@@ -273,19 +288,33 @@ class Machine : public Activity {
         thread.fresh = true;
         return;
       case Step::Op::kGoto:
-        thread.at = program_->sets[step.target].begin;
-        thread.fresh = true;
+        go_to(thread, program_->sets[step.target].begin, self);
         return;
-      case Step::Op::kSucceed:
+      case Step::Op::kSucceed: {
+        const std::string reason = step.reason ? spoken(value(*step.reason, self)) : "done";
         over_ = true;
-        self.succeed(step.reason ? spoken(value(*step.reason, self)) : "done");
+        self.succeed(reason);
         return;
+      }
       case Step::Op::kFail:
         failure(thread, GoalCode::kActivity,
                 step.reason ? spoken(value(*step.reason, self)) : "failed", self);
         return;
     }
     ++thread.at;
+  }
+
+  /// Out of AND, PRESERVE and MAINTAIN goes who waits for them; what they have begun ends.
+  void go_to(Thread& thread, std::size_t at, Self& self) {
+    Thread* leaves = &thread;
+    while (leaves->parent != 0)
+      leaves = &*std::find_if(threads_.begin(), threads_.end(),
+                              [&](const Thread& each) { return each.id == leaves->parent; });
+    if (leaves != &thread)
+      cut(*leaves, self);
+    leaves->waiting = false;
+    leaves->at = at;
+    leaves->fresh = true;
   }
 
   static void await(Thread& thread, const Self& self) {
@@ -374,7 +403,7 @@ class Machine : public Activity {
         throw ActivityError("a priority expected a number, got " + kind_of(priority));
       start.priority = static_cast<int>(std::clamp(*priority.number(), -1000.0, 1000.0));
     }
-    reap(thread, intend.name, self);
+    reap(intend.name, self);
     const std::uint32_t id = self.start(start);
     thread.children.push_back({id, !intend.name.empty()});
     if (waits) {
@@ -387,7 +416,7 @@ class Machine : public Activity {
 
   /// Removes children that have ended and cannot be asked for any more (manual 8.4 makes that the
   /// parent's): those without a name, and one of the name that is used anew.
-  void reap(Thread& thread, const std::string& name, Self& self) {
+  void reap(const std::string& name, Self& self) {
     const std::uint32_t older = name.empty() ? 0 : self.child_named(name);
     for (Thread& each : threads_) {
       std::erase_if(each.children, [&](const Child& child) {
@@ -400,7 +429,6 @@ class Machine : public Activity {
         return true;
       });
     }
-    static_cast<void>(thread);
   }
 
   bool poll_child(Thread& thread, Self& self) {
@@ -440,6 +468,7 @@ class Machine : public Activity {
     Thread thread;
     thread.id = ++last_thread_;
     thread.parent = parent.id;
+    thread.owner = parent.id;
     thread.at = at;
     thread.fresh = false;
     thread.spent = true;  // its goals are part of the goal-set that is being done
@@ -451,8 +480,11 @@ class Machine : public Activity {
   void fork(Thread& thread, const Step& step, Self& self) {
     for (const std::size_t at : step.branches) {
       Thread& made = branch(thread, at, self);
-      if (step.op == Step::Op::kSplit)
+      if (step.op == Step::Op::kSplit) {
         made.parent = 0;
+        made.owner = thread.owner;
+        made.restores = thread.restores;
+      }
     }
     if (step.op == Step::Op::kSplit)
       thread.at = step.target;
@@ -480,9 +512,13 @@ class Machine : public Activity {
     return true;
   }
 
-  /// What the branches have begun and is left goes on as the parent's.
+  /// What the branches have begun and is left goes on as the parent's, and stands where it stands.
   void join(Thread& thread) {
     for (Thread& each : threads_) {
+      if (each.owner != thread.id)
+        continue;
+      each.owner = thread.owner;
+      each.restores = thread.restores;
       if (each.parent != thread.id)
         continue;
       thread.children.insert(thread.children.end(), each.children.begin(), each.children.end());
@@ -492,35 +528,51 @@ class Machine : public Activity {
     }
   }
 
-  /// Ends the branches of a thread with all that they have begun.
-  void cut(const Thread& thread, Self& self) {
-    for (Thread& each : threads_) {
-      if (each.parent != thread.id)
-        continue;
-      cut(each, self);
-      for (const Child& child : each.children)
-        self.remove_child(child.id);
-      each.children.clear();
-      each.parent = 0;
-      each.over = true;
-    }
+  /// What a thread that is over has begun goes on as that of another, with which it ends: one that
+  /// is waited for where it stood, or the main thread.
+  void bequeath(Thread& dead) {
+    if (dead.children.empty())
+      return;
+    const auto heir = std::find_if(threads_.begin(), threads_.end(), [&](const Thread& each) {
+      return dead.owner == 0 || (each.parent == dead.owner && each.restores == dead.restores);
+    });
+    heir->children.insert(heir->children.end(), dead.children.begin(), dead.children.end());
+    dead.children.clear();
   }
 
-  /// Holds the branches of a thread, but for those that restore, or lets them go on.
-  void hold(const Thread& thread, bool held, Self& self) {
+  /// Ends what stands in the goal of a thread, with all that it has begun.
+  void cut(const Thread& thread, Self& self) {
     for (Thread& each : threads_) {
-      if (each.parent != thread.id || each.over || each.restores)
+      if (each.owner == thread.id)
+        end(each, self);
+    }
+  }
+  void end(Thread& thread, Self& self) {
+    cut(thread, self);
+    for (const Child& child : thread.children)
+      self.remove_child(child.id);
+    thread.children.clear();
+    thread.parent = 0;
+    thread.owner = 0;
+    thread.over = true;
+  }
+
+  /// Holds what stands in the MAINTAIN of a thread, but for what restores its condition, or lets it
+  /// go on.
+  void hold(const Thread& thread, bool held, Self& self, bool within = false) {
+    for (Thread& each : threads_) {
+      if (each.owner != thread.id || (each.restores && !within))
         continue;
-      if (each.held && !held)
-        each.since += self.now() - held_since_[each.id];
-      if (held)
-        held_since_[each.id] = self.now();
-      else
-        held_since_.erase(each.id);
-      each.held = held;
-      for (const Child& child : each.children)
-        self.hold_child(child.id, held);
-      hold(each, held, self);
+      each.holds += held ? 1 : -1;
+      if (each.holds == (held ? 1 : 0)) {
+        if (held)
+          each.held_since = self.now();
+        else
+          each.since += self.now() - each.held_since;
+        for (const Child& child : each.children)
+          self.hold_child(child.id, held);
+      }
+      hold(each, held, self, true);
     }
   }
 
@@ -541,7 +593,7 @@ class Machine : public Activity {
       if (each.restores) {
         restoring = &each;
       } else {
-        held = held || each.held;
+        held = held || each.holds > 0;
         finished_body = finished_body && each.over;
       }
     }
@@ -556,10 +608,10 @@ class Machine : public Activity {
         return true;
       }
       // What was begun to restore it is not needed any more.
-      for (const Child& child : restoring->children)
-        self.remove_child(child.id);
-      restoring->children.clear();
-      restoring->parent = 0;
+      for (Thread& each : threads_) {
+        if (each.owner == thread.id && each.restores)
+          end(each, self);
+      }
       hold(thread, false, self);
       return true;
     }
@@ -574,8 +626,6 @@ class Machine : public Activity {
     }
     return false;
   }
-
-  void end(Thread& thread) { thread.over = true; }
 
   /// The thread has come to the end of the schema.
   void end_of_all(Thread& thread, Self& self) {
@@ -618,7 +668,6 @@ class Machine : public Activity {
   std::vector<Value> locals_;
   std::list<Thread> threads_;  ///< the main thread first
   std::size_t last_thread_ = 0;
-  std::map<std::size_t, Ticks> held_since_;
   bool over_ = false;
   Ticks begun_at_ = -1;
   std::optional<Ticks> suspended_at_;

@@ -146,6 +146,12 @@ class Activity {
   virtual void step(Self& self) = 0;
   /// A child has ended or is gone, in the cycle in which step() has been called already.
   virtual void child_ended(Self& self) { static_cast<void>(self); }
+  /// Whether it waits for that child's end. Where a behavior cannot be made, an intention that does
+  /// not wait for it fails: the others are not meant to drive without it.
+  virtual bool waits_for(std::uint32_t child) const {
+    static_cast<void>(child);
+    return false;
+  }
   /// While it is interrupted its children are interrupted too, and resumed with it; otherwise they
   /// are removed.
   virtual bool keeps_children() const { return false; }

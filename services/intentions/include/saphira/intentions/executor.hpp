@@ -58,6 +58,7 @@ struct Outputs {
 
 struct ExecutorOptions {
   double keep_ended = 60.0;       ///< [s] of robot time that an ended goal's status stays
+  std::size_t max_shown = 1024;   ///< ended goals whose status stays; the oldest are withdrawn
   std::size_t max_open = 256;     ///< goals that may be open at once
   std::size_t max_ended = 65536;  ///< endings that are remembered; the oldest are forgotten
   /// Whose conditions are beliefs. None: those of core_functions().
@@ -114,6 +115,7 @@ class Executor {
     Ticks ended = 0;
     std::uint32_t node = 0;  ///< root of its tree; 0: not begun
     GoalStatus status;
+    std::string refusal;  ///< of the newest change, which does not count; empty: none
     std::optional<GoalStatus> published;
     Ticks published_at = 0;
     std::deque<double> levels;  ///< of the last cycles, for the trend
@@ -129,6 +131,7 @@ class Executor {
   std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
   void end(Entry& entry, GoalState state, GoalCode code, std::string reason);
   void remember(const Ending& ending);
+  void forget_ended();
   static void wait(Entry& entry, GoalCode code, std::string reason);
   void suspend(Entry& entry, GoalCode code, std::string reason);
   void lose_robot(const std::string& hold = {});
@@ -154,6 +157,7 @@ class Executor {
   std::map<GoalId, Placement> remembered_places_;
   std::map<GoalId, Ending> remembered_;
   std::deque<GoalId> remembered_order_;
+  std::deque<GoalId> ended_order_;  ///< of the entries that have ended, the first to end first
   std::uint64_t next_order_ = 1;
   Ticks now_ = 0;
   std::uint64_t epoch_ = 0;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,9 +77,11 @@ class Forest {
   Forest(Forest&&) noexcept;
   Forest& operator=(Forest&&) noexcept;
 
-  /// Plants a tree for a goal; the number of its root. It is stepped first in the next step().
+  /// Plants a tree for a goal; the number of its root. It is stepped first in the next step(). In a
+  /// concurrent one no behavior can be intended: who tries fails.
   std::uint32_t plant(const GoalId& goal, std::string_view name, std::string_view schema,
-                      std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0);
+                      std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0,
+                      bool concurrent = false);
   void interrupt(std::uint32_t id, Hold why = Hold::kGoal);
   void resume(std::uint32_t id, Hold why = Hold::kGoal);
   bool held(std::uint32_t id, Hold why) const;
@@ -86,12 +89,13 @@ class Forest {
 
   /// Takes in what the behaviors service published in cycle `tick`.
   void hear(const std::vector<BehaviorLevel>& levels, Ticks tick);
+  /// A behavior that cannot be made fails the intention that has begun it.
   void hear(const std::vector<BehaviorTrouble>& troubles);
   /// One cycle: one step for each intention.
   void step(const World& world);
   void step(Ticks now, const Robot& robot);
   /// A first step out of turn for one that was planted or resumed after step(), so that nothing
-  /// intended is missing for a cycle.
+  /// intended is missing for a cycle. One that has been stepped and goes on is left alone.
   void begin(std::uint32_t id, const World& world);
 
   bool contains(std::uint32_t id) const;
@@ -141,7 +145,7 @@ class Forest {
   void step_one(Node& node, const World& world);
   void work_off(const World& world);
   void conclude(Node& node, bool interrupted, const World& world);
-  void sweep();
+  void end_cycle(const World& world);
 
   std::shared_ptr<const Registry> registry_;
   std::shared_ptr<Beliefs> beliefs_;
@@ -161,7 +165,8 @@ class Forest {
   std::size_t begun_ = 0;               ///< of to_begin_ in this cycle
   std::map<std::uint32_t, Outcome> ended_;
   std::vector<Said> said_;
-  std::uint32_t control_owner_ = 0;  ///< root of what switched behavior control off; 0: it is on
+  std::set<std::uint32_t> control_off_;  ///< roots of what has switched behavior control off
+  std::vector<std::uint32_t> woken_;     ///< behaviors that go on, whose points may be old
 };
 
 }  // namespace saphira::intentions
