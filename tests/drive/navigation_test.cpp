@@ -143,6 +143,25 @@ TEST(Navigation, OnTheWayThereIsAlwaysABehaviorThatDrives) {
   EXPECT_LE(idle, 2);
 }
 
+TEST(Navigation, ItSaysHowFarItHasCome) {
+  Whole whole(office());
+  const auto goal = whole.ask("go-to-place", {intentions::number("place", 249.0)});
+  std::vector<double> levels;
+  whole.advance_until(
+      [&] {
+        levels.push_back(whole.status(goal).level);
+        return whole.ended(goal);
+      },
+      2000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_TRUE(is_in(whole, "EJ-249")) << "by its number, as a person types it";
+  EXPECT_LT(levels[20], 0.2);
+  EXPECT_NEAR(levels[levels.size() / 2], 0.5, 0.25);
+  EXPECT_GT(levels[levels.size() - 20], 0.65);
+  for (std::size_t i = 20; i + 20 < levels.size(); ++i)
+    EXPECT_GE(levels[i + 10], levels[i] - 0.05) << i;
+}
+
 TEST(Navigation, APlaceThatTheMapDoesNotHaveIsRefusedInWords) {
   Whole whole(office());
   const GoalStatus status = whole.achieve("go-to-place", {text("place", "EJ-999")}, 100);
