@@ -3,11 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <thread>
-
-#include "process.hpp"
+#include "installed.hpp"
 #include "scripted_bus.hpp"
 
 namespace saphira::intentions {
@@ -15,37 +11,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-std::string build_folder() {
-  const char* const folder = std::getenv("SAPHIRA_BUILD_DIR");
-  return folder == nullptr ? "" : folder;
-}
-
-/// An entry of the CMake cache of this build, so that the agent is built the same way.
-std::string cached(const std::string& name) {
-  std::ifstream cache(build_folder() + "/CMakeCache.txt");
-  for (std::string line; std::getline(cache, line);) {
-    if (line.starts_with(name + ":"))
-      return line.substr(line.find('=') + 1);
-  }
-  return {};
-}
-
 TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
-  const test::TempDir dir;
-  const auto run = [&](const std::vector<std::string>& command) {
-    test::Process process(command, dir.path("log"));
-    const auto code = process.wait(std::chrono::minutes(5));
-    ASSERT_EQ(code, std::optional<int>(0)) << command[0] << ": " << process.output();
-  };
-  const std::string prefix = dir.path("installed");
-  const std::string build = dir.path("build");
-  run({"/usr/bin/env", "cmake", "--install", build_folder(), "--prefix", prefix});
-  const std::string sanitize = cached("SAPHIRA_SANITIZE");
-  run({"/usr/bin/env", "cmake", "-S", test::source("agents/examples/go_there"), "-B", build, "-G",
-       "Ninja", "-DCMAKE_PREFIX_PATH=" + prefix,
-       "-DCMAKE_CXX_COMPILER=" + cached("CMAKE_CXX_COMPILER"),
-       "-DCMAKE_CXX_FLAGS=" + (sanitize.empty() ? "" : "-fsanitize=" + sanitize)});
-  run({"/usr/bin/env", "cmake", "--build", build});
+  const test::Installed installed;
+  const std::string build = installed.build("agents/examples/go_there");
   if (HasFatalFailure())
     return;
 
@@ -55,10 +23,12 @@ TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
   options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
   const std::map<std::string, std::string> environment = {{"SAPHIRA_ROBOT", options.robot},
                                                           {"SAPHIRA_DOMAIN", test::domain()}};
-  test::Process service({prefix + "/bin/saphira-intentions"}, dir.path("service.log"), environment);
+  test::Process service({installed.program("saphira-intentions")}, installed.path("service.log"),
+                        environment);
   bus::Node node(options);
   ScriptedBus robot(node);
-  test::Process agent({build + "/go_there", "1.0", "0.5"}, dir.path("agent.log"), environment);
+  test::Process agent({build + "/go_there", "1.0", "0.5"}, installed.path("agent.log"),
+                      environment);
   EXPECT_TRUE(test::wait_until([&] {
     robot.publish_state();
     for (int i = 0; i < 10 && !robot.act(); ++i)
@@ -72,7 +42,7 @@ TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
   EXPECT_LE((robot.world.robot.pose_in_odom.position() - Vec2(1.0, 0.5)).norm(), 0.15);
 
   // A wrong argument is the agent's failure, with the reason.
-  test::Process wrong({build + "/go_there", "1e6", "0"}, dir.path("wrong.log"), environment);
+  test::Process wrong({build + "/go_there", "1e6", "0"}, installed.path("wrong.log"), environment);
   EXPECT_EQ(wrong.wait(), std::optional<int>(1));
   EXPECT_NE(wrong.output().find("refused: argument \"position\": expected a point"),
             std::string::npos)
