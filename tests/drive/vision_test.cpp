@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 
 #include "drive/drive.hpp"
 #include "drive/vision_eyes.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::test {
 namespace {
@@ -39,9 +42,11 @@ bool visible(Drive& drive, const Vec2& at) {
 }
 
 // Drives round those points, or stands.
-Count watch(Stereo stereo, const std::string& world, const std::vector<Vec2>& points, int cycles) {
+Count watch(Stereo stereo, const std::string& world, const std::optional<Pose>& start,
+            const std::vector<Vec2>& points, int cycles) {
   DriveOptions options;
   options.world = world;
+  options.start_in_world = start;
   Drive drive(options);
   const auto eyes = vision_eyes(stereo);
   Count count;
@@ -87,8 +92,8 @@ Count watch(Stereo stereo, const std::string& world, const std::vector<Vec2>& po
         });
       }
   }
-  std::cout << world << ": people reported " << count.reported << ", right " << count.right
-            << ", visible " << count.visible << ", found " << count.found << "\n";
+  std::cout << "people reported " << count.reported << ", right " << count.right << ", visible "
+            << count.visible << ", found " << count.found << "\n";
   return count;
 }
 
@@ -96,15 +101,25 @@ const std::vector<Vec2> kFloor{
     {18.5, 25.0}, {12.0, 25.0}, {20.0, 25.0}, {17.5, 16.0}, {17.5, 25.0}};
 
 TEST(VisionEyes, SeeNobodyWhereNobodyIs) {
-  const Count count = watch(Stereo::pictures, "office-floor", kFloor, 300);
+  const Count count = watch(Stereo::pictures, "office-floor", std::nullopt, kFloor, 300);
   EXPECT_EQ(count.reported, 0);
 }
 
-TEST(VisionEyes, SeeVisitors) {
-  const Count count = watch(Stereo::pictures, "visitors", {}, 300);
-  EXPECT_GT(count.visible, 50);
-  EXPECT_GT(count.right, 0.97 * count.reported);
-  EXPECT_GT(count.found, 0.8 * count.visible);
+// Ann walks up and down the corridor before the robot, Bob comes out of a side corridor and goes
+// back.
+TEST(VisionEyes, SeePeopleWalk) {
+  const std::string world = testing::TempDir() + "saphira-vision-people.wld";
+  std::ofstream(world)
+      << read_file(config_folder() + "/worlds/office-floor.wld")
+      << "\nperson ann 17500 25400 walk 14500 25400 700 walk 14500 24700 700 "
+         "walk 18500 24700 700 walk 18500 25400 700 repeat\n"
+         "person bob 17100 21500 walk 17100 25900 800 walk 17100 21500 800 wait 1 repeat\n";
+  const Count count = watch(Stereo::pictures, world, Pose{13.0, 25.0, 0.0}, {}, 300);
+  EXPECT_GT(count.visible, 200);
+  EXPECT_GT(count.right, 0.98 * count.reported);
+  EXPECT_GT(count.found, 0.85 * count.visible);
+  const Count bands = watch(Stereo::bands, world, Pose{13.0, 25.0, 0.0}, {}, 300);
+  EXPECT_GT(bands.found, 0.85 * bands.visible);  // and a piece of wall, which goes on above
 }
 
 }  // namespace

@@ -199,7 +199,8 @@ std::vector<lps::SeenThing> Tracker::things(std::uint64_t cycle, const Pose& rob
     const Vec2 aside(-line.y(), line.x());
     const double along = std::sqrt(std::max(0.0, line.dot(spread * line)));
     const double across = std::sqrt(std::max(0.0, aside.dot(spread * aside)));
-    thing.range_known = along < kRangeKnown * std::max(1.0, to_robot.norm());
+    thing.range_known =
+        thing.kind == Kind::person || along < kRangeKnown * std::max(1.0, to_robot.norm());
     thing.sigma = thing.range_known ? std::max(along, across) : across;
     things.push_back(thing);
   }
