@@ -19,18 +19,12 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   goal.arguments({bus::text("place", "N2")});
   const v1::GoalId id = system.goals().ask(goal);
   std::set<std::string> schemas;
-  std::optional<v1::GoalStatus> status;
-  const bool ended = wait_until(
-      [&] {
-        for (const auto& sample : intentions.take())
-          for (const v1::IntentionNode& node : sample.data.nodes())
-            schemas.insert(node.schema());
-        system.goals().poll();
-        status = system.goals().status(id);
-        return status && bus::ended(status->state());
-      },
-      std::chrono::minutes(2));
-  ASSERT_TRUE(ended) << system.output();
+  const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
+    for (const auto& sample : intentions.take())
+      for (const v1::IntentionNode& node : sample.data.nodes())
+        schemas.insert(node.schema());
+  });
+  ASSERT_TRUE(status) << system.output();
   EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
   EXPECT_NE(status->reason().find("N2"), std::string::npos) << status->reason();
   for (const char* schema : {"go-to-place", "plan-and-execute", "monitor-planex", "follow-path",

@@ -14,15 +14,7 @@ TEST(SerialLine, TheRobotArrivesAtNinetySixHundredBaud) {
   const SerialLine line(folder.path("tty"), system.simulator_socket(), 9600);
   system.start_all();
   const v1::GoalId goal = system.go_to(8.0, 0.3);
-  std::optional<v1::GoalStatus> status;
-  EXPECT_TRUE(wait_until(
-      [&] {
-        system.goals().poll();
-        status = system.goals().status(goal);
-        return status && bus::ended(status->state());
-      },
-      std::chrono::minutes(2)))
-      << system.output();
+  const std::optional<v1::GoalStatus> status = system.wait_end(goal);
   ASSERT_TRUE(status.has_value()) << system.output();
   EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
   EXPECT_EQ(system.truth().contacts, 0);

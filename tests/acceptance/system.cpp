@@ -1,8 +1,10 @@
 #include "system.hpp"
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <filesystem>
+
+#include "saphira/base/text.hpp"
+#include "saphira/sim/trace.hpp"
 
 namespace saphira::test {
 
@@ -72,27 +74,41 @@ v1::GoalId System::go_to(double x, double y) {
   return goals_.ask(goal);
 }
 
+std::optional<v1::GoalStatus> System::wait_end(const v1::GoalId& goal,
+                                               const std::function<void()>& meanwhile) {
+  std::optional<v1::GoalStatus> status;
+  const bool ended = wait_until(
+      [&] {
+        meanwhile();
+        goals_.poll();
+        status = goals_.status(goal);
+        return status && bus::ended(status->state());
+      },
+      std::chrono::minutes(2));
+  return ended ? status : std::nullopt;
+}
+
+std::vector<Truth> System::trace() const {
+  const std::string file = folder_.path("trace.csv");
+  std::vector<Truth> truths;
+  if (!std::filesystem::exists(file))
+    return truths;
+  for (const sim::TraceRow& row : sim::parse_trace(read_file(file), file))
+    truths.push_back({static_cast<long>(row.cycle), row.pose_in_world.x, row.pose_in_world.y,
+                      row.velocity, row.rotation_velocity, row.contacts});
+  return truths;
+}
+
 Truth System::truth() const {
-  std::ifstream in(folder_.path("trace.csv"));
-  std::string line;
-  std::string newest;
-  while (std::getline(in, line))
-    if (!in.eof() && !line.empty() && line[0] != 'c')
-      newest = line;
-  Truth truth;
-  std::vector<double> values;
-  std::istringstream words(newest);
-  for (std::string word; std::getline(words, word, ',');)
-    values.push_back(std::strtod(word.c_str(), nullptr));
-  if (values.size() >= 11) {
-    truth.cycle = static_cast<long>(values[0]);
-    truth.x = values[1];
-    truth.y = values[2];
-    truth.velocity = values[4];
-    truth.rotation_velocity = values[5];
-    truth.contacts = static_cast<long>(values[10]);
-  }
-  return truth;
+  const std::vector<Truth> truths = trace();
+  return truths.empty() ? Truth{} : truths.back();
+}
+
+std::optional<long> System::stood_still(long cycle) const {
+  for (const Truth& truth : trace())
+    if (truth.cycle >= cycle && truth.still())
+      return truth.cycle;
+  return std::nullopt;
 }
 
 bool System::wait_moving(std::chrono::milliseconds limit) {

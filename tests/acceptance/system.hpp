@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,8 +46,14 @@ class System {
   /// Asks the robot to go to a place [m] in odom.
   v1::GoalId go_to(double x, double y);
 
+  /// Waits for the goal's end, and calls `meanwhile` until then; nothing where it does not end.
+  std::optional<v1::GoalStatus> wait_end(
+      const v1::GoalId& goal, const std::function<void()>& meanwhile = [] {});
+
   /// The newest line of the trace.
   Truth truth() const;
+  /// The first cycle from that one on in which the robot stood, as far as the trace goes.
+  std::optional<long> stood_still(long cycle) const;
   /// Waits for the trace to say so.
   bool wait_moving(std::chrono::milliseconds limit = std::chrono::seconds(30));
   bool wait_still(std::chrono::milliseconds limit);
@@ -53,6 +61,8 @@ class System {
   std::string output() const;
 
  private:
+  std::vector<Truth> trace() const;
+
   TempDir folder_;
   std::string robot_ = unique_robot();
   std::string bridge_port_;
