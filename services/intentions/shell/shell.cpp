@@ -18,7 +18,6 @@ constexpr std::chrono::seconds kSilence{1};
 /// [cycles] between looks at the activity files: a second.
 constexpr std::uint64_t kLook = 10;
 constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
-constexpr std::uint64_t kVisionLease = 10;      // [cycles] what was seen before is no news
 constexpr std::chrono::milliseconds kMapWait{100};
 constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
 constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
@@ -38,7 +37,6 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       behaviors_(cycle_.input(bus::topics::kBehaviors)),
       registration_(options.registration ? &cycle_.input(bus::topics::kRegistration) : nullptr),
       perception_(options.interpretation ? &cycle_.input(bus::topics::kPerception) : nullptr),
-      vision_(options.vision ? &cycle_.input(bus::topics::kVision) : nullptr),
       robot_(node),
       maps_(node.reader(bus::topics::kMap)),
       behavior_schemas_(node.reader(bus::topics::kBehaviorSchemas)),
@@ -58,8 +56,6 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
                  [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
                    return ask_intention(name, action, cycles);
                  }) {
-  if (!options.vision && !node.options().lockstep)
-    unasked_vision_.emplace(node.reader(bus::topics::kVision));
   look();
 }
 
@@ -67,6 +63,8 @@ bool Shell::step(const bus::Stop& stop) {
   const auto step = cycle_.next(stop, [this] { idle(); });
   if (!step)
     return false;
+  if (node_.options().lockstep)
+    wait_for_schemas(stop);
   stamp_ = cycle_.stamp();
   stepped_ = Clock::now();
   robot_here_ = true;
@@ -159,32 +157,12 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
       percepts_.push_back(lps::from_bus(percept));
   if (perception != nullptr)
     around.percepts = &percepts_;
-  look_through_cameras(robot, around);
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
   take_map(registration == nullptr ? std::nullopt : std::optional(registration->map_revision()),
            stop);
   around.topology = topology_;
   around.map_revision = map_revision_;
-}
-
-void Shell::look_through_cameras(const v1::RobotState& robot, Surroundings& around) {
-  around.cycle = stamp_.cycle();
-  if (unasked_vision_)
-    if (auto sample = unasked_vision_->take_newest())
-      newest_vision_ = std::move(sample);
-  const v1::Vision* const vision = vision_ != nullptr ? vision_->value()
-                                   : newest_vision_   ? &*newest_vision_
-                                                      : nullptr;
-  if (vision == nullptr || vision->stamp().epoch() != stamp_.epoch() ||
-      vision->stamp().cycle() + kVisionLease < stamp_.cycle() ||
-      !(vision->sees_people() || vision->sees_colors()))
-    return;
-  things_.clear();
-  if (vision->odom() == robot.odom())
-    for (const v1::SeenThing& thing : vision->things())
-      things_.push_back(lps::from_bus(thing));
-  around.things = &things_;
 }
 
 /// The map goes another way than what is cyclic. In lockstep it is the one that registration had in
@@ -209,13 +187,31 @@ void Shell::take_map(std::optional<std::uint64_t> revision, const bus::Stop& sto
   }
 }
 
-void Shell::look() {
-  if (const auto schemas = behavior_schemas_.take_newest()) {
-    folders_.know_behaviors(from_bus(*schemas));
-    executor_.know_behaviors(from_bus(*schemas));
-    for (const Diagnostic& trouble : check_references(executor_.registry()))
-      node_.warn(trouble.text());
+void Shell::take_schemas() {
+  const auto schemas = behavior_schemas_.take_newest();
+  if (!schemas)
+    return;
+  schemas_known_ = true;
+  if (schemas->schemas().empty())
+    return;  // nobody who evaluates behaviors has none
+  folders_.know_behaviors(from_bus(*schemas));
+  executor_.know_behaviors(from_bus(*schemas));
+  for (const Diagnostic& trouble : check_references(executor_.registry()))
+    node_.warn(trouble.text());
+}
+
+/// In lockstep it is known from the first cycle on in every run what can be intended.
+void Shell::wait_for_schemas(const bus::Stop& stop) {
+  while (!schemas_known_ && !stop.requested()) {
+    take_schemas();
+    if (!schemas_known_)
+      node_.wait(kMapWait, &stop);
   }
+}
+
+void Shell::look() {
+  if (schemas_known_ || !node_.options().lockstep)
+    take_schemas();
   const ActivityFolders::News news = folders_.look();
   for (const std::string& error : news.errors)
     node_.error(error + "\nWhat this file gave before stays in use.");

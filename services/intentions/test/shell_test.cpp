@@ -291,6 +291,24 @@ TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
   EXPECT_FALSE(find("karen-is-in"));
 }
 
+// As soon in every run, whenever what the behaviors service has to say arrives.
+TEST_F(ShellTest, InLockstepItKnowsWhatBehaviorsThereAre) {
+  const test::TempDir files;
+  folder = files.path();
+  std::ofstream(files.path("mine.act")) << "(defintention :mine :goals '((INTEND :Nonsense ())))";
+  start();
+  robot.have({"Follow"});
+  v1::Goal goal;
+  goal.functor("mine");
+  const v1::GoalId id = goals.ask(goal);
+  for (int i = 0; i < 20; ++i)
+    cycle();
+  EXPECT_EQ(state(id), v1::GOAL_FAILED);
+  EXPECT_NE(goals.status(id)->reason().find("neither an activity nor a behavior"),
+            std::string::npos)
+      << goals.status(id)->reason();
+}
+
 TEST_F(ShellTest, ABehaviorThatThereIsNotFailsTheGoalWithTheReason) {
   const test::TempDir files;
   folder = files.path();
