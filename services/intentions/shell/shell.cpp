@@ -18,6 +18,7 @@ constexpr std::chrono::seconds kSilence{1};
 /// [cycles] between looks at the activity files: a second.
 constexpr std::uint64_t kLook = 10;
 constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
+constexpr std::uint64_t kVisionLease = 10;      // [cycles] what was seen before is no news
 constexpr std::chrono::milliseconds kMapWait{100};
 constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
 constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
@@ -37,6 +38,7 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       behaviors_(cycle_.input(bus::topics::kBehaviors)),
       registration_(options.registration ? &cycle_.input(bus::topics::kRegistration) : nullptr),
       perception_(options.interpretation ? &cycle_.input(bus::topics::kPerception) : nullptr),
+      vision_(options.vision ? &cycle_.input(bus::topics::kVision) : nullptr),
       robot_(node),
       maps_(node.reader(bus::topics::kMap)),
       behavior_schemas_(node.reader(bus::topics::kBehaviorSchemas)),
@@ -56,6 +58,8 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
                  [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
                    return ask_intention(name, action, cycles);
                  }) {
+  if (!options.vision && !node.options().lockstep)
+    unasked_vision_.emplace(node.reader(bus::topics::kVision));
   look();
 }
 
@@ -157,12 +161,32 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
       percepts_.push_back(lps::from_bus(percept));
   if (perception != nullptr)
     around.percepts = &percepts_;
+  look_through_cameras(robot, around);
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
   take_map(registration == nullptr ? std::nullopt : std::optional(registration->map_revision()),
            stop);
   around.topology = topology_;
   around.map_revision = map_revision_;
+}
+
+void Shell::look_through_cameras(const v1::RobotState& robot, Surroundings& around) {
+  around.cycle = stamp_.cycle();
+  if (unasked_vision_)
+    if (auto sample = unasked_vision_->take_newest())
+      newest_vision_ = std::move(sample);
+  const v1::Vision* const vision = vision_ != nullptr ? vision_->value()
+                                   : newest_vision_   ? &*newest_vision_
+                                                      : nullptr;
+  if (vision == nullptr || vision->stamp().epoch() != stamp_.epoch() ||
+      vision->stamp().cycle() + kVisionLease < stamp_.cycle() ||
+      !(vision->sees_people() || vision->sees_colors()))
+    return;
+  things_.clear();
+  if (vision->odom() == robot.odom())
+    for (const v1::SeenThing& thing : vision->things())
+      things_.push_back(lps::from_bus(thing));
+  around.things = &things_;
 }
 
 /// The map goes another way than what is cyclic. In lockstep it is the one that registration had in

@@ -15,6 +15,7 @@
 #include "saphira/intentions/executor.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
+#include "saphira/lps/seen_thing.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::intentions {
@@ -27,6 +28,9 @@ struct ShellOptions {
   /// The same of interpretation. Without it, activities see no doors and corridors but those of the
   /// map.
   bool interpretation = true;
+  /// Whether there is a vision service whose samples are waited for in lockstep. Live it is heard
+  /// without being asked for, as soon as there is one.
+  bool vision = false;
   /// Activities that cover shipped ones of the same name; empty: none.
   std::string folder;
 };
@@ -56,6 +60,7 @@ class Shell {
   void idle();
   std::vector<ClaimEvent> take_claims();
   void take_map(std::optional<std::uint64_t> revision, const bus::Stop& stop);
+  void look_through_cameras(const v1::RobotState& robot, Surroundings& around);
   void look_around(const v1::RobotState& robot, const bus::Stop& stop, Surroundings& around);
   /// Takes what can be intended, as the behaviors service tells it.
   void take_schemas();
@@ -71,6 +76,9 @@ class Shell {
   bus::Input<v1::Behaviors>& behaviors_;
   bus::Input<v1::Registration>* registration_;  ///< null where there is no such service
   bus::Input<v1::Perception>* perception_;
+  bus::Input<v1::Vision>* vision_;
+  std::optional<bus::Reader<v1::Vision>> unasked_vision_;
+  std::optional<v1::Vision> newest_vision_;
   bus::KnownRobot robot_;
   bus::Reader<v1::Map> maps_;
   bus::Reader<v1::BehaviorSchemas> behavior_schemas_;
@@ -90,6 +98,7 @@ class Shell {
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step
   std::vector<lps::Percept> percepts_;
+  std::vector<lps::SeenThing> things_;
   std::shared_ptr<const maps::Topology> topology_;
   std::uint64_t map_revision_ = 0;
   std::deque<v1::Map> newer_maps_;             ///< lockstep: than the cycle that is stepped
