@@ -103,6 +103,10 @@ Output Executive::step(const Inputs& inputs) {
                              std::to_string(inputs.cycle - inputs.intent->cycle) + " cycles old";
   else if (!output.control)
     output.inactive_reason = "behavior control is off";
+  else if (const auto missing = std::find_if(missing_.begin(), missing_.end(),
+                                             [](const Missing& one) { return one.running; });
+           missing != missing_.end())
+    output.inactive_reason = missing->name + " cannot be made: " + missing->reason;
   else if (!running)
     output.inactive_reason = "no running behavior is intended";
   output.active = output.inactive_reason.empty();
@@ -135,7 +139,7 @@ std::string Executive::reconcile(const std::vector<Intended>& intended, const Po
       wrong = "the name is there twice; the first one holds";
     else if (const std::size_t before = next.size();
              !(wrong = adopt(wanted, robot_in_odom, same, next)).empty() && next.size() == before)
-      missing_.push_back({wanted.name, wrong});
+      missing_.push_back({wanted.name, wrong, wanted.running});
     if (!wrong.empty())
       trouble += (trouble.empty() ? "" : "; ") + wanted.name + ": " + wrong;
   }
@@ -185,9 +189,16 @@ std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom, 
   if (current) {
     instance = std::move(*same);
   } else {
-    instance.behavior = schema->make();
-    if (same != nullptr)
-      instance.behavior->take_over(*same->behavior);
+    // That of a plug-in may throw.
+    try {
+      instance.behavior = schema->make();
+      if (instance.behavior == nullptr)
+        return "its schema has made none";
+      if (same != nullptr)
+        instance.behavior->take_over(*same->behavior);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
   }
   instance.revision = schema->revision;
   instance.intended = wanted;

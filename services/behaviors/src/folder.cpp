@@ -1,6 +1,7 @@
 #include "saphira/behaviors/folder.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "saphira/base/places.hpp"
@@ -20,9 +21,40 @@ Folder::News Folder::look(Registry& registry) {
       registry.remove(schema);
     files_.erase(name);
   }
-  for (const std::string& name : changes.changed)
-    take(name, files_[name], registry, news);
+  if (changes.any())
+    take_changed(changes.changed, registry, news);
   return news;
+}
+
+/// Also those that were wrong before, which may be right by now; and as long as one is taken, whose
+/// names another one may have waited for.
+void Folder::take_changed(const std::vector<std::string>& changed, Registry& registry, News& news) {
+  std::vector<std::string> open = changed;
+  std::map<std::string, std::string> before;
+  for (const auto& [name, file] : files_)
+    if (!file.fault.empty() && std::find(open.begin(), open.end(), name) == open.end())
+      before[name] = file.fault;
+  for (const auto& [name, fault] : before)
+    open.push_back(name);
+  std::sort(open.begin(), open.end());
+  std::map<std::string, std::vector<std::string>> faults;
+  for (std::size_t left = open.size() + 1; open.size() < left;) {
+    left = open.size();
+    std::erase_if(open, [&](const std::string& name) {
+      News one;
+      take(name, files_[name], registry, one);
+      faults[name] = std::move(one.faults);
+      if (!faults[name].empty())
+        return false;
+      std::move(one.taken.begin(), one.taken.end(), std::back_inserter(news.taken));
+      std::move(one.warnings.begin(), one.warnings.end(), std::back_inserter(news.warnings));
+      return true;
+    });
+  }
+  for (const std::string& name : open)
+    if (const auto old = before.find(name);
+        old == before.end() || old->second != files_[name].fault)
+      std::move(faults[name].begin(), faults[name].end(), std::back_inserter(news.faults));
 }
 
 void Folder::take(const std::string& name, File& file, Registry& registry, News& news) {

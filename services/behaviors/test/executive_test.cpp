@@ -119,7 +119,22 @@ TEST_F(ExecutiveTest, AnOldIntentDoesNotDrive) {
   EXPECT_FALSE(executive_.step({104, robot_, {}, nullptr}).active);
 }
 
-TEST_F(ExecutiveTest, SaysWhatIsWrongAndRunsTheOthers) {
+TEST_F(ExecutiveTest, OneThatCannotBeMadeIsMissing) {
+  executive_.registry().add({"Thrower", "", {}, []() -> std::unique_ptr<Behavior> {
+                               throw std::runtime_error("no camera");
+                             }});
+  executive_.registry().add(
+      {"Nothing", "", {}, []() -> std::unique_ptr<Behavior> { return nullptr; }});
+  const Output output = step(
+      {{"a", "Thrower", 0, true, {}}, {"b", "Nothing", 0, true, {}}, {"p", "Probe", 0, true, {}}});
+  ASSERT_EQ(output.missing.size(), 2U);
+  EXPECT_EQ(output.missing[0].reason, "no camera");
+  EXPECT_EQ(output.missing[1].reason, "its schema has made none");
+  EXPECT_EQ(output.inactive_reason, "a cannot be made: no camera");
+  EXPECT_EQ(counts_.updates, 1);
+}
+
+TEST_F(ExecutiveTest, SaysWhatIsWrongAndDoesNotDriveWithoutIt) {
   const Output output = step({{"a", "Fly", 0, true, {}},
                               {"b", "GoToPos", 1, true, {number("speed", 0.2)}},
                               {"c", "GoToPos", 1, true, {number("goal", 0.2)}},
@@ -129,7 +144,12 @@ TEST_F(ExecutiveTest, SaysWhatIsWrongAndRunsTheOthers) {
                               {"f", "Stop", 2, true, {}},
                               {"g", "TurnTo", 2, true, {point("goal", {}, Frame::map)}}});
   ASSERT_EQ(output.behaviors.size(), 1U);
-  EXPECT_TRUE(output.active);
+  EXPECT_EQ(counts_.updates, 1) << "the others are evaluated";
+  EXPECT_FALSE(output.active);
+  EXPECT_EQ(output.inactive_reason.find("a cannot be made: unknown schema \"Fly\""), 0U)
+      << output.inactive_reason;
+  EXPECT_TRUE(step({{"a", "Fly", 0, false, {}}, {"f", "Probe", 2, true, {}}}).active)
+      << "what is not to run is not missed";
   for (const char* part :
        {"a: unknown schema \"Fly\"", "b: parameter \"goal\" is missing: expected a point",
         "c: parameter \"goal\": expected a point", "d: unknown parameter \"caution\"",

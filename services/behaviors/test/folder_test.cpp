@@ -141,6 +141,36 @@ TEST_F(FolderTest, OneNameInTwoFilesIsAFault) {
             std::string::npos);
 }
 
+TEST_F(FolderTest, ABehaviorMayMoveFromOneFileToAnother) {
+  const auto another = [](std::string text) {
+    return text.replace(text.find("Counter"), 7, "Another");
+  };
+  write("z.beh", counter("n"));
+  Folder folder(path_.string());
+  Registry registry;
+  folder.look(registry);
+  write("a.beh", counter("2 * n"));
+  write("z.beh", another(counter("n")));
+  Folder::News news = folder.look(registry);
+  EXPECT_TRUE(news.faults.empty()) << news.faults.front();
+  EXPECT_EQ(news.taken.size(), 2U);
+  ASSERT_NE(registry.find("Counter"), nullptr);
+  ASSERT_NE(registry.find("Another"), nullptr);
+  // Also in two looks.
+  write("b.beh", another(counter("3 * n")));
+  EXPECT_EQ(folder.look(registry).faults.size(), 1U);
+  write("c.beh", another(counter("4 * n")));
+  news = folder.look(registry);
+  ASSERT_EQ(news.faults.size(), 1U) << "what was told of b.beh is not told again";
+  EXPECT_NE(news.faults[0].find("c.beh"), std::string::npos);
+  fs::remove(path_ / "c.beh");
+  fs::remove(path_ / "z.beh");
+  news = folder.look(registry);
+  EXPECT_TRUE(news.faults.empty());
+  EXPECT_EQ(folder.trouble(), "");
+  EXPECT_NE(registry.find("Another"), nullptr);
+}
+
 TEST_F(FolderTest, ALaterSourceCoversAnEarlierOneUntilItIsGone) {
   const auto version = [](const std::string& speed) {
     return std::move(compile(counter(speed), "fixed").schemas.front());

@@ -48,6 +48,7 @@ struct BehaviorState {
 struct Missing {
   std::string name;  ///< of the instance
   std::string reason;
+  bool running = true;  ///< it was to run
 };
 
 struct Output {
@@ -73,6 +74,8 @@ struct ExecutiveSettings {
 /// evaluates those that run and blends them.
 ///
 /// All behaviors are evaluated also while control is off, or the intent is too old to drive by.
+/// While one that is to run cannot be made the others do not drive: it may be the one that looks
+/// out.
 class Executive {
  public:
   Executive(Registry registry, RobotModel model, ExecutiveSettings settings = {});

@@ -37,6 +37,7 @@ class Folder {
     std::vector<std::string> schemas;  ///< that it has given
     std::string fault;                 ///< the first one; empty: none
   };
+  void take_changed(const std::vector<std::string>& changed, Registry& registry, News& news);
   void take(const std::string& name, File& file, Registry& registry, News& news);
   std::string owner(const std::string& schema, const std::string& but) const;
 
