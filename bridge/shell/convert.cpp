@@ -403,7 +403,7 @@ v1::Devices to_bus(const std::vector<reflector::Request>& requests,
 }
 
 void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,
-              std::vector<authority::Echo>& echoes, std::vector<int>& silent) {
+              std::vector<authority::Echo>& echoes, std::vector<authority::Silence>& silent) {
   for (const protocol::Sonar& sonar : state.information.sonars) {
     for (const protocol::SonarUnit& unit : parameters.sonars) {
       if (unit.number != sonar.number)
@@ -411,7 +411,7 @@ void to_guard(const reflector::State& state, const protocol::RobotParameters& pa
       if (sonar.echo)
         echoes.push_back({sonar.number, state.pose_in_odom, unit.pose_in_robot, sonar.range});
       else
-        silent.push_back(sonar.number);
+        silent.push_back({sonar.number, unit.pose_in_robot});
     }
   }
 }
@@ -422,10 +422,6 @@ authority::Body to_body(const protocol::RobotParameters& parameters) {
   out.max_velocity = parameters.max_velocity;
   out.max_rotation_velocity = parameters.max_rotation_velocity;
   out.deceleration = parameters.deceleration;
-  for (const protocol::SonarUnit& unit : parameters.sonars) {
-    if (std::abs(norm2_angle(unit.pose_in_robot.th)) > radians(120.0))
-      out.sees_behind = true;
-  }
   return out;
 }
 

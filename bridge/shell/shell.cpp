@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "convert.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace saphira::bridge {
@@ -25,22 +26,24 @@ using authority::Role;
 constexpr double kSilent = 0.5;     // [s] without a packet: the link is silent, the robot stands
 constexpr double kDead = 2.0;       // [s] then the link is given up
 constexpr double kDeadStep = 10.0;  // [s] for the simulator to make a step
-constexpr double kGap = 0.25;       // [s] the bridge's own loop was not heard for so long
-constexpr double kSettle = 0.1;     // [s] after a gap: what comes now waited in some queue
+constexpr double kForEver = 1e300;
+constexpr double kGap = 0.25;    // [s] the bridge's own loop was not heard for so long
+constexpr double kSettle = 0.1;  // [s] after a gap: what comes now waited in some queue
 constexpr double kWaitForDriver =
     0.05;  // [s] from a packet until what is due goes without its answer
 constexpr std::chrono::microseconds kSpin{500};
 constexpr double kBeat = 0.05;         // [s] of the keeper
 constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
-constexpr double kHoldOff = 2.0;       // [s] until a robot that could not be served is tried again
+// [s] from the start until the robot is asked: who may stop it, and another bridge that has it, are
+// found by then, in two announcements of a program (idl/bus).
+double look_around(bus::Profile profile) {
+  return profile == bus::Profile::host ? 0.3 : profile == bus::Profile::lan ? 0.6 : 1.2;
+}
+constexpr double kHoldOff = 2.0;  // [s] until a robot that could not be served is tried again
 constexpr std::uint64_t kMotorsCycles = 10;   // then the motors should be on
 constexpr std::uint64_t kSecond = 10;         // [cycles]
 constexpr std::uint64_t kVisionSilence = 20;  // [cycles] then the camera is asked again
 constexpr double kCycle = 0.1;                // [s] manual 2.1.1
-
-double steady() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::uint64_t milliseconds_since_1970() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -48,6 +51,7 @@ std::uint64_t milliseconds_since_1970() {
                                         .count());
 }
 
+/// Zero setpoints, for a server in a session.
 std::vector<std::uint8_t> stop_packets() {
   std::vector<std::uint8_t> out = protocol::encode(protocol::Velocity{0.0});
   const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
@@ -81,7 +85,8 @@ BridgeOptions checked(BridgeOptions options) {
 
 Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
              std::shared_ptr<bus::MemoryBus> memory)
-    : options_(checked(std::move(options))),
+    : in_memory_(memory != nullptr),
+      options_(checked(std::move(options))),
       lockstep_(node.lockstep),
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, std::move(memory)) : bus::Node(node)),
@@ -102,6 +107,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       server_(node_.reader(bus::topics::kServer)),
       serial_(node_.reader(bus::topics::kSerial)),
       permits_(node_.reader(bus::topics::kStepPermit)),
+      statuses_(node_.reader(bus::topics::kStatus)),
       link_(transport::parse_address(options_.robot_port)),
       arbiter_({options_.lease, options_.quiet, 3}) {
   drives_.push_back({Role::estop, node_.reader(bus::topics::kDriveEstop), {}, false});
@@ -112,6 +118,8 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
     channels_writer_.emplace(node_.writer(bus::topics::kVisionChannels));
   for (authority::GuardSettings& settings : guards_)
     settings.enabled = options_.guard;
+  if (!lockstep_ && !in_memory_)
+    hold_off_ = BootClock::seconds() + look_around(node.profile);
 
   if (!options_.state_file.empty()) {
     state_fd_ = ::open(options_.state_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -134,14 +142,14 @@ Shell::~Shell() {
 }
 
 double Shell::time() const {
-  return lockstep_ ? static_cast<double>(stamp_.cycle()) * kCycle : steady();
+  return lockstep_ ? static_cast<double>(stamp_.cycle()) * kCycle : BootClock::seconds();
 }
 
 int Shell::run(const bus::Stop& stop) {
   node_.info("robot at " + link_.address().text());
-  last_loop_ = steady();
+  last_loop_ = BootClock::seconds();
   while (!stop.requested()) {
-    double now = steady();
+    double now = BootClock::seconds();
     mind_gap(now);
     tend_link(now);
     if (!lockstep_ && epoch_ != 0) {
@@ -162,8 +170,8 @@ int Shell::run(const bus::Stop& stop) {
     pollfd fds[3] = {{stop.fd(), POLLIN, 0}, {node_.wake_fd(), POLLIN, 0}, {-1, 0, 0}};
     fds[2].fd = link_.fd();  // poll ignores what is negative
     fds[2].events = link_.poll_events();
-    const int n = ::poll(fds, 3, timeout_ms(steady()));
-    now = steady();
+    const int n = ::poll(fds, 3, timeout_ms(BootClock::seconds()));
+    now = BootClock::seconds();
     mind_gap(now);
     if (n <= 0)
       continue;
@@ -173,7 +181,7 @@ int Shell::run(const bus::Stop& stop) {
       // The answer to a packet is a fraction of a millisecond away.
       if (flush_at_ > 0.0 && !woken) {
         woken = node_.spin(kSpin);
-        now = steady();
+        now = BootClock::seconds();
       }
     }
     if (woken) {
@@ -185,10 +193,7 @@ int Shell::run(const bus::Stop& stop) {
   node_.status().state(v1::SERVICE_STOPPING);
   node_.status().reason("asked to stop");
   if (epoch_ != 0) {
-    const double now = steady();
-    reflector_.zero_first();
-    flush(now);
-    send(protocol::encode(protocol::Close{}), now);
+    const double now = BootClock::seconds();
     lost("the bridge ends", now);
   }
   node_.publish_status();
@@ -231,9 +236,12 @@ void Shell::tend_link(double now) {
     return;
   }
   if (connection_.state() == reflector::Connection::State::closed) {
+    if (!others_.empty())
+      return;
     parser_.reset();
     last_bytes_ = now;
-    for (const protocol::Bytes& packet : connection_.begin(now))
+    for (const protocol::Bytes& packet :
+         connection_.begin(now, link_.address().kind == transport::Address::Kind::serial))
       send(packet, now);
     return;
   }
@@ -260,11 +268,11 @@ void Shell::tend_link(double now) {
     link_silent_ = true;
     if (stamp_.cycle() == 0)
       send(protocol::encode(protocol::Open{}), now);  // it may have been lost
-    node_.warn("robot link silent for 0.5 s: the robot is told to stop");
-    arbiter_.forget(stamp_.cycle(), time());
+    arbiter_.forget(stamp_.cycle(), kForEver);
     reflector_.zero_first();
     decide();
     flush(now);
+    node_.warn("robot link silent for 0.5 s: the robot is told to stop");
   }
 }
 
@@ -435,7 +443,8 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   ask_vision(now);
 
   last_packet_ = now;
-  link_silent_ = false;
+  if (std::exchange(link_silent_, false))
+    arbiter_.forget(stamp_.cycle() - 1, now);
   reacted_ = false;
   stepping_ = false;
   stepped_ = false;
@@ -450,9 +459,11 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
     echoes_.clear();
   }
   std::vector<authority::Echo> echoes;
-  std::vector<int> silent;
+  std::vector<authority::Silence> silent;
   to_guard(state, reflector_.parameters(), echoes, silent);
   echoes_.update(stamp_.cycle(), echoes, silent);
+  body_.sees_ahead = echoes_.sees(stamp_.cycle(), true);
+  body_.sees_behind = echoes_.sees(stamp_.cycle(), false);
   publish_devices();
 
   if (lockstep_) {
@@ -474,6 +485,11 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
 }
 
 void Shell::lost(const std::string& why, double now) {
+  // The server may hear us where we do not hear it, and would go on with what it was told last.
+  if (epoch_ != 0 && link_.state() == transport::Link::State::open) {
+    send(stop_packets(), now);
+    send(protocol::encode(protocol::Close{}), now);
+  }
   if (epoch_ != 0) {
     node_.log(node_.status().state() == v1::SERVICE_STOPPING ? v1::LOG_INFO : v1::LOG_WARNING,
               "connection to the robot ended: " + why);
@@ -507,12 +523,12 @@ void Shell::mind_gap(double now) {
   std::snprintf(text, sizeof text,
                 "the bridge stood still for %.2f s: the robot is stopped, a new grant is needed",
                 gap);
-  node_.warn(text);
   arbiter_.forget(stamp_.cycle(), now + kSettle);
   last_packet_ = now;  // it was the bridge that was silent, not the link
   reflector_.zero_first();
   decide();
   flush(now);
+  node_.warn(text);
 }
 
 void Shell::remember() {
@@ -531,7 +547,31 @@ void Shell::remember() {
 
 // ---- The bus's side.
 
+/// Two bridges of one name would both be obeyed by whoever follows that name.
+void Shell::take_others() {
+  for (const auto& sample : statuses_.take()) {
+    const v1::ServiceStatus& other = sample.data;
+    if (other.name() != node_.status().name() || other.instance() == node_.status().instance())
+      continue;
+    const bool serves = !sample.info.disposed && (other.state() == v1::SERVICE_RUNNING ||
+                                                  other.state() == v1::SERVICE_DEGRADED);
+    if (!serves) {
+      others_.erase(sample.info.writer);
+    } else if (others_
+                   .try_emplace(sample.info.writer,
+                                "process " + std::to_string(other.pid()) + " at " + other.host())
+                   .second) {
+      node_.error("another bridge, " + others_[sample.info.writer] +
+                  ", has a robot of the name \"" + node_.options().robot +
+                  "\": give one of them another name (--robot)");
+    }
+  }
+  for (const bus::WriterId& writer : statuses_.take_lost())
+    others_.erase(writer);
+}
+
 void Shell::take_all(double now) {
+  take_others();
   bool driver = false;
   for (Drive& drive : drives_)
     driver = take_drive(drive, now) || driver;
@@ -557,7 +597,8 @@ bool Shell::take_drive(Drive& drive, double now) {
     // Whatever it says: a lockstep that waited for a better answer would wait for ever.
     if (drive.role == Role::behaviors && epoch_ != 0 && in.stamp().epoch() == epoch_)
       answered_ = in.stamp().cycle();
-    const std::string wrong = trouble(in);
+    // A release and an emergency stop mean stop, whatever else they say.
+    const std::string wrong = in.active() && drive.role != Role::estop ? trouble(in) : "";
     if (!wrong.empty()) {
       ++malformed_;
       arbiter_.refuse(drive.role, in.source().substr(0, 255), wrong);
@@ -665,14 +706,13 @@ void Shell::decide() {
   wanted.rotation_velocity = guarded_.rotation_velocity;
   reflector_.hold(wanted);
   if (guarded_.action == authority::GuardAction::stop && guarded_.action != action_before)
-    node_.info("guard: " + guarded_.reason);
-  const std::string reason = grant.reason;
+    words_.push_back("guard: " + guarded_.reason);
   grant_ = std::move(grant);
   expires_at_ = t + grant_.expires_in + 1e-4;
   if (changed) {
-    node_.info(grant_.role == Role::none
-                   ? "nobody drives: " + reason
-                   : grant_.source + " drives (" + authority::name(grant_.role) + ")");
+    words_.push_back(grant_.role == Role::none
+                         ? "nobody drives: " + grant_.reason
+                         : grant_.source + " drives (" + authority::name(grant_.role) + ")");
     grant_changed_ = true;
   }
 }
@@ -680,19 +720,21 @@ void Shell::decide() {
 void Shell::flush(double now) {
   flush_at_ = 0.0;
   bool sent = false;
-  for (const protocol::Command& command : reflector_.due(time())) {
+  for (const protocol::Command& command : reflector_.due(time(), link_.room())) {
     if (!send(protocol::encode(command, reflector_.parameters()), now))
       return;  // the link is closed now: the loop sees it
     sent = true;
   }
   if (sent && !reacted_) {
     reacted_ = true;
-    const double reaction = steady() - last_packet_;
+    const double reaction = BootClock::seconds() - last_packet_;
     reaction_sum_ += reaction;
     reaction_max_ = std::max(reaction_max_, reaction);
     ++reactions_;
   }
   // After the packets: nobody waits for these words.
+  for (const std::string& text : std::exchange(words_, {}))
+    node_.info(text);
   if (grant_changed_ && !lockstep_)
     publish_grant();
 }
@@ -743,6 +785,9 @@ void Shell::publish_status(double now) {
   if (!robot_trouble_.empty()) {
     state = v1::SERVICE_WAITING;
     reason = robot_trouble_;
+  } else if (!others_.empty()) {
+    state = epoch_ != 0 ? v1::SERVICE_DEGRADED : v1::SERVICE_WAITING;
+    reason = "another bridge, " + others_.begin()->second + ", has a robot of this name";
   } else if (link_.state() != transport::Link::State::open) {
     state = v1::SERVICE_WAITING;
     reason = "robot link: " + link_.trouble();

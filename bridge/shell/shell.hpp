@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,7 +49,7 @@ class Shell {
   int run(const bus::Stop& stop);
 
  private:
-  /// The clock of authority and reflector: steady live, cycles in lockstep.
+  /// The clock of authority and reflector: BootClock live, cycles in lockstep.
   double time() const;
   int timeout_ms(double now) const;
 
@@ -70,6 +71,7 @@ class Shell {
 
   // The bus's side.
   void take_all(double now);
+  void take_others();
   struct Drive;
   bool take_drive(Drive& drive, double now);
   void take_devices();
@@ -85,6 +87,7 @@ class Shell {
   void publish_status(double now);
   void remember();
 
+  bool in_memory_;
   BridgeOptions options_;
   bool lockstep_;
   std::unique_ptr<transport::Keeper> keeper_;
@@ -116,6 +119,8 @@ class Shell {
   bus::Reader<v1::SerialCommand> serial_;
   std::size_t device_writers_ = 0;  ///< that were matched at the last look
   bus::Reader<v1::StepPermit> permits_;
+  bus::Reader<v1::ServiceStatus> statuses_;
+  std::map<bus::WriterId, std::string> others_;  ///< bridges that serve a robot of this name
 
   transport::Link link_;
   protocol::PacketParser parser_;
@@ -124,6 +129,7 @@ class Shell {
   authority::Arbiter arbiter_;
   authority::Echoes echoes_;
   authority::Body body_;
+  std::vector<std::string> words_;                  ///< to be logged when the packets are out
   std::array<authority::GuardSettings, 5> guards_;  ///< by role
 
   std::uint64_t epoch_ = 0;  ///< 0: no session
@@ -150,7 +156,7 @@ class Shell {
   double last_bytes_ = 0.0;
   double last_packet_ = 0.0;
   double last_beat_ = 0.0;
-  double hold_off_ = 0.0;  ///< not before: a robot that cannot be served is not asked at once again
+  double hold_off_ = 0.0;    ///< the robot is not asked before
   double expires_at_ = 0.0;  ///< the lease of the one who drives
   double flush_at_ = 0.0;    ///< what is due is sent then, if the driver says nothing before; 0: no
   bool link_silent_ = false;

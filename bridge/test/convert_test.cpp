@@ -239,17 +239,17 @@ TEST(Convert, GrantAndGuard) {
 TEST(Convert, ReadingsForTheGuard) {
   protocol::RobotParameters p;
   p.sonars = {{0, {0.1, 0.1, kPi / 2}}, {3, {0.13, 0.0, 0.0}}};
-  EXPECT_FALSE(to_body(p).sees_behind);
   p.sonars.push_back({7, {-0.1, 0.0, kPi}});
-  EXPECT_TRUE(to_body(p).sees_behind);
   reflector::State s;
   s.information.sonars = {{3, 1.0, true}, {0, 5.0, false}, {9, 1.0, true}};
   std::vector<authority::Echo> echoes;
-  std::vector<int> silent;
+  std::vector<authority::Silence> silent;
   to_guard(s, p, echoes, silent);
   ASSERT_EQ(echoes.size(), 1U) << "a sonar that no file places is left out";
   EXPECT_EQ(echoes[0].sonar, 3);
-  EXPECT_EQ(silent, std::vector<int>{0});
+  ASSERT_EQ(silent.size(), 1U);
+  EXPECT_EQ(silent[0].sonar, 0);
+  EXPECT_EQ(silent[0].sonar_in_robot, (Pose{0.1, 0.1, kPi / 2}));
 }
 
 TEST(Convert, VisionChannels) {

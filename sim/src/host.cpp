@@ -31,6 +31,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A client that steps is never farther ahead of who looks at the pictures of its cycles.
+constexpr std::size_t kPicturesInStep = 4;
+
 // Silence after which a packet that has begun will not be completed.
 constexpr double kGap = 0.050;  // [s]
 
@@ -206,6 +209,11 @@ class Station {
   }
 
   void read_client() {
+    // What was said before this was heard, in that order.
+    if (client_)
+      send(server().take_output());
+    if (!client_)
+      return;
     std::array<std::uint8_t, 4096> buffer{};
     const ssize_t size = ::read(client_.get(), buffer.data(), buffer.size());
     if (size > 0) {
@@ -231,7 +239,8 @@ class Station {
       trace_.flush();
     // After the packet, which is not to wait for the picture.
     if (stereo_)
-      stereo_->serve(simulation_.scene(), number_, server().cycle());
+      stereo_->serve(simulation_.scene(), number_, server().cycle(),
+                     server().single_step() ? kPicturesInStep : 1);
   }
 
   void end() {

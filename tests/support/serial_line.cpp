@@ -97,7 +97,7 @@ bool SerialLine::take(int fd, int direction) {
   const ssize_t n = ::read(fd, buffer.data(), buffer.size());
   if (n <= 0)
     return n < 0 && (errno == EAGAIN || errno == EINTR);
-  if (cut_)
+  if (cut_[direction])
     return true;
   if (d.waiting.empty())
     d.due = Clock::now() + byte_;
@@ -130,7 +130,7 @@ bool SerialLine::give(int fd, int direction) {
     d.waiting.pop_front();
     d.due += byte_;
   }
-  if (out.empty() || fd < 0 || cut_)
+  if (out.empty() || fd < 0 || cut_[direction])
     return true;
   bytes_[direction] += out.size();
   // What nobody takes is lost, as in a receiver that is not read.

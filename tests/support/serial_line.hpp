@@ -26,7 +26,9 @@ class SerialLine {
   /// packet.
   bool has_robot();
   /// The cable out of its socket: nothing comes through either way, and nobody is told.
-  void cut(bool out) { cut_ = out; }
+  void cut(bool out) { cut_[0] = cut_[1] = out; }
+  /// Only what the robot says is lost.
+  void cut_from_robot(bool out) { cut_[1] = out; }
   /// A USB adapter pulled, with its device; and put back.
   void remove();
   void put_back();
@@ -63,7 +65,7 @@ class SerialLine {
   int robot_ = -1;
   Direction directions_[2];  ///< to the robot, from it
   std::uint64_t random_ = 0x9E3779B97F4A7C15ULL;
-  std::atomic<bool> cut_{false};
+  std::atomic<bool> cut_[2]{false, false};
   std::atomic<unsigned> hurt_one_in_{0};
   std::atomic<std::uint64_t> bytes_[2]{0, 0};
   std::atomic<std::uint64_t> waited_[2]{0, 0};

@@ -129,7 +129,8 @@ bool Mind::knows_goals() const {
     return false;
   if (const v1::Intentions* const newest = intentions_.newest())
     for (const v1::IntentionNode& node : newest->nodes())
-      if (node.parent() == 0 && !statuses_.contains({node.goal().writer(), node.goal().number()}))
+      if (const Key key{node.goal().writer(), node.goal().number()};
+          node.parent() == 0 && !(statuses_.contains(key) && goals_.contains(key)))
         return false;
   return true;
 }

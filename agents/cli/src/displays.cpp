@@ -113,7 +113,8 @@ TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node
   TreeLine line{indent + (node.blocking() ? "* " : "o ") + node.schema() + " (" +
                     (node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) + ") " +
                     node.label(),
-                node.step()};
+                node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
+                    node.step()};
   const char* how = "";
   switch (node.state()) {
     case v1::INTENTION_SUSPENDED:

@@ -120,15 +120,16 @@ std::string without_number(const std::string& name) {
   return name.substr(0, name.rfind('#'));
 }
 
+std::string plain(const std::string& name) {
+  std::string result;
+  for (const char c : name)
+    if (c != '-' && c != '_')
+      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 /// Whether an instance has its name from its schema: KeepOff#3, keep-off.
 bool nameless(const std::string& name, const std::string& schema) {
-  const auto plain = [](const std::string& text) {
-    std::string result;
-    for (const char c : text)
-      if (c != '-' && c != '_')
-        result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return result;
-  };
   return name.empty() || plain(without_number(name)) == plain(schema);
 }
 
@@ -137,6 +138,10 @@ std::string intention_name(const v1::IntentionNode& node) {
   return node.parent() == 0 || nameless(node.name(), node.schema())
              ? node.schema()
              : node.schema() + " (" + node.name() + ")";
+}
+
+std::string with_arguments(const v1::IntentionNode& node) {
+  return intention_name(node) + (node.arguments().empty() ? "" : " [" + node.arguments() + "]");
 }
 
 /// How a behavior takes part in a channel of the blend.
@@ -344,7 +349,7 @@ std::string Reason::purpose(const std::vector<const v1::BehaviorState*>& behavio
   std::vector<std::string> names;
   names.reserve(nodes.size());
   for (const v1::IntentionNode* one : nodes)
-    names.push_back(intention_name(*one));
+    names.push_back(with_arguments(*one));
   const v1::IntentionNode* root = nodes.front();
   while (const v1::IntentionNode* const parent = node(root->parent()))
     root = parent;
@@ -353,9 +358,9 @@ std::string Reason::purpose(const std::vector<const v1::BehaviorState*>& behavio
   if (root != nodes.front() || nodes.size() > 1)
     text = listed(names) + (nodes.size() == 1 ? " intends " : " intend ") +
            (behaviors.size() == 1 ? "it" : "them");
-  if (root != nodes.front())
-    text += ", as part of " + intention_name(*root) + ",";
   const std::string goal = goal_text(root->goal());
+  if (root != nodes.front() && plain(goal.substr(0, goal.find('('))) != plain(root->schema()))
+    text += ", as part of " + intention_name(*root) + ",";
   return text + (goal.empty() ? " for a goal of which nothing is known"
                               : " for the goal " + goal + ", which " + requester(root->goal()) +
                                     " asked for");
@@ -428,7 +433,7 @@ Cause Reason::goal_cause(const v1::GoalId& id) const {
 }
 
 std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
-  Cause cause{"intention", "for " + intention_name(of), {}};
+  Cause cause{"intention", "for " + with_arguments(of), {}};
   if (!of.label().empty())
     cause.text += ", at " + of.label();
   if (!of.step().empty())

@@ -35,18 +35,22 @@ const char* name(Role role) {
   return "none";
 }
 
+void Arbiter::let_go() {
+  for (Player& p : players_)
+    p.held = p.held && p.newest.role == Role::estop;
+}
+
 void Arbiter::connect(std::uint64_t epoch) {
   epoch_ = epoch;
   deaf_cycle_ = 0;
-  for (Player& p : players_)
-    p.held = false;
+  deaf_until_ = -1e300;
+  let_go();
 }
 
 void Arbiter::forget(std::uint64_t cycle, double until) {
   deaf_cycle_ = cycle;
   deaf_until_ = until;
-  for (Player& p : players_)
-    p.held = false;
+  let_go();
 }
 
 void Arbiter::refuse(Role role, const std::string& source, const std::string& reason) {
@@ -65,12 +69,19 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   if (command.role == Role::none)
     return no("no role");
   const auto key = std::make_pair(command.role, command.writer);
-  const auto known = numbers_.find(key);
-  if (known != numbers_.end() && command.number <= known->second)
+  auto known = numbers_.find(key);
+  // A button that says the same again is still pressed.
+  if (known != numbers_.end() && command.number <= known->second.newest &&
+      command.role != Role::estop)
     return no("repeated command number");
-  if (known == numbers_.end() && numbers_.size() >= kMaxWriters)
-    numbers_.erase(numbers_.begin());
-  numbers_[key] = command.number;
+  if (known == numbers_.end()) {
+    if (numbers_.size() >= kMaxWriters)
+      numbers_.erase(std::min_element(numbers_.begin(), numbers_.end(), [](auto& a, auto& b) {
+        return a.second.used < b.second.used;
+      }));
+    known = numbers_.try_emplace(key).first;
+  }
+  known->second = {command.number, ++offers_};
 
   Player& p = player(command.role);
   const bool holds = p.held && p.newest.writer == command.writer;
@@ -98,7 +109,7 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   if (command.epoch != epoch_ && (command.epoch != 0 || command.cycle != 0))
     return no("answers another epoch");
   if (command.received < deaf_until_)
-    return no("received while the bridge caught up after a gap");
+    return no("received while the robot was silent, or the bridge caught up after a gap");
   if (command.cycle != 0) {
     if (command.cycle > cycle)
       return no("answers a cycle that has not been");
@@ -124,7 +135,9 @@ void Arbiter::lost(Role role, const WriterId& writer, double now) {
 }
 
 bool Arbiter::live(const Player& p, double now, std::uint64_t cycle) const {
-  return p.held && p.newest.active && now - p.newest.received <= settings_.lease + kTick &&
+  // What came later than now came before the cycles began anew.
+  return p.held && p.newest.active && now >= p.newest.received - kTick &&
+         now - p.newest.received <= settings_.lease + kTick &&
          (p.newest.cycle == 0 || cycle - p.newest.cycle <= settings_.intent_cycles);
 }
 

@@ -10,6 +10,7 @@ namespace saphira::authority {
 namespace {
 
 constexpr double kCreep = 0.02;  // [m/s] slower is as good as standing
+constexpr double kTowards = radians(60.0);
 
 std::string text(const char* format, double a, double b) {
   char out[128];
@@ -26,17 +27,30 @@ double limit_of(double setting, double robot) {
 }  // namespace
 
 void Echoes::update(std::uint64_t cycle, const std::vector<Echo>& echoes,
-                    const std::vector<int>& silent) {
-  for (const int sonar : silent) {
-    const auto point = newest_.find(sonar);
+                    const std::vector<Silence>& silent) {
+  for (const Silence& silence : silent) {
+    fired(cycle, silence.sonar_in_robot);
+    const auto point = newest_.find(silence.sonar);
     if (point != newest_.end() && ++point->second.missed >= 2)
       newest_.erase(point);
   }
   for (const Echo& echo : echoes) {
+    fired(cycle, echo.sonar_in_robot);
     const Pose sonar_in_odom = compose(echo.robot_in_odom, echo.sonar_in_robot);
     newest_[echo.sonar] = {transform(sonar_in_odom, {echo.range, 0.0}), cycle, 0};
   }
   std::erase_if(newest_, [&](const auto& item) { return cycle - item.second.cycle > kept_cycles; });
+}
+
+void Echoes::fired(std::uint64_t cycle, const Pose& sonar_in_robot) {
+  if (std::abs(norm2_angle(sonar_in_robot.th)) < kTowards)
+    fired_ahead_ = cycle;
+  if (std::abs(norm2_angle(sonar_in_robot.th + kPi)) < kTowards)
+    fired_behind_ = cycle;
+}
+
+bool Echoes::sees(std::uint64_t cycle, bool ahead) const {
+  return cycle <= (ahead ? fired_ahead_ : fired_behind_) + kept_cycles;
 }
 
 std::vector<Vec2> Echoes::seen_from(const Pose& robot_in_odom) const {
@@ -92,10 +106,12 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
     speed = max_speed;
     act(GuardAction::limit, text("%.2f m/s cut to the limit of %.2f", velocity, max_speed));
   }
-  if (!forward && !body.sees_behind && settings.max_reverse_velocity > 0.0 &&
-      speed > settings.max_reverse_velocity) {
-    speed = settings.max_reverse_velocity;
-    act(GuardAction::limit, text("%.2f m/s cut to %.2f: no sonar sees behind", velocity, speed));
+  if (!(forward ? body.sees_ahead : body.sees_behind) && settings.max_blind_velocity > 0.0 &&
+      speed > settings.max_blind_velocity) {
+    speed = settings.max_blind_velocity;
+    act(GuardAction::limit, text(forward ? "%.2f m/s cut to %.2f: no sonar looks ahead"
+                                         : "%.2f m/s cut to %.2f: no sonar looks behind",
+                                 velocity, speed));
   }
 
   const double free = free_distance(points, body.radius, settings.side_margin, forward);

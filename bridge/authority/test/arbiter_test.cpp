@@ -254,6 +254,65 @@ TEST(Arbiter, AnEmergencyStopIsHeardWhateverItAnswers) {
   EXPECT_EQ(s.driver(), Role::estop);
 }
 
+TEST(Arbiter, AnEmergencyStopHoldsOnOverAGapAndAConnection) {
+  Scene s;
+  s.offer(Role::estop, 1);
+  s.arbiter.forget(s.cycle, s.now + 0.1);
+  EXPECT_EQ(s.driver(), Role::estop);
+  s.arbiter.connect(0);
+  EXPECT_EQ(s.driver(), Role::estop);
+  s.arbiter.connect(2);
+  s.offer(Role::behaviors, 2);
+  EXPECT_EQ(s.driver(), Role::estop);
+  s.wait(4);
+  EXPECT_EQ(s.driver(), Role::none) << "for its lease";
+  // Where cycles are the clock, it begins anew with them.
+  s.offer(Role::estop, 1);
+  s.now = 0.0;
+  EXPECT_EQ(s.driver(), Role::none);
+}
+
+TEST(Arbiter, AButtonThatSaysTheSameAgainIsStillPressed) {
+  Scene s;
+  Command c = s.command(Role::estop, 1);
+  for (int i = 0; i < 10; ++i) {
+    c.received = s.now;
+    EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
+    EXPECT_EQ(s.driver(), Role::estop);
+    s.wait(2);
+  }
+}
+
+TEST(Arbiter, NobodyDrivesARobotThatIsSilent) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  s.arbiter.forget(s.cycle, 1e300);
+  EXPECT_EQ(s.driver(), Role::none);
+  Command blind = s.command(Role::teleop, 1);
+  blind.epoch = 0;
+  blind.cycle = 0;
+  EXPECT_FALSE(s.arbiter.offer(blind, s.cycle));
+  s.wait(1);
+  s.arbiter.forget(s.cycle - 1, s.now);
+  EXPECT_TRUE(s.offer(Role::teleop, 1));
+  EXPECT_EQ(s.driver(), Role::teleop);
+}
+
+TEST(Arbiter, WhoHasNotBeenHeardForLongestIsForgotten) {
+  Scene s;
+  const Command first = s.command(Role::teleop, 1);
+  s.arbiter.offer(first, s.cycle);
+  for (int i = 0; i < 2000; ++i) {
+    Command other = s.command(Role::behaviors, 2);
+    other.writer[1] = static_cast<std::uint8_t>(i % 256);
+    other.writer[2] = static_cast<std::uint8_t>(i / 256);
+    s.arbiter.offer(other, s.cycle);
+    if (i < 1200)
+      s.offer(Role::teleop, 1);
+  }
+  EXPECT_FALSE(s.arbiter.offer(first, s.cycle)) << "an old command again";
+}
+
 TEST(Arbiter, RefusalsAreToldOnceAndBounded) {
   Scene s;
   s.offer(Role::direct, 0);

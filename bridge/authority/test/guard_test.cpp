@@ -56,6 +56,28 @@ TEST(Guard, IsBlindBehindSoItIsSlowThere) {
   EXPECT_EQ(out.action, GuardAction::stop);
 }
 
+TEST(Guard, IsSlowWhereNoSonarLooksAhead) {
+  Body body = kPioneer;
+  body.sees_ahead = false;
+  const Guarded out = guard({}, body, {}, 0.3, 0.0);
+  EXPECT_EQ(out.action, GuardAction::limit);
+  EXPECT_DOUBLE_EQ(out.velocity, 0.15);
+  EXPECT_EQ(out.reason, "0.30 m/s cut to 0.15: no sonar looks ahead");
+}
+
+TEST(Echoes, KnowWhereSonarsLook) {
+  Echoes echoes;
+  EXPECT_TRUE(echoes.sees(10, true)) << "they have not had their turn";
+  EXPECT_FALSE(echoes.sees(11, true));
+  echoes.update(11, {}, {{3, {0.13, 0.0, 0.2}}, {0, {0.1, 0.1, kPi / 2}}});
+  EXPECT_TRUE(echoes.sees(21, true));
+  EXPECT_FALSE(echoes.sees(22, true));
+  EXPECT_FALSE(echoes.sees(21, false));
+  echoes.update(30, {{8, {}, {-0.1, 0.0, kPi}, 1.0}}, {});
+  EXPECT_TRUE(echoes.sees(30, false));
+  EXPECT_FALSE(echoes.sees(30, true));
+}
+
 TEST(Guard, LimitsToTheRobotAndTheRole) {
   GuardSettings settings;
   Guarded out = guard(settings, kPioneer, {}, 2.0, -5.0);
@@ -113,9 +135,9 @@ TEST(Echoes, StayWhereTheyWereWhileTheRobotMoves) {
 TEST(Echoes, AreForgotten) {
   Echoes echoes;
   echoes.update(1, {{3, {}, {0.13, 0, 0}, 1.0}, {4, {}, {0.13, 0, 0}, 1.0}}, {});
-  echoes.update(2, {}, {3});
+  echoes.update(2, {}, {{3, {}}});
   EXPECT_EQ(echoes.seen_from({}).size(), 2U) << "one dropout";
-  echoes.update(3, {}, {3});
+  echoes.update(3, {}, {{3, {}}});
   EXPECT_EQ(echoes.seen_from({}).size(), 1U);
   echoes.update(11, {}, {});
   EXPECT_EQ(echoes.seen_from({}).size(), 1U);

@@ -11,6 +11,11 @@ int sync_of(Connection::State state) {
   return static_cast<int>(state) - static_cast<int>(Connection::State::sync0);
 }
 
+Packets zero_setpoints() {
+  return {protocol::encode(protocol::Velocity{0.0}),
+          protocol::encode(protocol::RotationVelocity{0.0})};
+}
+
 bool is_information(std::uint8_t type) {
   return (type & 0xF0U) == 0x30U;
 }
@@ -23,13 +28,19 @@ Packets Connection::go(State state, double now) {
   state_ = state;
   sent_ = now;
   ++tries_;
-  return {state == State::open ? protocol::encode(protocol::Open{})
-                               : protocol::encode_sync(sync_of(state))};
+  if (state == State::open)
+    return {protocol::encode(protocol::Open{})};
+  Packets out;
+  if (state == State::sync0 && in_session_)
+    out = zero_setpoints();
+  out.push_back(protocol::encode_sync(sync_of(state)));
+  return out;
 }
 
-Packets Connection::begin(double now) {
+Packets Connection::begin(double now, bool in_session) {
   identity_ = {};
   state_ = State::closed;
+  in_session_ = in_session;
   return go(State::sync0, now);
 }
 
@@ -41,10 +52,10 @@ Packets Connection::packet(protocol::ByteView body, double now) {
     // may have been on its way.
     if (now - sent_ < kRetry / 2.0 && tries_ > 1)
       return {};
-    ++tries_;
-    Packets out{protocol::encode(protocol::Close{})};
-    const Packets again = go(State::sync0, now);
-    out.insert(out.end(), again.begin(), again.end());
+    Packets out = zero_setpoints();
+    out.push_back(protocol::encode(protocol::Close{}));
+    go(State::sync0, now);
+    out.push_back(protocol::encode_sync(0));
     tries_ = 2;
     return out;
   }

@@ -334,7 +334,7 @@ bool Devices::pending(double now) const {
   });
 }
 
-std::vector<protocol::Command> Devices::due(double now) {
+std::vector<protocol::Command> Devices::due(double now, std::size_t room) {
   std::vector<protocol::Command> out;
   for (auto& [key, item] : items_) {
     if (ended(item.request.state) || (item.request.sent != 0 && now - item.at < kRetry - kTick))
@@ -343,6 +343,12 @@ std::vector<protocol::Command> Devices::due(double now) {
       end(item, RequestState::given_up, "the robot does not show it");
       continue;
     }
+    std::size_t size = 0;
+    for (const protocol::Command& command : item.commands)
+      size += protocol::encode(command).size();
+    if (size > room)
+      continue;
+    room -= size;
     ++item.request.sent;
     item.at = now;
     out.insert(out.end(), item.commands.begin(), item.commands.end());

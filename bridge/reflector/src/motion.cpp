@@ -25,10 +25,12 @@ void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
   if (motion.translation == Translation::position ||
       motion.rotation == Rotation::relative_heading) {
     if (begun_.size() >= kMaxDrivers && !begun_.contains(motion.driver))
-      begun_.clear();
-    const auto [move, fresh] = begun_.try_emplace(motion.driver, motion.move);
-    begins = fresh || move->second != motion.move;
-    move->second = motion.move;
+      begun_.erase(std::min_element(begun_.begin(), begun_.end(), [](auto& a, auto& b) {
+        return a.second.used < b.second.used;
+      }));
+    const auto [begun, fresh] = begun_.try_emplace(motion.driver);
+    begins = fresh || begun->second.move != motion.move;
+    begun->second = {motion.move, ++sets_};
   }
   switch (motion.translation) {
     case Translation::none:

@@ -87,11 +87,11 @@ void Reflector::hold(const Setpoints& setpoints) {
   channels_.want(setpoints, odometry_.rotation());
 }
 
-std::vector<protocol::Command> Reflector::due(double now) {
+std::vector<protocol::Command> Reflector::due(double now, std::size_t room) {
   std::vector<protocol::Command> out;
   for (const Order& order : channels_.due(now))
     out.push_back(to_command(order));
-  for (protocol::Command& command : devices_.due(now))
+  for (protocol::Command& command : devices_.due(now, room))
     out.push_back(std::move(command));
   if (out.empty() && now - last_sent_ >= Channels::kRepeat - kTick)
     out.emplace_back(protocol::Pulse{});

@@ -9,7 +9,7 @@ namespace {
 
 using protocol::Bytes;
 
-/// The numbers of the packets: each carries no argument here, so the fourth byte says all.
+/// The numbers of the packets: the fourth byte.
 std::vector<int> numbers(const Packets& packets) {
   std::vector<int> out;
   for (const Bytes& packet : packets)
@@ -38,6 +38,13 @@ TEST(Connection, SynchronizesAndOpens) {
   EXPECT_EQ(c.identity().subclass, "PION1M");
 }
 
+TEST(Connection, DoesNotReviveARobotBehindALine) {
+  Connection c;
+  EXPECT_EQ(numbers(c.begin(1.0, true)), (std::vector<int>{11, 21, 0}));
+  EXPECT_EQ(numbers(c.tick(c.due())), (std::vector<int>{11, 21, 0}));
+  EXPECT_EQ(numbers(c.packet(Bytes{0}, 2.0)), std::vector<int>{1});
+}
+
 TEST(Connection, RepeatsWhatIsNotAnswered) {
   Connection c;
   c.begin(1.0);
@@ -53,9 +60,9 @@ TEST(Connection, RepeatsWhatIsNotAnswered) {
 TEST(Connection, ClosesAServerThatIsStillOpen) {
   Connection c;
   c.begin(1.0);
-  EXPECT_EQ(numbers(c.packet(Bytes{0x32, 0, 0}, 1.05)), (std::vector<int>{2, 0}));
+  EXPECT_EQ(numbers(c.packet(Bytes{0x32, 0, 0}, 1.05)), (std::vector<int>{11, 21, 2, 0}));
   EXPECT_TRUE(c.packet(Bytes{0x32, 0, 0}, 1.06).empty()) << "was on its way";
-  EXPECT_EQ(numbers(c.packet(Bytes{0x33, 0, 0}, 1.3)), (std::vector<int>{2, 0}))
+  EXPECT_EQ(numbers(c.packet(Bytes{0x33, 0, 0}, 1.3)), (std::vector<int>{11, 21, 2, 0}))
       << "did not hear it";
   EXPECT_EQ(numbers(c.packet(Bytes{0}, 1.4)), std::vector<int>{1});
 }

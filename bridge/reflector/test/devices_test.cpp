@@ -130,6 +130,18 @@ protocol::RobotParameters of(protocol::Protocol generation) {
   return parameters;
 }
 
+TEST(Devices, WaitForTheLine) {
+  Bench b(of(protocol::Protocol::kArcos));
+  b.ask(SerialWish{1, std::vector<std::uint8_t>(180, 7), 0});
+  b.ask(SerialWish{2, std::vector<std::uint8_t>(180, 8), 0});
+  EXPECT_TRUE(b.devices.due(1.0, 100).empty());
+  EXPECT_EQ(b.devices.due(1.0, 250).size(), 1U);
+  EXPECT_TRUE(b.devices.due(1.1, 100).empty());
+  EXPECT_EQ(b.devices.due(1.2, 250).size(), 1U);
+  for (const Request& request : b.devices.requests())
+    EXPECT_EQ(request.state, RequestState::sent) << request.text;
+}
+
 TEST(Devices, APioneerOneIsNotAskedForWhatCameLater) {
   Bench b(of(protocol::Protocol::kPsos));
   b.devices.begin(b.parameters);

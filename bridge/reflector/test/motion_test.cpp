@@ -49,6 +49,25 @@ TEST(DirectMotion, ARelativeHeadingIsTakenOnce) {
   EXPECT_NEAR(direct.setpoints().heading_in_odom, norm2_angle(3.5 + kPi / 2), 1e-12);
 }
 
+TEST(DirectMotion, AMoveThatIsOverStaysSoWhoeverElseDrives) {
+  DirectMotion direct(kPioneer);
+  Motion mine;
+  mine.translation = Translation::position;
+  mine.distance = 1.0;
+  mine.move = 5;
+  mine.driver = 1;
+  direct.set(mine, {});
+  for (std::uint64_t driver = 2; driver < 1000; ++driver) {
+    direct.stop();
+    Motion other = mine;
+    other.driver = driver;
+    direct.set(other, {});
+    direct.stop();
+    direct.set(mine, {});
+    ASSERT_EQ(direct.setpoints().velocity, 0.0) << driver;
+  }
+}
+
 TEST(DirectMotion, AnInterruptedMoveIsOver) {
   DirectMotion direct(kPioneer);
   Motion m;

@@ -14,19 +14,24 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "saphira/base/boot_clock.hpp"
 
 namespace saphira::transport {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = BootClock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kRepeat{100};  // the manual's most frequent command (5.2)
 
 void say(const char* text) {
-  // Nothing can be done where stderr is gone; the robot matters more.
-  [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
+  // Nothing can be done where stderr is gone or nobody reads it; the robot matters more.
+  pollfd ready{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&ready, 1, 0) == 1 && (ready.revents & POLLOUT) != 0) [[maybe_unused]]
+    const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
 /// Writes to the robot, whatever kind of line it is, without waiting long for it.
@@ -93,9 +98,9 @@ char receive(int socket, int& passed) {
       const char word = receive(socket, passed);
       if (word == '\0') {
         if (robot >= 0) {
-          say("saphira-bridge keeper: the bridge is gone; the robot is stopped\n");
           write_stop(robot, stop);
           write_stop(robot, stop);  // once for a line that was cut within a packet
+          say("saphira-bridge keeper: the bridge is gone; the robot is stopped\n");
         }
         ::_exit(0);
       }
@@ -111,10 +116,9 @@ char receive(int socket, int& passed) {
       continue;
     }
     if (robot >= 0 && Clock::now() - heard >= silence) {
-      if (!acting)
-        say("saphira-bridge keeper: the bridge is silent; the robot is stopped\n");
-      acting = true;
       write_stop(robot, stop);
+      if (!std::exchange(acting, true))
+        say("saphira-bridge keeper: the bridge is silent; the robot is stopped\n");
     }
   }
 }

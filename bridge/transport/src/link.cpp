@@ -29,8 +29,11 @@ namespace {
 constexpr double kFirstBackoff = 0.05;  // [s]
 constexpr double kLastBackoff = 0.5;    // [s]
 constexpr double kConnectTime = 3.0;    // [s] for a TCP connection to come about
-// At 9600 baud these are 0.27 s: a command that waits longer is not worth sending.
-constexpr std::size_t kMaxWaiting = 256;
+// At 9600 baud these are 0.33 s: a command that waits longer is not worth sending.
+constexpr std::size_t kMaxWaiting = 320;
+// For the motion of the cycles meanwhile. The longest packet of a device, 207 bytes, fits into the
+// rest.
+constexpr std::size_t kForMotion = 64;
 
 std::string error_text() {
   return std::strerror(errno);
@@ -230,13 +233,22 @@ bool Link::read(std::vector<std::uint8_t>& out, double now) {
   }
 }
 
-bool Link::write(std::span<const std::uint8_t> bytes, double now) {
-  if (state_ != State::open)
-    return false;
+std::size_t Link::queued() const {
   int in_kernel = 0;  // a terminal's own queue is longer than what we want to wait for
   if (address_.kind == Address::Kind::serial && ::ioctl(fd_, TIOCOUTQ, &in_kernel) != 0)
     in_kernel = 0;
-  if (waiting_.size() + static_cast<std::size_t>(in_kernel) + bytes.size() > kMaxWaiting) {
+  return waiting_.size() + static_cast<std::size_t>(std::max(in_kernel, 0));
+}
+
+std::size_t Link::room() const {
+  const std::size_t taken = queued() + kForMotion;
+  return taken < kMaxWaiting ? kMaxWaiting - taken : 0;
+}
+
+bool Link::write(std::span<const std::uint8_t> bytes, double now) {
+  if (state_ != State::open)
+    return false;
+  if (queued() + bytes.size() > kMaxWaiting) {
     close(address_.text() + ": does not take commands", now);
     return false;
   }

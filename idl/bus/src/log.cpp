@@ -1,8 +1,12 @@
 #include "log.hpp"
 
+#include <poll.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
+
+#include <atomic>
+#include <cstdint>
 
 namespace saphira::bus::internal {
 namespace {
@@ -18,9 +22,24 @@ spdlog::logger& logger() {
   return *instance;
 }
 
+/// Somebody may have stopped the terminal, or read the pipe no further: what holds a robot does not
+/// wait for that. A pipe that can be written to takes a line at once.
+bool can_write() {
+  pollfd ready{STDERR_FILENO, POLLOUT, 0};
+  return ::poll(&ready, 1, 0) == 1 && (ready.revents & POLLOUT) != 0;
+}
+
+std::atomic<std::uint64_t> unwritten{0};
+
 }  // namespace
 
 void write_log(v1::LogLevel level, const std::string& text) {
+  if (!can_write()) {
+    ++unwritten;
+    return;
+  }
+  if (const std::uint64_t lines = unwritten.exchange(0); lines > 0)
+    logger().warn("{} lines are missing here: nobody read on", lines);
   switch (level) {
     case v1::LOG_DEBUG:
       logger().log(spdlog::level::debug, text);

@@ -12,12 +12,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-void forward(v1::MotorCommand& command, double velocity) {
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-}
-
 /// A scene with a line between bridge and robot.
 struct LineScene : Scene {
   LineScene() { robot_port = "serial:" + folder.path("tty") + "@9600"; }
@@ -99,6 +93,52 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
 }
 
+// The bridge hears nothing and is heard: a driver that does not need to see goes on asking, and
+// SYNC0 is what a watchdog waits for.
+TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
+  LineScene scene;
+  scene.follows_cycles = false;
+  scene.drive_off();
+  scene.expect_halves();
+  scene.line.cut_from_robot(true);
+  const std::uint64_t cut = scene.trace().back().cycle;
+  const int cycles = scene.cycles_to_stand(cut);
+  std::printf("stood still %d cycles after the line fell silent\n", cycles);
+  EXPECT_GE(cycles, 0);
+  EXPECT_LE(cycles, 5 + 5);
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  scene.watch(milliseconds(2000));
+  for (const sim::TraceRow& row : scene.trace())
+    if (row.cycle > cut + static_cast<std::uint64_t>(cycles)) {
+      ASSERT_EQ(row.velocity, 0.0) << "cycle " << row.cycle;
+    }
+}
+
+TEST(BridgeSerial, ACableThatIsPutBackWakesNothing) {
+  LineScene scene;
+  scene.drive_off();
+  scene.expect_halves();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  scene.line.cut(true);
+  const std::uint64_t cut = scene.trace().back().cycle;
+  scene.drives = false;
+  const int cycles = scene.cycles_to_stand(cut);
+  ASSERT_GE(cycles, 0);
+  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
+  scene.line.cut(false);
+  ASSERT_TRUE(scene.until([&] {
+    return scene.state.stamp().epoch() > epoch && scene.state.stamp().cycle() > 10;
+  })) << scene.bridge_log();
+  bool first = true;
+  for (const sim::TraceRow& row : scene.whole_trace()) {
+    // The rows of the second session count from 1 again.
+    first = first && row.cycle <= cut + static_cast<std::uint64_t>(cycles);
+    if (!first) {
+      ASSERT_EQ(row.velocity, 0.0) << "cycle " << row.cycle;
+    }
+  }
+}
+
 TEST(BridgeSerial, ACableThatIsOutForAMoment) {
   LineScene scene;
   scene.drive_off();
@@ -178,24 +218,40 @@ TEST(BridgeSerial, Noise) {
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
 }
 
+/// Another bridge with the same port. Of another robot's name, so that its status is not taken for
+/// the first one's.
+struct SecondBridge {
+  explicit SecondBridge(Scene& first) : scene(first) {}
+  /// Waits until its status says why it has no robot, with these words.
+  std::string wait_reason(const std::string& words) {
+    std::string reason;
+    EXPECT_TRUE(scene.until([&] {
+      for (const auto& sample : statuses.take())
+        reason = sample.data.reason();
+      return reason.find(words) != std::string::npos;
+    })) << reason;
+    return reason;
+  }
+
+  Scene& scene;
+  std::string robot = scene.robot + "x";
+  Process process{{"saphira-bridge", "--robot", robot, "--domain", domain(), "--robot-port",
+                   scene.robot_port, "--robots", scene.robots_folder},
+                  scene.folder.path("second.log")};
+  bus::Node node{[this] {
+    bus::NodeOptions options = scene.node.options();
+    options.robot = robot;
+    return options;
+  }()};
+  bus::Reader<v1::ServiceStatus> statuses{node.reader(bus::topics::kStatus)};
+};
+
 TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
   LineScene scene;
   scene.drive_off();
   const std::uint64_t epoch = scene.state.stamp().epoch();
-  // Of another robot's name, so that its status is not taken for the first one's.
-  Process second({"saphira-bridge", "--robot", scene.robot + "x", "--domain", domain(),
-                  "--robot-port", scene.robot_port, "--robots", scene.robots_folder},
-                 scene.folder.path("second.log"));
-  bus::NodeOptions options = scene.node.options();
-  options.robot = scene.robot + "x";
-  bus::Node node(options);
-  auto statuses = node.reader(bus::topics::kStatus);
-  std::string reason;
-  ASSERT_TRUE(scene.until([&] {
-    for (const auto& sample : statuses.take())
-      reason = sample.data.reason();
-    return reason.find("in use by ") != std::string::npos;
-  })) << reason;
+  SecondBridge second(scene);
+  const std::string reason = second.wait_reason("in use by ");
   EXPECT_NE(reason.find("process " + std::to_string(scene.bridge->pid()) + " (saphira-bridge)"),
             std::string::npos)
       << reason;
@@ -205,8 +261,9 @@ TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
   EXPECT_GT(scene.state.velocity(), 0.28);
   // When the first one ends, the second has the robot.
   scene.bridge->signal(SIGTERM);
-  auto states = node.reader(bus::topics::kRobotState);
-  EXPECT_TRUE(scene.until([&] { return states.take_newest().has_value(); })) << second.output();
+  auto states = second.node.reader(bus::topics::kRobotState);
+  EXPECT_TRUE(scene.until([&] { return states.take_newest().has_value(); }))
+      << second.process.output();
 }
 
 TEST(BridgeSerial, ASecondClientOfTheSimulatorSaysSo) {
@@ -215,19 +272,8 @@ TEST(BridgeSerial, ASecondClientOfTheSimulatorSaysSo) {
   scene.start_bridge();
   ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
   const std::uint64_t epoch = scene.state.stamp().epoch();
-  Process second({"saphira-bridge", "--robot", scene.robot + "x", "--domain", domain(),
-                  "--robot-port", scene.robot_port, "--robots", scene.robots_folder},
-                 scene.folder.path("second.log"));
-  bus::NodeOptions options = scene.node.options();
-  options.robot = scene.robot + "x";
-  bus::Node node(options);
-  auto statuses = node.reader(bus::topics::kStatus);
-  std::string reason;
-  ASSERT_TRUE(scene.until([&] {
-    for (const auto& sample : statuses.take())
-      reason = sample.data.reason();
-    return reason.find("has it another client?") != std::string::npos;
-  })) << reason;
+  SecondBridge second(scene);
+  second.wait_reason("has it another client?");
   const std::uint64_t cycle = scene.state.stamp().cycle();
   ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
   EXPECT_EQ(scene.state.stamp().epoch(), epoch);

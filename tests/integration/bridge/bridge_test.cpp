@@ -12,14 +12,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-void forward(v1::MotorCommand& command, double velocity, double rotation = 0.0) {
-  command.active(true);
-  command.translation(v1::TRANSLATION_VELOCITY);
-  command.velocity(velocity);
-  command.rotation(v1::ROTATION_VELOCITY);
-  command.rotation_velocity(rotation);
-}
-
 TEST(Bridge, DescribesTheRobotAndDrivesIt) {
   Scene scene;
   scene.start_simulator();
@@ -131,6 +123,50 @@ TEST(Bridge, AnEmergencyStopStopsWhateverItSays) {
     estop.write(stop);
     return scene.grant.role() == v1::ROLE_ESTOP && scene.rests();
   }));
+}
+
+TEST(Bridge, AStopNeedsNoUsableNumbers) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  auto estop = scene.node.writer(bus::topics::kDriveEstop);
+  ASSERT_TRUE(scene.until([&] { return estop.matched() > 0; }));
+  forward(scene.command, 0.3);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; }));
+  v1::MotorCommand stop;
+  stop.source("button");
+  stop.active(true);
+  forward(stop, std::numeric_limits<double>::quiet_NaN());
+  ASSERT_TRUE(scene.until([&] {
+    estop.write(stop);
+    return scene.grant.role() == v1::ROLE_ESTOP && scene.rests();
+  }));
+}
+
+TEST(Bridge, ASecondOneOfTheSameNameWaitsForTheFirst) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  const std::string socket = scene.folder.path("other");
+  const Process simulator({"saphira-sim", "--world", source("config/worlds/office.wld"), "--robot",
+                           source("config/robots/pioneer.p"), "--socket", socket},
+                          scene.folder.path("other.sim"));
+  const Process second({"saphira-bridge", "--robot", scene.robot, "--domain", domain(),
+                        "--robot-port", "unix:" + socket, "--robots", source("config/robots")},
+                       scene.folder.path("other.log"));
+  ASSERT_TRUE(scene.until([&] {
+    return second.output().find("another bridge, process " + std::to_string(scene.bridge->pid())) !=
+           std::string::npos;
+  })) << second.output();
+  const std::uint64_t cycle = scene.state.stamp().cycle();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
+  EXPECT_EQ(scene.state.stamp().epoch(), epoch);
+  scene.bridge->signal(SIGTERM);
+  EXPECT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > epoch; })) << second.output();
 }
 
 TEST(Bridge, RefusesWhatIsNoNumber) {

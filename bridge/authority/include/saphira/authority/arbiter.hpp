@@ -69,11 +69,12 @@ class Arbiter {
 
   const Settings& settings() const { return settings_; }
 
-  /// A connection to a robot began (or ended: epoch 0). Nobody holds a grant from before.
+  /// A connection to a robot began (or ended: epoch 0). Nobody holds a grant from before; an
+  /// emergency stop holds on.
   void connect(std::uint64_t epoch);
-  /// The caller was deaf for a while (stopped, hung): nobody holds a grant from before. What is
-  /// received before `until`, or answers a cycle up to `cycle`, may have waited in a queue and is
-  /// refused.
+  /// The caller was deaf for a while (stopped, hung, without packets): nobody holds a grant from
+  /// before; an emergency stop holds on. What is received before `until`, or answers a cycle up to
+  /// `cycle`, may have waited in a queue and is refused.
   void forget(std::uint64_t cycle, double until);
 
   /// Takes a command as it comes, at robot cycle `cycle`. True when it was accepted: it is then the
@@ -101,6 +102,7 @@ class Arbiter {
 
   const Player& player(Role role) const { return players_[static_cast<std::size_t>(role)]; }
   Player& player(Role role) { return players_[static_cast<std::size_t>(role)]; }
+  void let_go();
   bool live(const Player& p, double now, std::uint64_t cycle) const;
   std::string why_not(const Player& p, double now, std::uint64_t cycle) const;
 
@@ -109,9 +111,15 @@ class Arbiter {
   std::uint64_t deaf_cycle_ = 0;
   double deaf_until_ = -1e300;
   std::array<Player, 5> players_;
+  struct Numbers {
+    std::uint64_t newest = 0;
+    std::uint64_t used = 0;  ///< which offer that was
+  };
+
   /// Newest number by role and writer. Kept over connections, so that an old command that is sent
   /// again never drives.
-  std::map<std::pair<Role, WriterId>, std::uint64_t> numbers_;
+  std::map<std::pair<Role, WriterId>, Numbers> numbers_;
+  std::uint64_t offers_ = 0;
   Role person_ = Role::none;  ///< the person's role that drove when last decided
   Role quiet_after_ = Role::none;
   double quiet_until_ = -1e300;

@@ -17,13 +17,20 @@ struct Echo {
   double range = 0.0;  ///< [m] along the sonar's axis
 };
 
+/// One that fired without an echo.
+struct Silence {
+  int sonar = 0;
+  Pose sonar_in_robot;
+};
+
 /// The body that is guarded.
 struct Body {
   double radius = 0.0;                 ///< [m] of the hull, a circle
   double max_velocity = 0.0;           ///< [m/s]
   double max_rotation_velocity = 0.0;  ///< [rad/s]
   double deceleration = 0.0;           ///< [m/s2] of a stop
-  bool sees_behind = false;            ///< some sonar looks within 60 degrees of straight back
+  bool sees_behind = false;            ///< some sonar within 60 degrees of straight back fires
+  bool sees_ahead = true;              ///< the same of straight ahead
 };
 
 /// What the guard does for one role. The defaults make it the last resort: at 0.3 m/s it acts
@@ -32,7 +39,7 @@ struct Body {
 struct GuardSettings {
   bool enabled = true;
   double max_velocity = 0.0;           ///< [m/s]; 0: the robot's own
-  double max_reverse_velocity = 0.15;  ///< [m/s] where no sonar sees behind; 0: the robot's own
+  double max_blind_velocity = 0.15;    ///< [m/s] to where no sonar sees; 0: the robot's own
   double max_rotation_velocity = 0.0;  ///< [rad/s]; 0: the robot's own
   double margin = 0.06;         ///< [m] the hull is to stand at least so far from what is ahead
   double side_margin = 0.01;    ///< [m] by which the path is wider than the hull, each side
@@ -53,11 +60,13 @@ struct Guarded {
 /// The newest echo of each sonar, in odom, for as long as it says something about now.
 class Echoes {
  public:
-  /// A packet came: `echoes` are new; sonars in `silent` fired without an echo. Twice in a row
-  /// means that what they saw is gone (once happens to a slanted wall). Older than `kept_cycles` is
-  /// forgotten.
-  void update(std::uint64_t cycle, const std::vector<Echo>& echoes, const std::vector<int>& silent);
-  void clear() { newest_.clear(); }
+  /// A packet came, with these new readings. Twice in a row without an echo means that what a sonar
+  /// saw is gone (once happens to a slanted wall). Older than `kept_cycles` is forgotten.
+  void update(std::uint64_t cycle, const std::vector<Echo>& echoes,
+              const std::vector<Silence>& silent);
+  void clear() { *this = {}; }
+  /// Whether sonars look to where the robot goes: some fired within `kept_cycles`.
+  bool sees(std::uint64_t cycle, bool ahead) const;
   /// The points, in the robot's frame at `robot_in_odom`.
   std::vector<Vec2> seen_from(const Pose& robot_in_odom) const;
 
@@ -70,7 +79,13 @@ class Echoes {
     std::uint64_t cycle;
     int missed;
   };
+  void fired(std::uint64_t cycle, const Pose& sonar_in_robot);
+
   std::map<int, Point> newest_;
+  /// The newest cycle in which one fired that points ahead, or back. 0 at the beginning: sonars
+  /// that have not had their turn may yet fire.
+  std::uint64_t fired_ahead_ = 0;
+  std::uint64_t fired_behind_ = 0;
 };
 
 /// Free distance [m] of the hull along its straight path (forward, or backward) until the first of

@@ -11,14 +11,18 @@ using Packets = std::vector<protocol::Bytes>;
 
 /// Brings a session with a robot server about (manual 5.4): SYNC0, 1, 2, each echoed, then OPEN.
 /// Each call returns the packets to be sent. Times in seconds of any clock.
+///
+/// SYNC0 is PULSE to a server that is still in a session: a robot that its watchdog has stopped
+/// would drive on. So zero setpoints go before it, wherever that may be.
 class Connection {
  public:
   enum class State { closed, sync0, sync1, sync2, open };
 
   static constexpr double kRetry = 0.2;  ///< [s] a lost packet is sent again
 
-  /// The link is up.
-  Packets begin(double now);
+  /// The link is up. `in_session`: the server may be in a session from before, as behind a serial
+  /// line, whose loss it does not see.
+  Packets begin(double now, bool in_session = false);
   /// The link is gone.
   void end() { state_ = State::closed; }
   /// A packet's body has come.
@@ -38,6 +42,7 @@ class Connection {
   Packets go(State state, double now);
 
   State state_ = State::closed;
+  bool in_session_ = false;
   protocol::RobotIdentity identity_;
   double sent_ = 0.0;
   int tries_ = 0;

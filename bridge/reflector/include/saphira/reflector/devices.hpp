@@ -118,7 +118,8 @@ class Devices {
   void reflect(const protocol::ServerPacket& packet);
   /// A packet came that nobody here reads.
   void unread(std::uint8_t type);
-  std::vector<protocol::Command> due(double now);
+  /// What is to be sent now, of no more than `room` bytes in all: the rest waits for the line.
+  std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const;
 
   /// The newest of each device and action, in the order of the devices.

@@ -67,7 +67,12 @@ class DirectMotion {
   std::optional<double> target_;  ///< [m] on the scale of travelled_
   double speed_ = 0.0;            ///< [m/s] the greatest of a position
   double travelled_ = 0.0;
-  std::map<std::uint64_t, std::uint64_t> begun_;  ///< each driver's newest move
+  struct Begun {
+    std::uint64_t move = 0;
+    std::uint64_t used = 0;  ///< which set() that was
+  };
+  std::map<std::uint64_t, Begun> begun_;  ///< each driver's newest move
+  std::uint64_t sets_ = 0;
 };
 
 }  // namespace saphira::reflector

@@ -67,7 +67,8 @@ class Reflector {
   Devices& devices() { return devices_; }
 
   /// What is to be sent now. Includes a PULSE where nothing else was said for half a second.
-  std::vector<protocol::Command> due(double now);
+  /// `room` [bytes]: what the line takes now of what is asked of the devices.
+  std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }
   double sent_velocity() const { return channels_.sent_velocity(); }
 

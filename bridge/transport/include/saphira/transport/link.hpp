@@ -40,12 +40,15 @@ class Link {
   /// Sends the whole packet, or queues what the line does not take now. False (and the link closed)
   /// where the line is dead, or so slow that commands would wait and become stale.
   bool write(std::span<const std::uint8_t> bytes, double now);
+  /// [bytes] that may be written now and leave room for a driver's next command.
+  std::size_t room() const;
   void close(const std::string& why, double now = 0.0);
 
  private:
   void open(double now);
   void opened();
   bool flush(double now);
+  std::size_t queued() const;
   std::string hung_up() const;
   std::string failure() const;  ///< of errno
 

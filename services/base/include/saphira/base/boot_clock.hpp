@@ -1,0 +1,28 @@
+#pragma once
+
+#include <chrono>
+#include <ctime>
+
+namespace saphira {
+
+/// A clock that also goes on while the machine sleeps (CLOCK_BOOTTIME), which the steady clock does
+/// not: where a lease or a silence would otherwise be taken for short. For shells.
+struct BootClock {
+  using duration = std::chrono::nanoseconds;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<BootClock>;
+  static constexpr bool is_steady = true;
+
+  static time_point now() {
+    timespec t{};
+    ::clock_gettime(CLOCK_BOOTTIME, &t);
+    return time_point(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
+  }
+  /// [s]
+  static double seconds() {
+    return std::chrono::duration<double>(now().time_since_epoch()).count();
+  }
+};
+
+}  // namespace saphira
