@@ -57,7 +57,8 @@ void StereoFeed::write(const std::string& picture, std::uint64_t cycle) const {
     throw std::runtime_error(folder_ + name.data() + ": cannot be written");
 }
 
-void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle) {
+void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle,
+                       std::size_t waiting) {
   if (listener_)
     for (Fd fd = listener_->accept(); fd; fd = listener_->accept())
       viewers_.push_back({std::move(fd), {}});
@@ -65,8 +66,8 @@ void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycl
     Random random(seed_, cycle);
     const std::string picture = to_pgm(render_stereo(scene, robot, rig_, random), rig_, cycle);
     for (Viewer& viewer : viewers_)
-      if (viewer.waiting.empty())
-        viewer.waiting = picture;
+      if (viewer.waiting.size() <= (waiting - 1) * picture.size())
+        viewer.waiting += picture;
     if (!folder_.empty())
       write(picture, cycle);
   }

@@ -23,8 +23,8 @@ class StereoFeed {
 
   void add_to(std::vector<pollfd>& fds) const;
   /// Takes on who has come, sends on what waits, and the picture of `cycle` where it is a new one.
-  /// Who has not taken the last one yet does not get it.
-  void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle);
+  /// Who has so many waiting that he has not taken does not get it.
+  void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle, std::size_t waiting);
 
  private:
   struct Viewer {

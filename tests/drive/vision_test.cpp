@@ -6,8 +6,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "drive/drive.hpp"
 #include "drive/vision_eyes.hpp"
+#include "drive/whole.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
@@ -15,6 +15,14 @@ namespace saphira::test {
 namespace {
 
 using Kind = lps::SeenThing::Kind;
+
+// The office floor, and more in it.
+std::string world_with(const std::string& name, const std::string& more) {
+  const std::string path = testing::TempDir() + "saphira-vision-" + name + ".wld";
+  std::ofstream(path) << read_file(config_folder() + "/worlds/office-floor.wld") << "\n"
+                      << more << "\n";
+  return path;
+}
 
 struct Count {
   int reported = 0;  // people, cycle by cycle
@@ -108,18 +116,42 @@ TEST(VisionEyes, SeeNobodyWhereNobodyIs) {
 // Ann walks up and down the corridor before the robot, Bob comes out of a side corridor and goes
 // back.
 TEST(VisionEyes, SeePeopleWalk) {
-  const std::string world = testing::TempDir() + "saphira-vision-people.wld";
-  std::ofstream(world)
-      << read_file(config_folder() + "/worlds/office-floor.wld")
-      << "\nperson ann 17500 25400 walk 14500 25400 700 walk 14500 24700 700 "
-         "walk 18500 24700 700 walk 18500 25400 700 repeat\n"
-         "person bob 17100 21500 walk 17100 25900 800 walk 17100 21500 800 wait 1 repeat\n";
+  const std::string world =
+      world_with("people",
+                 "person ann 17500 25400 walk 14500 25400 700 walk 14500 24700 700 "
+                 "walk 18500 24700 700 walk 18500 25400 700 repeat\n"
+                 "person bob 17100 21500 walk 17100 25900 800 walk 17100 21500 800 wait 1 repeat");
   const Count count = watch(Stereo::pictures, world, Pose{13.0, 25.0, 0.0}, {}, 300);
   EXPECT_GT(count.visible, 200);
   EXPECT_GT(count.right, 0.98 * count.reported);
   EXPECT_GT(count.found, 0.85 * count.visible);
   const Count bands = watch(Stereo::bands, world, Pose{13.0, 25.0, 0.0}, {}, 300);
   EXPECT_GT(bands.found, 0.85 * bands.visible);  // and a piece of wall, which goes on above
+}
+
+// By what its cameras see, not by the truth.
+TEST(VisionEyes, APersonIsFollowedAroundACorner) {
+  WholeOptions options;
+  options.drive.world = world_with(
+      "corner", "person ann 17500 10500 wait 10 walk 17500 7000 300 walk 24000 7000 300 wait 100");
+  options.map = "office-floor";
+  options.sees = vision_eyes(Stereo::pictures);
+  Whole whole(options);
+  const auto goal = whole.ask("follow-person", {intentions::number("seconds", 40.0)});
+  double nearest = 10.0;
+  whole.advance_until(
+      [&] {
+        const Vec2 ann = whole.drive().scene().persons()[0].at;
+        nearest = std::min(nearest, (ann - whole.truth().position()).norm());
+        return whole.ended(goal);
+      },
+      600);
+  EXPECT_EQ(whole.status(goal).state, intentions::GoalState::kSucceeded)
+      << whole.status(goal).reason;
+  EXPECT_GT(whole.truth().x, 20.0) << "around the corner";
+  EXPECT_LT((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 2.5);
+  EXPECT_GT(nearest, 0.6);
+  EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
 }  // namespace

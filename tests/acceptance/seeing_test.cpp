@@ -1,0 +1,131 @@
+// A person who walks through a world is seen in the pictures of its cameras and followed, over the
+// bus and in lockstep: simulator, bridge, vision, perception, registration, behaviors, intentions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "process.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/sim/trace.hpp"
+
+namespace saphira::test {
+namespace {
+
+bus::NodeOptions options(const std::string& robot) {
+  bus::NodeOptions options;
+  options.name = "test";
+  options.robot = robot;
+  options.domain = static_cast<std::uint32_t>(std::stoul(domain()));
+  options.lockstep = true;
+  return options;
+}
+
+class SeeingAcceptance : public testing::Test {
+ protected:
+  void start(const std::string& world) {
+    run({"saphira-sim", "--step", "--world", world, "--robot-file",
+         source("config/robots/pioneer.p"), "--socket", folder.path("robot"), "--stereo-socket",
+         folder.path("eyes"), "--trace", trace(), "--seed", "1"});
+    on_bus({"saphira-bridge", "--link", "unix:" + folder.path("robot"), "--robots",
+            source("config/robots"), "--vision"});
+    on_bus({"saphira-vision", "--stereo-socket", folder.path("eyes")});
+    on_bus({"saphira-behaviors"});
+    on_bus({"saphira-intentions", "--vision"});
+    on_bus({"saphira-interpretation"});
+    on_bus({"saphira-registration", "--map", source("config/maps/office-floor.map")});
+  }
+  void on_bus(std::vector<std::string> argv) {
+    for (const std::string& word : {std::string("--robot"), robot, std::string("--domain"),
+                                    domain(), std::string("--lockstep")})
+      argv.push_back(word);
+    run(std::move(argv));
+  }
+  void run(std::vector<std::string> argv) {
+    const std::string log = folder.path(argv.front() + ".log");
+    processes.push_back(std::make_unique<Process>(std::move(argv), log));
+  }
+  std::string trace() const { return folder.path("trace.csv"); }
+  /// Lets the robot make its steps up to that cycle.
+  void permit(std::uint64_t until) {
+    v1::StepPermit sample;
+    sample.until_cycle(until);
+    permits.write(sample);
+  }
+  std::string output() const {
+    std::string all;
+    for (const auto& process : processes)
+      all += process->output() + "\n";
+    return all;
+  }
+
+  TempDir folder;
+  std::string robot = unique_robot();
+  bus::Node node{options(robot)};
+  bus::GoalClient goals{node, "test"};
+  bus::Writer<v1::StepPermit> permits = node.writer(bus::topics::kStepPermit);
+  bus::Reader<v1::Vision> visions = node.reader(bus::topics::kVision);
+  std::vector<std::unique_ptr<Process>> processes;
+};
+
+TEST_F(SeeingAcceptance, AWalkerIsFollowed) {
+  const std::string world = folder.path("walker.wld");
+  std::ofstream(world) << read_file(source("config/worlds/office-floor.wld"))
+                       << "\nperson ann 17500 10500 color red\n"
+                          "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
+  start(world);
+  v1::Goal goal;
+  goal.functor("follow-person");
+  goal.arguments({bus::number("seconds", 40.0)});
+  const v1::GoalId id = goals.ask(goal);
+  // It is there before the first cycle.
+  ASSERT_TRUE(wait_until([&] {
+    node.wait(std::chrono::milliseconds(50));
+    goals.poll();
+    return goals.status(id).has_value();
+  })) << output();
+  permit(700);
+  std::uint64_t people = 0;
+  std::uint64_t colors = 0;
+  std::uint64_t ids = 0;
+  std::uint64_t skipped = 0;
+  std::optional<v1::GoalStatus> status;
+  EXPECT_TRUE(wait_until(
+      [&] {
+        node.wait(std::chrono::milliseconds(50));
+        goals.poll();
+        for (const auto& sample : visions.take()) {
+          // In lockstep every picture is looked at.
+          skipped += sample.data.picture() != sample.data.stamp().cycle();
+          for (const v1::SeenThing& thing : sample.data.things()) {
+            people += thing.kind() == v1::SEEN_PERSON;
+            colors += thing.kind() == v1::SEEN_BLOB && thing.channel() == 0;
+            if (thing.kind() == v1::SEEN_PERSON)
+              ids = std::max<std::uint64_t>(ids, thing.id());
+          }
+        }
+        status = goals.status(id);
+        return status && bus::ended(status->state());
+      },
+      std::chrono::minutes(4)))
+      << output();
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << "\n" << output();
+  EXPECT_GT(people, 200U);
+  EXPECT_GT(colors, 100U);
+  EXPECT_EQ(skipped, 0U);
+  // She came from 10.5 to 7 m, and around the corner to the east.
+  const auto rows = sim::parse_trace(read_file(trace()), trace());
+  ASSERT_FALSE(rows.empty());
+  EXPECT_GT(rows.back().pose_in_world.x, 19.5);
+  EXPECT_NEAR(rows.back().pose_in_world.y, 7.0, 1.2);
+  EXPECT_EQ(rows.back().contacts, 0);
+}
+
+}  // namespace
+}  // namespace saphira::test
