@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -104,6 +105,10 @@ class Registration::Self {
   std::vector<const Percept*> fresh(const Inputs& inputs);
   void correct(const std::vector<const Percept*>& percepts);
   void correct(const std::vector<PlacedReading>& readings);
+  void look_around(const std::vector<PlacedReading>& readings);
+  std::vector<PlacedReading> fresh_ones(const std::vector<PlacedReading>& readings);
+  bool dense(const ParticleCloud::Estimate& cloud) const;
+  void follow(const ParticleCloud::Estimate& cloud, double score);
   void look_elsewhere(const std::vector<PlacedReading>& readings,
                       const std::vector<const Percept*>& percepts);
   bool uses_old_readings(const Percept& percept) const;
@@ -125,6 +130,15 @@ class Registration::Self {
   Field field_;
   RangeModel model_;
   Search search_;
+
+  ParticleCloud cloud_{settings_.cloud};
+  std::map<int, double> weighed_;  // [m] of way when a sonar was weighed last
+  double way_ = 0.0;               // [m] ever, turns included
+  double lead_ = 0.0;              // of the cloud before the filter
+  double cloud_score_ = 0.0;
+  bool leads_ = false;  // the cloud, and the filter is set by it
+  double led_ = 0.0;    // [m]
+  double trial_ = settings_.trial / 2.0;
 
   bool on_ = true;
   State state_ = State::unplaced;
@@ -149,9 +163,12 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   search_.believe(confidence * settings_.sure);
   state_ = State::tracking;
   done_.clear();
+  cloud_.clear();
+  leads_ = false;
 }
 
 void Registration::Self::forget() {
+  cloud_.clear();
   filter_.reset();
   search_.clear();
   state_ = State::unplaced;
@@ -160,12 +177,22 @@ void Registration::Self::forget() {
 
 void Registration::Self::switch_on(bool on) {
   on_ = on;
+  if (!on)
+    cloud_.clear();
 }
 
 void Registration::Self::take_over(const Self& other) {
   on_ = other.on_;
   state_ = other.state_;
   filter_ = other.filter_;
+  cloud_ = other.cloud_;
+  lead_ = other.lead_;
+  cloud_score_ = other.cloud_score_;
+  leads_ = other.leads_;
+  led_ = other.led_;
+  trial_ = other.trial_;
+  way_ = other.way_;
+  weighed_ = other.weighed_;
   search_.believe(other.search_.own_score());
   cycle_ = other.cycle_;
   odom_ = other.odom_;
@@ -212,6 +239,7 @@ void Registration::Self::move(const Inputs& inputs) {
     search_.clear();
     if (filter_)
       filter_->widen(0.3, radians(10.0));
+    cloud_.clear();
   }
   odom_ = inputs.odom;
   pose_in_odom_ = inputs.pose_in_odom;
@@ -222,6 +250,7 @@ void Registration::Self::move(const Inputs& inputs) {
     turns_.pop_front();
   if (filter_)
     filter_->move(moved_);
+  cloud_.move(moved_);
 }
 
 std::vector<PlacedReading> Registration::Self::place(
@@ -237,7 +266,8 @@ std::vector<PlacedReading> Registration::Self::place(
     // They came one after the other while the robot moved.
     const double part = static_cast<double>(i + 1) / static_cast<double>(readings.size());
     const Pose at = compose(before, {moved_.x * part, moved_.y * part, moved_.th * part});
-    placed.push_back({compose(at, mount->in_robot), readings[i].range, readings[i].echo});
+    placed.push_back(
+        {compose(at, mount->in_robot), readings[i].range, readings[i].echo, readings[i].sonar});
   }
   return placed;
 }
@@ -303,7 +333,12 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
       output_.matches.push_back(result);
       continue;
     }
+    const Pose before = filter_->pose();
+    const Eigen::Matrix3d covariance_before = filter_->pose_covariance();
     const Match result = match(*percept, pose_in_odom_, map_, lines_, settings_.match, *filter_);
+    // Walls are drawn through what dead reckoning put together; the cloud has their readings.
+    if (result.accepted && !cloud_.empty() && order(percept->type) >= order(PointType::junction))
+      cloud_.learn(before, covariance_before, filter_->pose(), filter_->pose_covariance());
     if (result.accepted)
       for (const lps::ReadingId& id : percept->readings)
         used_.insert({id.cycle, id.sonar});
@@ -317,7 +352,7 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
 
 void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
   since_readings_ += std::hypot(moved_.x, moved_.y) + 0.3 * std::abs(moved_.th);
-  if (since_readings_ < settings_.search.spacing || !filter_)
+  if (since_readings_ < settings_.search.spacing || !filter_ || leads_)
     return;
   since_readings_ = 0.0;
   for (const PlacedReading& reading : readings) {
@@ -340,6 +375,90 @@ void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
     filter_->correct<1>(innovation, jacobian,
                         Eigen::Matrix<double, 1, 1>(settings_.wall_sigma * settings_.wall_sigma));
   }
+}
+
+void Registration::Self::look_around(const std::vector<PlacedReading>& readings) {
+  if (!filter_)
+    return;
+  if (cloud_.empty()) {
+    cloud_.begin(filter_->pose(), filter_->pose_covariance(), filter_->drift(),
+                 std::max(settings_.cloud.drift, std::sqrt(filter_->covariance()(3, 3))));
+    lead_ = 0.0;
+    cloud_score_ = search_.own_score();
+    return;
+  }
+  const double way = std::hypot(moved_.x, moved_.y);
+  way_ += way + 0.3 * std::abs(moved_.th);
+  const double fading = std::exp(-way / settings_.lead_memory);
+  lead_ *= fading;
+  cloud_score_ *= fading;
+  const std::vector<PlacedReading> fresh = fresh_ones(readings);
+  if (!fresh.empty()) {
+    const Pose middle = cloud_.estimate().pose;
+    for (const PlacedReading& reading : fresh) {
+      const Pose in_robot = relative(pose_in_odom_, reading.sensor_in_odom);
+      const auto worth = [&](const Pose& sensor_in_map) {
+        return search_.worth(sensor_in_map, reading.range, reading.echo);
+      };
+      cloud_.weigh(in_robot, worth);
+      const double here = worth(compose(middle, in_robot));
+      cloud_score_ += here;
+      lead_ += here - worth(compose(filter_->pose(), in_robot));
+    }
+    cloud_.select();
+  }
+  const ParticleCloud::Estimate there = cloud_.estimate();
+  if (leads_) {
+    filter_.emplace(there.pose, there.covariance, there.drift, there.drift_variance,
+                    settings_.reckoning);
+    lead_ = 0.0;
+    led_ += way;
+    if (led_ > trial_)
+      leads_ = false;
+    return;
+  }
+  const double apart = (there.pose.position() - filter_->pose().position()).norm();
+  const double turned = std::abs(norm2_angle(there.pose.th - filter_->pose().th));
+  if (apart < settings_.lead_apart && turned < settings_.lead_turned)
+    return;
+  if (lead_ < -settings_.lead)
+    cloud_.clear();  // and begins anew from the filter
+  else if (lead_ > settings_.lead && dense(there))
+    follow(there, cloud_score_);
+}
+
+bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
+  return cloud.covariance(0, 0) + cloud.covariance(1, 1) < settings_.dense * settings_.dense &&
+         cloud.covariance(2, 2) < settings_.dense_turned * settings_.dense_turned;
+}
+
+/// Dead reckoning is worse than the filter may take it to be: for some way the cloud leads.
+void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double score) {
+  if ((cloud.pose.position() - filter_->pose().position()).norm() > kNear ||
+      std::abs(norm2_angle(cloud.pose.th - filter_->pose().th)) > kNearTurn)
+    state_ = State::lost;  // said, so that who relies on the pose hears that it did not hold
+  filter_.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
+                  settings_.reckoning);
+  search_.believe(score);
+  done_.clear();
+  leads_ = true;
+  led_ = 0.0;
+  trial_ *= 2.0;
+  lead_ = 0.0;
+}
+
+/// Those that do not repeat what their sonar heard a moment ago.
+std::vector<PlacedReading> Registration::Self::fresh_ones(
+    const std::vector<PlacedReading>& readings) {
+  std::vector<PlacedReading> result;
+  for (const PlacedReading& reading : readings) {
+    const auto last = weighed_.find(reading.sonar);
+    if (last != weighed_.end() && way_ < last->second + settings_.search.spacing)
+      continue;
+    weighed_[reading.sonar] = way_;
+    result.push_back(reading);
+  }
+  return result;
 }
 
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
@@ -374,6 +493,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     const std::vector<const Percept*> percepts = fresh(inputs);
     correct(percepts);
     correct(readings);
+    look_around(readings);
     look_elsewhere(readings, percepts);
     if (state_ == State::tracking && search_.own_score() < settings_.lost)
       state_ = State::lost;

@@ -53,11 +53,15 @@ void Search::clear() {
   own_score_ = 0.0;
 }
 
-double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
-  const Pose sensor = compose(pose, relative(*odom_, reading.sensor_in_odom));
-  const double better = model_->log_likelihood(sensor, reading.range, reading.echo) -
-                        (reading.echo ? settings_.any_echo : settings_.any_silence);
+double Search::worth(const Pose& sensor_in_map, double range, bool echo) const {
+  const double better = model_->log_likelihood(sensor_in_map, range, echo) -
+                        (echo ? settings_.any_echo : settings_.any_silence);
   return settings_.trust * std::max(better, -settings_.surprise);
+}
+
+double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
+  return worth(compose(pose, relative(*odom_, reading.sensor_in_odom)), reading.range,
+               reading.echo);
 }
 
 void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,

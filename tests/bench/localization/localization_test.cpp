@@ -59,6 +59,19 @@ TEST(Localization, TheSameSeedGivesTheSamePoseToTheLastBit) {
   EXPECT_EQ(a.registration().output().covariance, b.registration().output().covariance);
 }
 
+TEST(Localization, DeadReckoningThatTurnsByAConstantTooMuchDoesNotLoseIt) {
+  // As that of the robot of the Intel log does (tests/bench/registration/README.md).
+  for (const double turn : {radians(3.4), radians(-3.4)}) {
+    Localizer robot(doubled(4), office(), kStart);
+    robot.bend(turn);
+    const PatrolResult result = patrol(robot, office_tour(), 4500);
+    EXPECT_GT(result.way, 100.0);
+    EXPECT_LT(result.not_tracking, 450);
+    EXPECT_LT(quantile(result.registered.position, 0.95), 0.5);
+    EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.5);
+  }
+}
+
 TEST(Localization, AWrongInitialPoseIsCorrected) {
   Random random(5);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {

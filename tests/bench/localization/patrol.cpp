@@ -23,15 +23,25 @@ interpretation::Settings interpretation_settings(const Drive& drive) {
 Localizer::Localizer(const DriveOptions& drive, maps::Map map, std::optional<Pose> pose_in_map)
     : drive_(drive),
       start_(drive_.seen().true_pose_in_world),
+      last_in_odom_(drive_.seen().pose_in_odom),
+      bent_in_odom_(last_in_odom_),
       interpretation_(interpretation_settings(drive_)),
       registration_(registration_settings(drive_), std::move(map), pose_in_map) {}
 
 const registration::Output& Localizer::advance() {
   const Seen& seen = drive_.advance();
+  Pose in_odom = seen.pose_in_odom;
+  if (bent_ != 0.0) {
+    Pose moved = relative(last_in_odom_, seen.pose_in_odom);
+    moved.th += bent_ * moved.x;
+    bent_in_odom_ = compose(bent_in_odom_, moved);
+    in_odom = bent_in_odom_;
+  }
+  last_in_odom_ = seen.pose_in_odom;
   const double before = clock_ ? clock_() : 0.0;
-  percepts_ = interpretation_.step({seen.cycle, seen.pose_in_odom, seen.readings}).percepts;
+  percepts_ = interpretation_.step({seen.cycle, in_odom, seen.readings}).percepts;
   const registration::Output& output =
-      registration_.step({seen.cycle, 1, seen.pose_in_odom, percepts_, seen.readings});
+      registration_.step({seen.cycle, 1, in_odom, percepts_, seen.readings});
   took_ = clock_ ? clock_() - before : 0.0;
   return output;
 }

@@ -21,6 +21,8 @@ class Localizer {
   Localizer(const DriveOptions& drive, maps::Map map, std::optional<Pose> pose_in_map);
 
   const registration::Output& advance();
+  /// Dead reckoning turns by so much more than the robot does [rad/m]. To be called at the start.
+  void bend(double turn_per_metre) { bent_ = turn_per_metre; }
   /// Measures what interpretation and registration take, by a clock in seconds.
   void set_clock(std::function<double()> clock) { clock_ = std::move(clock); }
   double took() const { return took_; }  ///< [s] of the last cycle
@@ -36,6 +38,9 @@ class Localizer {
  private:
   Drive drive_;
   Pose start_;
+  double bent_ = 0.0;
+  Pose last_in_odom_;  // as the robot says it...
+  Pose bent_in_odom_;  // ...and bent
   interpretation::Interpretation interpretation_;
   registration::Registration registration_;
   std::vector<lps::Percept> percepts_;

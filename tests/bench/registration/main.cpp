@@ -171,6 +171,17 @@ json sonar_json(const DataSet& set, const SonarRun& run, const std::string& what
   return out;
 }
 
+SonarDrive virtual_drive(const DataSet& set, const SonarRing& ring) {
+  SonarDrive drive;
+  drive.ring = ring;
+  drive.times = set.times;
+  drive.poses_in_odom = set.poses_in_odom;
+  drive.at_once = true;
+  for (const registration::Scan& scan : set.scans)
+    drive.readings.push_back(hear(scan, ring));
+  return drive;
+}
+
 json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Drawing* drawing) {
   json out;
   report.heading(set.name + format(": %zu scans, %.0f m by dead reckoning", set.scans.size(),
@@ -226,14 +237,14 @@ json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Dr
   // Sonar-like ranges, in the walls that the full ranges drew.
   const maps::Map walls = walls_of(mapper.node_scans(), mapper.nodes());
   report.note(format("%zu walls drawn from the full ranges", walls.features.size()));
-  SonarDrive heard;
-  heard.ring = ring;
-  heard.times = set.times;
-  heard.poses_in_odom = set.poses_in_odom;
-  for (const registration::Scan& scan : set.scans)
-    heard.readings.push_back(hear(scan, ring));
+  SonarDrive heard = virtual_drive(set, ring);
   const SonarRun by_sonar = register_sonars(heard, walls, full.front().pose);
   out["sonar_like"] = sonar_json(set, by_sonar, "7 virtual sonars, walls known", report);
+  SonarRing more = ring;
+  more.mounts = front_of_b21();
+  const SonarDrive heard_by_more = virtual_drive(set, more);
+  out["sonar_like_13"] = sonar_json(set, register_sonars(heard_by_more, walls, full.front().pose),
+                                    "13 virtual sonars, walls known", report);
   const SonarRun mapped = map_sonars(heard, full.front().pose);
   out["sonar_like_mapping"] =
       sonar_json(set, mapped, "7 virtual sonars, map built on the way", report);

@@ -28,8 +28,14 @@ SonarRun run(const SonarDrive& drive, Locate&& locate) {
         static_cast<std::uint64_t>(std::llround(10.0 * (drive.times[i] - drive.times.front()))) + 1;
     cycle = std::max(cycle + 1, now);
     const double start = cpu_seconds();
+    // All were heard at this place, and not one after the other on the way to it: first the way.
+    if (drive.at_once) {
+      SonarRun uncounted;
+      const auto& moved = interpretation.step({cycle, drive.poses_in_odom[i], {}});
+      locate(uncounted, cycle++, i, moved.percepts, {});
+    }
     const auto& seen = interpretation.step({cycle, drive.poses_in_odom[i], drive.readings[i]});
-    const std::optional<Pose> pose = locate(out, cycle, i, seen.percepts);
+    const std::optional<Pose> pose = locate(out, cycle, i, seen.percepts, drive.readings[i]);
     out.step_ms.push_back(1e3 * (cpu_seconds() - start));
     ++out.steps;
     if (pose)
@@ -60,9 +66,10 @@ SonarRun register_sonars(const SonarDrive& drive, const maps::Map& map,
   registration::Registration registration(settings, map, start_in_map);
   return run(drive,
              [&](SonarRun& out, std::uint64_t cycle, std::size_t i,
-                 const std::vector<lps::Percept>& percepts) -> std::optional<Pose> {
-               const auto& placed = registration.step(
-                   {cycle, 1, drive.poses_in_odom[i], percepts, drive.readings[i]});
+                 const std::vector<lps::Percept>& percepts,
+                 const std::vector<lps::SonarReading>& readings) -> std::optional<Pose> {
+               const auto& placed =
+                   registration.step({cycle, 1, drive.poses_in_odom[i], percepts, readings});
                out.tracking += placed.state == registration::State::tracking ? 1U : 0U;
                out.lost += placed.state == registration::State::lost ? 1U : 0U;
                out.unplaced += placed.state == registration::State::unplaced ? 1U : 0U;
@@ -78,14 +85,15 @@ SonarRun map_sonars(const SonarDrive& drive, const Pose& start_in_map) {
   registration::MapBuilderSettings settings;
   settings.sonars = drive.ring.mounts;
   registration::MapBuilder builder(settings, {}, start_in_map);
-  SonarRun out = run(
-      drive,
-      [&](SonarRun& counts, std::uint64_t cycle, std::size_t i,
-          const std::vector<lps::Percept>& percepts) -> std::optional<Pose> {
-        builder.step({cycle, 1, drive.poses_in_odom[i], percepts, drive.readings[i], std::nullopt});
-        ++counts.tracking;
-        return builder.pose_in_map();
-      });
+  SonarRun out =
+      run(drive,
+          [&](SonarRun& counts, std::uint64_t cycle, std::size_t i,
+              const std::vector<lps::Percept>& percepts,
+              const std::vector<lps::SonarReading>& readings) -> std::optional<Pose> {
+            builder.step({cycle, 1, drive.poses_in_odom[i], percepts, readings, std::nullopt});
+            ++counts.tracking;
+            return builder.pose_in_map();
+          });
   out.accepted = static_cast<std::size_t>(builder.closures());
   out.features = builder.map().features.size();
   return out;

@@ -16,6 +16,9 @@ struct SonarDrive {
   std::vector<double> times;
   std::vector<Pose> poses_in_odom;
   std::vector<std::vector<lps::SonarReading>> readings;
+  /// The readings of a stamp are of one moment, as those of a laser; else they came one after the
+  /// other since the stamp before.
+  bool at_once = false;
 };
 
 /// [s] Of this program alone: other work on the machine does not count.

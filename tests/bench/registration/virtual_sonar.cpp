@@ -16,6 +16,16 @@ std::vector<lps::SonarMount> pioneer_sonars() {
   return mounts;
 }
 
+std::vector<lps::SonarMount> front_of_b21() {
+  constexpr double kRadius = 0.25;  // [m]
+  std::vector<lps::SonarMount> mounts;
+  for (int i = 0; i < 13; ++i) {
+    const double bearing = kPi / 2 - radians(15.0) * i;
+    mounts.push_back({i, {kRadius * std::cos(bearing), kRadius * std::sin(bearing), bearing}});
+  }
+  return mounts;
+}
+
 std::vector<lps::SonarReading> hear(const registration::Scan& scan, const SonarRing& ring) {
   std::vector<lps::SonarReading> out;
   for (const lps::SonarMount& mount : ring.mounts) {

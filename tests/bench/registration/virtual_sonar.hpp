@@ -20,6 +20,9 @@ struct SonarRing {
 /// Those of config/robots/pioneer.p.
 std::vector<lps::SonarMount> pioneer_sonars();
 
+/// Those of a B21's 24 whose cones a scan of 180 degrees covers: 13, from the left to the right.
+std::vector<lps::SonarMount> front_of_b21();
+
 std::vector<lps::SonarReading> hear(const registration::Scan& scan, const SonarRing& ring);
 
 }  // namespace saphira::bench

@@ -13,6 +13,7 @@
 #include "saphira/lps/percept.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/matching.hpp"
+#include "saphira/registration/particle_cloud.hpp"
 #include "saphira/registration/range_model.hpp"
 #include "saphira/registration/search.hpp"
 
@@ -49,6 +50,17 @@ struct Settings {
   double lost = -6.0;        ///< below which the pose does not hold...
   double again_sure = 20.0;  ///< ...until it has fitted as well as this again
   SearchSettings search;
+
+  // Where else near by it could be: a cloud beside the filter, which takes over where it is better.
+  CloudSettings cloud;
+  /// [m] of way that it leads before the filter is tried again; doubled each time that it fails.
+  double trial = 30.0;
+  double lead = 8.0;                    ///< in scores of raw readings, by which either is better
+  double lead_memory = 3.0;             ///< [m] of way in which that fades to a third
+  double lead_apart = 0.2;              ///< [m] they are at the same place if not farther apart...
+  double lead_turned = radians(8.0);    ///< [rad] ...and turned
+  double dense = 0.5;                   ///< [m] one sigma of a cloud that says where it is...
+  double dense_turned = radians(12.0);  ///< [rad] ...and of its heading
 };
 
 enum class State {

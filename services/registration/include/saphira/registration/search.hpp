@@ -19,6 +19,7 @@ struct PlacedReading {
   Pose sensor_in_odom;
   double range = 0.0;
   bool echo = false;
+  int sonar = 0;
 };
 
 struct SearchSettings {
@@ -61,6 +62,8 @@ class Search {
     int openings = 0;
   };
   const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
+  /// How much better than anywhere a reading fits where its sonar is, as scores count it.
+  double worth(const Pose& sensor_in_map, double range, bool echo) const;
   /// What the place that is believed has been worth so far.
   void believe(double score) { own_score_ = score; }
   double own_score() const { return own_score_; }
