@@ -1,10 +1,9 @@
 #include "saphira/cli/displays.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "format.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
 
@@ -16,13 +15,6 @@ constexpr int kBar = 8;                      // characters each side of the midd
 constexpr double kFullTurn = radians(30.0);  // as long as the bar
 constexpr double kFullSpeed = 0.4;           // [m/s]
 constexpr double kCycle = 0.1;               // [s] manual 2.1.1
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width)

@@ -1,0 +1,374 @@
+#include "why_reason.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saphira/cli/displays.hpp"
+#include "saphira/cli/goal_words.hpp"
+#include "saphira/cli/words.hpp"
+
+namespace saphira::cli {
+namespace {
+
+bool same(const v1::GoalId& a, const v1::GoalId& b) {
+  return a.writer() == b.writer() && a.number() == b.number();
+}
+
+}  // namespace
+
+std::string Reason::name_of(const v1::BehaviorState& behavior) const {
+  const auto short_name = [](const v1::BehaviorState& one) {
+    if (nameless(one.name(), one.schema()))
+      return one.schema();
+    const std::string name = without_number(one.name());
+    return one.schema().empty() ? name : name + " (" + one.schema() + ")";
+  };
+  const std::string name = short_name(behavior);
+  const auto& all = scene_.behaviors->behaviors();
+  const auto alike = std::count_if(all.begin(), all.end(), [&](const v1::BehaviorState& other) {
+    return short_name(other) == name;
+  });
+  return alike == 1 ? name : behavior.name();
+}
+
+std::vector<Say> Reason::says(Channel channel) const {
+  std::vector<Say> result;
+  double all = 0.0;
+  for (const v1::BehaviorState& behavior : scene_.behaviors->behaviors()) {
+    if (!behavior.running() || !recommends(behavior, channel))
+      continue;
+    Say say;
+    say.behavior = &behavior;
+    for (const v1::RuleState& rule : behavior.rules()) {
+      if (channel_of(rule) != channel)
+        continue;
+      say.weight += clamp01(rule.strength()) * weight_of(behavior, channel);
+      // Of turns what counts is how far they turn; of speeds, how strongly they hold.
+      const auto counts = [&](const v1::RuleState& r) {
+        return r.strength() * (channel == Channel::turn ? std::abs(r.value()) : 1.0);
+      };
+      if (rule.strength() > 0.0 &&
+          (say.main_rule == nullptr || counts(rule) > counts(*say.main_rule)))
+        say.main_rule = &rule;
+    }
+    all += say.weight;
+    result.push_back(say);
+  }
+  for (Say& say : result)
+    say.share = all > 0.0 ? say.weight / all : 0.0;
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Say& a, const Say& b) { return a.weight > b.weight; });
+  return result;
+}
+
+/// What the wheels are told.
+std::string Reason::told() const {
+  const double speed = told_speed();
+  const double turn = scene_.behaviors->turning() ? scene_.behaviors->turn() : 0.0;
+  const bool turns = std::abs(turn) >= kNoTurn;
+  std::string text = "The robot is told to ";
+  if (std::abs(speed) >= kNoSpeed)
+    text += (speed > 0.0 ? "drive ahead at " : "back up at ") + speed_text(std::abs(speed)) +
+            (turns ? " and to turn " : ", straight on");
+  else
+    text += turns ? "turn on the spot, " : "stand";
+  if (turns)
+    text += turn_text(turn);
+  if (scene_.robot && std::abs(scene_.robot->velocity() - speed) >= kFarFromTold)
+    text += " (now it does " + speed_text(scene_.robot->velocity()) + ")";
+  return text;
+}
+
+const v1::RuleText* Reason::text_of(const v1::BehaviorState& behavior,
+                                    const v1::RuleState& rule) const {
+  for (const v1::BehaviorSchema& schema : scene_.schemas)
+    if (schema.name() == behavior.schema())
+      for (const v1::RuleText& text : schema.rules())
+        if (text.name() == rule.name())
+          return &text;
+  return nullptr;
+}
+
+/// The rule's antecedent as it is written, with the values of what is in it; empty where it is not
+/// known.
+std::string Reason::antecedent(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
+  const v1::RuleText* const text = text_of(behavior, rule);
+  if (text == nullptr || text->antecedent().empty())
+    return {};
+  std::vector<std::string> values;
+  for (const v1::FuzzyVariable& variable : behavior.variables())
+    if (has_word(text->antecedent(), variable.name()))
+      values.push_back(variable.name() + format(" %.2f", variable.value()));
+  return "if " + text->antecedent() + (values.empty() ? "" : ": " + listed(values, ", "));
+}
+
+const v1::IntentionNode* Reason::node(std::uint32_t id) const {
+  if (scene_.intentions && id != 0)
+    for (const v1::IntentionNode& candidate : scene_.intentions->nodes())
+      if (candidate.id() == id)
+        return &candidate;
+  return nullptr;
+}
+
+/// The intention that wants the behavior.
+const v1::IntentionNode* Reason::node_of(const v1::BehaviorState& behavior) const {
+  if (scene_.intentions)
+    for (const v1::IntendedBehavior& intended : scene_.intentions->behaviors())
+      if (intended.name() == behavior.name()) {
+        const v1::IntentionNode* const found = node(intended.intention());
+        return found != nullptr && is_behavior(*found, *scene_.intentions) ? node(found->parent())
+                                                                           : found;
+      }
+  return nullptr;
+}
+
+const v1::GoalStatus* Reason::status(const v1::GoalId& id) const {
+  for (const v1::GoalStatus& candidate : scene_.statuses)
+    if (same(candidate.id(), id))
+      return &candidate;
+  return nullptr;
+}
+
+/// Empty where nothing is known of it.
+std::string Reason::goal_text(const v1::GoalId& id) const {
+  for (const v1::Goal& goal : scene_.goals)
+    if (same(goal.id(), id))
+      return describe(goal);
+  const v1::GoalStatus* const known = status(id);
+  return known == nullptr ? "" : known->functor();
+}
+
+std::string Reason::requester(const v1::GoalId& id) const {
+  for (const v1::Goal& goal : scene_.goals)
+    if (same(goal.id(), id) && !goal.requester().empty())
+      return goal.requester();
+  const v1::GoalStatus* const known = status(id);
+  return known == nullptr || known->requester().empty() ? "somebody" : known->requester();
+}
+
+/// For which intention and goal these behaviors are there: a clause; empty where it is not known.
+std::string Reason::purpose(const std::vector<const v1::BehaviorState*>& behaviors) const {
+  std::vector<const v1::IntentionNode*> nodes;
+  for (const v1::BehaviorState* behavior : behaviors)
+    if (const v1::IntentionNode* const found = node_of(*behavior);
+        found != nullptr && std::find(nodes.begin(), nodes.end(), found) == nodes.end())
+      nodes.push_back(found);
+  if (nodes.empty())
+    return {};
+  std::vector<std::string> names;
+  names.reserve(nodes.size());
+  for (const v1::IntentionNode* one : nodes)
+    names.push_back(with_arguments(*one));
+  const v1::IntentionNode* root = nodes.front();
+  while (const v1::IntentionNode* const parent = node(root->parent()))
+    root = parent;
+  // What was asked for, by itself.
+  std::string text = "this is";
+  if (root != nodes.front() || nodes.size() > 1)
+    text = listed(names) + (nodes.size() == 1 ? " intends " : " intend ") +
+           (behaviors.size() == 1 ? "it" : "them");
+  const std::string goal = goal_text(root->goal());
+  if (root != nodes.front() && plain(goal.substr(0, goal.find('('))) != plain(root->schema()))
+    text += ", as part of " + intention_name(*root) + ",";
+  return text + (goal.empty() ? " for a goal of which nothing is known"
+                              : " for the goal " + goal + ", which " + requester(root->goal()) +
+                                    " asked for");
+}
+
+std::string Reason::of_say(const Say& say, Channel channel) const {
+  std::vector<std::string> details;
+  if (say.main_rule != nullptr)
+    details.push_back("rule " + say.main_rule->name() +
+                      format(", %.2f", say.main_rule->strength()));
+  if (say.share < 1.0 - kNoSay)
+    details.push_back(format("%.0f %% of the say", 100.0 * say.share));
+  return wish_of(*say.behavior, channel) +
+         (details.empty() ? "" : " (" + listed(details, "; ") + ")");
+}
+
+/// What a behavior wants on both channels, as far as it is to be mentioned.
+std::string Reason::wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
+                          const v1::BehaviorState& behavior) const {
+  std::vector<std::string> parts;
+  for (const Say& say : speeds)
+    if (say.behavior == &behavior)
+      parts.push_back(of_say(say, Channel::speed));
+  for (const Say& say : turns)
+    if (say.behavior == &behavior)
+      parts.push_back(of_say(say, Channel::turn));
+  return name_of(behavior) + " wants " + listed(parts);
+}
+
+Cause Reason::grant_cause() const {
+  const v1::Grant& grant = *scene_.grant;
+  Cause cause{"grant", std::string(cli::name_of(grant.role())), {}};
+  if (grant.role() == v1::ROLE_NONE)
+    cause.text = "nobody drives";
+  else
+    cause.text = grant.source() + " drives as " + cli::name_of(grant.role());
+  if (!grant.reason().empty())
+    cause.text += ": " + grant.reason();
+  for (const v1::Refusal& refusal : grant.refused())
+    cause.because.push_back({"grant",
+                             refusal.source() + " (" + cli::name_of(refusal.role()) +
+                                 ") was refused: " + refusal.reason(),
+                             {}});
+  return cause;
+}
+
+std::optional<Cause> Reason::guard_cause() const {
+  if (!scene_.grant || scene_.grant->guard() == v1::GUARD_NONE)
+    return std::nullopt;
+  return Cause{"guard",
+               std::string("the guard beside the robot ") + cli::name_of(scene_.grant->guard()) +
+                   " it (" + scene_.grant->guard_reason() + ")",
+               {}};
+}
+
+Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
+  Cause cause{
+      "rule",
+      "rule " + rule.name() + format(" holds to %.2f: ", rule.strength()) + control_text(rule),
+      {}};
+  if (const std::string text = antecedent(behavior, rule); !text.empty())
+    cause.because.push_back({"rule", text, {}});
+  return cause;
+}
+
+Cause Reason::goal_cause(const v1::GoalId& id) const {
+  if (goal_text(id).empty())
+    return {"goal", "a goal of which nothing is known", {}};
+  return {"goal", "goal " + goal_text(id) + " of " + requester(id), {}};
+}
+
+std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
+  Cause cause{"intention", "for " + with_arguments(of), {}};
+  if (!of.label().empty())
+    cause.text += ", at " + of.label();
+  if (!of.step().empty())
+    cause.text += ": " + of.step();
+  if (!told_nodes_.insert(of.id()).second) {
+    cause.text = "for " + intention_name(of) + ", as above";
+    return cause;
+  }
+  if (const v1::IntentionNode* const parent = node(of.parent())) {
+    if (auto above = chain(*parent))
+      cause.because.push_back(std::move(*above));
+  } else {
+    cause.because.push_back(goal_cause(of.goal()));
+  }
+  return cause;
+}
+
+std::optional<Cause> Reason::chain(const v1::BehaviorState& behavior) {
+  const v1::IntentionNode* const found = node_of(behavior);
+  return found == nullptr ? std::nullopt : chain(*found);
+}
+
+Cause Reason::behavior_cause(const Say& say, Channel channel) {
+  const v1::BehaviorState& behavior = *say.behavior;
+  Cause cause{"behavior",
+              name_of(behavior) + format(", priority %d, ", behavior.priority()) +
+                  (say.weight < kNoSay ? "has no say: "
+                                       : format("%.0f %% of the say: ", 100.0 * say.share)) +
+                  wish_of(behavior, channel),
+              {}};
+  if (say.weight < kNoSay && activity_of(behavior, channel) >= kNoSay) {
+    for (const v1::BehaviorState& above : scene_.behaviors->behaviors())
+      if (above.running() && above.priority() < behavior.priority() &&
+          activity_of(above, channel) >= 1.0 - kNoSay) {
+        cause.because.push_back({"behavior", name_of(above) + " is above it and fully active", {}});
+        break;
+      }
+  }
+  for (const v1::RuleState& rule : behavior.rules())
+    if (channel_of(rule) == channel && rule.strength() >= kNoSay)
+      cause.because.push_back(rule_cause(behavior, rule));
+  if (auto purpose = chain(behavior))
+    cause.because.push_back(std::move(*purpose));
+  return cause;
+}
+
+Cause Reason::channel_cause(Channel channel) {
+  const v1::Behaviors& all = *scene_.behaviors;
+  Cause cause;
+  if (channel == Channel::speed)
+    cause = {"speed",
+             all.moving() ? "the behaviors' blend of speeds: " + speed_text(all.speed())
+                          : "no behavior wants a speed: it stands",
+             {}};
+  else
+    cause = {"turn",
+             all.turning() ? "the behaviors' blend of turns: " + turn_text(all.turn())
+                           : "no behavior wants a turn: straight on",
+             {}};
+  for (const Say& say : says(channel))
+    cause.because.push_back(behavior_cause(say, channel));
+  return cause;
+}
+
+Cause Reason::wheels(const std::string& text) {
+  Cause cause{"wheels", text, {}};
+  if (scene_.grant)
+    cause.because.push_back(grant_cause());
+  if (auto guard = guard_cause())
+    cause.because.push_back(std::move(*guard));
+  if (scene_.behaviors) {
+    cause.because.push_back(channel_cause(Channel::speed));
+    cause.because.push_back(channel_cause(Channel::turn));
+    if (!scene_.behaviors->trouble().empty())
+      cause.because.push_back(
+          {"trouble", "behaviors that cannot be had: " + scene_.behaviors->trouble(), {}});
+  }
+  return cause;
+}
+
+/// Why the behaviors do not want to drive; empty where that is not known.
+std::string Reason::idle_reason() const {
+  if (!scene_.missing.empty())
+    return scene_.missing + " is not on the bus";
+  if (!scene_.suspended.empty())
+    return scene_.suspended + " is suspended";
+  if (scene_.intentions && !scene_.intentions->behavior_control())
+    return "behavior control is switched off";
+  if (scene_.intentions && !scene_.intentions->behaviors().empty())
+    return {};
+  const v1::GoalStatus* newest = nullptr;
+  for (const v1::GoalStatus& status : scene_.statuses) {
+    if (status.state() == v1::GOAL_UNDERWAY)
+      return "the goal " + goal_text(status.id()) + " of " + requester(status.id()) +
+             " is underway and intends no behavior now" +
+             (status.step().empty() ? "" : ": " + status.step());
+    if (newest == nullptr || status.stamp().epoch() > newest->stamp().epoch() ||
+        (status.stamp().epoch() == newest->stamp().epoch() &&
+         status.stamp().cycle() >= newest->stamp().cycle()))
+      newest = &status;
+  }
+  if (newest == nullptr)
+    return "nobody has asked for a goal";
+  std::string text = "no goal is underway; the newest one, " + goal_text(newest->id()) + " of " +
+                     requester(newest->id()) + ", ";
+  switch (newest->state()) {
+    case v1::GOAL_WAITING:
+      text += "waits";
+      break;
+    case v1::GOAL_SUSPENDED:
+      text += "is suspended";
+      break;
+    case v1::GOAL_REFUSED:
+      text += "was refused";
+      break;
+    case v1::GOAL_SUCCEEDED:
+      text += "succeeded";
+      break;
+    case v1::GOAL_CANCELED:
+      text += "was canceled";
+      break;
+    default:
+      text += "failed";
+      break;
+  }
+  return text + (newest->reason().empty() ? "" : ": " + newest->reason());
+}
+
+}  // namespace saphira::cli
