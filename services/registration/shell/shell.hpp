@@ -98,14 +98,14 @@ class Shell {
   std::optional<MapBuilder> builder_;
   /// The map began empty: the builder finds the pose together with the map.
   bool building_ = false;
+  bool too_large_ = false;  ///< the map would be, if it grew further
+  bool saves_ = true;       ///< the memory could be written, as it was told
   std::uint64_t odom_ = 0;  ///< of the newest step
   Pose pose_in_odom_;
   Pose pose_in_map_;  ///< as it was told in the newest step; before that, the start
   std::uint64_t published_revision_ = 0;
-  bool too_large_ = false;  ///< the map would be, if it grew further
   Clock::time_point saved_ = Clock::now();
   std::future<bool> saving_;  ///< waits for the disk
-  bool saves_ = true;         ///< as it was told
   State told_ = State::unplaced;
 };
 

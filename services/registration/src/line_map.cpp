@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "saphira/base/numbers.hpp"
 
@@ -218,7 +219,9 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
     lines_.push_back({surface.from, (surface.to - surface.from) / surface.length, surface.length});
   if (lines_.empty())
     return;
-  const auto [low, high] = extent(lines);
+  const std::pair<Vec2, Vec2> corners = extent(lines);
+  const Vec2 low = corners.first;
+  const Vec2 high = corners.second;
   corner_ = low - Vec2(kMargin, kMargin);
   columns_ = static_cast<int>((high.x() - low.x() + 2.0 * kMargin) / kCell) + 1;
   rows_ = static_cast<int>((high.y() - low.y() + 2.0 * kMargin) / kCell) + 1;
