@@ -26,8 +26,14 @@ Policies policies(Qos qos, bool lockstep) {
               .reader_depth = 64,
               .lifespan_ms = 2000,
               .heartbeat_ms = 100};
-    case Qos::goal:
     case Qos::latched:
+      // In lockstep the one that somebody else had in a certain cycle may be wanted: it is not
+      // overwritten before it is looked at.
+      return {.reliable = true,
+              .transient_local = true,
+              .reader_depth = lockstep ? 8 : 1,
+              .heartbeat_ms = 100};
+    case Qos::goal:
     case Qos::status:
       return {.reliable = true, .transient_local = true, .heartbeat_ms = 100};
     case Qos::event:

@@ -66,6 +66,27 @@ TEST_P(Bus, LateReaderOfLatchedTopicGetsTheNewestOfEachKey) {
   EXPECT_NE(samples[0].data.id().number(), samples[1].data.id().number());
 }
 
+// As the map that registration had in a cycle.
+TEST_P(Bus, InLockstepAReaderOfALatchedTopicGetsWhatCameInBetween) {
+  const auto tool = node("tool", robot("l"), true);
+  auto reader = tool->reader(topics::kMap);
+  const auto service = node("service", robot("l"), true);
+  auto writer = service->writer(topics::kMap);
+  ASSERT_TRUE(eventually(*service, [&] { return writer.matched() == 1; }));
+  std::vector<std::uint64_t> revisions;
+  for (const std::uint64_t revision : {1U, 2U, 3U}) {
+    v1::Map map;
+    map.revision(revision);
+    ASSERT_TRUE(writer.write(map));
+  }
+  EXPECT_TRUE(eventually(*tool, [&] {
+    for (const auto& sample : reader.take())
+      revisions.push_back(sample.data.revision());
+    return !revisions.empty() && revisions.back() == 3;
+  }));
+  EXPECT_EQ(revisions, (std::vector<std::uint64_t>{1, 2, 3}));
+}
+
 TEST_P(Bus, ManyKeys) {
   auto a = node("a");
   auto b = node("b");
