@@ -12,12 +12,12 @@ namespace saphira::intentions {
 /// the last few lines, since nothing waits for the disk.
 class MemoryFile {
  public:
-  /// Reads what is there and begins the file anew without what has been superseded. An empty path
-  /// remembers nothing.
-  explicit MemoryFile(std::string path);
+  /// Reads what is there and begins the file anew, without what has been superseded and with the
+  /// newest `most` endings. An empty path remembers nothing.
+  explicit MemoryFile(std::string path, std::size_t most = kMostEndings);
 
   const Memory& memory() const { return memory_; }
-  /// False where it could not be written.
+  /// False where it could not be written: then none of it is there.
   bool append(const std::string& lines);
 
  private:
@@ -28,6 +28,7 @@ class MemoryFile {
   std::string path_;
   Memory memory_;
   std::unique_ptr<std::FILE, Close> file_;
+  long size_ = 0;  ///< of what has been written whole
 };
 
 }  // namespace saphira::intentions

@@ -81,6 +81,20 @@ TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
   EXPECT_EQ(folders->trouble(), "");
 }
 
+// As some editors do before they write it.
+TEST_F(ActivityFoldersTest, AFileThatIsEmptiedKeepsWhatItGave) {
+  write(shipped / "a.act", activity("one", "(SUCCEED)"));
+  look();
+  write(shipped / "a.act", "");
+  EXPECT_EQ(look(), Names{});
+  EXPECT_TRUE(news.removed.empty());
+  ASSERT_EQ(news.errors.size(), 1U);
+  EXPECT_NE(folders->trouble().find("there is no activity in this file"), std::string::npos);
+  write(shipped / "a.act", activity("one", "(FAIL)"));
+  EXPECT_EQ(look(), Names{"one"});
+  EXPECT_EQ(folders->trouble(), "");
+}
+
 TEST_F(ActivityFoldersTest, ALaterFolderCoversAnEarlierOne) {
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 1s)"));
   write(own / "mine.act", activity("one", "(WAIT-FOR nil :timeout 9s)"));

@@ -124,6 +124,19 @@ TEST(ActivityErrors, OfSchemasAndTheirArguments) {
             List({"2:1 the activity \"A\" is in a.act already"}));
 }
 
+TEST(ActivityErrors, OfAConcurrentActivityThatDrives) {
+  const std::string goals = " :goals '((INTEND :FollowCorridor ((corridor . (point 1 2)))))";
+  EXPECT_EQ(troubles("(defintention :a :concurrent t" + goals + ")"),
+            List({"1:49 \"FollowCorridor\" is a behavior: a concurrent activity does not drive"}));
+  EXPECT_EQ(troubles("(defintention :a :concurrent nil" + goals + ")"), List());
+}
+
+TEST(ActivityErrors, OfAFileWithoutActivities) {
+  for (const std::string file : {"", "\n", "; nothing yet\n"})
+    EXPECT_EQ(troubles(file),
+              List({"1:1 expected (defintention :name ...); there is no activity in this file"}));
+}
+
 TEST(ActivityErrors, OfParameters) {
   EXPECT_EQ(troubles("(defintention :a :params ((n :numbr 1)) :goals '((TEST t)))"),
             List({"1:30 expected :number, :text, :place, :point, :list or :any, found "

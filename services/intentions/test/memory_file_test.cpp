@@ -1,7 +1,9 @@
 #include "intentions/shell/memory_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "process.hpp"
@@ -44,6 +46,42 @@ TEST(MemoryFile, GoesOnAfterATornLine) {
   next.id.number = 4;
   EXPECT_TRUE(MemoryFile(path).append(write_line(next)));
   EXPECT_EQ(MemoryFile(path).memory().endings, (std::vector{kEnding, next}));
+}
+
+// A disk that is full for a while: here a limit on the size of files.
+TEST(MemoryFile, WhatIsWrittenHalfIsTakenBack) {
+  const test::TempDir dir;
+  const std::string path = dir.path("goals.memory");
+  Ending next = kEnding;
+  next.id.number = 4;
+  MemoryFile memory(path);
+  ASSERT_TRUE(memory.append(write_line(kEnding)));
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit full = before;
+  full.rlim_cur = write_line(kEnding).size() + 10;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  const bool written = memory.append(write_line(next));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_FALSE(written);
+  EXPECT_EQ(read_file(path), write_line(kEnding));
+  next.id.number = 5;
+  EXPECT_TRUE(memory.append(write_line(next)));
+  EXPECT_EQ(MemoryFile(path).memory().endings, (std::vector{kEnding, next}));
+}
+
+TEST(MemoryFile, KeepsTheNewestEndings) {
+  const test::TempDir dir;
+  const std::string path = dir.path("goals.memory");
+  {
+    MemoryFile memory(path);
+    for (std::uint64_t i = 1; i <= 5; ++i)
+      memory.append(write_line(Ending{{1, i}, GoalState::kSucceeded, GoalCode::kNone, "arrived"}));
+  }
+  EXPECT_EQ(MemoryFile(path, 3).memory().endings.front().id.number, 3U);
+  EXPECT_EQ(MemoryFile(path).memory().endings.size(), 3U);
 }
 
 TEST(MemoryFile, ABadFileIsAnErrorAndStaysAsItIs) {

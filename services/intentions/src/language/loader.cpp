@@ -9,12 +9,12 @@
 namespace saphira::intentions {
 namespace {
 
-/// What is wrong with one mention of a schema; nothing where it is right.
-void check_mention(const Program& program, const Mention& mention, const Registry& registry,
+/// What is wrong with one mention in an activity of a schema; nothing where it is right.
+void check_mention(const Schema& activity, const Mention& mention, const Registry& registry,
                    std::vector<Diagnostic>& troubles, std::set<std::string>& told) {
   const auto trouble = [&](bool error, int line, int column, std::string message,
                            const std::string& text) {
-    troubles.push_back({error, program.file, line, column, std::move(message), text});
+    troubles.push_back({error, activity.source, line, column, std::move(message), text});
   };
   std::vector<std::string> names;
   std::vector<std::string> required;
@@ -25,6 +25,10 @@ void check_mention(const Program& program, const Mention& mention, const Registr
         required.push_back(parameter.name);
     }
   } else if (const BehaviorSignature* const behavior = registry.behavior(mention.schema)) {
+    if (activity.concurrent)
+      trouble(true, mention.line, mention.column,
+              quoted(mention.schema) + " is a behavior: a concurrent activity does not drive",
+              mention.line_text);
     for (const Parameter& parameter : behavior->parameters) {
       names.push_back(parameter.name);
       if (parameter.required)
@@ -91,7 +95,12 @@ Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& 
   std::map<std::string, std::string> defined;
   for (std::size_t i = 0; i < files.size(); ++i) {
     Reader reader(files[i].name, files[i].content, each[i].troubles);
-    for (const Form& form : reader.read()) {
+    const std::vector<Form> forms = reader.read();
+    // Some editors empty a file before they write it.
+    if (forms.empty() && each[i].troubles.empty())
+      each[i].troubles.push_back(reader.trouble(
+          1, 1, true, "expected (defintention :name ...); there is no activity in this file"));
+    for (const Form& form : forms) {
       std::optional<Schema> schema =
           compile_activity(form, files[i].name, reader, functions, each[i].troubles);
       if (!schema)
@@ -121,7 +130,7 @@ Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& 
     std::set<std::string> told;
     for (const Schema& schema : file.schemas) {
       for (const Mention& mention : schema.program->mentions)
-        check_mention(*schema.program, mention, all, file.troubles, told);
+        check_mention(schema, mention, all, file.troubles, told);
     }
     if (!file.broken())
       std::move(file.schemas.begin(), file.schemas.end(), std::back_inserter(loaded.schemas));
@@ -146,7 +155,7 @@ std::vector<Diagnostic> check_references(const Registry& registry) {
     if (!schema->program)
       continue;
     for (const Mention& mention : schema->program->mentions)
-      check_mention(*schema->program, mention, registry, troubles, told);
+      check_mention(*schema, mention, registry, troubles, told);
   }
   return troubles;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -37,6 +38,9 @@ struct Placement {
 
   bool operator==(const Placement&) const = default;
 };
+
+/// Endings that are remembered; the oldest are forgotten.
+inline constexpr std::size_t kMostEndings = 65536;
 
 /// What the service remembers over a restart.
 struct Memory {
