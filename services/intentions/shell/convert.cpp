@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "lps/shell/convert.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -373,6 +375,18 @@ std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, s
     return std::nullopt;
   const v1::Pose2& pose = registration.odom_in_map();
   return Pose{pose.x(), pose.y(), pose.th()};
+}
+
+std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception& perception,
+                                                           std::uint64_t cycle,
+                                                           std::uint64_t odom) {
+  if (perception.stamp().cycle() + kRegistrationLease < cycle)
+    return std::nullopt;
+  std::vector<lps::Percept> percepts;
+  if (perception.odom() == odom)
+    for (const v1::Percept& percept : perception.percepts())
+      percepts.push_back(lps::from_bus(percept));
+  return percepts;
 }
 
 }  // namespace saphira::intentions

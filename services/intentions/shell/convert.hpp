@@ -7,8 +7,10 @@
 #include "behavior.h"
 #include "intention.h"
 #include "map.h"
+#include "perception.h"
 #include "robot.h"
 #include "saphira/intentions/executor.hpp"
+#include "saphira/lps/percept.hpp"
 
 namespace saphira::intentions {
 
@@ -44,7 +46,7 @@ v1::Belief to_bus(const Belief& belief);
 /// back, where its value does not count.
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind);
 
-/// The age [cycles] from which on a sample of registration says nothing any more.
+/// The age [cycles] from which on a sample of registration or interpretation says nothing any more.
 inline constexpr std::uint64_t kRegistrationLease = 20;
 /// What it says, for the step of `cycle`: where the sample is too old, nothing.
 Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle);
@@ -52,5 +54,9 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
 /// registration does not know, speaks of another odom frame, or has not been heard.
 std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,
                                          std::uint64_t odom);
+/// What interpretation sees, for the step of `cycle`: none where the sample is too old; of another
+/// odom frame, nothing.
+std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception& perception,
+                                                           std::uint64_t cycle, std::uint64_t odom);
 
 }  // namespace saphira::intentions

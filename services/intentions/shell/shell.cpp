@@ -155,12 +155,10 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
     around.lps = &*lps_;
   }
   const v1::Perception* const perception = perception_ == nullptr ? nullptr : perception_->value();
-  percepts_.clear();
-  if (perception != nullptr && perception->odom() == robot.odom())
-    for (const v1::Percept& percept : perception->percepts())
-      percepts_.push_back(lps::from_bus(percept));
-  if (perception != nullptr)
-    around.percepts = &percepts_;
+  percepts_ = perception == nullptr ? std::nullopt
+                                    : percepts_from_bus(*perception, stamp_.cycle(), robot.odom());
+  if (percepts_)
+    around.percepts = &*percepts_;
   look_through_cameras(robot, around);
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
@@ -261,6 +259,8 @@ void Shell::look() {
 }
 
 std::vector<ClaimEvent> Shell::take_claims() {
+  // First who is gone, then what has come: what they have written before is among it.
+  const std::vector<bus::WriterId> gone = claims_.take_lost();
   std::vector<ClaimEvent> events;
   for (const auto& sample : claims_.take()) {
     const auto kind = sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid;
@@ -276,7 +276,7 @@ std::vector<ClaimEvent> Shell::take_claims() {
     else
       claimants_.erase(id);
   }
-  for (const bus::WriterId& lost : claims_.take_lost()) {
+  for (const bus::WriterId& lost : gone) {
     for (auto claim = claimants_.begin(); claim != claimants_.end();) {
       if (claim->second != lost) {
         ++claim;
@@ -317,6 +317,7 @@ void Shell::publish_beliefs() {
 }
 
 std::vector<GoalEvent> Shell::take_events() {
+  const std::vector<bus::WriterId> gone = goals_.take_lost();
   std::vector<GoalEvent> events;
   for (const auto& sample : goals_.take()) {
     GoalEvent event;
@@ -326,7 +327,7 @@ std::vector<GoalEvent> Shell::take_events() {
       writers_[event.goal.id] = sample.info.writer;
     events.push_back(std::move(event));
   }
-  for (const bus::WriterId& lost : goals_.take_lost()) {
+  for (const bus::WriterId& lost : gone) {
     for (const auto& [id, writer] : writers_) {
       if (writer != lost)
         continue;

@@ -97,7 +97,7 @@ class Shell {
   Executor executor_;
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::uint64_t> odom_;  ///< of the newest step
-  std::vector<lps::Percept> percepts_;
+  std::optional<std::vector<lps::Percept>> percepts_;
   std::vector<lps::SeenThing> things_;
   std::shared_ptr<const maps::Topology> topology_;
   std::uint64_t map_revision_ = 0;

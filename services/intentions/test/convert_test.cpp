@@ -149,5 +149,15 @@ TEST(Convert, ThePlaceOnTheMapOnlyWhereRegistrationKnowsIt) {
   EXPECT_TRUE(odom_in_map_from_bus(registration, 101, 4));
 }
 
+TEST(Convert, WhatInterpretationSawCountsForAWhile) {
+  v1::Perception perception;
+  perception.stamp().cycle(100);
+  perception.odom(4);
+  perception.percepts().emplace_back();
+  EXPECT_EQ(percepts_from_bus(perception, 100 + kRegistrationLease, 4).value().size(), 1U);
+  EXPECT_FALSE(percepts_from_bus(perception, 101 + kRegistrationLease, 4));
+  EXPECT_TRUE(percepts_from_bus(perception, 101, 5).value().empty()) << "of another odom frame";
+}
+
 }  // namespace
 }  // namespace saphira::intentions
