@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/key_drive.hpp"
 #include "saphira/geometry/pose.hpp"
@@ -113,7 +114,7 @@ class Teleop {
 
  private:
   static double now() {
-    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+    return BootClock::seconds();  // a key that was held before the machine slept is not held now
   }
 
   /// False when the terminal has been closed.
