@@ -71,7 +71,7 @@ function(saphira_program name)
 endfunction()
 
 # saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [ALONE] [TIMEOUT s])
-# ALONE: no other test runs beside it: for serial lines in real time, which starve otherwise.
+# ALONE: no other test runs beside it: for what is measured in real time, which starves otherwise.
 # DDS: the test talks on the bus; it gets a domain of its own, on loopback.
 define_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN BRIEF_DOCS "next free DDS domain of a test")
 set_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN 20)

@@ -80,7 +80,7 @@ TEST(TwoRobots, DoNotHearEachOther) {
     return count >= 20;
   })) << two.output();
   EXPECT_TRUE(two.truth().still());
-  EXPECT_FALSE(one.truth().still());
+  EXPECT_TRUE(one.wait_moving()) << one.output();
   two.goals().poll();
   EXPECT_FALSE(two.goals().status(goal).has_value());
 }
