@@ -93,7 +93,7 @@ void Shell::look() {
   looked_ = std::chrono::steady_clock::now();
   const Folder::News news = sources_.look(executive_.registry());
   for (const std::string& fault : news.faults)
-    node_.error(fault + "\nWhat this file gave before stays in use.");
+    node_.error(fault + (first ? "" : "\nWhat this file gave before stays in use."));
   // At the start the shipped files are as everybody has them.
   for (const std::string& warning : news.warnings)
     if (!first || !warning.starts_with(behaviors_folder()))
