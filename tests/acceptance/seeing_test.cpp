@@ -2,7 +2,8 @@
 // bus and in lockstep: simulator, bridge, vision, perception, registration, behaviors, intentions.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -26,12 +27,17 @@ bus::NodeOptions options(const std::string& robot) {
   return options;
 }
 
-class SeeingAcceptance : public testing::Test {
- protected:
-  void start(const std::string& world) {
+// Ann waits, walks away before the robot, and turns around a corner.
+class Walker {
+ public:
+  Walker() {
+    const std::string world = folder.path("walker.wld");
+    std::ofstream(world) << read_file(source("config/worlds/office-floor.wld"))
+                         << "\nperson ann 17500 10500 color red\n"
+                            "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
     run({"saphira-sim", "--step", "--world", world, "--robot-file",
          source("config/robots/pioneer.p"), "--socket", folder.path("robot"), "--stereo-socket",
-         folder.path("eyes"), "--trace", trace(), "--seed", "1"});
+         folder.path("eyes"), "--trace", folder.path("trace.csv"), "--seed", "1"});
     on_bus({"saphira-bridge", "--link", "unix:" + folder.path("robot"), "--robots",
             source("config/robots"), "--vision"});
     on_bus({"saphira-vision", "--stereo-socket", folder.path("eyes")});
@@ -40,22 +46,31 @@ class SeeingAcceptance : public testing::Test {
     on_bus({"saphira-interpretation"});
     on_bus({"saphira-registration", "--map", source("config/maps/office-floor.map")});
   }
-  void on_bus(std::vector<std::string> argv) {
-    for (const std::string& word : {std::string("--robot"), robot, std::string("--domain"),
-                                    domain(), std::string("--lockstep")})
-      argv.push_back(word);
-    run(std::move(argv));
+
+  /// Asks for the goal, and waits until it is there: before the first cycle.
+  v1::GoalId follow() {
+    v1::Goal goal;
+    goal.functor("follow-person");
+    goal.arguments({bus::number("seconds", 40.0)});
+    const v1::GoalId id = goals.ask(goal);
+    EXPECT_TRUE(wait_until([&] {
+      node.wait(std::chrono::milliseconds(50));
+      goals.poll();
+      return goals.status(id).has_value();
+    })) << output();
+    return id;
   }
-  void run(std::vector<std::string> argv) {
-    const std::string log = folder.path(argv.front() + ".log");
-    processes.push_back(std::make_unique<Process>(std::move(argv), log));
-  }
-  std::string trace() const { return folder.path("trace.csv"); }
   /// Lets the robot make its steps up to that cycle.
   void permit(std::uint64_t until) {
     v1::StepPermit sample;
     sample.until_cycle(until);
     permits.write(sample);
+  }
+  /// Ends the simulator, which completes its trace, and gives that.
+  std::string end() {
+    processes.front()->signal(SIGTERM);
+    processes.front()->wait();
+    return read_file(folder.path("trace.csv"));
   }
   std::string output() const {
     std::string all;
@@ -71,60 +86,79 @@ class SeeingAcceptance : public testing::Test {
   bus::Writer<v1::StepPermit> permits = node.writer(bus::topics::kStepPermit);
   bus::Reader<v1::Vision> visions = node.reader(bus::topics::kVision);
   std::vector<std::unique_ptr<Process>> processes;
+
+ private:
+  void on_bus(std::vector<std::string> argv) {
+    for (const std::string& word : {std::string("--robot"), robot, std::string("--domain"),
+                                    domain(), std::string("--lockstep")})
+      argv.push_back(word);
+    run(std::move(argv));
+  }
+  void run(std::vector<std::string> argv) {
+    const std::string log = folder.path(argv.front() + ".log");
+    processes.push_back(std::make_unique<Process>(std::move(argv), log));
+  }
 };
 
-TEST_F(SeeingAcceptance, AWalkerIsFollowed) {
-  const std::string world = folder.path("walker.wld");
-  std::ofstream(world) << read_file(source("config/worlds/office-floor.wld"))
-                       << "\nperson ann 17500 10500 color red\n"
-                          "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
-  start(world);
-  v1::Goal goal;
-  goal.functor("follow-person");
-  goal.arguments({bus::number("seconds", 40.0)});
-  const v1::GoalId id = goals.ask(goal);
-  // It is there before the first cycle.
-  ASSERT_TRUE(wait_until([&] {
-    node.wait(std::chrono::milliseconds(50));
-    goals.poll();
-    return goals.status(id).has_value();
-  })) << output();
-  permit(700);
+TEST(SeeingAcceptance, AWalkerIsFollowed) {
+  Walker system;
+  const v1::GoalId id = system.follow();
+  system.permit(700);
   std::uint64_t people = 0;
   std::uint64_t colors = 0;
-  std::uint64_t ids = 0;
   std::uint64_t skipped = 0;
   std::optional<v1::GoalStatus> status;
   EXPECT_TRUE(wait_until(
       [&] {
-        node.wait(std::chrono::milliseconds(50));
-        goals.poll();
-        for (const auto& sample : visions.take()) {
+        system.node.wait(std::chrono::milliseconds(50));
+        system.goals.poll();
+        for (const auto& sample : system.visions.take()) {
           // In lockstep every picture is looked at.
           skipped += sample.data.picture() != sample.data.stamp().cycle();
           for (const v1::SeenThing& thing : sample.data.things()) {
             people += thing.kind() == v1::SEEN_PERSON;
             colors += thing.kind() == v1::SEEN_BLOB && thing.channel() == 0;
-            if (thing.kind() == v1::SEEN_PERSON)
-              ids = std::max<std::uint64_t>(ids, thing.id());
           }
         }
-        status = goals.status(id);
+        status = system.goals.status(id);
         return status && bus::ended(status->state());
       },
       std::chrono::minutes(4)))
-      << output();
+      << system.output();
   ASSERT_TRUE(status);
-  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << "\n" << output();
+  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << "\n" << system.output();
   EXPECT_GT(people, 200U);
   EXPECT_GT(colors, 100U);
   EXPECT_EQ(skipped, 0U);
   // She came from 10.5 to 7 m, and around the corner to the east.
-  const auto rows = sim::parse_trace(read_file(trace()), trace());
+  const auto rows = sim::parse_trace(system.end(), "trace.csv");
   ASSERT_FALSE(rows.empty());
   EXPECT_GT(rows.back().pose_in_world.x, 19.5);
   EXPECT_NEAR(rows.back().pose_in_world.y, 7.0, 1.2);
   EXPECT_EQ(rows.back().contacts, 0);
+}
+
+// Also with eyes a run in lockstep is the same to the last bit.
+TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
+  const auto run = [] {
+    constexpr std::uint64_t kCycles = 200;
+    Walker system;
+    system.follow();
+    system.permit(kCycles);
+    EXPECT_TRUE(wait_until(
+        [&] {
+          system.node.wait(std::chrono::milliseconds(50));
+          const auto newest = system.visions.take_newest();
+          return newest && newest->stamp().cycle() >= kCycles;
+        },
+        std::chrono::minutes(2)))
+        << system.output();
+    const std::string trace = system.end();
+    EXPECT_GE(std::count(trace.begin(), trace.end(), '\n'), static_cast<long>(kCycles));
+    return trace.substr(0, trace.find("\n" + std::to_string(kCycles) + ","));
+  };
+  const std::string first = run();
+  EXPECT_EQ(first, run());
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ constexpr std::size_t kPlaces = 32;    // [cycles] a picture may be late
 constexpr std::uint64_t kRecent = 20;  // [cycles] eyes that showed nothing for longer are shut
 /// Lockstep: a picture that belongs to a cycle is waited for, for as long.
 constexpr std::chrono::milliseconds kPictureWait{2000};
+constexpr std::chrono::milliseconds kChannelsWait{100};
+constexpr std::uint64_t kFirstChannels = 5;  // [cycles] in which a camera begins
 
 }  // namespace
 
@@ -51,7 +53,7 @@ bool Shell::step(const bus::Stop& stop) {
   if (places_.size() > kPlaces)
     places_.pop_front();
   look(cycle);
-  look_at_colors(robot);
+  look_at_colors(robot, stop);
   v1::Vision sample = to_bus(vision_.things(cycle, pose));
   sample.stamp(cycle_.stamp());
   sample.odom(robot.odom());
@@ -78,12 +80,22 @@ void Shell::look(std::uint64_t cycle) {
   vision_.see(*picture, place->pose_in_odom);
 }
 
-/// The channels come behind the cycle that they are of: those of the cycle before are here, in
-/// lockstep too.
-void Shell::look_at_colors(const v1::RobotState& robot) {
-  for (auto& sample : channels_.take())
-    if (!sample.info.disposed && sample.data.stamp().epoch() == cycle_.stamp().epoch())
-      newer_.push_back(std::move(sample.data));
+/// The channels come behind the cycle that they are of: a step sees those of the cycle before, for
+/// which lockstep waits where they come at all.
+void Shell::look_at_colors(const v1::RobotState& robot, const bus::Stop& stop) {
+  const std::uint64_t before = cycle_.stamp().cycle() - 1;
+  const auto limit = std::chrono::steady_clock::now() + kChannelsWait;
+  while (true) {
+    for (auto& sample : channels_.take())
+      if (!sample.info.disposed && sample.data.stamp().epoch() == cycle_.stamp().epoch())
+        newer_.push_back(std::move(sample.data));
+    const bool here = !newer_.empty() && newer_.back().stamp().cycle() >= before;
+    const bool come = before < kFirstChannels || (color_ != 0 && color_ + kRecent >= before);
+    if (here || !come || before == 0 || channels_.matched() == 0 || !node_.options().lockstep ||
+        stop.requested() || std::chrono::steady_clock::now() >= limit)
+      break;
+    node_.wait(kChannelsWait, &stop);
+  }
   while (!newer_.empty() && newer_.front().stamp().cycle() < cycle_.stamp().cycle()) {
     const v1::VisionChannels& seen = newer_.front();
     if (seen.odom() == robot.odom() && seen.stamp().cycle() > color_ && colors_.works()) {

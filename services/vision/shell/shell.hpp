@@ -38,7 +38,7 @@ class Shell {
   };
 
   void look(std::uint64_t cycle);
-  void look_at_colors(const v1::RobotState& robot);
+  void look_at_colors(const v1::RobotState& robot, const bus::Stop& stop);
   void tell_of_pictures();
 
   bus::Node& node_;

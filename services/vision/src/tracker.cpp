@@ -186,7 +186,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
 std::vector<lps::SeenThing> Tracker::things(std::uint64_t cycle, const Pose& robot) const {
   std::vector<lps::SeenThing> things;
   for (Track track : tracks_) {
-    if (!track.told)
+    if (!track.told || seconds(track.thing.seen, cycle) > settings_.forget_out_of_view)
       continue;
     predict(track, cycle);
     lps::SeenThing& thing = track.thing;

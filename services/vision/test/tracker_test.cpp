@@ -98,6 +98,14 @@ TEST(Tracker, WhoIsNotWhereHeShouldBeSeenIsForgotten) {
   EXPECT_EQ(tracker.things(40, {}).at(0).id, 2U);
 }
 
+TEST(Tracker, WithoutPicturesNobodyIsLeftInTheEnd) {
+  Tracker tracker;
+  for (std::uint64_t cycle = 1; cycle <= 10; ++cycle)
+    tracker.see(Kind::person, cycle, {}, {person_at(3.0, 0.0)}, everywhere);
+  EXPECT_EQ(tracker.things(100, {}).size(), 1U);
+  EXPECT_TRUE(tracker.things(200, {}).empty());
+}
+
 TEST(Tracker, OneSightIsNobody) {
   Tracker tracker;
   tracker.see(Kind::person, 1, {}, {person_at(3.0, 0.0)}, everywhere);
