@@ -357,6 +357,35 @@ TEST(Seeing, AColourIsSearchedForAndApproached) {
   EXPECT_TRUE(whole.at_rest());
 }
 
+// ---- Mapping (manual 6.9.2)
+
+WholeOptions around_a_loop() {
+  WholeOptions options;
+  options.drive.world = "loop";
+  return options;
+}
+
+TEST(Mapping, TheMapOfAFloorFromNothingAndThenByIt) {
+  Whole whole(around_a_loop());
+  const GoalStatus status = whole.achieve("build-map", {}, 9000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  const auto count = [&](lps::PointType type) {
+    return std::count_if(whole.map().features.begin(), whole.map().features.end(),
+                         [&](const maps::Feature& feature) { return feature.type == type; });
+  };
+  EXPECT_EQ(count(lps::PointType::corridor), 4);
+  EXPECT_GE(count(lps::PointType::door), 7);
+  EXPECT_EQ(whole.drive().contacts(), 0);
+  EXPECT_TRUE(whole.at_rest());
+  // The map is registered on from now on.
+  for (int i = 0; i < 20; ++i)
+    whole.advance();
+  EXPECT_EQ(whole.registration().output().state, registration::State::tracking);
+  EXPECT_LT(
+      (whole.registration().output().pose_in_map.position() - whole.truth().position()).norm(),
+      0.5);
+}
+
 // ---- Golden traces: what each activity does in a world of its own, exactly. Renewed, when it has
 // been changed deliberately, with SAPHIRA_RENEW_GOLDEN=1 in the environment of this program.
 
@@ -417,6 +446,7 @@ std::vector<Scenario> scenarios() {
   search.options.sees = true_eyes({"red"});
   search.options.drive.start_in_world = Pose{17.5, 14.0, kPi / 2};
   all.push_back(search);
+  all.push_back({"build-map", around_a_loop(), "build-map", {}, 9000});
   return all;
 }
 

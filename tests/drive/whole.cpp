@@ -136,7 +136,11 @@ void Whole::advance() {
   // What the others said in the cycle before.
   const behaviors::Output behaved = drive_.output();
   const std::vector<lps::Percept> seen_before = percepts_;
-  const registration::Output registered = registration_.output();
+  registration::Output registered = registration_.output();
+  if (builder_) {
+    registered.state = registration::State::tracking;
+    registered.pose_in_map = builder_->pose_in_map();
+  }
   const Pose was_in_odom = drive_.seen().pose_in_odom;
 
   const Seen& seen = drive_.advance();
@@ -160,11 +164,14 @@ void Whole::advance() {
     inputs.around.things = &things_;
   inputs.around.cycle = seen.cycle;
   inputs.around.topology = topology_;
-  inputs.around.map_revision = 1;
+  inputs.around.map = std::shared_ptr<const maps::Map>(std::shared_ptr<void>(), &map_);
+  inputs.around.map_revision = map_revision_;
+  inputs.around.readings = &seen.readings;
+  inputs.around.registration.adds_features = builder_.has_value();
   inputs.around.registration.state = localization_of(registered.state);
   inputs.around.registration.pose_in_map = registered.pose_in_map;
   inputs.around.registration.confidence = registered.confidence;
-  if (registered.environment)
+  if (registered.environment && !builder_)
     inputs.around.registration.environment = map_.features[*registered.environment].id;
   inputs.behaviors = levels_of(behaved);
   inputs.behaviors_cycle = seen.cycle - 1;
@@ -179,11 +186,41 @@ void Whole::advance() {
     said_.push_back(each.text);
   drive_.intend(intended_of(intentions_.behaviors), intentions_.behavior_control);
 
-  registration_.step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings});
+  if (!builder_)
+    registration_.step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings});
+  else if (builder_->step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings, {}}))
+    set_map(builder_->map());
+  for (const intentions::MapRequest request : intentions_.map_requests)
+    obey(request);
   percepts_ = interpretation_.step({seen.cycle, seen.pose_in_odom, seen.readings}).percepts;
   if (sees_)
     things_ = sees_(drive_);
   note_transitions();
+}
+
+void Whole::set_map(maps::Map map) {
+  map_ = std::move(map);
+  topology_ = std::make_shared<const maps::Topology>(map_);
+  ++map_revision_;
+}
+
+/// As the registration service does it, as far as a map is built from nothing.
+void Whole::obey(intentions::MapRequest request) {
+  using intentions::MapRequest;
+  if (request == MapRequest::kForget) {
+    set_map({});
+    registration_.set_map(map_);
+  } else if (request == MapRequest::kAddFeatures && map_.features.empty()) {
+    auto settings = with_sonars<registration::MapBuilderSettings>(drive_);
+    builder_.emplace(settings, map_, registration_.output().pose_in_map);
+  } else if (request == MapRequest::kKeep && builder_) {
+    registration_.set_map(map_);
+    registration_.set_pose(builder_->pose_in_map());
+    registration::Memory here = registration_.save();
+    here.pose_in_odom = drive_.seen().pose_in_odom;
+    registration_.restore(here);
+    builder_.reset();
+  }
 }
 
 bool Whole::advance_until(const std::function<bool()>& done, int cycles) {

@@ -15,6 +15,7 @@
 #include "saphira/lps/seen_thing.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/topology.hpp"
+#include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
 
 namespace saphira::test {
@@ -61,6 +62,7 @@ class Whole {
   Drive& drive() { return drive_; }
   intentions::Executor& executor() { return executor_; }
   registration::Registration& registration() { return registration_; }
+  const maps::Map& map() const { return map_; }
   const std::shared_ptr<const maps::Topology>& topology() const { return topology_; }
   const std::vector<lps::Percept>& percepts() const { return percepts_; }
   const intentions::Outputs& intentions() const { return intentions_; }
@@ -78,10 +80,14 @@ class Whole {
 
  private:
   void note_transitions();
+  void obey(intentions::MapRequest request);
+  void set_map(maps::Map map);
 
   Drive drive_;
   maps::Map map_;
   std::shared_ptr<const maps::Topology> topology_;
+  std::uint64_t map_revision_ = 1;
+  std::optional<registration::MapBuilder> builder_;  ///< while the map is built from nothing
   interpretation::Interpretation interpretation_;
   registration::Registration registration_;
   intentions::Executor executor_;

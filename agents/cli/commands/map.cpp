@@ -9,7 +9,6 @@
 #include "maps/shell/convert.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
-#include "saphira/explore/explorer.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/maps/route.hpp"
 #include "watch.hpp"
@@ -284,125 +283,67 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   return bus::kExitOk;
 }
 
-/// Explores the floor and lets registration map it; writes the map when nothing is left.
+/// Lets the robot build the map (activity build-map); writes it when nothing is left.
 int build(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
-  constexpr double kWayStep = 0.4;  // [m]
   View view(options);
   auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
   auto requests = view.node.writer(bus::topics::kRegistrationRequest);
-  auto states = view.node.reader(bus::topics::kRobotState);
-  auto descriptions = view.node.reader(bus::topics::kRobotDescription);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_DELETE);
-  if (!ask(view, answers, requests, request, options, stop))
-    return bus::kExitFailed;
-  request.action(v1::REGISTRATION_ADD_FEATURES);
-  request.on(true);
-  if (!ask(view, answers, requests, request, options, stop))
-    return bus::kExitFailed;
-
   bus::GoalClient goals(view.node, "saphira map build");
-  std::optional<explore::Explorer> explorer;
-  std::vector<Vec2> way;
-  std::vector<lps::SonarReading> readings;
-  std::optional<v1::GoalId> goal;
-  Vec2 driving_to{0.0, 0.0};
-  std::string functor;
+  v1::Goal wanted;
+  wanted.functor("build-map");
+  const v1::GoalId goal = goals.ask(wanted);
   std::string told;
   std::size_t corridors = 0;
   std::size_t doors = 0;
-  const auto drop = [&] {
-    if (goal)
-      goals.cancel(*goal);
-    goal.reset();
-  };
   bool done = false;
   while (!done && !stop.requested()) {
     view.node.wait(milliseconds(200), &stop);
     goals.poll();
-    for (const auto& state : states.take())
-      for (const lps::SonarReading& reading : lps::sonars_from_bus(state.data))
-        readings.push_back(reading);
-    if (!explorer) {
-      if (const auto description = descriptions.take_newest()) {
-        explore::Settings settings;
-        settings.sonars = lps::mounts_from_bus(*description);
-        explorer.emplace(settings);
-      }
-    }
-    if (!view.poll() || !explorer)
-      continue;
-    const Pose pose_in_map = lps::from_bus(view.registration->pose_in_map());
-    // The way as places that are well apart, and where it is now.
-    if (way.size() > 1 && (way.back() - way[way.size() - 2]).norm() < kWayStep)
-      way.back() = pose_in_map.position();
-    else
-      way.push_back(pose_in_map.position());
-    const explore::Output& next =
-        explorer->step({view.registration->stamp().cycle(), pose_in_map, view.map, way, readings});
-    readings.clear();
-    if (next.reason != told) {
-      std::printf("%8.1f s  %s\n", 0.1 * static_cast<double>(view.registration->stamp().cycle()),
-                  next.reason.c_str());
-      told = next.reason;
-    }
+    view.poll();
     std::size_t now_corridors = 0;
     std::size_t now_doors = 0;
     for (const maps::Feature& feature : view.map.features) {
       now_corridors += feature.type == lps::PointType::corridor ? 1U : 0U;
       now_doors += feature.type == lps::PointType::door ? 1U : 0U;
     }
+    const auto status = goals.status(goal);
+    done = status && bus::ended(status->state());
+    std::string news = status ? (done ? status->reason() : status->step()) : std::string();
     if (now_corridors != corridors || now_doors != doors)
-      std::printf("%8.1f s  %zu corridors, %zu doors\n",
-                  0.1 * static_cast<double>(view.registration->stamp().cycle()), now_corridors,
-                  now_doors);
+      news += (news.empty() ? "" : "; ") + std::to_string(now_corridors) + " corridors, " +
+              std::to_string(now_doors) + " doors";
     corridors = now_corridors;
     doors = now_doors;
+    if (news.empty() || news == told)
+      continue;
+    told = news;
+    std::printf("%8.1f s  %s\n", status ? status->elapsed() : 0.0, news.c_str());
     std::fflush(stdout);
-    done = next.done;
-    const std::optional<Vec2> point = next.look_at ? next.look_at : next.point_in_map;
-    if (!point) {
-      drop();
-      continue;
-    }
-    // A goal that has ended is of the past: the explorer judges itself whether it gets on.
-    if (goal) {
-      const auto status = goals.status(*goal);
-      if (status && bus::ended(status->state()))
-        goal.reset();
-    }
-    v1::Goal wanted;
-    wanted.functor(next.look_at ? "turn_to" : "go_to");
-    wanted.arguments({bus::point("position", point->x(), point->y(), 0.0, v1::FRAME_MAP)});
-    if (!next.look_at) {
-      wanted.arguments().push_back(bus::number("speed", next.speed));
-      wanted.arguments().push_back(bus::number("radius", 0.2));
-    }
-    const bool same = wanted.functor() == functor;
-    if (goal && same && (driving_to - *point).norm() < 0.02)
-      continue;
-    if (goal && !same)
-      drop();
-    if (goal)
-      goals.change(*goal, wanted);
-    else
-      goal = goals.ask(wanted);
-    functor = wanted.functor();
-    driving_to = *point;
   }
-  drop();
-  goals.delivered(1000);
-  // Also when it was broken off: what there is, is the map.
-  const bus::Stop end;
-  request.on(false);
-  if (!ask(view, answers, requests, request, options, end))
+  const auto status = goals.status(goal);
+  const bool whole = status && status->state() == v1::GOAL_SUCCEEDED;
+  if (status && status->state() == v1::GOAL_REFUSED)
     return bus::kExitFailed;
+  if (!done) {
+    goals.cancel(goal);
+    goals.delivered(1000);
+  }
+  // Also when it was broken off: what there is, is the map.
+  if (!whole) {
+    const bus::Stop end;
+    v1::RegistrationRequest request;
+    request.action(v1::REGISTRATION_ADD_FEATURES);
+    request.on(false);
+    if (!ask(view, answers, requests, request, options, end))
+      return bus::kExitFailed;
+  }
   view.poll();
   std::printf("%zu corridors, %zu doors, %zu artifacts%s\n", corridors, doors,
-              view.map.features.size(), done ? "" : "; broken off, something may be left");
-  return write_out(path, maps::to_text(view.map));
+              view.map.features.size(), whole ? "" : "; broken off, something may be left");
+  const int written = write_out(path, maps::to_text(view.map));
+  return done && !whole ? static_cast<int>(bus::kExitFailed) : written;
 }
 
 int map(const std::vector<std::string>& words, double seconds, const bus::NodeOptions& options,

@@ -200,38 +200,91 @@ struct BeliefOptions {
   bool hold = false;
 };
 
+constexpr const char* kClaimant = "saphira beliefs";
+
+/// What this command claims of a name is one instance, whoever types it: the next one changes it,
+/// and unset finds it. One that is held is its holder's.
+v1::BeliefClaim claim_of(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
+  for (const char c : kClaimant + (" " + name))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  v1::BeliefClaim sample;
+  sample.id().writer(hash);
+  sample.id().number(1);
+  sample.source(kClaimant);
+  sample.name(name);
+  return sample;
+}
+
+/// What is believed under that name and was said by this command; nullptr: nothing.
+const v1::Belief* claimed(const Mind& mind, const std::string& name) {
+  if (mind.beliefs() != nullptr)
+    for (const v1::Belief& belief : mind.beliefs()->beliefs())
+      if (belief.name() == name && belief.said_by().find(kClaimant) != std::string::npos)
+        return &belief;
+  return nullptr;
+}
+
+int unset(const std::string& name, const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  Mind mind(node, false);
+  auto writer = node.writer(bus::topics::kBeliefClaims);
+  const v1::BeliefClaim sample = claim_of(name);
+  const auto began = Clock::now();
+  bool taken_back = false;
+  while (!stop.requested() && seconds_since(began) < kPatience) {
+    mind.listen(milliseconds(100), stop);
+    if (mind.beliefs() == nullptr)
+      continue;
+    if (claimed(mind, name) == nullptr) {
+      if (taken_back)
+        return bus::kExitOk;
+      std::cerr << "saphira: nobody has said " << name << " with saphira beliefs set\n";
+      return bus::kExitFailed;
+    }
+    if (!taken_back && writer.matched() > 0)
+      taken_back = writer.dispose(sample) && writer.wait_acknowledged(1000);
+  }
+  std::cerr << "saphira: it is still taken for true; " << who_is_there(options, mind.processes())
+            << '\n';
+  return bus::kExitFailed;
+}
+
 int claim(const std::string& name, const std::string& value, bool hold,
           const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Mind mind(node, false);
   auto writer = node.writer(bus::topics::kBeliefClaims);
-  v1::BeliefClaim sample;
-  sample.id().writer(node.instance());
-  sample.id().number(1);
-  sample.source("saphira beliefs");
-  sample.name(name);
+  v1::BeliefClaim sample = claim_of(name);
+  if (hold)
+    sample.id().writer(node.instance());
   sample.value(value);
   sample.writer_lost(hold ? v1::WRITER_LOST_CANCEL : v1::WRITER_LOST_KEEP);
-  writer.write(sample);
   const auto began = Clock::now();
+  std::optional<std::uint64_t> before;  // [cycle] when it was said the time before, if it was
+  bool written = false;
   while (!stop.requested()) {
     mind.listen(milliseconds(100), stop);
-    if (mind.beliefs() != nullptr)
-      for (const v1::Belief& belief : mind.beliefs()->beliefs())
-        // As it is written back: 1 may have become 1.0.
-        if (belief.name() == name &&
-            belief.said_by().find("saphira beliefs") != std::string::npos) {
-          std::printf("%s = %s, said by %s\n", name.c_str(), belief.value().c_str(),
-                      belief.said_by().c_str());
-          std::fflush(stdout);
-          while (hold && !stop.requested())
-            mind.listen(std::chrono::seconds(1), stop);
-          if (hold) {
-            writer.dispose(sample);
-            writer.wait_acknowledged(1000);
-          }
-          return bus::kExitOk;
-        }
+    const v1::Belief* const belief = claimed(mind, name);
+    if (!written && mind.beliefs() != nullptr) {
+      if (belief != nullptr)
+        before = belief->since();
+      written = writer.write(sample);
+      continue;
+    }
+    // As it is written back: 1 may have become 1.0.
+    if (written && belief != nullptr && belief->since() != before) {
+      std::printf("%s = %s, said by %s\n", name.c_str(), belief->value().c_str(),
+                  belief->said_by().c_str());
+      std::fflush(stdout);
+      while (hold && !stop.requested())
+        mind.listen(std::chrono::seconds(1), stop);
+      if (hold) {
+        writer.dispose(sample);
+        writer.wait_acknowledged(1000);
+      }
+      return bus::kExitOk;
+    }
     if (seconds_since(began) > kPatience) {
       std::cerr << "saphira: nobody has taken it for true (saphira log says why); "
                 << who_is_there(options, mind.processes()) << '\n';
@@ -251,8 +304,12 @@ int beliefs(const BeliefOptions& belief_options, const bus::NodeOptions& options
     }
     return claim(words[1], words[2], belief_options.hold, options, stop);
   }
+  if (words.size() == 2 && words[0] == "unset")
+    return unset(words[1], options, stop);
   if (words.size() > 1) {
-    std::cerr << "saphira: expected beliefs, beliefs NAME, or beliefs set NAME VALUE\n";
+    std::cerr
+        << "saphira: expected beliefs, beliefs NAME, beliefs set NAME VALUE, or beliefs unset "
+           "NAME\n";
     return bus::kExitUsage;
   }
   const std::string part = words.empty() ? "" : words[0];
@@ -323,7 +380,7 @@ void add_beliefs(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<BeliefOptions>();
   CLI::App* command =
       app.add_subcommand("beliefs", "What activities take to be true, and who said so");
-  command->add_option("words", options->words, "[part of a] NAME | set NAME VALUE");
+  command->add_option("words", options->words, "[part of a] NAME | set NAME VALUE | unset NAME");
   command->add_flag("--hold", options->hold, "set: until Ctrl-C, and then take it back");
   add_watch_options(*command, options->watch);
   command->footer("Values as in activities: t, nil, 2.5, \"text\", (a b).");

@@ -235,6 +235,7 @@ IntentionNode from_bus(const v1::IntentionNode& node) {
   result.parent = node.parent();
   result.name = node.name();
   result.schema = node.schema();
+  result.arguments = node.arguments();
   result.state = from_bus(kIntentionStates, node.state(), IntentionState::kRunning);
   result.blocking = node.blocking();
   result.label = node.label();
@@ -251,6 +252,7 @@ v1::IntentionNode to_bus(const IntentionNode& node) {
   result.parent(node.parent);
   result.name(node.name);
   result.schema(node.schema);
+  result.arguments(node.arguments);
   result.state(to_bus(kIntentionStates, node.state));
   result.blocking(node.blocking);
   result.label(node.label);
@@ -363,6 +365,7 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   result.pose_in_map = {pose.x(), pose.y(), pose.th()};
   result.confidence = registration.confidence();
   result.environment = registration.environment();
+  result.adds_features = registration.adds_features();
   return result;
 }
 

@@ -50,6 +50,8 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       schemas_(node.writer(bus::topics::kActivitySchemas)),
       beliefs_(node.writer(bus::topics::kBeliefs)),
       messages_(node.writer(bus::topics::kMessages)),
+      map_requests_(node.writer(bus::topics::kRegistrationRequest)),
+      next_request_(node.instance()),
       memory_(options.memory_file),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
@@ -109,6 +111,7 @@ bool Shell::step(const bus::Stop& stop) {
   recall_.write(sample);
   publish(outputs.news);
   publish(outputs.said);
+  publish(outputs.map_requests);
   publish_beliefs();
   if (++steps_ % (node_.options().lockstep ? kLookInLockstep : kLook) == 0)
     look();
@@ -151,7 +154,9 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
     lps_->reset();
   odom_ = robot.odom();
   if (known != Knowledge::none && lps_) {
-    lps_->update(lps::from_bus(robot.pose_in_odom()), lps::sonars_from_bus(robot), stamp_.cycle());
+    readings_ = lps::sonars_from_bus(robot);
+    lps_->update(lps::from_bus(robot.pose_in_odom()), readings_, stamp_.cycle());
+    around.readings = &readings_;
     around.lps = &*lps_;
   }
   const v1::Perception* const perception = perception_ == nullptr ? nullptr : perception_->value();
@@ -165,6 +170,7 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
   take_map(registration == nullptr ? std::nullopt : std::optional(registration->map_revision()),
            stop);
   around.topology = topology_;
+  around.map = map_;
   around.map_revision = map_revision_;
 }
 
@@ -198,7 +204,8 @@ void Shell::take_map(std::optional<std::uint64_t> revision, const bus::Stop& sto
     while (!newer_maps_.empty() &&
            (!exact || newer_maps_.front().revision() <= *revision || topology_ == nullptr)) {
       const v1::Map& map = newer_maps_.front();
-      topology_ = std::make_shared<const maps::Topology>(maps::from_bus(map));
+      map_ = std::make_shared<const maps::Map>(maps::from_bus(map));
+      topology_ = std::make_shared<const maps::Topology>(*map_);
       map_revision_ = map.revision();
       newer_maps_.pop_front();
     }
@@ -300,6 +307,18 @@ void Shell::publish(const std::vector<Said>& said) {
     message.text(one.text);
     messages_.write(message);
     node_.info("says: " + one.text);
+  }
+}
+
+void Shell::publish(const std::vector<MapRequest>& requests) {
+  for (const MapRequest one : requests) {
+    v1::RegistrationRequest request;
+    request.source(node_.options().name);
+    request.request(next_request_++);
+    request.action(one == MapRequest::kForget ? v1::REGISTRATION_DELETE
+                                              : v1::REGISTRATION_ADD_FEATURES);
+    request.on(one == MapRequest::kAddFeatures);
+    map_requests_.write(request);
   }
 }
 

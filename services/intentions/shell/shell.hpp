@@ -69,6 +69,7 @@ class Shell {
   void look();
   void publish(const News& news);
   void publish(const std::vector<Said>& said);
+  void publish(const std::vector<MapRequest>& requests);
   void publish_beliefs();
 
   bus::Node& node_;
@@ -91,6 +92,8 @@ class Shell {
   bus::Writer<v1::ActivitySchemas> schemas_;
   bus::Writer<v1::Beliefs> beliefs_;
   bus::Writer<v1::Message> messages_;
+  bus::Writer<v1::RegistrationRequest> map_requests_;
+  std::uint64_t next_request_;  ///< random at first
   MemoryFile memory_;
   std::shared_ptr<const Functions> functions_;
   ActivityFolders folders_;
@@ -99,7 +102,9 @@ class Shell {
   std::optional<std::uint64_t> odom_;  ///< of the newest step
   std::optional<std::vector<lps::Percept>> percepts_;
   std::vector<lps::SeenThing> things_;
+  std::vector<lps::SonarReading> readings_;
   std::shared_ptr<const maps::Topology> topology_;
+  std::shared_ptr<const maps::Map> map_;
   std::uint64_t map_revision_ = 0;
   std::deque<v1::Map> newer_maps_;             ///< lockstep: than the cycle that is stepped
   std::map<GoalId, bus::WriterId> claimants_;  ///< of claims that end with their writer

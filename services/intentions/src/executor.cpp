@@ -157,8 +157,8 @@ Outputs Executor::step(const Inputs& inputs) {
   forget_ended();
   for (auto& [id, entry] : entries_)
     measure(entry);
-  return {forest_.behaviors(), forest_.nodes(), take_news(), forest_.behavior_control(),
-          forest_.take_said()};
+  return {forest_.behaviors(),        forest_.nodes(),     take_news(),
+          forest_.behavior_control(), forest_.take_said(), forest_.take_map_requests()};
 }
 
 void Executor::pass_time(const Inputs& inputs) {

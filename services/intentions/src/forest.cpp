@@ -212,6 +212,7 @@ class Forest::Handle : public Self {
     forest_.said_.push_back(
         {node_.shown.id, node_.shown.schema, std::move(text), node_.shown.goal});
   }
+  void ask_map(MapRequest request) override { forest_.map_requests_.push_back(request); }
   void believe(const std::string& name, Value value) override {
     if (normal(name) == kBehaviorControl) {
       if (value.nil())
@@ -739,6 +740,10 @@ bool Forest::behavior_control() const {
 
 std::map<std::uint32_t, Outcome> Forest::take_ended() {
   return std::exchange(ended_, {});
+}
+
+std::vector<MapRequest> Forest::take_map_requests() {
+  return std::exchange(map_requests_, {});
 }
 
 std::vector<Said> Forest::take_said() {

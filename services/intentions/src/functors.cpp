@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "mapping.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -430,6 +432,7 @@ Registry built_in() {
     return std::make_unique<Halt>();
   };
   registry.add(std::move(stop));
+  registry.add(explore_unknown());
 
   return registry;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mapping.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
@@ -925,6 +926,7 @@ void add_navigation(Functions& functions) {
   add_corridors(functions);
   add_conditions(functions);
   add_seeing(functions);
+  add_mapping(functions);
 }
 
 std::shared_ptr<const Functions> all_functions() {

@@ -28,8 +28,9 @@ TEST(Executor, RefusesWithAReason) {
   bench.step();
   EXPECT_EQ(bench.state(1), GoalState::kRefused);
   EXPECT_EQ(bench.status(1).code, GoalCode::kUnknownFunctor);
-  EXPECT_EQ(bench.status(1).reason,
-            "unknown functor \"fly\": expected one of drive, go_to, stop, turn_to");
+  EXPECT_EQ(
+      bench.status(1).reason,
+      "unknown functor \"fly\": expected one of drive, explore_unknown, go_to, stop, turn_to");
   EXPECT_EQ(bench.status(2).code, GoalCode::kBadArgument);
   EXPECT_EQ(bench.status(3).reason, "expected a deadline of 0 (none) or more seconds, got -1");
   EXPECT_TRUE(bench.out.behaviors.empty());

@@ -95,7 +95,7 @@ TEST(Schema, AReloadedSchemaTakesThePlaceOfTheOldOne) {
   schema.summary = "another";
   registry.add(schema);
   EXPECT_EQ(registry.find("stop")->summary, "another");
-  EXPECT_EQ(registry.names(), "drive, go_to, stop, turn_to");
+  EXPECT_EQ(registry.names(), "drive, explore_unknown, go_to, stop, turn_to");
 }
 
 }  // namespace

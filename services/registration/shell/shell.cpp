@@ -141,6 +141,11 @@ void Shell::end_building() {
   building_ = false;
   registration_->set_map(editor_.map());
   registration_->set_pose(builder_->pose_in_map());
+  // It has not been stepped meanwhile: the robot has driven, but not since this pose.
+  Memory here = registration_->save();
+  here.odom = odom_;
+  here.pose_in_odom = pose_in_odom_;
+  registration_->restore(here);
 }
 
 bool Shell::step(const bus::Stop& stop) {

@@ -130,6 +130,7 @@ class Machine : public Activity {
     }
     const World& world() const override { return self_.world(); }
     void say(std::string text) override { self_.tell(std::move(text)); }
+    void ask_map(MapRequest request) override { self_.ask_map(request); }
     void believe(const std::string& name, Value value) override {
       self_.believe(name, std::move(value));
     }

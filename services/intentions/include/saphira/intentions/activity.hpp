@@ -125,7 +125,8 @@ class Self {
   virtual void label(const std::string& label) = 0;
   /// How far this intention is satisfied [0..1].
   virtual void level(double satisfied) = 0;
-  virtual void tell(std::string text) = 0;                         ///< a message to people
+  virtual void tell(std::string text) = 0;  ///< a message to people
+  virtual void ask_map(MapRequest request) = 0;
   virtual void believe(const std::string& name, Value value) = 0;  ///< an environment variable
 
   /// What is being done now, for people: short, and the same from cycle to cycle.

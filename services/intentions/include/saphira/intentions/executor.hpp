@@ -52,15 +52,16 @@ struct Outputs {
   std::vector<IntendedBehavior> behaviors;
   std::vector<IntentionNode> nodes;
   News news;
-  bool behavior_control = true;  ///< sfBehaviorControl (manual 7.4)
-  std::vector<Said> said;        ///< to people, oldest first
+  bool behavior_control = true;            ///< sfBehaviorControl (manual 7.4)
+  std::vector<Said> said;                  ///< to people, oldest first
+  std::vector<MapRequest> map_requests{};  ///< to registration, oldest first
 };
 
 struct ExecutorOptions {
-  double keep_ended = 60.0;       ///< [s] of robot time that an ended goal's status stays
-  std::size_t max_shown = 1024;   ///< ended goals whose status stays; the oldest are withdrawn
-  std::size_t max_open = 256;     ///< goals that may be open at once
-  std::size_t max_ended = 65536;  ///< endings that are remembered; the oldest are forgotten
+  double keep_ended = 60.0;      ///< [s] of robot time that an ended goal's status stays
+  std::size_t max_shown = 1024;  ///< ended goals whose status stays; the oldest are withdrawn
+  std::size_t max_open = 256;    ///< goals that may be open at once
+  std::size_t max_ended = kMostEndings;
   /// Whose conditions are beliefs. None: those of core_functions().
   std::shared_ptr<const Functions> functions{};
   ForestOptions forest{};

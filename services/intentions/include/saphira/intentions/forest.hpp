@@ -105,6 +105,7 @@ class Forest {
   /// How the roots that have finished ended, since the last call; they are gone.
   std::map<std::uint32_t, Outcome> take_ended();
   std::vector<Said> take_said();
+  std::vector<MapRequest> take_map_requests();
   Activity& activity(std::uint32_t id);
   /// The deepest intention that it waits for, and those waited for in turn; itself where it waits
   /// for none: what is being done now.
@@ -165,6 +166,7 @@ class Forest {
   std::size_t begun_ = 0;               ///< of to_begin_ in this cycle
   std::map<std::uint32_t, Outcome> ended_;
   std::vector<Said> said_;
+  std::vector<MapRequest> map_requests_;
   std::set<std::uint32_t> control_off_;  ///< roots of what has switched behavior control off
   std::vector<std::uint32_t> woken_;     ///< behaviors that go on, whose points may be old
 };

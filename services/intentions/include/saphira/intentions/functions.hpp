@@ -35,6 +35,7 @@ class Effects {
   virtual const World& world() const = 0;
   virtual void say(std::string text) = 0;                          ///< to people
   virtual void believe(const std::string& name, Value value) = 0;  ///< an environment variable
+  virtual void ask_map(MapRequest request) = 0;                    ///< of registration
 };
 
 /// A pure function of the activity language.

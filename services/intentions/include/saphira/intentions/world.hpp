@@ -11,10 +11,12 @@ namespace saphira::lps {
 class LocalPerceptualSpace;
 struct Percept;
 struct SeenThing;
+struct SonarReading;
 }  // namespace saphira::lps
 namespace saphira::maps {
+struct Map;
 class Topology;
-}
+}  // namespace saphira::maps
 
 namespace saphira::intentions {
 
@@ -42,12 +44,20 @@ struct Robot {
 
 enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
 
+/// What is asked of registration (manual 6.9.2).
+enum class MapRequest {
+  kForget,       ///< the map is empty
+  kAddFeatures,  ///< add_new_features: what is seen is put on the map
+  kKeep          ///< and no longer
+};
+
 /// What registration says.
 struct Registered {
   Localization state = Localization::kNone;  ///< kNone: there is no registration
   Pose pose_in_map;                          ///< of the robot; where it is lost: the best guess
   double confidence = 0.0;                   ///< [0..1]
   std::uint32_t environment = 0;             ///< the artifact that the robot is in; 0: none known
+  bool adds_features = false;                ///< what is seen is put on the map
 };
 
 /// What is known beside the robot. What is pointed to outlives the step.
@@ -59,6 +69,9 @@ struct Surroundings {
   std::uint64_t cycle = 0;  ///< of the robot, by which what is perceived counts
   Registered registration;
   std::shared_ptr<const maps::Topology> topology;  ///< none: no map
+  std::shared_ptr<const maps::Map> map;            ///< what the topology is of
+  /// Of the sonars, that came in this cycle; none: nothing is sensed.
+  const std::vector<lps::SonarReading>* readings = nullptr;
   std::uint64_t map_revision = 0;
 };
 
