@@ -154,5 +154,19 @@ TEST(VisionEyes, APersonIsFollowedAroundACorner) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
+// Manual 9.3, search_and_go_blob: behind its back at first.
+TEST(VisionEyes, AColorIsSearchedForAndApproached) {
+  WholeOptions options;
+  options.drive.world = world_with("can", "post can 17800 10500 80 color red tall 300");
+  options.drive.start_in_world = Pose{17.5, 14.0, radians(90.0)};
+  options.map = "office-floor";
+  options.sees = vision_eyes(Stereo::bands);
+  Whole whole(options);
+  const auto status = whole.achieve("blob-search", {intentions::text("channel", "a")}, 1800);
+  EXPECT_EQ(status.state, intentions::GoalState::kSucceeded) << status.reason;
+  EXPECT_LT((whole.truth().position() - Vec2(17.8, 10.5)).norm(), 1.3);
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
 }  // namespace
 }  // namespace saphira::test
