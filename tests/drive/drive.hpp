@@ -84,6 +84,13 @@ class Drive {
   Seen seen_;
 };
 
+/// Settings of a service that listens to the robot's sonars.
+template <class Settings>
+Settings with_sonars(const Drive& drive, Settings settings = {}) {
+  settings.sonars = drive.mounts();
+  return settings;
+}
+
 /// Drives through points one after the other, over and over where `loop` is set: go_to each, the
 /// next one when it is nearer than `radius`. The points are in the map; the caller says each cycle
 /// where the robot believes to be, or is.

@@ -18,13 +18,6 @@ namespace {
 constexpr std::uint64_t kEpoch = 1;
 constexpr std::uint64_t kOdom = 1;
 
-template <class T>
-T with_sonars(const Drive& drive) {
-  T settings;
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
 behaviors::Frame frame_of(intentions::Frame frame) {
   return frame == intentions::Frame::kRobot ? behaviors::Frame::robot
          : frame == intentions::Frame::kMap ? behaviors::Frame::map

@@ -13,33 +13,11 @@
 
 namespace saphira::test {
 
-namespace {
-
-interpretation::Settings seeing(const Drive& drive) {
-  interpretation::Settings settings;
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
-explore::Settings exploring(const Drive& drive) {
-  explore::Settings settings;
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
-registration::MapBuilderSettings with_sonars(registration::MapBuilderSettings settings,
-                                             const Drive& drive) {
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
-}  // namespace
-
 Building::Building(const DriveOptions& options, registration::MapBuilderSettings building)
     : drive(options),
-      interpretation(seeing(drive)),
-      builder(with_sonars(std::move(building), drive), {}, drive.seen().true_pose_in_world),
-      explorer(exploring(drive)) {}
+      interpretation(with_sonars<interpretation::Settings>(drive)),
+      builder(with_sonars(drive, std::move(building)), {}, drive.seen().true_pose_in_world),
+      explorer(with_sonars<explore::Settings>(drive)) {}
 
 void Building::perceive() {
   const Seen& seen = drive.advance();

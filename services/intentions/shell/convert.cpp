@@ -115,7 +115,7 @@ Argument from_bus(const v1::Argument& argument) {
   result.kind = from_bus(kKinds, argument.kind(), ArgumentKind::kText);
   result.number = argument.number();
   result.text = argument.text();
-  result.point = {argument.point().x(), argument.point().y(), argument.point().th()};
+  result.point = lps::from_bus(argument.point());
   result.frame = from_bus(kFrames, argument.frame(), Frame::kMap);
   return result;
 }
@@ -268,8 +268,7 @@ Robot from_bus(const v1::RobotState& robot) {
   result.connected = robot.status() != v1::MOTORS_NOT_CONNECTED;
   result.has_power = robot.status() != v1::MOTORS_NO_POWER;
   result.odom = robot.odom();
-  const v1::Pose2& pose = robot.pose_in_odom();
-  result.pose_in_odom = {pose.x(), pose.y(), pose.th()};
+  result.pose_in_odom = lps::from_bus(robot.pose_in_odom());
   result.velocity = robot.velocity();
   result.rotation_velocity = robot.rotation_velocity();
   result.left_stalled = robot.left_stalled();
@@ -361,8 +360,7 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   if (registration.stamp().cycle() + kRegistrationLease < cycle)
     return result;
   result.state = from_bus(kLocalizations, registration.state(), Localization::kLost);
-  const v1::Pose2& pose = registration.pose_in_map();
-  result.pose_in_map = {pose.x(), pose.y(), pose.th()};
+  result.pose_in_map = lps::from_bus(registration.pose_in_map());
   result.confidence = registration.confidence();
   result.environment = registration.environment();
   result.adds_features = registration.adds_features();
@@ -376,8 +374,7 @@ std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, s
   if (!known || registration.odom() != odom ||
       registration.stamp().cycle() + kRegistrationLease < cycle)
     return std::nullopt;
-  const v1::Pose2& pose = registration.odom_in_map();
-  return Pose{pose.x(), pose.y(), pose.th()};
+  return lps::from_bus(registration.odom_in_map());
 }
 
 std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception& perception,

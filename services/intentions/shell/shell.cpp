@@ -243,7 +243,7 @@ void Shell::look() {
     take_schemas();
   const ActivityFolders::News news = folders_.look();
   for (const std::string& error : news.errors)
-    node_.error(error + "\nWhat this file gave before stays in use.");
+    node_.error(error + (steps_ > 0 ? "\nWhat this file gave before stays in use." : ""));
   // At the start the behaviors are not known yet, and the shipped files are as everybody has them.
   if (steps_ > 0)
     for (const std::string& warning : news.warnings)

@@ -4,29 +4,13 @@
 #include <utility>
 
 namespace saphira::test {
-namespace {
-
-registration::Settings registration_settings(const Drive& drive) {
-  registration::Settings settings;
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
-interpretation::Settings interpretation_settings(const Drive& drive) {
-  interpretation::Settings settings;
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
-}  // namespace
-
 Localizer::Localizer(const DriveOptions& drive, maps::Map map, std::optional<Pose> pose_in_map)
     : drive_(drive),
       start_(drive_.seen().true_pose_in_world),
       last_in_odom_(drive_.seen().pose_in_odom),
       bent_in_odom_(last_in_odom_),
-      interpretation_(interpretation_settings(drive_)),
-      registration_(registration_settings(drive_), std::move(map), pose_in_map) {}
+      interpretation_(with_sonars<interpretation::Settings>(drive_)),
+      registration_(with_sonars<registration::Settings>(drive_), std::move(map), pose_in_map) {}
 
 const registration::Output& Localizer::advance() {
   const Seen& seen = drive_.advance();

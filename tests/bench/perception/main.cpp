@@ -110,7 +110,7 @@ DriveOptions drive_options(const Options& options, int seed, double errors) {
 
 void percepts(const Options& options, int seed, Result& result) {
   Drive drive(drive_options(options, seed, options.errors));
-  interpretation::Interpretation interpretation(settings_of(drive));
+  interpretation::Interpretation interpretation(with_sonars<interpretation::Settings>(drive));
   Score score(drive, map_of(options.world));
   Tour tour(patrol(options.world), true);
   while (static_cast<double>(drive.seen().cycle) < options.seconds * 10.0) {

@@ -33,7 +33,7 @@ using Act = std::function<void(Drive&)>;
 /// Steps `cycles` and adds up what was seen.
 void run(Drive& drive, const std::string& world, std::uint64_t cycles, const Act& act,
          Total& total) {
-  interpretation::Interpretation interpretation(settings_of(drive));
+  interpretation::Interpretation interpretation(with_sonars<interpretation::Settings>(drive));
   Score score(drive, map_of(world));
   while (drive.seen().cycle < cycles) {
     act(drive);
@@ -141,7 +141,7 @@ TEST(Perception, IsTheSameEachTimeToTheLastBit) {
     DriveOptions options;
     options.seed = 7;
     Drive drive(options);
-    interpretation::Interpretation interpretation(settings_of(drive));
+    interpretation::Interpretation interpretation(with_sonars<interpretation::Settings>(drive));
     Tour tour(patrol("office-floor"), true);
     std::vector<double> values;
     while (drive.seen().cycle < 1500) {

@@ -310,15 +310,9 @@ maps::Map map_of(const std::string& world) {
   return maps::load_map(find_file(config_folder() + "/maps", world, ".map"));
 }
 
-interpretation::Settings settings_of(const Drive& drive) {
-  interpretation::Settings settings;
-  settings.sonars = drive.mounts();
-  return settings;
-}
-
 std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles) {
   Drive drive(options);
-  interpretation::Settings settings = settings_of(drive);
+  auto settings = with_sonars<interpretation::Settings>(drive);
   settings.grid.window = 100.0;
   interpretation::Interpretation muriel(settings);
   settings.grid.model = interpretation::GridModel::cone;

@@ -98,6 +98,4 @@ std::vector<Vec2> patrol(const std::string& world);
 
 maps::Map map_of(const std::string& world);
 
-interpretation::Settings settings_of(const Drive& drive);
-
 }  // namespace saphira::test
