@@ -233,7 +233,7 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
   const auto began = Clock::now();
   bool taken_back = false;
   while (!stop.requested() && seconds_since(began) < kPatience) {
-    mind.listen(milliseconds(100), stop);
+    mind.listen(milliseconds(300), stop);
     if (mind.beliefs() == nullptr)
       continue;
     if (claimed(mind, name) == nullptr) {
@@ -242,8 +242,9 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
       std::cerr << "saphira: nobody has said " << name << " with saphira beliefs set\n";
       return bus::kExitFailed;
     }
-    if (!taken_back && writer.matched() > 0)
-      taken_back = writer.dispose(sample) && writer.wait_acknowledged(1000);
+    // Again and again: who hears it only after it has been disposed hears nothing.
+    if (writer.matched() > 0)
+      taken_back = writer.dispose(sample) || taken_back;
   }
   std::cerr << "saphira: it is still taken for true; " << who_is_there(options, mind.processes())
             << '\n';
