@@ -1,7 +1,9 @@
 #include "drive/vision_eyes.hpp"
 
+#include <array>
 #include <cmath>
 #include <memory>
+#include <string_view>
 
 #include "saphira/sim/stereo.hpp"
 #include "saphira/sim/vision.hpp"
@@ -9,6 +11,9 @@
 
 namespace saphira::test {
 namespace {
+
+// Of the channels, untrained.
+constexpr std::array<std::string_view, 3> kColors{"red", "green", "blue"};
 
 vision::Bands bands_of(const std::array<sim::RangeBand, 3>& seen, const sim::StereoCamera& camera) {
   vision::Bands bands;
@@ -44,10 +49,9 @@ struct Looker {
           sim::to_pgm(sim::render_stereo(drive.scene(), robot, rig, noise), rig, seen.cycle));
       vision.see(stream.take().value(), seen.pose_in_odom);
     }
-    const char* const colors[] = {"red", "green", "blue"};  // of the channels, untrained
     vision::Channels channels;
     for (std::size_t i = 0; i < channels.size(); ++i)
-      if (const auto blob = sim::see_blob(drive.scene(), robot, sim::Camera{}, colors[i]))
+      if (const auto blob = sim::see_blob(drive.scene(), robot, sim::Camera{}, kColors.at(i)))
         channels[i] = {blob->x, blob->y, blob->area, blob->width, blob->height};
     vision.see(channels, seen.cycle, seen.pose_in_odom);
     return vision.things(seen.cycle, seen.pose_in_odom);

@@ -73,6 +73,7 @@ class Shapes {
     Shape shape{run.front(), run.back(), 0.0, band_[run.front()]->y(), band_[run.back()]->y(),
                 true};
     std::vector<double> depths;
+    depths.reserve(run.size());
     for (const std::size_t column : run)
       depths.push_back(depth(column));
     std::sort(depths.begin(), depths.end());

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kLongestHeader = 512;
 constexpr int kLargest = 4096;  // [pixels] a side
+constexpr std::string_view kComment = "# saphira stereo ";
 const char* const kSource = "stereo pictures";
 
 [[noreturn]] void wrong(const std::string& expected) {
@@ -72,7 +73,6 @@ std::optional<StereoPicture> PictureStream::take() {
     line = std::string_view(waiting_).substr(at, end - at);
     at = end + 1;
   }
-  constexpr std::string_view kComment = "# saphira stereo ";
   if (lines[0] != "P5" || !lines[1].starts_with(kComment) || lines[3] != "255")
     wrong("expected P5, a comment \"# saphira stereo cycle=...\", the size, and 255");
   StereoPicture picture;
