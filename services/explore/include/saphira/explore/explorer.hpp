@@ -93,12 +93,8 @@ class Explorer {
   Settings settings_;
   Output output_;
   Doing doing_ = Doing::choosing;
-  bool begun_ = false;
-  bool home_ = false;  ///< on the way home, or there
   Pose start_in_map_;
   std::optional<Lead> lead_;
-  bool turning_ = false;  ///< towards where it goes, on the spot
-  int stuck_ = 0;         ///< times that it came no farther on the way to this lead
   Vec2 probe_from_{0.0, 0.0};
   std::vector<Lead> tried_;
   std::vector<Lead> seen_open_;  ///< ways that were heard, not yet mapped
@@ -115,14 +111,18 @@ class Explorer {
   std::uint64_t look_cycle_ = 0;    ///< when this one was begun...
   std::uint64_t steady_cycle_ = 0;  ///< ...and since when the robot looks that way
   Vec2 look_from_{0.0, 0.0};
-  bool open_ = false;         ///< it ended in the open, with no wall ahead
-  bool in_corridor_ = false;  ///< what was probed last has become one
   /// The sides have been looked at; now it tries to get by what is ahead, begun so far along.
   std::optional<double> squeeze_;
   Vec2 progress_from_{0.0, 0.0};
   double progress_ = 0.0;
   std::uint64_t progress_cycle_ = 0;
   int given_up_ = 0;
+  int stuck_ = 0;  ///< times that it came no farther on the way to this lead
+  bool begun_ = false;
+  bool home_ = false;         ///< on the way home, or there
+  bool turning_ = false;      ///< towards where it goes, on the spot
+  bool open_ = false;         ///< it ended in the open, with no wall ahead
+  bool in_corridor_ = false;  ///< what was probed last has become one
 };
 
 }  // namespace saphira::explore
