@@ -133,7 +133,7 @@ class Registration::Self {
 
   ParticleCloud cloud_{settings_.cloud};
   std::map<int, double> weighed_;  // [m] of way when a sonar was weighed last
-  double way_ = 0.0;               // [m] ever, turns included
+  double way_ = 0.0;               // [m] ever
   double lead_ = 0.0;              // of the cloud before the filter
   double cloud_score_ = 0.0;
   bool leads_ = false;  // the cloud, and the filter is set by it
@@ -388,7 +388,9 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     return;
   }
   const double way = std::hypot(moved_.x, moved_.y);
-  way_ += way + 0.3 * std::abs(moved_.th);
+  // Turning on the spot shows the same things again: what the map does not have, as a door that is
+  // closed, would weigh more with each turn.
+  way_ += way;
   const double fading = std::exp(-way / settings_.lead_memory);
   lead_ *= fading;
   cloud_score_ *= fading;
@@ -423,7 +425,8 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     return;
   if (lead_ < -settings_.lead)
     cloud_.clear();  // and begins anew from the filter
-  else if (lead_ > settings_.lead && dense(there))
+  // Where the filter has fitted better on the whole, it is what is seen here that the map lacks.
+  else if (lead_ > settings_.lead && cloud_score_ > search_.own_score() && dense(there))
     follow(there, cloud_score_);
 }
 
