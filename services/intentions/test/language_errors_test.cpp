@@ -201,6 +201,8 @@ TEST(ActivityValues, ReadWhatTheyWrite) {
   EXPECT_THROW(parse_value("(a"), FileError);
   EXPECT_THROW(parse_value(""), FileError);
   EXPECT_THROW(parse_value("a b"), FileError);
+  EXPECT_THROW(parse_value("\"a\vb\""), FileError);
+  EXPECT_EQ(to_text(parse_value("\"a\tb\"")), "\"a b\"");
 }
 
 }  // namespace

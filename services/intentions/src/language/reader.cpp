@@ -203,7 +203,11 @@ Form Reader::read_text() {
       if (peek() == '\n')
         fail(form.line, form.column, "expected a \" for this one on the same line");
     }
-    form.text += peek();
+    // A text is written back on one line, in plain letters.
+    const auto byte = static_cast<unsigned char>(peek());
+    if (byte != '\t' && (byte < 0x20 || byte == 0x7f))
+      fail(line_, column_, "expected no control character");
+    form.text += byte == '\t' ? ' ' : peek();
     advance();
   }
   if (!more())
