@@ -409,6 +409,8 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     }
     cloud_.select();
   }
+  if (!leads_ && std::abs(lead_) <= settings_.lead)
+    return;  // neither is better
   const ParticleCloud::Estimate there = cloud_.estimate();
   if (leads_) {
     filter_.emplace(there.pose, there.covariance, there.drift, there.drift_variance,

@@ -17,13 +17,14 @@ double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// Figure 10, with behaviors of today: two goals, six intentions that wait for others, monitors that
-// wait for conditions, and a loop that computes.
+// Figure 10, with behaviors of today: what avoids beside what delivers, six intentions that wait
+// for others, monitors that wait for conditions, and a loop that computes.
 const char* const kDelivery = R"(
-(defintention :avoid :concurrent t
+(defintention :avoid
   :goals '((INTEND :AvoidCollision () :blocking t :priority 0 :name collide)))
 (defintention :deliver-object
-  :goals '((INTEND :watch-robot () :blocking nil)
+  :goals '((INTEND :avoid () :blocking nil)
+           (INTEND :watch-robot () :blocking nil)
            (INTEND :watch-time () :blocking nil)
            (INTEND :plan-and-execute ((dest . 'EJ-231)))))
 (defintention :watch-robot :goals '((WAIT-FOR (or stalled (not connected)) :forever t)))
@@ -107,7 +108,7 @@ double cycle_ms(Executor& executor, Inputs& inputs, const Outputs& first, int cy
 double intentions_12_ms() {
   const auto delivery = executor(kDelivery);
   Inputs inputs = first_inputs();
-  inputs.events = {ask(1, "avoid"), ask(2, "deliver-object")};
+  inputs.events = {ask(1, "deliver-object")};
   Outputs out;
   for (int i = 0; i < 20; ++i) {
     ++inputs.cycle;
