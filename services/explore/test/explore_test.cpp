@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "building.hpp"
+#include "drive/building.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/route.hpp"

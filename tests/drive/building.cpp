@@ -1,4 +1,4 @@
-#include "building.hpp"
+#include "drive/building.hpp"
 
 #include <algorithm>
 #include <array>
