@@ -149,9 +149,10 @@ void percepts(const Options& options, int seed, Result& result) {
                  seed, static_cast<unsigned long long>(m.cycle), static_cast<int>(m.percept.type),
                  m.pose_in_world.x, m.pose_in_world.y, degrees(m.pose_in_world.th),
                  m.percept.length, m.percept.width, m.percept.confidence);
-  for (const auto& [id, cycle] : score.missed())
-    std::fprintf(stderr, "seed %d cycle %llu: door %u passed and not found\n", seed,
-                 static_cast<unsigned long long>(cycle), id);
+  for (const Passage& passage : score.passages())
+    if (!passage.found)
+      std::fprintf(stderr, "seed %d cycle %llu: door %u passed and not found\n", seed,
+                   static_cast<unsigned long long>(passage.cycle), passage.door);
 }
 
 void print(const Options& options, const Result& result) {

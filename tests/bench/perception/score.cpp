@@ -36,7 +36,20 @@ double nearest_end(const sim::Things& things, const Vec2& at) {
   return least;
 }
 
+const Vec2& nearest(const std::vector<Vec2>& path, const Vec2& at) {
+  return *std::min_element(path.begin(), path.end(), [&](const Vec2& a, const Vec2& b) {
+    return (a - at).squaredNorm() < (b - at).squaredNorm();
+  });
+}
+
 }  // namespace
+
+Score::Score(Drive& drive, maps::Map map)
+    : Score(std::move(map), [&drive](const Vec2& about) {
+        sim::Things things{drive.world().segments, {}};
+        drive.scene().add_movable(about, 12.0, drive.robot().number(), things);
+        return things;
+      }) {}
 
 Pose Score::in_world(const lps::Percept& percept) const {
   const std::size_t cycle =
@@ -64,7 +77,7 @@ bool Score::is_surface(const sim::Things& things, const Pose& middle,
 
 const maps::Feature* Score::door_at(const Pose& at, double width) const {
   for (const maps::Feature& feature : map_.features)
-    if (feature.type == PointType::door &&
+    if ((feature.type == PointType::door || feature.type == PointType::breach) &&
         (feature.pose_in_map.position() - at.position()).norm() <= kOnDoor &&
         parallel(feature.pose_in_map.th, at.th) <= kDoorAskew &&
         std::abs(feature.width - width) <= kDoorWidth)
@@ -72,9 +85,8 @@ const maps::Feature* Score::door_at(const Pose& at, double width) const {
   return nullptr;
 }
 
-bool Score::is_real(Drive& drive, const lps::Percept& percept, const Pose& at) {
-  sim::Things things{drive.world().segments, {}};
-  drive.scene().add_movable(at.position(), 12.0, drive.robot().number(), things);
+bool Score::is_real(const lps::Percept& percept, const Pose& at) {
+  const sim::Things things = surfaces_(at.position());
   switch (percept.type) {
     case PointType::wall: {
       if (!is_surface(things, at, percept))
@@ -140,29 +152,35 @@ bool Score::is_real(Drive& drive, const lps::Percept& percept, const Pose& at) {
   }
 }
 
-void Score::look(Drive& drive, const interpretation::Output& output) {
+void Score::look(const Drive& drive, const interpretation::Output& output) {
   const Seen& seen = drive.seen();
-  const Pose back = relative(seen.pose_in_odom, Pose{});
-  odom_in_world_.resize(seen.cycle + 1);
-  odom_in_world_[seen.cycle] = compose(seen.true_pose_in_world, back);
-  for (const lps::Percept& percept : output.percepts) {
-    Known& known = known_[percept.id];
-    if (known.judged && percept.seen != seen.cycle)
-      continue;
-    known.judged = true;
-    known.type = percept.type;
-    const Pose at = in_world(percept);
-    if (!is_real(drive, percept, at)) {
-      if (known.real)
-        mistakes_.push_back({percept, at, seen.cycle});
-      known.real = false;
-    }
-  }
-  pass(output);
+  look({seen.cycle, seen.pose_in_odom, seen.true_pose_in_world, seen.velocity}, output);
 }
 
-void Score::pass(const interpretation::Output& output) {
-  const Seen& seen = drive_->seen();
+void Score::look(const Moment& moment, const interpretation::Output& output) {
+  odom_in_world_.resize(moment.cycle + 1);
+  odom_in_world_[moment.cycle] =
+      compose(moment.true_pose_in_world, relative(moment.pose_in_odom, Pose{}));
+  for (const lps::Percept& percept : output.percepts) {
+    const auto known = judged_.find(percept.id);
+    if (known != judged_.end() && percept.seen != moment.cycle)
+      continue;
+    const Pose at = in_world(percept);
+    if (covered_ && !covered_(at.position()))
+      continue;
+    Judged& judged = judged_[percept.id];
+    judged.percept = percept;
+    judged.pose_in_world = at;
+    if (!is_real(percept, at)) {
+      if (judged.real)
+        mistakes_.push_back({percept, at, moment.cycle});
+      judged.real = false;
+    }
+  }
+  pass(moment, output);
+}
+
+void Score::pass(const Moment& seen, const interpretation::Output& output) {
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& door = map_.features[i];
     if (door.type != PointType::door)
@@ -191,8 +209,7 @@ void Score::pass(const interpretation::Output& output) {
     if (passing.waits && (passing.found || seen.cycle >= passing.until)) {
       ++passed_;
       found_ += passing.found ? 1 : 0;
-      if (!passing.found)
-        missed_.emplace_back(door.id, seen.cycle);
+      passages_.push_back({door.id, seen.cycle, passing.found});
       passing = {};
     }
   }
@@ -200,51 +217,72 @@ void Score::pass(const interpretation::Output& output) {
 
 Count Score::count(PointType type) const {
   Count count;
-  for (const auto& [id, known] : known_)
-    if (known.type == type) {
+  for (const auto& [id, judged] : judged_)
+    if (judged.percept.type == type) {
       ++count.reported;
-      count.real += known.real ? 1 : 0;
+      count.real += judged.real ? 1 : 0;
     }
   return count;
 }
 
-GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
-                     const maps::Map& map, const std::vector<Vec2>& path) {
-  const double cell = grid.settings().resolution;
-  GridScore score;
-  if (path.empty())
-    return score;
-  const auto nearest = [&](const Vec2& at) {
-    return *std::min_element(path.begin(), path.end(), [&](const Vec2& a, const Vec2& b) {
-      return (a - at).squaredNorm() < (b - at).squaredNorm();
-    });
+bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
+               const std::function<bool(const Vec2& from, const Vec2& to)>& blocked) {
+  return !path.empty() && (nearest(path, at) - at).norm() <= 2.0 && !blocked(nearest(path, at), at);
+}
+
+std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const maps::Map& map) {
+  std::vector<maps::Feature> out;
+  for (const maps::Feature& door : map.features) {
+    const Vec2 at = door.pose_in_map.position();
+    if (door.type == PointType::door && !path.empty() && (nearest(path, at) - at).norm() <= 1.5)
+      out.push_back(door);
+  }
+  return out;
+}
+
+GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::vector<Vec2>& path) {
+  const double cell = interpretation::GridSettings{}.resolution;
+  GridTruth truth;
+  const auto blocked = [&](const Vec2& from, const Vec2& at) {
+    const double apart = (from - at).norm();
+    return sim::cast_ray(world.segments, from, (at - from) / apart, apart - 0.02).has_value();
   };
-  int surfaces = 0;
-  int kept = 0;
   for (const sim::Segment& segment : world.segments) {
     const Vec2 way = segment.to - segment.from;
     const int steps = static_cast<int>(way.norm() / cell);
     for (int i = 0; i <= steps; ++i) {
       const Vec2 at = segment.from + (i + 0.5) / (steps + 1.0) * way;
-      const Vec2 from = nearest(at);
-      const double apart = (from - at).norm();
-      if (apart > 2.0 || sim::cast_ray(world.segments, from, (at - from) / apart, apart - 0.02))
-        continue;
-      ++surfaces;
-      double most = 0.0;
-      for (int x = -1; x <= 1; ++x)
-        for (int y = -1; y <= 1; ++y)
-          most = std::max(most, grid.probability(at + cell * Vec2(x, y)).value_or(0.0));
-      kept += most > 0.5 ? 1 : 0;
+      if (seen_from(path, at, blocked))
+        truth.surfaces.push_back(at);
     }
   }
-  score.walls = surfaces == 0 ? 0.0 : static_cast<double>(kept) / surfaces;
+  truth.doorways = doorways_beside(path, map);
+  truth.cell = [&world, cell](const Vec2& at) {
+    if (at.x() < 0.0 || at.y() < 0.0 || at.x() >= world.width || at.y() >= world.height)
+      return GridTruth::Cell::unknown;
+    const double off = sim::distance(world.segments, at);
+    return off <= 0.71 * cell ? GridTruth::Cell::occupied
+           : off > 0.15       ? GridTruth::Cell::free
+                              : GridTruth::Cell::unknown;
+  };
+  return truth;
+}
+
+GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
+  const double cell = grid.settings().resolution;
+  GridScore score;
+  int kept = 0;
+  for (const Vec2& at : truth.surfaces) {
+    double most = 0.0;
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        most = std::max(most, grid.probability(at + cell * Vec2(x, y)).value_or(0.0));
+    kept += most > 0.5 ? 1 : 0;
+  }
+  score.walls = truth.surfaces.empty() ? 0.0 : kept / static_cast<double>(truth.surfaces.size());
   int inside = 0;
   int blocked = 0;
-  for (const maps::Feature& door : map.features) {
-    if (door.type != PointType::door ||
-        (nearest(door.pose_in_map.position()) - door.pose_in_map.position()).norm() > 1.5)
-      continue;
+  for (const maps::Feature& door : truth.doorways) {
     // Of the opening, without 0.15 m at its posts and 0.2 m to either side of the wall.
     const int deep = static_cast<int>(0.2 / cell);
     const int wide = static_cast<int>((door.width / 2.0 - 0.15) / cell);
@@ -263,25 +301,27 @@ GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
   double all_occupied = 0.0;
   double all_empty = 0.0;
   double wrong = 0.0;
-  const int rows = static_cast<int>(world.height / cell);
-  const int columns = static_cast<int>(world.width / cell);
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const Vec2 at = cell * Vec2(column + 0.5, row + 0.5);
-      const auto probability = grid.probability(at);
-      if (!probability)
-        continue;
-      const double off = sim::distance(world.segments, at);
-      const auto step = static_cast<std::size_t>(*probability * 200.0);
-      if (off <= 0.71 * cell) {
-        ++occupied[step];
-        ++all_occupied;
-      } else if (off > 0.15) {
-        ++empty[step];
-        ++all_empty;
-        wrong += *probability > 0.5 ? 1.0 : 0.0;
+  for (const interpretation::TileKey& key : grid.tiles())
+    for (long row = 0; row < interpretation::Grid::kTile; ++row)
+      for (long column = 0; column < interpretation::Grid::kTile; ++column) {
+        const Vec2 at =
+            cell *
+            Vec2(static_cast<double>(key.column * interpretation::Grid::kTile + column) + 0.5,
+                 static_cast<double>(key.row * interpretation::Grid::kTile + row) + 0.5);
+        const auto probability = grid.probability(at);
+        if (!probability)
+          continue;
+        const GridTruth::Cell is = truth.cell(at);
+        const auto step = static_cast<std::size_t>(*probability * 200.0);
+        if (is == GridTruth::Cell::occupied) {
+          ++occupied[step];
+          ++all_occupied;
+        } else if (is == GridTruth::Cell::free) {
+          ++empty[step];
+          ++all_empty;
+          wrong += *probability > 0.5 ? 1.0 : 0.0;
+        }
       }
-    }
   double below = 0.0;
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     score.auc += occupied[i] * (below + empty[i] / 2.0);
@@ -330,9 +370,8 @@ std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_
     if (seen.cycle % 10 == 0)
       path.push_back(seen.true_pose_in_world.position());
   }
-  const maps::Map map = map_of(options.world);
-  return {score_grid(muriel.grid(), drive.world(), map, path),
-          score_grid(cone.grid(), drive.world(), map, path)};
+  const GridTruth truth = grid_truth(drive.world(), map_of(options.world), path);
+  return {score_grid(muriel.grid(), truth), score_grid(cone.grid(), truth)};
 }
 
 }  // namespace saphira::test

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,13 +28,44 @@ struct Mistake {
   std::uint64_t cycle = 0;
 };
 
+/// A robot somewhere on its way.
+struct Moment {
+  std::uint64_t cycle = 0;
+  Pose pose_in_odom;
+  Pose true_pose_in_world;
+  double velocity = 0.0;
+};
+
+/// A door that the robot went by.
+struct Passage {
+  std::uint32_t door = 0;   ///< its id in the map
+  std::uint64_t cycle = 0;  ///< when it was judged
+  bool found = false;
+};
+
+/// What was reported, as it stood last.
+struct Judged {
+  lps::Percept percept;
+  Pose pose_in_world;
+  bool real = true;  ///< in every report
+};
+
 /// Holds percepts against the world and its map while a robot drives: a percept is real when every
 /// report of it is. Doors count as passed where the robot goes by along their wall.
 class Score {
  public:
-  Score(const Drive& drive, maps::Map map) : drive_(&drive), map_(std::move(map)) {}
+  /// The surfaces about a place, as they are now.
+  using Surfaces = std::function<sim::Things(const Vec2& about)>;
+  /// Whether all that there is at a place is known; what is reported elsewhere is not judged.
+  using Covered = std::function<bool(const Vec2& at)>;
 
-  void look(Drive& drive, const interpretation::Output& output);
+  Score(maps::Map map, Surfaces surfaces, Covered covered = {})
+      : map_(std::move(map)), surfaces_(std::move(surfaces)), covered_(std::move(covered)) {}
+  /// In a simulated world. The drive outlives the score.
+  Score(Drive& drive, maps::Map map);
+
+  void look(const Moment& moment, const interpretation::Output& output);
+  void look(const Drive& drive, const interpretation::Output& output);
 
   Count walls() const { return count(lps::PointType::wall); }
   Count doors() const { return count(lps::PointType::door); }
@@ -42,8 +74,9 @@ class Score {
   int doors_found() const { return found_; }
   double recall() const { return passed_ == 0 ? 1.0 : static_cast<double>(found_) / passed_; }
   const std::vector<Mistake>& mistakes() const { return mistakes_; }
-  /// Which doors were passed and not found, by id and cycle.
-  const std::vector<std::pair<std::uint32_t, std::uint64_t>>& missed() const { return missed_; }
+  const std::vector<Passage>& passages() const { return passages_; }
+  /// By id.
+  const std::map<std::uint32_t, Judged>& judged() const { return judged_; }
 
   /// Errors of what is real, and the same in sigmas.
   std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
@@ -51,11 +84,6 @@ class Score {
   std::vector<double> breach_place, breach_place_sigmas;
 
  private:
-  struct Known {
-    lps::PointType type{};
-    bool real = true;
-    bool judged = false;
-  };
   struct Passing {
     bool under_way = false;
     bool found = false;
@@ -64,31 +92,43 @@ class Score {
     bool waits = false;  // for a report
   };
   Pose in_world(const lps::Percept& percept) const;
-  bool is_real(Drive& drive, const lps::Percept& percept, const Pose& in_world);
+  bool is_real(const lps::Percept& percept, const Pose& in_world);
   bool is_surface(const sim::Things& things, const Pose& middle, const lps::Percept& wall) const;
   const maps::Feature* door_at(const Pose& in_world, double width) const;
-  void pass(const interpretation::Output& output);
+  void pass(const Moment& moment, const interpretation::Output& output);
 
-  const Drive* drive_;
   maps::Map map_;
+  Surfaces surfaces_;
+  Covered covered_;
   std::vector<Pose> odom_in_world_;  // by cycle
-  std::map<std::uint32_t, Known> known_;
+  std::map<std::uint32_t, Judged> judged_;
   std::map<std::size_t, Passing> passing_;
   int passed_ = 0;
   int found_ = 0;
   std::vector<Mistake> mistakes_;
-  std::vector<std::pair<std::uint32_t, std::uint64_t>> missed_;
+  std::vector<Passage> passages_;
 };
 
-/// A grid in the frame of the world, held against it.
+/// What a grid is held against, in its frame.
+struct GridTruth {
+  enum class Cell { unknown, free, occupied };
+  std::vector<Vec2> surfaces;           ///< points of those within 2 m of the way that it sees
+  std::vector<maps::Feature> doorways;  ///< open ones, within 1.5 m of it
+  std::function<Cell(const Vec2& at)> cell;
+};
+/// Of a point within 2 m that no `blocked` hides from the nearest point of the way.
+bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
+               const std::function<bool(const Vec2& from, const Vec2& to)>& blocked);
+std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const maps::Map& map);
+GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::vector<Vec2>& path);
+
 struct GridScore {
   double walls = 0.0;     ///< share of the surfaces along the way that are in it
   double doorways = 0.0;  ///< share of the open doorways along the way that it takes for blocked
   double free = 0.0;      ///< share of the free cells that it takes for occupied
   double auc = 0.0;       ///< that an occupied cell is likelier than a free one
 };
-GridScore score_grid(const interpretation::Grid& grid, const sim::World& world,
-                     const maps::Map& map, const std::vector<Vec2>& path);
+GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth);
 /// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: what is
 /// compared is the model alone.
 std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles);
