@@ -5,53 +5,49 @@
 #include <limits>
 #include <stdexcept>
 
+#include "geometry/shell/convert.hpp"
+#include "saphira/base/enum_pairs.hpp"
+
 namespace saphira::bridge {
 
 namespace {
 
 constexpr std::size_t kMaxText = 255;  // what a writer that sends novels may say of itself
 
-v1::MotorStatus to_bus(protocol::Motors motors) {
-  switch (motors) {
-    case protocol::Motors::kNoPower:
-      return v1::MOTORS_NO_POWER;
-    case protocol::Motors::kMoving:
-      return v1::MOTORS_MOVING;
-    case protocol::Motors::kStopped:
-      break;
-  }
-  return v1::MOTORS_STOPPED;
-}
-
-v1::Role to_bus(authority::Role role) {
-  switch (role) {
-    case authority::Role::estop:
-      return v1::ROLE_ESTOP;
-    case authority::Role::teleop:
-      return v1::ROLE_TELEOP;
-    case authority::Role::direct:
-      return v1::ROLE_DIRECT;
-    case authority::Role::behaviors:
-      return v1::ROLE_BEHAVIORS;
-    case authority::Role::none:
-      break;
-  }
-  return v1::ROLE_NONE;
-}
-
-v1::GuardAction to_bus(authority::GuardAction action) {
-  switch (action) {
-    case authority::GuardAction::limit:
-      return v1::GUARD_LIMIT;
-    case authority::GuardAction::slow:
-      return v1::GUARD_SLOW;
-    case authority::GuardAction::stop:
-      return v1::GUARD_STOP;
-    case authority::GuardAction::none:
-      break;
-  }
-  return v1::GUARD_NONE;
-}
+constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{{{
+    {protocol::Motors::kStopped, v1::MOTORS_STOPPED},
+    {protocol::Motors::kMoving, v1::MOTORS_MOVING},
+    {protocol::Motors::kNoPower, v1::MOTORS_NO_POWER},
+}}};
+constexpr EnumPairs<authority::Role, v1::Role, 5> kRoles{{{
+    {authority::Role::none, v1::ROLE_NONE},
+    {authority::Role::estop, v1::ROLE_ESTOP},
+    {authority::Role::teleop, v1::ROLE_TELEOP},
+    {authority::Role::direct, v1::ROLE_DIRECT},
+    {authority::Role::behaviors, v1::ROLE_BEHAVIORS},
+}}};
+constexpr EnumPairs<authority::GuardAction, v1::GuardAction, 4> kGuardActions{{{
+    {authority::GuardAction::none, v1::GUARD_NONE},
+    {authority::GuardAction::limit, v1::GUARD_LIMIT},
+    {authority::GuardAction::slow, v1::GUARD_SLOW},
+    {authority::GuardAction::stop, v1::GUARD_STOP},
+}}};
+constexpr EnumPairs<reflector::Translation, v1::TranslationMode, 3> kTranslations{{{
+    {reflector::Translation::none, v1::TRANSLATION_NONE},
+    {reflector::Translation::velocity, v1::TRANSLATION_VELOCITY},
+    {reflector::Translation::position, v1::TRANSLATION_POSITION},
+}}};
+constexpr EnumPairs<reflector::Rotation, v1::RotationMode, 4> kRotations{{{
+    {reflector::Rotation::none, v1::ROTATION_NONE},
+    {reflector::Rotation::velocity, v1::ROTATION_VELOCITY},
+    {reflector::Rotation::heading, v1::ROTATION_HEADING},
+    {reflector::Rotation::relative_heading, v1::ROTATION_RELATIVE_HEADING},
+}}};
+constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionModes{{{
+    {protocol::VisionChannel::Mode::kBlob, v1::VISION_BLOB},
+    {protocol::VisionChannel::Mode::kBlobWithBox, v1::VISION_BLOB_BOX},
+    {protocol::VisionChannel::Mode::kLine, v1::VISION_LINE},
+}}};
 
 template <class T>
 T short_of(unsigned value) {
@@ -66,28 +62,20 @@ std::vector<T> first(std::vector<T> values, std::size_t count) {
 
 }  // namespace
 
-v1::Pose2 to_bus(const Pose& pose) {
-  v1::Pose2 out;
-  out.x(pose.x);
-  out.y(pose.y);
-  out.th(pose.th);
-  return out;
-}
-
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
   const protocol::Information& in = state.information;
   v1::RobotState out;
   out.stamp(stamp);
   out.odom(state.odom);
-  out.pose_in_odom(to_bus(state.pose_in_odom));
+  out.pose_in_odom(saphira::to_bus(state.pose_in_odom));
   out.velocity(in.velocity);
   out.rotation_velocity(in.rotation_velocity);
   out.left_velocity(in.left_velocity);
   out.right_velocity(in.right_velocity);
   out.target_velocity(state.target_velocity);
   out.target_heading_in_odom(state.target_heading_in_odom);
-  out.status(to_bus(in.motors));
+  out.status(kMotors.theirs(in.motors));
   out.left_stalled(in.left_stalled);
   out.right_stalled(in.right_stalled);
   out.bumpers(in.bumpers);
@@ -115,13 +103,10 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
 }
 
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet) {
-  using Mode = protocol::VisionChannel::Mode;
   v1::VisionChannels out;
   for (const protocol::VisionChannel& channel : packet.channels) {
     v1::VisionChannel each;
-    each.mode(channel.mode == Mode::kLine          ? v1::VISION_LINE
-              : channel.mode == Mode::kBlobWithBox ? v1::VISION_BLOB_BOX
-                                                   : v1::VISION_BLOB);
+    each.mode(kVisionModes.theirs(channel.mode));
     each.x(channel.x);
     each.y(channel.y);
     each.area(channel.area);
@@ -160,7 +145,7 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
       break;
     v1::SonarPose sonar;
     sonar.sonar(unit.number);
-    sonar.pose_in_robot(to_bus(unit.pose_in_robot));
+    sonar.pose_in_robot(saphira::to_bus(unit.pose_in_robot));
     out.sonars().push_back(sonar);
   }
   return out;
@@ -170,19 +155,19 @@ v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarde
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
   v1::Grant out;
   out.stamp(stamp);
-  out.role(to_bus(grant.role));
+  out.role(kRoles.theirs(grant.role));
   out.source(grant.source);
   out.reason(grant.reason);
   out.expires_in(grant.expires_in);
   out.command_age(grant.command_age);
-  out.guard(to_bus(guarded.action));
+  out.guard(kGuardActions.theirs(guarded.action));
   out.guard_reason(guarded.reason);
   out.velocity(guarded.velocity);
   for (const authority::Refusal& refusal : refused) {
     if (out.refused().size() == 16)
       break;
     v1::Refusal r;
-    r.role(to_bus(refusal.role));
+    r.role(kRoles.theirs(refusal.role));
     r.source(refusal.source);
     r.reason(refusal.reason);
     out.refused().push_back(r);
@@ -212,29 +197,8 @@ std::string trouble(const v1::MotorCommand& command) {
 
 reflector::Motion to_motion(const v1::MotorCommand& command) {
   reflector::Motion out;
-  switch (command.translation()) {
-    case v1::TRANSLATION_NONE:
-      break;
-    case v1::TRANSLATION_VELOCITY:
-      out.translation = reflector::Translation::velocity;
-      break;
-    case v1::TRANSLATION_POSITION:
-      out.translation = reflector::Translation::position;
-      break;
-  }
-  switch (command.rotation()) {
-    case v1::ROTATION_NONE:
-      break;
-    case v1::ROTATION_VELOCITY:
-      out.rotation = reflector::Rotation::velocity;
-      break;
-    case v1::ROTATION_HEADING:
-      out.rotation = reflector::Rotation::heading;
-      break;
-    case v1::ROTATION_RELATIVE_HEADING:
-      out.rotation = reflector::Rotation::relative_heading;
-      break;
-  }
+  out.translation = kTranslations.ours(command.translation(), reflector::Translation::none);
+  out.rotation = kRotations.ours(command.rotation(), reflector::Rotation::none);
   out.velocity = command.velocity();
   out.distance = command.distance();
   out.move = command.move();

@@ -24,7 +24,6 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
 v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
                             const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
                             const std::string& link, bool lockstep);
-v1::Pose2 to_bus(const Pose& pose);
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet);
 
 /// A grant, what the guard did to it, the velocity that was sent, who was refused.

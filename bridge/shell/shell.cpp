@@ -15,6 +15,7 @@
 
 #include "convert.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace saphira::bridge {
@@ -60,10 +61,10 @@ std::vector<std::uint8_t> stop_packets() {
 }
 
 std::uint64_t driver_of(const authority::WriterId& writer) {
-  std::uint64_t out = 0xcbf29ce484222325ULL;  // FNV-1a
+  Fnv1a hash;
   for (const std::uint8_t byte : writer)
-    out = (out ^ byte) * 0x100000001b3ULL;
-  return out;
+    hash.add(byte);
+  return hash.value();
 }
 
 std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -18,11 +19,8 @@
 namespace saphira::test {
 namespace {
 
-bus::NodeOptions options(const std::string& robot) {
-  bus::NodeOptions options;
-  options.name = "test";
-  options.robot = robot;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain()));
+bus::NodeOptions in_lockstep(const std::string& robot) {
+  bus::NodeOptions options = node_options("test", robot);
   options.lockstep = true;
   return options;
 }
@@ -81,7 +79,7 @@ class Walker {
 
   TempDir folder;
   std::string robot = unique_robot();
-  bus::Node node{options(robot)};
+  bus::Node node{in_lockstep(robot)};
   bus::GoalClient goals{node, "test"};
   bus::Writer<v1::StepPermit> permits = node.writer(bus::topics::kStepPermit);
   bus::Reader<v1::Vision> visions = node.reader(bus::topics::kVision);

@@ -3,29 +3,20 @@
 #include <cmath>
 #include <filesystem>
 
+#include "node_options.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/sim/trace.hpp"
 
 namespace saphira::test {
-
-namespace {
-
-bus::NodeOptions node_options(const std::string& robot) {
-  bus::NodeOptions options;
-  options.name = "test";
-  options.robot = robot;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain()));
-  return options;
-}
-
-}  // namespace
 
 bool Truth::still() const {
   return std::abs(velocity) < 0.005 && std::abs(rotation_velocity) < 0.01;
 }
 
 System::System(std::string bridge_port)
-    : bridge_port_(std::move(bridge_port)), node_(node_options(robot_)), goals_(node_, "test") {
+    : bridge_port_(std::move(bridge_port)),
+      node_(node_options("test", robot_)),
+      goals_(node_, "test") {
   if (bridge_port_.empty())
     bridge_port_ = "unix:" + simulator_socket();
 }

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <thread>
 
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
@@ -31,7 +32,7 @@ namespace topics = bus::topics;
 /// a thread, until the object goes.
 class Scripted {
  public:
-  explicit Scripted(const std::string& robot) : options_(make_options(robot)) {
+  explicit Scripted(const std::string& robot) : options_(test::node_options("bridge", robot)) {
     thread_ = std::thread([this] { run(); });
     while (!up_)
       std::this_thread::yield();
@@ -51,14 +52,6 @@ class Scripted {
   int withdrawn() const { return withdrawn_; }
 
  private:
-  static bus::NodeOptions make_options(const std::string& robot) {
-    bus::NodeOptions options;
-    options.name = "bridge";
-    options.robot = robot;
-    options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
-    return options;
-  }
-
   void run() {
     bus::Node node(options_);
     auto robots = node.writer(topics::kRobotState);
@@ -252,11 +245,7 @@ TEST_F(CliTest, ListShowsEndpointsAndMismatches) {
 }
 
 TEST_F(CliTest, LogShowsWhatAProgramSays) {
-  bus::NodeOptions options;
-  options.name = "speaker";
-  options.robot = robot_;
-  options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
-  bus::Node node(options);
+  bus::Node node(test::node_options("speaker", robot_));
   node.warn("the kettle boils");
   const Outcome outcome = run({"log", "-n", "1"});
   EXPECT_EQ(outcome.code, 0);

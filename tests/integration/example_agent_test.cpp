@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "installed.hpp"
+#include "node_options.hpp"
 #include "scripted_bus.hpp"
 
 namespace saphira::intentions {
@@ -17,10 +18,7 @@ TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
   if (HasFatalFailure())
     return;
 
-  bus::NodeOptions options;
-  options.name = "robot";
-  options.robot = test::unique_robot();
-  options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
+  const bus::NodeOptions options = test::node_options("robot", test::unique_robot());
   const std::map<std::string, std::string> environment = {{"SAPHIRA_ROBOT", options.robot},
                                                           {"SAPHIRA_DOMAIN", test::domain()}};
   test::Process service({installed.program("saphira-intentions")}, installed.path("service.log"),

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "installed.hpp"
+#include "node_options.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/topics.hpp"
 
@@ -24,10 +25,7 @@ TEST(ExamplePlugin, IsBuiltFromTheInstalledTreeAndLoadedByTheService) {
   EXPECT_NE(entries.find("saphira_DIR:PATH=" + installed.prefix()), std::string::npos);
   EXPECT_EQ(entries.find("fastrtps_DIR"), std::string::npos);
 
-  bus::NodeOptions options;
-  options.name = "reader";
-  options.robot = test::unique_robot();
-  options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
+  const bus::NodeOptions options = test::node_options("reader", test::unique_robot());
   const std::map<std::string, std::string> environment = {{"SAPHIRA_ROBOT", options.robot},
                                                           {"SAPHIRA_DOMAIN", test::domain()}};
   const std::string plugin = build + "/hold_distance.so";

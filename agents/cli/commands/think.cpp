@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "mind.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/cli/displays.hpp"
 
 namespace saphira::cli {
@@ -205,11 +206,10 @@ constexpr const char* kClaimant = "saphira beliefs";
 /// What this command claims of a name is one instance, whoever types it: the next one changes it,
 /// and unset finds it. One that is held is its holder's.
 v1::BeliefClaim claim_of(const std::string& name) {
-  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
-  for (const char c : kClaimant + (" " + name))
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  Fnv1a hash;
+  hash.add(kClaimant + (" " + name));
   v1::BeliefClaim sample;
-  sample.id().writer(hash);
+  sample.id().writer(hash.value());
   sample.id().number(1);
   sample.source(kClaimant);
   sample.name(name);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::cli {
@@ -36,21 +37,11 @@ Row parse_row(std::string_view line, int number, const std::string& file) {
   return row;
 }
 
-class Fnv1a {
- public:
-  void add(std::string_view text) {
-    for (const char c : text)
-      value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  }
-  std::string hex() const {
-    std::array<char, 17> text{};
-    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value_));
-    return text.data();
-  }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
-};
+std::string hex(std::uint64_t value) {
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
+  return text.data();
+}
 
 }  // namespace
 
@@ -99,7 +90,7 @@ Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std:
     hash.add(line);
     hash.add("\n");
   }
-  track.hash = hash.hex();
+  track.hash = hex(hash.value());
   return track;
 }
 

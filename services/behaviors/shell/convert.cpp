@@ -1,6 +1,7 @@
 #include "behaviors/shell/convert.hpp"
 
 #include "lps/shell/convert.hpp"
+#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::behaviors {
 namespace {
@@ -12,32 +13,23 @@ constexpr std::size_t kMostParameters = 16;
 constexpr std::size_t kMostChoices = 16;
 constexpr std::size_t kMostSchemas = 1024;
 
-Frame from_bus(v1::Frame frame) {
-  switch (frame) {
-    case v1::FRAME_ROBOT:
-      return Frame::robot;
-    case v1::FRAME_MAP:
-      return Frame::map;
-    default:
-      return Frame::odom;
-  }
-}
-
-v1::ControlAction to_bus(Action action) {
-  switch (action) {
-    case Action::turn_left:
-      return v1::CONTROL_TURN_LEFT;
-    case Action::turn_right:
-      return v1::CONTROL_TURN_RIGHT;
-    case Action::accelerate:
-      return v1::CONTROL_ACCELERATE;
-    case Action::decelerate:
-      return v1::CONTROL_DECELERATE;
-    case Action::speed:
-      break;
-  }
-  return v1::CONTROL_SPEED;
-}
+constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
+    {Frame::robot, v1::FRAME_ROBOT},
+    {Frame::odom, v1::FRAME_ODOM},
+    {Frame::map, v1::FRAME_MAP},
+}}};
+constexpr EnumPairs<Kind, v1::ArgumentKind, 3> kKinds{{{
+    {Kind::number, v1::ARGUMENT_NUMBER},
+    {Kind::text, v1::ARGUMENT_TEXT},
+    {Kind::point, v1::ARGUMENT_POINT},
+}}};
+constexpr EnumPairs<Action, v1::ControlAction, 5> kActions{{{
+    {Action::speed, v1::CONTROL_SPEED},
+    {Action::turn_left, v1::CONTROL_TURN_LEFT},
+    {Action::turn_right, v1::CONTROL_TURN_RIGHT},
+    {Action::accelerate, v1::CONTROL_ACCELERATE},
+    {Action::decelerate, v1::CONTROL_DECELERATE},
+}}};
 
 }  // namespace
 
@@ -58,8 +50,8 @@ RobotNow from_bus(const v1::RobotState& state) {
 Argument from_bus(const v1::Argument& argument) {
   switch (argument.kind()) {
     case v1::ARGUMENT_POINT:
-      return {argument.name(),
-              PlacedPoint{lps::from_bus(argument.point()), from_bus(argument.frame())}};
+      return {argument.name(), PlacedPoint{lps::from_bus(argument.point()),
+                                           kFrames.ours(argument.frame(), Frame::odom)}};
     case v1::ARGUMENT_TEXT:
       return {argument.name(), argument.text()};
     default:
@@ -106,7 +98,7 @@ v1::BehaviorState to_bus(const BehaviorState& state) {
     v1::RuleState out;
     out.name(rule.name);
     out.strength(rule.strength);
-    out.action(to_bus(rule.action));
+    out.action(kActions.theirs(rule.action));
     out.value(rule.value);
     sample.rules().push_back(std::move(out));
   }
@@ -149,9 +141,7 @@ v1::BehaviorSchema to_bus(const Schema& schema) {
       break;
     v1::BehaviorParameter out;
     out.name(spec.name);
-    out.kind(spec.kind == Kind::point  ? v1::ARGUMENT_POINT
-             : spec.kind == Kind::text ? v1::ARGUMENT_TEXT
-                                       : v1::ARGUMENT_NUMBER);
+    out.kind(kKinds.theirs(spec.kind));
     out.meaning(spec.meaning);
     out.required(spec.required);
     out.low(spec.low);

@@ -1,29 +1,30 @@
 #include "intentions/shell/convert.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "lps/shell/convert.hpp"
+#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-/// An enumeration's two sides, in pairs: both ways are the same table.
-template <class Ours, class Theirs, std::size_t size>
-using Table = std::array<std::pair<Ours, Theirs>, size>;
-
-constexpr Table<ArgumentKind, v1::ArgumentKind, 3> kKinds = {{
+constexpr EnumPairs<ArgumentKind, v1::ArgumentKind, 3> kKinds{{{
     {ArgumentKind::kNumber, v1::ARGUMENT_NUMBER},
     {ArgumentKind::kText, v1::ARGUMENT_TEXT},
     {ArgumentKind::kPoint, v1::ARGUMENT_POINT},
-}};
-constexpr Table<Frame, v1::Frame, 3> kFrames = {{
+}}};
+constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{{{
+    {ArgumentKind::kNumber, v1::PARAMETER_NUMBER},
+    {ArgumentKind::kText, v1::PARAMETER_TEXT},
+    {ArgumentKind::kPoint, v1::PARAMETER_POINT},
+}}};
+constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
     {Frame::kRobot, v1::FRAME_ROBOT},
     {Frame::kOdom, v1::FRAME_ODOM},
     {Frame::kMap, v1::FRAME_MAP},
-}};
-constexpr Table<GoalState, v1::GoalState, 7> kStates = {{
+}}};
+constexpr EnumPairs<GoalState, v1::GoalState, 7> kStates{{{
     {GoalState::kWaiting, v1::GOAL_WAITING},
     {GoalState::kRefused, v1::GOAL_REFUSED},
     {GoalState::kUnderway, v1::GOAL_UNDERWAY},
@@ -31,8 +32,8 @@ constexpr Table<GoalState, v1::GoalState, 7> kStates = {{
     {GoalState::kSucceeded, v1::GOAL_SUCCEEDED},
     {GoalState::kFailed, v1::GOAL_FAILED},
     {GoalState::kCanceled, v1::GOAL_CANCELED},
-}};
-constexpr Table<GoalCode, v1::GoalCode, 15> kCodes = {{
+}}};
+constexpr EnumPairs<GoalCode, v1::GoalCode, 15> kCodes{{{
     {GoalCode::kNone, v1::CODE_NONE},
     {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
     {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
@@ -48,21 +49,25 @@ constexpr Table<GoalCode, v1::GoalCode, 15> kCodes = {{
     {GoalCode::kDisposed, v1::CODE_DISPOSED},
     {GoalCode::kWriterLost, v1::CODE_WRITER_LOST},
     {GoalCode::kPreempted, v1::CODE_PREEMPTED},
-}};
-constexpr Table<Trend, v1::GoalTrend, 3> kTrends = {{
+}}};
+constexpr EnumPairs<WriterLost, v1::WriterLost, 2> kPolicies{{{
+    {WriterLost::kCancel, v1::WRITER_LOST_CANCEL},
+    {WriterLost::kKeep, v1::WRITER_LOST_KEEP},
+}}};
+constexpr EnumPairs<Trend, v1::GoalTrend, 3> kTrends{{{
     {Trend::kSteady, v1::TREND_STEADY},
     {Trend::kRising, v1::TREND_RISING},
     {Trend::kFalling, v1::TREND_FALLING},
-}};
-constexpr Table<Localization, v1::RegistrationState, 4> kLocalizations = {{
+}}};
+constexpr EnumPairs<Localization, v1::RegistrationState, 4> kLocalizations{{{
     {Localization::kOff, v1::REGISTRATION_OFF},
     {Localization::kUnplaced, v1::REGISTRATION_UNPLACED},
     {Localization::kLost, v1::REGISTRATION_LOST},
     {Localization::kTracking, v1::REGISTRATION_TRACKING},
-}};
+}}};
 // The bus does not tell the first step after a suspension from the ones that follow; what is
 // removed does not get there.
-constexpr Table<IntentionState, v1::IntentionState, 8> kIntentionStates = {{
+constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{{{
     {IntentionState::kInit, v1::INTENTION_INIT},
     {IntentionState::kRunning, v1::INTENTION_RUNNING},
     {IntentionState::kResumed, v1::INTENTION_RUNNING},
@@ -71,25 +76,7 @@ constexpr Table<IntentionState, v1::IntentionState, 8> kIntentionStates = {{
     {IntentionState::kSuccess, v1::INTENTION_SUCCESS},
     {IntentionState::kFailure, v1::INTENTION_FAILURE},
     {IntentionState::kTimeout, v1::INTENTION_TIMEOUT},
-}};
-
-template <class Ours, class Theirs, std::size_t size>
-Theirs to_bus(const Table<Ours, Theirs, size>& table, Ours value) {
-  for (const auto& [ours, theirs] : table) {
-    if (ours == value)
-      return theirs;
-  }
-  return table.front().second;
-}
-
-template <class Ours, class Theirs, std::size_t size>
-Ours from_bus(const Table<Ours, Theirs, size>& table, Theirs value, Ours otherwise) {
-  for (const auto& [ours, theirs] : table) {
-    if (theirs == value)
-      return ours;
-  }
-  return otherwise;
-}
+}}};
 
 Arguments from_bus(const std::vector<v1::Argument>& arguments) {
   Arguments result;
@@ -112,24 +99,22 @@ std::vector<v1::Argument> to_bus(const Arguments& arguments) {
 Argument from_bus(const v1::Argument& argument) {
   Argument result;
   result.name = argument.name();
-  result.kind = from_bus(kKinds, argument.kind(), ArgumentKind::kText);
+  result.kind = kKinds.ours(argument.kind(), ArgumentKind::kText);
   result.number = argument.number();
   result.text = argument.text();
   result.point = lps::from_bus(argument.point());
-  result.frame = from_bus(kFrames, argument.frame(), Frame::kMap);
+  result.frame = kFrames.ours(argument.frame(), Frame::kMap);
   return result;
 }
 
 v1::Argument to_bus(const Argument& argument) {
   v1::Argument result;
   result.name(argument.name);
-  result.kind(to_bus(kKinds, argument.kind));
+  result.kind(kKinds.theirs(argument.kind));
   result.number(argument.number);
   result.text(argument.text);
-  result.point().x(argument.point.x);
-  result.point().y(argument.point.y);
-  result.point().th(argument.point.th);
-  result.frame(to_bus(kFrames, argument.frame));
+  result.point(lps::to_bus(argument.point));
+  result.frame(kFrames.theirs(argument.frame));
   return result;
 }
 
@@ -153,8 +138,7 @@ Goal from_bus(const v1::Goal& goal) {
   result.priority = goal.priority();
   result.deadline = goal.deadline();
   result.level = goal.level();
-  result.writer_lost =
-      goal.writer_lost() == v1::WRITER_LOST_KEEP ? WriterLost::kKeep : WriterLost::kCancel;
+  result.writer_lost = kPolicies.ours(goal.writer_lost(), WriterLost::kCancel);
   return result;
 }
 
@@ -167,8 +151,7 @@ v1::Goal to_bus(const Goal& goal) {
   result.priority(goal.priority);
   result.deadline(goal.deadline);
   result.level(goal.level);
-  result.writer_lost(goal.writer_lost == WriterLost::kKeep ? v1::WRITER_LOST_KEEP
-                                                           : v1::WRITER_LOST_CANCEL);
+  result.writer_lost(kPolicies.theirs(goal.writer_lost));
   return result;
 }
 
@@ -177,13 +160,13 @@ GoalStatus from_bus(const v1::GoalStatus& status) {
   result.id = from_bus(status.id());
   result.requester = status.requester();
   result.functor = status.functor();
-  result.state = from_bus(kStates, status.state(), GoalState::kWaiting);
-  result.code = from_bus(kCodes, status.code(), GoalCode::kNone);
+  result.state = kStates.ours(status.state(), GoalState::kWaiting);
+  result.code = kCodes.ours(status.code(), GoalCode::kNone);
   result.reason = status.reason();
   result.step = status.step();
   result.progress = status.progress();
   result.level = status.level();
-  result.trend = from_bus(kTrends, status.trend(), Trend::kSteady);
+  result.trend = kTrends.ours(status.trend(), Trend::kSteady);
   result.elapsed = status.elapsed();
   return result;
 }
@@ -194,13 +177,13 @@ v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   result.stamp(stamp);
   result.requester(status.requester);
   result.functor(status.functor);
-  result.state(to_bus(kStates, status.state));
-  result.code(to_bus(kCodes, status.code));
+  result.state(kStates.theirs(status.state));
+  result.code(kCodes.theirs(status.code));
   result.reason(status.reason);
   result.step(status.step);
   result.progress(status.progress);
   result.level(status.level);
-  result.trend(to_bus(kTrends, status.trend));
+  result.trend(kTrends.theirs(status.trend));
   result.elapsed(status.elapsed);
   return result;
 }
@@ -236,7 +219,7 @@ IntentionNode from_bus(const v1::IntentionNode& node) {
   result.name = node.name();
   result.schema = node.schema();
   result.arguments = node.arguments();
-  result.state = from_bus(kIntentionStates, node.state(), IntentionState::kRunning);
+  result.state = kIntentionStates.ours(node.state(), IntentionState::kRunning);
   result.blocking = node.blocking();
   result.label = node.label();
   result.step = node.step();
@@ -253,7 +236,7 @@ v1::IntentionNode to_bus(const IntentionNode& node) {
   result.name(node.name);
   result.schema(node.schema);
   result.arguments(node.arguments);
-  result.state(to_bus(kIntentionStates, node.state));
+  result.state(kIntentionStates.theirs(node.state));
   result.blocking(node.blocking);
   result.label(node.label);
   result.step(node.step);
@@ -301,7 +284,7 @@ std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
     for (const v1::BehaviorParameter& parameter : schema.parameters()) {
       Parameter& out = result.back().parameters.emplace_back();
       out.name = parameter.name();
-      out.kind = from_bus(kKinds, parameter.kind(), ArgumentKind::kText);
+      out.kind = kKinds.ours(parameter.kind(), ArgumentKind::kText);
       out.low = parameter.low();
       out.high = parameter.high();
       out.required = parameter.required();
@@ -318,10 +301,7 @@ v1::ActivitySchema to_bus(const Schema& schema) {
   for (const Parameter& parameter : schema.parameters) {
     v1::ActivityParameter out;
     out.name(parameter.name);
-    out.kind(parameter.any                             ? v1::PARAMETER_ANY
-             : parameter.kind == ArgumentKind::kNumber ? v1::PARAMETER_NUMBER
-             : parameter.kind == ArgumentKind::kText   ? v1::PARAMETER_TEXT
-                                                       : v1::PARAMETER_POINT);
+    out.kind(parameter.any ? v1::PARAMETER_ANY : kParameterKinds.theirs(parameter.kind));
     out.unit(parameter.unit);
     out.required(parameter.required);
     out.low(parameter.low);
@@ -359,7 +339,7 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   Registered result;
   if (registration.stamp().cycle() + kRegistrationLease < cycle)
     return result;
-  result.state = from_bus(kLocalizations, registration.state(), Localization::kLost);
+  result.state = kLocalizations.ours(registration.state(), Localization::kLost);
   result.pose_in_map = lps::from_bus(registration.pose_in_map());
   result.confidence = registration.confidence();
   result.environment = registration.environment();

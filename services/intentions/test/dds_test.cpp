@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "intentions/shell/shell.hpp"
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "scripted_bus.hpp"
@@ -13,20 +14,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-bus::NodeOptions named(const std::string& name, const std::string& robot) {
-  bus::NodeOptions options;
-  options.name = name;
-  options.robot = robot;
-  options.domain = static_cast<std::uint32_t>(std::stoul(test::domain()));
-  return options;
-}
-
 /// A robot that lives in a thread of its own and goes as fast as the service answers, or without an
 /// answer at 10 Hz.
 class Robot10Hz {
  public:
   explicit Robot10Hz(const std::string& robot)
-      : node_(named("robot", robot)), thread_([this] { run(); }) {}
+      : node_(test::node_options("robot", robot)), thread_([this] { run(); }) {}
   ~Robot10Hz() {
     stop_.request();
     thread_.join();
@@ -69,7 +62,7 @@ class IntentionsProgram : public testing::Test {
 
   const std::string robot = test::unique_robot();
   const test::TempDir dir;
-  bus::Node requester{named("requester", robot)};
+  bus::Node requester{test::node_options("requester", robot)};
   bus::GoalClient goals{requester, "a test"};
 };
 
@@ -121,7 +114,7 @@ TEST_F(IntentionsProgram, HearsThatAWriterIsGone) {
   v1::GoalId canceled;
   v1::GoalId kept;
   {
-    bus::Node node(named("another", robot));
+    bus::Node node(test::node_options("another", robot));
     bus::GoalClient another(node, "another");
     canceled = another.ask(drive());
     v1::Goal goal = go_to(0.5, 0.0);
@@ -149,7 +142,7 @@ TEST_F(IntentionsProgram, GoesOnAfterAKill) {
     service.wait();
   }
   test::Process service(command(), dir.path("log2"));
-  bus::Node node(named("watcher", robot));
+  bus::Node node(test::node_options("watcher", robot));
   bus::GoalClient watcher(node, "watcher");
   EXPECT_TRUE(test::wait_until([&] {
     node.wait(milliseconds(20));

@@ -1,15 +1,15 @@
 #include "lps/shell/convert.hpp"
 
 #include <algorithm>
-#include <array>
-#include <utility>
+
+#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::lps {
 namespace {
 
 constexpr std::size_t kMostReadings = 64;  // the bound of Percept.readings
 
-constexpr std::array<std::pair<PointType, v1::ArtifactType>, 10> kTypes = {{
+constexpr EnumPairs<PointType, v1::ArtifactType, 10> kTypes{{{
     {PointType::invalid, v1::ARTIFACT_INVALID},
     {PointType::position, v1::ARTIFACT_POSITION},
     {PointType::wall, v1::ARTIFACT_WALL},
@@ -20,34 +20,21 @@ constexpr std::array<std::pair<PointType, v1::ArtifactType>, 10> kTypes = {{
     {PointType::office, v1::ARTIFACT_OFFICE},
     {PointType::breach, v1::ARTIFACT_BREAK},
     {PointType::object, v1::ARTIFACT_OBJECT},
-}};
+}}};
+constexpr EnumPairs<Side, v1::Side, 3> kSides{{{
+    {Side::none, v1::SIDE_NONE},
+    {Side::left, v1::SIDE_LEFT},
+    {Side::right, v1::SIDE_RIGHT},
+}}};
 
 }  // namespace
 
-Pose from_bus(const v1::Pose2& pose) {
-  return {pose.x(), pose.y(), pose.th()};
-}
-
-v1::Pose2 to_bus(const Pose& pose) {
-  v1::Pose2 result;
-  result.x(pose.x);
-  result.y(pose.y);
-  result.th(pose.th);
-  return result;
-}
-
 PointType from_bus(v1::ArtifactType type) {
-  for (const auto& [ours, theirs] : kTypes)
-    if (theirs == type)
-      return ours;
-  return PointType::invalid;
+  return kTypes.ours(type, PointType::invalid);
 }
 
 v1::ArtifactType to_bus(PointType type) {
-  for (const auto& [ours, theirs] : kTypes)
-    if (ours == type)
-      return theirs;
-  return v1::ARTIFACT_INVALID;
+  return kTypes.theirs(type);
 }
 
 std::vector<SonarMount> mounts_from_bus(const v1::RobotDescription& description) {
@@ -79,9 +66,7 @@ Percept from_bus(const v1::Percept& percept) {
   Percept result;
   result.id = percept.id();
   result.type = from_bus(percept.type());
-  result.side = percept.side() == v1::SIDE_LEFT    ? Side::left
-                : percept.side() == v1::SIDE_RIGHT ? Side::right
-                                                   : Side::none;
+  result.side = kSides.ours(percept.side(), Side::none);
   result.pose_in_odom = from_bus(percept.pose_in_odom());
   result.length = percept.length();
   result.width = percept.width();
@@ -103,9 +88,7 @@ v1::Percept to_bus(const Percept& percept) {
   v1::Percept result;
   result.id(percept.id);
   result.type(to_bus(percept.type));
-  result.side(percept.side == Side::left    ? v1::SIDE_LEFT
-              : percept.side == Side::right ? v1::SIDE_RIGHT
-                                            : v1::SIDE_NONE);
+  result.side(kSides.theirs(percept.side));
   result.pose_in_odom(to_bus(percept.pose_in_odom));
   result.length(percept.length);
   result.width(percept.width);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "geometry/shell/convert.hpp"
 #include "perception.h"
 #include "robot.h"
 #include "saphira/lps/local_perceptual_space.hpp"
@@ -13,8 +14,8 @@
 /// nothing else.
 namespace saphira::lps {
 
-Pose from_bus(const v1::Pose2& pose);
-v1::Pose2 to_bus(const Pose& pose);
+using saphira::from_bus;
+using saphira::to_bus;
 
 PointType from_bus(v1::ArtifactType type);
 v1::ArtifactType to_bus(PointType type);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "node_options.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::test {
@@ -11,11 +12,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-bus::NodeOptions node_options(const std::string& robot, bool lockstep) {
-  bus::NodeOptions options;
-  options.name = "test";
-  options.robot = robot;
-  options.domain = static_cast<std::uint32_t>(std::stoul(domain()));
+bus::NodeOptions tester(const std::string& robot, bool lockstep) {
+  bus::NodeOptions options = node_options("test", robot);
   options.lockstep = lockstep;
   return options;
 }
@@ -23,7 +21,7 @@ bus::NodeOptions node_options(const std::string& robot, bool lockstep) {
 }  // namespace
 
 Scene::Scene(bool lockstep)
-    : node(node_options(robot, lockstep)),
+    : node(tester(robot, lockstep)),
       lockstep_(lockstep),
       states_(node.reader(bus::topics::kRobotState)),
       descriptions_(node.reader(bus::topics::kRobotDescription)),

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace saphira {
+
+/// A number for a row of bytes that is the same on every machine and in every run: FNV-1a of 64
+/// bits (Fowler, Noll and Vo). It holds off accidents, not people.
+class Fnv1a {
+ public:
+  void add(std::uint8_t byte) { value_ = (value_ ^ byte) * 0x100000001b3U; }
+  void add(std::string_view text) {
+    for (const char c : text)
+      add(static_cast<std::uint8_t>(c));
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+}  // namespace saphira
