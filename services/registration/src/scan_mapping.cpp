@@ -1,8 +1,13 @@
 #include "saphira/registration/scan_mapping.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <queue>
+#include <utility>
 
 namespace saphira::registration {
 
@@ -13,7 +18,12 @@ Eigen::Matrix3d diagonal(double along, double across, double turn) {
       .asDiagonal();
 }
 
-// Information about a pose's (x, y, th) in the frame that the pose is in, in the pose's own frame.
+Eigen::Matrix3d diagonal_covariance(double distance, double turn) {
+  return Eigen::Vector3d(distance * distance, distance * distance, turn * turn).asDiagonal();
+}
+
+// Information (or the covariance) about a pose's (x, y, th) in the frame that the pose is in, in
+// the pose's own frame.
 Eigen::Matrix3d turned(const Eigen::Matrix3d& information, double th) {
   Eigen::Matrix3d r = Eigen::Matrix3d::Identity();
   r.topLeftCorner<2, 2>() << std::cos(th), -std::sin(th), std::sin(th), std::cos(th);
@@ -89,6 +99,8 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
     poses_.push_back({});
     scans_.push_back(std::move(scan));
     path_.push_back(0.0);
+    steps_.push_back(Eigen::Matrix3d::Zero());
+    loops_at_.emplace_back();
     last_odom_ = node_odom_ = pose_in_odom;
     hung_.push_back({0, {}});
     report_.nodes = 1;
@@ -147,7 +159,15 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   if (matched)
     chain_.push_back({last, last + 1, believed, matched_information(found), false});
   odometry_.push_back({last, last + 1, odom_step, odom_information(odom_step), matched});
-  path_.push_back(path_[last] + std::hypot(believed.x, believed.y));
+  const double gone = std::hypot(believed.x, believed.y);
+  Eigen::Matrix3d information = odometry_.back().information;
+  if (matched)
+    information += chain_.back().information;
+  steps_.push_back(
+      information.inverse() +
+      diagonal_covariance(settings_.drift_per_metre * gone, settings_.drift_turn_per_metre * gone));
+  loops_at_.emplace_back();
+  path_.push_back(path_[last] + gone);
   poses_.push_back(compose(poses_[last], believed));
   scans_.push_back(std::move(scan));
   believed_in_node_ = {};
@@ -160,17 +180,134 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   return poses_.back();
 }
 
+std::vector<Eigen::Matrix3d> ScanMapper::covariances(std::size_t from,
+                                                     const std::vector<std::size_t>& of) const {
+  struct Known {
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // in the frame of `from`
+    bool reached = false;
+    bool settled = false;
+  };
+  const auto doubt = [](const Eigen::Matrix3d& m) { return m(0, 0) + m(1, 1) + 100.0 * m(2, 2); };
+  std::vector<Known> known(poses_.size());
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
+  known[from].reached = true;
+  next.emplace(0.0, from);
+  std::size_t open = of.size();
+  std::vector<char> wanted(poses_.size(), 0);
+  for (const std::size_t i : of)
+    wanted[i] = 1;
+  const double c0 = std::cos(poses_[from].th);
+  const double s0 = std::sin(poses_[from].th);
+  while (!next.empty() && open > 0) {
+    const std::size_t i = next.top().second;
+    next.pop();
+    if (known[i].settled)
+      continue;
+    known[i].settled = true;
+    if (wanted[i] != 0)
+      --open;
+    // `in_to`: covariance of the step in the frame of the node `to`.
+    const auto go = [&](std::size_t to, std::size_t frame, const Eigen::Matrix3d& step) {
+      if (known[to].settled)
+        return;
+      const double dx = poses_[to].x - poses_[i].x;
+      const double dy = poses_[to].y - poses_[i].y;
+      Eigen::Matrix3d lever = Eigen::Matrix3d::Identity();
+      lever(0, 2) = -(-s0 * dx + c0 * dy);
+      lever(1, 2) = c0 * dx + s0 * dy;
+      const Eigen::Matrix3d covariance = lever * known[i].covariance * lever.transpose() +
+                                         turned(step, poses_[from].th - poses_[frame].th);
+      if (known[to].reached && doubt(covariance) >= doubt(known[to].covariance))
+        return;
+      known[to].reached = true;
+      known[to].covariance = covariance;
+      next.emplace(doubt(covariance), to);
+    };
+    if (i > 0)
+      go(i - 1, i, steps_[i]);
+    if (i + 1 < poses_.size())
+      go(i + 1, i + 1, steps_[i + 1]);
+    for (const std::size_t k : loops_at_[i]) {
+      const PoseEdge& loop = loops_[k];
+      go(loop.from == i ? loop.to : loop.from, loop.to, loop.information.inverse());
+    }
+  }
+  std::vector<Eigen::Matrix3d> out;
+  for (const std::size_t i : of)
+    out.push_back(known[i].covariance);
+  return out;
+}
+
+double ScanMapper::through(const Closure& closure) const {
+  // Each of the two places looks at what the other saw.
+  constexpr double kAbout = 1.0;  // [m] of way
+  Sight sum;
+  const auto look = [&](std::size_t from, std::size_t at, const Pose& at_in_from) {
+    for (const std::size_t i : along_path(at, kAbout, kAbout)) {
+      if (i % 2 != at % 2)
+        continue;
+      const Pose pose = compose(at_in_from, relative(poses_[at], poses_[i]));
+      std::vector<Vec2> points;
+      points.reserve(scans_[i].points.size());
+      for (const Vec2& p : scans_[i].points)
+        points.push_back(transform(pose, p));
+      const Sight sight = look_at(scans_[from], points);
+      sum.agree += sight.agree;
+      sum.through += sight.through;
+    }
+  };
+  look(closure.from, closure.to, closure.to_in_from);
+  look(closure.to, closure.from, relative(closure.to_in_from, {}));
+  return static_cast<double>(sum.through) /
+         static_cast<double>(std::max<std::size_t>(1, sum.through + sum.agree));
+}
+
+std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, std::size_t here,
+                                                            const Eigen::Matrix3d& covariance,
+                                                            const Scan& query) const {
+  const Eigen::Matrix2d prior = covariance.topLeftCorner<2, 2>();
+  const double spread =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(prior).eigenvalues().maxCoeff());
+  const double reach =
+      std::clamp(3.0 * spread + 0.3, settings_.loop_reach, settings_.loop_reach_limit);
+  const double turn =
+      std::clamp(3.0 * std::sqrt(covariance(2, 2)), settings_.loop_turn, settings_.loop_turn_limit);
+  std::vector<std::size_t> old = along_path(pass, 5.0, 5.0);
+  std::erase_if(old,
+                [&](std::size_t i) { return path_[here] - path_[i] < settings_.loop_path - 4.0; });
+  const ScanReference there = reference(old, pass);
+  const ScanField field(there, 7);
+  const Pose guess = relative(poses_[pass], poses_[here]);
+  const Scan few = thinned(query, 300);
+  const auto wide = field.search(few, guess, {reach, turn, radians(1.0)}, settings_.loop_score);
+  if (!wide)
+    return std::nullopt;
+  AlignSettings settings = settings_.align;
+  settings.first_gate = 0.25;
+  const Alignment found = align(there, query, wide->pose, settings);
+  if (found.overlap < settings_.loop_overlap)
+    return std::nullopt;
+  Closure closure{pass, here, found.pose, Eigen::Matrix3d::Zero(), 0, false};
+  // In the frame of the pass up to here; a closure's covariance is in its own.
+  Eigen::Matrix3d doubt =
+      (kShared * found.information + 1e-3 * Eigen::Matrix3d::Identity()).inverse();
+  doubt.topLeftCorner<2, 2>() += field.slack(few, found.pose, guess.position(),
+                                             prior + 0.04 * Eigen::Matrix2d::Identity(), reach);
+  closure.covariance = turned(doubt, found.pose.th);
+  if (through(closure) > settings_.loop_through)
+    return std::nullopt;
+  return closure;
+}
+
 void ScanMapper::close_loops() {
   const std::size_t here = poses_.size() - 1;
-  const double since = path_[here] - closed_at_;
-  const double reach = std::min(settings_.loop_reach + settings_.loop_reach_per_metre * since,
-                                settings_.loop_reach_limit);
   // The nearest node of each earlier pass.
   std::vector<std::size_t> passes;
   double pass_end = -1e9;
   for (std::size_t i = 0; i < here && path_[here] - path_[i] > settings_.loop_path; ++i) {
     const double away = (poses_[i].position() - poses_[here].position()).norm();
-    if (away > reach)
+    if (away > settings_.loop_reach_limit)
       continue;
     if (path_[i] - pass_end > 3.0)
       passes.push_back(i);
@@ -180,64 +317,94 @@ void ScanMapper::close_loops() {
   }
   if (passes.empty())
     return;
+  const std::vector<Eigen::Matrix3d> known = covariances(here, passes);
+  struct Candidate {
+    std::size_t pass;
+    double away;  // in sigmas, squared
+    Eigen::Matrix3d covariance;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    const Pose there = relative(poses_[here], poses_[passes[k]]);
+    // Where the robot is, seen from there: the same uncertainty with the lever between them.
+    Eigen::Matrix3d lever = Eigen::Matrix3d::Identity();
+    lever(0, 2) = there.y;
+    lever(1, 2) = -there.x;
+    Eigen::Matrix3d covariance = turned(lever * known[k] * lever.transpose(), there.th);
+    covariance += 1e-4 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix2d seen =
+        covariance.topLeftCorner<2, 2>() + 0.5 * Eigen::Matrix2d::Identity();
+    const Vec2 off = relative(poses_[passes[k]], poses_[here]).position();
+    const double away = off.dot(seen.inverse() * off);
+    if (away < 16.0)
+      candidates.push_back({passes[k], away, covariance});
+  }
   // The nearest ones are enough: they hang together already.
-  std::stable_sort(passes.begin(), passes.end(), [&](std::size_t a, std::size_t b) {
-    return (poses_[a].position() - poses_[here].position()).norm() <
-           (poses_[b].position() - poses_[here].position()).norm();
-  });
-  if (passes.size() > 3)
-    passes.resize(3);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.away < b.away; });
+  if (candidates.size() > 3)
+    candidates.erase(candidates.begin() + 3, candidates.end());
+  if (candidates.empty())
+    return;
   const Scan query = stretch(here, 2.0);
-  const Scan few = thinned(query, 300);
-  for (const std::size_t pass : passes) {
-    std::vector<std::size_t> old = along_path(pass, 5.0, 5.0);
-    std::erase_if(
-        old, [&](std::size_t i) { return path_[here] - path_[i] < settings_.loop_path - 4.0; });
-    const ScanReference there = reference(old, pass);
-    const ScanField field(there, 7);
-    const Pose guess = relative(poses_[pass], poses_[here]);
-    const auto wide =
-        field.search(few, guess, {reach, settings_.loop_turn, radians(1.0)}, settings_.loop_score);
-    if (!wide)
-      continue;
-    AlignSettings settings = settings_.align;
-    settings.first_gate = 0.25;
-    const Alignment found = align(there, query, wide->pose, settings);
-    if (found.overlap < settings_.loop_overlap)
+  std::vector<Closure> agreed;
+  for (const Candidate& candidate : candidates) {
+    auto closure = find_closure(candidate.pass, here, candidate.covariance, query);
+    if (!closure)
       continue;
     ++report_.loop_candidates;
-    const Closure closure{pass, here, found.pose, matched_information(found)};
+    // Within what the graph knows.
+    const Pose off = relative(closure->to_in_from, relative(poses_[closure->from], poses_[here]));
+    const Eigen::Vector3d e(off.x, off.y, off.th);
+    const Eigen::Matrix3d expected =
+        turned(candidate.covariance, closure->to_in_from.th) + closure->covariance;
+    if (e.dot(expected.inverse() * e) > 16.0)
+      continue;
     // Two that say the same, from places apart, are believed; one alone may be a look-alike.
-    bool agreed = false;
-    for (const Closure& other : pending_) {
+    for (Closure& other : pending_) {
       const double apart = path_[here] - path_[other.to];
       if (apart > 8.0 || apart < 0.3)
         continue;
-      const Pose expected =
-          compose(compose(relative(poses_[pass], poses_[other.from]), other.to_in_from),
+      const Pose by_other =
+          compose(compose(relative(poses_[closure->from], poses_[other.from]), other.to_in_from),
                   relative(poses_[other.to], poses_[here]));
-      const Pose off = relative(expected, closure.to_in_from);
-      if (std::hypot(off.x, off.y) < settings_.loop_agree_distance + 0.02 * apart &&
-          std::abs(off.th) < settings_.loop_agree_turn) {
-        agreed = true;
-        break;
+      const Pose between = relative(closure->to_in_from, by_other);
+      const Eigen::Vector3d d(between.x, between.y, between.th);
+      Eigen::Matrix3d doubt = closure->covariance +
+                              turned(other.covariance, relative(poses_[other.to], poses_[here]).th);
+      doubt.diagonal() += Eigen::Vector3d(0.01, 0.01, radians(1.0) * radians(1.0));
+      if (d.dot(doubt.inverse() * d) > settings_.loop_agree_chi2)
+        continue;
+      ++closure->agreeing;
+      ++other.agreeing;
+      if (!other.accepted) {
+        other.accepted = true;
+        agreed.push_back(other);
       }
     }
-    pending_.push_back(closure);
-    if (agreed)
-      accept(closure);
+    if (closure->agreeing > 0) {
+      closure->accepted = true;
+      agreed.push_back(*closure);
+    }
+    pending_.push_back(*closure);
   }
   std::erase_if(pending_, [&](const Closure& c) { return path_[here] - path_[c.to] > 8.0; });
+  if (!agreed.empty())
+    accept(agreed);
 }
 
-void ScanMapper::accept(const Closure& closure) {
-  loops_.push_back({closure.from, closure.to, closure.to_in_from, closure.information, true});
-  ++report_.loops;
-  closed_at_ = path_.back();
-  const Pose expected = compose(poses_[closure.from], closure.to_in_from);
-  const Pose off = relative(expected, poses_[closure.to]);
-  // Where it says nothing new the graph is left alone.
-  if (std::hypot(off.x, off.y) > 0.05 || std::abs(off.th) > radians(0.5))
+void ScanMapper::accept(const std::vector<Closure>& closures) {
+  bool news = false;
+  for (const Closure& closure : closures) {
+    loops_at_[closure.from].push_back(loops_.size());
+    loops_at_[closure.to].push_back(loops_.size());
+    loops_.push_back(
+        {closure.from, closure.to, closure.to_in_from, closure.covariance.inverse(), true});
+    ++report_.loops;
+    // Where it says nothing new the graph is left alone.
+    news = news || chi2(loops_.back(), poses_) > 1.0;
+  }
+  if (news)
     optimize(poses_, all_edges(), 15, 10.0);
 }
 

@@ -67,6 +67,7 @@ Scan make_scan(const std::vector<double>& ranges, const Beams& beams) {
     used.push_back(range);
   }
   Scan scan;
+  scan.sensor = beams.sensor_in_robot.position();
   const Pose turn{0.0, 0.0, beams.sensor_in_robot.th};
   for (std::size_t i = 0; i < in_sensor.size(); ++i) {
     // Beams part with the range: a surface 60 degrees off its normal still has neighbours.
@@ -292,6 +293,87 @@ double ScanField::score(const Scan& scan, const Pose& pose) const {
                                      static_cast<int>(std::floor(at.y() / kFieldCell))));
   }
   return sum / static_cast<double>(scan.points.size());
+}
+
+Eigen::Matrix2d ScanField::slack(const Scan& scan, const Pose& best, const Vec2& expected,
+                                 const Eigen::Matrix2d& prior, double distance) const {
+  constexpr int kLevel = 1;
+  constexpr int kStep = 1 << kLevel;  // cells
+  // The points of a scan are far from independent: as if there were so many.
+  constexpr double kIndependent = 30.0;
+  if (levels_.size() <= kLevel || scan.points.empty())
+    return prior;
+  std::vector<std::pair<int, int>> cells;
+  cells.reserve(scan.points.size());
+  for (const Vec2& p : scan.points) {
+    const Vec2 at = transform(best, p) - origin_;
+    cells.emplace_back(static_cast<int>(std::floor(at.x() / kFieldCell)),
+                       static_cast<int>(std::floor(at.y() / kFieldCell)));
+  }
+  const auto rate = [&](int dc, int dr) {
+    float sum = 0.0F;
+    for (const auto& [column, row] : cells)
+      sum += bound(kLevel, column + dc, row + dr);
+    return static_cast<double>(sum) / static_cast<double>(cells.size());
+  };
+  const Eigen::Matrix2d information = prior.inverse();
+  const Vec2 off = best.position() - expected;
+  const double top = rate(0, 0);
+  const double here = 0.5 * off.dot(information * off);
+  const int reach = static_cast<int>(std::ceil(distance / (kFieldCell * kStep)));
+  double weights = 0.0;
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (int r = -reach; r <= reach; ++r)
+    for (int c = -reach; c <= reach; ++c) {
+      const Vec2 by(kStep * kFieldCell * c, kStep * kFieldCell * r);
+      const double less = 0.5 * (off + by).dot(information * (off + by)) - here;
+      if (less > 8.0)
+        continue;
+      const double weight = std::exp(
+          std::min(0.0, kIndependent * (rate(kStep * c, kStep * r) - top)) - std::max(0.0, less));
+      weights += weight;
+      sum += weight * by * by.transpose();
+    }
+  return sum / weights;
+}
+
+Sight look_at(const Scan& scan, const std::vector<Vec2>& points) {
+  constexpr double kSame = 0.2;        // [m]
+  constexpr std::size_t kBeside = 2;   // beams to each side
+  constexpr double kGap = radians(5);  // wider ones are looked through by nobody
+  struct Beam {
+    double angle;
+    double range;
+  };
+  std::vector<Beam> beams;
+  beams.reserve(scan.points.size());
+  for (const Vec2& p : scan.points) {
+    const Vec2 off = p - scan.sensor;
+    beams.push_back({std::atan2(off.y(), off.x()), off.norm()});
+  }
+  const auto before = [](const Beam& a, const Beam& b) { return a.angle < b.angle; };
+  std::sort(beams.begin(), beams.end(), before);
+  Sight out;
+  for (const Vec2& p : points) {
+    const Vec2 off = p - scan.sensor;
+    const Beam to{std::atan2(off.y(), off.x()), off.norm()};
+    const auto after = static_cast<std::size_t>(
+        std::lower_bound(beams.begin(), beams.end(), to, before) - beams.begin());
+    if (after < kBeside || after + kBeside > beams.size() ||
+        beams[after + kBeside - 1].angle - beams[after - kBeside].angle > kGap)
+      continue;
+    double nearest = beams[after].range;
+    double farthest = nearest;
+    for (std::size_t i = after - kBeside; i < after + kBeside; ++i) {
+      nearest = std::min(nearest, beams[i].range);
+      farthest = std::max(farthest, beams[i].range);
+    }
+    if (to.range < nearest - kSame)
+      ++out.through;
+    else if (to.range < farthest + kSame)
+      ++out.agree;
+  }
+  return out;
 }
 
 std::optional<SearchResult> ScanField::search(const Scan& scan, const Pose& guess,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "saphira/geometry/pose.hpp"
@@ -31,14 +32,18 @@ struct ScanMapSettings {
   // Loop closure.
   double loop_path = 10.0;  ///< places that the robot left so far back along its path
   double loop_every = 0.5;  ///< looked for after so much path
-  double loop_reach = 2.0;  ///< the least distance that is searched
-  double loop_reach_per_metre = 0.025;
-  double loop_reach_limit = 7.0;
-  double loop_turn = radians(25.0);
+  // The window is three sigmas of what the graph knows, and at least and at most:
+  double loop_reach = 1.0;
+  double loop_reach_limit = 10.0;
+  double loop_turn = radians(8.0);
+  double loop_turn_limit = radians(30.0);
+  // What the graph knows the less, the longer the way: errors that all steps share.
+  double drift_per_metre = 0.01;
+  double drift_turn_per_metre = radians(0.05);
   double loop_score = 0.55;  ///< least mean likelihood of the points
   double loop_overlap = 0.6;
-  double loop_agree_distance = 0.3;  ///< two closures agree so far
-  double loop_agree_turn = radians(4.0);
+  double loop_through = 0.2;  ///< the most of the points that are seen through
+  double loop_agree_chi2 = 11.3;
 };
 
 /// What ScanMapper counted.
@@ -80,7 +85,9 @@ class ScanMapper {
     std::size_t from = 0;
     std::size_t to = 0;
     Pose to_in_from;
-    Eigen::Matrix3d information;
+    Eigen::Matrix3d covariance;  ///< of to_in_from, in its own frame
+    std::size_t agreeing = 0;
+    bool accepted = false;
   };
 
   // A reference of the nodes, in the frame of the node `origin`.
@@ -88,8 +95,14 @@ class ScanMapper {
   std::vector<std::size_t> along_path(std::size_t about, double back, double ahead) const;
   Scan stretch(std::size_t node, double back) const;
   Eigen::Matrix3d odom_information(const Pose& step) const;
+  /// What the graph knows of where nodes are, seen from another: by the surest way through it.
+  std::vector<Eigen::Matrix3d> covariances(std::size_t from,
+                                           const std::vector<std::size_t>& of) const;
+  std::optional<Closure> find_closure(std::size_t pass, std::size_t here,
+                                      const Eigen::Matrix3d& covariance, const Scan& query) const;
+  double through(const Closure& closure) const;
   void close_loops();
-  void accept(const Closure& closure);
+  void accept(const std::vector<Closure>& closures);
   std::vector<PoseEdge> all_edges() const;
 
   ScanMapSettings settings_;
@@ -99,13 +112,14 @@ class ScanMapper {
   std::vector<PoseEdge> chain_;
   std::vector<PoseEdge> odometry_;
   std::vector<PoseEdge> loops_;
+  std::vector<Eigen::Matrix3d> steps_;  // covariance of each node's step from the one before
+  std::vector<std::vector<std::size_t>> loops_at_;
   std::vector<Closure> pending_;
   std::vector<Hung> hung_;
   Pose last_odom_;
   Pose node_odom_;
   Pose believed_in_node_;
   double searched_at_ = 0.0;
-  double closed_at_ = 0.0;
   ScanMapReport report_;
 };
 

@@ -16,6 +16,7 @@ struct Scan {
   std::vector<Vec2> points;
   /// Unit normals of the surface, towards the sensor; zero where the neighbours make no line.
   std::vector<Vec2> normals;
+  Vec2 sensor{0.0, 0.0};  ///< from where
 };
 
 /// How the beams of a scan lie, and which of them are used.
@@ -86,6 +87,14 @@ struct SearchResult {
   double score = 0.0;  ///< [0..1] mean likelihood of the scan's points
 };
 
+/// What a scan says about points that were seen from elsewhere.
+struct Sight {
+  std::size_t agree = 0;    ///< it saw something there too
+  std::size_t through = 0;  ///< it saw through them
+};
+/// The points are in the scan's frame. Those behind what it saw, and those beside, are not counted.
+Sight look_at(const Scan& scan, const std::vector<Vec2>& points);
+
 /// How likely a point is anywhere near a reference, with bounds for whole squares, so that the best
 /// pose in a window is found without trying all (branch and bound: Olson, ICRA 2009; Hess et al.,
 /// ICRA 2016).
@@ -97,6 +106,11 @@ class ScanField {
   std::optional<SearchResult> search(const Scan& scan, const Pose& guess,
                                      const SearchWindow& window, double at_least) const;
   double score(const Scan& scan, const Pose& pose) const;
+  /// How far from `best` the scan fits nearly as well, within a distance of `prior` (covariance of
+  /// the position in the reference's frame): the mean square of the deviation, by all poses that
+  /// have its heading. Large along a corridor, or where one room looks like the next.
+  Eigen::Matrix2d slack(const Scan& scan, const Pose& best, const Vec2& expected,
+                        const Eigen::Matrix2d& prior, double distance) const;
 
  private:
   // Highest likelihood in the square of 2^level cells to the right and up of a cell.
