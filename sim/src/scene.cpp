@@ -132,6 +132,18 @@ bool Scene::set_door(std::string_view name, bool open) {
   return false;
 }
 
+bool Scene::set_box(std::string_view name, const Pose& pose_in_world) {
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (boxes_[i].plan->look.name != name)
+      continue;
+    if (!is_free(i, pose_in_world, kNobody))
+      return false;
+    put(i, pose_in_world);
+    return true;
+  }
+  return false;
+}
+
 void Scene::walk(Person& person) {
   const std::vector<PersonPlan::Leg>& script = person.plan->script;
   if (person.leg >= script.size())
@@ -263,7 +275,7 @@ bool Scene::push(RobotNumber number, const Vec2& centre, const Vec2& way) {
     }
   if (nearest == boxes_.size() || boxes_[nearest].plan->mass > kMostPushed)
     return false;
-  Box& box = boxes_[nearest];
+  const Box& box = boxes_[nearest];
   const Vec2 normal = (contact - centre).normalized();
   const double depth = way.dot(normal);
   if (depth <= 0.0)
@@ -280,11 +292,15 @@ bool Scene::push(RobotNumber number, const Vec2& centre, const Vec2& way) {
                    norm2_angle(box.pose_in_world.th + share * lever / size)};
   if (!is_free(nearest, moved, number))
     return false;
-  box.pose_in_world = moved;
-  const auto sides = outline(box, moved);
-  std::copy(sides.begin(), sides.end(),
-            segments_.begin() + static_cast<std::ptrdiff_t>(doors_.size() + 4 * nearest));
+  put(nearest, moved);
   return true;
+}
+
+void Scene::put(std::size_t number, const Pose& pose_in_world) {
+  boxes_[number].pose_in_world = pose_in_world;
+  const auto sides = outline(boxes_[number], pose_in_world);
+  std::copy(sides.begin(), sides.end(),
+            segments_.begin() + static_cast<std::ptrdiff_t>(doors_.size() + 4 * number));
 }
 
 void Scene::add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const {

@@ -128,6 +128,9 @@ std::array<Side, 4> sides(const Feature& box) {
 LineMap::LineMap(const maps::Map& map) {
   for (std::size_t i = 0; i < map.features.size(); ++i) {
     const Feature& feature = map.features[i];
+    // What was put down by the pose that is to be corrected corrects nothing.
+    if (feature.type == PointType::object && feature.learned)
+      continue;
     if (feature.type == PointType::wall) {
       const Vec2 half = feature.pose_in_map.direction() * feature.length / 2.0;
       const Vec2 middle = feature.pose_in_map.position();

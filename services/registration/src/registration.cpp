@@ -98,6 +98,7 @@ class Registration::Self {
   void take_over(const Self& other);
   Memory save() const;
   void restore(const Memory& memory);
+  Presence& presence() { return presence_; }
 
  private:
   void move(const Inputs& inputs);
@@ -111,6 +112,7 @@ class Registration::Self {
   void follow(const ParticleCloud::Estimate& cloud, double score);
   void look_elsewhere(const std::vector<PlacedReading>& readings,
                       const std::vector<const Percept*>& percepts);
+  void look_for_news(const Inputs& inputs, const std::vector<PlacedReading>& readings);
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
   void find_environment();
@@ -139,6 +141,9 @@ class Registration::Self {
   bool leads_ = false;  // the cloud, and the filter is set by it
   double led_ = 0.0;    // [m]
   double trial_ = settings_.trial / 2.0;
+
+  Presence presence_{settings_.presence};
+  ObjectFinder objects_{settings_.objects};
 
   bool on_ = true;
   State state_ = State::unplaced;
@@ -193,12 +198,16 @@ void Registration::Self::take_over(const Self& other) {
   trial_ = other.trial_;
   way_ = other.way_;
   weighed_ = other.weighed_;
+  presence_ = other.presence_;
+  objects_ = other.objects_;
   search_.believe(other.search_.own_score());
   cycle_ = other.cycle_;
   odom_ = other.odom_;
   pose_in_odom_ = other.pose_in_odom_;
   output_ = other.output_;
   output_.matches.clear();
+  output_.presence = {};
+  output_.objects.clear();
   restored_ = other.restored_;
   find_environment();
 }
@@ -490,8 +499,32 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
   filter_->widen(0.1, radians(3.0));
 }
 
+/// What is missed of the map, and what stands where it has nothing.
+void Registration::Self::look_for_news(const Inputs& inputs,
+                                       const std::vector<PlacedReading>& readings) {
+  if (state_ != State::tracking || search_.own_score() < settings_.sure ||
+      filter_->sigma_position() > settings_.sure_position)
+    return;
+  std::vector<Look> looks;
+  for (const PlacedReading& reading : readings)
+    looks.push_back({compose(filter_->pose(), relative(pose_in_odom_, reading.sensor_in_odom)),
+                     reading.range, reading.echo});
+  std::vector<std::uint32_t> open;
+  for (const Match& match : output_.matches)
+    if (match.accepted &&
+        std::any_of(inputs.percepts.begin(), inputs.percepts.end(), [&](const Percept& percept) {
+          return percept.id == match.percept && percept.type == PointType::door;
+        }))
+      open.push_back(match.artifact);
+  output_.presence = presence_.step(map_, cycle_, filter_->pose().position(), looks, open);
+  if (inputs.find_objects)
+    output_.objects = objects_.step(map_, field_, cycle_, looks);
+}
+
 const Output& Registration::Self::step(const Inputs& inputs) {
   output_.matches.clear();
+  output_.presence = {};
+  output_.objects.clear();
   move(inputs);
   if (on_ && !lines_.empty()) {
     const std::vector<PlacedReading> readings = place(inputs.readings);
@@ -505,6 +538,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     else if (state_ == State::lost && search_.own_score() > settings_.again_sure &&
              search_.own_is_best())
       state_ = State::tracking;
+    look_for_news(inputs, readings);
   }
   report();
   return output_;
@@ -605,6 +639,14 @@ void Registration::switch_on(bool on) {
 
 bool Registration::on() const {
   return self_->on();
+}
+
+const std::set<std::uint32_t>& Registration::closed_doors() const {
+  return self_->presence().closed();
+}
+
+void Registration::recall_closed(std::set<std::uint32_t> doors) {
+  self_->presence().recall(std::move(doors));
 }
 
 Memory Registration::save() const {

@@ -25,7 +25,7 @@ const registration::Output& Localizer::advance() {
   const double before = clock_ ? clock_() : 0.0;
   percepts_ = interpretation_.step({seen.cycle, in_odom, seen.readings}).percepts;
   const registration::Output& output =
-      registration_.step({seen.cycle, 1, in_odom, percepts_, seen.readings});
+      registration_.step({seen.cycle, 1, in_odom, percepts_, seen.readings, finds_objects_});
   took_ = clock_ ? clock_() - before : 0.0;
   return output;
 }

@@ -23,6 +23,8 @@ class Localizer {
   const registration::Output& advance();
   /// Dead reckoning turns by so much more than the robot does [rad/m]. To be called at the start.
   void bend(double turn_per_metre) { bent_ = turn_per_metre; }
+  /// What stands where the map has nothing is looked for.
+  void find_objects(bool find) { finds_objects_ = find; }
   /// Measures what interpretation and registration take, by a clock in seconds.
   void set_clock(std::function<double()> clock) { clock_ = std::move(clock); }
   double took() const { return took_; }  ///< [s] of the last cycle
@@ -39,6 +41,7 @@ class Localizer {
   Drive drive_;
   Pose start_;
   double bent_ = 0.0;
+  bool finds_objects_ = false;
   Pose last_in_odom_;  // as the robot says it...
   Pose bent_in_odom_;  // ...and bent
   interpretation::Interpretation interpretation_;

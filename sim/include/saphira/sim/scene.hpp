@@ -78,6 +78,8 @@ class Scene {
   std::array<Segment, 4> sides(const Box& box) const { return outline(box, box.pose_in_world); }
   /// Opens or closes a door; its schedule goes on. False where there is no such door.
   bool set_door(std::string_view name, bool open);
+  /// Somebody carries a box elsewhere. False where there is no such box, or something stands there.
+  bool set_box(std::string_view name, const Pose& pose_in_world);
 
   /// A sonar has fired; what a robot alone in a scene does is not kept.
   void sound(const Ping& ping);
@@ -103,6 +105,7 @@ class Scene {
   void moved(RobotNumber number);
   /// A robot's hull at `centre` presses forward by `way`: whether a box has given way.
   bool push(RobotNumber number, const Vec2& centre, const Vec2& way);
+  void put(std::size_t box, const Pose& pose_in_world);
 
   void walk(Person& person);
   bool lets_pass(const Person& person, const Vec2& to);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -13,7 +14,9 @@
 #include "saphira/lps/percept.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/matching.hpp"
+#include "saphira/registration/object_finder.hpp"
 #include "saphira/registration/particle_cloud.hpp"
+#include "saphira/registration/presence.hpp"
 #include "saphira/registration/range_model.hpp"
 #include "saphira/registration/search.hpp"
 
@@ -61,6 +64,11 @@ struct Settings {
   double lead_turned = radians(8.0);    ///< [rad] ...and turned
   double dense = 0.5;                   ///< [m] one sigma of a cloud that says where it is...
   double dense_turned = radians(12.0);  ///< [rad] ...and of its heading
+
+  // What is missed and what is new, from a pose that is sure.
+  double sure_position = 0.2;  ///< [m] one sigma of it
+  PresenceSettings presence;
+  ObjectFinderSettings objects;
 };
 
 enum class State {
@@ -78,6 +86,8 @@ struct Inputs {
   Pose pose_in_odom;
   const std::vector<lps::Percept>& percepts;
   const std::vector<lps::SonarReading>& readings;  ///< new ones, in firing order
+  /// Whether things are looked for that the map does not have (add_new_features, manual 6.9.2).
+  bool find_objects = false;
 };
 
 struct Output {
@@ -90,6 +100,9 @@ struct Output {
   /// The feature of the map that the robot is in: junction before corridor before lane before
   /// office. current_environment of manual 8.1.2.
   std::optional<std::size_t> environment;
+  /// What of the map is gone, closed or open again, and what is new, for whoever has the map.
+  Presence::News presence;
+  std::vector<maps::Feature> objects;
 };
 
 /// What a restart takes over.
@@ -130,6 +143,9 @@ class Registration {
   void forget_pose();
   void switch_on(bool on);
   bool on() const;
+  /// Doors by id that were closed when the robot looked at them last.
+  const std::set<std::uint32_t>& closed_doors() const;
+  void recall_closed(std::set<std::uint32_t> doors);
 
   Memory save() const;
   void restore(const Memory& memory);

@@ -1,0 +1,201 @@
+#include "saphira/registration/presence.hpp"
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::registration {
+namespace {
+
+using lps::PointType;
+using maps::Feature;
+
+constexpr double kMoved = 0.2;      // [m] what is farther off than before is another thing
+constexpr double kOnTheWall = 0.3;  // [m] an opening so near to a wall is one in it
+
+/// What is watched, and what becomes of it.
+enum class Kind { none, thing, door };
+
+Kind kind_of(const Feature& feature) {
+  if (feature.id == 0)
+    return Kind::none;
+  switch (feature.type) {
+    case PointType::object:
+      return Kind::thing;
+    case PointType::wall:
+      return feature.learned ? Kind::thing : Kind::none;
+    case PointType::door:
+      return Kind::door;
+    case PointType::breach:
+      return feature.learned ? Kind::door : Kind::none;
+    default:
+      return Kind::none;
+  }
+}
+
+/// Where a line goes in and out of something [m].
+struct Crossing {
+  double in = 0.0;
+  double out = 0.0;
+};
+
+/// Where the axis of a sonar goes through a rectangle; nothing where it misses that which is
+/// smaller by `inside` on each side.
+std::optional<Crossing> cross(const Feature& box, const Pose& sensor, double inside) {
+  const ToFrame to_box(box.pose_in_map);
+  const Vec2 from = to_box(sensor.position());
+  const Vec2 way = to_box(sensor.position() + sensor.direction()) - from;
+  const std::array<double, 2> half{box.length / 2.0, box.width / 2.0};
+  Crossing crossing{0.0, std::numeric_limits<double>::infinity()};
+  Crossing core = crossing;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto clip = [&](Crossing& part, double limit) {
+      if (std::abs(way[axis]) < 1e-9) {
+        if (std::abs(from[axis]) > limit)
+          part.out = -1.0;
+        return;
+      }
+      const double a = (-limit - from[axis]) / way[axis];
+      const double b = (limit - from[axis]) / way[axis];
+      part.in = std::max(part.in, std::min(a, b));
+      part.out = std::min(part.out, std::max(a, b));
+    };
+    const double limit = half[static_cast<std::size_t>(axis)];
+    clip(crossing, limit);
+    clip(core, std::max(0.3 * limit, limit - inside));
+  }
+  if (core.out < core.in || crossing.in <= 0.0)
+    return std::nullopt;
+  return crossing;
+}
+
+/// A wall, as thick as the pose is unsure.
+Feature slab(const Feature& wall) {
+  Feature slab = wall;
+  slab.width = 0.1;
+  return slab;
+}
+
+bool is_opening(const Feature& feature) {
+  return feature.type == PointType::door || feature.type == PointType::breach ||
+         feature.type == PointType::junction;
+}
+
+/// Whether a wall has an opening there by the map.
+bool in_an_opening(const maps::Map& map, const Vec2& at) {
+  return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& feature) {
+    return is_opening(feature) && (feature.pose_in_map.position() - at).norm() <
+                                      std::max(feature.length, feature.width) / 2.0 + kOnTheWall;
+  });
+}
+
+}  // namespace
+
+Presence::Watched& Presence::watch(const Feature& feature) {
+  Watched& watched = watched_[feature.id];
+  if (watched.feature.type != feature.type ||
+      (watched.feature.pose_in_map.position() - feature.pose_in_map.position()).norm() > kMoved)
+    watched = Watched{};
+  watched.feature = feature;
+  return watched;
+}
+
+void Presence::look_at(Watched& watched, const Look& look, const maps::Map& map) {
+  const Feature& feature = watched.feature;
+  const bool wall = feature.type == PointType::wall;
+  const auto crossing = cross(wall ? slab(feature) : feature, look.sensor_in_map, settings_.inside);
+  if (!crossing || crossing->in > settings_.range)
+    return;
+  // A wall that is met at a slant throws the sound on, to where an echo comes from behind it.
+  if (wall && (std::abs(std::sin(look.sensor_in_map.th - feature.pose_in_map.th)) <
+                   std::cos(settings_.facing) ||
+               in_an_opening(map, look.sensor_in_map.position() +
+                                      crossing->in * look.sensor_in_map.direction())))
+    return;
+  if (look.range > crossing->out + settings_.behind) {
+    repeats(watched.through, look.sensor_in_map, settings_.spacing);
+  } else if (std::abs(look.range - crossing->in) < settings_.near &&
+             !repeats(watched.at, look.sensor_in_map, settings_.spacing) &&
+             watched.at.size() > 2 * watched.through.size()) {
+    // It is there; what goes through it later is news.
+    watched.through.clear();
+    watched.at.clear();
+  }
+}
+
+void Presence::look_at_door(Watched& watched, const Look& look, std::uint64_t cycle) {
+  const Pose in_door = relative(watched.feature.pose_in_map, look.sensor_in_map);
+  const double ahead = std::cos(in_door.th);
+  if (in_door.x * ahead >= 0.0 || std::abs(ahead) < std::cos(settings_.slanted))
+    return;
+  const double way = -in_door.x / ahead;
+  const double aside = std::abs(in_door.y + way * std::sin(in_door.th));
+  if (way > settings_.range || aside + way * std::tan(settings_.beam) > watched.feature.width / 2.0)
+    return;
+  const bool open = look.range > way + settings_.door_behind;
+  const bool closed = way < settings_.door_range &&
+                      std::abs(look.range - way) < settings_.door_near &&
+                      std::abs(ahead) > std::cos(settings_.facing);
+  if (!open && !closed)
+    return;
+  // One look that disagrees makes it doubtful.
+  if (watched.score != 0 && open != (watched.score > 0)) {
+    watched.score = 0;
+    watched.agreeing.clear();
+  }
+  if (repeats(watched.agreeing, look.sensor_in_map, settings_.door_spacing) &&
+      cycle < watched.counted + settings_.again)
+    return;
+  watched.counted = cycle;
+  watched.score += open ? 1 : -1;
+  if (std::abs(watched.score) >= settings_.door_looks) {
+    watched.score = open ? settings_.door_looks : -settings_.door_looks;
+    watched.agreeing.clear();
+  }
+}
+
+Presence::News Presence::step(const maps::Map& map, std::uint64_t cycle, const Vec2& robot_in_map,
+                              const std::vector<Look>& looks,
+                              const std::vector<std::uint32_t>& seen) {
+  News news;
+  for (const Feature& feature : map.features) {
+    const Kind kind = kind_of(feature);
+    if (kind == Kind::none)
+      continue;
+    const bool is_seen = std::find(seen.begin(), seen.end(), feature.id) != seen.end();
+    const double size = std::hypot(feature.length, feature.width) / 2.0;
+    if (!is_seen &&
+        (feature.pose_in_map.position() - robot_in_map).norm() > settings_.range + size + 0.5)
+      continue;
+    Watched& watched = watch(feature);
+    if (is_seen)
+      watched.score = settings_.door_looks;
+    for (const Look& look : looks) {
+      // Silence says nothing: what is there may have thrown the sound off.
+      if (!look.echo)
+        continue;
+      if (kind == Kind::door)
+        look_at_door(watched, look, cycle);
+      else
+        look_at(watched, look, map);
+    }
+    if (kind == Kind::thing
+            ? passed(watched)
+            : feature.type == PointType::breach && watched.score == -settings_.door_looks) {
+      news.gone.push_back(feature.id);
+      watched_.erase(feature.id);
+    } else if (watched.score == -settings_.door_looks && closed_.insert(feature.id).second) {
+      news.closed.push_back(feature.id);
+    } else if (watched.score == settings_.door_looks && closed_.erase(feature.id) != 0) {
+      news.opened.push_back(feature.id);
+    }
+  }
+  // What the map has no more is no news.
+  if (!closed_.empty())
+    std::erase_if(closed_, [&](std::uint32_t id) { return maps::find(map, id) == nullptr; });
+  return news;
+}
+
+}  // namespace saphira::registration
