@@ -15,7 +15,8 @@ namespace {
 
 using lps::PointType;
 
-constexpr double kMargin = 1.0;  // [m] around what is drawn
+constexpr double kMargin = 1.0;     // [m] around what is drawn
+constexpr double kLegendRow = 0.8;  // [m]
 // Okabe and Ito 2008: told apart by everybody.
 constexpr std::array<std::string_view, 5> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                   "#56b4e9"};
@@ -60,7 +61,15 @@ class Picture {
   void label(const Vec2& at, std::string_view text, double size, std::string_view color = "#444");
   void gate(const Feature& feature);
   void ways();
+  void strokes();
   void robot();
+  struct Named {
+    std::string_view name;
+    std::string_view color;
+    int row = 0;
+    double x = 0.0;  // from the left
+  };
+  int arrange_legend();
   void legend();
   // SVG has y downwards.
   static std::string at(const Vec2& p) { return number(p.x()) + "," + number(-p.y()); }
@@ -69,6 +78,7 @@ class Picture {
   bool any_ = false;
   Vec2 low_{0.0, 0.0};
   Vec2 high_{1.0, 1.0};
+  std::vector<Named> named_;
   std::string out_;
 };
 
@@ -80,6 +90,9 @@ void Picture::bounds() {
     include(point);
   for (const Trajectory& trajectory : drawing_.trajectories)
     for (const Vec2& point : trajectory.points_in_map)
+      include(point);
+  for (const Strokes& strokes : drawing_.strokes)
+    for (const Vec2& point : strokes.lines)
       include(point);
   if (drawing_.robot)
     include(drawing_.robot->pose_in_map.position());
@@ -223,6 +236,18 @@ void Picture::ways() {
                         : R"(stroke="#c00" stroke-width="0.05" stroke-dasharray="0.15")");
 }
 
+void Picture::strokes() {
+  for (const Strokes& strokes : drawing_.strokes) {
+    if (strokes.lines.empty())
+      continue;
+    out_ += "<path d=\"";
+    for (std::size_t i = 0; i + 1 < strokes.lines.size(); i += 2)
+      out_ += "M" + at(strokes.lines[i]) + " L" + at(strokes.lines[i + 1]);
+    out_ += "\" fill=\"none\" stroke=\"" + escaped(strokes.color) + "\" stroke-width=\"" +
+            number(strokes.width) + "\"/>\n";
+  }
+}
+
 void Picture::robot() {
   if (!drawing_.robot)
     return;
@@ -243,20 +268,42 @@ void Picture::robot() {
           ")\" fill=\"none\" stroke=\"#d55e00\" stroke-width=\"0.04\"/>\n";
 }
 
+// Beside the scale, and below it where the picture is too narrow. How many rows more.
+int Picture::arrange_legend() {
+  std::size_t color = 0;
+  for (const Trajectory& trajectory : drawing_.trajectories)
+    named_.push_back({trajectory.name, kColors[color++ % kColors.size()]});
+  for (const Strokes& strokes : drawing_.strokes)
+    if (!strokes.name.empty())
+      named_.push_back({strokes.name, strokes.color});
+  const double width = high_.x() - low_.x();
+  double x = 6.5;
+  int row = 0;
+  for (Named& named : named_) {
+    const double needs = 2.0 + 0.3 * static_cast<double>(named.name.size());
+    if (x + needs > width && x > 6.5) {
+      x = 6.5;
+      ++row;
+    }
+    named.row = row;
+    named.x = x;
+    x += needs;
+  }
+  return row;
+}
+
 void Picture::legend() {
   // A scale of five metres below on the left; above it what the colours are.
-  const Vec2 corner(low_.x() + 0.3, low_.y() + 0.4);
+  const int rows = named_.empty() ? 0 : named_.back().row;
+  const Vec2 corner(low_.x() + 0.3, low_.y() + 0.4 + kLegendRow * rows);
   line(corner, corner + Vec2(5.0, 0.0), R"(stroke="#000" stroke-width="0.08")");
   label(corner + Vec2(2.5, 0.2), "5 m", 0.5, "#000");
-  double x = corner.x() + 6.5;
-  std::size_t color = 0;
-  for (const Trajectory& trajectory : drawing_.trajectories) {
-    line({x, corner.y()}, {x + 1.0, corner.y()},
-         "stroke=\"" + std::string(kColors[color]) + "\" stroke-width=\"0.12\"");
-    out_ += "<text x=\"" + number(x + 1.2) + "\" y=\"" + number(-corner.y() + 0.15) +
-            "\" font-size=\"0.5\">" + escaped(trajectory.name) + "</text>\n";
-    x += 2.0 + 0.3 * static_cast<double>(trajectory.name.size());
-    color = (color + 1) % kColors.size();
+  for (const Named& named : named_) {
+    const Vec2 from = corner + Vec2(named.x, -kLegendRow * named.row);
+    line(from, from + Vec2(1.0, 0.0),
+         "stroke=\"" + escaped(named.color) + "\" stroke-width=\"0.12\"");
+    out_ += "<text x=\"" + number(from.x() + 1.2) + "\" y=\"" + number(-from.y() + 0.15) +
+            "\" font-size=\"0.5\">" + escaped(named.name) + "</text>\n";
   }
   if (!drawing_.title.empty())
     out_ += "<text x=\"" + number(low_.x() + 0.3) + "\" y=\"" + number(-high_.y() + 0.6) +
@@ -267,6 +314,7 @@ std::string Picture::draw() {
   bounds();
   low_ -= Vec2(kMargin, kMargin + 0.6);
   high_ += Vec2(kMargin, kMargin + (drawing_.title.empty() ? 0.0 : 0.6));
+  low_.y() -= kLegendRow * arrange_legend();
   const Vec2 size = high_ - low_;
   const double scale = std::min(40.0, 1600.0 / size.maxCoeff());  // pixels a metre
   out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(size.x() * scale) +
@@ -281,6 +329,7 @@ std::string Picture::draw() {
     line(drawing_.lines[i], drawing_.lines[i + 1], R"(stroke="#aaa" stroke-width="0.06")");
   features();
   ways();
+  strokes();
   robot();
   legend();
   return out_ + "</svg>\n";

@@ -185,7 +185,7 @@ void print(const Options& options, const Result& result) {
       std::printf(
           ",\"%s_walls_kept\":%.4f,\"%s_doorways_blocked\":%.4f,\"%s_free_wrong\":%.5f,"
           "\"%s_auc\":%.4f",
-          name, grid.walls, name, grid.doorways, name, grid.free, name, grid.auc);
+          name, grid.walls, name, grid.doorways.value_or(0.0), name, grid.free, name, grid.auc);
     }
     std::printf("}\n");
     return;
@@ -217,7 +217,7 @@ void print(const Options& options, const Result& result) {
               "free is wrong", "AUC");
   for (std::size_t i = 0; i < 2; ++i)
     std::printf("%-10s %12.3f %18.3f %14.4f %8.3f\n", i == 0 ? "MURIEL" : "cone",
-                result.grids[i].walls, result.grids[i].doorways, result.grids[i].free,
+                result.grids[i].walls, result.grids[i].doorways.value_or(0.0), result.grids[i].free,
                 result.grids[i].auc);
   std::printf("\ncycle_ms_p50 %.3f, cycle_ms_p99 %.3f (CPU), %.1f million cells a second of CPU\n",
               ms, quantile(result.ms, 0.99), cells / 1e6);

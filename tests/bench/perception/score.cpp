@@ -171,7 +171,7 @@ void Score::look(const Moment& moment, const interpretation::Output& output) {
     Judged& judged = judged_[percept.id];
     judged.percept = percept;
     judged.pose_in_world = at;
-    if (!is_real(percept, at)) {
+    if (!(judge_ ? judge_(percept, at) : is_real(percept, at))) {
       if (judged.real)
         mistakes_.push_back({percept, at, moment.cycle});
       judged.real = false;
@@ -295,7 +295,8 @@ GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
         blocked += *probability > 0.5 ? 1 : 0;
       }
   }
-  score.doorways = inside == 0 ? 0.0 : static_cast<double>(blocked) / inside;
+  if (inside > 0)
+    score.doorways = static_cast<double>(blocked) / inside;
   std::vector<double> occupied(202, 0.0);
   std::vector<double> empty(202, 0.0);
   double all_occupied = 0.0;

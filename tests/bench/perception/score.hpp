@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,9 @@ class Score {
 
   Score(maps::Map map, Surfaces surfaces, Covered covered = {})
       : map_(std::move(map)), surfaces_(std::move(surfaces)), covered_(std::move(covered)) {}
+  /// Something else says what is real, as a percept and where it is. No door is passed.
+  using Judge = std::function<bool(const lps::Percept& percept, const Pose& in_world)>;
+  explicit Score(Judge judge) : judge_(std::move(judge)) {}
   /// In a simulated world. The drive outlives the score.
   Score(Drive& drive, maps::Map map);
 
@@ -100,6 +104,7 @@ class Score {
   maps::Map map_;
   Surfaces surfaces_;
   Covered covered_;
+  Judge judge_;
   std::vector<Pose> odom_in_world_;  // by cycle
   std::map<std::uint32_t, Judged> judged_;
   std::map<std::size_t, Passing> passing_;
@@ -123,10 +128,11 @@ std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const 
 GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::vector<Vec2>& path);
 
 struct GridScore {
-  double walls = 0.0;     ///< share of the surfaces along the way that are in it
-  double doorways = 0.0;  ///< share of the open doorways along the way that it takes for blocked
-  double free = 0.0;      ///< share of the free cells that it takes for occupied
-  double auc = 0.0;       ///< that an occupied cell is likelier than a free one
+  double walls = 0.0;  ///< share of the surfaces along the way that are in it
+  /// Share of the open doorways along the way that it takes for blocked; nothing without any.
+  std::optional<double> doorways;
+  double free = 0.0;  ///< share of the free cells that it takes for occupied
+  double auc = 0.0;   ///< that an occupied cell is likelier than a free one
 };
 GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth);
 /// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: what is

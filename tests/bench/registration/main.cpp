@@ -9,6 +9,8 @@
 #include "corridor.hpp"
 #include "data_set.hpp"
 #include "laser_map.hpp"
+#include "percept_report.hpp"
+#include "report.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/registration/scan_mapping.hpp"
@@ -51,49 +53,6 @@ constexpr Published kPublished[] = {
     {"hospital", "GMapping, 50 particles", 0.637, 2.638},
     {"hospital", "graph mapping", 0.143, 0.180},
 };
-
-class Report {
- public:
-  void heading(const std::string& text) {
-    std::printf("\n%s\n", text.c_str());
-    markdown_ +=
-        "\n## " + text +
-        "\n\n| | relations, m | deg | relations with exact stamps, m | ATE, m | per 10 m |\n"
-        "|---|---|---|---|---|---|\n";
-  }
-  void note(const std::string& text) {
-    std::printf("  %s\n", text.c_str());
-    std::fflush(stdout);
-    notes_ += "- " + text + "\n";
-  }
-  void end_of_set() {
-    markdown_ += "\n" + notes_;
-    notes_.clear();
-  }
-  void row(const std::string& what, const std::vector<std::string>& cells) {
-    std::printf("  %-36s", what.c_str());
-    markdown_ += "| " + what;
-    for (const std::string& cell : cells) {
-      std::printf(" %s ", cell.c_str());
-      markdown_ += " | " + cell;
-    }
-    std::printf("\n");
-    std::fflush(stdout);
-    markdown_ += " |\n";
-  }
-  const std::string& markdown() const { return markdown_; }
-
- private:
-  std::string markdown_;
-  std::string notes_;
-};
-
-template <typename... Values>
-std::string format(const char* how, Values... values) {
-  std::array<char, 256> text{};
-  std::snprintf(text.data(), text.size(), how, values...);
-  return text.data();
-}
 
 json evaluate(const DataSet& set, const Trajectory& estimate, const std::string& what,
               Report& report) {
@@ -171,21 +130,18 @@ json sonar_json(const DataSet& set, const SonarRun& run, const std::string& what
   return out;
 }
 
-SonarDrive virtual_drive(const DataSet& set, const SonarRing& ring) {
-  SonarDrive drive;
-  drive.ring = ring;
-  drive.times = set.times;
-  drive.poses_in_odom = set.poses_in_odom;
-  drive.at_once = true;
-  for (const registration::Scan& scan : set.scans)
-    drive.readings.push_back(hear(scan, ring));
-  return drive;
-}
+// Pictures of a drive: where it went, and what was seen.
+struct Pictures {
+  maps::Drawing ways;
+  maps::Drawing percepts;
+};
 
-json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Drawing* drawing) {
+json measure(const DataSet& set, const std::string& log_folder, Report& report,
+             Pictures& pictures) {
   json out;
   report.heading(set.name + format(": %zu scans, %.0f m by dead reckoning", set.scans.size(),
                                    set.odometry.length()));
+  report.columns({"relations, m", "deg", "relations with exact stamps, m", "ATE, m", "per 10 m"});
   if (set.mended > 0)
     report.note(
         format("%zu stamps of scans were interpolated in the log and are mended", set.mended));
@@ -237,12 +193,10 @@ json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Dr
   // Sonar-like ranges, in the walls that the full ranges drew.
   const maps::Map walls = walls_of(mapper.node_scans(), mapper.nodes());
   report.note(format("%zu walls drawn from the full ranges", walls.features.size()));
-  SonarDrive heard = virtual_drive(set, ring);
+  SonarDrive heard = virtual_drive(set, pioneer_sonars());
   const SonarRun by_sonar = register_sonars(heard, walls, full.front().pose);
   out["sonar_like"] = sonar_json(set, by_sonar, "7 virtual sonars, walls known", report);
-  SonarRing more = ring;
-  more.mounts = front_of_b21();
-  const SonarDrive heard_by_more = virtual_drive(set, more);
+  const SonarDrive heard_by_more = virtual_drive(set, front_of_b21());
   out["sonar_like_13"] = sonar_json(set, register_sonars(heard_by_more, walls, full.front().pose),
                                     "13 virtual sonars, walls known", report);
   const SonarRun mapped = map_sonars(heard, full.front().pose);
@@ -275,21 +229,22 @@ json measure(const DataSet& set, const SonarRing& ring, Report& report, maps::Dr
         sonar_json(set, map_sonars(*set.sonars, set.reference->poses().front().pose),
                    "simulated sonars, map built on the way", report);
   }
-  if (drawing != nullptr) {
-    drawing->map = walls;
-    drawing->title = set.name;
-    drawing->trajectories.push_back({"full ranges", points_of(full, {})});
-    if (!by_sonar.poses.empty())
-      drawing->trajectories.push_back({"7 virtual sonars", points_of(by_sonar.poses, {})});
-    const Pose odom = relative(relative(full.front().pose, set.poses_in_odom.front()), Pose{});
-    drawing->trajectories.push_back({"dead reckoning", points_of(set.odometry.poses(), odom)});
-    if (set.reference) {
-      const Pairs pairs = pair_up(*set.reference, Trajectory(full));
-      drawing->trajectories.push_back(
-          {"reference", points_of(set.reference->poses(), alignment(pairs))});
-    }
+  PerceptReport seen = report_percepts(set, log_folder, full, heard.poses_in_odom, report);
+  out["percepts"] = std::move(seen.percepts);
+  out["grid"] = std::move(seen.grid);
+  pictures.percepts = std::move(seen.drawing);
+  maps::Drawing& ways = pictures.ways;
+  ways.map = walls;
+  ways.title = set.name;
+  ways.trajectories.push_back({"full ranges", points_of(full, {})});
+  if (!by_sonar.poses.empty())
+    ways.trajectories.push_back({"7 virtual sonars", points_of(by_sonar.poses, {})});
+  const Pose odom = relative(relative(full.front().pose, set.poses_in_odom.front()), Pose{});
+  ways.trajectories.push_back({"dead reckoning", points_of(set.odometry.poses(), odom)});
+  if (set.reference) {
+    const Pairs pairs = pair_up(*set.reference, Trajectory(full));
+    ways.trajectories.push_back({"reference", points_of(set.reference->poses(), alignment(pairs))});
   }
-  report.end_of_set();
   return out;
 }
 
@@ -341,31 +296,38 @@ struct Options {
 int run(const Options& options) {
   Report report;
   json out;
-  SonarRing ring;
-  ring.mounts = pioneer_sonars();
-  const auto with = [&](const DataSet& set) {
-    maps::Drawing drawing;
-    out[set.name] = measure(set, ring, report, options.plot.empty() ? nullptr : &drawing);
-    if (!options.plot.empty()) {
-      fs::path path(options.plot);
-      std::string name = set.name;
-      std::replace(name.begin(), name.end(), ' ', '-');
-      path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
-      write(path.string(), maps::to_svg(drawing));
-    }
+  const auto draw = [&](const std::string& name, const maps::Drawing& drawing) {
+    if (options.plot.empty())
+      return;
+    fs::path path(options.plot);
+    path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
+    std::string text = path.string();
+    std::replace(text.begin(), text.end(), ' ', '-');
+    write(text, maps::to_svg(drawing));
+    const fs::path beside = fs::absolute(options.report).parent_path();
+    report.picture(drawing.title, fs::absolute(text).lexically_relative(beside).string());
+  };
+  const auto with = [&](const DataSet& set, const std::string& log_folder) {
+    Pictures pictures;
+    out[set.name] = measure(set, log_folder, report, pictures);
+    draw(set.name, pictures.ways);
+    draw(set.name + " percepts", pictures.percepts);
+    report.end_of_set();
   };
   const auto wanted = [&](const std::string& name) {
     return options.only.empty() ||
            std::find(options.only.begin(), options.only.end(), name) != options.only.end();
   };
   if (!options.log.raw.empty()) {
-    with(load_data_set(fs::path(options.log.raw).stem().string(), options.log));
+    with(load_data_set(fs::path(options.log.raw).stem().string(), options.log),
+         fs::path(options.log.raw).parent_path().string());
   } else {
     if (!options.data.empty() && fs::is_directory(options.data)) {
       for (const LogFiles& files : find_logs(options.data)) {
-        const std::string name = fs::path(files.raw).parent_path().filename().string();
+        const fs::path folder = fs::path(files.raw).parent_path();
+        const std::string name = folder.filename().string();
         if (wanted(name))
-          with(load_data_set(name, files));
+          with(load_data_set(name, files), folder.string());
       }
       const std::string corridor = (fs::path(options.data) / "sonar-corridor").string();
       if (fs::is_directory(corridor) && wanted("sonar-corridor"))
@@ -378,7 +340,7 @@ int run(const Options& options) {
     }
     for (const char* world : {"office-floor", "loop"})
       if (wanted(world))
-        with(simulate_data_set(world, 2.0, kSeed, 9000));
+        with(simulate_data_set(world, 2.0, kSeed, 9000), "");
   }
   if (!options.report.empty())
     write(options.report, report.markdown());
@@ -401,7 +363,8 @@ int main(int argc, char** argv) {
   app.add_option("--relations", options.log.relations, "its reference relations")->needs(log);
   app.add_option("--corrected", options.log.corrected, "its corrected log")->needs(log);
   app.add_option("--report", options.report, "write the tables into this file (Markdown)");
-  app.add_option("--plot", options.plot, "draw each drive into FILE-NAME.svg")
+  app.add_option("--plot", options.plot,
+                 "draw each drive into FILE-NAME.svg and FILE-NAME-percepts.svg")
       ->type_name("FILE.svg");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "saphira/interpretation/interpretation.hpp"
 #include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
 
@@ -18,40 +17,57 @@ template <typename Locate>
 SonarRun run(const SonarDrive& drive, Locate&& locate) {
   interpretation::Settings settings;
   settings.sonars = drive.ring.mounts;
-  interpretation::Interpretation interpretation(settings);
   SonarRun out;
   std::set<std::uint32_t> known;
-  std::uint64_t cycle = 0;
-  for (std::size_t i = 0; i < drive.times.size(); ++i) {
-    // Cycles of 0.1 s, as time goes.
-    const auto now =
-        static_cast<std::uint64_t>(std::llround(10.0 * (drive.times[i] - drive.times.front()))) + 1;
-    cycle = std::max(cycle + 1, now);
-    const double start = cpu_seconds();
-    // All were heard at this place, and not one after the other on the way to it: first the way.
-    if (drive.at_once) {
-      SonarRun uncounted;
-      const auto& moved = interpretation.step({cycle, drive.poses_in_odom[i], {}});
-      locate(uncounted, cycle++, i, moved.percepts, {});
-    }
-    const auto& seen = interpretation.step({cycle, drive.poses_in_odom[i], drive.readings[i]});
-    const std::optional<Pose> pose = locate(out, cycle, i, seen.percepts, drive.readings[i]);
+  const std::vector<lps::SonarReading> nothing;
+  double start = cpu_seconds();
+  interpretation::Interpretation interpretation(settings);
+  perceive(drive, interpretation, nullptr, [&](const Perceived& seen) {
+    const std::size_t i = seen.stamp;
+    SonarRun uncounted;
+    const std::optional<Pose> pose =
+        locate(seen.complete ? out : uncounted, seen.cycle, i, seen.output->percepts,
+               seen.complete ? *seen.readings : nothing);
+    if (!seen.complete)
+      return;
     out.step_ms.push_back(1e3 * (cpu_seconds() - start));
+    start = cpu_seconds();
     ++out.steps;
     if (pose)
       out.poses.push_back({drive.times[i], *pose});
-    for (const lps::Percept& percept : seen.percepts)
+    for (const lps::Percept& percept : seen.output->percepts)
       if (known.insert(percept.id).second) {
         const bool opening =
             percept.type == lps::PointType::door || percept.type == lps::PointType::junction;
         out.walls += percept.type == lps::PointType::wall ? 1U : 0U;
         out.openings += opening ? 1U : 0U;
       }
-  }
+  });
   return out;
 }
 
 }  // namespace
+
+void perceive(const SonarDrive& drive, interpretation::Interpretation& interpretation,
+              const std::vector<Pose>* odom_in_grid,
+              const std::function<void(const Perceived&)>& look) {
+  std::uint64_t cycle = 0;
+  for (std::size_t i = 0; i < drive.times.size(); ++i) {
+    // Cycles of 0.1 s, as time goes.
+    const auto now =
+        static_cast<std::uint64_t>(std::llround(10.0 * (drive.times[i] - drive.times.front()))) + 1;
+    cycle = std::max(cycle + 1, now);
+    const Pose grid = odom_in_grid != nullptr ? (*odom_in_grid)[i] : Pose{};
+    // All were heard at this place, and not one after the other on the way to it: first the way.
+    if (drive.at_once) {
+      const auto& moved = interpretation.step({cycle, drive.poses_in_odom[i], {}, grid});
+      look({cycle++, i, &moved, &drive.readings[i], false});
+    }
+    const auto& seen =
+        interpretation.step({cycle, drive.poses_in_odom[i], drive.readings[i], grid});
+    look({cycle, i, &seen, &drive.readings[i], true});
+  }
+}
 
 double cpu_seconds() {
   timespec now{};

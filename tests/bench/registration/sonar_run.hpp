@@ -1,9 +1,12 @@
 #pragma once
 
-#include <string>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "metrics.hpp"
+#include "saphira/interpretation/interpretation.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/scan_matching.hpp"
 #include "virtual_sonar.hpp"
@@ -20,6 +23,21 @@ struct SonarDrive {
   /// other since the stamp before.
   bool at_once = false;
 };
+
+/// A step of interpretation on the way.
+struct Perceived {
+  std::uint64_t cycle = 0;
+  std::size_t stamp = 0;  ///< which of the drive's
+  const interpretation::Output* output = nullptr;
+  const std::vector<lps::SonarReading>* readings = nullptr;
+  /// What this stamp brought is in it. Where all readings are of one moment, the way to it is a
+  /// step of its own, before.
+  bool complete = true;
+};
+/// Interpretation alone over the drive. `odom_in_grid` may say at each stamp where its grid is.
+void perceive(const SonarDrive& drive, interpretation::Interpretation& interpretation,
+              const std::vector<Pose>* odom_in_grid,
+              const std::function<void(const Perceived&)>& look);
 
 /// [s] Of this program alone: other work on the machine does not count.
 double cpu_seconds();

@@ -25,6 +25,14 @@ struct Trajectory {
   std::vector<Vec2> points_in_map;
 };
 
+/// Strokes of one kind.
+struct Strokes {
+  std::string name;   ///< in the legend; empty: not there
+  std::string color;  ///< as SVG writes it
+  double width = 0.06;
+  std::vector<Vec2> lines;  ///< pairs of end points
+};
+
 /// Something seen, and what it was taken for.
 struct DrawnMatch {
   Vec2 seen_in_map{0.0, 0.0};
@@ -50,6 +58,8 @@ struct Drawing {
   /// Pairs of end points: the walls of a simulated world, or percepts, under all else.
   std::vector<Vec2> lines;
   std::vector<Trajectory> trajectories;
+  /// Over the map and the ways.
+  std::vector<Strokes> strokes;
   std::vector<DrawnMatch> matches;
   std::optional<DrawnRobot> robot;
 };

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "saphira/maps/drawing.hpp"
+#include "saphira/registration/scan_matching.hpp"
+
+namespace saphira::bench {
+
+/// What a laser says of each place: where its beams ended, and where they went through. The
+/// reference for what sonars make of the same drive.
+class LaserCells {
+ public:
+  static constexpr double kCell = 0.05;  ///< [m]
+
+  /// Scans with known poses. A scan does not say where on the robot its laser is: the beams are
+  /// taken to begin at the robot's middle.
+  LaserCells(const std::vector<registration::Scan>& scans, const std::vector<Pose>& poses);
+
+  bool occupied(const Vec2& at) const;
+  /// Seen through, and nothing within 0.15 m.
+  bool free(const Vec2& at) const;
+  /// Whether an occupied cell's middle is so near.
+  bool near(const Vec2& at, double distance) const;
+  /// How far the nearest occupied cell lies in a direction, or against it (negative).
+  std::optional<double> beside(const Vec2& at, double direction, double reach) const;
+  /// The middles of all occupied cells, by rows.
+  std::vector<Vec2> surfaces() const;
+  /// Whether nothing is between the two points, up to 0.15 m before the second one.
+  bool sees(const Vec2& from, const Vec2& to) const;
+  /// For a picture.
+  maps::Raster raster() const;
+
+ private:
+  struct Cell {
+    std::uint16_t hits = 0;
+    std::uint16_t passes = 0;
+    bool occupied = false;
+    bool near_occupied = false;
+  };
+  std::optional<std::size_t> index(const Vec2& at) const;
+  Vec2 middle(std::size_t index) const;
+  void pass(const Vec2& from, const Vec2& to);
+
+  Vec2 low_{0.0, 0.0};
+  std::size_t columns_ = 0;
+  std::size_t rows_ = 0;
+  std::vector<Cell> cells_;  // row by row
+};
+
+}  // namespace saphira::bench
