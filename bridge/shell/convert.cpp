@@ -12,8 +12,6 @@ namespace saphira::bridge {
 
 namespace {
 
-constexpr std::size_t kMaxText = 255;  // what a writer that sends novels may say of itself
-
 constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{{{
     {protocol::Motors::kStopped, v1::MOTORS_STOPPED},
     {protocol::Motors::kMoving, v1::MOTORS_MOVING},
@@ -212,7 +210,7 @@ authority::Command to_command(const v1::MotorCommand& command, authority::Role r
   authority::Command out;
   out.role = role;
   out.writer = writer;
-  out.source = command.source().substr(0, kMaxText);
+  out.source = source_of(command);
   out.epoch = command.stamp().epoch();
   out.cycle = command.stamp().cycle();
   out.number = command.number();

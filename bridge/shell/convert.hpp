@@ -38,6 +38,12 @@ reflector::Motion to_motion(const v1::MotorCommand& command);
 authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
                               const authority::WriterId& writer, double received);
 
+/// What a writer says of itself: anybody may write anything, so no more than the contract's text.
+template <class Sample>
+std::string source_of(const Sample& sample) {
+  return sample.source().substr(0, 255);
+}
+
 /// What is asked of a device; std::invalid_argument says what was expected.
 reflector::Wish to_wish(const v1::ServoCommand& command);
 reflector::Wish to_wish(const v1::GripperCommand& command);

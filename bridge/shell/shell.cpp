@@ -1,14 +1,10 @@
 #include "shell.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -41,10 +37,8 @@ double look_around(bus::Profile profile) {
   return profile == bus::Profile::host ? 0.3 : profile == bus::Profile::lan ? 0.6 : 1.2;
 }
 constexpr double kHoldOff = 2.0;  // [s] until a robot that could not be served is tried again
-constexpr std::uint64_t kMotorsCycles = 10;   // then the motors should be on
-constexpr std::uint64_t kSecond = 10;         // [cycles]
-constexpr std::uint64_t kVisionSilence = 20;  // [cycles] then the camera is asked again
-constexpr double kCycle = 0.1;                // [s] manual 2.1.1
+constexpr std::uint64_t kMotorsCycles = 10;  // then the motors should be on
+constexpr double kCycle = 0.1;               // [s] manual 2.1.1
 
 std::uint64_t milliseconds_since_1970() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -58,6 +52,14 @@ std::vector<std::uint8_t> stop_packets() {
   const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
   out.insert(out.end(), turn.begin(), turn.end());
   return out;
+}
+
+/// The parameter files of a robot, in words.
+std::string looked_for(const protocol::RobotIdentity& robot) {
+  std::string names;
+  for (const std::string& name : protocol::parameter_file_names(robot.robot_class, robot.subclass))
+    names += (names.empty() ? "" : ", ") + name;
+  return names.empty() ? "nothing (the robot names no class)" : names;
 }
 
 std::uint64_t driver_of(const authority::WriterId& writer) {
@@ -96,50 +98,29 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       grant_writer_(node_.writer(bus::topics::kGrant)),
       state_recall_(node_.writer(bus::topics::kRecallRobot)),
       grant_recall_(node_.writer(bus::topics::kRecallGrant)),
-      devices_writer_(node_.writer(bus::topics::kDevices)),
-      serial_data_writer_(node_.writer(bus::topics::kSerialData)),
-      servo_(node_.reader(bus::topics::kServo)),
-      gripper_(node_.reader(bus::topics::kGripper)),
-      output_(node_.reader(bus::topics::kDigitalOutput)),
-      analog_(node_.reader(bus::topics::kAnalog)),
-      timer_(node_.reader(bus::topics::kTimer)),
-      sonar_(node_.reader(bus::topics::kSonar)),
-      sound_(node_.reader(bus::topics::kSound)),
-      server_(node_.reader(bus::topics::kServer)),
-      serial_(node_.reader(bus::topics::kSerial)),
       permits_(node_.reader(bus::topics::kStepPermit)),
-      statuses_(node_.reader(bus::topics::kStatus)),
+      namesakes_(node_),
       link_(transport::parse_address(options_.robot_port)),
-      arbiter_({options_.lease, options_.quiet, 3}) {
+      devices_(node_, reflector_),
+      arbiter_({options_.lease, options_.quiet, 3}),
+      position_file_(options_.state_file) {
   drives_.push_back({Role::estop, node_.reader(bus::topics::kDriveEstop), {}, false});
   drives_.push_back({Role::teleop, node_.reader(bus::topics::kDriveTeleop), {}, false});
   drives_.push_back({Role::direct, node_.reader(bus::topics::kDriveDirect), {}, false});
   drives_.push_back({Role::behaviors, node_.reader(bus::topics::kDriveBehaviors), {}, false});
   if (!options_.vision.empty())
-    channels_writer_.emplace(node_.writer(bus::topics::kVisionChannels));
+    camera_.emplace(node_, options_.vision);
   for (authority::GuardSettings& settings : guards_)
     settings.enabled = options_.guard;
   if (!lockstep_ && !in_memory_)
     hold_off_ = BootClock::seconds() + look_around(node.profile);
 
-  if (!options_.state_file.empty()) {
-    state_fd_ = ::open(options_.state_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (state_fd_ < 0)
-      throw std::invalid_argument("--state " + options_.state_file + ": " + std::strerror(errno));
-    char buffer[512];
-    const ssize_t n = ::pread(state_fd_, buffer, sizeof buffer, 0);
-    const std::string text(buffer, static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
-    memory_ = reflector::from_text(text);
-    if (memory_)
-      last_odom_ = memory_->odom;
-    else if (!text.empty())
-      node_.warn(options_.state_file + " holds no position: a new one begins");
-  }
-}
-
-Shell::~Shell() {
-  if (state_fd_ >= 0)
-    ::close(state_fd_);
+  const std::string kept = position_file_.read();
+  memory_ = reflector::from_text(kept);
+  if (memory_)
+    last_odom_ = memory_->odom;
+  else if (!kept.empty())
+    node_.warn(position_file_.path() + " holds no position: a new one begins");
 }
 
 double Shell::time() const {
@@ -237,7 +218,7 @@ void Shell::tend_link(double now) {
     return;
   }
   if (connection_.state() == reflector::Connection::State::closed) {
-    if (!others_.empty())
+    if (namesakes_.any())
       return;
     parser_.reset();
     last_bytes_ = now;
@@ -306,61 +287,18 @@ void Shell::packet(const protocol::Bytes& body, double now) {
   if (const auto* in = std::get_if<protocol::InformationPacket>(&any))
     information(*in, now);
   else
-    other(any, body, now);
+    other(any, body[0], now);
 }
 
-void Shell::other(const protocol::ServerPacket& any, protocol::ByteView body, double now) {
-  const auto type = static_cast<protocol::PacketType>(body[0]);
-  if (type == protocol::PacketType::kReset1 || type == protocol::PacketType::kReset2)
+void Shell::other(const protocol::ServerPacket& any, std::uint8_t type, double now) {
+  if (type == static_cast<std::uint8_t>(protocol::PacketType::kReset1) ||
+      type == static_cast<std::uint8_t>(protocol::PacketType::kReset2))
     return lost("the robot's controller was reset", now);
-  if (const auto* aux = std::get_if<protocol::AuxPacket>(&any)) {
-    v1::SerialData data;
-    data.stamp(stamp_);
-    data.port(aux->line);
-    data.data(aux->bytes);
-    serial_data_writer_.write(data);
-    return;
-  }
-  if (const auto* seen = std::get_if<protocol::VisionPacket>(&any); seen && channels_writer_)
-    return vision(*seen);
-  const bool is_configuration = std::holds_alternative<protocol::ConfigPacket>(any);
-  if (is_configuration && !reflector_.devices().reports().configuration)
-    told(std::get<protocol::ConfigPacket>(any));
-  if (is_configuration || std::holds_alternative<protocol::EncoderPacket>(any) ||
-      std::holds_alternative<protocol::IoPacket>(any) ||
-      std::holds_alternative<protocol::GripperPacket>(any))
-    reflector_.devices().reflect(any);
-  else
-    reflector_.devices().unread(body[0]);
-}
-
-/// Until it sends packets: a word may be lost on a serial line.
-void Shell::ask_vision(double now) {
-  if (!channels_writer_ || !vision_packets_.empty() ||
-      (vision_asked_ != 0 && stamp_.cycle() < vision_asked_ + kVisionSilence))
-    return;
-  vision_asked_ = stamp_.cycle();
-  for (const std::string& text : options_.vision)
-    send(protocol::encode(protocol::VisionCommand({text.begin(), text.end()})), now);
-}
-
-void Shell::vision(const protocol::VisionPacket& packet) {
-  if (stamp_.cycle() == 0)
-    return;  // the robot's place is not known yet
-  vision_packets_.push_back(stamp_.cycle());
-  v1::VisionChannels channels = to_bus(packet);
-  channels.stamp(stamp_);
-  channels.odom(newest_state_.odom());
-  channels.pose_in_odom(newest_state_.pose_in_odom());
-  channels_writer_->write(channels);
-}
-
-void Shell::told(const protocol::ConfigPacket& robot) {
-  node_.info("the robot's serial number is " + robot.serial +
-             (robot.firmware.empty() ? "" : ", its firmware " + robot.firmware));
-  if (robot.cycle != 0 && robot.cycle != 100)
-    node_.warn("the robot sends its packets every " + std::to_string(robot.cycle) +
-               " ms; a cycle here is 100 ms: set its SInfoCycle to 100");
+  const auto* const seen = std::get_if<protocol::VisionPacket>(&any);
+  if (seen == nullptr || !camera_)
+    devices_.packet(any, type, stamp_);
+  else if (stamp_.cycle() > 0)  // before, the robot's place is not known
+    camera_->packet(*seen, newest_state_);
 }
 
 bool Shell::send(const protocol::Bytes& packet, double now) {
@@ -372,21 +310,12 @@ void Shell::opened(double now) {
   const std::string who =
       "robot \"" + robot.name + "\" (" + robot.robot_class + ", " + robot.subclass + ")";
   try {
-    std::string looked_for;
-    std::string path;
-    for (const std::string& file :
-         protocol::parameter_file_names(robot.robot_class, robot.subclass)) {
-      looked_for += (looked_for.empty() ? "" : ", ") + file;
-      const std::filesystem::path candidate = std::filesystem::path(options_.robots_folder) / file;
-      if (path.empty() && std::filesystem::exists(candidate))
-        path = candidate.string();
-    }
-    if (path.empty())
-      throw std::runtime_error(
-          "no parameter file for " + who + ": looked for " +
-          (looked_for.empty() ? "nothing (the robot names no class)" : looked_for) + " in " +
-          options_.robots_folder);
-    const protocol::RobotParameters parameters = protocol::load_parameters(path);
+    const std::optional<std::string> path =
+        protocol::find_parameter_file(options_.robots_folder, robot.robot_class, robot.subclass);
+    if (!path)
+      throw std::runtime_error("no parameter file for " + who + ": looked for " +
+                               looked_for(robot) + " in " + options_.robots_folder);
+    const protocol::RobotParameters parameters = protocol::load_parameters(*path);
     for (const std::string& warning : parameters.warnings)
       node_.warn(warning);
     reflector_.configure(parameters);
@@ -407,8 +336,8 @@ void Shell::opened(double now) {
   last_epoch_ = epoch_;
   stamp_.epoch(epoch_);
   stamp_.cycle(0);
-  vision_packets_.clear();
-  vision_asked_ = 0;
+  if (camera_)
+    camera_->connect();
   body_ = to_body(reflector_.parameters());
   echoes_.clear();
   reflector_.open(time(), memory_, std::max(epoch_, last_odom_ + 1), slack_);
@@ -437,11 +366,14 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   const reflector::State& state =
       reflector_.packet(packet, time(), std::max(epoch_, last_odom_ + 1));
   newest_state_ = to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_);
-  while (!vision_packets_.empty() && vision_packets_.front() + kSecond < stamp_.cycle())
-    vision_packets_.pop_front();
-  newest_state_.vision_packets_per_s(static_cast<std::uint16_t>(vision_packets_.size()));
+  std::vector<protocol::Bytes> to_camera;
+  if (camera_) {
+    to_camera = camera_->begin(stamp_.cycle());
+    newest_state_.vision_packets_per_s(camera_->packets_per_s());
+  }
   state_writer_.write(newest_state_);
-  ask_vision(now);
+  for (const protocol::Bytes& words : to_camera)
+    send(words, now);
 
   last_packet_ = now;
   if (std::exchange(link_silent_, false))
@@ -465,7 +397,7 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   echoes_.update(stamp_.cycle(), echoes, silent);
   body_.sees_ahead = echoes_.sees(stamp_.cycle(), true);
   body_.sees_behind = echoes_.sees(stamp_.cycle(), false);
-  publish_devices();
+  devices_.publish(stamp_);
 
   if (lockstep_) {
     remember();
@@ -509,7 +441,7 @@ void Shell::lost(const std::string& why, double now) {
   if (epoch_ != 0)
     publish_grant();
   reflector_.devices().connect();
-  publish_devices();
+  devices_.publish(stamp_);
   epoch_ = 0;
   stamp_ = {};
   flush_at_ = 0.0;
@@ -533,46 +465,14 @@ void Shell::mind_gap(double now) {
 }
 
 void Shell::remember() {
-  if (state_fd_ < 0)
-    return;
-  // One write of one size: a kill leaves the old line or the new one.
-  std::string text = reflector::to_text(reflector_.odometry());
-  text.resize(256, ' ');
-  text.back() = '\n';
-  if (::pwrite(state_fd_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
-    node_.error(options_.state_file + ": " + std::strerror(errno));
-    ::close(state_fd_);
-    state_fd_ = -1;
-  }
+  if (const std::string trouble = position_file_.write(reflector_.odometry()); !trouble.empty())
+    node_.error(trouble);
 }
 
 // ---- The bus's side.
 
-/// Two bridges of one name would both be obeyed by whoever follows that name.
-void Shell::take_others() {
-  for (const auto& sample : statuses_.take()) {
-    const v1::ServiceStatus& other = sample.data;
-    if (other.name() != node_.status().name() || other.instance() == node_.status().instance())
-      continue;
-    const bool serves = !sample.info.disposed && (other.state() == v1::SERVICE_RUNNING ||
-                                                  other.state() == v1::SERVICE_DEGRADED);
-    if (!serves) {
-      others_.erase(sample.info.writer);
-    } else if (others_
-                   .try_emplace(sample.info.writer,
-                                "process " + std::to_string(other.pid()) + " at " + other.host())
-                   .second) {
-      node_.error("another bridge, " + others_[sample.info.writer] +
-                  ", has a robot of the name \"" + node_.options().robot +
-                  "\": give one of them another name (--robot)");
-    }
-  }
-  for (const bus::WriterId& writer : statuses_.take_lost())
-    others_.erase(writer);
-}
-
 void Shell::take_all(double now) {
-  take_others();
+  namesakes_.take();
   bool driver = false;
   for (Drive& drive : drives_)
     driver = take_drive(drive, now) || driver;
@@ -584,7 +484,7 @@ void Shell::take_all(double now) {
     if (driver || !grant_.same_driver(before))
       flush(now);
   }
-  take_devices();  // nothing waits for them
+  devices_.take(stamp_, epoch_ != 0);  // nothing waits for them
   if (epoch_ != 0 && lockstep_)
     step(now);
 }
@@ -602,7 +502,7 @@ bool Shell::take_drive(Drive& drive, double now) {
     const std::string wrong = in.active() && drive.role != Role::estop ? trouble(in) : "";
     if (!wrong.empty()) {
       ++malformed_;
-      arbiter_.refuse(drive.role, in.source().substr(0, 255), wrong);
+      arbiter_.refuse(drive.role, source_of(in), wrong);
       continue;
     }
     const authority::Command command =
@@ -619,64 +519,6 @@ bool Shell::take_drive(Drive& drive, double now) {
   for (const bus::WriterId& writer : drive.reader.take_lost())
     arbiter_.lost(drive.role, writer, lockstep_ ? time() : now);
   return driver;
-}
-
-template <class T>
-void Shell::take_device(bus::Reader<T>& reader, v1::Device device) {
-  for (const auto& sample : reader.take()) {
-    if (sample.info.disposed)
-      continue;
-    const std::string who = sample.data.source().substr(0, 255);
-    reflector::Devices& devices = reflector_.devices();
-    std::string why = "no robot is connected";
-    if (epoch_ != 0) {
-      try {
-        const reflector::Wish wish = to_wish(sample.data);
-        reflector_.request(who, sample.data.request(), wish);
-        node_.info(text(wish) + ", asked for by " + who);
-        continue;
-      } catch (const std::invalid_argument& error) {
-        why = error.what();
-      }
-    }
-    ++malformed_;
-    devices.refuse(device, who, sample.data.request(), "", why);
-  }
-}
-
-void Shell::take_devices() {
-  // Most of the time nobody has anything to ask. The last words of who has just left are heard.
-  const std::size_t asking = servo_.matched() + gripper_.matched() + output_.matched() +
-                             analog_.matched() + timer_.matched() + sonar_.matched() +
-                             sound_.matched() + server_.matched() + serial_.matched();
-  const std::size_t asked = std::exchange(device_writers_, asking);
-  if (asking == 0 && asked == 0)
-    return;
-  take_device(servo_, v1::DEVICE_SERVO);
-  take_device(gripper_, v1::DEVICE_GRIPPER);
-  take_device(output_, v1::DEVICE_DIGITAL_OUTPUT);
-  take_device(analog_, v1::DEVICE_ANALOG);
-  take_device(timer_, v1::DEVICE_TIMER);
-  take_device(sonar_, v1::DEVICE_SONAR);
-  take_device(sound_, v1::DEVICE_SOUND);
-  take_device(server_, v1::DEVICE_SERVER);
-  take_device(serial_, v1::DEVICE_SERIAL);
-  publish_devices();
-}
-
-void Shell::publish_devices() {
-  const protocol::Information& in = reflector_.state().information;
-  const Shown now{in.front_bumpers, in.rear_bumpers, in.motors_on,       in.emergency_stop,
-                  in.faults,        in.charge_state, in.state_of_charge, in.compass,
-                  in.gripper_bits,  in.temperature};
-  const bool changed = reflector_.devices().take_changed();
-  if (!changed && now == shown_)
-    return;
-  shown_ = now;
-  devices_writer_.write(
-      to_bus(reflector_.devices().requests(), reflector_.devices().reports(), in, stamp_));
-  for (const std::string& trouble : reflector_.devices().take_troubles())
-    node_.warn(trouble);
 }
 
 // ---- Between the two.
@@ -776,54 +618,50 @@ bool Shell::motors_off() const {
   return !in.motors_on.value_or(in.motors != protocol::Motors::kNoPower);
 }
 
+Shell::Condition Shell::condition() const {
+  if (!robot_trouble_.empty())
+    return {v1::SERVICE_WAITING, robot_trouble_};
+  if (namesakes_.any())
+    return {epoch_ != 0 ? v1::SERVICE_DEGRADED : v1::SERVICE_WAITING,
+            "another bridge, " + namesakes_.who() + ", has a robot of this name"};
+  if (link_.state() != transport::Link::State::open)
+    return {v1::SERVICE_WAITING, "robot link: " + link_.trouble()};
+  if (!connection_.open())
+    return {v1::SERVICE_WAITING, "waits for " + connection_.waiting_for()};
+  if (link_silent_)
+    return {v1::SERVICE_WAITING, stamp_.cycle() > 0
+                                     ? "robot link silent"
+                                     : "robot link silent: no packet has come (a simulator in "
+                                       "single step needs --lockstep here)"};
+  if (lockstep_ && !stepping_)
+    return {v1::SERVICE_WAITING,
+            stepped_ || stamp_.cycle() == 0
+                ? "waits for a permit to step"
+                : "waits for the behaviors' command for cycle " + std::to_string(stamp_.cycle())};
+  if (epoch_ != 0 && reflector_.state().information.emergency_stop.value_or(false))
+    return {v1::SERVICE_DEGRADED, "the robot's own emergency stop is pressed"};
+  if (epoch_ != 0 && stamp_.cycle() > kMotorsCycles && motors_off())
+    return {v1::SERVICE_DEGRADED,
+            "the robot's motors are off (its own button, or: saphira device motors on)"};
+  if (keeper_ && !keeper_->alive())
+    return {v1::SERVICE_DEGRADED,
+            "the keeper is gone: nobody stops the robot when the bridge hangs"};
+  return {};
+}
+
 void Shell::publish_status(double now) {
   if (now - status_at_ < kCycle)
     return;
   status_at_ = now;
   v1::ServiceStatus& status = node_.status();
-  v1::ServiceState state = v1::SERVICE_RUNNING;
-  std::string reason;
-  if (!robot_trouble_.empty()) {
-    state = v1::SERVICE_WAITING;
-    reason = robot_trouble_;
-  } else if (!others_.empty()) {
-    state = epoch_ != 0 ? v1::SERVICE_DEGRADED : v1::SERVICE_WAITING;
-    reason = "another bridge, " + others_.begin()->second + ", has a robot of this name";
-  } else if (link_.state() != transport::Link::State::open) {
-    state = v1::SERVICE_WAITING;
-    reason = "robot link: " + link_.trouble();
-  } else if (!connection_.open()) {
-    state = v1::SERVICE_WAITING;
-    reason = "waits for " + connection_.waiting_for();
-  } else if (link_silent_) {
-    state = v1::SERVICE_WAITING;
-    reason = stamp_.cycle() > 0 ? "robot link silent"
-                                : "robot link silent: no packet has come (a simulator in single "
-                                  "step needs --lockstep here)";
-  } else if (lockstep_ && !stepping_) {
-    state = v1::SERVICE_WAITING;
-    reason = stepped_ || stamp_.cycle() == 0
-                 ? "waits for a permit to step"
-                 : "waits for the behaviors' command for cycle " + std::to_string(stamp_.cycle());
-  } else if (epoch_ != 0 && reflector_.state().information.emergency_stop.value_or(false)) {
-    state = v1::SERVICE_DEGRADED;
-    reason = "the robot's own emergency stop is pressed";
-  } else if (epoch_ != 0 && stamp_.cycle() > kMotorsCycles && motors_off()) {
-    state = v1::SERVICE_DEGRADED;
-    reason = "the robot's motors are off (its own button, or: saphira device motors on)";
-  } else if (keeper_ && !keeper_->alive()) {
-    state = v1::SERVICE_DEGRADED;
-    reason = "the keeper is gone: nobody stops the robot when the bridge hangs";
-  }
-  if (status.state() != state || status.reason() != reason) {
-    status.state(state);
-    status.reason(reason);
-  }
+  const Condition condition = this->condition();
+  status.state(condition.state);
+  status.reason(condition.reason);
   status.stamp(stamp_);
   status.lockstep(lockstep_);
   status.steps(steps_);
   status.late_cycles(late_);
-  status.refused_samples(arbiter_.refused_count() + malformed_);
+  status.refused_samples(arbiter_.refused_count() + malformed_ + devices_.refused());
   // A step of the bridge is its reaction: from a packet to the commands that answer it.
   if (now - reaction_at_ >= 1.0) {
     status.step_ms_mean(reactions_ > 0 ? reaction_sum_ / reactions_ * 1000.0 : 0.0);

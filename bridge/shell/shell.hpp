@@ -2,14 +2,15 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
+#include "camera.hpp"
+#include "device_topics.hpp"
+#include "namesakes.hpp"
+#include "position_file.hpp"
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/bus/node.hpp"
@@ -43,7 +44,6 @@ class Shell {
   /// keeper before the node makes its threads.
   Shell(const bus::NodeOptions& node, BridgeOptions options,
         std::shared_ptr<bus::MemoryBus> memory = nullptr);
-  ~Shell();
 
   /// Until stop is requested. An exit code (bus::Exit).
   int run(const bus::Stop& stop);
@@ -59,11 +59,7 @@ class Shell {
   void packet(const protocol::Bytes& body, double now);
   void opened(double now);
   void information(const protocol::InformationPacket& packet, double now);
-  void ask_vision(double now);
-  void vision(const protocol::VisionPacket& packet);
-  void other(const protocol::ServerPacket& any, protocol::ByteView body, double now);
-  void told(const protocol::ConfigPacket& robot);
-  bool motors_off() const;
+  void other(const protocol::ServerPacket& any, std::uint8_t type, double now);
   bool send(const protocol::Bytes& packet, double now);
   void lost(const std::string& why, double now);
   /// Whether the loop was heard in time; if not, all that was received before counts as old.
@@ -71,19 +67,21 @@ class Shell {
 
   // The bus's side.
   void take_all(double now);
-  void take_others();
   struct Drive;
   bool take_drive(Drive& drive, double now);
-  void take_devices();
-  template <class T>
-  void take_device(bus::Reader<T>& reader, v1::Device device);
-  void publish_devices();
 
   // Between the two.
   void decide();
   void flush(double now);
   void step(double now);
   void publish_grant();
+  bool motors_off() const;
+  /// What the status says of the service, and why.
+  struct Condition {
+    v1::ServiceState state = v1::SERVICE_RUNNING;
+    std::string reason;
+  };
+  Condition condition() const;
   void publish_status(double now);
   void remember();
 
@@ -105,27 +103,15 @@ class Shell {
     bool follows_cycles = false;  ///< the same: answers each packet
   };
   std::vector<Drive> drives_;
-  bus::Writer<v1::Devices> devices_writer_;
-  bus::Writer<v1::SerialData> serial_data_writer_;
-  std::optional<bus::Writer<v1::VisionChannels>> channels_writer_;  ///< where there is a camera
-  bus::Reader<v1::ServoCommand> servo_;
-  bus::Reader<v1::GripperCommand> gripper_;
-  bus::Reader<v1::DigitalOutputCommand> output_;
-  bus::Reader<v1::AnalogCommand> analog_;
-  bus::Reader<v1::TimerCommand> timer_;
-  bus::Reader<v1::SonarCommand> sonar_;
-  bus::Reader<v1::SoundCommand> sound_;
-  bus::Reader<v1::ServerCommand> server_;
-  bus::Reader<v1::SerialCommand> serial_;
-  std::size_t device_writers_ = 0;  ///< that were matched at the last look
   bus::Reader<v1::StepPermit> permits_;
-  bus::Reader<v1::ServiceStatus> statuses_;
-  std::map<bus::WriterId, std::string> others_;  ///< bridges that serve a robot of this name
+  Namesakes namesakes_;
 
   transport::Link link_;
   protocol::PacketParser parser_;
   reflector::Connection connection_;
   reflector::Reflector reflector_;
+  DeviceTopics devices_;
+  std::optional<Camera> camera_;
   authority::Arbiter arbiter_;
   authority::Echoes echoes_;
   authority::Body body_;
@@ -137,19 +123,13 @@ class Shell {
   std::uint64_t last_odom_ = 0;
   std::optional<reflector::OdometryMemory> memory_;
   reflector::Slack slack_;
-  int state_fd_ = -1;
+  PositionFile position_file_;
   v1::Stamp stamp_;
   v1::RobotState newest_state_;
   v1::Stamp recalled_;  ///< of the newest state that was put where it is recalled
   authority::Grant grant_;
   authority::Guarded guarded_;
   std::vector<std::uint8_t> input_;
-  /// Of the information packet, what robot/devices shows; it is written when this changes.
-  using Shown =
-      std::tuple<std::uint8_t, std::uint8_t, std::optional<bool>, std::optional<bool>,
-                 std::optional<std::uint16_t>, std::optional<std::uint8_t>, std::optional<double>,
-                 std::optional<double>, std::uint8_t, std::optional<double>>;
-  Shown shown_;
 
   // Steady seconds.
   double last_loop_ = 0.0;
@@ -180,8 +160,6 @@ class Shell {
   std::uint64_t late_ = 0;
   std::uint64_t malformed_ = 0;
   std::uint64_t steps_ = 0;
-  std::uint64_t vision_asked_ = 0;            ///< cycle
-  std::deque<std::uint64_t> vision_packets_;  ///< cycles of those of the last second
 };
 
 }  // namespace saphira::bridge

@@ -16,7 +16,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
@@ -94,12 +93,9 @@ class Proxy {
         listener_(listen_at(listen)),
         checker_([robots](const protocol::RobotIdentity& identity)
                      -> std::optional<protocol::RobotParameters> {
-          for (const std::string& name :
-               protocol::parameter_file_names(identity.robot_class, identity.subclass))
-            if (const auto path = std::filesystem::path(robots) / name;
-                std::filesystem::exists(path))
-              return protocol::load_parameters(path);
-          return std::nullopt;
+          const auto path =
+              protocol::find_parameter_file(robots, identity.robot_class, identity.subclass);
+          return path ? std::optional(protocol::load_parameters(*path)) : std::nullopt;
         }) {}
   ~Proxy() { ::close(listener_); }
   Proxy(const Proxy&) = delete;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -292,6 +293,15 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
       names.push_back(name + ".p");
   }
   return names;
+}
+
+std::optional<std::string> find_parameter_file(const std::string& folder,
+                                               std::string_view robot_class,
+                                               std::string_view subclass) {
+  for (const std::string& name : parameter_file_names(robot_class, subclass))
+    if (const auto path = std::filesystem::path(folder) / name; std::filesystem::exists(path))
+      return path.string();
+  return std::nullopt;
 }
 
 }  // namespace saphira::protocol

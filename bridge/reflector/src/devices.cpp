@@ -301,29 +301,25 @@ void Devices::reflect(const protocol::InformationPacket& packet,
       end(item, RequestState::shown);
 }
 
-void Devices::reflect(const protocol::ServerPacket& packet) {
-  using protocol::PacketType;
-  const auto take = [&](auto& kept, const auto& came, PacketType type) {
+void Devices::reflect(const protocol::ServerPacket& packet, std::uint8_t type) {
+  const auto take = [&](auto& kept, const auto& came) {
     changed_ = changed_ || kept != came;
     kept = came;
     for (auto& [key, item] : items_)
       if (!ended(item.request.state) && item.request.sent > 0 && item.proof == Proof::packet &&
-          item.value == static_cast<int>(type))
+          item.value == type)
         end(item, RequestState::shown);
   };
   if (const auto* configuration = std::get_if<protocol::ConfigPacket>(&packet))
-    take(reports_.configuration, *configuration, PacketType::kConfig);
+    take(reports_.configuration, *configuration);
   else if (const auto* encoders = std::get_if<protocol::EncoderPacket>(&packet))
-    take(reports_.encoders, *encoders, PacketType::kEncoder);
+    take(reports_.encoders, *encoders);
   else if (const auto* io = std::get_if<protocol::IoPacket>(&packet))
-    take(reports_.io, *io, PacketType::kIo);
+    take(reports_.io, *io);
   else if (const auto* gripper = std::get_if<protocol::GripperPacket>(&packet))
-    take(reports_.gripper, *gripper, PacketType::kGripper);
-}
-
-void Devices::unread(std::uint8_t type) {
-  // News when it is the first of its type; the number of them alone is none.
-  changed_ = ++reports_.unread[type] == 1 || changed_;
+    take(reports_.gripper, *gripper);
+  else  // news when it is the first of its type; the number of them alone is none
+    changed_ = ++reports_.unread[type] == 1 || changed_;
 }
 
 bool Devices::pending(double now) const {

@@ -174,7 +174,7 @@ TEST(Devices, ALaterRobotIsSwitchedOnAndAskedWhatItIsLike) {
   b.ask(ServerWish{ServerAction::configuration, 0});
   b.cycle(Command{});
   b.devices.take_changed();
-  b.devices.reflect(protocol::ServerPacket(configuration));
+  b.devices.reflect(configuration, static_cast<std::uint8_t>(protocol::PacketType::kConfig));
   EXPECT_TRUE(b.devices.take_changed());
   EXPECT_EQ(b.devices.reports().configuration->firmware, "1.9");
   EXPECT_EQ(b.devices.requests().back().state, RequestState::shown);
@@ -217,9 +217,9 @@ TEST(Devices, LaterRobotsHaveMasksTonesAndSerialPorts) {
 
 TEST(Devices, PacketsThatNobodyReadsAreCounted) {
   Bench b;
-  b.devices.unread(0x9A);
+  b.devices.reflect(protocol::OtherPacket{0x9A, {}}, 0x9A);
   EXPECT_TRUE(b.devices.take_changed());
-  b.devices.unread(0x9A);
+  b.devices.reflect(protocol::OtherPacket{0x9A, {}}, 0x9A);
   EXPECT_FALSE(b.devices.take_changed());
   EXPECT_EQ(b.devices.reports().unread.at(0x9A), 2U);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -106,5 +107,9 @@ RobotParameters load_parameters(const std::string& path);
 /// a plain file name is left out.
 std::vector<std::string> parameter_file_names(std::string_view robot_class,
                                               std::string_view subclass);
+/// The first of them that is in `folder`; none where there is none.
+std::optional<std::string> find_parameter_file(const std::string& folder,
+                                               std::string_view robot_class,
+                                               std::string_view subclass);
 
 }  // namespace saphira::protocol

@@ -114,10 +114,8 @@ class Devices {
   /// makes of it.
   void reflect(const protocol::InformationPacket& packet, const protocol::Information& information,
                bool origin);
-  /// Another packet came.
-  void reflect(const protocol::ServerPacket& packet);
-  /// A packet came that nobody here reads.
-  void unread(std::uint8_t type);
+  /// A packet of another type came; those that nobody here reads are counted.
+  void reflect(const protocol::ServerPacket& packet, std::uint8_t type);
   /// What is to be sent now, of no more than `room` bytes in all: the rest waits for the line.
   std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const;

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "robot.h"
+#include "saphira/bus/node.hpp"
+#include "saphira/protocol/packet.hpp"
+#include "saphira/protocol/server_packet.hpp"
+#include "vision.h"
+
+namespace saphira::bridge {
+
+/// A Fast Track vision system (manual 9.1): asked until its packets come, and handed on.
+class Camera {
+ public:
+  /// `words`: what it is told, such as "pioneer_a_mode=2".
+  Camera(bus::Node& node, std::vector<std::string> words);
+
+  /// A session begins.
+  void connect();
+  /// The robot's cycle `cycle` begins: what is to be said to the camera. A word may be lost on a
+  /// serial line, so that it is said again where no packet comes.
+  std::vector<protocol::Bytes> begin(std::uint64_t cycle);
+  /// Of the last second, at begin().
+  std::uint16_t packets_per_s() const { return static_cast<std::uint16_t>(packets_.size()); }
+  /// A packet came while `state` was the robot's newest.
+  void packet(const protocol::VisionPacket& packet, const v1::RobotState& state);
+
+ private:
+  std::vector<std::string> words_;
+  bus::Writer<v1::VisionChannels> channels_;
+  std::uint64_t asked_ = 0;            ///< cycle; 0: not yet
+  std::deque<std::uint64_t> packets_;  ///< cycles of those of the last second
+};
+
+}  // namespace saphira::bridge

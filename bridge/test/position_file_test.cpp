@@ -1,0 +1,64 @@
+#include "position_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "process.hpp"
+
+namespace saphira::bridge {
+namespace {
+
+std::string content(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(PositionFile, IsReadByTheNextOne) {
+  const test::TempDir folder;
+  reflector::OdometryMemory memory;
+  memory.odom = 7;
+  memory.raw = {100, 200, 0.5};
+  memory.server_in_odom = {1.0, -2.0, 0.25};
+  {
+    PositionFile file(folder.path("state"));
+    EXPECT_EQ(file.read(), "");
+    memory.odom = 6;
+    EXPECT_EQ(file.write(memory), "");
+    memory.odom = 7;
+    EXPECT_EQ(file.write(memory), "");
+  }
+  EXPECT_EQ(content(folder.path("state")).size(), 256U) << "one line of one size";
+  const auto back = reflector::from_text(PositionFile(folder.path("state")).read());
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->odom, 7U);
+  EXPECT_EQ(back->raw.y, 200);
+  EXPECT_EQ(back->server_in_odom, memory.server_in_odom);
+}
+
+TEST(PositionFile, WithoutAPathNothingIsKept) {
+  PositionFile file("");
+  EXPECT_EQ(file.read(), "");
+  EXPECT_EQ(file.write({}), "");
+}
+
+TEST(PositionFile, NamesTheOptionWhereItCannotBeOpened) {
+  const test::TempDir folder;
+  try {
+    const PositionFile file(folder.path("nowhere/state"));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "--state " + folder.path("nowhere/state") + ": No such file or directory");
+  }
+}
+
+TEST(PositionFile, SaysOnceWhyNothingCanBeKept) {
+  PositionFile file("/dev/full");
+  EXPECT_EQ(file.write({}), "/dev/full: No space left on device");
+  EXPECT_EQ(file.write({}), "");
+}
+
+}  // namespace
+}  // namespace saphira::bridge
