@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "system.hpp"
 
@@ -54,6 +56,45 @@ TEST_F(MapTest, AGoalOnTheMapIsReached) {
   arrive(go_down_the_corridor());
   const Truth truth = system.truth();
   EXPECT_LT(std::hypot(truth.x - 11.5, truth.y - 7.0), 0.5);
+}
+
+TEST_F(MapTest, AThingOfTheMapThatIsNotThereIsTakenFromItOnTheWay) {
+  system.start_all();
+  ASSERT_TRUE(wait_tracking(std::chrono::seconds(30))) << system.output();
+  auto maps = system.node().reader(bus::topics::kMap);
+  auto requests = system.node().writer(bus::topics::kRegistrationRequest);
+  std::optional<v1::Map> map;
+  const auto has = [&](std::uint32_t id) {
+    if (auto newest = maps.take_newest())
+      map = std::move(newest);
+    return map && std::any_of(map->artifacts().begin(), map->artifacts().end(),
+                              [id](const v1::MapArtifact& each) { return each.id() == id; });
+  };
+  // By the wall of the corridor, where there is nothing.
+  v1::RegistrationRequest request;
+  request.source("test");
+  request.action(v1::REGISTRATION_PUT);
+  request.artifact().id(900);
+  request.artifact().type(v1::ARTIFACT_OBJECT);
+  request.artifact().pose_in_map().x(5.0);
+  request.artifact().pose_in_map().y(7.7);
+  request.artifact().length(0.5);
+  request.artifact().width(0.5);
+  ASSERT_TRUE(wait_until([&] { return requests.matched() > 0; }, std::chrono::seconds(10)));
+  requests.write(request);
+  ASSERT_TRUE(wait_until([&] { return has(900); }, std::chrono::seconds(10))) << system.output();
+  // A goal goes on while the map changes; at the latest on the way back it is missed.
+  arrive(go_down_the_corridor());
+  if (has(900)) {
+    v1::Goal back;
+    back.functor("go_to");
+    back.arguments({bus::point("position", 2.0, 7.0, 0.0, v1::FRAME_MAP)});
+    arrive(system.goals().ask(back));
+  }
+  EXPECT_FALSE(has(900)) << system.output();
+  EXPECT_TRUE(has(112)) << "what a person wrote and is there";
+  EXPECT_NE(system.output().find("object 900 is taken from the map"), std::string::npos)
+      << system.output();
 }
 
 class PerceptionLoss : public MapTest, public testing::WithParamInterface<const char*> {};

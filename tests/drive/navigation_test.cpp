@@ -203,6 +203,71 @@ TEST(Navigation, AroundAClosedDoorItReplans) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
+GoalStatus go_to(Whole& whole, double x, double y) {
+  return whole.achieve("go_to", {intentions::point("position", {x, y, 0.0}, Frame::kMap)}, 1500);
+}
+
+TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
+  WholeOptions options = office(1, office_with("passed", "door d271 28600 6000 29500 6000 -90\n"));
+  options.drive.start_in_world = Pose{19.5, 7.0, 0.0};
+  Whole whole(options);
+  const std::set<std::uint32_t>& closed = whole.registration().closed_doors();
+  EXPECT_TRUE(closed.empty());
+  ASSERT_EQ(go_to(whole, 31.5, 7.0).state, GoalState::kSucceeded);
+  EXPECT_EQ(closed, std::set<std::uint32_t>{1271});
+  ASSERT_EQ(go_to(whole, 27.0, 7.0).state, GoalState::kSucceeded);
+  // Past it to the farther door, without another look.
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-271")});
+  double nearest = 10.0;  // to it, from the corridor's middle
+  whole.advance_until(
+      [&] {
+        nearest = std::min(nearest, (whole.truth().position() - Vec2(29.05, 6.0)).norm());
+        return whole.ended(goal);
+      },
+      3000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_TRUE(is_in(whole, "EJ-271"));
+  EXPECT_GT(nearest, 0.7);
+
+  ASSERT_TRUE(whole.drive().scene().set_door("d271", true));
+  ASSERT_EQ(whole.achieve("go-to-place", {text("place", "EJ-259")}, 4000).state,
+            GoalState::kSucceeded);
+  EXPECT_TRUE(closed.empty()) << "it was passed on the way";
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+TEST(Navigation, AThingIsPutOnTheMapAndTakenFromItWhenItIsCarriedOff) {
+  WholeOptions options = office(1, office_with("box", "box crate 18200 10000 0 400 600 50\n"));
+  options.adds_objects = true;
+  Whole whole(options);
+  const auto crate = [&]() -> const maps::Feature* {
+    for (const maps::Feature& feature : whole.map().features)
+      if (feature.type == lps::PointType::object && maps::distance_to(feature, {18.2, 10.0}) < 0.3)
+        return &feature;
+    return nullptr;
+  };
+  EXPECT_EQ(crate(), nullptr);
+  const std::size_t before = whole.map().features.size();
+  const auto topology = whole.topology();
+  const auto pass = [&](const std::function<bool()>& done) {
+    for (int i = 0; i < 3 && !done(); ++i)
+      for (const double y : {8.5, 14.0})
+        EXPECT_EQ(go_to(whole, 17.3, y).state, GoalState::kSucceeded);
+    return done();
+  };
+  ASSERT_TRUE(pass([&] { return crate() != nullptr; }));
+  const maps::Feature found = *crate();
+  EXPECT_TRUE(found.learned);
+  EXPECT_GT(found.id, 0U);
+  EXPECT_EQ(whole.map().features.size(), before + 1) << "nothing else";
+  EXPECT_EQ(whole.topology(), topology) << "what is planned holds";
+
+  ASSERT_TRUE(whole.drive().scene().set_box("crate", {14.0, 3.5, 0.0}));
+  EXPECT_TRUE(pass([&] { return crate() == nullptr; }));
+  EXPECT_EQ(whole.map().features.size(), before);
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
 TEST(Navigation, WhoIsCarriedAwayOnTheWayFindsHimselfAndArrives) {
   Whole whole(office());
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});

@@ -11,6 +11,7 @@
 #include "saphira/intentions/activity_folders.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/navigation.hpp"
+#include "saphira/maps/edit.hpp"
 
 namespace saphira::test {
 namespace {
@@ -120,6 +121,7 @@ Whole::Whole(const WholeOptions& options)
       registration_(
           with_sonars<registration::Settings>(drive_), map_,
           options.knows_pose ? std::optional(drive_.seen().true_pose_in_world) : std::nullopt),
+      adds_objects_(options.adds_objects),
       executor_(options.schemas.value_or(
                     shipped_schemas(options.drive.behaviors.value_or(behaviors::predefined()))),
                 {}, options_of(intentions::all_functions())),
@@ -130,6 +132,7 @@ void Whole::advance() {
   const behaviors::Output behaved = drive_.output();
   const std::vector<lps::Percept> seen_before = percepts_;
   registration::Output registered = registration_.output();
+  const std::set<std::uint32_t> closed_doors = registration_.closed_doors();
   if (builder_) {
     registered.state = registration::State::tracking;
     registered.pose_in_map = builder_->pose_in_map();
@@ -164,6 +167,7 @@ void Whole::advance() {
   inputs.around.registration.state = localization_of(registered.state);
   inputs.around.registration.pose_in_map = registered.pose_in_map;
   inputs.around.registration.confidence = registered.confidence;
+  inputs.around.registration.closed_doors = closed_doors;
   if (registered.environment && !builder_)
     inputs.around.registration.environment = map_.features[*registered.environment].id;
   inputs.behaviors = levels_of(behaved);
@@ -180,7 +184,8 @@ void Whole::advance() {
   drive_.intend(intended_of(intentions_.behaviors), intentions_.behavior_control);
 
   if (!builder_)
-    registration_.step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings});
+    amend(registration_.step(
+        {seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings, adds_objects_}));
   else if (builder_->step({seen.cycle, kOdom, seen.pose_in_odom, seen_before, seen.readings, {}}))
     set_map(builder_->map());
   for (const intentions::MapRequest request : intentions_.map_requests)
@@ -192,9 +197,24 @@ void Whole::advance() {
 }
 
 void Whole::set_map(maps::Map map) {
+  if (!maps::same_places(map_, map)) {
+    topology_ = std::make_shared<const maps::Topology>(map);
+    ++map_revision_;
+  }
   map_ = std::move(map);
-  topology_ = std::make_shared<const maps::Topology>(map_);
-  ++map_revision_;
+}
+
+/// What is gone is taken from the map, what is new is put onto it.
+void Whole::amend(const registration::Output& output) {
+  if (output.presence.gone.empty() && output.objects.empty())
+    return;
+  maps::Editor editor(map_);
+  for (const std::uint32_t id : output.presence.gone)
+    editor.remove(id);
+  for (const maps::Feature& object : output.objects)
+    editor.put(object);
+  set_map(editor.map());
+  registration_.set_map(map_);
 }
 
 /// As the registration service does it, as far as a map is built from nothing.

@@ -22,8 +22,9 @@ namespace saphira::test {
 
 struct WholeOptions {
   DriveOptions drive;
-  std::string map;         ///< a name of config/maps; empty: that of the world
-  bool knows_pose = true;  ///< registration is told where the robot starts
+  std::string map;            ///< a name of config/maps; empty: that of the world
+  bool knows_pose = true;     ///< registration is told where the robot starts
+  bool adds_objects = false;  ///< what stands where the map has nothing is put onto it
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
   /// What a camera sees after a cycle. None: there is no camera.
@@ -82,6 +83,7 @@ class Whole {
   void note_transitions();
   void obey(intentions::MapRequest request);
   void set_map(maps::Map map);
+  void amend(const registration::Output& output);
 
   Drive drive_;
   maps::Map map_;
@@ -90,6 +92,7 @@ class Whole {
   std::optional<registration::MapBuilder> builder_;  ///< while the map is built from nothing
   interpretation::Interpretation interpretation_;
   registration::Registration registration_;
+  bool adds_objects_;
   intentions::Executor executor_;
   std::vector<lps::Percept> percepts_;
   std::function<std::vector<lps::SeenThing>(Drive&)> sees_;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <set>
 
 #include "commands.hpp"
 #include "lps/shell/convert.hpp"
@@ -64,6 +65,11 @@ class View {
   }
   Vec2 position() const {
     return {registration->pose_in_map().x(), registration->pose_in_map().y()};
+  }
+
+  std::set<std::uint32_t> closed_doors() const {
+    const auto& doors = registration->closed_doors();
+    return {doors.begin(), doors.end()};
   }
 
   bus::Node node;
@@ -151,7 +157,8 @@ std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
   raster->height = (high - low + 1) * side;
   raster->lower_left_in_map =
       compose(lps::from_bus(registration.odom_in_map()), {left * edge, low * edge, 0.0});
-  raster->occupied.assign(static_cast<std::size_t>(raster->width * raster->height), -1.0F);
+  raster->occupied.assign(
+      static_cast<std::size_t>(raster->width) * static_cast<std::size_t>(raster->height), -1.0F);
   for (const v1::GridTile& tile : tiles) {
     if (tile.odom() != registration.odom() || static_cast<int>(tile.side()) != side)
       continue;
@@ -211,6 +218,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   for (auto& [key, tile] : tiles)
     all.push_back(std::move(tile));
   drawing.map = view.map;
+  drawing.closed_doors = view.closed_doors();
   const maps::Feature* const in = maps::find(view.map, view.registration->environment());
   drawing.title = name_of(view.registration->state()) +
                   (in == nullptr ? std::string() : ", in " + describe(*in));
@@ -274,12 +282,18 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
   const maps::Topology topology(view.map);
-  const maps::RouteResult found = maps::find_route(topology, view.position(), place);
+  maps::RouteSettings settings;
+  settings.closed = view.closed_doors();
+  const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
   if (!found.route) {
     std::cerr << "saphira: " << found.reason << '\n';
     return bus::kExitFailed;
   }
   std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
+  for (const maps::Leg& leg : found.route->legs)
+    if (leg.link && settings.closed.contains(topology.links()[*leg.link].id))
+      std::printf("door %u was closed when the robot passed it last; there is no way round it\n",
+                  topology.links()[*leg.link].id);
   return bus::kExitOk;
 }
 
@@ -378,7 +392,8 @@ constexpr const char* kMapWords = R"(
   saphira map follow             the same, a line a second
   saphira map list               the map as the text of a map file
   saphira map save FILE          the same into a file
-  saphira map show [FILE.svg]    a picture of map, grid, matches and the way, of --seconds
+  saphira map show [FILE.svg]    a picture of map, grid, matches and the way, of --seconds;
+                                 closed doors are black, things that the robot put down orange
   saphira map build [FILE]       explores the floor, maps it from nothing, and writes the map
   saphira map load FILE          this map instead of the one that is there
   saphira map delete             no map

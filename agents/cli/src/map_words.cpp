@@ -11,6 +11,7 @@
 namespace saphira::cli {
 namespace {
 
+constexpr std::size_t kDoors = 3;    ///< closed ones that are named
 constexpr double kAnywhere = 100.0;  ///< [m] with a larger sigma there is no place to speak of
 
 constexpr const char* kWords =
@@ -111,14 +112,6 @@ const char* name_of(v1::RegistrationState state) {
   return "?";
 }
 
-std::string describe(const maps::Feature& feature) {
-  static constexpr const char* names[] = {"?",    "position", "wall",   "corridor", "lane",
-                                          "door", "junction", "office", "break",    "object"};
-  std::string text = names[static_cast<std::size_t>(feature.type)];
-  text += " " + std::to_string(feature.id);
-  return feature.name.empty() ? text : text + " (" + feature.name + ")";
-}
-
 std::string describe(const v1::Registration& registration, const maps::Map& map) {
   const v1::Covariance2& c = registration.covariance();
   // The longer axis of the ellipse of one sigma.
@@ -147,6 +140,12 @@ std::string describe(const v1::Registration& registration, const maps::Map& map)
   if (!registration.matches().empty())
     text += ", " + std::to_string(accepted) + " of " +
             std::to_string(registration.matches().size()) + " matched";
+  std::size_t told = 0;
+  for (const std::uint32_t id : registration.closed_doors())
+    if (const maps::Feature* const door = maps::find(map, id); door != nullptr && told++ < kDoors)
+      text += ", " + describe(*door) + " closed";
+  if (told > kDoors)
+    text += " and " + std::to_string(told - kDoors) + " more";
   return registration.reason().empty() ? text : text + ": " + registration.reason();
 }
 

@@ -12,7 +12,9 @@ namespace {
 
 maps::Map a_map() {
   return maps::parse_map(
-      "CORRIDOR (1) 0, 0, 0, 10000, 2000 \"hall\"\nPOS (9) 1000, 2000, 90 \"start\"\n", "a.map");
+      "CORRIDOR (1) 0, 0, 0, 10000, 2000 \"hall\"\nPOS (9) 1000, 2000, 90 \"start\"\n"
+      "DOOR (3) 2000, 1000, -90, 900\n",
+      "a.map");
 }
 
 v1::RegistrationRequest parse(const std::vector<std::string>& words) {
@@ -71,6 +73,9 @@ TEST(MapWords, DescribeWhereTheRobotIs) {
   registration.environment(1);
   EXPECT_EQ(describe(registration, a_map()),
             "tracking (1.00, 2.00, 0 deg) +-0.10 m, 0.0 deg, 90 % sure, in corridor 1 (hall)");
+  registration.closed_doors({3, 77});
+  EXPECT_NE(describe(registration, a_map()).find("(hall), door 3 closed"), std::string::npos)
+      << "and no word on one that the map does not have";
 }
 
 }  // namespace

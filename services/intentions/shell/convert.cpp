@@ -344,6 +344,8 @@ Registered registered_from_bus(const v1::Registration& registration, std::uint64
   result.confidence = registration.confidence();
   result.environment = registration.environment();
   result.adds_features = registration.adds_features();
+  result.closed_doors.insert(registration.closed_doors().begin(),
+                             registration.closed_doors().end());
   return result;
 }
 

@@ -171,7 +171,7 @@ void Shell::look_around(const v1::RobotState& robot, const bus::Stop& stop, Surr
            stop);
   around.topology = topology_;
   around.map = map_;
-  around.map_revision = map_revision_;
+  around.map_revision = places_revision_;
 }
 
 void Shell::look_through_cameras(const v1::RobotState& robot, Surroundings& around) {
@@ -204,8 +204,13 @@ void Shell::take_map(std::optional<std::uint64_t> revision, const bus::Stop& sto
     while (!newer_maps_.empty() &&
            (!exact || newer_maps_.front().revision() <= *revision || topology_ == nullptr)) {
       const v1::Map& map = newer_maps_.front();
-      map_ = std::make_shared<const maps::Map>(maps::from_bus(map));
-      topology_ = std::make_shared<const maps::Topology>(*map_);
+      auto fresh = std::make_shared<const maps::Map>(maps::from_bus(map));
+      // A thing that was put there or carried off leaves what is planned as it is.
+      if (topology_ == nullptr || !maps::same_places(*map_, *fresh)) {
+        topology_ = std::make_shared<const maps::Topology>(*fresh);
+        places_revision_ = map.revision();
+      }
+      map_ = std::move(fresh);
       map_revision_ = map.revision();
       newer_maps_.pop_front();
     }

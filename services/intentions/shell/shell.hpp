@@ -106,6 +106,7 @@ class Shell {
   std::shared_ptr<const maps::Topology> topology_;
   std::shared_ptr<const maps::Map> map_;
   std::uint64_t map_revision_ = 0;
+  std::uint64_t places_revision_ = 0;          ///< of the map when its topology changed last
   std::deque<v1::Map> newer_maps_;             ///< lockstep: than the cycle that is stepped
   std::map<GoalId, bus::WriterId> claimants_;  ///< of claims that end with their writer
   std::uint64_t steps_ = 0;

@@ -218,6 +218,7 @@ std::vector<std::pair<Reference, double>> closed_ways(const Value& value) {
 maps::RouteSettings route_settings(const World& world) {
   maps::RouteSettings settings;
   settings.tolerance = kAstray;
+  settings.closed = world.around.registration.closed_doors;
   for (const auto& [way, since] : closed_ways(world.beliefs.get(kClosedWays, world))) {
     if (!current(world, way) || seconds(world) - since >= kForget)
       continue;

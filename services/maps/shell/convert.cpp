@@ -12,6 +12,7 @@ Feature from_bus(const v1::MapArtifact& artifact) {
   feature.length = artifact.length();
   feature.width = artifact.width();
   feature.name = artifact.name();
+  feature.learned = artifact.learned();
   return feature;
 }
 
@@ -23,6 +24,7 @@ v1::MapArtifact to_bus(const Feature& feature) {
   artifact.length(feature.length);
   artifact.width(feature.width);
   artifact.name(feature.name);
+  artifact.learned(feature.learned);
   return artifact;
 }
 

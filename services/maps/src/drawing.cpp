@@ -156,10 +156,11 @@ void Picture::label(const Vec2& where, std::string_view text, double size, std::
   out_.append(color).append("\">") += escaped(text) + "</text>\n";
 }
 
-// A door: its opening, two posts, and a stroke to where its normal points.
+// A door: its opening, and a stroke to where its normal points; black where it is closed.
 void Picture::gate(const Feature& feature) {
   const bool door = feature.type == PointType::door;
-  const std::string color = door ? "#d55e00" : "#009e73";
+  const bool closed = drawing_.closed_doors.contains(feature.id);
+  const std::string color = closed ? "#000" : door ? "#d55e00" : "#009e73";
   const Vec2 left = transform(feature.pose_in_map, {0.0, feature.width / 2});
   const Vec2 right = transform(feature.pose_in_map, {0.0, -feature.width / 2});
   line(left, right, "stroke=\"" + color + "\" stroke-width=\"0.12\"");
@@ -185,7 +186,9 @@ void Picture::features() {
         line(begin_of(f), end_of(f), R"(stroke="#222" stroke-width="0.1")");
         break;
       case PointType::object:
-        rectangle(f, R"(fill="#999" fill-opacity="0.7" stroke="#555" stroke-width="0.04")");
+        rectangle(f, f.learned
+                         ? R"(fill="#e69f00" fill-opacity="0.8" stroke="#555" stroke-width="0.04")"
+                         : R"(fill="#999" fill-opacity="0.7" stroke="#555" stroke-width="0.04")");
         break;
       case PointType::door:
       case PointType::breach:

@@ -274,6 +274,14 @@ std::string to_text(const Map& map) {
   return out;
 }
 
+std::string describe(const Feature& feature) {
+  std::string text(form_of(feature.type).word);
+  for (char& c : text)
+    c = static_cast<char>(c - 'A' + 'a');
+  text += " " + std::to_string(feature.id);
+  return feature.name.empty() ? text : text + " (" + feature.name + ")";
+}
+
 const Feature* find(const Map& map, std::uint32_t id) {
   const auto found = std::find_if(map.features.begin(), map.features.end(),
                                   [&](const Feature& f) { return f.id == id && id != 0; });

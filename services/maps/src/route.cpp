@@ -116,7 +116,8 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
       if (!usable(i) || (by < states && i == by / 2))
         continue;
       const std::size_t state = 2 * i + (links[i].a == region ? 1 : 0);
-      const double length = so_far + (links[i].pose_in_map.position() - at).norm();
+      const double length = so_far + (links[i].pose_in_map.position() - at).norm() +
+                            (settings_.closed.contains(links[i].id) ? settings_.closed_costs : 0.0);
       if (length < cost[state]) {
         cost[state] = length;
         previous[state] = by;

@@ -62,6 +62,20 @@ std::string lower(std::string_view text) {
 
 }  // namespace
 
+bool same_places(const Map& a, const Map& b) {
+  const auto next = [](auto it, auto end) {
+    return std::find_if(it, end, [](const Feature& feature) {
+      return feature.type != PointType::object && feature.type != PointType::wall;
+    });
+  };
+  auto i = next(a.features.begin(), a.features.end());
+  auto k = next(b.features.begin(), b.features.end());
+  for (; i != a.features.end() && k != b.features.end() && *i == *k;
+       i = next(i + 1, a.features.end()), k = next(k + 1, b.features.end())) {
+  }
+  return i == a.features.end() && k == b.features.end();
+}
+
 std::vector<Vec2> corners(const Feature& feature, double margin) {
   const double l = feature.length / 2 + margin;
   const double w = feature.width / 2 + margin;

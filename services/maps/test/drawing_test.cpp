@@ -44,6 +44,20 @@ TEST(Drawing, ShowsEveryRoomDoorAndCorridor) {
     std::ofstream(file) << svg;
 }
 
+TEST(Drawing, ShowsWhichDoorsAreClosedAndWhatTheRobotHasPutDown) {
+  Drawing drawing;
+  drawing.map = parse_map(
+      "DOOR (3) 0, 0, 0, 900\nDOOR (4) 0, 2000, 0, 900\n"
+      "OBJECT (5) 2000, 0, 0, 500, 400\n",
+      "test.map");
+  const std::string before = to_svg(drawing);
+  drawing.closed_doors = {4};
+  const std::string closed = to_svg(drawing);
+  EXPECT_EQ(count(before, "stroke=\"#d55e00\""), count(closed, "stroke=\"#d55e00\"") + 2);
+  drawing.map.features.back().learned = true;
+  EXPECT_EQ(count(to_svg(drawing), "#e69f00"), count(closed, "#e69f00") + 1);
+}
+
 TEST(Drawing, AnEmptyMapIsAPictureToo) {
   const std::string svg = to_svg({});
   EXPECT_EQ(svg.find("nan"), std::string::npos);

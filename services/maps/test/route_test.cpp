@@ -43,6 +43,18 @@ TEST(Route, TheShortestOfSeveral) {
   const auto other = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
   ASSERT_TRUE(other.route);
   EXPECT_NE(text(floor(), *other.route).find("door 2271"), std::string::npos);
+  // Also where it was closed when it was seen last...
+  settings.blocked.clear();
+  settings.closed = {1271};
+  const auto doubtful = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
+  ASSERT_TRUE(doubtful.route);
+  EXPECT_EQ(text(floor(), *doubtful.route), text(floor(), *other.route));
+  // ...but for want of a better one it is tried.
+  settings.closed = {1271, 2271};
+  const auto tried = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
+  ASSERT_TRUE(tried.route);
+  EXPECT_EQ(text(floor(), *tried.route), text(floor(), *by_east.route));
+  EXPECT_DOUBLE_EQ(tried.route->length, by_east.route->length);
   // And around where the east corridor is.
   settings.blocked = {4};
   const auto around = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);

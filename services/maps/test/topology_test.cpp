@@ -144,6 +144,22 @@ TEST(Topology, PlacesByNameAndId) {
   EXPECT_FALSE(t.place(""));
 }
 
+TEST(Topology, ThingsThatAreCarriedAboutLeaveThePlacesAsTheyAre) {
+  const Map before =
+      parse_map("CORRIDOR (1) 0, 0, 0, 9000, 2000\nDOOR (3) 0, 1000, -90, 900\n", "m");
+  Map after = before;
+  after.features.insert(after.features.begin(),
+                        {lps::PointType::object, 7, {2.0, 0.5, 0.0}, 0.5, 0.4, ""});
+  EXPECT_TRUE(same_places(before, after));
+  EXPECT_TRUE(same_places(after, before));
+  after.features.back().pose_in_map.x += 0.1;
+  EXPECT_FALSE(same_places(before, after));
+  after.features.pop_back();
+  EXPECT_FALSE(same_places(before, after));
+  EXPECT_FALSE(same_places(after, before));
+  EXPECT_TRUE(same_places({}, {}));
+}
+
 TEST(Topology, WhereAPositionIs) {
   const Topology t(load_map(config_folder() + "/maps/office-floor.map"));
   EXPECT_EQ(t.text(*t.region_at({17.5, 7.0})), "junction 12");

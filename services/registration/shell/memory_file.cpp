@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kMapFollows = "\nmap\n";
 constexpr long kMostOdom = 1L << 53;  // what a double counts to
+constexpr long kMostId = 2147483647;
 
 std::string write(const char* word, const double* values, std::size_t count) {
   std::string line = word;
@@ -117,7 +118,14 @@ std::string to_text(const Remembered& remembered) {
   text += write("confidence", &memory.confidence, 1);
   text += "option " + to_word(remembered.option) + "\n";
   text += "source " + to_word(remembered.source) + "\n";
-  text += "changed " + std::string(remembered.changed ? "1" : "0");
+  text += "changed " + std::string(remembered.changed ? "1" : "0") + "\nclosed";
+  for (const std::uint32_t door : remembered.closed_doors)
+    text += " " + std::to_string(door);
+  // A map file does not say so.
+  text += "\nlearned";
+  for (std::size_t i = 0; i < remembered.map.features.size(); ++i)
+    if (remembered.map.features[i].learned)
+      text += " " + std::to_string(i);
   return text + std::string(kMapFollows) + maps::to_text(remembered.map);
 }
 
@@ -126,6 +134,7 @@ Remembered parse_remembered(std::string_view text, const std::string& file) {
   const std::vector<Line> lines = split_lines(text.substr(0, end));
   Remembered result;
   Memory& memory = result.memory;
+  std::vector<std::size_t> learned;
   for (const Line& line : lines) {
     LineReader reader(file, line);
     const std::string_view word = reader.word("what the line says");
@@ -153,10 +162,18 @@ Remembered parse_remembered(std::string_view text, const std::string& file) {
       result.option = read_name(reader);
     } else if (word == "changed") {
       result.changed = reader.integer("0 or 1", 0, 1) == 1;
+    } else if (word == "closed") {
+      while (!reader.at_end())
+        result.closed_doors.insert(
+            static_cast<std::uint32_t>(reader.integer("the id of a door", 1, kMostId)));
+    } else if (word == "learned") {
+      while (!reader.at_end())
+        learned.push_back(
+            static_cast<std::size_t>(reader.integer("which artifact of the map", 0, kMostId)));
     } else {
       reader.fail(
           "expected one of odom, placed, pose_in_odom, pose_in_map, covariance, drift, "
-          "confidence, option, source, changed");
+          "confidence, option, source, changed, closed, learned");
     }
     reader.expect_end();
   }
@@ -166,6 +183,9 @@ Remembered parse_remembered(std::string_view text, const std::string& file) {
                     last.text);
   }
   result.map = maps::parse_map(text.substr(end + kMapFollows.size()), file);
+  for (const std::size_t index : learned)
+    if (index < result.map.features.size())
+      result.map.features[index].learned = true;
   return result;
 }
 

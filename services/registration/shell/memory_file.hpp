@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -16,6 +18,7 @@ struct Remembered {
   std::string source;    ///< where this map came from: that one, or another that was loaded since
   bool changed = false;  ///< since it came from there
   maps::Map map;
+  std::set<std::uint32_t> closed_doors;
 };
 
 /// std::invalid_argument where the map is none that a file holds.

@@ -113,11 +113,17 @@ void Shell::begin() {
     memory = registration_->save();
   else if (remembered_)
     memory = remembered_->memory;
+  std::set<std::uint32_t> closed;
+  if (registration_)
+    closed = registration_->closed_doors();
+  else if (remembered_)
+    closed = remembered_->closed_doors;
   remembered_.reset();
   // Later it may be anywhere.
   registration_.emplace(settings, editor_.map(), first ? start_ : std::nullopt);
   if (memory && memory->placed)
     registration_->restore(*memory);
+  registration_->recall_closed(std::move(closed));
   if (!builder_)
     set_builder();
 }
@@ -195,8 +201,8 @@ v1::Registration Shell::registered(const bus::Step& step,
                                    const std::vector<lps::Percept>& percepts) {
   const std::vector<lps::SonarReading> readings = lps::sonars_from_bus(step.robot);
   registration_->switch_on(on_ && match_.works());
-  const Output& output =
-      registration_->step({cycle_.stamp().cycle(), odom_, pose_in_odom_, percepts, readings});
+  const Output output = registration_->step(
+      {cycle_.stamp().cycle(), odom_, pose_in_odom_, percepts, readings, adds_features_});
   if (output.state != told_)
     node_.info(std::string(word(output.state)) +
                (output.reason.empty() ? "" : ": " + std::string(output.reason)));
@@ -204,9 +210,47 @@ v1::Registration Shell::registered(const bus::Step& step,
   v1::Registration sample = to_bus(output, editor_.map(), pose_in_odom_);
   if (on_ && !match_.works())
     sample.reason(match_.name() + " is suspended: the pose goes on by dead reckoning");
-  if (output.state == State::tracking && grow(percepts, readings, output.pose_in_map))
+  const std::set<std::uint32_t>& closed = registration_->closed_doors();
+  sample.closed_doors().assign(closed.begin(), closed.end());
+  bool news = amend(output.presence, output.objects);
+  if (output.state == State::tracking)
+    news = grow(percepts, readings, output.pose_in_map) || news;
+  if (news)
     registration_->set_map(editor_.map());
   return sample;
+}
+
+/// What is gone is taken from the map, what is new is put onto it; true where it has become
+/// another.
+bool Shell::amend(const Presence::News& news, const std::vector<maps::Feature>& objects) {
+  const auto say = [this](std::uint32_t id, const char* what) {
+    if (const maps::Feature* const feature = maps::find(editor_.map(), id))
+      node_.info(describe(*feature) + what);
+  };
+  for (const std::uint32_t id : news.closed)
+    say(id, " is closed: something is heard where it opens");
+  for (const std::uint32_t id : news.opened)
+    say(id, " is open again");
+  for (const std::uint32_t id : news.gone) {
+    say(id, " is taken from the map: what is behind it is heard through it");
+    if (builder_)
+      builder_->remove(id);
+    editor_.remove(id);
+  }
+  for (maps::Feature object : objects) {
+    const bool is_new = object.id == 0;
+    if (builder_)
+      object.id = builder_->put(object);
+    say(editor_.put(object),
+        is_new ? " is put on the map: echoes from several places come from where it has nothing"
+               : " is seen more clearly");
+  }
+  if (news.gone.empty() && objects.empty())
+    return false;
+  if (builder_)
+    editor_.replace(builder_->map());
+  changed_ = true;
+  return true;
 }
 
 /// The pose and the map together.
@@ -218,7 +262,9 @@ v1::Registration Shell::built(const bus::Step& step, const std::vector<lps::Perc
   output.pose_in_map = builder_->pose_in_map();
   output.covariance = builder_->covariance();
   output.confidence = 1.0;  // pose and map are one: there is no other place to be
-  return to_bus(output, editor_.map(), pose_in_odom_);
+  v1::Registration sample = to_bus(output, editor_.map(), pose_in_odom_);
+  sample.closed_doors(builder_->closed());
+  return sample;
 }
 
 /// True where the map has become another.
@@ -294,11 +340,8 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
       return 0;
     }
     case v1::REGISTRATION_PUT: {
-      const maps::Feature feature = maps::from_bus(request.artifact());
-      std::uint32_t id = feature.id;
       maps::Editor editor = editor_;
-      if (id == 0 || !editor.change(id, feature))
-        id = editor.add(feature);
+      const std::uint32_t id = editor.put(maps::from_bus(request.artifact()));
       use(std::move(editor));
       changed_ = true;
       return id;
@@ -378,7 +421,8 @@ void Shell::remember() {
     return;
   if (saving_.valid())
     tell_saved(saving_.get());
-  Remembered now{registration_->save(), options_.map_file, source_, changed_, editor_.map()};
+  Remembered now{registration_->save(),        options_.map_file, source_, changed_, editor_.map(),
+                 registration_->closed_doors()};
   if (building_) {
     now.memory.placed = true;
     now.memory.odom = odom_;

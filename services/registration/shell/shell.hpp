@@ -63,6 +63,7 @@ class Shell {
   void set_builder();
   v1::Registration registered(const bus::Step& step, const std::vector<lps::Percept>& percepts);
   v1::Registration built(const bus::Step& step, const std::vector<lps::Percept>& percepts);
+  bool amend(const Presence::News& news, const std::vector<maps::Feature>& objects);
   bool grow(const std::vector<lps::Percept>& percepts,
             const std::vector<lps::SonarReading>& readings, std::optional<Pose> pose_in_map);
   void end_building();

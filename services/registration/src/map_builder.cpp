@@ -238,10 +238,11 @@ std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
   return best;
 }
 
-std::optional<std::size_t> MapBuilder::match_opening(const SeenPoint& seen, PointType type) const {
+MapBuilder::Match MapBuilder::match_opening(const SeenPoint& seen, PointType type) const {
   const Pose opening = compose(graph_.nodes[seen.node].in_map, seen.in_node);
-  std::optional<std::size_t> best;
-  double nearest = 0.0;
+  Match best;
+  double nearest = 1e9;
+  double second = 1e9;
   for (std::size_t i = 0; i < graph_.points.size(); ++i) {
     const Known& known = known_points_[i];
     if (graph_.points[i].seen.empty() || known.type != type ||
@@ -251,10 +252,17 @@ std::optional<std::size_t> MapBuilder::match_opening(const SeenPoint& seen, Poin
     const Vec2 off = opening.position() - graph_.points[i].in_map;
     const double far = off.norm();
     const Vec2 direction = far > 0.0 ? Vec2(off / far) : Vec2(1.0, 0.0);
-    if (far < settings_.same_opening + stray(direction) && (!best || far < nearest)) {
-      best = i;
+    const double may_stray = stray(direction);
+    if (far >= settings_.same_opening + may_stray)
+      continue;
+    if (far < nearest) {
+      second = nearest;
       nearest = far;
+      best.index = i;
+    } else {
+      second = std::min(second, far);
     }
+    best.is_ambiguous = second - nearest < may_stray;
   }
   return best;
 }
@@ -304,7 +312,10 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
     graph_.points[taken.index].seen[taken.seen] = seen;
     return false;
   }
-  auto index = match_opening(seen, percept.type);
+  const Match match = match_opening(seen, percept.type);
+  if (match.is_ambiguous)
+    return false;  // the pose may be better known in a while
+  auto index = match.index;
   if (index && way_ - known_points_[*index].last_way > settings_.closure_way)
     ++closures_;
   if (!index) {
@@ -385,6 +396,34 @@ std::vector<std::uint32_t> MapBuilder::closed() const {
     if (known_points_[point].passes.missed >= 2)
       out.push_back(id);
   return out;
+}
+
+bool MapBuilder::remove(std::uint32_t id) {
+  const Feature* const feature = maps::find(editor_.map(), id);
+  if (feature == nullptr)
+    return false;
+  const Feature gone = *feature;
+  const auto forget = [this](bool is_line, std::size_t index) {
+    std::erase_if(taken_, [&](const auto& each) {
+      return each.second.is_line == is_line && each.second.index == index;
+    });
+  };
+  if (const auto door = door_of_.find(id); door != door_of_.end()) {
+    graph_.points[door->second].seen.clear();
+    forget(false, door->second);
+    door_of_.erase(door);
+  } else if (const auto wall = wall_of_.find(id); wall != wall_of_.end()) {
+    // The rest of its line stays.
+    std::erase_if(graph_.lines[wall->second].seen, [&](const SeenLine& seen) {
+      const Pose at = compose(graph_.nodes[seen.node].in_map, seen.in_node);
+      return std::abs(to_frame(gone.pose_in_map, at.position()).x()) < gone.length / 2;
+    });
+    forget(true, wall->second);
+    wall_of_.erase(wall);
+  }
+  std::erase(own_, id);
+  std::erase_if(given_.features, [id](const Feature& each) { return each.id == id; });
+  return editor_.remove(id);
 }
 
 std::vector<Vec2> MapBuilder::way() const {
@@ -692,16 +731,17 @@ void MapBuilder::close_ends(std::vector<Corridor>& corridors) const {
 // The map from what is known now. What is built again keeps its id.
 bool MapBuilder::publish() {
   std::vector<Feature> fresh;
-  std::vector<std::optional<std::size_t>> points;
-  const auto put = [&](Feature feature, std::optional<std::size_t> point = std::nullopt) {
+  std::vector<std::optional<std::size_t>> sources;  // of a wall the line, of an opening the point
+  const auto add = [&](Feature feature, std::optional<std::size_t> source = std::nullopt) {
     if (maps::problem(feature))
       return;
+    feature.learned = true;
     const bool given = std::any_of(given_.features.begin(), given_.features.end(),
                                    [&](const Feature& f) { return maps::same(f, feature); });
     if (given)
       return;
     fresh.push_back(std::move(feature));
-    points.push_back(point);
+    sources.push_back(source);
   };
 
   const std::vector<Corridor> found = corridors();
@@ -717,7 +757,7 @@ bool MapBuilder::publish() {
     feature.length = corridor.length();
     feature.width = corridor.width;
     halls.push_back(feature);
-    put(feature);
+    add(feature);
   }
   // Their junctions: the graph of what there is so far knows where corridors meet.
   maps::Map halls_only;
@@ -730,7 +770,7 @@ bool MapBuilder::publish() {
   for (const maps::Region& region : topology.regions())
     if (region.kind == maps::RegionKind::junction) {
       junctions.push_back(region.area);
-      put(region.area);
+      add(region.area);
     }
   for (std::size_t i = 0; i < graph_.points.size(); ++i) {
     const GraphPoint& point = graph_.points[i];
@@ -758,10 +798,11 @@ bool MapBuilder::publish() {
         });
     if (feature.type == PointType::breach && of_a_junction)
       continue;  // another corridor is behind it
-    put(feature, i);
+    add(feature, i);
   }
   // Walls where a corridor is not appropriate (manual 6.9.1).
-  for (const GraphLine& line : graph_.lines) {
+  for (std::size_t i = 0; i < graph_.lines.size(); ++i) {
+    const GraphLine& line = graph_.lines[i];
     if (line.seen.empty())
       continue;
     for (const auto& s : stretches(line)) {
@@ -775,7 +816,7 @@ bool MapBuilder::publish() {
         return maps::distance_to(hall, middle) < 0.4;
       });
       if (wall.length >= settings_.min_wall && !of_a_hall)
-        put(wall);
+        add(wall, i);
     }
   }
 
@@ -783,6 +824,7 @@ bool MapBuilder::publish() {
   std::vector<std::uint32_t> old = own_;
   own_.clear();
   door_of_.clear();
+  wall_of_.clear();
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     std::size_t match = old.size();
     double nearest = 0.0;
@@ -805,8 +847,8 @@ bool MapBuilder::publish() {
       id = editor_.add(fresh[i]);
     }
     own_.push_back(id);
-    if (points[i])
-      door_of_[id] = *points[i];
+    if (sources[i])
+      (fresh[i].type == PointType::wall ? wall_of_ : door_of_)[id] = *sources[i];
   }
   for (const std::uint32_t id : old)
     editor_.remove(id);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include "drive/drive.hpp"
@@ -73,7 +74,10 @@ class Folder {
 
 class RegistrationShell : public testing::Test {
  protected:
-  RegistrationShell() { describe(); }
+  RegistrationShell() {
+    describe();
+    drive.scene().set_door("n2", true);
+  }
 
   void describe() {
     v1::RobotDescription description;
@@ -171,11 +175,37 @@ class RegistrationShell : public testing::Test {
     return *answer;
   }
 
+  /// The office with a door to N2, which is open at first, and a crate, which is far away.
   static test::DriveOptions options() {
     test::DriveOptions made;
-    made.world = "office";
+    made.world = testing::TempDir() + "saphira-registration-" + std::to_string(getpid()) + ".wld";
+    std::ofstream(made.world) << read_file(config_folder() + "/worlds/office.wld")
+                              << "\ndoor n2 6500 8000 7400 8000 90\n"
+                              << "box crate 20000 10000 0 400 400 50\n";
     made.errors = 2.0;
     return made;
+  }
+
+  /// To and fro until `done`, or for so many cycles; whether it was.
+  bool tour_until(const std::function<bool()>& done, int cycles) {
+    test::Tour to_and_fro({{11.0, 7.0}, {2.0, 7.0}}, true);
+    for (int i = 0; i < cycles && !done() && !HasFatalFailure(); i += 10)
+      tour(to_and_fro, 10);
+    return done();
+  }
+  const maps::Map& known_map() {
+    if (const auto newest = maps.take_newest())
+      newest_map = maps::from_bus(*newest);
+    return newest_map;
+  }
+  /// What the robot has put down where the crate stands.
+  const maps::Feature* crate() {
+    for (const maps::Feature& feature : known_map().features)
+      if (feature.type == lps::PointType::object && feature.learned &&
+          (feature.pose_in_map.position() - drive.scene().boxes()[0].pose_in_world.position())
+                  .norm() < 0.5)
+        return &feature;
+    return nullptr;
   }
 
   Folder folder;
@@ -194,6 +224,7 @@ class RegistrationShell : public testing::Test {
   std::optional<bus::Node> service;
   std::optional<Shell> shell;
   v1::Registration registration;
+  maps::Map newest_map;
   std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
   std::uint64_t asked = 0;
   std::uint64_t epoch = 7;
@@ -231,6 +262,60 @@ TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
   EXPECT_GT(accepted, 30);
   EXPECT_LT(off, 75) << "of 1500 cycles farther than 0.3 m from the truth";
   EXPECT_EQ(registration.environment(), 1U);
+}
+
+TEST_F(RegistrationShell, AThingComesOntoTheMapAndGoesWhereFeaturesAreAdded) {
+  ASSERT_TRUE(drive.scene().set_box("crate", {5.0, 7.7, 0.0}));
+  ShellOptions options{map_path("office"), "start", folder.path("memory")};
+  options.add_features = true;
+  start(options);
+  ASSERT_TRUE(tour_until([&] { return crate() != nullptr; }, 1200));
+  const std::uint32_t id = crate()->id;
+  EXPECT_GT(id, 115U);
+  // It keeps its id, also over a restart.
+  restart(options);
+  ASSERT_NE(crate(), nullptr);
+  EXPECT_EQ(crate()->id, id);
+  ASSERT_TRUE(drive.scene().set_box("crate", {20.0, 10.0, 0.0}));
+  EXPECT_TRUE(tour_until([&] { return maps::find(known_map(), id) == nullptr; }, 2000));
+  for (const maps::Feature& feature : maps::load_map(map_path("office")).features) {
+    if (feature.id != 0) {
+      EXPECT_NE(maps::find(known_map(), feature.id), nullptr)
+          << "a person wrote it: " << feature.id;
+    }
+  }
+}
+
+TEST_F(RegistrationShell, AThingThatIsNotThereIsTakenFromTheMapOfAPerson) {
+  start({map_path("office"), "start", ""});
+  cycle();
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_PUT);
+  maps::Feature box;
+  box.type = lps::PointType::object;
+  box.pose_in_map = {5.0, 7.7, 0.0};
+  box.length = 0.5;
+  box.width = 0.5;
+  request.artifact(maps::to_bus(box));
+  const std::uint32_t id = ask(request).artifact();
+  ASSERT_NE(maps::find(known_map(), id), nullptr);
+  EXPECT_TRUE(tour_until([&] { return maps::find(known_map(), id) == nullptr; }, 2000));
+  // And the crate is not put onto it.
+  ASSERT_TRUE(drive.scene().set_box("crate", {5.0, 7.7, 0.0}));
+  EXPECT_FALSE(tour_until([&] { return crate() != nullptr; }, 1200));
+}
+
+TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
+  const ShellOptions options{map_path("office"), "start", folder.path("memory")};
+  start(options);
+  ASSERT_TRUE(drive.scene().set_door("n2", false));
+  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors().empty(); }, 1200));
+  EXPECT_EQ(registration.closed_doors(), std::vector<std::uint32_t>{112});
+  restart(options);
+  EXPECT_EQ(registration.closed_doors(), std::vector<std::uint32_t>{112});
+  ASSERT_TRUE(drive.scene().set_door("n2", true));
+  EXPECT_TRUE(tour_until([&] { return registration.closed_doors().empty(); }, 1200));
+  EXPECT_NE(maps::find(known_map(), 112), nullptr);
 }
 
 TEST_F(RegistrationShell, ASuspendedProcessSaysNothingUntilItIsResumed) {
@@ -516,6 +601,8 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   a.source = "an; \"other\"  50%\nmap\n one ";
   a.changed = true;
   a.map = maps::load_map(map_path("office"));
+  a.map.features.back().learned = true;
+  a.closed_doors = {112, 115};
   EXPECT_FALSE(load_remembered(folder.path("memory")));
   ASSERT_TRUE(save_text(folder.path("memory"), to_text(a)));
   const auto b = load_remembered(folder.path("memory"));
@@ -531,6 +618,7 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   EXPECT_EQ(b->source, a.source);
   EXPECT_EQ(b->changed, a.changed);
   EXPECT_EQ(b->map, a.map);
+  EXPECT_EQ(b->closed_doors, a.closed_doors);
   EXPECT_THROW(parse_remembered("odom 1\nnonsense 2\nmap\n", "m"), FileError);
   EXPECT_THROW(parse_remembered("odom 1\n", "m"), FileError);
   EXPECT_THROW(parse_remembered("odom x\nmap\n", "m"), FileError);

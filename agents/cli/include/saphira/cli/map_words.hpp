@@ -20,7 +20,4 @@ const char* name_of(v1::RegistrationState state);
 /// One line: the state, where the robot is, how sure that is, and in what it is.
 std::string describe(const v1::Registration& registration, const maps::Map& map);
 
-/// "corridor 3 (lower corridor)", "door 1265 (EJ-265)".
-std::string describe(const maps::Feature& feature);
-
 }  // namespace saphira::cli

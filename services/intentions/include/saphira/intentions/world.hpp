@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "saphira/intentions/goal.hpp"
@@ -58,6 +59,7 @@ struct Registered {
   double confidence = 0.0;                   ///< [0..1]
   std::uint32_t environment = 0;             ///< the artifact that the robot is in; 0: none known
   bool adds_features = false;                ///< what is seen is put on the map
+  std::set<std::uint32_t> closed_doors;      ///< by id: those that were closed when seen last
 };
 
 /// What is known beside the robot. What is pointed to outlives the step.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,7 @@ struct DrawnRobot {
 struct Drawing {
   Map map;
   std::string title;
+  std::set<std::uint32_t> closed_doors;  ///< ids, drawn black
   std::optional<Raster> raster;
   /// Pairs of end points: the walls of a simulated world, or percepts, under all else.
   std::vector<Vec2> lines;

@@ -41,6 +41,10 @@ class Editor {
   /// Replaces the feature of that id, which stays; its type must be the same. False where there is
   /// none. std::invalid_argument where `problem` finds one.
   bool change(std::uint32_t id, Feature feature);
+  /// Changes the feature of its id, or adds it where there is none; its id.
+  std::uint32_t put(const Feature& feature) {
+    return change(feature.id, feature) ? feature.id : add(feature);
+  }
   bool remove(std::uint32_t id);
   /// Another map instead of this one. What is in both by id keeps its id.
   void replace(Map map);

@@ -47,6 +47,9 @@ Map load_map(const std::string& path);
 /// that is not positive, a name with a quotation mark or a control character.
 std::string to_text(const Map& map);
 
+/// For people: "door 1265 (EJ-265)".
+std::string describe(const Feature& feature);
+
 /// The feature of that id; nullptr where there is none.
 const Feature* find(const Map& map, std::uint32_t id);
 

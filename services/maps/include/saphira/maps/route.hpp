@@ -32,6 +32,10 @@ struct Route {
 struct RouteSettings {
   std::set<std::uint32_t> blocked;  ///< ids of doors, breaks and regions that are not to be used
   std::set<std::size_t> blocked_links;  ///< by index: also those that have no id
+  /// Ids of doors that were closed when they were seen last: gone through where any other way is so
+  /// much longer.
+  std::set<std::uint32_t> closed;
+  double closed_costs = 50.0;   ///< [m]
   double door_clearance = 0.7;  ///< [m] how far before and behind a door the robot is in line
   double tolerance = 0.5;       ///< [m] how far outside of its region the robot may believe to be
 };

@@ -76,6 +76,10 @@ class Topology {
   std::vector<Feature> positions_;
 };
 
+/// Whether two maps have the same regions, ways and places, so that what was planned on the one
+/// holds on the other: things and walls may differ.
+bool same_places(const Map& a, const Map& b);
+
 /// The four corners of a feature's rectangle, counter-clockwise, made larger by `margin` [m] on
 /// every side.
 std::vector<Vec2> corners(const Feature& feature, double margin = 0.0);

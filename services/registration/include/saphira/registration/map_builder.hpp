@@ -83,6 +83,11 @@ class MapBuilder {
   bool step(const MapBuilderInputs& inputs);
 
   const maps::Map& map() const { return editor_.map(); }
+  /// Somebody else puts a thing onto the map as it is built, as maps::Editor has it; its id.
+  std::uint32_t put(const maps::Feature& thing) { return editor_.put(thing); }
+  /// Takes something from the map. What the builder has put there it forgets, so that it must be
+  /// seen anew. False where there is no such thing.
+  bool remove(std::uint32_t id);
   std::uint64_t revision() const { return editor_.revision(); }
   /// Where the robot is by the map as it is built.
   const Pose& pose_in_map() const { return pose_in_map_; }
@@ -128,7 +133,12 @@ class MapBuilder {
   /// ...and of its heading [rad].
   double stray_heading() const;
   std::optional<std::size_t> match_line(const SeenLine& seen) const;
-  std::optional<std::size_t> match_opening(const SeenPoint& seen, lps::PointType type) const;
+  /// The opening that it is, and whether it could as well be another one.
+  struct Match {
+    std::optional<std::size_t> index;
+    bool is_ambiguous = false;
+  };
+  Match match_opening(const SeenPoint& seen, lps::PointType type) const;
   void listen_ahead(const MapBuilderInputs& inputs);
   void pass();
   void settle();
@@ -149,6 +159,7 @@ class MapBuilder {
   maps::Editor editor_;
   std::vector<std::uint32_t> own_;                ///< ids of the features that were built
   std::map<std::uint32_t, std::size_t> door_of_;  ///< feature to opening
+  std::map<std::uint32_t, std::size_t> wall_of_;  ///< feature to line
   Pose start_in_map_;
   bool placed_ = false;
   bool believed_ = false;
