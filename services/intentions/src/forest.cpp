@@ -6,10 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "driving.hpp"
+#include "forest_handle.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/navigation.hpp"
-#include "seeing.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -18,21 +19,12 @@ namespace {
 /// intended is of the parameters before: it reads the intentions of the cycle before its own, and
 /// one cycle more where, live, they came too late for it.
 constexpr Ticks kLevelDelay = 2;
-/// The level of a behavior's own goal that counts as reached.
-constexpr double kSatisfied = 0.9;
 /// Of a behavior that says nothing else: as the manual's own example has it (8.1.2).
 constexpr int kUsualPriority = 2;
-/// A point on the map that registration has moved by less is where it was: the behavior is not
-/// changed every cycle.
-constexpr double kMoved = 0.005;  ///< [m]
-constexpr double kTurned = radians(0.3);
 
 Ticks ticks(double seconds) {
   return seconds > 0.0 ? std::max<Ticks>(1, std::llround(seconds / kTick)) : 0;
 }
-
-constexpr const char* kBehaviorControl = "*behavior-control*";
-constexpr const char* kMustNotDrive = "a concurrent activity does not drive";
 
 constexpr std::size_t kManyWords = 40;  ///< letters of a value; of more there is the beginning
 
@@ -53,197 +45,6 @@ std::string in_words(const Bindings& arguments, const World& world) {
 }
 
 }  // namespace
-
-struct Forest::Node {
-  IntentionNode shown;
-  std::unique_ptr<Activity> activity;  ///< none: it is a behavior
-  std::vector<std::uint32_t> children;
-  std::uint32_t root = 0;
-  std::size_t depth = 0;
-  bool concurrent = false;  ///< must not drive, as its root
-  unsigned holds = 0;
-  bool suspended = false;  ///< by its own holds or with its parent
-  Ticks suspended_at = 0;
-  Ticks timeout = 0;
-  Ticks begun = 0;
-  std::optional<double> level;
-  Outcome outcome;
-  // Of a behavior.
-  std::string label;
-  IntendedBehavior behavior;
-  Arguments given;      ///< its parameters with the frames that they were given in
-  bool on_map = false;  ///< some of them are on the map
-  /// What those are that move: of each parameter lps::SeenThing::id, or 0.
-  std::vector<std::uint64_t> things;
-  bool until_satisfied = false;
-  Ticks since = 0;  ///< when its parameters were intended
-  // Of an activity.
-  double progress = 0.0;
-  Ticks stepped = -1;                  ///< when it was, last
-  bool gone = false;                   ///< removed, in the course of a step
-  std::optional<std::string> trouble;  ///< with a behavior that it has begun
-};
-
-/// What an activity gets hold of: one node for one step.
-class Forest::Handle : public Self {
- public:
-  Handle(Forest& forest, Node& node, const World& world)
-      : forest_(forest), node_(node), world_(world) {}
-
-  const Robot& robot() const override { return world_.robot; }
-  const World& world() const override { return world_; }
-  Ticks now() const override { return world_.now; }
-  IntentionState state() const override { return node_.shown.state; }
-
-  void intend_behavior(std::string_view label, std::string_view schema, int priority,
-                       Arguments parameters) override {
-    if (node_.concurrent)
-      throw ActivityError(kMustNotDrive);
-    Node* child = forest_.child_of(node_, label);
-    if (child != nullptr && child->behavior.schema == schema &&
-        child->behavior.priority == priority && child->behavior.parameters == parameters)
-      return;
-    if (child == nullptr || child->behavior.schema != schema) {
-      if (child != nullptr)
-        forest_.remove(child->shown.id);
-      child = &forest_.add(node_, label, schema, true);
-      child->label = label;
-      child->shown.state = IntentionState::kRunning;
-      child->shown.label = "B";
-      // Its number makes the name unique: what is left of an earlier instance in the behaviors'
-      // samples is not taken for this one.
-      child->shown.name = std::string(label) + "#" + std::to_string(child->shown.id);
-      child->behavior.name = child->shown.name;
-      child->behavior.schema = schema;
-      child->behavior.intention = child->shown.id;
-    }
-    child->behavior.priority = priority;
-    child->shown.priority = priority;
-    child->behavior.parameters = std::move(parameters);
-    child->since = world_.now;
-    child->level = 0.0;
-  }
-
-  void drop_behavior(std::string_view label) override {
-    if (const Node* child = forest_.child_of(node_, label))
-      forest_.remove(child->shown.id);
-  }
-
-  double level(std::string_view label) const override {
-    const Node* const child = forest_.child_of(node_, label);
-    return child == nullptr ? 0.0 : child->level.value_or(0.0);
-  }
-
-  std::uint32_t intend(std::string_view name, std::string_view schema,
-                       std::unique_ptr<Activity> activity, Ticks timeout, bool blocking) override {
-    Node& child = forest_.add(node_, name, schema, blocking);
-    child.activity = std::move(activity);
-    child.timeout = timeout;
-    child.begun = world_.now;
-    return child.shown.id;
-  }
-
-  std::uint32_t start(const Start& start) override { return forest_.start(node_, start, world_); }
-
-  IntentionState child_state(std::uint32_t child) const override {
-    const Node* const found = mine(child);
-    return found == nullptr ? IntentionState::kRemoved : found->shown.state;
-  }
-  double child_level(std::uint32_t child) const override {
-    return mine(child) == nullptr ? 0.0 : forest_.level_of(child);
-  }
-  const Outcome* child_outcome(std::uint32_t child) const override {
-    const Node* const found = mine(child);
-    return found == nullptr || !finished(found->shown.state) ? nullptr : &found->outcome;
-  }
-  std::uint32_t child_named(std::string_view name) const override {
-    const std::string wanted = normal(name);
-    for (auto id = node_.children.rbegin(); id != node_.children.rend(); ++id) {
-      if (normal(forest_.at(*id)->shown.name) == wanted)
-        return *id;
-    }
-    return 0;
-  }
-
-  void remove_child(std::uint32_t child) override {
-    if (mine(child) != nullptr)
-      forest_.remove(child);
-  }
-  void hold_child(std::uint32_t child, bool hold) override {
-    if (mine(child) == nullptr)
-      return;
-    if (hold)
-      forest_.interrupt(child, Hold::kActivity);
-    else
-      forest_.resume(child, Hold::kActivity);
-  }
-
-  bool unintend(std::string_view name) override {
-    const std::string wanted = normal(name);
-    for (const Node* top = &node_; top != nullptr; top = forest_.at(top->shown.parent)) {
-      const Node* const found = forest_.named(*top, wanted, node_);
-      if (found == nullptr)
-        continue;
-      const std::uint32_t id = found->shown.id;
-      for (const Node* above = &node_; above != nullptr; above = forest_.at(above->shown.parent)) {
-        if (above == found) {
-          // It stands in its own step: it goes when that is over.
-          forest_.doomed_.push_back(id);
-          return true;
-        }
-      }
-      forest_.tell_parent(*found);
-      forest_.remove(id);
-      return true;
-    }
-    return false;
-  }
-
-  void label(const std::string& label) override {
-    if (node_.shown.label == label)
-      return;
-    node_.shown.label = label;
-    node_.shown.since = world_.now;
-  }
-  void level(double satisfied) override {
-    node_.level = satisfied >= 0.0 ? std::min(satisfied, 1.0) : 0.0;
-  }
-  void tell(std::string text) override {
-    forest_.said_.push_back(
-        {node_.shown.id, node_.shown.schema, std::move(text), node_.shown.goal});
-  }
-  void ask_map(MapRequest request) override { forest_.map_requests_.push_back(request); }
-  void believe(const std::string& name, Value value) override {
-    if (normal(name) == kBehaviorControl) {
-      if (value.nil())
-        forest_.control_off_.insert(node_.root);
-      else
-        forest_.control_off_.erase(node_.root);
-      if (!forest_.behavior_control())
-        value = Value();  // another one still wants it off
-    }
-    forest_.beliefs_->set(name, std::move(value), node_.shown.schema, world_.now);
-  }
-
-  void say(std::string step) override { node_.shown.step = std::move(step); }
-  void progress(double done) override { node_.progress = done >= 0.0 ? std::min(done, 1.0) : 0.0; }
-  void succeed(std::string reason) override {
-    node_.outcome = {IntentionState::kSuccess, GoalCode::kNone, std::move(reason)};
-  }
-  void fail(GoalCode code, std::string reason) override {
-    node_.outcome = {IntentionState::kFailure, code, std::move(reason)};
-  }
-
- private:
-  const Node* mine(std::uint32_t child) const {
-    const Node* const found = forest_.at(child);
-    return found != nullptr && found->shown.parent == node_.shown.id ? found : nullptr;
-  }
-
-  Forest& forest_;
-  Node& node_;
-  const World& world_;
-};
 
 Forest::Forest(std::shared_ptr<const Registry> registry, std::shared_ptr<Beliefs> beliefs,
                ForestOptions options)
@@ -356,81 +157,11 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
   node.behavior.priority = start.priority.value_or(kUsualPriority);
   node.shown.priority = node.behavior.priority;
   node.until_satisfied = start.until_satisfied;
-  for (const auto& each_given : start.arguments) {
-    const std::string& name = each_given.first;
-    const Value& value = each_given.second;
-    std::string spelled = name;
-    if (known != nullptr) {
-      const auto parameter =
-          std::find_if(known->parameters.begin(), known->parameters.end(),
-                       [&](const Parameter& each) { return normal(each.name) == normal(name); });
-      if (parameter == known->parameters.end())
-        throw ActivityError("behavior " + known->name + " has no parameter " + quoted(name));
-      spelled = parameter->name;
-    } else {
-      std::replace(spelled.begin(), spelled.end(), '-', '_');
-    }
-    if (value.nil())
-      continue;  // not given
-    Argument argument;
-    const Reference* const reference = value.reference();
-    const bool moves = reference != nullptr && reference->kind == Reference::Kind::kThing;
-    if (moves) {
-      const lps::SeenThing* const thing = seen_thing(world, reference->id);
-      if (thing == nullptr)
-        throw ActivityError("behavior " + node.behavior.schema + ": what " + quoted(name) +
-                            " means is not seen any more");
-      argument = point(spelled, thing->pose_in_odom);
-    } else if (!to_argument(spelled, value, argument))
-      throw ActivityError("behavior " + node.behavior.schema + ": parameter " + quoted(name) +
-                          " cannot be " + kind_of(value));
-    if (argument.kind == ArgumentKind::kPoint && argument.frame == Frame::kRobot) {
-      argument.point = compose(world.robot.pose_in_odom, argument.point);
-      argument.frame = Frame::kOdom;
-    }
-    node.on_map =
-        node.on_map || (argument.kind == ArgumentKind::kPoint && argument.frame == Frame::kMap);
-    node.given.push_back(std::move(argument));
-    node.things.push_back(moves ? reference->id : 0);
-  }
+  node.parameters = BehaviorParameters(start.arguments, node.behavior.schema, known, world);
   node.since = world.now;
   node.level = 0.0;
-  if (!place(node, world))
+  if (!node.parameters.place(node.behavior.parameters, world))
     throw ActivityError("the robot does not know where it is on the map", GoalCode::kNoPosition);
-}
-
-/// Puts what is on the map, and what moves, where it is in odom now. Where that is not known, it
-/// stays where it was; false where it has never been known.
-bool Forest::place(Node& node, const World& world) {
-  if (node.behavior.parameters.empty())
-    node.behavior.parameters = node.given;
-  for (std::size_t i = 0; i < node.things.size(); ++i) {
-    const lps::SeenThing* const thing =
-        node.things[i] == 0 ? nullptr : seen_thing(world, node.things[i]);
-    if (thing != nullptr)
-      node.behavior.parameters[i].point = thing->pose_in_odom;
-  }
-  if (!node.on_map)
-    return true;
-  bool placed = true;
-  for (std::size_t i = 0; i < node.given.size(); ++i) {
-    const Argument& given = node.given[i];
-    Argument& argument = node.behavior.parameters[i];
-    if (given.kind != ArgumentKind::kPoint || given.frame != Frame::kMap)
-      continue;
-    const auto there = in_frame(given.point, Frame::kMap, Frame::kOdom, world.robot);
-    if (!there) {
-      placed = placed && argument.frame == Frame::kOdom;
-      continue;
-    }
-    const bool moved = argument.frame == Frame::kMap ||
-                       (argument.point.position() - there->position()).norm() > kMoved ||
-                       std::abs(norm2_angle(argument.point.th - there->th)) > kTurned;
-    if (moved)
-      argument.point = *there;
-    argument.frame = Frame::kOdom;
-  }
-  return placed;
 }
 
 void Forest::interrupt(std::uint32_t id, Hold why) {
@@ -581,7 +312,7 @@ void Forest::hear(const std::vector<BehaviorTrouble>& troubles) {
 void Forest::watch(Node& node, const World& world) {
   if (node.suspended || node.shown.state != IntentionState::kRunning)
     return;
-  place(node, world);
+  node.parameters.place(node.behavior.parameters, world);
   if (node.until_satisfied && node.level.value_or(0.0) >= kSatisfied) {
     node.shown.state = IntentionState::kSuccess;
     node.outcome = {IntentionState::kSuccess, GoalCode::kNone, "satisfied"};
@@ -708,7 +439,7 @@ void Forest::work_off(const World& world) {
 void Forest::end_cycle(const World& world) {
   for (const std::uint32_t id : std::exchange(woken_, {})) {
     if (Node* const node = at(id))
-      place(*node, world);
+      node->parameters.place(node->behavior.parameters, world);
   }
   std::vector<std::uint32_t> gone;
   for (const std::uint32_t id : roots_) {

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "driving.hpp"
 #include "saphira/intentions/beliefs.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-/// [m/s], [rad/s]: slower than this the robot is at rest, allowing for the packet's rounding.
-constexpr double kRestVelocity = 0.02;
-constexpr double kRestRotation = radians(3.0);
 /// Longer texts and lists than these are cut: a loop that makes one longer and longer comes to an
 /// end by its timeout, not by the machine's memory.
 constexpr std::size_t kLongestText = 4096;
@@ -395,10 +393,7 @@ void add_conditions(Functions& functions) {
   add("stalled", "a wheel is stalled",
       [](const World& w) { return w.robot.left_stalled || w.robot.right_stalled; });
   add("bumped", "a bumper is pressed", [](const World& w) { return w.robot.bumpers != 0; });
-  add("at-rest", "it neither drives nor turns", [](const World& w) {
-    return std::abs(w.robot.velocity) < kRestVelocity &&
-           std::abs(w.robot.rotation_velocity) < kRestRotation;
-  });
+  add("at-rest", "it neither drives nor turns", [](const World& w) { return at_rest(w.robot); });
   add("registered", "it knows where it is on the map",
       [](const World& w) { return w.robot.odom_in_map.has_value(); });
 }

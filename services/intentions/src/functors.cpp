@@ -7,22 +7,11 @@
 #include <optional>
 #include <utility>
 
+#include "driving.hpp"
 #include "mapping.hpp"
 
 namespace saphira::intentions {
 namespace {
-
-constexpr int kAvoid = 0;  ///< priorities of the behaviors: 0 is the highest (manual 7.3)
-constexpr int kKeepOff = 1;
-constexpr int kTask = 2;
-constexpr int kRest = 3;  ///< what is left where nothing else has a say
-
-/// The level of a behavior's own goal that counts as reached (paper 3.4, degrees of blocking).
-constexpr double kSatisfied = 0.9;
-
-/// [m/s], [rad/s]: slower than this the robot is at rest, allowing for the packet's rounding.
-constexpr double kRestVelocity = 0.02;
-constexpr double kRestRotation = radians(3.0);
 
 /// Cycles until a robot that had just been told to move would show it.
 constexpr Ticks kOnTheWay = 3;
@@ -31,11 +20,6 @@ constexpr Ticks kOnTheWay = 3;
 constexpr double kPatience = 20.0;
 constexpr double kGround = 0.1;  ///< [m] that driving has to gain within the patience
 constexpr double kFar = 1000.0;  ///< [m] where the point is that stands for a heading
-
-bool at_rest(const Robot& robot) {
-  return std::abs(robot.velocity) < kRestVelocity &&
-         std::abs(robot.rotation_velocity) < kRestRotation;
-}
 
 double value_of(const Arguments& arguments, std::string_view name) {
   const Argument* const argument = find(arguments, name);
@@ -349,16 +333,6 @@ class Halt : public Activity {
   double first_ = 0.0;
   Ticks begun_ = 0;
 };
-
-Parameter quantity(std::string name, std::string unit, double low, double high, double usual) {
-  Parameter parameter;
-  parameter.name = std::move(name);
-  parameter.unit = std::move(unit);
-  parameter.low = low;
-  parameter.high = high;
-  parameter.usual = usual;
-  return parameter;
-}
 
 Parameter patience() {
   return quantity("patience", "s", 1.0, 3600.0, kPatience);

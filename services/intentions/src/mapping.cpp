@@ -5,17 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "driving.hpp"
 #include "saphira/explore/explorer.hpp"
 #include "saphira/maps/map.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-// As go_to has them.
-constexpr int kAvoid = 0;
-constexpr int kKeepOff = 1;
-constexpr int kTask = 2;
-constexpr int kRest = 3;
 constexpr double kRadius = 0.2;      ///< [m] the point to drive to is moved on before it is reached
 constexpr double kAligned = 0.05;    ///< [rad] the explorer waits for the robot to look that way
 constexpr double kWayStep = 0.4;     ///< [m] between the places of the way that are kept
@@ -124,13 +120,7 @@ Schema explore_unknown() {
   Schema schema;
   schema.name = "explore_unknown";
   schema.summary = "drives to where the map ends, until nothing is left";
-  Parameter speed;
-  speed.name = "speed";
-  speed.unit = "m/s";
-  speed.low = 0.05;
-  speed.high = 1.0;
-  speed.usual = 0.3;
-  schema.parameters = {speed};
+  schema.parameters = {quantity("speed", "m/s", 0.05, 1.0, 0.3)};
   schema.make = [](const Arguments& arguments) -> std::unique_ptr<Activity> {
     return std::make_unique<ExploreUnknown>(arguments);
   };

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "scripted_bus.hpp"
@@ -14,18 +15,11 @@
 namespace saphira::intentions {
 namespace {
 
-bus::NodeOptions named(const std::string& name) {
-  bus::NodeOptions options;
-  options.name = name;
-  options.lockstep = true;
-  return options;
-}
-
 /// The service, a scripted robot and a requester on a bus within the process, in one thread.
 class ShellTest : public testing::Test {
  protected:
   void start(const std::string& memory_file = {}) {
-    service.emplace(named("intentions"), bus);
+    service.emplace(test::memory_options("intentions", true), bus);
     ShellOptions options;
     options.memory_file = memory_file;
     options.registration = false;
@@ -52,8 +46,8 @@ class ShellTest : public testing::Test {
 
   std::shared_ptr<bus::MemoryBus> bus = bus::make_memory_bus();
   bus::Stop stop;
-  bus::Node robot_node{named("robot"), bus};
-  bus::Node requester{named("requester"), bus};
+  bus::Node robot_node{test::memory_options("robot", true), bus};
+  bus::Node requester{test::memory_options("requester", true), bus};
   ScriptedBus robot{robot_node};
   bus::GoalClient goals{requester, "a test"};
   std::optional<bus::Node> service;
@@ -146,7 +140,7 @@ TEST_F(ShellTest, EndsOrKeepsTheGoalsOfALostWriter) {
   v1::GoalId canceled;
   v1::GoalId kept;
   {
-    bus::Node node(named("another"), bus);
+    bus::Node node(test::memory_options("another", true), bus);
     bus::GoalClient another(node, "another");
     canceled = another.ask(go_to(5.0, 0.0));
     v1::Goal goal = go_to(0.5, 0.0);

@@ -134,7 +134,6 @@ class Forest {
   Node* named(const Node& top, std::string_view name, const Node& seeker) const;
   std::uint32_t start(Node& parent, const Start& start, const World& world);
   void make_behavior(Node& node, const Start& start, const World& world);
-  bool place(Node& node, const World& world);
   void watch(Node& node, const World& world);
   void remove_children(Node& parent);
   void drop(std::uint32_t id);

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "saphira/intentions/schema.hpp"
+#include "saphira/intentions/world.hpp"
+
+/// What the activities that drive have in common.
+namespace saphira::intentions {
+
+/// Priorities of the behaviors that the functors intend: 0 is the highest (manual 7.3).
+inline constexpr int kAvoid = 0;
+inline constexpr int kKeepOff = 1;
+inline constexpr int kTask = 2;
+inline constexpr int kRest = 3;  ///< what is left where nothing else has a say
+
+/// The level of a behavior's own goal that counts as reached (paper 3.4, degrees of blocking).
+inline constexpr double kSatisfied = 0.9;
+
+/// [m/s], [rad/s]: slower than this the robot is at rest, allowing for the packet's rounding.
+inline constexpr double kRestVelocity = 0.02;
+inline constexpr double kRestRotation = radians(3.0);
+
+inline bool at_rest(const Robot& robot) {
+  return std::abs(robot.velocity) < kRestVelocity &&
+         std::abs(robot.rotation_velocity) < kRestRotation;
+}
+
+/// A number that may be left out.
+inline Parameter quantity(std::string name, std::string unit, double low, double high,
+                          double usual) {
+  Parameter parameter;
+  parameter.name = std::move(name);
+  parameter.unit = std::move(unit);
+  parameter.low = low;
+  parameter.high = high;
+  parameter.usual = usual;
+  return parameter;
+}
+
+}  // namespace saphira::intentions
