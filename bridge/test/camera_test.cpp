@@ -2,20 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "node_options.hpp"
+
 namespace saphira::bridge {
 namespace {
-
-bus::NodeOptions named(const std::string& name) {
-  bus::NodeOptions options;
-  options.name = name;
-  return options;
-}
 
 class CameraTest : public testing::Test {
  protected:
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
-  bus::Node bridge{named("bridge"), memory};
-  bus::Node other{named("vision"), memory};
+  bus::Node bridge{test::memory_options("bridge"), memory};
+  bus::Node other{test::memory_options("vision"), memory};
   bus::Reader<v1::VisionChannels> channels = other.reader(bus::topics::kVisionChannels);
   Camera camera{bridge, {"pioneer_a_mode=2", "pioneer_b_mode=2"}};
 };

@@ -2,14 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "node_options.hpp"
+
 namespace saphira::bridge {
 namespace {
-
-bus::NodeOptions named(const std::string& name) {
-  bus::NodeOptions options;
-  options.name = name;
-  return options;
-}
 
 class DeviceTopicsTest : public testing::Test {
  protected:
@@ -22,8 +18,8 @@ class DeviceTopicsTest : public testing::Test {
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
-  bus::Node bridge{named("bridge"), memory};
-  bus::Node person{named("person"), memory};
+  bus::Node bridge{test::memory_options("bridge"), memory};
+  bus::Node person{test::memory_options("person"), memory};
   bus::Reader<v1::Devices> devices = person.reader(bus::topics::kDevices);
   bus::Reader<v1::SerialData> serial = person.reader(bus::topics::kSerialData);
   bus::Writer<v1::ServoCommand> servo = person.writer(bus::topics::kServo);

@@ -4,14 +4,10 @@
 
 #include <optional>
 
+#include "node_options.hpp"
+
 namespace saphira::bridge {
 namespace {
-
-bus::NodeOptions named(const std::string& name) {
-  bus::NodeOptions options;
-  options.name = name;
-  return options;
-}
 
 class NamesakesTest : public testing::Test {
  protected:
@@ -27,8 +23,8 @@ class NamesakesTest : public testing::Test {
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
-  bus::Node own{named("bridge"), memory};
-  bus::Node other{named("bridge"), memory};
+  bus::Node own{test::memory_options("bridge"), memory};
+  bus::Node other{test::memory_options("bridge"), memory};
   Namesakes namesakes{own};
 
  private:
@@ -47,7 +43,7 @@ TEST_F(NamesakesTest, AreBridgesThatServe) {
 TEST_F(NamesakesTest, AreNotThisOneAndNoOtherService) {
   say(own, v1::SERVICE_RUNNING);
   EXPECT_FALSE(namesakes.any());
-  bus::Node behaviors{named("behaviors"), memory};
+  bus::Node behaviors{test::memory_options("behaviors"), memory};
   say(behaviors, v1::SERVICE_RUNNING);
   EXPECT_FALSE(namesakes.any());
 }

@@ -20,6 +20,7 @@
 #include <mutex>
 #include <thread>
 
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
@@ -31,9 +32,7 @@ namespace {
 using namespace std::chrono_literals;
 using protocol::Bytes;
 
-std::string source(const std::string& path) {
-  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
-}
+using test::source;
 
 // Generous: only a failure takes so long.
 constexpr auto kLimit = 20s;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include "process.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/sim/server.hpp"
 
@@ -16,9 +16,7 @@ using protocol::Command;
 using protocol::InformationPacket;
 using protocol::ServerPacket;
 
-std::string source(const std::string& path) {
-  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
-}
+using test::source;
 
 // A robot of some file in an empty square of 20 m, and its client.
 class Bench {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <set>
 
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::sim {
@@ -16,9 +16,7 @@ using protocol::Command;
 using protocol::encode;
 using protocol::InformationPacket;
 
-std::string source(const std::string& path) {
-  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
-}
+using test::source;
 
 // A server in the office, and a client of it without a line between them.
 class Fixture : public ::testing::Test {

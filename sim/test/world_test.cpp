@@ -2,19 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
 #include "broken_text.hpp"
+#include "process.hpp"
 #include "saphira/base/random.hpp"
 
 namespace saphira::sim {
 namespace {
 
-std::string source(const std::string& path) {
-  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
-}
+using test::source;
 
 // Manual chapter 11 as it is printed.
 TEST(World, TheManualsSampleLoads) {

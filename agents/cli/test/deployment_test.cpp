@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::cli {
@@ -144,9 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"programs:\n  - program: ./no/such\n", 2, 14, "no executable"}));
 
 TEST(FindDeployment, NamesWhatThereIs) {
-  const char* source = std::getenv("SAPHIRA_SOURCE_DIR");
-  ASSERT_NE(source, nullptr) << "run this test by ctest";
-  const Places places{"/nowhere", std::string(source) + "/config", ""};
+  const Places places{"/nowhere", test::source("config"), ""};
   EXPECT_EQ(find_deployment("demo", places), places.config + "/deployments/demo.yaml");
   EXPECT_EQ(find_deployment("demo.yaml", places), places.config + "/deployments/demo.yaml");
   try {
@@ -158,10 +156,8 @@ TEST(FindDeployment, NamesWhatThereIs) {
 }
 
 TEST(ShippedDeployments, AreAllGood) {
-  const char* source = std::getenv("SAPHIRA_SOURCE_DIR");
-  const char* bin = std::getenv("SAPHIRA_BIN_DIR");
-  ASSERT_TRUE(source != nullptr && bin != nullptr) << "run this test by ctest";
-  const Places places{bin, std::string(source) + "/config", "/tmp"};
+  const Places places{std::filesystem::path(test::program("saphira")).parent_path(),
+                      test::source("config"), "/tmp"};
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(places.config + "/deployments")) {
     if (entry.path().extension() != ".yaml")

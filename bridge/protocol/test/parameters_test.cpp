@@ -3,20 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "broken_text.hpp"
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::protocol {
 namespace {
 
-std::string source(const std::string& path) {
-  return std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/" + path;
-}
+using test::source;
 
 // Manual chapter 10 as it is printed.
 TEST(Parameters, TheManualsSampleLoads) {
@@ -274,7 +272,7 @@ TEST(BrokenFiles, OfEveryShippedRobotSayWhere) {
         lines.push_back(text.substr(at, end - at));
         at = end + 1;
       }
-      const auto [line, column] = breakage.apply(lines);
+      const std::pair<int, int> where = breakage.apply(lines);
       std::string broken;
       for (const std::string& l : lines)
         broken += l + "\n";
@@ -282,8 +280,8 @@ TEST(BrokenFiles, OfEveryShippedRobotSayWhere) {
         parse_parameters(broken, "broken.p");
         ADD_FAILURE() << entry.path() << ": " << breakage.name << ": no error";
       } catch (const FileError& error) {
-        EXPECT_EQ(error.line(), line) << entry.path() << ": " << error.what();
-        EXPECT_EQ(error.column(), column) << entry.path() << ": " << error.what();
+        EXPECT_EQ(std::pair(error.line(), error.column()), where)
+            << entry.path() << ": " << error.what();
         EXPECT_NE(std::string(error.what()).find(breakage.expected), std::string::npos)
             << entry.path() << ": " << error.what();
       }

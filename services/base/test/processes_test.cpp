@@ -2,17 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "node_options.hpp"
+
 namespace saphira {
 namespace {
 
 /// A service and somebody who looks at it and asks, on a bus in memory.
 class ProcessesOnBusTest : public ::testing::Test {
  protected:
-  static bus::NodeOptions named(const char* name) {
-    bus::NodeOptions options;
-    options.name = name;
-    return options;
-  }
   std::optional<v1::ProcessAnswer> ask(const std::string& whom, const std::string& process,
                                        v1::ProcessAction action, std::uint32_t cycles = 0) {
     v1::ProcessRequest request;
@@ -32,8 +29,8 @@ class ProcessesOnBusTest : public ::testing::Test {
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
-  bus::Node service{named("eyes"), memory};
-  bus::Node person{named("person"), memory};
+  bus::Node service{test::memory_options("eyes"), memory};
+  bus::Node person{test::memory_options("person"), memory};
   bus::Writer<v1::ProcessRequest> requests = person.writer(bus::topics::kProcessRequest);
   bus::Reader<v1::ProcessAnswer> answers = person.reader(bus::topics::kProcessAnswer);
   bus::Reader<v1::Processes> states = person.reader(bus::topics::kProcesses);

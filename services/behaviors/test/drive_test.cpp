@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 
 #include "closed_loop.hpp"
+#include "process.hpp"
 
 // What the behaviors are worth: the executive drives the simulated Pioneer, with the noise of its
 // sonars and its dead reckoning, through worlds that a reactive robot has to manage. Ten seeds
@@ -12,14 +12,9 @@ namespace {
 
 constexpr std::uint64_t kSeeds = 10;
 
-std::string source_dir() {
-  const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
-  return dir == nullptr ? "." : dir;
-}
-
 const protocol::RobotParameters& pioneer() {
   static const protocol::RobotParameters parameters =
-      protocol::load_parameters(source_dir() + "/config/robots/pioneer.p");
+      protocol::load_parameters(test::source("config/robots/pioneer.p"));
   return parameters;
 }
 
@@ -143,12 +138,12 @@ TEST(Drive, OutOfAPocket) {
 }
 
 TEST(Drive, ThroughTheOffice) {
-  expect_arrivals(sim::load_world(source_dir() + "/config/worlds/office.wld"), {1.5, 7, 0}, {16, 1},
+  expect_arrivals(sim::load_world(test::source("config/worlds/office.wld")), {1.5, 7, 0}, {16, 1},
                   {.swings = 14});
 }
 
 TEST(Drive, AtFullSpeed) {
-  expect_arrivals(sim::load_world(source_dir() + "/config/worlds/office.wld"), {1.5, 7, 0}, {16, 1},
+  expect_arrivals(sim::load_world(test::source("config/worlds/office.wld")), {1.5, 7, 0}, {16, 1},
                   {.swings = 14, .speed = 0.4});
 }
 

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 
+#include "process.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/executive.hpp"
@@ -18,11 +18,6 @@ namespace saphira::behaviors {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string source_dir() {
-  const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
-  return dir == nullptr ? "." : dir;
-}
 
 /// A behavior that counts its cycles, and says so as its speed in mm/s.
 std::string counter(const std::string& speed, const std::string& more = "") {
@@ -215,7 +210,7 @@ TEST(BrokenFiles, GiveMessagesAndNoneIsTakenHalf) {
   int broken = 0;
   int files = 0;
   std::set<std::string> shipped;
-  for (const auto& entry : fs::directory_iterator(source_dir() + "/config/behaviors"))
+  for (const auto& entry : fs::directory_iterator(test::source("config/behaviors")))
     if (entry.path().extension() == ".beh")
       shipped.insert(entry.path().string());
   ASSERT_GE(shipped.size(), 8U);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "pioneer.hpp"
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/folder.hpp"
 
@@ -17,11 +18,6 @@ namespace saphira::behaviors {
 namespace {
 
 constexpr int kCycles = 60;
-
-std::string source_dir() {
-  const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
-  return dir == nullptr ? "." : dir;
-}
 
 /// The robot goes ahead in a long bow, something comes near on its right and then ahead, and goes
 /// again.
@@ -84,10 +80,10 @@ std::string trace(const Registry& registry, const Schema& schema) {
 TEST(Golden, EachBehaviorDoesWhatItDid) {
   const char* const wanted = std::getenv("SAPHIRA_GOLDEN");
   const bool renew = wanted != nullptr && std::string(wanted) == "renew";
-  const Registry registry = load_behaviors(source_dir() + "/config/behaviors");
+  const Registry registry = load_behaviors(test::source("config/behaviors"));
   ASSERT_GE(registry.names().size(), 11U);
   for (const std::string& name : registry.names()) {
-    const std::string path = source_dir() + "/services/behaviors/test/golden/" + name + ".txt";
+    const std::string path = test::source("services/behaviors/test/golden/" + name + ".txt");
     const std::string now = trace(registry, *registry.find(name));
     if (renew) {
       std::ofstream(path) << now;

@@ -2,17 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 
+#include "process.hpp"
 #include "saphira/behaviors/executive.hpp"
 
 namespace saphira::behaviors {
 namespace {
-
-std::string source_dir() {
-  const char* const dir = std::getenv("SAPHIRA_SOURCE_DIR");
-  return dir == nullptr ? "." : dir;
-}
 
 std::string all(const std::vector<FileError>& messages) {
   std::string out;
@@ -195,7 +190,7 @@ TEST(Language, ParametersHaveUnitsLimitsAndDefaults) {
 }
 
 TEST(Language, TheManualsExampleRunsAsItIsPrinted) {
-  const std::string text = read_file(source_dir() + "/services/behaviors/test/data/manual-7.2.beh");
+  const std::string text = read_file(test::source("services/behaviors/test/data/manual-7.2.beh"));
   const Compiled compiled = compile(text, "manual-7.2.beh");
   ASSERT_EQ(all(compiled.errors), "");
   // Three underscores that the print has lost.
@@ -327,7 +322,7 @@ TEST(Language, BottomlessTextsAreTold) {
 }
 
 TEST(Language, EveryFunctionIsDescribed) {
-  const std::string description = read_file(source_dir() + "/services/behaviors/LANGUAGE.md");
+  const std::string description = read_file(test::source("services/behaviors/LANGUAGE.md"));
   const std::vector<std::string> functions = language_functions();
   EXPECT_GT(functions.size(), 20U);
   for (const std::string& function : functions) {

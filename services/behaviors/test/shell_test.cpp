@@ -7,23 +7,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "node_options.hpp"
+#include "saphira/bus/goal_client.hpp"
+
 namespace saphira::behaviors {
 namespace {
-
-bus::NodeOptions named(const std::string& name, bool lockstep) {
-  bus::NodeOptions options;
-  options.name = name;
-  options.lockstep = lockstep;
-  return options;
-}
-
-v1::Argument number(const char* name, double value) {
-  v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_NUMBER);
-  argument.number(value);
-  return argument;
-}
 
 v1::IntendedBehavior behavior(const char* schema, int priority,
                               std::vector<v1::Argument> parameters = {}) {
@@ -87,8 +75,8 @@ class ShellTest : public testing::TestWithParam<bool> {
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Stop stop;
-  bus::Node bridge{named("bridge", GetParam()), memory};
-  bus::Node service{named("behaviors", GetParam()), memory};
+  bus::Node bridge{test::memory_options("bridge", GetParam()), memory};
+  bus::Node service{test::memory_options("behaviors", GetParam()), memory};
   bus::Writer<v1::RobotState> states{bridge.writer(bus::topics::kRobotState)};
   bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
   bus::Writer<v1::Intentions> intentions{bridge.writer(bus::topics::kIntentions)};
@@ -108,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(LiveAndLockstep, ShellTest, testing::Bool());
 
 TEST_P(ShellTest, CommandsWhatIsIntended) {
   describe();
-  one({behavior("ConstantVelocity", 2, {number("speed", 0.25)})});
+  one({behavior("ConstantVelocity", 2, {bus::number("speed", 0.25)})});
   EXPECT_FALSE(command.active());
   const std::uint64_t first = command.number();
   one({});
@@ -201,7 +189,7 @@ TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
     requests.write(sample);
   };
   describe();
-  const auto ahead = behavior("ConstantVelocity", 2, {number("speed", 0.25)});
+  const auto ahead = behavior("ConstantVelocity", 2, {bus::number("speed", 0.25)});
   one({ahead});
   one({ahead});
   EXPECT_TRUE(command.active());
@@ -244,8 +232,8 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   const std::string head = "BeginBehavior ConstantVelocity\nParams\nRules\n";
   const std::string tail = "\nUpdate\nActivity\nEndBehavior\n";
   const auto memory = bus::make_memory_bus();
-  bus::Node bridge(named("bridge", false), memory);
-  bus::Node service(named("behaviors", false), memory);
+  bus::Node bridge(test::memory_options("bridge"), memory);
+  bus::Node service(test::memory_options("behaviors"), memory);
   auto states = bridge.writer(bus::topics::kRobotState);
   auto descriptions = bridge.writer(bus::topics::kRobotDescription);
   auto intentions = bridge.writer(bus::topics::kIntentions);
@@ -311,7 +299,7 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
 
 TEST(ShellFiles, APluginThatIsNoneEndsItAtItsStart) {
   const auto memory = bus::make_memory_bus();
-  bus::Node service(named("behaviors", false), memory);
+  bus::Node service(test::memory_options("behaviors"), memory);
   EXPECT_THROW(Shell(service, {"", {"/nowhere.so"}}), std::runtime_error);
 }
 
