@@ -118,10 +118,12 @@ Explanation Reason::why_not(Wish wish) {
             against = &other;
         }
         // Within one behavior, too, a rule may speak against another.
-        const std::string what = against == nullptr ? "it weighs too little for it"
-                                                    : name_of(*against->behavior) + " wants " +
-                                                          of_say(*against, channel);
-        consider(outweighed, rule.strength() * weight, who + ", but " + what, std::move(detail));
+        std::string what = who + ", but ";
+        if (against == nullptr)
+          what += "it weighs too little for it";
+        else
+          what += name_of(*against->behavior) + " wants " + of_say(*against, channel);
+        consider(outweighed, rule.strength() * weight, std::move(what), std::move(detail));
       }
     }
   }

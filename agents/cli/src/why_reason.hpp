@@ -28,9 +28,6 @@ class Reason {
   Explanation why_not(Wish wish);
 
  private:
-  bool driven_by_behaviors() const {
-    return scene_.grant && scene_.grant->role() == v1::ROLE_BEHAVIORS;
-  }
   double told_speed() const {
     return scene_.grant ? scene_.grant->velocity() : scene_.behaviors->speed();
   }
