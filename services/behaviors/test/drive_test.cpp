@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-
 #include "closed_loop.hpp"
 #include "process.hpp"
 

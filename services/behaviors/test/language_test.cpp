@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "process.hpp"
 #include "saphira/behaviors/executive.hpp"
 
