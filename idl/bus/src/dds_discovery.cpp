@@ -1,0 +1,217 @@
+#include "dds_discovery.hpp"
+
+#include <charconv>
+#include <sstream>
+
+#include "dds_convert.hpp"
+
+namespace saphira::bus::internal {
+
+namespace fdds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+// Until an endpoint that does not match is told by its policy alone: it is usually known sooner.
+constexpr std::chrono::seconds kUnexplained{2};
+
+const char* policy_name(fdds::QosPolicyId_t id) {
+  switch (id) {
+    case fdds::DURABILITY_QOS_POLICY_ID:
+      return "durability";
+    case fdds::PRESENTATION_QOS_POLICY_ID:
+      return "presentation";
+    case fdds::DEADLINE_QOS_POLICY_ID:
+      return "deadline";
+    case fdds::LATENCYBUDGET_QOS_POLICY_ID:
+      return "latency budget";
+    case fdds::OWNERSHIP_QOS_POLICY_ID:
+      return "ownership";
+    case fdds::LIVELINESS_QOS_POLICY_ID:
+      return "liveliness";
+    case fdds::RELIABILITY_QOS_POLICY_ID:
+      return "reliability";
+    case fdds::DESTINATIONORDER_QOS_POLICY_ID:
+      return "destination order";
+    case fdds::DATAREPRESENTATION_QOS_POLICY_ID:
+      return "data representation";
+    case fdds::TYPECONSISTENCYENFORCEMENT_QOS_POLICY_ID:
+      return "type consistency";
+    default:
+      return "another policy";
+  }
+}
+
+/// What stands behind `key` in a participant's user data, up to the next semicolon.
+std::string field(const std::string& data, const std::string& key) {
+  const auto begin = data.find(key);
+  if (begin == std::string::npos)
+    return {};
+  const auto from = begin + key.size();
+  return data.substr(from, data.find(';', from) - from);
+}
+
+/// Who has it, for people.
+std::string name(const EndpointEntry& endpoint) {
+  return std::string(endpoint.writer ? "the writer of " : "the reader of ") +
+         (endpoint.program.empty() ? "an unknown program" : endpoint.program) +
+         (endpoint.host.empty() ? "" : " at " + endpoint.host);
+}
+
+}  // namespace
+
+template <class Proxy>
+void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
+  const std::scoped_lock lock(mutex_);
+  if (removed) {
+    endpoints_.erase(proxy.guid());
+  } else {
+    EndpointEntry endpoint;
+    endpoint.topic = proxy.topicName().to_string();
+    endpoint.type = proxy.typeName().to_string();
+    endpoint.writer = writer;
+    for (const auto& partition : proxy.m_qos.m_partition.names())
+      endpoint.robot += (endpoint.robot.empty() ? "" : ",") + partition;
+    endpoint.reliable = proxy.m_qos.m_reliability.kind == fdds::RELIABLE_RELIABILITY_QOS;
+    static constexpr const char* durability[] = {"volatile", "transient_local", "transient",
+                                                 "persistent"};
+    endpoint.durability = durability[proxy.m_qos.m_durability.kind & 3U];
+    endpoint.deadline = seconds(proxy.m_qos.m_deadline.period);
+    static constexpr const char* liveliness[] = {"automatic", "manual_by_participant",
+                                                 "manual_by_topic", "automatic"};
+    endpoint.liveliness = liveliness[proxy.m_qos.m_liveliness.kind & 3U];
+    if (const double lease = seconds(proxy.m_qos.m_liveliness.lease_duration); lease > 0.0) {
+      std::ostringstream text;
+      text << " " << lease << " s";
+      endpoint.liveliness += text.str();
+    }
+    endpoint.ownership =
+        proxy.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
+    endpoint.id = to_hex(to_id(proxy.guid()));
+    endpoints_[proxy.guid()] = endpoint;
+    for (const auto& own : own_)
+      if (own.topic == endpoint.topic && own.type != endpoint.type) {
+        type_check_due_ = true;
+        wake_->signal();
+      }
+    if (!incompatible_.empty())
+      wake_->signal();
+  }
+  changed();
+}
+
+void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*/,
+                                         rtps::ParticipantDiscoveryInfo&& info) {
+  using Info = rtps::ParticipantDiscoveryInfo;
+  const std::scoped_lock lock(mutex_);
+  const auto& prefix = info.info.m_guid.guidPrefix;
+  if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
+    programs_.erase(prefix);
+    std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
+  } else {
+    Program& program = programs_[prefix];
+    program.name = info.info.m_participantName.to_string();
+    const auto& bytes = info.info.m_userData.data_vec();
+    const std::string data(bytes.begin(), bytes.end());
+    program.host = field(data, "host=");
+    const std::string pid = field(data, "pid=");
+    std::from_chars(pid.data(), pid.data() + pid.size(), program.pid);
+  }
+  changed();
+}
+
+void Discovery::on_subscriber_discovery(fdds::DomainParticipant* /*participant*/,
+                                        rtps::ReaderDiscoveryInfo&& info) {
+  put(info.info, false, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
+}
+
+void Discovery::on_publisher_discovery(fdds::DomainParticipant* /*participant*/,
+                                       rtps::WriterDiscoveryInfo&& info) {
+  put(info.info, true, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
+}
+
+void Discovery::add_incompatible(const std::string& topic, bool own_writes,
+                                 fdds::QosPolicyId_t policy) {
+  const std::scoped_lock lock(mutex_);
+  incompatible_.try_emplace({topic, own_writes, policy_name(policy)}, Clock::now());
+  wake_->signal();
+}
+
+void Discovery::add_own(const EndpointEntry& own) {
+  const std::scoped_lock lock(mutex_);
+  own_.push_back(own);
+  type_check_due_ = true;
+}
+
+void Discovery::remove_own(const std::string& id) {
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(own_, [&](const EndpointEntry& own) { return own.id == id; });
+}
+
+std::vector<EndpointEntry> Discovery::endpoints() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<EndpointEntry> result;
+  result.reserve(endpoints_.size());
+  for (const auto& [guid, endpoint] : endpoints_)
+    result.push_back(with_program(guid, endpoint));
+  return result;
+}
+
+std::vector<std::string> Discovery::take_troubles() {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::string> texts;
+  std::erase_if(incompatible_, [&](const auto& item) {
+    return tell_incompatible(item.first, Clock::now() - item.second > kUnexplained, texts);
+  });
+  // Fast DDS says nothing where only the names of the types differ.
+  if (std::exchange(type_check_due_, false)) {
+    for (const auto& own : own_)
+      for (const auto& [guid, other] : endpoints_)
+        if (other.writer != own.writer && other.topic == own.topic && other.type != own.type &&
+            partitions_meet(other.robot, own.robot) && told_.insert({own.id, other.id}).second)
+          texts.push_back("topic " + own.topic + ": " + name(with_program(guid, other)) +
+                          " has type " + other.type + ", expected " + own.type);
+  }
+  return texts;
+}
+
+EndpointEntry Discovery::with_program(const rtps::GUID_t& guid, EndpointEntry endpoint) const {
+  if (const auto found = programs_.find(guid.guidPrefix); found != programs_.end()) {
+    endpoint.program = found->second.name;
+    endpoint.host = found->second.host;
+    endpoint.pid = found->second.pid;
+  }
+  return endpoint;
+}
+
+bool Discovery::tell_incompatible(const Incompatible& found, bool late,
+                                  std::vector<std::string>& texts) {
+  bool explained = false;
+  for (const auto& own : own_) {
+    if (own.topic != found.topic || own.writer != found.own_writes)
+      continue;
+    for (const auto& [guid, other] : endpoints_) {
+      if (other.writer == own.writer || other.topic != own.topic ||
+          !partitions_meet(other.robot, own.robot))
+        continue;
+      const std::string why =
+          own.writer ? why_incompatible(own, other) : why_incompatible(other, own);
+      explained = explained || !why.empty();
+      if (!why.empty() && told_.insert({own.id, other.id}).second)
+        texts.push_back("topic " + own.topic + ": " + name(with_program(guid, other)) +
+                        " does not match, " + why);
+    }
+  }
+  if (!explained && late && told_.insert({found.topic, found.policy}).second)
+    texts.push_back("topic " + found.topic + ": " + (found.own_writes ? "a reader" : "a writer") +
+                    " does not match, " + found.policy);
+  return explained || late;
+}
+
+void Discovery::changed() {
+  if (watched_)
+    wake_->signal();
+}
+
+}  // namespace saphira::bus::internal

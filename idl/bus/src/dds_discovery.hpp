@@ -1,0 +1,80 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "internal.hpp"
+
+namespace saphira::bus::internal {
+
+/// What was discovered of others, and what did not match. Filled by Fast DDS's threads.
+class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  explicit Discovery(std::shared_ptr<Wake> wake) : wake_(std::move(wake)) {}
+
+  void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+
+  /// Fast DDS found an endpoint on the other side of this topic that does not match, by this
+  /// policy. It says so again at each announcement, and may say so before the endpoint of ours is
+  /// made or the other's is told.
+  void add_incompatible(const std::string& topic, bool own_writes,
+                        eprosima::fastdds::dds::QosPolicyId_t policy);
+  void add_own(const EndpointEntry& own);
+  void remove_own(const std::string& id);
+
+  /// As Transport has them.
+  std::vector<EndpointEntry> endpoints() const;
+  std::vector<std::string> take_troubles();
+  void watch(bool on) { watched_ = on; }
+
+ private:
+  struct Program {
+    std::string name;
+    std::string host;
+    std::uint32_t pid = 0;
+  };
+
+  EndpointEntry with_program(const eprosima::fastrtps::rtps::GUID_t& guid,
+                             EndpointEntry endpoint) const;
+
+  struct Incompatible {
+    std::string topic;
+    bool own_writes = false;
+    std::string policy;
+    auto operator<=>(const Incompatible&) const = default;
+  };
+
+  /// Each pair of endpoints once; where no pair explains it in time, the policy once. False: not
+  /// yet.
+  bool tell_incompatible(const Incompatible& found, bool late, std::vector<std::string>& texts);
+
+  template <class Proxy>
+  void put(const Proxy& proxy, bool writer, bool removed);
+  void changed();
+
+  const std::shared_ptr<Wake> wake_;
+  std::atomic<bool> watched_{false};
+  mutable std::mutex mutex_;
+  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, Program> programs_;
+  std::map<eprosima::fastrtps::rtps::GUID_t, EndpointEntry> endpoints_;
+  std::vector<EndpointEntry> own_;
+  std::map<Incompatible, std::chrono::steady_clock::time_point> incompatible_;  ///< since when
+  std::set<std::pair<std::string, std::string>> told_;
+  bool type_check_due_ = false;
+};
+
+}  // namespace saphira::bus::internal

@@ -1,0 +1,143 @@
+#include "dds_network.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
+#include <fastrtps/utils/IPFinder.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <unistd.h>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dds_convert.hpp"
+#include "internal.hpp"
+#include "log.hpp"
+
+namespace saphira::bus::internal {
+namespace {
+
+namespace fdds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+// How many programs of one machine can be found by a peer that knows nothing but its address.
+constexpr std::uint32_t kProgramsPerPeer = 12;
+// [ms] after which a program that has died without a word is taken for gone. Longer than programs
+// and networks usually stand still: who was taken for gone by one side alone, for standing still
+// about so long, is not heard again by that side (Fast DDS 2.9 keeps the other side's half of the
+// match).
+constexpr int kLease = 10000;
+// [ms] between two announcements of a program: what a restarted one waits at the most until it is
+// found.
+constexpr int kAnnouncement = 250;
+// By unicast to every place where a peer may be: less often, for the sake of a radio.
+constexpr int kPeerAnnouncement = 500;
+
+class DdsLog : public fdds::LogConsumer {
+ public:
+  void Consume(const fdds::Log::Entry& entry) override {
+    const std::string text = "Fast DDS: " + entry.message;
+    // What Fast DDS calls an error is no more than a warning for a system that goes on.
+    write_log(entry.kind == fdds::Log::Kind::Info ? v1::LOG_DEBUG : v1::LOG_WARNING, text);
+  }
+};
+
+rtps::Locator_t locator(const std::string& address) {
+  rtps::Locator_t result;
+  result.kind = LOCATOR_KIND_UDPv4;
+  result.port = 0;  // the well-known ports of the domain
+  if (rtps::IPLocator::isIPv4(address)) {
+    rtps::IPLocator::setIPv4(result, address);
+    return result;
+  }
+  const auto resolved = rtps::IPLocator::resolveNameDNS(address);
+  if (resolved.first.empty())
+    throw std::runtime_error("peer \"" + address +
+                             "\" is neither an IPv4 address nor a known host");
+  rtps::IPLocator::setIPv4(result, *resolved.first.begin());
+  return result;
+}
+
+void check_interface(const std::string& address) {
+  std::vector<rtps::IPFinder::info_IP> found;
+  rtps::IPFinder::getIPs(&found, true);
+  std::string all;
+  for (const auto& ip : found) {
+    if (ip.type != rtps::IPFinder::IP4 && ip.type != rtps::IPFinder::IP4_LOCAL)
+      continue;
+    if (ip.name == address)
+      return;
+    all += " " + ip.name;
+  }
+  throw std::runtime_error("interface \"" + address +
+                           "\" is not an address of this machine, which has" + all);
+}
+
+}  // namespace
+
+void set_up_library() {
+  static const bool once = [] {
+    fdds::Log::ClearConsumers();
+    fdds::Log::RegisterConsumer(std::make_unique<DdsLog>());
+    fdds::Log::SetVerbosity(fdds::Log::Kind::Error);
+    eprosima::fastrtps::LibrarySettingsAttributes settings;
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_FULL;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    // A participant is enabled after its types are there, not before.
+    auto* factory = fdds::DomainParticipantFactory::get_instance();
+    fdds::DomainParticipantFactoryQos qos;
+    factory->get_qos(qos);
+    qos.entity_factory().autoenable_created_entities = false;
+    factory->set_qos(qos);
+    return true;
+  }();
+  static_cast<void>(once);
+}
+
+fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
+  fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
+  qos.name(options.name);
+  const std::string who = "host=" + host_name() + ";pid=" + std::to_string(getpid()) + ";";
+  qos.user_data().setValue(std::vector<rtps::octet>(who.begin(), who.end()));
+
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.discovery_config.leaseDuration = milliseconds(kLease);
+  builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kAnnouncement);
+  std::string own_address = "127.0.0.1";
+  switch (options.profile) {
+    case Profile::host:
+      udp->interfaceWhiteList.push_back(own_address);
+      break;
+    case Profile::lan:
+    case Profile::wan:
+      if (!options.interface.empty()) {
+        check_interface(options.interface);
+        own_address = options.interface;
+        udp->interfaceWhiteList.push_back(own_address);
+      }
+      break;
+  }
+  if (options.profile == Profile::wan) {
+    builtin.avoid_builtin_multicast = true;
+    builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kPeerAnnouncement);
+    // A unicast place for discovery, and so no multicast one.
+    rtps::Locator_t here;
+    here.kind = LOCATOR_KIND_UDPv4;
+    here.port = 0;
+    builtin.metatrafficUnicastLocatorList.push_back(here);
+    udp->maxInitialPeersRange = kProgramsPerPeer;
+    builtin.initialPeersList.push_back(locator(own_address));
+    for (const auto& peer : options.peers)
+      builtin.initialPeersList.push_back(locator(peer));
+  }
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  return qos;
+}
+
+}  // namespace saphira::bus::internal
