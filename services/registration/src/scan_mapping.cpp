@@ -34,8 +34,25 @@ Eigen::Matrix3d turned(const Eigen::Matrix3d& information, double th) {
 // information does not add up as if each were a measurement of its own.
 constexpr double kShared = 0.05;
 
+// [m2] a variance that says nothing.
+constexpr double kNothing = 1e4;
+
 Eigen::Matrix3d matched_information(const Alignment& alignment) {
   return turned(kShared * alignment.information, alignment.pose.th);
+}
+
+// Along bare walls two scans seem to know a little, by the noise of the normals: nothing is known
+// there.
+Eigen::Matrix3d without_noise(const Eigen::Matrix3d& information) {
+  constexpr double kLeast = 0.03;  // of what is known across
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
+      Eigen::Matrix2d(information.topLeftCorner<2, 2>()));
+  if (axes.eigenvalues()[0] > kLeast * axes.eigenvalues()[1])
+    return information;
+  Eigen::Matrix3d without = Eigen::Matrix3d::Identity();
+  without.topLeftCorner<2, 2>() -=
+      axes.eigenvectors().col(0) * axes.eigenvectors().col(0).transpose();
+  return without * information * without;
 }
 
 Scan thinned(const Scan& scan, std::size_t most) {
@@ -93,6 +110,21 @@ Eigen::Matrix3d ScanMapper::odom_information(const Pose& step) const {
   return diagonal(distance, distance, turn);
 }
 
+Eigen::Matrix3d ScanMapper::step_covariance(const Pose& step) const {
+  const double gone = std::hypot(step.x, step.y) + 0.1 * std::abs(step.th);
+  Eigen::Matrix3d out = diagonal_covariance(settings_.drift * std::sqrt(gone),
+                                            settings_.drift_turn * std::sqrt(gone));
+  const PoseEdge& odometry = odometry_.back();
+  if (!odometry.doubtful)  // the scan did not match
+    return out + odometry.information.inverse();
+  // Along bare walls scans say little. What they say less than dead reckoning counts in part: its
+  // own sigmas are there to be safe.
+  constexpr double kPart = 0.25;
+  const Eigen::Matrix3d both = (chain_.back().information + odometry.information).inverse();
+  out.topLeftCorner<2, 2>() += kPart * both.topLeftCorner<2, 2>();
+  return out;
+}
+
 Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   ++report_.scans;
   if (poses_.empty()) {
@@ -128,8 +160,7 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   if (found.overlap < settings_.good_overlap) {
     ++report_.searches;
     const double gone = std::hypot(step.x, step.y);
-    const SearchWindow window{0.15 + 0.3 * gone,
-                              radians(6.0) + radians(20.0) * gone + 0.3 * std::abs(step.th),
+    const SearchWindow window{0.15 + 0.3 * gone, radians(25.0) + 0.3 * std::abs(step.th),
                               radians(1.0)};
     const ScanField field(local, 4);
     const Scan few = thinned(scan, 120);
@@ -160,12 +191,7 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
     chain_.push_back({last, last + 1, believed, matched_information(found), false});
   odometry_.push_back({last, last + 1, odom_step, odom_information(odom_step), matched});
   const double gone = std::hypot(believed.x, believed.y);
-  Eigen::Matrix3d information = odometry_.back().information;
-  if (matched)
-    information += chain_.back().information;
-  steps_.push_back(
-      information.inverse() +
-      diagonal_covariance(settings_.drift_per_metre * gone, settings_.drift_turn_per_metre * gone));
+  steps_.push_back(step_covariance(believed));
   loops_at_.emplace_back();
   path_.push_back(path_[last] + gone);
   poses_.push_back(compose(poses_[last], believed));
@@ -273,7 +299,7 @@ std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, st
       std::clamp(3.0 * spread + 0.3, settings_.loop_reach, settings_.loop_reach_limit);
   const double turn =
       std::clamp(3.0 * std::sqrt(covariance(2, 2)), settings_.loop_turn, settings_.loop_turn_limit);
-  std::vector<std::size_t> old = along_path(pass, 5.0, 5.0);
+  std::vector<std::size_t> old = along_path(pass, 3.0 + reach, 3.0 + reach);
   std::erase_if(old,
                 [&](std::size_t i) { return path_[here] - path_[i] < settings_.loop_path - 4.0; });
   const ScanReference there = reference(old, pass);
@@ -288,13 +314,35 @@ std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, st
   const Alignment found = align(there, query, wide->pose, settings);
   if (found.overlap < settings_.loop_overlap)
     return std::nullopt;
-  Closure closure{pass, here, found.pose, Eigen::Matrix3d::Zero(), 0, false};
+  Pose pose = found.pose;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> slack(field.slack(
+      few, found.pose, guess.position(), prior + 0.04 * Eigen::Matrix2d::Identity(), reach));
+  Eigen::Matrix2d position = Eigen::Matrix2d::Zero();
+  const double free = settings_.loop_slack * settings_.loop_slack;
+  if (slack.eigenvalues()[0] > free)
+    return std::nullopt;
+  for (int k = 0; k < 2; ++k) {
+    const Vec2 along = slack.eigenvectors().col(k);
+    const bool open = slack.eigenvalues()[k] > free;
+    position += (open ? kNothing : slack.eigenvalues()[k]) * along * along.transpose();
+    if (!open)
+      continue;
+    // One place along a corridor, or among rooms that look alike, is as good as the next: what the
+    // scans say is said for the one where the robot is by the graph.
+    const Vec2 start = pose.position() + along.dot(guess.position() - pose.position()) * along;
+    settings.guess_information.topLeftCorner<2, 2>() =
+        400.0 * along * along.transpose() / (settings.noise * settings.noise);
+    const Alignment again = align(there, query, {start.x(), start.y(), pose.th}, settings);
+    if (again.overlap < settings_.loop_overlap)
+      return std::nullopt;
+    pose = again.pose;
+  }
+  Closure closure{pass, here, pose, Eigen::Matrix3d::Zero(), 0, false};
   // In the frame of the pass up to here; a closure's covariance is in its own.
   Eigen::Matrix3d doubt =
       (kShared * found.information + 1e-3 * Eigen::Matrix3d::Identity()).inverse();
-  doubt.topLeftCorner<2, 2>() += field.slack(few, found.pose, guess.position(),
-                                             prior + 0.04 * Eigen::Matrix2d::Identity(), reach);
-  closure.covariance = turned(doubt, found.pose.th);
+  doubt.topLeftCorner<2, 2>() += position;
+  closure.covariance = turned(doubt, pose.th);
   if (through(closure) > settings_.loop_through)
     return std::nullopt;
   return closure;
@@ -347,6 +395,8 @@ void ScanMapper::close_loops() {
   if (candidates.empty())
     return;
   const Scan query = stretch(here, 2.0);
+  if (query.points.size() < settings_.loop_points)
+    return;
   std::vector<Closure> agreed;
   for (const Candidate& candidate : candidates) {
     auto closure = find_closure(candidate.pass, here, candidate.covariance, query);
@@ -457,10 +507,11 @@ void ScanMapper::refine(int rounds) {
         const Alignment found = align(there, scans_[i], relative(poses_[j], poses_[i]), settings);
         if (found.overlap < 0.4)
           continue;
-        edges.push_back({j, i, found.pose, matched_information(found), true});
+        edges.push_back({j, i, found.pose, without_noise(matched_information(found)), true});
       }
     }
-    edges.insert(edges.end(), odometry_.begin(), odometry_.end());
+    const std::vector<PoseEdge> before = all_edges();
+    edges.insert(edges.end(), before.begin(), before.end());
     optimize(poses_, edges, 30, 5.0);
   }
 }

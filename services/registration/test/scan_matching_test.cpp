@@ -105,5 +105,60 @@ TEST(ScanMatching, NothingIsNoMistake) {
   EXPECT_FALSE(ScanField(empty).search(test::scan_from({2.0, 1.0, 0.0}), {}, {}, 0.0));
 }
 
+TEST(LookAt, WhatStandsBeforeAWallIsSeenThrough) {
+  const Scan scan = test::scan_from({4.0, 2.5, 0.0});
+  std::vector<Vec2> before;
+  std::vector<Vec2> behind;
+  for (const Vec2& p : scan.points) {
+    const double range = p.norm();
+    if (range < 2.0)
+      continue;
+    before.push_back(p * ((range - 1.0) / range));
+    behind.push_back(p * ((range + 1.0) / range));
+  }
+  const Sight same = look_at(scan, scan.points);
+  EXPECT_EQ(same.through, 0U);
+  EXPECT_GT(same.agree, scan.points.size() * 9 / 10);
+  const Sight through = look_at(scan, before);
+  EXPECT_GT(through.through, before.size() * 8 / 10);
+  const Sight hidden = look_at(scan, behind);
+  EXPECT_LT(hidden.through, behind.size() / 20);
+  // Behind its back it saw nothing.
+  EXPECT_EQ(look_at(scan, {{-1.0, 0.3}}).agree + look_at(scan, {{-1.0, 0.3}}).through, 0U);
+}
+
+TEST(ScanField, SlackIsAlongWhatLooksTheSame) {
+  // Between two walls, and with one across them.
+  const auto corridor = [](bool end) {
+    Scan scan;
+    for (double x = -6.0; x <= 6.0; x += 0.05)
+      for (const double y : {-1.0, 1.0}) {
+        scan.points.emplace_back(x, y);
+        scan.normals.emplace_back(0.0, y < 0.0 ? 1.0 : -1.0);
+      }
+    for (double y = -1.0; end && y <= 1.0; y += 0.02) {
+      scan.points.emplace_back(3.0, y);
+      scan.normals.emplace_back(-1.0, 0.0);
+    }
+    return scan;
+  };
+  const Eigen::Matrix2d prior = Eigen::Matrix2d::Identity();
+  for (const bool end : {false, true}) {
+    ScanReference reference;
+    reference.add(corridor(end), {});
+    reference.arrange();
+    const ScanField field(reference);
+    Scan query = corridor(end);
+    std::erase_if(query.points, [](const Vec2& p) { return std::abs(p.x()) > 3.5; });
+    query.normals.assign(query.points.size(), Vec2::Zero());
+    const Eigen::Matrix2d slack = field.slack(query, {}, {0.0, 0.0}, prior, 3.0);
+    EXPECT_LT(std::sqrt(slack(1, 1)), 0.1);
+    if (end)
+      EXPECT_LT(std::sqrt(slack(0, 0)), 0.2);
+    else
+      EXPECT_GT(std::sqrt(slack(0, 0)), 0.5);
+  }
+}
+
 }  // namespace
 }  // namespace saphira::registration

@@ -37,12 +37,15 @@ struct ScanMapSettings {
   double loop_reach_limit = 10.0;
   double loop_turn = radians(8.0);
   double loop_turn_limit = radians(30.0);
-  // What the graph knows the less, the longer the way: errors that all steps share.
-  double drift_per_metre = 0.01;
-  double drift_turn_per_metre = radians(0.05);
-  double loop_score = 0.55;  ///< least mean likelihood of the points
+  // What matched scans drift, one sigma after one metre, growing with the root of the way: by what
+  // real lasers do, which see floors that are not even and walls that are not plumb.
+  double drift = 0.05;
+  double drift_turn = radians(0.5);
+  std::size_t loop_points = 150;  ///< the least that is seen of a place
+  double loop_score = 0.55;       ///< least mean likelihood of the points
   double loop_overlap = 0.6;
-  double loop_through = 0.2;  ///< the most of the points that are seen through
+  double loop_through = 0.1;  ///< the most of the points that are seen through
+  double loop_slack = 0.25;   ///< [m] what fits as well so far away is not known at all
   double loop_agree_chi2 = 11.3;
 };
 
@@ -95,6 +98,8 @@ class ScanMapper {
   std::vector<std::size_t> along_path(std::size_t about, double back, double ahead) const;
   Scan stretch(std::size_t node, double back) const;
   Eigen::Matrix3d odom_information(const Pose& step) const;
+  // Of the newest node's step, for what the graph knows.
+  Eigen::Matrix3d step_covariance(const Pose& step) const;
   /// What the graph knows of where nodes are, seen from another: by the surest way through it.
   std::vector<Eigen::Matrix3d> covariances(std::size_t from,
                                            const std::vector<std::size_t>& of) const;
