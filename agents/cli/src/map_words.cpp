@@ -1,8 +1,10 @@
 #include "saphira/cli/map_words.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <string_view>
 
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
@@ -14,10 +16,41 @@ namespace {
 constexpr std::size_t kDoors = 3;    ///< closed ones that are named
 constexpr double kAnywhere = 100.0;  ///< [m] with a larger sigma there is no place to speak of
 
-constexpr const char* kWords =
-    "expected load FILE, delete, put \"LINE OF A MAP FILE\", remove ID, place X Y TH or place "
-    "NAME, "
-    "find, on, off, features on|off, or snap on|off";
+/// What `saphira map` understands, in the order of its help.
+struct Form {
+  std::string_view verb;
+  std::string_view rest;
+};
+constexpr std::array<Form, 16> kForms{
+    {{"follow", ""},
+     {"list", ""},
+     {"save", " FILE"},
+     {"show", " [FILE.svg]"},
+     {"build", " [FILE]"},
+     {"load", " FILE"},
+     {"delete", ""},
+     {"put", " \"LINE OF A MAP FILE\""},
+     {"remove", " ID"},
+     {"place", " X Y TH [m, rad], or place NAME of a POS of the map"},
+     {"find", ""},
+     {"on", ""},
+     {"off", ""},
+     {"features", " on|off"},
+     {"snap", " on|off"},
+     {"route", " PLACE"}}};
+
+[[noreturn]] void complain(const std::vector<std::string>& words) {
+  std::string verbs;
+  for (const Form& form : kForms) {
+    if (!words.empty() && form.verb == words.front())
+      throw std::invalid_argument("expected " + std::string(form.verb) + std::string(form.rest) +
+                                  ", found " + std::to_string(words.size() - 1) +
+                                  (words.size() == 2 ? " word" : " words") + " after it");
+    verbs.append(verbs.empty() ? "" : &form == &kForms.back() ? " or " : ", ").append(form.verb);
+  }
+  throw std::invalid_argument("expected " + verbs +
+                              (words.empty() ? "" : ", found \"" + words.front() + "\""));
+}
 
 double number(const std::string& word, const char* what) {
   std::size_t used = 0;
@@ -43,8 +76,7 @@ Pose place_of(const std::vector<std::string>& words, const maps::Map& map) {
     return {number(words[1], "x [m]"), number(words[2], "y [m]"),
             norm2_angle(number(words[3], "the heading [rad]"))};
   if (words.size() != 2)
-    throw std::invalid_argument(
-        "expected place X Y TH [m, rad], or place NAME of a POS of the map");
+    complain(words);
   const auto places = maps::named(map, lps::PointType::position, words[1]);
   if (places.empty())
     throw std::invalid_argument("the map has no POS \"" + words[1] + "\"");
@@ -93,7 +125,7 @@ v1::RegistrationRequest parse_map_request(const std::vector<std::string>& words,
     request.action(v1::REGISTRATION_SNAP);
     request.on(on_or_off(words[1]));
   } else {
-    throw std::invalid_argument(kWords);
+    complain(words);
   }
   return request;
 }

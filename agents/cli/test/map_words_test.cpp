@@ -54,7 +54,12 @@ TEST(MapWords, AreRequests) {
 }
 
 TEST(MapWords, SayWhatWasExpected) {
-  EXPECT_NE(complaint({"sing"}).find("expected load FILE"), std::string::npos);
+  EXPECT_EQ(complaint({"sing"}),
+            "expected follow, list, save, show, build, load, delete, put, remove, place, find, on, "
+            "off, features, snap or route, found \"sing\"");
+  EXPECT_EQ(complaint({"remove"}), "expected remove ID, found 0 words after it");
+  EXPECT_EQ(complaint({"route", "EJ", "265"}), "expected route PLACE, found 2 words after it");
+  EXPECT_EQ(complaint({"list", "it"}), "expected list, found 1 word after it");
   EXPECT_EQ(complaint({"remove", "-1"}), "expected the id of an artifact, found \"-1\"");
   EXPECT_EQ(complaint({"place", "nowhere"}), "the map has no POS \"nowhere\"");
   EXPECT_EQ(complaint({"place", "1", "x", "0"}), "expected y [m], found \"x\"");

@@ -73,12 +73,15 @@ std::size_t Editor::index_of(std::uint32_t id) const {
 std::uint32_t Editor::add(Feature feature) {
   if (const auto why = problem(feature))
     throw std::invalid_argument(*why);
-  if (feature.id == 0 || feature.id <= last_id_)
-    feature.id = last_id_ + 1;
-  last_id_ = feature.id;
+  const std::uint32_t id =
+      feature.id == 0 || find(map_, feature.id) != nullptr || gone_.contains(feature.id)
+          ? last_id_ + 1
+          : feature.id;
+  feature.id = id;
+  last_id_ = std::max(last_id_, id);
   map_.features.push_back(std::move(feature));
   ++revision_;
-  return last_id_;
+  return id;
 }
 
 bool Editor::change(std::uint32_t id, Feature feature) {
@@ -87,7 +90,9 @@ bool Editor::change(std::uint32_t id, Feature feature) {
     return false;
   feature.id = id;
   if (feature.type != map_.features[index].type)
-    throw std::invalid_argument("a feature of another type under the same id");
+    throw std::invalid_argument("expected another id than " + std::to_string(id) +
+                                ", or a change of " + describe(map_.features[index]) +
+                                ", which has it");
   if (const auto why = problem(feature))
     throw std::invalid_argument(*why);
   if (map_.features[index] == feature)
@@ -101,12 +106,16 @@ bool Editor::remove(std::uint32_t id) {
   const std::size_t index = index_of(id);
   if (index == map_.features.size())
     return false;
+  gone_.insert(id);
   map_.features.erase(map_.features.begin() + static_cast<std::ptrdiff_t>(index));
   ++revision_;
   return true;
 }
 
 void Editor::replace(Map map) {
+  for (const Feature& feature : map_.features)
+    if (find(map, feature.id) == nullptr)
+      gone_.insert(feature.id);
   map_ = std::move(map);
   number();
   ++revision_;

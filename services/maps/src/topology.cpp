@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "saphira/base/numbers.hpp"
+
 namespace saphira::maps {
 
 namespace {
@@ -81,6 +83,26 @@ std::vector<Vec2> corners(const Feature& feature, double margin) {
   const double w = feature.width / 2 + margin;
   return {transform(feature.pose_in_map, {-l, -w}), transform(feature.pose_in_map, {l, -w}),
           transform(feature.pose_in_map, {l, w}), transform(feature.pose_in_map, {-l, w})};
+}
+
+std::optional<std::string> outside(const Map& map, const Vec2& position, double margin) {
+  if (map.features.empty())
+    return std::nullopt;
+  Vec2 low = map.features.front().pose_in_map.position();
+  Vec2 high = low;
+  for (const Feature& feature : map.features)
+    for (const Vec2& corner : corners(feature)) {
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+  const Vec2 edge(margin, margin);
+  if ((position - (low - edge)).minCoeff() >= 0.0 && ((high + edge) - position).minCoeff() >= 0.0)
+    return std::nullopt;
+  const auto text = [](const Vec2& p) {
+    return "(" + decimal(p.x(), 1) + ", " + decimal(p.y(), 1) + ")";
+  };
+  return "expected a place on the map, which goes from " + text(low) + " to " + text(high) +
+         " m, got " + text(position);
 }
 
 // Sutherland and Hodgman 1974: cut by one edge after the other.

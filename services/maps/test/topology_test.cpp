@@ -160,6 +160,18 @@ TEST(Topology, ThingsThatAreCarriedAboutLeaveThePlacesAsTheyAre) {
   EXPECT_TRUE(same_places({}, {}));
 }
 
+TEST(Topology, SaysWhatIsOutsideOfTheMap) {
+  const Map map =
+      parse_map("CORRIDOR (1) 5000, 0, 0, 10000, 2000\nWALL 5000, 4000, 0, 1000\n", "m");
+  EXPECT_FALSE(outside(map, {5.0, 2.5}, 1.0));
+  EXPECT_FALSE(outside(map, {10.9, -1.9}, 1.0));
+  EXPECT_EQ(outside(map, {5.0, 5.5}, 1.0),
+            "expected a place on the map, which goes from (0, -1) to (10, 4) m, got (5, "
+            "5.5)");
+  EXPECT_TRUE(outside(map, {-1.1, 0.0}, 1.0));
+  EXPECT_FALSE(outside({}, {500.0, 0.0}, 1.0));
+}
+
 TEST(Topology, WhereAPositionIs) {
   const Topology t(load_map(config_folder() + "/maps/office-floor.map"));
   EXPECT_EQ(t.text(*t.region_at({17.5, 7.0})), "junction 12");

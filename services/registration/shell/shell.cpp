@@ -9,11 +9,14 @@
 #include "maps/shell/convert.hpp"
 #include "registration/shell/convert.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/maps/topology.hpp"
 
 namespace saphira::registration {
 namespace {
 
 constexpr std::chrono::seconds kSaveEvery{1};
+constexpr double kOutside = 5.0;  // [m] beyond the map's last wall a robot may be said to stand
+
 /// Throws where no robot can be registered on the map.
 void check(const maps::Map& map) {
   if (const auto why = problem(LineMap(map)))
@@ -147,6 +150,8 @@ void Shell::end_building() {
   building_ = false;
   registration_->set_map(editor_.map());
   registration_->set_pose(builder_->pose_in_map());
+  const std::vector<std::uint32_t> closed = builder_->closed();
+  registration_->recall_closed({closed.begin(), closed.end()});
   // It has not been stepped meanwhile: the robot has driven, but not since this pose.
   Memory here = registration_->save();
   here.odom = odom_;
@@ -325,18 +330,14 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
       maps::Editor editor = editor_;
       editor.replace(maps::parse_map(request.text(), request.name()));
       use(std::move(editor));
-      source_ = request.name();
-      changed_ = false;
-      start_.reset();
+      begin_anew(request.name());
       return 0;
     }
     case v1::REGISTRATION_DELETE: {
       maps::Editor editor = editor_;
       editor.replace({});
       use(std::move(editor));
-      source_.clear();
-      changed_ = false;
-      start_.reset();
+      begin_anew("");
       return 0;
     }
     case v1::REGISTRATION_PUT: {
@@ -358,6 +359,8 @@ std::uint32_t Shell::act(const v1::RegistrationRequest& request) {
     case v1::REGISTRATION_PLACE: {
       const Pose pose_in_map = lps::from_bus(request.pose_in_map());
       if (const auto why = maps::problem(pose_in_map))
+        throw std::invalid_argument(*why);
+      if (const auto why = maps::outside(editor_.map(), pose_in_map.position(), kOutside))
         throw std::invalid_argument(*why);
       placed().set_pose(pose_in_map);
       return 0;
@@ -398,6 +401,15 @@ void Shell::use(maps::Editor editor) {
     return;
   building_ = false;
   set_builder();
+}
+
+/// Nothing that was known of the map before holds on this one.
+void Shell::begin_anew(const std::string& source) {
+  source_ = source;
+  changed_ = false;
+  start_.reset();
+  if (registration_)
+    registration_->recall_closed({});
 }
 
 void Shell::publish_map() {

@@ -60,6 +60,7 @@ class Shell {
   std::uint32_t act(const v1::RegistrationRequest& request);
   void recall();
   void use(maps::Editor editor);
+  void begin_anew(const std::string& source);
   void set_builder();
   v1::Registration registered(const bus::Step& step, const std::vector<lps::Percept>& percepts);
   v1::Registration built(const bus::Step& step, const std::vector<lps::Percept>& percepts);

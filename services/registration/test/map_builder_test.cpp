@@ -210,6 +210,44 @@ TEST(MapBuilder, OnAKnownMapOnlyWhatIsNewIsAdded) {
   EXPECT_GT(map.features[2].id, 2U);
 }
 
+TEST(MapBuilder, WhatIsTakenFromTheMapComesBackWhenItIsSeenAgainAndThingsStay) {
+  Driven d;
+  d.walls = {{{0.0, 1.0}, {10.0, 1.0}}};
+  d.doors = {door(11.0, 1.0, -kPi / 2)};
+  d.drive(12.0);
+  const auto walls = of_type(d.builder.map(), PointType::wall);
+  const auto doors = of_type(d.builder.map(), PointType::breach).empty()
+                         ? of_type(d.builder.map(), PointType::door)
+                         : of_type(d.builder.map(), PointType::breach);
+  ASSERT_EQ(walls.size(), 1U) << maps::to_text(d.builder.map());
+  ASSERT_EQ(doors.size(), 1U);
+  EXPECT_TRUE(walls[0].learned);
+  EXPECT_TRUE(doors[0].learned);
+  maps::Feature box;
+  box.type = PointType::object;
+  box.pose_in_map = {20.0, 0.8, 0.0};
+  box.length = box.width = 0.4;
+  const std::uint32_t thing = d.builder.put(box);
+  const auto all = d.walls;
+  d.walls.clear();
+  d.doors.clear();
+  EXPECT_TRUE(d.builder.remove(walls[0].id));
+  EXPECT_TRUE(d.builder.remove(doors[0].id));
+  EXPECT_FALSE(d.builder.remove(walls[0].id));
+  // News from elsewhere: the map is put together anew, without them.
+  d.walls = {{{14.0, 1.0}, {24.0, 1.0}}};
+  d.drive(12.0);
+  EXPECT_EQ(of_type(d.builder.map(), PointType::wall).size(), 1U);
+  EXPECT_TRUE(of_type(d.builder.map(), doors[0].type).empty());
+  EXPECT_NE(maps::find(d.builder.map(), thing), nullptr);
+  d.walls = all;
+  d.turn(kPi);
+  d.drive(23.0);
+  const auto again = of_type(d.builder.map(), PointType::wall);
+  ASSERT_EQ(again.size(), 2U) << maps::to_text(d.builder.map());
+  EXPECT_EQ(maps::find(d.builder.map(), walls[0].id), nullptr) << "an id is not given again";
+}
+
 TEST(MapBuilder, SwitchedOffItAddsNothing) {
   MapBuilderSettings settings;
   settings.add_new_features = false;

@@ -316,6 +316,15 @@ TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
   ASSERT_TRUE(drive.scene().set_door("n2", true));
   EXPECT_TRUE(tour_until([&] { return registration.closed_doors().empty(); }, 1200));
   EXPECT_NE(maps::find(known_map(), 112), nullptr);
+  // On another map it is another door.
+  ASSERT_TRUE(drive.scene().set_door("n2", false));
+  ASSERT_TRUE(tour_until([&] { return !registration.closed_doors().empty(); }, 1200));
+  v1::RegistrationRequest request;
+  request.action(v1::REGISTRATION_LOAD);
+  request.name("another");
+  request.text(read_file(map_path("office")));
+  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(registration.closed_doors().empty());
 }
 
 TEST_F(RegistrationShell, ASuspendedProcessSaysNothingUntilItIsResumed) {

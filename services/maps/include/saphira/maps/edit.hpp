@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,8 @@ class Editor {
   void number();
 
   Map map_;
-  std::uint32_t last_id_ = 0;  ///< the highest ever given
+  std::uint32_t last_id_ = 0;     ///< the highest ever given
+  std::set<std::uint32_t> gone_;  ///< given once, and not to be given again
   std::uint64_t revision_ = 0;
 };
 

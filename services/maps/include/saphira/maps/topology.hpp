@@ -88,6 +88,10 @@ std::vector<Vec2> corners(const Feature& feature, double margin = 0.0);
 /// empty where they do not overlap.
 std::vector<Vec2> overlap(const std::vector<Vec2>& a, const std::vector<Vec2>& b);
 
+/// Why a position is on no part of the map, nor within `margin` [m] of its outer edges, in words;
+/// none where it is, and of an empty map.
+std::optional<std::string> outside(const Map& map, const Vec2& position, double margin);
+
 /// The end points of the middle line along a feature's heading.
 Vec2 begin_of(const Feature& feature);
 Vec2 end_of(const Feature& feature);

@@ -55,8 +55,11 @@ class Presence {
 
   /// Doors by id that were closed when they were looked at last.
   const std::set<std::uint32_t>& closed() const { return closed_; }
-  /// What was known before.
-  void recall(std::set<std::uint32_t> closed) { closed_ = std::move(closed); }
+  /// Begins anew, with what is known from elsewhere.
+  void recall(std::set<std::uint32_t> closed) {
+    watched_.clear();
+    closed_ = std::move(closed);
+  }
 
  private:
   struct Watched {
