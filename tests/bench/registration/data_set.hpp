@@ -8,6 +8,7 @@
 #include "saphira/maps/map.hpp"
 #include "saphira/registration/scan_matching.hpp"
 #include "sonar_run.hpp"
+#include "stamps.hpp"
 
 namespace saphira::bench {
 
@@ -23,6 +24,9 @@ struct DataSet {
   std::vector<Relation> exact_relations;  ///< those whose stamps are both stamps of scans here
   std::size_t mended = 0;                 ///< scans whose stamps were interpolated in the log
   std::vector<std::string> damaged;       ///< lines of the log that could not be read
+  std::vector<std::string> notes;         ///< how the log was read, where it did not say it all
+
+  bool ranges_only = false;  ///< of a drive without sonars, and none are to be made of its ranges
 
   // Of simulated drives only.
   std::optional<SonarDrive> sonars;
@@ -30,14 +34,19 @@ struct DataSet {
 };
 
 struct LogFiles {
+  std::string name;
   std::string raw;
   std::string corrected;  ///< empty: none
   std::string relations;  ///< empty: none
 };
 
-/// The logs in a folder of data sets: each folder in it with a raw log, and beside that a corrected
-/// one and relations, known by their names.
+/// The logs in a folder of data sets and in each folder in it: raw logs, and beside each a
+/// corrected one and relations, known by their names. A log is named after its folder where it is
+/// alone there.
 std::vector<LogFiles> find_logs(const std::string& folder);
+
+/// What a log says by one of its clocks, scans in the log's order.
+DataSet data_set_of(const std::string& name, const CarmenLog& log, Clock clock);
 
 DataSet load_data_set(const std::string& name, const LogFiles& files);
 

@@ -15,6 +15,7 @@
 #include "saphira/maps/drawing.hpp"
 #include "saphira/registration/scan_mapping.hpp"
 #include "support/quantile.hpp"
+#include "synthetic.hpp"
 
 using namespace saphira;
 using namespace saphira::bench;
@@ -145,8 +146,12 @@ json measure(const DataSet& set, const std::string& log_folder, Report& report,
   if (set.mended > 0)
     report.note(
         format("%zu stamps of scans were interpolated in the log and are mended", set.mended));
+  for (const std::string& note : set.notes)
+    report.note(note);
   for (std::size_t i = 0; i < std::min<std::size_t>(set.damaged.size(), 3); ++i)
     report.note(set.damaged[i]);
+  if (set.damaged.size() > 3)
+    report.note(format("and %zu more such lines", set.damaged.size() - 3));
   out["dead_reckoning"] = evaluate(set, set.odometry, "dead reckoning", report);
   for (const Published& p : kPublished)
     if (set.name.find(p.data) != std::string::npos)
@@ -189,6 +194,8 @@ json measure(const DataSet& set, const std::string& log_folder, Report& report,
   out["full_ranges"]["scan_ms_p99"] = quantile(step_ms, 0.99);
   out["full_ranges"]["loops"] = r.loops;
   out["full_ranges"]["unmatched"] = r.unmatched;
+  if (set.ranges_only)
+    return out;
 
   // Sonar-like ranges, in the walls that the full ranges drew.
   const maps::Map walls = walls_of(mapper.node_scans(), mapper.nodes());
@@ -291,6 +298,7 @@ struct Options {
   std::string plot;
   std::string report;
   bool json = false;
+  bool synthetic = false;
 };
 
 int run(const Options& options) {
@@ -318,16 +326,19 @@ int run(const Options& options) {
     return options.only.empty() ||
            std::find(options.only.begin(), options.only.end(), name) != options.only.end();
   };
-  if (!options.log.raw.empty()) {
+  if (options.synthetic) {
+    for (const std::string& name : synthetic_names())
+      if (wanted(name))
+        with(synthetic_data_set(name, kSeed), "");
+  } else if (!options.log.raw.empty()) {
     with(load_data_set(fs::path(options.log.raw).stem().string(), options.log),
          fs::path(options.log.raw).parent_path().string());
   } else {
     if (!options.data.empty() && fs::is_directory(options.data)) {
       for (const LogFiles& files : find_logs(options.data)) {
         const fs::path folder = fs::path(files.raw).parent_path();
-        const std::string name = folder.filename().string();
-        if (wanted(name))
-          with(load_data_set(name, files), folder.string());
+        if (wanted(files.name))
+          with(load_data_set(files.name, files), folder.string());
       }
       const std::string corridor = (fs::path(options.data) / "sonar-corridor").string();
       if (fs::is_directory(corridor) && wanted("sonar-corridor"))
@@ -362,6 +373,8 @@ int main(int argc, char** argv) {
   auto* log = app.add_option("--log", options.log.raw, "a CARMEN log instead (.gz or not)");
   app.add_option("--relations", options.log.relations, "its reference relations")->needs(log);
   app.add_option("--corrected", options.log.corrected, "its corrected log")->needs(log);
+  app.add_flag("--synthetic", options.synthetic,
+               "full ranges on drives made up instead: other lasers, wheels and floors");
   app.add_option("--report", options.report, "write the tables into this file (Markdown)");
   app.add_option("--plot", options.plot,
                  "draw each drive into FILE-NAME.svg and FILE-NAME-percepts.svg")

@@ -17,23 +17,29 @@ TEST(Carmen, ScansAndDeadReckoningAreRead) {
       "# CARMEN Logfile\n"
       "PARAM robot_length 0.47 nohost 0\n"
       "ODOM 1 2 0.5 0 0 0 10.5 host 0.5\n"
-      "FLASER 3 1.5 81.9 2.5 1.1 2 0.5 1 2 0.5 10.6 host 0.6\n"
-      "ROBOTLASER1 4 -1.5707963 3.1415926 0.0087 30 0.01 0 2 1.25 nan 0 1 2 0 1 2 0 0.1 0.2 0.3 "
-      "0.4 0.5 "
-      "10.7 host 0.7\r\n",
+      "FLASER 3 1.5 81.9 2.5 1.1 2 0.5 1 2 0.5 10.6 host 0.6\n",
       "a.log");
   ASSERT_EQ(log.odometry.size(), 1U);
   EXPECT_DOUBLE_EQ(log.odometry[0].time.ipc, 10.5);
   EXPECT_DOUBLE_EQ(log.odometry[0].time.logger, 0.5);
-  ASSERT_EQ(log.scans.size(), 2U);
+  ASSERT_EQ(log.scans.size(), 1U);
   EXPECT_EQ(log.scans[0].ranges, (std::vector<double>{1.5, 81.9, 2.5}));
   EXPECT_EQ(log.scans[0].pose, (Pose{1.0, 2.0, 0.5}));
   EXPECT_NEAR(log.scans[0].laser_in_robot.x, 0.1 * std::cos(0.5), 1e-12);
   EXPECT_DOUBLE_EQ(log.scans[0].step, kPi / 2);
-  EXPECT_DOUBLE_EQ(log.scans[1].step, 0.0087);
-  EXPECT_DOUBLE_EQ(log.scans[1].no_return, 29.99);
-  EXPECT_GT(log.scans[1].ranges[1], log.scans[1].no_return);
-  EXPECT_DOUBLE_EQ(log.scans[1].time.ipc, 10.7);
+  EXPECT_TRUE(log.damaged.empty());
+}
+
+TEST(Carmen, NewLaserMessagesSayWhatTheLaserIs) {
+  const CarmenLog log = parse_carmen(
+      "ROBOTLASER1 4 -1.5707963 3.1415926 0.0087 30 0.01 0 2 1.25 nan 0 1 2 0 1 2 0 0.1 0.2 0.3 "
+      "0.4 0.5 10.7 host 0.7\r\n",
+      "a.log");
+  ASSERT_EQ(log.scans.size(), 1U);
+  EXPECT_DOUBLE_EQ(log.scans[0].step, 0.0087);
+  EXPECT_DOUBLE_EQ(log.scans[0].no_return, 29.99);
+  EXPECT_GT(log.scans[0].ranges[1], log.scans[0].no_return);
+  EXPECT_DOUBLE_EQ(log.scans[0].time.ipc, 10.7);
   EXPECT_TRUE(log.damaged.empty());
 }
 

@@ -95,6 +95,15 @@ double time_of(const Stamps& stamps, Clock clock) {
   return clock == Clock::ipc ? stamps.ipc : stamps.logger;
 }
 
+std::size_t steps_back(const CarmenLog& log, Clock clock) {
+  constexpr double kJitter = 2.0;  // [s]
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < log.scans.size(); ++i)
+    if (time_of(log.scans[i].time, clock) < time_of(log.scans[i - 1].time, clock) - kJitter)
+      ++count;
+  return count;
+}
+
 TimeBase time_base(const CarmenLog& raw, Clock clock) {
   std::vector<StampedPose> poses;
   for (const LaserScan& scan : raw.scans)

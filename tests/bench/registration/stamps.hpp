@@ -17,6 +17,9 @@ struct TimeBase {
 enum class Clock { ipc, logger };
 double time_of(const Stamps& stamps, Clock clock);
 
+/// How many scans are stamped more than two seconds before the one that stands before them.
+std::size_t steps_back(const CarmenLog& log, Clock clock);
+
 /// Dead reckoning at every message of a raw log.
 TimeBase time_base(const CarmenLog& raw, Clock clock);
 
