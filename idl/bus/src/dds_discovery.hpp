@@ -55,6 +55,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
     std::string topic;
     bool own_writes = false;
     std::string policy;
+    // NOLINTNEXTLINE(modernize-use-nullptr): it is the compiler that compares with 0
     auto operator<=>(const Incompatible&) const = default;
   };
 

@@ -10,10 +10,12 @@ namespace {
 
 constexpr std::size_t kPlaces = 32;    // [cycles] a picture may be late
 constexpr std::uint64_t kRecent = 20;  // [cycles] eyes that showed nothing for longer are shut
-/// Lockstep: a picture that belongs to a cycle is waited for, for as long.
-constexpr std::chrono::milliseconds kPictureWait{2000};
-constexpr std::chrono::milliseconds kChannelsWait{100};
-constexpr std::uint64_t kFirstChannels = 5;  // [cycles] in which a camera begins
+/// Lockstep: what belongs to a cycle is waited for, for as long. A run is the same each time where
+/// that is longer than a busy machine needs.
+constexpr std::chrono::milliseconds kWait{2000};
+// [cycles] in which a camera begins: it is asked for its packets in the first.
+constexpr std::uint64_t kFirstChannels = 2;
+constexpr std::uint64_t kLastFirstChannels = 4;
 
 }  // namespace
 
@@ -68,8 +70,7 @@ bool Shell::step(const bus::Stop& stop) {
 /// Looks at the newest picture that is not of a later cycle.
 void Shell::look(std::uint64_t cycle) {
   const bool lockstep = node_.options().lockstep;
-  const auto picture =
-      pictures_.take(cycle, lockstep ? kPictureWait : std::chrono::milliseconds::zero());
+  const auto picture = pictures_.take(cycle, lockstep ? kWait : std::chrono::milliseconds::zero());
   if (!picture || picture->cycle <= picture_ || !stereo_.works())
     return;
   const auto place = std::find_if(places_.begin(), places_.end(),
@@ -84,17 +85,18 @@ void Shell::look(std::uint64_t cycle) {
 /// which lockstep waits where they come at all.
 void Shell::look_at_colors(const v1::RobotState& robot, const bus::Stop& stop) {
   const std::uint64_t before = cycle_.stamp().cycle() - 1;
-  const auto limit = std::chrono::steady_clock::now() + kChannelsWait;
+  const auto limit = std::chrono::steady_clock::now() + kWait;
   while (true) {
     for (auto& sample : channels_.take())
       if (!sample.info.disposed && sample.data.stamp().epoch() == cycle_.stamp().epoch())
         newer_.push_back(std::move(sample.data));
     const bool here = !newer_.empty() && newer_.back().stamp().cycle() >= before;
-    const bool come = before < kFirstChannels || (color_ != 0 && color_ + kRecent >= before);
-    if (here || !come || before == 0 || channels_.matched() == 0 || !node_.options().lockstep ||
+    const bool come = (before >= kFirstChannels && before <= kLastFirstChannels) ||
+                      (color_ != 0 && color_ + kRecent >= before);
+    if (here || !come || channels_.matched() == 0 || !node_.options().lockstep ||
         stop.requested() || std::chrono::steady_clock::now() >= limit)
       break;
-    node_.wait(kChannelsWait, &stop);
+    node_.wait(kWait, &stop);
   }
   while (!newer_.empty() && newer_.front().stamp().cycle() < cycle_.stamp().cycle()) {
     const v1::VisionChannels& seen = newer_.front();
