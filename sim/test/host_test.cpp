@@ -124,8 +124,6 @@ class Client {
 class HostTest : public ::testing::Test {
  protected:
   HostTest() : stop_(::eventfd(0, 0)) {
-    std::string name = "/tmp/saphira-host-test-XXXXXX";
-    directory_ = ::mkdtemp(name.data());
     options_.world = source("config/worlds/office.wld");
     options_.robot = source("config/robots/pioneer.p");
     options_.socket = directory_ + "/robot";
@@ -138,7 +136,6 @@ class HostTest : public ::testing::Test {
   ~HostTest() override {
     stop();
     ::close(stop_);
-    std::filesystem::remove_all(directory_);
   }
 
   void start() {
@@ -165,7 +162,8 @@ class HostTest : public ::testing::Test {
   }
 
   HostOptions options_;
-  std::string directory_;
+  const test::TempDir folder_;
+  const std::string directory_ = folder_.path();
   int stop_;
   std::thread thread_;
   std::mutex mutex_;

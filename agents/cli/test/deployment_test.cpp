@@ -1,7 +1,6 @@
 #include "saphira/cli/deployment.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -37,17 +36,14 @@ programs:
 class DeploymentTest : public testing::Test {
  protected:
   DeploymentTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "saphira-cli-XXXXXX").string();
-    EXPECT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     std::ofstream(folder_ + "/one") << "#!/bin/sh\n";
     std::filesystem::permissions(folder_ + "/one", std::filesystem::perms::owner_all);
     std::ofstream(folder_ + "/data") << "not a program\n";
     places_ = {folder_, "/conf", "/run/x"};
   }
-  ~DeploymentTest() override { std::filesystem::remove_all(folder_); }
 
-  std::string folder_;
+  const test::TempDir temporary_;
+  const std::string folder_ = temporary_.path();
   Places places_;
 };
 

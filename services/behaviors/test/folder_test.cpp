@@ -1,7 +1,6 @@
 #include "saphira/behaviors/folder.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -28,14 +27,6 @@ std::string counter(const std::string& speed, const std::string& more = "") {
 
 class FolderTest : public ::testing::Test {
  protected:
-  FolderTest() : path_(fs::temp_directory_path() / ("saphira-folder-" + std::to_string(getpid()))) {
-    fs::remove_all(path_);
-    fs::create_directory(path_);
-  }
-  ~FolderTest() override { fs::remove_all(path_); }
-  FolderTest(const FolderTest&) = delete;
-  FolderTest& operator=(const FolderTest&) = delete;
-
   void write(const std::string& name, const std::string& text) {
     std::ofstream(path_ / name) << text;
     // Files that are written within a tick of the clock are of one age.
@@ -55,7 +46,8 @@ class FolderTest : public ::testing::Test {
     return output.blend.speed * 1000.0;
   }
 
-  fs::path path_;
+  const test::TempDir temporary_;
+  const fs::path path_ = temporary_.path();
   std::uint64_t cycle_ = 0;
   int time_ = 1'000'000;
 };

@@ -1,7 +1,6 @@
 #include "behaviors/shell/shell.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -221,9 +220,8 @@ TEST_P(ShellTest, RecallsWhatItPublished) {
 /// A shell with a folder of a person's own, and the example plug-in.
 TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("saphira-shell-" + std::to_string(getpid()));
-  fs::remove_all(folder);
-  fs::create_directory(folder);
+  const test::TempDir temporary;
+  const fs::path folder = temporary.path();
   int time = 1'000'000;
   const auto write = [&](const std::string& text) {
     std::ofstream(folder / "mine.beh") << text;
@@ -294,7 +292,6 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   EXPECT_NE(told->trouble().find("mine.beh:5:1: expected a variable or a number"),
             std::string::npos)
       << told->trouble();
-  fs::remove_all(folder);
 }
 
 TEST(ShellFiles, APluginThatIsNoneEndsItAtItsStart) {
