@@ -1,12 +1,12 @@
 #include "saphira/intentions/activity_folders.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "process.hpp"
 #include "saphira/intentions/functors.hpp"
 
 namespace saphira::intentions {
@@ -20,7 +20,6 @@ class ActivityFoldersTest : public ::testing::Test {
     fs::create_directories(shipped);
     fs::create_directories(own);
   }
-  ~ActivityFoldersTest() override { fs::remove_all(root); }
 
   /// Each write of a test gets a time of its own: two within a tick of the file system's clock
   /// would look like one.
@@ -40,11 +39,9 @@ class ActivityFoldersTest : public ::testing::Test {
   }
   using Names = std::vector<std::string>;
 
-  fs::path root =
-      fs::temp_directory_path() / ("saphira-activities-" + std::to_string(::getpid()) + "-" +
-                                   ::testing::UnitTest::GetInstance()->current_test_info()->name());
-  fs::path shipped = root / "shipped";
-  fs::path own = root / "own";
+  const test::TempDir root;
+  const fs::path shipped = root.path("shipped");
+  const fs::path own = root.path("own");
   int time = 1000000;
   std::optional<ActivityFolders> folders{std::in_place, Names{shipped.string(), own.string()},
                                          std::make_shared<const Functions>(core_functions()),
