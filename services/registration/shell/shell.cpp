@@ -143,6 +143,7 @@ void Shell::set_builder() {
   settings.snap_to_right_angle_grid = snaps_;
   building_ = LineMap(editor_.map()).empty();
   builder_.emplace(settings, editor_.map(), pose_in_map_);
+  builder_->take_ids(editor_);
 }
 
 /// From now on the pose is registered on the map that was built.

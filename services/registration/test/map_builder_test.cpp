@@ -248,6 +248,18 @@ TEST(MapBuilder, WhatIsTakenFromTheMapComesBackWhenItIsSeenAgainAndThingsStay) {
   EXPECT_EQ(maps::find(d.builder.map(), walls[0].id), nullptr) << "an id is not given again";
 }
 
+TEST(MapBuilder, AnIdThatTheKnownMapGaveOnceIsNotGivenAgain) {
+  maps::Feature box;
+  box.type = PointType::object;
+  box.length = box.width = 0.4;
+  maps::Editor known;
+  const std::uint32_t id = known.put(box);
+  known.remove(id);
+  MapBuilder builder({}, known.map());
+  builder.take_ids(known);
+  EXPECT_NE(builder.put(box), id);
+}
+
 TEST(MapBuilder, SwitchedOffItAddsNothing) {
   MapBuilderSettings settings;
   settings.add_new_features = false;

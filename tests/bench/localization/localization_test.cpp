@@ -6,6 +6,8 @@
 
 #include "localization/patrol.hpp"
 #include "saphira/base/random.hpp"
+#include "saphira/maps/edit.hpp"
+#include "saphira/maps/topology.hpp"
 #include "support/quantile.hpp"
 
 namespace saphira::test {
@@ -159,6 +161,36 @@ TEST(Localization, PeopleClosedDoorsAndBoxesDoNotMisleadIt) {
   EXPECT_GT(result.reached, 10U);
   EXPECT_EQ(result.not_tracking, 0);
   EXPECT_LT(quantile(result.registered.position, 0.95), 0.3);
+}
+
+// A cupboard, a printer and a water cooler stand in the corridors that the map does not have.
+TEST(Localization, NothingIsMissedThatIsThereAndNothingPutWhereNothingStands) {
+  Localizer robot(doubled(1), office(), kStart);
+  robot.find_objects(true);
+  maps::Editor editor(office());
+  Tour tour(office_tour(), true);
+  for (int i = 0; i < 6000; ++i) {
+    tour.act(robot.drive(), i == 0 ? robot.truth() : robot.believed());
+    const Output output = robot.advance();
+    EXPECT_TRUE(output.presence.gone.empty());
+    for (const std::uint32_t door : output.presence.closed)
+      ADD_FAILURE() << "door " << door << " is open, in cycle " << i;
+    for (const maps::Feature& object : output.objects)
+      editor.put(object);
+    if (!output.objects.empty())
+      robot.registration().set_map(editor.map());
+  }
+  std::size_t found = 0;
+  for (const maps::Feature& feature : editor.map().features) {
+    if (feature.type != lps::PointType::object)
+      continue;
+    ++found;
+    double nearest = 10.0;
+    for (const Vec2& thing : {Vec2(20.6, 24.25), Vec2(11.5, 7.7), Vec2(26.4, 14.2)})
+      nearest = std::min(nearest, maps::distance_to(feature, thing));
+    EXPECT_LT(nearest, 0.5) << maps::to_text({{feature}});
+  }
+  EXPECT_GE(found, 2U);
 }
 
 TEST(Localization, AMapThatIsPartlyWrongDoesNotLoseIt) {

@@ -83,6 +83,8 @@ class MapBuilder {
   bool step(const MapBuilderInputs& inputs);
 
   const maps::Map& map() const { return editor_.map(); }
+  /// The known map has been edited before: ids that it gave once are not given again.
+  void take_ids(const maps::Editor& known) { editor_ = known; }
   /// Somebody else puts a thing onto the map as it is built, as maps::Editor has it; its id.
   std::uint32_t put(const maps::Feature& thing) { return editor_.put(thing); }
   /// Takes something from the map. What the builder has put there it forgets, so that it must be
