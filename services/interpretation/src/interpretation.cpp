@@ -223,12 +223,14 @@ void Interpretation::find_walls(std::size_t number) {
       if (!stretch.own)
         continue;
       const double length = stretch.to.u - stretch.from.u;
-      if (walls && doubt <= settings_.max_heading &&
-          stretch.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
-          length >= side_settings.min_length) {
-        Percept percept = wall_percept(wall, stretch, side);
-        if (percept.confidence >= settings_.min_confidence)
-          stand(std::move(percept), lines);
+      if (walls && doubt <= settings_.max_heading) {
+        const Stretch straight = straight_part(wall.fit.line, stretch, side_settings);
+        if (straight.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
+            straight.to.u - straight.from.u >= side_settings.min_length) {
+          Percept percept = wall_percept(wall, straight, side);
+          if (percept.confidence >= settings_.min_confidence)
+            stand(std::move(percept), lines);
+        }
       }
       if (!breaks || length < side_settings.end_run)
         continue;

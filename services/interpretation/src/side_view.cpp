@@ -15,6 +15,8 @@ constexpr std::size_t kSeek = 40;
 constexpr std::size_t kFew = 4;
 /// A single echo or silence among others is taken for a mistake.
 constexpr std::size_t kStretch = 3;
+/// A wall is bent where so many neighbouring echoes say so.
+constexpr std::size_t kBent = 4;
 /// Nobody looked between readings farther apart than this [m].
 constexpr double kUnseen = 0.45;
 /// What stands beside an opening [m].
@@ -40,6 +42,32 @@ double length(const std::vector<const Return*>& echoes, const Line& line) {
 }
 
 }  // namespace
+
+Stretch straight_part(const Line& line, const Stretch& stretch, const SideSettings& settings) {
+  const auto& echoes = stretch.echoes;
+  const bool newest_last = echoes.back()->travelled >= echoes.front()->travelled;
+  const auto at = [&](std::size_t i) { return echoes[newest_last ? echoes.size() - 1 - i : i]; };
+  for (std::size_t i = 0; i + kBent <= echoes.size(); ++i) {
+    double off = 0.0;
+    for (std::size_t k = i; k < i + kBent; ++k)
+      off += line.distance(at(k)->sonar) - at(k)->range;
+    if (std::abs(off) <= kBent * settings.max_bend)
+      continue;
+    Stretch out = stretch;
+    End& end = newest_last ? out.from : out.to;
+    if (newest_last)
+      out.echoes.erase(out.echoes.begin(), out.echoes.end() - static_cast<long>(i));
+    else
+      out.echoes.resize(i);
+    end = {};
+    if (i > 0) {
+      end.u = line.u(at(i - 1)->sonar);
+      end.sigma = line.distance(at(i - 1)->sonar) * std::tan(settings.corner_cone);
+    }
+    return out;
+  }
+  return stretch;
+}
 
 bool SideView::add(const Return& firing) {
   for (auto it = returns_.rbegin(); it != returns_.rend(); ++it) {

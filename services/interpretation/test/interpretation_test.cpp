@@ -117,6 +117,21 @@ TEST(Interpretation, SeesAWallBesideTheRobot) {
   EXPECT_FALSE(output.right_wall);
 }
 
+// It bends away from 2.5 m on, in an arc of 30 m.
+TEST(Interpretation, AWallThatBendsIsNoLongerThanItIsStraight) {
+  const auto arc = [](double x) { return 31.0 - std::sqrt(900.0 - x * x); };
+  const auto there = [&](double x) { return x < 2.5 ? 1.0 : arc(x - 2.5); };
+  Corridor corridor(there, nothing);
+  double most = 0.0;
+  for (double x = 2.5; x < 6.5; x += 0.1)
+    for (const Percept& percept : of(corridor.drive(x), PointType::wall))
+      for (const double end : {-0.5, 0.5}) {
+        const Vec2 at = transform(percept.pose_in_odom, Vec2(end * percept.length, 0.0));
+        most = std::max(most, std::abs(at.y() - there(at.x())));
+      }
+  EXPECT_LT(most, 0.05);
+}
+
 TEST(Interpretation, SeesOneEndAtOnceAndTheDoorWhenItIsPassed) {
   Corridor corridor(opening(2.0, 2.9), nothing);
   const Output early = corridor.drive(2.6);

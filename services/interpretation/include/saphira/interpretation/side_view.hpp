@@ -26,6 +26,9 @@ struct SideSettings {
   int min_echoes = 8;                ///< of a wall
   double min_length = 0.7;           ///< [m] of a wall, plus what one corner can seem to be
   double run_gap = 0.35;             ///< [m] between echoes of one stretch
+  /// [m] that the echoes of a stretch of wall may lie to one side of its line: farther back it is
+  /// bent, or dead reckoning has been.
+  double max_bend = 0.03;
 
   /// Half the width of the cone in which a corner is heard. A wall seems longer by as much.
   double corner_cone = radians(9.5);
@@ -58,6 +61,9 @@ struct Stretch {
   /// Most of its echoes fit no other line better: not what was seen before the robot turned.
   bool own = true;
 };
+
+/// What of it is straight, from where it was heard last.
+Stretch straight_part(const Line& line, const Stretch& stretch, const SideSettings& settings);
 
 /// What is between two stretches, seen through.
 struct Opening {
