@@ -17,6 +17,12 @@ constexpr int kPasses = 3;            // of a free one
 constexpr double kApart = 0.15;       // [m]
 constexpr double kMostCells = 200e6;  // more is a log that is broken
 
+constexpr double kStep = 0.5 * LaserCells::kCell;
+
+int steps_of(double length) {
+  return length > 0.0 ? static_cast<int>(std::ceil(length / kStep - 1e-9)) : 0;
+}
+
 void count(std::uint16_t& value) {
   if (value < std::numeric_limits<std::uint16_t>::max())
     ++value;
@@ -70,15 +76,17 @@ std::optional<std::size_t> LaserCells::index(const Vec2& at) const {
 }
 
 Vec2 LaserCells::middle(std::size_t index) const {
-  return low_ + kCell * Vec2(static_cast<double>(index % columns_) + 0.5,
-                             static_cast<double>(index / columns_) + 0.5);
+  const std::size_t row = index / columns_;
+  const std::size_t column = index % columns_;
+  return low_ + kCell * Vec2(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
 }
 
 void LaserCells::pass(const Vec2& from, const Vec2& to) {
   const double length = (to - from).norm();
   std::optional<std::size_t> last;
-  for (double at = 0.0; at < length - kShort; at += 0.5 * kCell) {
-    const auto i = index(from + at / length * (to - from));
+  const int steps = steps_of(length - kShort);
+  for (int step = 0; step < steps; ++step) {
+    const auto i = index(from + step * kStep / length * (to - from));
     if (i && i != last)
       count(cells_[*i].passes);
     last = i;
@@ -108,10 +116,11 @@ bool LaserCells::near(const Vec2& at, double distance) const {
 
 std::optional<double> LaserCells::beside(const Vec2& at, double direction, double reach) const {
   const Vec2 way(std::cos(direction), std::sin(direction));
-  for (double off = 0.0; off <= reach; off += 0.5 * kCell)
-    for (const double signed_off : {off, -off})
-      if (occupied(at + signed_off * way))
-        return signed_off;
+  const int steps = steps_of(reach);
+  for (int step = 0; step <= steps; ++step)
+    for (const double off : {step * kStep, -step * kStep})
+      if (occupied(at + off * way))
+        return off;
   return std::nullopt;
 }
 
@@ -125,8 +134,9 @@ std::vector<Vec2> LaserCells::surfaces() const {
 
 bool LaserCells::sees(const Vec2& from, const Vec2& to) const {
   const double length = (to - from).norm();
-  for (double at = 0.0; at < length - kApart; at += 0.5 * kCell)
-    if (occupied(from + at / length * (to - from)))
+  const int steps = steps_of(length - kApart);
+  for (int step = 0; step < steps; ++step)
+    if (occupied(from + step * kStep / length * (to - from)))
       return false;
   return true;
 }

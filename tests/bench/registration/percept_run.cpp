@@ -17,6 +17,7 @@ constexpr int kEnough = 17;
 constexpr double kOnWall = 0.2;    // [m]
 constexpr double kOnCorner = 0.3;  // [m]
 constexpr double kAskew = radians(5.0);
+constexpr double kPathStep = 0.3;  // [m]
 
 sim::Segment segment_of(const maps::Feature& wall) {
   const Vec2 half =
@@ -56,17 +57,17 @@ bool is_open(const LaserCells& cells, const lps::Percept& opening, const Pose& a
   for (const double end : {-half, half})
     if (!cells.near(transform(at, {0.0, end}), kOnCorner))
       return false;
-  for (double v = -half + kOnCorner; v <= half - kOnCorner; v += 0.5 * LaserCells::kCell)
-    if (cells.occupied(transform(at, {0.0, v})))
+  const int steps = static_cast<int>((half - kOnCorner) / (0.5 * LaserCells::kCell));
+  for (int i = -steps; i <= steps; ++i)
+    if (cells.occupied(transform(at, {0.0, i * 0.5 * LaserCells::kCell})))
       return false;
   return true;
 }
 
 std::vector<Vec2> path_of(const std::vector<Pose>& poses) {
-  constexpr double kApart = 0.3;  // [m]
   std::vector<Vec2> out;
   for (const Pose& pose : poses)
-    if (out.empty() || (pose.position() - out.back()).norm() > kApart)
+    if (out.empty() || (pose.position() - out.back()).norm() > kPathStep)
       out.push_back(pose.position());
   return out;
 }
