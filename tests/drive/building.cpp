@@ -24,6 +24,8 @@ void Building::perceive() {
   const auto& output = interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings});
   builder.step({seen.cycle, 1, seen.pose_in_odom, output.percepts, seen.readings, std::nullopt});
   true_way.push_back(seen.true_pose_in_world.position());
+  if (true_nodes_.size() < builder.graph().nodes.size())
+    true_nodes_.push_back(true_way.back());
   worst = std::max(worst, (true_way.back() - builder.pose_in_map().position()).norm());
 }
 
@@ -64,6 +66,30 @@ bool Building::drive_to(const Vec2& point_in_map, std::uint64_t limit) {
     drive.go_to(transform(drive.seen().pose_in_odom, to_frame(believed, point_in_map)));
   }
   return false;
+}
+
+maps::Map Building::aligned_map() const {
+  const std::vector<registration::GraphNode>& nodes = builder.graph().nodes;
+  const auto count = static_cast<double>(true_nodes_.size());
+  Vec2 believed{0.0, 0.0};
+  Vec2 truth{0.0, 0.0};
+  for (std::size_t i = 0; i < true_nodes_.size(); ++i) {
+    believed += nodes[i].in_map.position() / count;
+    truth += true_nodes_[i] / count;
+  }
+  Vec2 turn{0.0, 0.0};
+  for (std::size_t i = 0; i < true_nodes_.size(); ++i) {
+    const Vec2 from = nodes[i].in_map.position() - believed;
+    const Vec2 to = true_nodes_[i] - truth;
+    turn += Vec2(from.dot(to), from.x() * to.y() - from.y() * to.x());
+  }
+  const Pose turned{0.0, 0.0, std::atan2(turn.y(), turn.x())};
+  const Vec2 moved = truth - transform(turned, believed);
+  const Pose map_in_world{moved.x(), moved.y(), turned.th};
+  maps::Map map = builder.map();
+  for (maps::Feature& feature : map.features)
+    feature.pose_in_map = compose(map_in_world, feature.pose_in_map);
+  return map;
 }
 
 void Building::draw(const std::string& name) const {
@@ -142,8 +168,8 @@ MapScore score(const maps::Map& built, const maps::Map& reference) {
     for (std::size_t i = 0; i < built.features.size(); ++i) {
       const maps::Feature& f = built.features[i];
       const Pose in = relative(door.pose_in_map, f.pose_in_map);
-      if (f.type == PointType::door && std::hypot(in.x, in.y) < 0.4 &&
-          std::abs(in.th) < radians(10.0) && std::abs(f.width - door.width) < 0.25)
+      if (f.type == PointType::door && std::hypot(in.x, in.y) < 0.3 &&
+          std::abs(in.th) < radians(15.0) && std::abs(f.width - door.width) < 0.4)
         real[i] = found = true;
     }
     if (found)

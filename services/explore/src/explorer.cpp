@@ -52,6 +52,16 @@ void Explorer::listen(const Inputs& inputs) {
   for (const lps::SonarReading& reading : inputs.readings)
     heard_.push_back({reading.sonar, reading.echo ? reading.range : lps::kNothing, inputs.cycle,
                       inputs.pose_in_map.th});
+  // How long the sides have been open: a door is soon passed.
+  const double moved = (inputs.pose_in_map.position() - listened_at_).norm();
+  listened_at_ = inputs.pose_in_map.position();
+  for (double& way : open_way_)
+    way += std::min(moved, 0.2);  // more is the map's correction
+  for (const lps::SonarReading& reading : inputs.readings)
+    for (const lps::SonarMount& mount : settings_.sonars)
+      if (mount.sonar == reading.sonar && reading.echo && reading.range < settings_.open_side &&
+          std::abs(std::abs(mount.in_robot.th) - kPi / 2) < kStraight)
+        open_way_.at(mount.in_robot.th > 0.0 ? 0 : 1) = 0.0;
   // After a turn the sonars look elsewhere.
   std::erase_if(heard_, [&](const Heard& h) {
     return h.cycle + kFresh < inputs.cycle ||
@@ -188,13 +198,13 @@ void Explorer::choose(const Inputs& inputs) {
   std::optional<Lead> best;
   std::vector<std::size_t> best_path;
   double best_length = kNone;
+  std::vector<Lead> unreached;
   for (const Lead& lead : open) {
     double length = 0.0;
     std::vector<std::size_t> way = path(inputs.way, lead.point, length);
     const double short_by = way.empty() ? kNone : (inputs.way[way.back()] - lead.point).norm();
     if (short_by > 5.0) {
-      tried_.push_back(lead);
-      ++given_up_;
+      unreached.push_back(lead);
       continue;
     }
     if (length < best_length) {
@@ -203,6 +213,14 @@ void Explorer::choose(const Inputs& inputs) {
       best_path = std::move(way);
     }
   }
+  if (!best && !shut_.empty() && reopened_ < settings_.reopen) {
+    // What closed the only way may have been the robot's own clumsiness.
+    ++reopened_;
+    shut_.clear();
+    return;
+  }
+  tried_.insert(tried_.end(), unreached.begin(), unreached.end());
+  given_up_ += static_cast<int>(unreached.size());
   if (!best) {
     if (open.empty())
       output_ = {true, std::nullopt, std::nullopt, 0.0, "nothing is left to explore"};
@@ -226,7 +244,7 @@ void Explorer::go(const Inputs& inputs) {
     const double along = next.dot(path_.front() - here) / std::max(1e-9, next.squaredNorm());
     const Vec2 off = path_.front() - here - std::clamp(along, 0.0, 1.0) * next;
     if ((path_.front() - here).norm() > 0.4 &&
-        (next.norm() > settings_.look_ahead || off.norm() > 0.2))
+        (next.norm() > (stuck_ > 0 ? 0.5 : settings_.look_ahead) || off.norm() > 0.2))
       break;
     path_.erase(path_.begin());
   }
@@ -253,15 +271,9 @@ void Explorer::go(const Inputs& inputs) {
     output_.look_at.reset();
     output_.point_in_map.reset();
     if (++stuck_ % 2 == 1)
-      return;  // once more
+      return;  // once more, closer to the way that it came
     // Closed since: around it, if there is a way.
     shut_.push_back(path_.front());
-    double length = 0.0;
-    const auto way = path(inputs.way, lead_->point, length);
-    if (way.empty() || (inputs.way[way.back()] - lead_->point).norm() > 5.0) {
-      tried_.push_back(*lead_);
-      ++given_up_;
-    }
     lead_.reset();
     output_.point_in_map.reset();
     return;
@@ -304,6 +316,7 @@ void Explorer::probe(const Inputs& inputs) {
   const double from = u.dot(probe_from_ - point);
   const double gone = at - std::max(from, at + mapped);
   const double done = at - from;
+  probed_ = done;
   if (progress_ == kNone || done > progress_ + settings_.min_progress) {
     progress_ = done;
     progress_cycle_ = inputs.cycle;
@@ -311,21 +324,20 @@ void Explorer::probe(const Inputs& inputs) {
   const bool stuck = inputs.cycle > progress_cycle_ + settings_.patience;
   const double off = std::abs(u.x() * (here - point).y() - u.y() * (here - point).x());
   const bool away = off > settings_.aside && done > 0.5;
-  if (squeeze_ && done > *squeeze_ + 1.5)
+  if (squeeze_ && done > *squeeze_ + 1.5) {
     squeeze_.reset();  // that was only something in the way
+    aside_ = 0.0;
+  }
   const double turned = norm2_angle(inputs.pose_in_map.th - heading);
   const bool front = !squeeze_ && off < settings_.aside && std::abs(turned) < radians(35.0) &&
-                     heard(-turned).value_or(heard(0.0).value_or(lps::kNothing)) < settings_.front;
+                     heard(-turned).value_or(lps::kNothing) < settings_.front;
   if (front) {
     // The sides first: what is ahead turns the robot away, into a door as likely as not. Then on,
     // for it may be a box.
     look_from_ = point + at * u;
     output_.reason = lead_->what + ": something ahead";
-    if (passable())
-      squeeze_ = done;
-    else
-      tried_.push_back(
-          {point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
+    may_squeeze_ = true;
+    ended_ = point + std::max(from, at + mapped) * u;
     begin_looking(inputs);
     look(inputs);
     return;
@@ -347,7 +359,7 @@ void Explorer::probe(const Inputs& inputs) {
     look(inputs);
     return;
   }
-  head_for(point + (at + 2 * settings_.look_ahead) * u, inputs);
+  head_for(point + (at + 2 * settings_.look_ahead) * u + aside_ * Vec2(-u.y(), u.x()), inputs);
 }
 
 std::optional<double> Explorer::heard(double bearing) const {
@@ -368,10 +380,19 @@ bool Explorer::passable() const {
          heard(radians(-30.0)).value_or(lps::kNothing) > 2 * settings_.front;
 }
 
+// How far what looks ahead to one side (1: left) hears nothing.
+double Explorer::room(double side) const {
+  double sum = 0.0;
+  for (const double bearing : {15.0, 30.0})
+    sum += std::min(2 * settings_.front, heard(side * radians(bearing)).value_or(0.0));
+  return sum;
+}
+
 // Where it goes no farther, other ways may begin.
 void Explorer::begin_looking(const Inputs& inputs) {
   doing_ = Doing::looking;
   looks_ = {norm2_angle(lead_->heading + kPi / 2), norm2_angle(lead_->heading - kPi / 2)};
+  open_aside_ = false;
   look_cycle_ = inputs.cycle;
   steady_cycle_ = 0;
   // Ways that begin in a room are doors.
@@ -379,41 +400,81 @@ void Explorer::begin_looking(const Inputs& inputs) {
                                [](const Feature& f) { return f.type == PointType::corridor; });
   if (any && !in_corridor_)
     looks_.clear();
+  aligned_ = std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(12.0);
+  turned_ = !aligned_;
+  if (aligned_)
+    listen_aside(inputs);
+}
+
+// Along the way the sonars look aside: no need to turn to either side, which costs dead reckoning
+// more than a way.
+void Explorer::listen_aside(const Inputs& inputs) {
   // A way aside is as wide as corridors are: its middle is not at the wall in front.
   const double front = heard(0.0).value_or(lps::kNothing);
-  const bool straight =
-      std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(12.0);
-  look_from_ =
-      ahead(look_from_, lead_->heading, straight && front < kHalfWidth ? front - kHalfWidth : 0.0);
-  if (!straight)
-    return;
-  // It stands along the way, and its sonars look aside: no need to turn, which costs dead reckoning
-  // more than a way.
+  look_from_ = ahead(look_from_, lead_->heading, front < kHalfWidth ? front - kHalfWidth : 0.0);
   std::erase_if(looks_, [&](double heading) {
     const auto range = heard(norm2_angle(heading - lead_->heading));
     if (!range)
       return false;
-    Lead side{look_from_, heading, "a way aside", false, false};
-    if (*range > settings_.open_side && !mapped_along(inputs.map, look_from_, heading) &&
-        !is_tried(side))
-      seen_open_.push_back(side);
+    const bool left = norm2_angle(heading - lead_->heading) > 0.0;
+    if (turned_ || open_way_.at(left ? 0 : 1) > settings_.wider_than_a_door)
+      hear_aside(*range, heading, inputs);
     return true;
   });
+}
+
+void Explorer::hear_aside(double range, double heading, const Inputs& inputs) {
+  if (range <= settings_.open_side)
+    return;
+  open_aside_ = true;
+  Lead side{look_from_, heading, "a way aside", false, false};
+  if (!mapped_along(inputs.map, look_from_, heading) && !is_tried(side))
+    seen_open_.push_back(side);
+}
+
+// Turns to a heading of the map. True when the robot has looked that way for a while, or cannot.
+bool Explorer::looked(double heading, const Inputs& inputs) {
+  output_.look_at = ahead(inputs.pose_in_map.position(), heading, 5.0);
+  if (std::abs(norm2_angle(inputs.pose_in_map.th - heading)) > radians(6.0)) {
+    steady_cycle_ = 0;
+    return inputs.cycle >= look_cycle_ + 2 * settings_.patience;
+  }
+  if (steady_cycle_ == 0)
+    steady_cycle_ = inputs.cycle;
+  return inputs.cycle > steady_cycle_ + kFresh;
 }
 
 void Explorer::look(const Inputs& inputs) {
   const Pose& pose = inputs.pose_in_map;
   output_.point_in_map.reset();
-  while (!looks_.empty() && mapped_along(inputs.map, look_from_, looks_.front()))
+  while (!looks_.empty() && mapped_along(inputs.map, look_from_, looks_.front())) {
+    open_aside_ = true;
     looks_.erase(looks_.begin());
+  }
   if (looks_.empty()) {
     output_.look_at.reset();
-    if (squeeze_) {
+    if (may_squeeze_ && !open_aside_ && passable()) {
+      // No way to the sides: it may be a box. By it on the side with more room.
+      aside_ = (room(1.0) > room(-1.0) ? 1.0 : -1.0) * settings_.by_a_box;
+      squeeze_ = probed_;
       doing_ = Doing::probing;
       progress_cycle_ = inputs.cycle;
     } else {
+      if (may_squeeze_)
+        tried_.push_back({ended_, lead_->heading, lead_->what, false, false});
       finish(inputs);
     }
+    may_squeeze_ = false;
+    return;
+  }
+  if (!aligned_) {
+    if (!looked(lead_->heading, inputs))
+      return;
+    aligned_ = true;
+    if (steady_cycle_ != 0)
+      listen_aside(inputs);
+    look_cycle_ = inputs.cycle;
+    steady_cycle_ = 0;
     return;
   }
   if ((look_from_ - pose.position()).norm() > 0.45 && steady_cycle_ == 0 &&
@@ -424,20 +485,10 @@ void Explorer::look(const Inputs& inputs) {
     return;
   }
   const double heading = looks_.front();
-  output_.look_at = ahead(pose.position(), heading, 5.0);
-  if (std::abs(norm2_angle(pose.th - heading)) > radians(6.0)) {
-    steady_cycle_ = 0;
-    if (inputs.cycle < look_cycle_ + 2 * settings_.patience)
-      return;
-  } else if (steady_cycle_ == 0) {
-    steady_cycle_ = inputs.cycle;
+  if (!looked(heading, inputs))
     return;
-  } else if (inputs.cycle <= steady_cycle_ + kFresh) {
-    return;
-  }
-  Lead side{look_from_, heading, "a way aside", false, false};
-  if (steady_cycle_ != 0 && heard(0.0).value_or(0.0) > settings_.open_side && !is_tried(side))
-    seen_open_.push_back(side);
+  if (steady_cycle_ != 0)
+    hear_aside(heard(0.0).value_or(0.0), heading, inputs);
   looks_.erase(looks_.begin());
   look_cycle_ = inputs.cycle;
   steady_cycle_ = 0;
@@ -456,6 +507,7 @@ void Explorer::finish(const Inputs& inputs) {
   stuck_ = 0;
   output_.look_at.reset();
   squeeze_.reset();
+  aside_ = 0.0;
   doing_ = Doing::choosing;
   output_.point_in_map.reset();
 }

@@ -38,7 +38,7 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
   const std::string name = options.world + "-" + std::to_string(options.seed);
   built.draw(name);
   const maps::Map reference = maps::load_map(config_folder() + "/maps/" + options.world + ".map");
-  const test::MapScore score = test::score(built.builder.map(), reference);
+  const test::MapScore score = test::score(built.aligned_map(), reference);
   std::cout << name << ": " << built.drive.seen().cycle << " cycles, corridors "
             << score.corridors_found << "/" << score.corridors << ", lengths to "
             << 100.0 * score.worst_length << " %, doors " << score.doors_found << "/" << score.doors

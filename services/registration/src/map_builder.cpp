@@ -716,9 +716,17 @@ void MapBuilder::close_ends(std::vector<Corridor>& corridors) const {
         continue;
       const bool ends_too =
           at_other < other.from + half_one + 0.6 || at_other > other.to - half_one - 0.6;
-      if (std::abs(one.from - at) < half + settings_.reach)
+      // It goes on behind the other one where it has both its walls there, too: what is behind one
+      // wall, or a door that the robot looked through, is none of it.
+      const auto ends = [&](double end, double sign) {
+        const double beyond = sign * (end - at);
+        const Stretches there{sign > 0.0 ? std::pair(at + half, end) : std::pair(end, at - half)};
+        return std::abs(beyond) < half + settings_.reach ||
+               (beyond > 0.0 && total(common(one.both, there)) < settings_.min_both);
+      };
+      if (ends(one.from, -1.0))
         meetings.push_back({a, false, at + half, at - half, ends_too});
-      if (std::abs(one.to - at) < half + settings_.reach)
+      if (ends(one.to, 1.0))
         meetings.push_back({a, true, at - half, at + half, ends_too});
     }
   for (const Meeting& meeting : meetings) {

@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
         test::Building built(options, building);
         built.run(static_cast<std::uint64_t>(minutes * 600.0));
         built.draw(world + "-" + std::to_string(seed));
-        const test::MapScore score = test::score(built.builder.map(), reference);
+        const test::MapScore score = test::score(built.aligned_map(), reference);
         const bool complete =
             built.explorer.output().done && score.corridors_found == score.corridors &&
             score.corridors_false == 0 && score.doors_false == 0 &&

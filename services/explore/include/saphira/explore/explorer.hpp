@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -20,8 +21,11 @@ struct Settings {
   double beyond_opening = 6.0;  ///< [m] the same behind an opening
   double aside = 0.8;           ///< [m] off the middle: what is ahead has turned the robot away
   double tried = 1.2;           ///< [m] nearer than this to where it was tried, an end is the same
+  double by_a_box = 0.45;       ///< [m] off the middle, to get by one that stands in the way
   double front = 0.95;          ///< [m] what is nearer ahead may be the end
   double open_side = 2.2;       ///< [m] a sonar that hears nothing nearer looks into another way
+  double wider_than_a_door = 0.6;  ///< [m] of way along which the sonar hears nothing there
+  int reopen = 2;  ///< times that ways which were closed are tried again before all is given up
   double min_progress = 0.15;   ///< [m] less...
   std::uint64_t patience = 80;  ///< [cycles] ...in this time is being blocked
   int least_corridors = 1;      ///< where fewer are mapped, straight on is worth a try
@@ -80,6 +84,10 @@ class Explorer {
   void probe(const Inputs& inputs);
   void begin_looking(const Inputs& inputs);
   void look(const Inputs& inputs);
+  void listen_aside(const Inputs& inputs);
+  bool looked(double heading, const Inputs& inputs);
+  void hear_aside(double range, double heading, const Inputs& inputs);
+  double room(double side) const;
   /// [m] The middle one of what the sonars that look that way have heard of late; none: nothing
   /// looks there.
   std::optional<double> heard(double bearing) const;
@@ -87,7 +95,6 @@ class Explorer {
   bool passable() const;
   void finish(const Inputs& inputs);  ///< with the lead
   void head_for(const Vec2& point, const Inputs& inputs);
-  bool blocked(const Inputs& inputs);
   std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
 
   Settings settings_;
@@ -107,16 +114,25 @@ class Explorer {
     double heading = 0.0;  ///< [rad, map] of the robot
   };
   std::vector<Heard> heard_;
-  std::vector<double> looks_;       ///< [rad, map] headings that are still to be looked at
-  std::uint64_t look_cycle_ = 0;    ///< when this one was begun...
+  Vec2 listened_at_{0.0, 0.0};
+  std::array<double, 2> open_way_{};  ///< [m] since the left and the right were closed
+  std::vector<double> looks_;         ///< [rad, map] headings that are still to be looked at
+  bool turned_ = false;           ///< it stood aslant when it began to look: how wide is not known
+  bool aligned_ = true;           ///< it has looked along the way before
+  std::uint64_t look_cycle_ = 0;  ///< when this one was begun...
   std::uint64_t steady_cycle_ = 0;  ///< ...and since when the robot looks that way
   Vec2 look_from_{0.0, 0.0};
   /// The sides have been looked at; now it tries to get by what is ahead, begun so far along.
   std::optional<double> squeeze_;
-  Vec2 progress_from_{0.0, 0.0};
+  double aside_ = 0.0;        ///< [m] to the left of the middle, to get by
+  bool may_squeeze_ = false;  ///< what is ahead may be a box
+  bool open_aside_ = false;   ///< there is a way to a side
+  double probed_ = 0.0;       ///< [m] along the lead
+  Vec2 ended_{0.0, 0.0};      ///< where the lead ended at what is ahead
   double progress_ = 0.0;
   std::uint64_t progress_cycle_ = 0;
   int given_up_ = 0;
+  int reopened_ = 0;
   int stuck_ = 0;  ///< times that it came no farther on the way to this lead
   bool begun_ = false;
   bool home_ = false;         ///< on the way home, or there
