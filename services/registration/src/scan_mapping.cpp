@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <queue>
 #include <utility>
@@ -44,7 +45,7 @@ Eigen::Matrix3d matched_information(const Alignment& alignment) {
 // Along bare walls two scans seem to know a little, by the noise of the normals: nothing is known
 // there.
 Eigen::Matrix3d without_noise(const Eigen::Matrix3d& information) {
-  constexpr double kLeast = 0.03;  // of what is known across
+  constexpr double kLeast = 0.01;  // of what is known across
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
       Eigen::Matrix2d(information.topLeftCorner<2, 2>()));
   if (axes.eigenvalues()[0] > kLeast * axes.eigenvalues()[1])
@@ -53,6 +54,12 @@ Eigen::Matrix3d without_noise(const Eigen::Matrix3d& information) {
   without.topLeftCorner<2, 2>() -=
       axes.eigenvectors().col(0) * axes.eigenvectors().col(0).transpose();
   return without * information * without;
+}
+
+bool leaves_open(const Eigen::Matrix3d& information) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+             Eigen::Matrix2d(information.topLeftCorner<2, 2>()))
+             .eigenvalues()[0] < 10.0 / kNothing;
 }
 
 Scan thinned(const Scan& scan, std::size_t most) {
@@ -327,6 +334,10 @@ std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, st
     position += (open ? kNothing : slack.eigenvalues()[k]) * along * along.transpose();
     if (!open)
       continue;
+    // Its direction is not known exactly: what the graph is off along it is seen across.
+    constexpr double kDirection = radians(2.0);
+    const Vec2 across(-along.y(), along.x());
+    position += kDirection * kDirection * along.dot(prior * along) * across * across.transpose();
     // One place along a corridor, or among rooms that look alike, is as good as the next: what the
     // scans say is said for the one where the robot is by the graph.
     const Vec2 start = pose.position() + along.dot(guess.position() - pose.position()) * along;
@@ -510,8 +521,11 @@ void ScanMapper::refine(int rounds) {
         edges.push_back({j, i, found.pose, without_noise(matched_information(found)), true});
       }
     }
-    const std::vector<PoseEdge> before = all_edges();
-    edges.insert(edges.end(), before.begin(), before.end());
+    edges.insert(edges.end(), chain_.begin(), chain_.end());
+    edges.insert(edges.end(), odometry_.begin(), odometry_.end());
+    // Closures that leave a direction open say no more than the pairs here, and not as well.
+    std::copy_if(loops_.begin(), loops_.end(), std::back_inserter(edges),
+                 [](const PoseEdge& e) { return !leaves_open(e.information); });
     optimize(poses_, edges, 30, 5.0);
   }
 }

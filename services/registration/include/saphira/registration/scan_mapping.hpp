@@ -34,7 +34,7 @@ struct ScanMapSettings {
   double loop_every = 0.5;  ///< looked for after so much path
   // The window is three sigmas of what the graph knows, and at least and at most:
   double loop_reach = 1.0;
-  double loop_reach_limit = 10.0;
+  double loop_reach_limit = 20.0;
   double loop_turn = radians(8.0);
   double loop_turn_limit = radians(30.0);
   // What matched scans drift, one sigma after one metre, growing with the root of the way: by what
