@@ -39,7 +39,11 @@ std::string in_words(const Bindings& arguments, const World& world) {
         --end;  // not within a letter of several bytes
       words = words.substr(0, end) + "...";
     }
-    text += (text.empty() ? "" : ", ") + name + "=" + words;
+    if (!text.empty())
+      text += ", ";
+    text += name;
+    text += "=";
+    text += words;
   }
   return text;
 }
