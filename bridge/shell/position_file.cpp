@@ -51,7 +51,7 @@ std::string PositionFile::write(const reflector::OdometryMemory& memory) {
   text.back() = '\n';
   if (::pwrite(fd_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
     return {};
-  const std::string why = path_ + ": " + std::strerror(errno);
+  std::string why = path_ + ": " + std::strerror(errno);
   close();
   return why;
 }
