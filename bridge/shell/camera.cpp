@@ -28,7 +28,8 @@ std::vector<protocol::Bytes> Camera::begin(std::uint64_t cycle) {
   asked_ = cycle;
   std::vector<protocol::Bytes> said;
   for (const std::string& text : words_)
-    said.push_back(protocol::encode(protocol::VisionCommand({text.begin(), text.end()})));
+    said.push_back(
+        protocol::encode(protocol::VisionCommand(protocol::Bytes(text.begin(), text.end()))));
   return said;
 }
 
