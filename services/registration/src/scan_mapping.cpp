@@ -267,6 +267,7 @@ std::vector<Eigen::Matrix3d> ScanMapper::covariances(std::size_t from,
     }
   }
   std::vector<Eigen::Matrix3d> out;
+  out.reserve(of.size());
   for (const std::size_t i : of)
     out.push_back(known[i].covariance);
   return out;

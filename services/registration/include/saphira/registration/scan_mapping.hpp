@@ -65,7 +65,7 @@ struct ScanMapReport {
 /// Deterministic; every call's cost is bounded but that of a closure and of refine().
 class ScanMapper {
  public:
-  explicit ScanMapper(ScanMapSettings settings = {}) : settings_(settings) {}
+  explicit ScanMapper(const ScanMapSettings& settings = {}) : settings_(settings) {}
 
   /// The next scan, with dead reckoning's pose. Answers the present belief (frame of the first).
   Pose add(const Pose& pose_in_odom, Scan scan);
