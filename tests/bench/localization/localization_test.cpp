@@ -182,7 +182,7 @@ TEST(Localization, NothingIsMissedThatIsThereAndNothingPutWhereNothingStands) {
   }
   std::size_t found = 0;
   for (const maps::Feature& feature : editor.map().features) {
-    if (feature.type != lps::PointType::object)
+    if (feature.type != lps::PointType::object || !feature.learned)
       continue;
     ++found;
     double nearest = 10.0;

@@ -21,7 +21,7 @@ struct Options {
   int seeds = 10;
   double hours = 1.0;
   double errors = 2.0;
-  bool library = false;
+  bool corridors = false;
   bool json = false;
 };
 
@@ -83,7 +83,7 @@ int run(const Options& options) {
     const test::DriveOptions drive = drive_of(options, seed);
     test::Localizer robot(drive, map, test::Drive(drive).seen().true_pose_in_world);
     robot.set_clock(seconds);
-    const test::PatrolResult result = test::patrol(robot, test::office_tour(options.library),
+    const test::PatrolResult result = test::patrol(robot, test::office_tour(!options.corridors),
                                                    static_cast<int>(options.hours * 36000.0));
     way += result.way;
     not_tracking += result.not_tracking;
@@ -213,8 +213,8 @@ int main(int argc, char** argv) {
     const bool value = i + 1 < argc;
     if (option == "--json")
       options.json = true;
-    else if (option == "--library")
-      options.library = true;
+    else if (option == "--corridors")
+      options.corridors = true;
     else if (option == "--seeds" && value)
       options.seeds = std::atoi(argv[++i]);
     else if (option == "--hours" && value)
@@ -224,7 +224,7 @@ int main(int argc, char** argv) {
     else {
       std::fprintf(stderr,
                    "usage: saphira-bench-localization [--seeds N] [--hours H] [--errors FACTOR] "
-                   "[--library] [--json]\n");
+                   "[--corridors] [--json]\n");
       return option == "--help" ? 0 : 2;
     }
   }

@@ -58,8 +58,7 @@ struct Offs {
   void add(const Pose& believed, const Pose& truth);
 };
 
-/// Round the corridors of the office floor; `library`: and through the library, where the map has
-/// no furniture.
+/// Round the corridors of the office floor; `library`: and through the library.
 std::vector<Vec2> office_tour(bool library = false);
 
 struct PatrolResult {
