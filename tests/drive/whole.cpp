@@ -258,13 +258,6 @@ intentions::GoalId Whole::ask(std::string functor, intentions::Arguments argumen
   return event.goal.id;
 }
 
-void Whole::withdraw(const intentions::GoalId& goal) {
-  intentions::GoalEvent event;
-  event.kind = intentions::GoalEvent::Kind::kDisposed;
-  event.goal.id = goal;
-  events_.push_back(std::move(event));
-}
-
 void Whole::claim(std::string name, intentions::Value value) {
   intentions::ClaimEvent event;
   event.id = {2, next_goal_++};

@@ -51,7 +51,6 @@ class Whole {
   /// Asks for a goal; it is heard in the next cycle.
   intentions::GoalId ask(std::string functor, intentions::Arguments arguments = {},
                          int priority = 0, double deadline = 0.0);
-  void withdraw(const intentions::GoalId& goal);
   /// Somebody claims it; it is heard in the next cycle.
   void claim(std::string name, intentions::Value value);
   /// The newest word on a goal; kWaiting until there is one.

@@ -195,7 +195,7 @@ std::vector<Feature> ObjectFinder::step(const maps::Map& map, const Field& field
       candidate->first = cycle;
     }
     candidate->last = cycle;
-    if (repeats(candidate->from, look.sensor_in_map, settings_.spacing))
+    if (!take_look(candidate->from, look.sensor_in_map, settings_.spacing))
       continue;
     candidate->met.push_back(look);
     while (candidate->met.size() > settings_.kept) {

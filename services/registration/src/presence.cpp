@@ -115,9 +115,9 @@ void Presence::look_at(Watched& watched, const Look& look, const maps::Map& map)
                                       crossing->in * look.sensor_in_map.direction())))
     return;
   if (look.range > crossing->out + settings_.behind) {
-    repeats(watched.through, look.sensor_in_map, settings_.spacing);
+    take_look(watched.through, look.sensor_in_map, settings_.spacing);
   } else if (std::abs(look.range - crossing->in) < settings_.near &&
-             !repeats(watched.at, look.sensor_in_map, settings_.spacing) &&
+             take_look(watched.at, look.sensor_in_map, settings_.spacing) &&
              watched.at.size() > 2 * watched.through.size()) {
     // It is there; what goes through it later is news.
     watched.through.clear();
@@ -145,7 +145,7 @@ void Presence::look_at_door(Watched& watched, const Look& look, std::uint64_t cy
     watched.score = 0;
     watched.agreeing.clear();
   }
-  if (repeats(watched.agreeing, look.sensor_in_map, settings_.door_spacing) &&
+  if (!take_look(watched.agreeing, look.sensor_in_map, settings_.door_spacing) &&
       cycle < watched.counted + settings_.again)
     return;
   watched.counted = cycle;

@@ -24,15 +24,15 @@ struct LookSpacing {
   double turn = radians(12.0);  ///< [rad]
 };
 
-/// Whether there was a look from there among those; else it is taken to them.
-inline bool repeats(std::vector<Pose>& looks, const Pose& sensor, const LookSpacing& spacing) {
+/// Takes a look from there to the others. False, and not taken, where it repeats one of them.
+inline bool take_look(std::vector<Pose>& looks, const Pose& sensor, const LookSpacing& spacing) {
   const bool there = std::any_of(looks.begin(), looks.end(), [&](const Pose& look) {
     return (look.position() - sensor.position()).norm() < spacing.way &&
            std::abs(norm2_angle(look.th - sensor.th)) < spacing.turn;
   });
   if (!there)
     looks.push_back(sensor);
-  return there;
+  return !there;
 }
 
 }  // namespace saphira::registration
