@@ -223,7 +223,7 @@ void Interpretation::find_walls(std::size_t number) {
       if (!stretch.own)
         continue;
       const double length = stretch.to.u - stretch.from.u;
-      if (walls && doubt <= settings_.max_heading) {
+      if (walls && doubt <= settings_.max_heading && !stretch.echoes.empty()) {
         const Stretch straight = straight_part(wall.fit.line, stretch, side_settings);
         if (straight.echoes.size() >= static_cast<std::size_t>(side_settings.min_echoes) &&
             straight.to.u - straight.from.u >= side_settings.min_length) {
