@@ -121,7 +121,6 @@ class MapBuilder {
     double way = 0.0;         ///< [m] driven when that was made
     std::uint64_t cycle = 0;  ///< when it stood last
   };
-  struct Corridor;
 
   void drive(const MapBuilderInputs& inputs);
   bool take(const lps::Percept& percept, std::uint64_t cycle);
@@ -147,8 +146,6 @@ class MapBuilder {
   void merge_lines();
   std::vector<std::pair<double, double>> stretches(const GraphLine& line) const;
 
-  std::vector<Corridor> corridors() const;
-  void close_ends(std::vector<Corridor>& corridors) const;
   bool publish();
 
   MapBuilderSettings settings_;
