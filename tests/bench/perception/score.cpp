@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "saphira/base/places.hpp"
 
@@ -52,9 +53,9 @@ Score::Score(Drive& drive, maps::Map map)
       }) {}
 
 Pose Score::in_world(const lps::Percept& percept) const {
-  const std::size_t cycle =
-      std::min<std::size_t>(percept.seen, odom_in_world_.empty() ? 0 : odom_in_world_.size() - 1);
-  return compose(odom_in_world_[cycle], percept.pose_in_odom);
+  const auto after = odom_in_world_.upper_bound(percept.seen);
+  const auto at = after == odom_in_world_.begin() ? after : std::prev(after);
+  return compose(at->second, percept.pose_in_odom);
 }
 
 bool Score::is_surface(const sim::Things& things, const Pose& middle,
@@ -158,7 +159,6 @@ void Score::look(const Drive& drive, const interpretation::Output& output) {
 }
 
 void Score::look(const Moment& moment, const interpretation::Output& output) {
-  odom_in_world_.resize(moment.cycle + 1);
   odom_in_world_[moment.cycle] =
       compose(moment.true_pose_in_world, relative(moment.pose_in_odom, Pose{}));
   for (const lps::Percept& percept : output.percepts) {
@@ -183,7 +183,7 @@ void Score::look(const Moment& moment, const interpretation::Output& output) {
 void Score::pass(const Moment& seen, const interpretation::Output& output) {
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& door = map_.features[i];
-    if (door.type != PointType::door)
+    if (door.type != PointType::door || (covered_ && !covered_(door.pose_in_map.position())))
       continue;
     // Seen from the door: x away from its wall, y along it.
     const Pose robot = relative(door.pose_in_map, seen.true_pose_in_world);

@@ -105,7 +105,7 @@ class Score {
   Surfaces surfaces_;
   Covered covered_;
   Judge judge_;
-  std::vector<Pose> odom_in_world_;  // by cycle
+  std::map<std::uint64_t, Pose> odom_in_world_;  // by cycle
   std::map<std::uint32_t, Judged> judged_;
   std::map<std::size_t, Passing> passing_;
   int passed_ = 0;

@@ -255,14 +255,29 @@ void mount(CarmenLog& log, const Parameters& parameters) {
     scan.laser_in_robot = place;
 }
 
+// Leaves out the scans that are not to be kept; dead reckoning still knows what stands before it.
+void keep_scans(CarmenLog& log, const std::vector<char>& kept) {
+  std::vector<std::size_t> kept_before{0};
+  std::vector<LaserScan> scans;
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    if (kept[i] != 0)
+      scans.push_back(std::move(log.scans[i]));
+    kept_before.push_back(scans.size());
+  }
+  for (OdomRecord& record : log.odometry)
+    record.scans_before = kept_before.at(record.scans_before);
+  log.scans = std::move(scans);
+}
+
 // Scans without a pose get that of dead reckoning at their stamp.
 void place_raw(CarmenLog& log) {
   std::vector<OdomRecord> records = log.odometry;
   std::stable_sort(records.begin(), records.end(), [](const OdomRecord& a, const OdomRecord& b) {
     return a.time.ipc < b.time.ipc;
   });
-  std::vector<LaserScan> placed;
-  for (LaserScan& scan : log.scans) {
+  std::vector<char> placed(log.scans.size(), 0);
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    LaserScan& scan = log.scans[i];
     const auto after =
         std::lower_bound(records.begin(), records.end(), scan.time.ipc,
                          [](const OdomRecord& r, double time) { return r.time.ipc < time; });
@@ -275,22 +290,32 @@ void place_raw(CarmenLog& log) {
     const double share = (scan.time.ipc - before->time.ipc) / gap;
     const Pose step = relative(before->pose, after->pose);
     scan.pose = compose(before->pose, {share * step.x, share * step.y, share * step.th});
-    placed.push_back(std::move(scan));
+    placed[i] = 1;
   }
-  if (placed.size() < log.scans.size())
-    log.notes.push_back(std::to_string(log.scans.size() - placed.size()) +
-                        " scans have no dead reckoning at their time");
-  log.scans = std::move(placed);
+  if (const auto lost = std::count(placed.begin(), placed.end(), 0); lost > 0)
+    log.notes.push_back(std::to_string(lost) + " scans have no dead reckoning at their time");
+  keep_scans(log, placed);
 }
 
-// Every message a stamp, which the order in the file gives where the log has none.
+// Every message a stamp, which the order in the file gives where the log has none. Where only some
+// have none, as the last line of a log that was cut off, they are left out.
 void stamp_all(CarmenLog& log) {
-  const auto missing = [](const auto& all) {
-    return std::any_of(all.begin(), all.end(),
-                       [](const auto& m) { return !std::isfinite(m.time.ipc); });
+  const auto unstamped = [](const auto& m) {
+    return !std::isfinite(m.time.ipc) || !std::isfinite(m.time.logger);
   };
-  if (!missing(log.scans) && !missing(log.odometry))
+  std::erase_if(log.truth, unstamped);
+  const auto without = std::count_if(log.scans.begin(), log.scans.end(), unstamped);
+  if (without < std::ssize(log.scans)) {
+    std::vector<char> kept;
+    for (const LaserScan& scan : log.scans)
+      kept.push_back(unstamped(scan) ? 0 : 1);
+    keep_scans(log, kept);
+    const auto erased = std::erase_if(log.odometry, unstamped);
+    if (without > 0 || erased > 0)
+      log.notes.push_back(std::to_string(without) + " scans and " + std::to_string(erased) +
+                          " lines ODOM without a stamp are left out");
     return;
+  }
   log.notes.emplace_back("no stamps: by their order, a scan every 0.1 s");
   for (std::size_t i = 0; i < log.scans.size(); ++i)
     log.scans[i].time.ipc = log.scans[i].time.logger = 0.1 * static_cast<double>(i);
@@ -421,6 +446,7 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
         if (m.laser == other)
           log.notes.push_back(std::string(message.name) + " is read, " +
                               std::to_string(left_out.size()) + " " + m.name + " are not");
+    stamp_all(log);
     if (has_no_pose(message.laser))
       place_raw(log);
     break;
@@ -432,7 +458,6 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
                     scans.empty() ? "expected a line FLASER, ROBOTLASER1 or RAWLASER1"
                                   : "expected lines ODOM: scans without a pose need them");
   }
-  stamp_all(log);
   mount(log, parameters);
   const std::optional<double> no_return = find_no_return(log.scans);
   for (LaserScan& scan : log.scans) {

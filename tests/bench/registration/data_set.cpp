@@ -110,6 +110,10 @@ DataSet load_data_set(const std::string& name, const LogFiles& files) {
   std::optional<CarmenLog> corrected;
   if (!files.corrected.empty())
     corrected = log_of(files.corrected);
+  if (corrected) {
+    raw.damaged.insert(raw.damaged.end(), corrected->damaged.begin(), corrected->damaged.end());
+    notes.insert(notes.end(), corrected->notes.begin(), corrected->notes.end());
+  }
   std::vector<Relation> relations;
   if (!files.relations.empty())
     relations = parse_relations(read_log(files.relations), files.relations);

@@ -305,13 +305,16 @@ int run(const Options& options) {
   Report report;
   json out;
   const auto draw = [&](const std::string& name, const maps::Drawing& drawing) {
-    if (options.plot.empty())
+    if (options.plot.empty() || drawing.title.empty())
       return;
     fs::path path(options.plot);
-    path.replace_filename(path.stem().string() + "-" + name + path.extension().string());
-    std::string text = path.string();
-    std::replace(text.begin(), text.end(), ' ', '-');
+    std::string file = path.stem().string() + "-" + name + path.extension().string();
+    std::replace(file.begin(), file.end(), ' ', '-');
+    path.replace_filename(file);
+    const std::string text = path.string();
     write(text, maps::to_svg(drawing));
+    if (options.report.empty())
+      return;
     const fs::path beside = fs::absolute(options.report).parent_path();
     report.picture(drawing.title, fs::absolute(text).lexically_relative(beside).string());
   };
@@ -331,8 +334,9 @@ int run(const Options& options) {
       if (wanted(name))
         with(synthetic_data_set(name, kSeed), "");
   } else if (!options.log.raw.empty()) {
-    with(load_data_set(fs::path(options.log.raw).stem().string(), options.log),
-         fs::path(options.log.raw).parent_path().string());
+    const std::string file = fs::path(options.log.raw).filename().string();
+    with(load_data_set(file.substr(0, file.find('.')), options.log),
+         fs::absolute(options.log.raw).parent_path().string());
   } else {
     if (!options.data.empty() && fs::is_directory(options.data)) {
       for (const LogFiles& files : find_logs(options.data)) {

@@ -27,7 +27,7 @@ sim::Segment segment_of(const maps::Feature& wall) {
 
 bool is_covered(const maps::Map& reference, const Vec2& at) {
   return std::any_of(reference.features.begin(), reference.features.end(), [&](const auto& f) {
-    return f.type == PointType::office && maps::contains(f, at);
+    return f.type == PointType::office && f.name == "covered" && maps::contains(f, at);
   });
 }
 
@@ -75,10 +75,12 @@ std::vector<Vec2> path_of(const std::vector<Pose>& poses) {
 }  // namespace
 
 std::optional<maps::Map> load_reference(const std::string& log_folder, const std::string& name) {
-  for (const std::string& path :
-       {log_folder + "/reference.map", std::string(SAPHIRA_REFERENCES) + "/" + name + ".map"})
-    if (std::filesystem::is_regular_file(path))
-      return maps::load_map(path);
+  const std::string beside = log_folder + "/reference.map";
+  if (!log_folder.empty() && std::filesystem::is_regular_file(beside))
+    return maps::load_map(beside);
+  const std::string own = std::string(SAPHIRA_REFERENCES) + "/" + name + ".map";
+  if (std::filesystem::is_regular_file(own))
+    return maps::load_map(own);
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -53,9 +54,10 @@ void perceive(const SonarDrive& drive, interpretation::Interpretation& interpret
               const std::function<void(const Perceived&)>& look) {
   std::uint64_t cycle = 0;
   for (std::size_t i = 0; i < drive.times.size(); ++i) {
-    // Cycles of 0.1 s, as time goes.
-    const auto now =
-        static_cast<std::uint64_t>(std::llround(10.0 * (drive.times[i] - drive.times.front()))) + 1;
+    // Cycles of 0.1 s, as time goes, or more where the readings of a place come in two of them. A
+    // stamp may be damaged and far off.
+    const double tenths = std::clamp(10.0 * (drive.times[i] - drive.times.front()), 0.0, 1e15);
+    const auto now = static_cast<std::uint64_t>(std::llround(tenths)) + 1;
     cycle = std::max(cycle + 1, now);
     const Pose grid = odom_in_grid != nullptr ? (*odom_in_grid)[i] : Pose{};
     // All were heard at this place, and not one after the other on the way to it: first the way.
