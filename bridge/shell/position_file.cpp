@@ -49,9 +49,11 @@ std::string PositionFile::write(const reflector::OdometryMemory& memory) {
   std::string text = reflector::to_text(memory);
   text.resize(kSize, ' ');
   text.back() = '\n';
-  if (::pwrite(fd_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
+  const ssize_t written = ::pwrite(fd_, text.data(), text.size(), 0);
+  if (written == static_cast<ssize_t>(text.size()))
     return {};
-  std::string why = path_ + ": " + std::strerror(errno);
+  std::string why =
+      path_ + ": " + (written < 0 ? std::strerror(errno) : "only a part of it was written");
   close();
   return why;
 }

@@ -292,8 +292,10 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
   for (const maps::Leg& leg : found.route->legs)
     if (leg.link && settings.closed.contains(topology.links()[*leg.link].id))
-      std::printf("door %u was closed when the robot passed it last; there is no way round it\n",
-                  topology.links()[*leg.link].id);
+      std::printf(
+          "door %u was closed when the robot looked at it last; ways round it are longer, or "
+          "none\n",
+          topology.links()[*leg.link].id);
   return bus::kExitOk;
 }
 

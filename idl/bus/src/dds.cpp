@@ -152,9 +152,9 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
     bus_->discovery.add_own(own_);
   }
   ~DdsWriter() override {
-    bus_->discovery.remove_own(own_.id);
     writer_->set_listener(nullptr);
     bus_->publisher->delete_datawriter(writer_);
+    bus_->discovery.remove_own(own_.id);
   }
   DdsWriter(const DdsWriter&) = delete;
   DdsWriter& operator=(const DdsWriter&) = delete;
@@ -219,9 +219,9 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
     bus_->discovery.add_own(own_);
   }
   ~DdsReader() override {
-    bus_->discovery.remove_own(own_.id);
     reader_->set_listener(nullptr);
     bus_->subscriber->delete_datareader(reader_);
+    bus_->discovery.remove_own(own_.id);
   }
   DdsReader(const DdsReader&) = delete;
   DdsReader& operator=(const DdsReader&) = delete;

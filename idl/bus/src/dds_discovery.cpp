@@ -203,7 +203,8 @@ bool Discovery::tell_incompatible(const Incompatible& found, bool late,
                         " does not match, " + why);
     }
   }
-  if (!explained && late && told_.insert({found.topic, found.policy}).second)
+  if (!explained && late &&
+      told_.insert({found.topic + (found.own_writes ? " out" : " in"), found.policy}).second)
     texts.push_back("topic " + found.topic + ": " + (found.own_writes ? "a reader" : "a writer") +
                     " does not match, " + found.policy);
   return explained || late;

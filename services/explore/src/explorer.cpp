@@ -217,6 +217,7 @@ void Explorer::choose(const Inputs& inputs) {
     // What closed the only way may have been the robot's own clumsiness.
     ++reopened_;
     shut_.clear();
+    home_ = false;  // also the way home
     return;
   }
   tried_.insert(tried_.end(), unreached.begin(), unreached.end());
@@ -270,12 +271,14 @@ void Explorer::go(const Inputs& inputs) {
     doing_ = Doing::choosing;
     output_.look_at.reset();
     output_.point_in_map.reset();
+    if (lead_->home)
+      home_ = false;
     if (++stuck_ % 2 == 1)
       return;  // once more, closer to the way that it came
     // Closed since: around it, if there is a way.
     shut_.push_back(path_.front());
     lead_.reset();
-    output_.point_in_map.reset();
+    stuck_ = 0;
     return;
   }
   head_for(path_.front(), inputs);

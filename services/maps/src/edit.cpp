@@ -71,13 +71,13 @@ std::size_t Editor::index_of(std::uint32_t id) const {
 }
 
 std::uint32_t Editor::add(Feature feature) {
-  if (const auto why = problem(feature))
-    throw std::invalid_argument(*why);
   const std::uint32_t id =
       feature.id == 0 || find(map_, feature.id) != nullptr || gone_.contains(feature.id)
           ? last_id_ + 1
           : feature.id;
   feature.id = id;
+  if (const auto why = problem(feature))
+    throw std::invalid_argument(*why);
   last_id_ = std::max(last_id_, id);
   map_.features.push_back(std::move(feature));
   ++revision_;

@@ -15,7 +15,7 @@ namespace saphira::registration {
 namespace {
 
 constexpr std::chrono::seconds kSaveEvery{1};
-constexpr double kOutside = 5.0;  // [m] beyond the map's last wall a robot may be said to stand
+constexpr double kOutside = 5.0;  // [m] beyond the rectangle round the map one may stand
 
 /// Throws where no robot can be registered on the map.
 void check(const maps::Map& map) {
@@ -437,6 +437,8 @@ void Shell::remember() {
   Remembered now{registration_->save(),        options_.map_file, source_, changed_, editor_.map(),
                  registration_->closed_doors()};
   if (building_) {
+    const std::vector<std::uint32_t> closed = builder_->closed();
+    now.closed_doors = {closed.begin(), closed.end()};
     now.memory.placed = true;
     now.memory.odom = odom_;
     now.memory.pose_in_map = pose_in_map_;

@@ -200,6 +200,7 @@ MapBuilder::Match MapBuilder::match_opening(const SeenPoint& seen, PointType typ
   Match best;
   double nearest = 1e9;
   double second = 1e9;
+  double nearest_stray = 0.0;
   for (std::size_t i = 0; i < graph_.points.size(); ++i) {
     const Known& known = known_points_[i];
     if (graph_.points[i].seen.empty() || known.type != type ||
@@ -215,12 +216,13 @@ MapBuilder::Match MapBuilder::match_opening(const SeenPoint& seen, PointType typ
     if (far < nearest) {
       second = nearest;
       nearest = far;
+      nearest_stray = may_stray;
       best.index = i;
     } else {
       second = std::min(second, far);
     }
-    best.is_ambiguous = second - nearest < may_stray;
   }
+  best.is_ambiguous = second - nearest < nearest_stray;
   return best;
 }
 

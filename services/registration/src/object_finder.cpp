@@ -19,13 +19,6 @@ Vec2 middle_of(const std::vector<Look>& looks) {
   return sum / static_cast<double>(looks.size());
 }
 
-/// From a position to a door or break [m], which has no length.
-double distance_to_gate(const Feature& gate, const Vec2& position) {
-  Feature slab = gate;
-  slab.length = 0.0;
-  return maps::distance_to(slab, position);
-}
-
 /// Without the most distant twentieth at either end.
 std::pair<double, double> extent(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -71,9 +64,12 @@ ObjectFinder::Candidate* ObjectFinder::candidate_at(const Vec2& position) {
     candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*it));
     home -= *it < home ? 1U : 0U;
     Candidate& one = candidates_[home];
-    one.met.insert(one.met.end(), other.met.begin(), other.met.end());
-    one.from.insert(one.from.end(), other.from.begin(), other.from.end());
+    for (const Look& look : other.met)
+      if (take_look(one.from, look.sensor_in_map, settings_.spacing))
+        one.met.push_back(look);
+    one.through += other.through;
     one.first = std::min(one.first, other.first);
+    one.last = std::max(one.last, other.last);
   }
   return &candidates_[home];
 }
@@ -95,7 +91,7 @@ bool ObjectFinder::is_explained(const maps::Map& map, const Field& field, const 
     switch (feature.type) {
       case PointType::door:
       case PointType::breach:
-        return distance_to_gate(feature, end) < settings_.off;
+        return maps::distance_to(feature, end) < settings_.off;
       case PointType::object:
         return feature.id != own && maps::distance_to(feature, end) < settings_.off;
       default:
@@ -106,16 +102,12 @@ bool ObjectFinder::is_explained(const maps::Map& map, const Field& field, const 
 
 /// Sound that goes through a few echoes' place shows that nothing stands there any more.
 void ObjectFinder::look_through(const Look& look, const Candidate* met) {
-  const Vec2 from = look.sensor_in_map.position();
-  const Vec2 ahead = look.sensor_in_map.direction();
   for (Candidate& candidate : candidates_) {
     if (&candidate == met || candidate.told)
       continue;
-    const Vec2 to = middle_of(candidate.met) - from;
-    const double along = to.dot(ahead);
-    const double aside = std::abs(ahead.x() * to.y() - ahead.y() * to.x());
-    if (along > 0.0 && aside < settings_.least / 2.0 &&
-        look.range > along + settings_.same + settings_.least)
+    const Vec2 to = to_frame(look.sensor_in_map, middle_of(candidate.met));
+    if (to.x() > 0.0 && std::abs(to.y()) < settings_.least / 2.0 &&
+        look.range > to.x() + settings_.same + settings_.least)
       ++candidate.through;
   }
 }

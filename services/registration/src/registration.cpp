@@ -98,7 +98,11 @@ class Registration::Self {
   void take_over(const Self& other);
   Memory save() const;
   void restore(const Memory& memory);
-  Presence& presence() { return presence_; }
+  const std::set<std::uint32_t>& closed_doors() const { return presence_.closed(); }
+  void recall_closed(std::set<std::uint32_t> doors) {
+    presence_.recall(std::move(doors));
+    forget_looks();
+  }
 
  private:
   void move(const Inputs& inputs);
@@ -112,6 +116,7 @@ class Registration::Self {
   void follow(const ParticleCloud::Estimate& cloud, double score);
   void look_elsewhere(const std::vector<PlacedReading>& readings,
                       const std::vector<const Percept*>& percepts);
+  void forget_looks();
   void look_for_news(const Inputs& inputs, const std::vector<PlacedReading>& readings);
   bool uses_old_readings(const Percept& percept) const;
   double turned_since(const Percept& percept) const;
@@ -161,6 +166,12 @@ class Registration::Self {
   Output output_;
 };
 
+/// What was heard from a pose, or of a map, that did not hold says nothing.
+void Registration::Self::forget_looks() {
+  presence_.recall(presence_.closed());
+  objects_ = ObjectFinder(settings_.objects);
+}
+
 void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
                                double drift_variance, double confidence) {
   filter_.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
@@ -170,6 +181,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   done_.clear();
   cloud_.clear();
   leads_ = false;
+  forget_looks();
 }
 
 void Registration::Self::forget() {
@@ -178,6 +190,7 @@ void Registration::Self::forget() {
   search_.clear();
   state_ = State::unplaced;
   done_.clear();
+  forget_looks();
 }
 
 void Registration::Self::switch_on(bool on) {
@@ -642,11 +655,11 @@ bool Registration::on() const {
 }
 
 const std::set<std::uint32_t>& Registration::closed_doors() const {
-  return self_->presence().closed();
+  return self_->closed_doors();
 }
 
 void Registration::recall_closed(std::set<std::uint32_t> doors) {
-  self_->presence().recall(std::move(doors));
+  self_->recall_closed(std::move(doors));
 }
 
 Memory Registration::save() const {

@@ -240,7 +240,7 @@ std::vector<Eigen::Matrix3d> ScanMapper::covariances(std::size_t from,
     known[i].settled = true;
     if (wanted[i] != 0)
       --open;
-    // `in_to`: covariance of the step in the frame of the node `to`.
+    // `step`: its covariance, in the frame of the node `frame`.
     const auto go = [&](std::size_t to, std::size_t frame, const Eigen::Matrix3d& step) {
       if (known[to].settled)
         return;

@@ -13,9 +13,6 @@ constexpr std::uint64_t kRecent = 20;  // [cycles] eyes that showed nothing for 
 /// Lockstep: what belongs to a cycle is waited for, for as long. A run is the same each time where
 /// that is longer than a busy machine needs.
 constexpr std::chrono::milliseconds kWait{2000};
-// [cycles] in which a camera begins: it is asked for its packets in the first.
-constexpr std::uint64_t kFirstChannels = 2;
-constexpr std::uint64_t kLastFirstChannels = 4;
 
 }  // namespace
 
@@ -82,7 +79,7 @@ void Shell::look(std::uint64_t cycle) {
 }
 
 /// The channels come behind the cycle that they are of: a step sees those of the cycle before, for
-/// which lockstep waits where they come at all.
+/// which lockstep waits where the robot's state says that they come.
 void Shell::look_at_colors(const v1::RobotState& robot, const bus::Stop& stop) {
   const std::uint64_t before = cycle_.stamp().cycle() - 1;
   const auto limit = std::chrono::steady_clock::now() + kWait;
@@ -91,12 +88,11 @@ void Shell::look_at_colors(const v1::RobotState& robot, const bus::Stop& stop) {
       if (!sample.info.disposed && sample.data.stamp().epoch() == cycle_.stamp().epoch())
         newer_.push_back(std::move(sample.data));
     const bool here = !newer_.empty() && newer_.back().stamp().cycle() >= before;
-    const bool come = (before >= kFirstChannels && before <= kLastFirstChannels) ||
-                      (color_ != 0 && color_ + kRecent >= before);
-    if (here || !come || channels_.matched() == 0 || !node_.options().lockstep ||
-        stop.requested() || std::chrono::steady_clock::now() >= limit)
+    const auto left = limit - std::chrono::steady_clock::now();
+    if (here || robot.vision_packets_per_s() == 0 || !node_.options().lockstep ||
+        stop.requested() || left <= left.zero())
       break;
-    node_.wait(kWait, &stop);
+    node_.wait(std::chrono::ceil<std::chrono::milliseconds>(left), &stop);
   }
   while (!newer_.empty() && newer_.front().stamp().cycle() < cycle_.stamp().cycle()) {
     const v1::VisionChannels& seen = newer_.front();

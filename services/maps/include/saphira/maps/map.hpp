@@ -22,8 +22,8 @@ struct Feature {
   double length = 0.0;  ///< [m] along the heading; 0 where the type has none
   double width = 0.0;   ///< [m] across the heading; 0 where the type has none
   std::string name;     ///< of a room, and of its doors; empty: none
-  /// The robot has put it down itself, and takes it back where it is seen no more. A file does not
-  /// hold this: a map that a person loads is taken at its word.
+  /// The robot has put it down itself; walls and breaks of those it takes back where they are seen
+  /// no more. A file does not hold this: a map that a person loads is taken at its word.
   bool learned = false;
 
   bool operator==(const Feature&) const = default;

@@ -72,8 +72,8 @@ struct Passes {
 /// junctions, openings become doors and breaks. The way and the features are one least-squares
 /// problem, so that seeing the first corridor again corrects all of the map.
 ///
-/// Walls and corridors stay for good. A door that was open and is seen closed stays, and is told as
-/// closed. A pure function of its inputs' history.
+/// Walls and corridors stay until removed. A door that was open and is seen closed stays, and is
+/// told as closed. A pure function of its inputs' history.
 class MapBuilder {
  public:
   /// Begins with a map that is known (or none) and, where no pose is believed, at `start`.

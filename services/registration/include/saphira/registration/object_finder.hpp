@@ -18,7 +18,7 @@ struct ObjectFinderSettings {
   double same = 0.5;            ///< [m] echoes so near to one another are of one thing
   LookSpacing spacing;
   std::size_t looks = 6;    ///< that must have met it...
-  double span = 0.4;        ///< [m] ...from places so far apart
+  double span = 0.4;        ///< [m] ...one from so far off the first
   std::uint64_t time = 60;  ///< [cycles] ...in no less than this: who walks past is no thing
   double least = 0.2;       ///< [m] sizes of things
   double most = 1.5;
