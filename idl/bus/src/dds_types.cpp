@@ -50,14 +50,16 @@ std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
               v1::DigitalOutputCommandPubSubType, v1::AnalogCommandPubSubType,
               v1::TimerCommandPubSubType, v1::SonarCommandPubSubType, v1::SoundCommandPubSubType,
               v1::ServerCommandPubSubType, v1::SerialCommandPubSubType, v1::MotorCommandPubSubType,
-              v1::GrantPubSubType, v1::StepPermitPubSubType, v1::PerceptionPubSubType,
-              v1::GridTilePubSubType, v1::VisionChannelsPubSubType, v1::VisionPubSubType,
-              v1::MapPubSubType, v1::RegistrationPubSubType, v1::RegistrationRequestPubSubType,
-              v1::RegistrationAnswerPubSubType, v1::BehaviorsPubSubType, v1::IntentionsPubSubType,
-              v1::GoalPubSubType, v1::GoalStatusPubSubType, v1::BehaviorSchemasPubSubType,
+              v1::EstopResetPubSubType, v1::GrantPubSubType, v1::StepPermitPubSubType,
+              v1::PerceptionPubSubType, v1::GridTilePubSubType, v1::VisionChannelsPubSubType,
+              v1::VisionPubSubType, v1::MapPubSubType, v1::RegistrationPubSubType,
+              v1::RegistrationRequestPubSubType, v1::RegistrationAnswerPubSubType,
+              v1::BehaviorsPubSubType, v1::IntentionsPubSubType, v1::GoalPubSubType,
+              v1::GoalStatusPubSubType, v1::BehaviorSchemasPubSubType,
               v1::ActivitySchemasPubSubType, v1::BeliefsPubSubType, v1::BeliefClaimPubSubType,
               v1::ProcessesPubSubType, v1::ProcessRequestPubSubType, v1::ProcessAnswerPubSubType,
-              v1::MessagePubSubType, v1::ServiceStatusPubSubType, v1::LogRecordPubSubType>();
+              v1::MessagePubSubType, v1::ServiceStatusPubSubType, v1::PresencePubSubType,
+              v1::LogRecordPubSubType>();
 }
 
 }  // namespace saphira::bus::internal

@@ -42,6 +42,8 @@ Policies policies(Qos qos, bool lockstep) {
               .writer_depth = 100,
               .reader_depth = 1000,
               .heartbeat_ms = 200};
+    case Qos::presence:
+      return {.reader_depth = 1};
     case Qos::recall:
       // Without a reader a sample costs no more than being kept.
       return {.reliable = true,
@@ -69,6 +71,8 @@ const char* qos_name(Qos qos) {
       return "event";
     case Qos::status:
       return "status";
+    case Qos::presence:
+      return "presence";
     case Qos::recall:
       return "recall";
   }

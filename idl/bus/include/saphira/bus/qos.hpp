@@ -5,14 +5,15 @@ namespace saphira::bus {
 /// Quality of service by name. The one table of what each name means is in src/qos.cpp; why, in
 /// idl/README.md. No endpoint sets a policy by itself, so a writer and a reader of a topic agree.
 enum class Qos {
-  cyclic,   ///< periodic state; only the newest counts (in lockstep: none is lost)
-  motion,   ///< motor commands; as cyclic, the age is checked by the receiver
-  command,  ///< one-shot requests that stale quickly
-  goal,     ///< keyed, reliable; writing again changes, disposing withdraws
-  latched,  ///< the newest value of each key, also for late joiners, while its writer lives
-  event,    ///< the last few events, also for late joiners
-  status,   ///< keyed presence of programs
-  recall,   ///< the last minute of a cyclic topic, for who asks for it
+  cyclic,    ///< periodic state; only the newest counts (in lockstep: none is lost)
+  motion,    ///< motor commands; as cyclic, the age is checked by the receiver
+  command,   ///< one-shot requests that stale quickly
+  goal,      ///< keyed, reliable; writing again changes, disposing withdraws
+  latched,   ///< the newest value of each key, also for late joiners, while its writer lives
+  event,     ///< the last few events, also for late joiners
+  status,    ///< keyed presence of programs
+  presence,  ///< a heartbeat whose loss is noticed within a second
+  recall,    ///< the last minute of a cyclic topic, for who asks for it
 };
 
 }  // namespace saphira::bus

@@ -40,6 +40,7 @@ inline constexpr Topic<v1::MotorCommand> kDriveEstop{"drive/estop", Qos::motion}
 inline constexpr Topic<v1::MotorCommand> kDriveTeleop{"drive/teleop", Qos::motion};
 inline constexpr Topic<v1::MotorCommand> kDriveDirect{"drive/direct", Qos::motion};
 inline constexpr Topic<v1::MotorCommand> kDriveBehaviors{"drive/behaviors", Qos::motion};
+inline constexpr Topic<v1::EstopReset> kEstopReset{"drive/estop/reset", Qos::command};
 inline constexpr Topic<v1::Grant> kGrant{"drive/grant", Qos::cyclic};
 inline constexpr Topic<v1::StepPermit> kStepPermit{"lockstep/permit", Qos::latched};
 inline constexpr Topic<v1::Perception> kPerception{"perception", Qos::cyclic};
@@ -70,6 +71,7 @@ inline constexpr Topic<v1::Grant> kRecallGrant{"recall/grant", Qos::recall};
 inline constexpr Topic<v1::Behaviors> kRecallBehaviors{"recall/behaviors", Qos::recall};
 inline constexpr Topic<v1::Intentions> kRecallIntentions{"recall/intentions", Qos::recall};
 inline constexpr Topic<v1::ServiceStatus> kStatus{"system/status", Qos::status};
+inline constexpr Topic<v1::Presence> kPresence{"system/presence", Qos::presence};
 inline constexpr Topic<v1::LogRecord> kLog{"system/log", Qos::event};
 
 }  // namespace topics
@@ -95,6 +97,7 @@ void for_each_topic(F&& f) {
   f(kDriveTeleop);
   f(kDriveDirect);
   f(kDriveBehaviors);
+  f(kEstopReset);
   f(kGrant);
   f(kStepPermit);
   f(kPerception);
@@ -122,6 +125,7 @@ void for_each_topic(F&& f) {
   f(kRecallBehaviors);
   f(kRecallIntentions);
   f(kStatus);
+  f(kPresence);
   f(kLog);
 }
 
