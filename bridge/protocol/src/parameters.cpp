@@ -103,24 +103,82 @@ constexpr std::array kCounts{
     CountKeyword{"SideBuffer", &P::side_buffer, 1, 200},
 };
 
+// What a robot cannot do without. The manual's own file (chapter 10) names no class and says less:
+// it is a Pioneer 1's, and so are the defaults.
+struct NeededKeyword {
+  std::string_view name;
+  bool with_class_only;
+};
+constexpr std::array kNeeded{
+    NeededKeyword{"AngleConvFactor", false}, NeededKeyword{"DistConvFactor", false},
+    NeededKeyword{"VelConvFactor", false},   NeededKeyword{"RangeConvFactor", false},
+    NeededKeyword{"DiffConvFactor", true},   NeededKeyword{"Vel2Divisor", true},
+    NeededKeyword{"RobotRadius", false},     NeededKeyword{"MaxVelocity", true},
+    NeededKeyword{"MaxRVelocity", true},     NeededKeyword{"SonarNum", false},
+};
+
+// Those of ARIA's sections that say what this program asks for; the others are about lasers,
+// cameras and the like, some in the same keywords.
+constexpr std::array<std::string_view, 5> kAriaSections{
+    "general settings", "conversion factors", "accessories the robot has",
+    "movement control parameters", "sonar parameters"};
+
+bool is_keyword(const std::string& name) {
+  constexpr std::array<std::string_view, 8> others{
+      "sonarunit",        "sonarnum",         "name", "class", "subclass", "protocol",
+      "switchtobaudrate", "encodertickspermm"};
+  const auto is_it = [&name](const auto& k) { return lower(k.name) == name; };
+  return std::any_of(kNumbers.begin(), kNumbers.end(), is_it) ||
+         std::any_of(kFlags.begin(), kFlags.end(), is_it) ||
+         std::any_of(kCounts.begin(), kCounts.end(), is_it) ||
+         std::find(others.begin(), others.end(), name) != others.end();
+}
+
 class Parser {
  public:
   Parser(std::string_view text, const std::string& file) : lines_(split_lines(text)) {
+    expect_last_line_break(text, file);
     parameters_.file = file;
   }
 
   RobotParameters parse() {
     while (next_ < lines_.size()) {
-      LineReader in(parameters_.file, lines_[next_++]);
+      const Line& line = lines_[next_++];
+      if (is_passed_over(line))
+        continue;
+      LineReader in(parameters_.file, line);
       keyword(in);
-      in.expect_end();
+      if (!aria_)
+        in.expect_end();
     }
     finish_sonars();
     finish_protocol();
+    expect_needed();
     return std::move(parameters_);
   }
 
  private:
+  // ARIA's files have sections, keywords and columns beyond ours, and comments that are broken over
+  // two lines. An acceleration of 0 there is the robot's own.
+  bool is_passed_over(const Line& line) {
+    const std::string name = lower(line.words[0].text);
+    if (name == "configversion")
+      aria_ = true;
+    if (name == "section") {
+      aria_ = true;
+      std::string section;
+      for (std::size_t i = 1; i < line.words.size(); ++i)
+        section += (i > 1 ? " " : "") + lower(line.words[i].text);
+      aria_section_ =
+          std::find(kAriaSections.begin(), kAriaSections.end(), section) != kAriaSections.end();
+    }
+    if (!aria_)
+      return false;
+    const bool is_own = (name.ends_with("accel") || name.ends_with("decel")) &&
+                        line.words.size() > 1 && line.words[1].text == "0";
+    return !aria_section_ || is_own || !is_keyword(name);
+  }
+
   void keyword(LineReader& in) {
     const std::string name = lower(in.word("a keyword"));
     if (name == "sonarunit") {
@@ -201,8 +259,18 @@ class Parser {
     parameters_.switch_to_baud = static_cast<int>(rate);
   }
 
+  // ARIA's files do not say it; the names of the servers' versions do.
+  Protocol protocol_of_subclass() const {
+    const std::string name = lower(parameters_.subclass);
+    if (name.ends_with("-sh"))
+      return Protocol::kArcos;
+    return name.starts_with("psos") || name.starts_with("pion") ? Protocol::kPsos : Protocol::kP2os;
+  }
+
   // What a file does not say follows from the generation of its server.
   void finish_protocol() {
+    if (aria_ && !seen_.contains("protocol"))
+      parameters_.protocol = protocol_of_subclass();
     const bool later = parameters_.protocol != Protocol::kPsos;
     for (const auto& [name, field] : {std::pair{"hasmovecommand", &P::move_command},
                                       std::pair{"settablevelmaxes", &P::settable_velocities},
@@ -238,12 +306,8 @@ class Parser {
 
   void finish_sonars() {
     auto& sonars = parameters_.sonars;
-    if (!sonar_count_) {
-      if (!sonars.empty())
-        throw FileError(parameters_.file, lines_.back().number, 1,
-                        "expected SonarNum, the number of sonars, in a file with SonarUnit lines");
+    if (!sonar_count_)
       return;
-    }
     std::sort(sonars.begin(), sonars.end(),
               [](const SonarUnit& a, const SonarUnit& b) { return a.number < b.number; });
     // The manual's own sample describes a unit 7 of seven (0 to 6).
@@ -257,11 +321,29 @@ class Parser {
     for (int i = 0; i < sonar_count_number_; ++i)
       if (!unit_lines_.contains(i))
         sonar_count_->fail("expected as many SonarUnit lines as SonarNum says; SonarUnit " +
-                           std::to_string(i) + " is missing");
+                           std::to_string(i) + " is missing (has the file been cut off?)");
+  }
+
+  void expect_needed() const {
+    std::string missing;
+    for (const NeededKeyword& k : kNeeded)
+      if (!seen_.contains(lower(k.name)) && (seen_.contains("class") || !k.with_class_only))
+        missing += (missing.empty() ? "" : ", ") + std::string(k.name);
+    if (missing.empty())
+      return;
+    const std::string message =
+        "expected also " + missing + ": no robot can do without (has the file been cut off?)";
+    if (lines_.empty())
+      throw FileError(parameters_.file, 1, 1, message);
+    const Word& last = lines_.back().words.back();
+    throw FileError(parameters_.file, lines_.back().number,
+                    last.column + static_cast<int>(last.text.size()), message, lines_.back().text);
   }
 
   std::vector<Line> lines_;
   std::size_t next_ = 0;
+  bool aria_ = false;          // the form of ARIA's files, with sections
+  bool aria_section_ = false;  // that is read
   RobotParameters parameters_;
   std::map<std::string, int> seen_;        // keyword, line
   std::map<int, int> unit_lines_;          // sonar, line

@@ -306,10 +306,18 @@ TEST(Parameters, ThePioneer) {
   EXPECT_DOUBLE_EQ(p.sonars[0].pose_in_robot.th, kPi / 2);
 }
 
+// The least that a file must say, as the manual's own says it.
+constexpr const char* kLeast =
+    "AngleConvFactor 0.001\nDistConvFactor 0.08\nVelConvFactor 2\nRangeConvFactor 0.2\n"
+    "RobotRadius 220\n";
+
 TEST(Parameters, KeywordsInAnyCaseAndOrder) {
   const auto p = parse_parameters(
-      "sonarunit 0 100 0 0\nSONARNUM 1\nName Erratic ; a comment\r\nMaxRVelocity\n 90\n"
-      "Vel2Divisor 20\nFrontBuffer 20\nSideBuffer 60\nFrontMaxRange 2000\nBattery 13\n",
+      kLeast +
+          std::string(
+              "sonarunit 0 100 0 0\nSONARNUM 1\nName Erratic ; a comment\r\nMaxRVelocity\n 90\n"
+              "Vel2Divisor 20\nFrontBuffer 20\nSideBuffer 60\n"
+              "FrontMaxRange 2000\nBattery 13\n"),
       "a.p");
   EXPECT_EQ(p.name, "Erratic");
   EXPECT_DOUBLE_EQ(p.max_rotation_velocity, radians(90));
@@ -319,6 +327,87 @@ TEST(Parameters, KeywordsInAnyCaseAndOrder) {
   EXPECT_DOUBLE_EQ(p.front_max_range, 2.0);
   EXPECT_DOUBLE_EQ(p.battery, 13.0);
   EXPECT_EQ(p.sonars.size(), 1U);
+}
+
+// What ARIA writes: sections, units of other equipment, columns beyond ours, comments that are
+// broken over two lines, and zeros for what the robot is to decide.
+constexpr const char* kAriaForm =
+    "ConfigVersion 2.0\n"
+    "Section General settings\n"
+    "Class Pioneer            ; general type\n"
+    "Subclass p3dx-sh\n"
+    "RobotRadius 250.00000\nRobotDiagonal 120.00000\nRobotLengthFront 210.0\n"
+    "MaxRVelocity 500\nMaxVelocity 2200\nHolonomic true\n"
+    "Section Conversion factors\n"
+    "AngleConvFactor 0.00153\nDistConvFactor 1.00000\nVelConvFactor 1.00000\n"
+    "RangeConvFactor 1.00000\nDiffConvFactor 0.00560\nVel2Divisor 20.00000\nGyroScaler 1.626\n"
+    "Section Movement control parameters\n"
+    "SettableAccsDecs true\nTransAccel 0   ; 0: the robot's own\nRotDecel 0\nTransDecel 400\n"
+    "Section Sonar parameters\n"
+    "SonarNum 2\n"
+    ";  SonarUnit <number> <x, mm> <y, mm> <heading of the disc,\n"
+    " degrees> <board>\n"
+    "SonarUnit 0 69 136 90 1 2 10\n"
+    "SonarUnit 1 114 119 50\n"
+    "Section SonarBoard_1\n"
+    "SonarMaxRange 4335\nSonarBoardPort\n"
+    "Section Laser parameters\n"
+    "LaserX 21\n"
+    "Section Laser 2 parameters\n"
+    "LaserX 0\n";
+
+TEST(Parameters, AFileInTheFormOfAria) {
+  const auto p = parse_parameters(kAriaForm, "aria.p");
+  EXPECT_EQ(p.subclass, "p3dx-sh");
+  EXPECT_EQ(p.protocol, Protocol::kArcos);
+  EXPECT_TRUE(p.move_command);
+  EXPECT_DOUBLE_EQ(p.radius, 0.25);
+  EXPECT_DOUBLE_EQ(p.max_velocity, 2.2);
+  EXPECT_DOUBLE_EQ(p.acceleration, RobotParameters{}.acceleration);
+  EXPECT_DOUBLE_EQ(p.deceleration, 0.4);
+  EXPECT_DOUBLE_EQ(p.sonar_max_range, RobotParameters{}.sonar_max_range);
+  ASSERT_EQ(p.sonars.size(), 2U);
+  EXPECT_DOUBLE_EQ(p.sonars[1].pose_in_robot.th, radians(50));
+}
+
+// A file that was cut off anywhere is refused with a message that names the place, or nothing that
+// counts was lost.
+void expect_no_silent_cut(const std::string& text) {
+  auto whole = parse_parameters(text, "cut.p");
+  whole.warnings.clear();
+  int refused = 0;
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    try {
+      auto cut = parse_parameters(std::string_view(text).substr(0, size), "cut.p");
+      cut.warnings.clear();
+      EXPECT_EQ(cut, whole) << "silently cut to " << size << " of " << text.size() << " bytes";
+    } catch (const FileError& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what())
+                    .find("cut.p:" + std::to_string(error.line()) + ":" +
+                          std::to_string(error.column()) + ": expected"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST(CutFiles, OfEveryShippedRobotAreNoticed) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source("config/robots"))) {
+    if (entry.path().extension() != ".p")
+      continue;
+    SCOPED_TRACE(entry.path());
+    expect_no_silent_cut(read_file(entry.path().string()));
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+TEST(CutFiles, OfTheManualAndOfAriaAreNoticed) {
+  expect_no_silent_cut(read_file(source("bridge/protocol/test/data/manual-sample.p")));
+  expect_no_silent_cut(kAriaForm);
 }
 
 using test::Broken;
@@ -340,7 +429,10 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"RobotRadius 1\n\nrobotradius 2\n", 3, 1, "line 1"},
         Broken{"SonarNum 2\nSonarUnit 0 1 2 3\n", 1, 10, "SonarUnit 1 is missing"},
         Broken{"SonarNum 1.5\n", 1, 10, "whole number"}, Broken{"SonarNum 65\n", 1, 10, "between"},
-        Broken{"SonarUnit 0 1 2 3\n", 1, 1, "SonarNum"},
+        Broken{"SonarUnit 0 1 2 3\n", 1, 18, "SonarNum"},
+        Broken{"", 1, 1, "expected also AngleConvFactor"}, Broken{";; P", 1, 1, "RobotRadius"},
+        Broken{"Class Pioneer\nRobotRadius 220 ; mm\n", 2, 16, "MaxVelocity, MaxRVelocity"},
+        Broken{"SonarNum 0\nRobotRadius 22", 2, 15, "expected a line break"},
         Broken{"SonarNum 1\nSonarUnit 0 1 2\n", 2, 16, "bearing"},
         Broken{"SonarNum 1\nSonarUnit 0 1 2 3\nSonarUnit 0 1 2 3\n", 3, 11, "once"},
         Broken{"Class\n", 1, 6, "a word"}, Broken{"DistConvFactor 0\n", 1, 16, "between"},

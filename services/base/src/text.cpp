@@ -114,6 +114,18 @@ void LineReader::fail_at(int column, const std::string& message) const {
   throw FileError(file_, line_->number, column, message, line_->text);
 }
 
+void expect_last_line_break(std::string_view text, const std::string& file) {
+  const std::vector<Line> lines = split_lines(text);
+  if (lines.empty())
+    return;
+  const Word& last = lines.back().words.back();
+  if (last.text.data() + last.text.size() != text.data() + text.size())
+    return;
+  throw FileError(file, lines.back().number, last.column + static_cast<int>(last.text.size()),
+                  "expected a line break behind the last line (has the file been cut off?)",
+                  lines.back().text);
+}
+
 std::string read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in)

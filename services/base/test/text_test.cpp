@@ -33,6 +33,18 @@ TEST(Text, ErrorNamesThePlaceAndWhatWasExpected) {
   }
 }
 
+TEST(Text, ATextThatEndsWithinAWordWasCutOff) {
+  for (const char* whole : {"", "; comment", "a 1\n", "a 1\r", "a 1 ", "a 1; comment", "a 1\n\n"})
+    EXPECT_NO_THROW(expect_last_line_break(whole, "a.p")) << whole;
+  try {
+    expect_last_line_break("a 100\n\nb 20", "a.p");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.line(), 3);
+    EXPECT_EQ(error.column(), 5);
+  }
+}
+
 TEST(Text, MissingAndSurplusWordsAreErrors) {
   const auto lines = split_lines("push 1 2\npop 3\nn 2.5\nn 1e999\nn nan\nn 7");
   LineReader push("f", lines[0]);

@@ -13,6 +13,8 @@ namespace saphira::protocol {
 struct SonarUnit {
   std::uint8_t number = 0;
   Pose pose_in_robot;  ///< of the transducer, looking along its heading
+
+  bool operator==(const SonarUnit&) const = default;
 };
 
 /// Which generation of server the robot runs; it says what packets look like and which commands
@@ -92,11 +94,14 @@ struct RobotParameters {
 
   /// Oddities that do no harm, as lines to print ("file:line: ..."): units beyond SonarNum.
   std::vector<std::string> warnings;
+
+  bool operator==(const RobotParameters&) const = default;
 };
 
 /// Reads the text of a parameter file; `file` names it in errors. Keywords may stand in any order
-/// and case, each at most once; the value may stand on the line behind its keyword. FileError where
-/// it is wrong.
+/// and case, each at most once; the value may stand on the line behind its keyword. Of a file in
+/// ARIA's form, with sections, what is not known is passed over. FileError where it is wrong, where
+/// what no robot can do without is missing, and where the last line has no line break.
 RobotParameters parse_parameters(std::string_view text, const std::string& file);
 
 /// The same from a file.

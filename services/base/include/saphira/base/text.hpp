@@ -71,6 +71,10 @@ class LineReader {
   std::size_t next_ = 0;
 };
 
+/// FileError where the text ends within a word. Where a file was cut off, half a number would be
+/// read as a whole one; so the last line of a file that must be whole has a line break.
+void expect_last_line_break(std::string_view text, const std::string& file);
+
 /// The whole content of a file; std::runtime_error that names it where it cannot be read.
 std::string read_file(const std::string& path);
 
