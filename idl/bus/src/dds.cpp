@@ -17,15 +17,19 @@
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
-#include <mutex>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "dds_convert.hpp"
 #include "dds_discovery.hpp"
 #include "dds_network.hpp"
+#include "dds_presence.hpp"
+#include "dds_qos.hpp"
 #include "dds_types.hpp"
 #include "internal.hpp"
+#include "peers.hpp"
+#include "saphira/bus/topics.hpp"
 
 namespace saphira::bus::internal {
 namespace {
@@ -39,8 +43,8 @@ constexpr std::uint32_t kMaxDomain = 232;
 // The participant and what its endpoints share; lives as long as the last of them.
 class Bus {
  public:
-  Bus(const NodeOptions& options, std::shared_ptr<Wake> the_wake)
-      : wake(std::move(the_wake)), discovery(wake), robot(options.robot) {
+  Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> the_wake)
+      : wake(std::move(the_wake)), peers(wake), discovery(wake, peers), robot(options.robot) {
     if (options.domain > kMaxDomain)
       throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
                                std::to_string(kMaxDomain) + "]");
@@ -68,6 +72,9 @@ class Bus {
       throw std::runtime_error("no bus on domain " + std::to_string(options.domain) +
                                ": no network socket could be opened for it");
     }
+    presence_ = std::make_unique<Presence>(
+        peers, instance, topic(topics::kPresence.name, type_of<v1::Presence>().name), publisher,
+        subscriber);
   }
   ~Bus() { close(); }
   Bus(const Bus&) = delete;
@@ -80,6 +87,7 @@ class Bus {
   }
 
   const std::shared_ptr<Wake> wake;
+  Peers peers;
   Discovery discovery;
   const std::string robot;
   fdds::DomainParticipant* participant = nullptr;
@@ -88,10 +96,13 @@ class Bus {
 
  private:
   void close() {
+    presence_.reset();
     participant->set_listener(nullptr);
     participant->delete_contained_entities();
     fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
   }
+
+  std::unique_ptr<Presence> presence_;
 };
 
 EndpointEntry own_entry(const Bus& bus, const char* topic, const TypeInfo& type,
@@ -106,25 +117,6 @@ EndpointEntry own_entry(const Bus& bus, const char* topic, const TypeInfo& type,
   own.liveliness = "automatic";
   own.ownership = "shared";
   return own;
-}
-
-template <class Q>
-void set_common_qos(Q& qos, const Policies& policies, int depth) {
-  qos.reliability().kind =
-      policies.reliable ? fdds::RELIABLE_RELIABILITY_QOS : fdds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.durability().kind = policies.transient_local ? fdds::TRANSIENT_LOCAL_DURABILITY_QOS
-                                                   : fdds::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = fdds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = depth;
-  // 0 is infinite. The default of ten instances makes the eleventh key's write fail.
-  qos.resource_limits().max_samples = 0;
-  qos.resource_limits().max_instances = 0;
-  qos.resource_limits().max_samples_per_instance = 0;
-  qos.endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
-  // AUTO would leave files in /dev/shm after a kill, even with UDP as the only transport.
-  qos.data_sharing().off();
-  if (policies.lifespan_ms > 0)
-    qos.lifespan().duration = milliseconds(policies.lifespan_ms);
 }
 
 class DdsWriter : public RawWriter, public fdds::DataWriterListener {
@@ -142,18 +134,22 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
     if (policies.heartbeat_ms > 0)
       qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(policies.heartbeat_ms);
     auto* dds_topic = bus_->topic(topic, type.name);
+    bus_->peers.add(ends_);
     if (dds_topic != nullptr)
       writer_ = bus_->publisher->create_datawriter(
           dds_topic, qos, this,
           fdds::StatusMask::publication_matched() << fdds::StatusMask::offered_incompatible_qos());
-    if (writer_ == nullptr)
+    if (writer_ == nullptr) {
+      bus_->peers.remove(ends_);
       throw std::runtime_error(std::string("no writer on topic ") + topic);
+    }
     own_.id = to_hex(to_id(writer_->guid()));
     bus_->discovery.add_own(own_);
   }
   ~DdsWriter() override {
     writer_->set_listener(nullptr);
     bus_->publisher->delete_datawriter(writer_);
+    bus_->peers.remove(ends_);
     bus_->discovery.remove_own(own_.id);
   }
   DdsWriter(const DdsWriter&) = delete;
@@ -170,14 +166,28 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
            ReturnCode_t::RETCODE_OK;
   }
   bool wait_acknowledged(int timeout_ms) override {
-    return writer_->wait_for_acknowledgments(milliseconds(timeout_ms)) == ReturnCode_t::RETCODE_OK;
+    // Fast DDS does not say which reader has not acknowledged. One that is gone never will, and the
+    // others have it, or have asked for it again, within a few heartbeats.
+    constexpr int kSlice = 50;
+    constexpr int kHeartbeats = 400;
+    for (int waited = 0; waited < timeout_ms; waited += kSlice) {
+      const int slice = std::min(kSlice, timeout_ms - waited);
+      if (writer_->wait_for_acknowledgments(milliseconds(slice)) == ReturnCode_t::RETCODE_OK)
+        return true;
+      if (waited + slice >= kHeartbeats && ends_.present() > 0 && bus_->peers.any_absent(ends_))
+        return true;
+    }
+    return false;
   }
-  std::size_t matched() const override { return matched_; }
+  std::size_t matched() const override { return ends_.present(); }
 
   void on_publication_matched(fdds::DataWriter* /*writer*/,
                               const fdds::PublicationMatchedStatus& status) override {
-    matched_ = static_cast<std::size_t>(std::max(0, status.current_count));
-    bus_->wake->signal();
+    const WriterId other = to_id(status.last_subscription_handle);
+    if (status.current_count_change > 0)
+      bus_->peers.match(ends_, other);
+    else
+      bus_->peers.unmatch(ends_, other);
   }
   void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
                                    const fdds::OfferedIncompatibleQosStatus& status) override {
@@ -188,7 +198,7 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
   std::shared_ptr<Bus> bus_;
   EndpointEntry own_;
   fdds::DataWriter* writer_ = nullptr;
-  std::atomic<std::size_t> matched_{0};
+  Ends ends_;
 };
 
 class DdsReader : public RawReader, public fdds::DataReaderListener {
@@ -208,19 +218,23 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
       qos.resource_limits().allocated_samples = 1;
     }
     auto* dds_topic = bus_->topic(topic, type.name);
+    bus_->peers.add(ends_);
     if (dds_topic != nullptr)
       reader_ = bus_->subscriber->create_datareader(
           dds_topic, qos, this,
           fdds::StatusMask::data_available() << fdds::StatusMask::subscription_matched()
                                              << fdds::StatusMask::requested_incompatible_qos());
-    if (reader_ == nullptr)
+    if (reader_ == nullptr) {
+      bus_->peers.remove(ends_);
       throw std::runtime_error(std::string("no reader on topic ") + topic);
+    }
     own_.id = to_hex(to_id(reader_->guid()));
     bus_->discovery.add_own(own_);
   }
   ~DdsReader() override {
     reader_->set_listener(nullptr);
     bus_->subscriber->delete_datareader(reader_);
+    bus_->peers.remove(ends_);
     bus_->discovery.remove_own(own_.id);
   }
   DdsReader(const DdsReader&) = delete;
@@ -248,21 +262,17 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
     }
   }
 
-  std::vector<WriterId> take_lost() override {
-    const std::scoped_lock lock(mutex_);
-    return std::exchange(lost_, {});
-  }
-  std::size_t matched() const override { return matched_; }
+  std::vector<WriterId> take_lost() override { return bus_->peers.take_lost(ends_); }
+  std::size_t matched() const override { return ends_.present(); }
 
   void on_data_available(fdds::DataReader* /*reader*/) override { bus_->wake->signal(); }
   void on_subscription_matched(fdds::DataReader* /*reader*/,
                                const fdds::SubscriptionMatchedStatus& status) override {
-    matched_ = static_cast<std::size_t>(std::max(0, status.current_count));
-    if (status.current_count_change < 0) {
-      const std::scoped_lock lock(mutex_);
-      lost_.push_back(to_id(status.last_publication_handle));
-    }
-    bus_->wake->signal();
+    const WriterId other = to_id(status.last_publication_handle);
+    if (status.current_count_change > 0)
+      bus_->peers.match(ends_, other);
+    else
+      bus_->peers.unmatch(ends_, other);
   }
   void on_requested_incompatible_qos(fdds::DataReader* /*reader*/,
                                      const fdds::RequestedIncompatibleQosStatus& status) override {
@@ -286,15 +296,13 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
   fdds::DataReader* reader_ = nullptr;
   Holder scratch_;
   std::map<rtps::InstanceHandle_t, Holder> last_;
-  std::atomic<std::size_t> matched_{0};
-  std::mutex mutex_;
-  std::vector<WriterId> lost_;
+  Ends ends_;
 };
 
 class DdsTransport : public Transport {
  public:
-  DdsTransport(const NodeOptions& options, std::shared_ptr<Wake> wake)
-      : bus_(std::make_shared<Bus>(options, std::move(wake))) {}
+  DdsTransport(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> wake)
+      : bus_(std::make_shared<Bus>(options, instance, std::move(wake))) {}
 
   std::unique_ptr<RawWriter> make_writer(const char* topic, const Policies& policies,
                                          const TypeInfo& type) override {
@@ -314,9 +322,9 @@ class DdsTransport : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options,
+std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options, std::uint64_t instance,
                                               std::shared_ptr<Wake> wake) {
-  return std::make_unique<DdsTransport>(options, std::move(wake));
+  return std::make_unique<DdsTransport>(options, instance, std::move(wake));
 }
 
 }  // namespace saphira::bus::internal

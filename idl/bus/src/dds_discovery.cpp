@@ -106,11 +106,16 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   using Info = rtps::ParticipantDiscoveryInfo;
   const std::scoped_lock lock(mutex_);
   const auto& prefix = info.info.m_guid.guidPrefix;
+  Program& program = programs_[prefix];
   if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
-    programs_.erase(prefix);
-    std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
+    // Fast DDS may tell that a program was found again before it tells that it was dropped.
+    if (--program.discovered <= 0) {
+      programs_.erase(prefix);
+      std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
+    }
   } else {
-    Program& program = programs_[prefix];
+    if (info.status == Info::DISCOVERED_PARTICIPANT)
+      ++program.discovered;
     program.name = info.info.m_participantName.to_string();
     const auto& bytes = info.info.m_userData.data_vec();
     const std::string data(bytes.begin(), bytes.end());
@@ -154,7 +159,8 @@ std::vector<EndpointEntry> Discovery::endpoints() const {
   std::vector<EndpointEntry> result;
   result.reserve(endpoints_.size());
   for (const auto& [guid, endpoint] : endpoints_)
-    result.push_back(with_program(guid, endpoint));
+    if (!peers_.absent(Peers::program_of(to_id(guid))))
+      result.push_back(with_program(guid, endpoint));
   return result;
 }
 

@@ -13,13 +13,15 @@
 #include <vector>
 
 #include "internal.hpp"
+#include "peers.hpp"
 
 namespace saphira::bus::internal {
 
 /// What was discovered of others, and what did not match. Filled by Fast DDS's threads.
 class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  explicit Discovery(std::shared_ptr<Wake> wake) : wake_(std::move(wake)) {}
+  Discovery(std::shared_ptr<Wake> wake, const Peers& peers)
+      : wake_(std::move(wake)), peers_(peers) {}
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -46,6 +48,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
     std::string name;
     std::string host;
     std::uint32_t pid = 0;
+    int discovered = 0;  ///< less how often it was dropped
   };
 
   EndpointEntry with_program(const eprosima::fastrtps::rtps::GUID_t& guid,
@@ -68,6 +71,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   void changed();
 
   const std::shared_ptr<Wake> wake_;
+  const Peers& peers_;
   std::atomic<bool> watched_{false};
   mutable std::mutex mutex_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, Program> programs_;

@@ -26,11 +26,11 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 // How many programs of one machine can be found by a peer that knows nothing but its address.
 constexpr std::uint32_t kProgramsPerPeer = 12;
-// [ms] after which a program that has died without a word is taken for gone. Longer than programs
-// and networks usually stand still: who was taken for gone by one side alone, for standing still
-// about so long, is not heard again by that side (Fast DDS 2.9 keeps the other side's half of the
-// match).
-constexpr int kLease = 10000;
+// [ms] of silence after which discovery drops a program. Long: one that stood still and comes back
+// before is still matched, while one that was dropped by one side alone may never be heard again by
+// that side (Fast DDS 2.9 keeps the other side's half of the match). That a program has died is
+// noticed by its presence.
+constexpr int kLease = 60000;
 // [ms] between two announcements of a program: what a restarted one waits at the most until it is
 // found.
 constexpr int kAnnouncement = 250;

@@ -70,7 +70,8 @@ class Transport {
   virtual void watch_endpoints(bool watch) = 0;
 };
 
-std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options,
+/// instance: as in ServiceStatus.
+std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options, std::uint64_t instance,
                                               std::shared_ptr<Wake> wake);
 std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
                                                  std::shared_ptr<MemoryBus> bus,

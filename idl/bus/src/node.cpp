@@ -53,10 +53,11 @@ std::uint64_t random_instance() {
 }  // namespace
 
 struct Node::Impl {
-  explicit Impl(NodeOptions the_options) : options(std::move(the_options)) {}
+  explicit Impl(NodeOptions the_options) : options(std::move(the_options)) {
+    status.instance() = random_instance();
+  }
 
   void start() {
-    status.instance() = random_instance();
     status.name() = options.name;
     status.host() = internal::host_name();
     status.pid() = static_cast<std::uint32_t>(getpid());
@@ -112,7 +113,8 @@ struct Node::Impl {
 };
 
 Node::Node(NodeOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
-  impl_->transport = internal::make_dds_transport(impl_->options, impl_->wake);
+  impl_->transport =
+      internal::make_dds_transport(impl_->options, impl_->status.instance(), impl_->wake);
   impl_->start();
 }
 

@@ -1,0 +1,119 @@
+#include "peers.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace saphira::bus::internal {
+
+Peers::Program Peers::program_of(const WriterId& endpoint) {
+  Program program{};
+  std::copy_n(endpoint.begin(), program.size(), program.begin());
+  return program;
+}
+
+void Peers::add(Ends& ends) {
+  const std::scoped_lock lock(mutex_);
+  ends_.insert(&ends);
+}
+
+void Peers::remove(Ends& ends) {
+  const std::scoped_lock lock(mutex_);
+  ends_.erase(&ends);
+}
+
+void Peers::match(Ends& ends, const WriterId& other) {
+  const std::scoped_lock lock(mutex_);
+  ends.matched_.insert(other);
+  count(ends);
+  wake_->signal();
+}
+
+void Peers::unmatch(Ends& ends, const WriterId& other) {
+  const std::scoped_lock lock(mutex_);
+  if (ends.matched_.erase(other) == 0)
+    return;
+  const auto program = programs_.find(program_of(other));
+  if (program == programs_.end() || !program->second.absent)
+    ends.lost_.push_back(other);
+  else if (!program->second.expected && !has_matches(program->first))
+    programs_.erase(program);
+  count(ends);
+  wake_->signal();
+}
+
+std::vector<WriterId> Peers::take_lost(Ends& ends) {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(ends.lost_, {});
+}
+
+bool Peers::any_absent(const Ends& ends) const {
+  const std::scoped_lock lock(mutex_);
+  return ends.present_ < ends.matched_.size();
+}
+
+void Peers::expect(const Program& program) {
+  const std::scoped_lock lock(mutex_);
+  programs_[program].expected = true;
+}
+
+void Peers::forget(const Program& program) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = programs_.find(program);
+  if (found == programs_.end())
+    return;
+  // Of one that is absent the other matches end soon as well, and were told as lost already.
+  if (found->second.absent && has_matches(program))
+    found->second.expected = false;
+  else
+    programs_.erase(found);
+}
+
+void Peers::tick(const std::set<Program>& heard) {
+  const std::scoped_lock lock(mutex_);
+  for (auto& [program, silence] : programs_) {
+    if (heard.contains(program)) {
+      silence.ticks = 0;
+      silence.heard = true;
+    } else if (!silence.absent) {
+      ++silence.ticks;
+    }
+    const bool absent = silence.ticks >= (silence.heard ? kSilent : kSilentAtFirst);
+    if (std::exchange(silence.absent, absent) != absent)
+      change(program, absent);
+  }
+}
+
+bool Peers::absent(const Program& program) const {
+  const std::scoped_lock lock(mutex_);
+  return is_absent(program);
+}
+
+bool Peers::is_absent(const Program& program) const {
+  const auto found = programs_.find(program);
+  return found != programs_.end() && found->second.absent;
+}
+
+void Peers::count(Ends& ends) const {
+  ends.present_ = static_cast<std::size_t>(
+      std::count_if(ends.matched_.begin(), ends.matched_.end(),
+                    [&](const WriterId& other) { return !is_absent(program_of(other)); }));
+}
+
+void Peers::change(const Program& program, bool absent) {
+  for (Ends* ends : ends_) {
+    if (absent)
+      std::copy_if(ends->matched_.begin(), ends->matched_.end(), std::back_inserter(ends->lost_),
+                   [&](const WriterId& other) { return program_of(other) == program; });
+    count(*ends);
+  }
+  wake_->signal();
+}
+
+bool Peers::has_matches(const Program& program) const {
+  return std::any_of(ends_.begin(), ends_.end(), [&](const Ends* ends) {
+    return std::any_of(ends->matched_.begin(), ends->matched_.end(),
+                       [&](const WriterId& other) { return program_of(other) == program; });
+  });
+}
+
+}  // namespace saphira::bus::internal

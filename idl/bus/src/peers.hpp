@@ -1,0 +1,90 @@
+#pragma once
+
+// Which of the programs that a node is matched with are there. Pure bookkeeping: no DDS, no clock.
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <vector>
+
+#include "internal.hpp"
+
+namespace saphira::bus::internal {
+
+/// The other ends that one endpoint is matched with.
+class Ends {
+ public:
+  /// Those whose program is there.
+  std::size_t present() const { return present_; }
+
+ private:
+  friend class Peers;
+
+  std::set<WriterId> matched_;
+  std::vector<WriterId> lost_;
+  std::atomic<std::size_t> present_{0};
+};
+
+/// A program that is killed stays matched until its participant's lease is over, which is long, so
+/// that a program that stood still for a while is not taken for gone and discovered anew. Its
+/// presence is missed within a second: from then on its endpoints count as unmatched, until it is
+/// heard again.
+///
+/// Silence is counted in ticks of this program's own, not by a clock: a program that stood still
+/// itself does not take all others for dead.
+class Peers {
+ public:
+  /// What the endpoints of a program have in common: the first part of their ids.
+  using Program = std::array<std::uint8_t, 12>;
+  static Program program_of(const WriterId& endpoint);
+
+  static constexpr int kTickMs = 100;
+  /// Ticks of silence after which a program counts as gone.
+  static constexpr int kSilent = 7;
+  /// The same for a program that was never heard: it may still be on its way to find our reader.
+  static constexpr int kSilentAtFirst = 50;
+
+  explicit Peers(std::shared_ptr<Wake> wake) : wake_(std::move(wake)) {}
+
+  // An endpoint of this node and the matches that are made and ended by discovery.
+  void add(Ends& ends);
+  void remove(Ends& ends);
+  void match(Ends& ends, const WriterId& other);
+  void unmatch(Ends& ends, const WriterId& other);
+  /// Other ends that are gone since the last call, by discovery or by their program's silence.
+  std::vector<WriterId> take_lost(Ends& ends);
+  /// Whether one of them is matched and not there.
+  bool any_absent(const Ends& ends) const;
+
+  // The presence of the others. A program of which none is expected is judged by discovery alone.
+  void expect(const Program& program);
+  void forget(const Program& program);
+  /// Ten times a second, with the programs that were heard since the last time.
+  void tick(const std::set<Program>& heard);
+  bool absent(const Program& program) const;
+
+ private:
+  struct Silence {
+    int ticks = 0;
+    bool heard = false;
+    bool absent = false;
+    bool expected = true;
+  };
+
+  bool is_absent(const Program& program) const;
+  void count(Ends& ends) const;
+  void change(const Program& program, bool absent);
+  bool has_matches(const Program& program) const;
+
+  const std::shared_ptr<Wake> wake_;
+  mutable std::mutex mutex_;
+  std::set<Ends*> ends_;
+  std::map<Program, Silence> programs_;
+};
+
+}  // namespace saphira::bus::internal

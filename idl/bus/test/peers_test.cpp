@@ -1,0 +1,116 @@
+// Which programs are there, by ticks of this one.
+#include "peers.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::bus::internal {
+namespace {
+
+WriterId end_of(std::uint8_t program, std::uint8_t endpoint) {
+  WriterId id{};
+  id[0] = program;
+  id[15] = endpoint;
+  return id;
+}
+
+Peers::Program program(std::uint8_t number) {
+  return Peers::program_of(end_of(number, 0));
+}
+
+class PeersTest : public testing::Test {
+ protected:
+  PeersTest() {
+    peers_.add(ends_);
+    peers_.match(ends_, end_of(1, 1));
+    peers_.match(ends_, end_of(1, 2));
+    peers_.match(ends_, end_of(2, 1));
+    peers_.expect(program(1));
+    peers_.tick({program(1)});
+    wake_->clear();
+  }
+  void silence(int ticks) {
+    for (int i = 0; i < ticks; ++i)
+      peers_.tick({});
+  }
+
+  std::shared_ptr<Wake> wake_ = std::make_shared<Wake>();
+  Peers peers_{wake_};
+  Ends ends_;
+};
+
+TEST_F(PeersTest, SilentProgramIsLostOnceWithAllItsEnds) {
+  silence(Peers::kSilent - 1);
+  EXPECT_EQ(ends_.present(), 3U);
+  EXPECT_FALSE(wake_->pending());
+  peers_.tick({});
+  EXPECT_TRUE(wake_->pending());
+  EXPECT_TRUE(peers_.absent(program(1)));
+  EXPECT_TRUE(peers_.any_absent(ends_));
+  EXPECT_EQ(ends_.present(), 1U);
+  EXPECT_EQ(peers_.take_lost(ends_), (std::vector<WriterId>{end_of(1, 1), end_of(1, 2)}));
+  silence(10 * Peers::kSilent);
+  EXPECT_TRUE(peers_.take_lost(ends_).empty());
+}
+
+TEST_F(PeersTest, ProgramWithoutPresenceIsJudgedByDiscoveryAlone) {
+  silence(10 * Peers::kSilentAtFirst);
+  EXPECT_FALSE(peers_.absent(program(2)));
+  peers_.take_lost(ends_);
+  peers_.unmatch(ends_, end_of(2, 1));
+  EXPECT_EQ(peers_.take_lost(ends_), std::vector<WriterId>{end_of(2, 1)});
+}
+
+TEST_F(PeersTest, ProgramThatIsHeardAgainIsThereAgain) {
+  silence(Peers::kSilent);
+  peers_.take_lost(ends_);
+  wake_->clear();
+  peers_.tick({program(1)});
+  EXPECT_TRUE(wake_->pending());
+  EXPECT_EQ(ends_.present(), 3U);
+  EXPECT_FALSE(peers_.any_absent(ends_));
+  silence(Peers::kSilent);  // and may be lost again
+  EXPECT_EQ(peers_.take_lost(ends_).size(), 2U);
+}
+
+TEST_F(PeersTest, ProgramThatIsExpectedAndNotHeardHasMoreTime) {
+  peers_.expect(program(2));
+  silence(Peers::kSilentAtFirst - 1);
+  EXPECT_FALSE(peers_.absent(program(2)));
+  peers_.tick({});
+  EXPECT_TRUE(peers_.absent(program(2)));
+}
+
+TEST_F(PeersTest, EndOfAnAbsentProgramIsNotLostASecondTime) {
+  silence(Peers::kSilent);
+  EXPECT_EQ(peers_.take_lost(ends_).size(), 2U);
+  // Discovery drops it, in whatever order.
+  peers_.unmatch(ends_, end_of(1, 1));
+  peers_.forget(program(1));
+  peers_.unmatch(ends_, end_of(1, 2));
+  EXPECT_TRUE(peers_.take_lost(ends_).empty());
+  EXPECT_EQ(ends_.present(), 1U);
+  // Found anew: nothing of its past is left.
+  peers_.match(ends_, end_of(1, 1));
+  EXPECT_EQ(ends_.present(), 2U);
+  EXPECT_FALSE(peers_.absent(program(1)));
+}
+
+TEST_F(PeersTest, ProgramThatEndsInGoodOrderIsLostOnce) {
+  peers_.forget(program(1));
+  peers_.unmatch(ends_, end_of(1, 1));
+  peers_.unmatch(ends_, end_of(1, 2));
+  EXPECT_EQ(peers_.take_lost(ends_).size(), 2U);
+  silence(Peers::kSilent);
+  EXPECT_TRUE(peers_.take_lost(ends_).empty());
+}
+
+TEST_F(PeersTest, MatchOfAnAbsentProgramCountsWhenItIsHeard) {
+  silence(Peers::kSilent);
+  peers_.match(ends_, end_of(1, 3));
+  EXPECT_EQ(ends_.present(), 1U);
+  peers_.tick({program(1)});
+  EXPECT_EQ(ends_.present(), 4U);
+}
+
+}  // namespace
+}  // namespace saphira::bus::internal
