@@ -245,7 +245,9 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
     while (reader_->take_next_sample(scratch_.get(), &dds_info) == ReturnCode_t::RETCODE_OK) {
       SampleInfo info;
       info.writer = to_id(dds_info.sample_identity.writer_guid());
-      if (dds_info.valid_data) {
+      if (internal::take_malformed()) {
+        bus_->discovery.add_malformed(own_.topic, dds_info.sample_identity.writer_guid());
+      } else if (dds_info.valid_data) {
         if (type_.keyed)
           remember(dds_info.instance_handle);
         each(scratch_.get(), info);
@@ -314,6 +316,7 @@ class DdsTransport : public Transport {
   }
   std::vector<EndpointEntry> endpoints() const override { return bus_->discovery.endpoints(); }
   std::vector<std::string> take_troubles() override { return bus_->discovery.take_troubles(); }
+  Malformed take_malformed() override { return bus_->discovery.take_malformed(); }
   void watch_endpoints(bool watch) override { bus_->discovery.watch(watch); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <sstream>
+#include <utility>
 
 #include "dds_convert.hpp"
 
@@ -15,6 +16,8 @@ namespace {
 
 // Until an endpoint that does not match is told by its policy alone: it is usually known sooner.
 constexpr std::chrono::seconds kUnexplained{2};
+// Mistakes that are told. Whoever makes more of them makes them up.
+constexpr std::size_t kMostTold = 1000;
 
 const char* policy_name(fdds::QosPolicyId_t id) {
   switch (id) {
@@ -141,6 +144,25 @@ void Discovery::add_incompatible(const std::string& topic, bool own_writes,
   const std::scoped_lock lock(mutex_);
   incompatible_.try_emplace({topic, own_writes, policy_name(policy)}, Clock::now());
   wake_->signal();
+}
+
+void Discovery::add_malformed(const std::string& topic, const rtps::GUID_t& writer) {
+  const std::scoped_lock lock(mutex_);
+  ++malformed_.count;
+  if (told_.size() >= kMostTold ||
+      !told_.insert({"malformed " + topic, to_hex(to_id(writer))}).second)
+    return;
+  EndpointEntry from;
+  from.writer = true;
+  malformed_.texts.push_back("topic " + topic + ": refused a malformed sample of " +
+                             name(with_program(writer, from)) +
+                             "; further ones are only counted (refused_samples)");
+  wake_->signal();
+}
+
+Malformed Discovery::take_malformed() {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(malformed_, {});
 }
 
 void Discovery::add_own(const EndpointEntry& own) {

@@ -35,12 +35,15 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   /// made or the other's is told.
   void add_incompatible(const std::string& topic, bool own_writes,
                         eprosima::fastdds::dds::QosPolicyId_t policy);
+  /// A sample that is none of the topic's type.
+  void add_malformed(const std::string& topic, const eprosima::fastrtps::rtps::GUID_t& writer);
   void add_own(const EndpointEntry& own);
   void remove_own(const std::string& id);
 
   /// As Transport has them.
   std::vector<EndpointEntry> endpoints() const;
   std::vector<std::string> take_troubles();
+  Malformed take_malformed();
   void watch(bool on) { watched_ = on; }
 
  private:
@@ -79,6 +82,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   std::vector<EndpointEntry> own_;
   std::map<Incompatible, std::chrono::steady_clock::time_point> incompatible_;  ///< since when
   std::set<std::pair<std::string, std::string>> told_;
+  Malformed malformed_;
   bool type_check_due_ = false;
 };
 

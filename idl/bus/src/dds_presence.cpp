@@ -10,6 +10,7 @@
 
 #include "dds_convert.hpp"
 #include "dds_qos.hpp"
+#include "dds_types.hpp"
 #include "saphira/bus/topics.hpp"
 
 namespace saphira::bus::internal {
@@ -68,7 +69,7 @@ void Presence::run() {
     v1::Presence sample;
     fdds::SampleInfo info;
     while (reader_->take_next_sample(&sample, &info) == ReturnCode_t::RETCODE_OK)
-      if (info.valid_data)
+      if (info.valid_data && !take_malformed())
         heard.insert(Peers::program_of(to_id(info.sample_identity.writer_guid())));
     peers_.tick(heard);
     ended_.wait_for(lock, std::chrono::milliseconds(Peers::kTickMs));

@@ -1,6 +1,8 @@
 #include "dds_types.hpp"
 
+#include <exception>
 #include <mutex>
+#include <utility>
 
 #include "behaviorPubSubTypes.h"
 #include "devicePubSubTypes.h"
@@ -15,15 +17,42 @@
 namespace saphira::bus::internal {
 namespace {
 
-// The generated getKey works in a buffer of the object, and one object serves every endpoint of
-// a participant: a write by the program and a sample received by the transport would meet in it.
+thread_local bool last_was_malformed = false;
+
+/// What the generated code lacks. It throws at a sample that is not of its type, through the thread
+/// that takes it or through one of Fast DDS's own, which ends the process. And its getKey works in
+/// a buffer of the object, while one object serves every endpoint of a participant: a write by the
+/// program and a sample received by the transport would meet in it.
 template <class Generated>
-class OneAtATime : public Generated {
+class Guarded : public Generated {
  public:
+  using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+
+  bool serialize(void* data, Payload* payload) override {
+    try {
+      return Generated::serialize(data, payload);
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+  // "Read" also where it was not: what Fast DDS cannot read it does not take from the history, and
+  // one such sample would stand before all later ones.
+  bool deserialize(Payload* payload, void* data) override {
+    last_was_malformed = true;
+    try {
+      last_was_malformed = !Generated::deserialize(payload, data);
+    } catch (const std::exception&) {
+    }
+    return true;
+  }
   bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle,
               bool force_md5) override {
     const std::scoped_lock lock(mutex_);
-    return Generated::getKey(data, handle, force_md5);
+    try {
+      return Generated::getKey(data, handle, force_md5);
+    } catch (const std::exception&) {
+      return false;
+    }
   }
 
  private:
@@ -33,7 +62,7 @@ class OneAtATime : public Generated {
 template <class... Generated>
 std::vector<eprosima::fastdds::dds::TypeSupport> make() {
   std::vector<eprosima::fastdds::dds::TypeSupport> types;
-  (types.emplace_back(new OneAtATime<Generated>), ...);
+  (types.emplace_back(new Guarded<Generated>), ...);
   for (auto& type : types) {
     // With a TypeObject attached, a participant that is discovered meanwhile can crash Fast DDS.
     type->auto_fill_type_object(false);
@@ -60,6 +89,10 @@ std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
               v1::ProcessesPubSubType, v1::ProcessRequestPubSubType, v1::ProcessAnswerPubSubType,
               v1::MessagePubSubType, v1::ServiceStatusPubSubType, v1::PresencePubSubType,
               v1::LogRecordPubSubType>();
+}
+
+bool take_malformed() {
+  return std::exchange(last_was_malformed, false);
 }
 
 }  // namespace saphira::bus::internal

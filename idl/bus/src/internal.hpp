@@ -54,6 +54,12 @@ class Wake {
   std::atomic<bool> written_{false};  ///< fd() is readable
 };
 
+/// Samples that were none of their topic's type, since the last call.
+struct Malformed {
+  std::uint64_t count = 0;
+  std::vector<std::string> texts;  ///< each topic and writer once
+};
+
 /// One node's side of a bus.
 class Transport {
  public:
@@ -66,6 +72,7 @@ class Transport {
   virtual std::vector<EndpointEntry> endpoints() const = 0;
   /// Endpoints that did not match one of this node's since the last call, one text each.
   virtual std::vector<std::string> take_troubles() = 0;
+  virtual Malformed take_malformed() { return {}; }
   /// Whether a change of endpoints() wakes the node.
   virtual void watch_endpoints(bool watch) = 0;
 };

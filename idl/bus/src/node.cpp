@@ -79,6 +79,10 @@ struct Node::Impl {
       log(v1::LOG_ERROR, text);
       health.incompatible_text = std::move(text);
     }
+    const internal::Malformed malformed = transport->take_malformed();
+    status.refused_samples() += malformed.count;
+    for (const auto& text : malformed.texts)
+      log(v1::LOG_WARNING, text);
   }
 
   void log(v1::LogLevel level, const std::string& text) {

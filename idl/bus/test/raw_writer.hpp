@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace saphira::bus::test {
+
+/// A writer outside the library: of any bytes, on any topic, as another vendor's mistake or a
+/// hostile program has it.
+class RawWriter {
+ public:
+  RawWriter(std::uint32_t domain, const std::string& robot, const std::string& topic,
+            const std::string& type, bool keyed);
+  ~RawWriter();
+  RawWriter(const RawWriter&) = delete;
+  RawWriter& operator=(const RawWriter&) = delete;
+
+  bool matched() const;
+  bool write(std::vector<std::uint8_t> bytes);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The bytes of a MotorCommand, with encapsulation.
+std::vector<std::uint8_t> bytes_of_motor_command(double velocity, bool active);
+
+}  // namespace saphira::bus::test
