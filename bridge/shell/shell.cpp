@@ -243,7 +243,7 @@ void Shell::tend_link(double now) {
       lost("the simulator did not make a step within 10 s", now);
     return;
   }
-  if (silence > kDead) {
+  if (now - std::max(last_packet_, last_heard_) > kDead) {
     lost("robot link silent", now);
   } else if (silence > kSilent && !link_silent_) {
     // The age of the link: nobody drives what nobody sees.
@@ -254,7 +254,9 @@ void Shell::tend_link(double now) {
     reflector_.zero_first();
     decide();
     flush(now);
-    node_.warn("robot link silent for 0.5 s: the robot is told to stop");
+    node_.warn(now - last_heard_ > kSilent
+                   ? "robot link silent for 0.5 s: the robot is told to stop"
+                   : "no packet for 0.5 s that can be true: the robot is told to stop");
   }
 }
 
@@ -283,7 +285,16 @@ void Shell::packet(const protocol::Bytes& body, double now) {
   }
   if (epoch_ == 0)
     return;
-  const protocol::ServerPacket any = protocol::decode_packet(body);
+  protocol::ServerPacket any = protocol::decode_packet(body);
+  if (const auto impossible = protocol::take_out_impossible(any, reflector_.parameters())) {
+    doubts_.add(*impossible, now);
+    if (const auto words = doubts_.take_words(now))
+      node_.warn(*words);
+    if (impossible->whole) {
+      last_heard_ = protocol::is_information(body[0]) ? now : last_heard_;
+      return;
+    }
+  }
   if (const auto* in = std::get_if<protocol::InformationPacket>(&any))
     information(*in, now);
   else
@@ -345,6 +356,7 @@ void Shell::opened(double now) {
   grant_ = {};
   guarded_ = {};
   bad_before_ = parser_.counters().bad_packets();
+  doubts_.reset();
   last_packet_ = now;
   link_silent_ = false;
   answered_ = 0;
@@ -365,7 +377,8 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
   stamp_.cycle(stamp_.cycle() + 1);
   const reflector::State& state =
       reflector_.packet(packet, time(), std::max(epoch_, last_odom_ + 1));
-  newest_state_ = to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_);
+  newest_state_ =
+      to_bus(state, stamp_, parser_.counters().bad_packets() - bad_before_ + doubts_.count());
   std::vector<protocol::Bytes> to_camera;
   if (camera_) {
     to_camera = camera_->begin(stamp_.cycle());
@@ -618,7 +631,7 @@ bool Shell::motors_off() const {
   return !in.motors_on.value_or(in.motors != protocol::Motors::kNoPower);
 }
 
-Shell::Condition Shell::condition() const {
+Shell::Condition Shell::condition(double now) const {
   if (!robot_trouble_.empty())
     return {v1::SERVICE_WAITING, robot_trouble_};
   if (namesakes_.any())
@@ -628,6 +641,9 @@ Shell::Condition Shell::condition() const {
     return {v1::SERVICE_WAITING, "robot link: " + link_.trouble()};
   if (!connection_.open())
     return {v1::SERVICE_WAITING, "waits for " + connection_.waiting_for()};
+  const std::string doubt = doubts_.newest(now);
+  if (link_silent_ && !doubt.empty())
+    return {v1::SERVICE_WAITING, doubt};
   if (link_silent_)
     return {v1::SERVICE_WAITING, stamp_.cycle() > 0
                                      ? "robot link silent"
@@ -638,6 +654,8 @@ Shell::Condition Shell::condition() const {
             stepped_ || stamp_.cycle() == 0
                 ? "waits for a permit to step"
                 : "waits for the behaviors' command for cycle " + std::to_string(stamp_.cycle())};
+  if (epoch_ != 0 && !doubt.empty())
+    return {v1::SERVICE_DEGRADED, doubt};
   if (epoch_ != 0 && reflector_.state().information.emergency_stop.value_or(false))
     return {v1::SERVICE_DEGRADED, "the robot's own emergency stop is pressed"};
   if (epoch_ != 0 && stamp_.cycle() > kMotorsCycles && motors_off())
@@ -654,7 +672,7 @@ void Shell::publish_status(double now) {
     return;
   status_at_ = now;
   v1::ServiceStatus& status = node_.status();
-  const Condition condition = this->condition();
+  const Condition condition = this->condition(now);
   status.state(condition.state);
   status.reason(condition.reason);
   status.stamp(stamp_);

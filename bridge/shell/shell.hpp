@@ -9,6 +9,7 @@
 
 #include "camera.hpp"
 #include "device_topics.hpp"
+#include "doubts.hpp"
 #include "namesakes.hpp"
 #include "position_file.hpp"
 #include "saphira/authority/arbiter.hpp"
@@ -81,7 +82,7 @@ class Shell {
     v1::ServiceState state = v1::SERVICE_RUNNING;
     std::string reason;
   };
-  Condition condition() const;
+  Condition condition(double now) const;
   void publish_status(double now);
   void remember();
 
@@ -108,6 +109,7 @@ class Shell {
 
   transport::Link link_;
   protocol::PacketParser parser_;
+  Doubts doubts_;
   reflector::Connection connection_;
   reflector::Reflector reflector_;
   DeviceTopics devices_;
@@ -135,6 +137,7 @@ class Shell {
   double last_loop_ = 0.0;
   double last_bytes_ = 0.0;
   double last_packet_ = 0.0;
+  double last_heard_ = 0.0;  ///< an information packet, though it could not be true
   double last_beat_ = 0.0;
   double hold_off_ = 0.0;    ///< the robot is not asked before
   double expires_at_ = 0.0;  ///< the lease of the one who drives

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "line.hpp"
 #include "process.hpp"
@@ -76,6 +77,10 @@ void ForeignRobot::watch(protocol::Side side, const Wire& bytes) {
 void ForeignRobot::send(const Wire& body) {
   const Wire bytes = packet(body);
   watch(protocol::Side::kServer, bytes);
+  put(bytes);
+}
+
+void ForeignRobot::put(const Wire& bytes) const {
   [[maybe_unused]] const auto sent = ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
@@ -126,8 +131,26 @@ void ForeignRobot::run() {
     x_ = x_ + velocity_ * kPeriod * std::cos(th_ * kPi / 180.0);
     y_ += velocity_ * kPeriod * std::sin(th_ * kPi / 180.0);
     if (open_)
-      send(information());
+      inform();
   }
+}
+
+void ForeignRobot::spoil(std::function<void(Wire&)> how) {
+  const std::lock_guard lock(mutex_);
+  spoil_ = std::move(how);
+}
+
+void ForeignRobot::inform() {
+  const Wire body = information();
+  const Wire bytes = packet(body);
+  watch(protocol::Side::kServer, bytes);
+  Wire spoiled = body;
+  {
+    const std::lock_guard lock(mutex_);
+    if (spoil_)
+      spoil_(spoiled);
+  }
+  put(packet(spoiled));
 }
 
 Wire ForeignRobot::information() const {

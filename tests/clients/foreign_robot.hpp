@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -30,6 +31,9 @@ class ForeignRobot {
   double th() const { return th_; }              ///< [deg]
   bool motors() const { return motors_; }
   bool connected() const { return open_; }
+  /// What is done to each information packet's body before it is sent, from now on; the checker
+  /// does not see it.
+  void spoil(std::function<void(std::vector<std::uint8_t>&)> how);
   /// How often each command has come.
   std::map<int, int> commands() const;
   /// Bytes that were no packet, and what the strict checker says of both sides.
@@ -40,7 +44,9 @@ class ForeignRobot {
   void handle(const std::vector<std::uint8_t>& body);
   std::vector<std::uint8_t> information() const;
   void watch(protocol::Side side, const std::vector<std::uint8_t>& bytes);
+  void inform();
   void send(const std::vector<std::uint8_t>& body);
+  void put(const std::vector<std::uint8_t>& bytes) const;
 
   int listener_ = -1;
   int client_ = -1;
@@ -57,6 +63,7 @@ class ForeignRobot {
   bool heads_ = false;
   int syncs_ = 0;
   mutable std::mutex mutex_;
+  std::function<void(std::vector<std::uint8_t>&)> spoil_;
   std::map<int, int> commands_;
   std::string trouble_;
   protocol::Checker checker_;

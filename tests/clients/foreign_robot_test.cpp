@@ -60,6 +60,68 @@ TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
   EXPECT_EQ(robot.trouble(), "");
 }
 
+// Fields that cannot be true, with a checksum that is right.
+TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
+  ForeignRobot robot;
+  Scene scene;
+  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
+  scene.start_bridge();
+  forward(scene.command, 0.2, 0.0);
+  scene.drives = true;
+  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.19; })) << scene.bridge_log();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  robot.spoil([](std::vector<std::uint8_t>& body) {
+    body[7] = 0x01;  // the left wheel backward, the right one forward, as fast as can be said
+    body[8] = 0x80;
+    body[9] = 0xFF;
+    body[10] = 0x7F;
+  });
+  ASSERT_TRUE(scene.until([&] {
+    return scene.status.reason().find("the robot sends a turn of 183 rad/s") == 0;
+  })) << scene.status.reason();
+  EXPECT_EQ(scene.status.state(), v1::SERVICE_WAITING);
+  EXPECT_TRUE(scene.until([&] { return robot.velocity() == 0.0; }));
+  // Longer than a silent link is borne with: packets come, so it is none.
+  scene.watch(std::chrono::milliseconds(3000));
+  EXPECT_EQ(scene.status.reason().find("the robot sends a turn of 183 rad/s"), 0U)
+      << scene.status.reason();
+  robot.spoil({});
+  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }))
+      << scene.status.reason();
+  EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the session went on";
+  EXPECT_GT(scene.state.bad_packets(), 20U);
+  for (const v1::RobotState& state : scene.states)
+    EXPECT_LT(std::abs(state.rotation_velocity()), 1.0);
+  EXPECT_TRUE(scene.until([&] { return robot.velocity() == 200.0; })) << "and so does the drive";
+}
+
+TEST(ForeignRobotTest, WithASonarThatItsTableDoesNotHave) {
+  ForeignRobot robot;
+  Scene scene;
+  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.state.sonars().size() == 16; })) << scene.bridge_log();
+  EXPECT_EQ(scene.state.ptu(), 0) << "its flags stand there, and are no servo's width";
+  robot.spoil([](std::vector<std::uint8_t>& body) { body[20] = 40; });  // the first reading's
+  ASSERT_TRUE(scene.until([&] {
+    return scene.status.reason().find("the robot sends sonar number 40; its table has 16") == 0;
+  })) << scene.status.reason();
+  EXPECT_NE(scene.status.reason().find("/p3dx.p"), std::string::npos);
+  EXPECT_EQ(scene.status.state(), v1::SERVICE_DEGRADED);
+  EXPECT_EQ(scene.state.sonars().size(), 15U);
+  EXPECT_GT(scene.state.bad_packets(), 0U);
+  // A count that is wrong makes nonsense of all that stands behind it.
+  robot.spoil([](std::vector<std::uint8_t>& body) { body[19] = 100; });
+  ASSERT_TRUE(scene.until([&] {
+    return scene.status.reason().find("ends within its sonar readings") != std::string::npos;
+  })) << scene.status.reason();
+  robot.spoil({});
+  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
+  for (const v1::RobotState& state : scene.states)
+    for (const v1::SonarReading& reading : state.sonars())
+      ASSERT_LT(reading.sonar(), 16);
+}
+
 class UnderTheChecker : public ::testing::TestWithParam<const char*> {};
 
 // Everything that bridge and simulator say to each other, from the synchronization to the end.

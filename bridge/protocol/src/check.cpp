@@ -334,8 +334,7 @@ void Checker::server_packet(ByteView body) {
   if (state_ != State::kOpen && sync_answer(body))
     return;
   ++packets_[body[0]];
-  const bool is_information = body[0] >= 0x31 && body[0] <= 0x34;
-  if (is_information) {
+  if (is_information(body[0])) {
     if (state_ != State::kOpen) {
       if (closed_ && ++after_close_ <= kMaxAfterClose)
         return;

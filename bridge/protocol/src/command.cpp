@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "fields.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/protocol/parameters.hpp"
 
@@ -413,7 +414,7 @@ std::optional<RobotIdentity> decode_sync2_reply(ByteView body) {
   auto at = body.begin() + 1;
   for (std::string* text : {&identity.name, &identity.robot_class, &identity.subclass}) {
     const auto end = std::find(at, body.end(), 0);
-    text->assign(at, end);
+    *text = printable({at, end});
     at = end == body.end() ? end : end + 1;
   }
   return identity;

@@ -33,6 +33,13 @@ inline void put_string(Bytes& out, const std::string& text) {
   out.push_back(0);
 }
 
+inline std::string printable(std::string text) {
+  for (char& c : text)
+    if (c < ' ' || c > '~')
+      c = '?';
+  return text;
+}
+
 /// Reads them; zero and a mark where the packet has ended. Half a field is none.
 class Fields {
  public:
@@ -58,14 +65,14 @@ class Fields {
   std::int8_t i8() { return static_cast<std::int8_t>(u8()); }
   std::int16_t i16() { return static_cast<std::int16_t>(u16()); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
-  /// Up to its NUL.
+  /// Up to its NUL; what no terminal should show is a question mark.
   std::string string() {
     const ByteView rest = bytes_.subspan(at_);
     const auto end = std::find(rest.begin(), rest.end(), 0);
     if (end == rest.end())
       ended_ = true;
     at_ += static_cast<std::size_t>(end - rest.begin()) + (ended_ ? 0 : 1);
-    return {rest.begin(), end};
+    return printable({rest.begin(), end});
   }
   Bytes rest() {
     Bytes out(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end());

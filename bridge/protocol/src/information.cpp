@@ -10,6 +10,7 @@ namespace {
 
 constexpr unsigned kPositionMask = 0x7FFF;
 constexpr std::size_t kMinBody = 25;  // without sonars and trailing fields
+constexpr int kCompassTurn = 181;     // [2 deg] a whole turn; some servers count it from 1
 
 // In order, up to the first that is missing.
 void put_trailing(Bytes& body, const TrailingFields& more) {
@@ -75,7 +76,7 @@ void interpret_later(const InformationPacket& packet, const RobotParameters& par
   out.front_bumpers = bumper_bits(packet.right_stall, parameters.front_bumpers);
   out.rear_bumpers = bumper_bits(packet.left_stall, parameters.rear_bumpers);
   out.gripper_bits = static_cast<std::uint8_t>(packet.timer >> 8U);
-  if (parameters.compass)
+  if (parameters.compass && packet.say <= kCompassTurn)
     out.compass = norm2_angle(radians(2.0 * packet.say));
   if (parameters.protocol != Protocol::kArcos)
     return;
@@ -100,6 +101,10 @@ void interpret_later(const InformationPacket& packet, const RobotParameters& par
 }
 
 }  // namespace
+
+bool is_information(std::uint8_t type) {
+  return type >= 0x31 && type <= 0x34;
+}
 
 Bytes encode(const InformationPacket& packet) {
   Bytes body;
@@ -199,7 +204,8 @@ Information interpret(const InformationPacket& packet, const RobotParameters& pa
   for (const RawSonar& raw : packet.sonars) {
     const double range = raw.range * parameters.range_unit;
     // Half a unit, since 5000 mm is seldom a whole number of units.
-    out.sonars.push_back({raw.number, range, range < kNoEcho - parameters.range_unit / 2.0});
+    const bool echo = range < kNoEcho - parameters.range_unit / 2.0;
+    out.sonars.push_back({raw.number, std::min(range, kNoEcho), echo});
   }
   out.timer = packet.timer;
   out.analog = packet.analog;

@@ -270,6 +270,13 @@ ServerPacket decode_packet(ByteView body) {
   return *std::move(packet);
 }
 
+bool is_read(PacketType type) {
+  // Zeros make a packet of each type that has one.
+  const Bytes zeros(kMaxBody);
+  Fields in(zeros);
+  return decode_known(type, in).has_value();
+}
+
 Bytes encode(const ConfigPacket& packet) {
   Bytes body = begin(PacketType::kConfig);
   each_field(packet, Put{body});

@@ -1,5 +1,7 @@
 #include "saphira/reflector/connection.hpp"
 
+#include "saphira/protocol/information.hpp"
+
 namespace saphira::reflector {
 
 namespace {
@@ -14,10 +16,6 @@ int sync_of(Connection::State state) {
 Packets zero_setpoints() {
   return {protocol::encode(protocol::Velocity{0.0}),
           protocol::encode(protocol::RotationVelocity{0.0})};
-}
-
-bool is_information(std::uint8_t type) {
-  return (type & 0xF0U) == 0x30U;
 }
 
 }  // namespace
@@ -47,7 +45,7 @@ Packets Connection::begin(double now, bool in_session) {
 Packets Connection::packet(protocol::ByteView body, double now) {
   if (body.empty() || state_ == State::closed || state_ == State::open)
     return {};
-  if (is_information(body[0])) {
+  if (protocol::is_information(body[0])) {
     // The server is still open from a session before. Once in a while is enough: what comes now
     // may have been on its way.
     if (now - sent_ < kRetry / 2.0 && tries_ > 1)

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "saphira/protocol/impossible.hpp"
+
 namespace saphira::reflector {
 
 namespace {
@@ -109,6 +111,10 @@ void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters
   std::visit(
       Overloaded{
           [&](const ServoWish& w) {
+            if (!later && w.width != 0 &&
+                (w.width < protocol::kShortestPulse || w.width > protocol::kLongestPulse))
+              return refuse("expected a pulse of " + std::to_string(protocol::kShortestPulse) +
+                            " to " + std::to_string(protocol::kLongestPulse) + " us, or 0");
             send({protocol::Ptu{w.width}}, later ? Proof::thrice : Proof::servo, w.width);
           },
           [&](const GripperWish& w) {

@@ -72,6 +72,9 @@ inline constexpr unsigned kFlagEmergencyStop = 1U << 5U;
 /// fields, six fewer at the most.
 inline constexpr std::size_t kMaxSonarsInPacket = (kMaxBody - 25) / 3;
 
+/// By the first byte of its body.
+bool is_information(std::uint8_t type);
+
 /// The whole packet (frame included).
 Bytes encode(const InformationPacket& packet);
 
