@@ -16,8 +16,10 @@ int main(int argc, char** argv) {
   return saphira::bus::run_program(
       argc, argv, "bridge", "Connects one robot server to the bus and decides who drives it.",
       [&](CLI::App& app) {
-        app.add_option("--robot-port,--link", options.robot_port,
-                       "the robot: /dev/tty...[@baud], unix:/path or tcp:host:port")
+        app.add_option(
+               "--robot-port,--link", options.robot_port,
+               "the robot: /dev/tty...[@baud], serial:/path, unix:/path, a path of either, or "
+               "tcp:host:port")
             ->capture_default_str();
         app.add_option("--robots", options.robots_folder, "folder of robot parameter files")
             ->capture_default_str();

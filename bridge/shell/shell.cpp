@@ -233,6 +233,10 @@ void Shell::tend_link(double now) {
       packet(*body, now);
   }
   if (!connection_.open()) {
+    // A serial line is the same line when it is opened anew; a socket has another server, or a
+    // server another client.
+    if (link_.address().kind != transport::Address::Kind::serial && connection_.is_hopeless(now))
+      return lost("no answer from " + link_.address().text() + ": connected anew", now);
     for (const protocol::Bytes& packet : connection_.tick(now))
       send(packet, now);
     return;

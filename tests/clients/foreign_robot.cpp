@@ -95,6 +95,7 @@ void ForeignRobot::run() {
       client_ = ::accept(listener_, nullptr, nullptr);
       received.clear();
       syncs_ = 0;
+      ignored_ = ignores_.exchange(false);
     }
     if (client_ >= 0 && fds[1].revents != 0) {
       std::uint8_t bytes[512];
@@ -105,7 +106,7 @@ void ForeignRobot::run() {
         open_ = false;
         const std::lock_guard lock(mutex_);
         checker_.disconnect();
-      } else {
+      } else if (!ignored_) {
         watch(protocol::Side::kClient, {bytes, bytes + size});
         received.insert(received.end(), bytes, bytes + size);
       }

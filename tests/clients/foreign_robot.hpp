@@ -31,6 +31,8 @@ class ForeignRobot {
   double th() const { return th_; }              ///< [deg]
   bool motors() const { return motors_; }
   bool connected() const { return open_; }
+  /// The next client is accepted and never answered; those after it are.
+  void ignore_next_client() { ignores_ = true; }
   /// What is done to each information packet's body before it is sent, from now on; the checker
   /// does not see it.
   void spoil(std::function<void(std::vector<std::uint8_t>&)> how);
@@ -54,6 +56,8 @@ class ForeignRobot {
   std::atomic<bool> stop_{false};
   std::atomic<bool> open_{false};
   std::atomic<bool> motors_{false};
+  std::atomic<bool> ignores_{false};
+  bool ignored_ = false;
   std::atomic<double> velocity_{0.0};
   std::atomic<double> rotation_{0.0};
   std::atomic<double> x_{0.0};

@@ -60,6 +60,16 @@ TEST(ForeignRobotTest, StopsWhenTheBridgeIsKilled) {
   EXPECT_EQ(robot.trouble(), "");
 }
 
+TEST(ForeignRobotTest, IsTriedAgainWhenItDoesNotAnswer) {
+  ForeignRobot robot;
+  robot.ignore_next_client();
+  Scene scene;
+  scene.robot_port = "tcp:127.0.0.1:" + std::to_string(robot.port());
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  EXPECT_EQ(robot.trouble(), "");
+}
+
 // Fields that cannot be true, with a checksum that is right.
 TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   ForeignRobot robot;
@@ -76,10 +86,9 @@ TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
     body[9] = 0xFF;
     body[10] = 0x7F;
   });
-  ASSERT_TRUE(scene.until([&] {
-    return scene.status.reason().find("the robot sends a turn of 183 rad/s") == 0;
-  })) << scene.status.reason();
-  EXPECT_EQ(scene.status.state(), v1::SERVICE_WAITING);
+  ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_WAITING; }));
+  EXPECT_EQ(scene.status.reason().find("the robot sends a turn of 183 rad/s"), 0U)
+      << scene.status.reason();
   EXPECT_TRUE(scene.until([&] { return robot.velocity() == 0.0; }));
   // Longer than a silent link is borne with: packets come, so it is none.
   scene.watch(std::chrono::milliseconds(3000));

@@ -39,6 +39,7 @@ Packets Connection::begin(double now, bool in_session) {
   identity_ = {};
   state_ = State::closed;
   in_session_ = in_session;
+  answered_ = now;
   return go(State::sync0, now);
 }
 
@@ -59,6 +60,7 @@ Packets Connection::packet(protocol::ByteView body, double now) {
   }
   if (protocol::sync_number(body) != sync_of(state_))
     return {};
+  answered_ = now;
   switch (state_) {
     case State::sync0:
       return go(State::sync1, now);
@@ -76,6 +78,10 @@ Packets Connection::tick(double now) {
   if (state_ == State::closed || state_ == State::open || now < due() - 1e-9)
     return {};
   return go(tries_ >= kTries ? State::sync0 : state_, now);
+}
+
+bool Connection::is_hopeless(double now) const {
+  return state_ != State::closed && state_ != State::open && now - answered_ > kPatience;
 }
 
 std::string Connection::waiting_for() const {

@@ -57,6 +57,22 @@ TEST(Connection, RepeatsWhatIsNotAnswered) {
   EXPECT_NE(c.waiting_for().find("SYNC0"), std::string::npos);
 }
 
+TEST(Connection, LosesHopeWhenNothingLeadsOn) {
+  Connection c;
+  EXPECT_FALSE(c.is_hopeless(100.0)) << "nothing was begun";
+  c.begin(1.0);
+  EXPECT_FALSE(c.is_hopeless(1.0 + Connection::kPatience));
+  EXPECT_TRUE(c.is_hopeless(1.1 + Connection::kPatience));
+  c.packet(Bytes{0}, 5.0);
+  EXPECT_FALSE(c.is_hopeless(9.0)) << "an answer came";
+  c.packet(Bytes{0}, 9.5);
+  EXPECT_TRUE(c.is_hopeless(10.1)) << "an echo twice leads nowhere";
+  c.packet(Bytes{1}, 10.2);
+  c.packet(identity("R", "Pioneer", "p3dx"), 10.3);
+  EXPECT_TRUE(c.open());
+  EXPECT_FALSE(c.is_hopeless(100.0));
+}
+
 TEST(Connection, ClosesAServerThatIsStillOpen) {
   Connection c;
   c.begin(1.0);

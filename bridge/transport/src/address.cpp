@@ -1,5 +1,6 @@
 #include "saphira/transport/address.hpp"
 
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <termios.h>
 #include <unistd.h>
@@ -23,7 +24,7 @@ int number(const std::string& text, const std::string& whole, const char* what) 
 }
 
 std::string serial_text(const Address& address) {
-  std::string out = address.name.starts_with("/dev/") ? "" : "serial:";
+  std::string out = address.name.starts_with("/dev/") || address.plain_path ? "" : "serial:";
   out.append(address.name).append("@").append(std::to_string(address.baud));
   if (address.parity != 'N' || address.stop_bits != 1)
     out.append(",8").append(1, address.parity).append(std::to_string(address.stop_bits));
@@ -36,7 +37,7 @@ void parse_serial(const std::string& text, Address& address) {
   std::string rest = text.substr(text.starts_with("serial:") ? 7 : 0);
   const std::size_t at = rest.find('@');
   address.name = rest.substr(0, at);
-  if (address.name.empty() || address.name.front() != '/')
+  if (address.name.empty())
     throw std::invalid_argument("\"" + text + "\": expected serial:/path[@baud]");
   rest = at == std::string::npos ? "" : rest.substr(at + 1);
   const std::size_t comma = rest.find(',');
@@ -66,7 +67,55 @@ void parse_serial(const std::string& text, Address& address) {
   }
 }
 
+void parse_tcp(const std::string& text, Address& address) {
+  const std::string rest = text.substr(4);
+  const std::size_t colon = rest.rfind(':');
+  if (colon == std::string::npos || colon == 0)
+    throw std::invalid_argument("\"" + text + "\": expected tcp:host:port");
+  address.kind = Address::Kind::tcp;
+  address.name = rest.substr(0, colon);
+  if (address.name.size() > 2 && address.name.front() == '[' && address.name.back() == ']')
+    address.name = address.name.substr(1, address.name.size() - 2);
+  address.port = number(rest.substr(colon + 1), text, "a port in 1..65535");
+  if (address.port > 65535)
+    throw std::invalid_argument("\"" + text + "\": expected a port in 1..65535");
+}
+
+/// A path, or nothing that is an address.
+void parse_plain(const std::string& text, Address& address) {
+  struct stat about {};
+  const bool is_there = ::stat(text.c_str(), &about) == 0;
+  if (!is_there && text.find('/') == std::string::npos) {
+    // host:port is the likeliest mistake.
+    const std::size_t colon = text.rfind(':');
+    const bool is_host = colon != std::string::npos && colon > 0 && colon + 1 < text.size() &&
+                         text.find_first_not_of("0123456789", colon + 1) == std::string::npos;
+    throw std::invalid_argument("\"" + text +
+                                "\": expected a robot's address: /dev/tty...[@baud], a path, " +
+                                "serial:/path[@baud], unix:/path or tcp:host:port" +
+                                (is_host ? " (did you mean tcp:" + text + "?)" : ""));
+  }
+  if (is_there && !S_ISCHR(about.st_mode) && !S_ISSOCK(about.st_mode))
+    throw std::invalid_argument("\"" + text +
+                                "\": expected a serial line or a local socket, found " +
+                                (S_ISDIR(about.st_mode) ? "a folder" : "a file"));
+  address.plain_path = true;
+  if (!is_there && text.find('@') != std::string::npos) {
+    address.plain_path = false;
+    address.kind = Address::Kind::serial;
+    return parse_serial(text, address);
+  }
+  address.name = text;
+  address.settle();
+}
+
 }  // namespace
+
+void Address::settle() {
+  struct stat about {};
+  if (plain_path)
+    kind = ::stat(name.c_str(), &about) == 0 && S_ISCHR(about.st_mode) ? Kind::serial : Kind::local;
+}
 
 std::string Address::text() const {
   switch (kind) {
@@ -83,17 +132,7 @@ std::string Address::text() const {
 Address parse_address(const std::string& text) {
   Address address;
   if (text.starts_with("tcp:")) {
-    const std::string rest = text.substr(4);
-    const std::size_t colon = rest.rfind(':');
-    if (colon == std::string::npos || colon == 0)
-      throw std::invalid_argument("\"" + text + "\": expected tcp:host:port");
-    address.kind = Address::Kind::tcp;
-    address.name = rest.substr(0, colon);
-    if (address.name.size() > 2 && address.name.front() == '[' && address.name.back() == ']')
-      address.name = address.name.substr(1, address.name.size() - 2);
-    address.port = number(rest.substr(colon + 1), text, "a port in 1..65535");
-    if (address.port > 65535)
-      throw std::invalid_argument("\"" + text + "\": expected a port in 1..65535");
+    parse_tcp(text, address);
     return address;
   }
   if (text.starts_with("/dev/") || text.starts_with("serial:")) {
@@ -101,14 +140,13 @@ Address parse_address(const std::string& text) {
     parse_serial(text, address);
     return address;
   }
-  address.kind = Address::Kind::local;
-  address.name = text.starts_with("unix:") ? text.substr(5) : text;
-  if (address.name.empty() || (!text.starts_with("unix:") && text.front() != '/'))
-    throw std::invalid_argument(
-        "\"" + text +
-        "\": expected a robot's address: /dev/tty...[@baud], serial:/path[@baud], unix:/path or "
-        "tcp:host:port");
-  if (address.name.size() >= sizeof(sockaddr_un::sun_path))
+  if (text.starts_with("unix:"))
+    address.name = text.substr(5);
+  else
+    parse_plain(text, address);
+  if (address.name.empty())
+    throw std::invalid_argument("\"" + text + "\": expected unix:/path");
+  if (address.kind == Address::Kind::local && address.name.size() >= sizeof(sockaddr_un::sun_path))
     throw std::invalid_argument("\"" + text + "\": the path of a local socket has at most " +
                                 std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   return address;

@@ -121,12 +121,14 @@ void Link::close(const std::string& why, double now) {
 
 void Link::opened() {
   state_ = State::open;
+  tries_ = tries_ > 0 ? tries_ - 1 : 0;  // the address that answered is the next one's too
   heard_ = false;
   trouble_.clear();
 }
 
 void Link::open(double now) {
   const auto fail = [&](const std::string& what) { close(what + ": " + error_text(), now); };
+  address_.settle();
   if (address_.kind == Address::Kind::serial) {
     fd_ = ::open(address_.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (fd_ < 0 && errno == ENOENT)
@@ -139,6 +141,8 @@ void Link::open(double now) {
     // for other bridges, the exclusive mode for whatever else.
     if (fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       return close(address_.name + ": in use by " + holder(fd_), now);
+    if (fd_ >= 0 && ::isatty(fd_) == 0)
+      return close(address_.name + ": is no serial line", now);
     if (fd_ < 0 || !make_raw(fd_, address_))
       return fail(address_.name);
     ::ioctl(fd_, TIOCEXCL);
@@ -150,10 +154,19 @@ void Link::open(double now) {
     name.sun_family = AF_UNIX;
     std::memcpy(name.sun_path, address_.name.c_str(),
                 std::min(address_.name.size(), sizeof name.sun_path - 1));
-    if (fd_ < 0 || ::connect(fd_, reinterpret_cast<const sockaddr*>(&name), sizeof name) != 0)
-      return fail(address_.name);
-    return opened();
+    if (fd_ >= 0 && ::connect(fd_, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0)
+      return opened();
+    if (fd_ >= 0 && errno == ENOENT)
+      return close(address_.name + ": there is no such socket or line (does the simulator run?)",
+                   now);
+    if (fd_ >= 0 && errno == ECONNREFUSED)
+      return close(address_.name + ": nobody listens there (does the simulator run?)", now);
+    return fail(address_.name);
   }
+  open_tcp(now);
+}
+
+void Link::open_tcp(double now) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_NUMERICSERV;
@@ -162,13 +175,18 @@ void Link::open(double now) {
       ::getaddrinfo(address_.name.c_str(), std::to_string(address_.port).c_str(), &hints, &found);
   if (code != 0)
     return close(address_.name + ": " + ::gai_strerror(code), now);
-  fd_ = ::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const int result = fd_ < 0 ? -1 : ::connect(fd_, found->ai_addr, found->ai_addrlen);
+  // A name may have several addresses, of which the robot listens to one: a try, one of them.
+  std::vector<const addrinfo*> addresses;
+  for (const addrinfo* each = found; each != nullptr; each = each->ai_next)
+    addresses.push_back(each);
+  const addrinfo& chosen = *addresses[tries_++ % addresses.size()];
+  fd_ = ::socket(chosen.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int result = fd_ < 0 ? -1 : ::connect(fd_, chosen.ai_addr, chosen.ai_addrlen);
   const int error = errno;
   ::freeaddrinfo(found);
   errno = error;
   if (result != 0 && (fd_ < 0 || error != EINPROGRESS))
-    return fail(address_.text());
+    return close(address_.text() + ": " + error_text(), now);
   // A command packet is sent when it is ready, not when there are more.
   const int on = 1;
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

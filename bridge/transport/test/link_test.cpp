@@ -10,6 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -36,8 +37,8 @@ TEST(Address, IsReadInEveryForm) {
 TEST(Address, SaysWhatWasExpected) {
   for (const char* bad :
        {"", "robot", "unix:", "tcp:", "tcp:host", "tcp::1", "tcp:host:x", "tcp:host:70000",
-        "/dev/ttyS0@fast", "/dev/ttyS0@12345", "serial:", "serial:line", "/dev/ttyS0@9600,7N1",
-        "/dev/ttyS0@9600,xonxoff", "/dev/ttyS0@9600,"}) {
+        "/dev/ttyS0@fast", "/dev/ttyS0@12345", "serial:", "/tmp/no-such-line@fast", "/tmp",
+        "/dev/ttyS0@9600,7N1", "localhost:8101", "/dev/ttyS0@9600,xonxoff", "/dev/ttyS0@9600,"}) {
     try {
       parse_address(bad);
       ADD_FAILURE() << bad;
@@ -46,6 +47,15 @@ TEST(Address, SaysWhatWasExpected) {
     }
   }
   EXPECT_THROW(parse_address("/" + std::string(200, 'x')), std::invalid_argument);
+}
+
+TEST(Address, HostAndPortWithoutPrefixIsAMistakeThatIsKnown) {
+  try {
+    parse_address("localhost:8101");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("tcp:localhost:8101"), std::string::npos);
+  }
 }
 
 TEST(Address, DefaultIsTheSimulators) {
@@ -205,6 +215,48 @@ struct Terminal {
   int master = ::posix_openpt(O_RDWR | O_NOCTTY);
 };
 
+// A path without a prefix is whatever is there: also what a person linked to, and what comes later.
+TEST(Link, AnyPathMayBeALine) {
+  const Terminal terminal;
+  const std::string path = "/tmp/saphira-link-test-line-" + std::to_string(::getpid());
+  ::unlink(path.c_str());
+  Link late(parse_address(path));
+  late.advance(1.0);
+  EXPECT_EQ(late.state(), Link::State::closed);
+  EXPECT_NE(late.trouble().find("there is no such socket or line"), std::string::npos);
+  ASSERT_EQ(::symlink(terminal.device().c_str(), path.c_str()), 0);
+  late.advance(late.due());
+  EXPECT_EQ(late.state(), Link::State::open) << late.trouble();
+  EXPECT_EQ(late.address().kind, Address::Kind::serial);
+  late.close("done", 2.0);
+
+  for (const std::string& way :
+       {path, path + "@19200", "./../../../../../../.." + path, "serial:" + path}) {
+    Link link(parse_address(way));
+    link.advance(1.0);
+    EXPECT_EQ(link.state(), Link::State::open) << way << ": " << link.trouble();
+    EXPECT_EQ(link.address().kind, Address::Kind::serial) << way;
+  }
+  ::unlink(path.c_str());
+}
+
+TEST(Link, TriesEachAddressOfAName) {
+  Server server(true);  // listens to 127.0.0.1 alone; the name may stand for ::1 first
+  const std::string port = server.address.substr(server.address.rfind(':'));
+  Link link(parse_address("tcp:localhost" + port));
+  double now = 1.0;
+  for (int i = 0; i < 10 && link.state() != Link::State::open; ++i) {
+    link.advance(now);
+    if (link.state() == Link::State::connecting) {
+      pollfd ready{link.fd(), link.poll_events(), 0};
+      ::poll(&ready, 1, 5000);
+      link.advance(now);
+    }
+    now = std::isfinite(link.due()) ? link.due() : now;
+  }
+  EXPECT_EQ(link.state(), Link::State::open) << link.trouble();
+}
+
 TEST(Link, OneProgramALine) {
   const Terminal terminal;
   Link first(parse_address(terminal.device()));
@@ -231,7 +283,14 @@ TEST(Link, SaysWhatIsWrongWithALine) {
   Link file(parse_address("serial:/dev/null"));
   file.advance(1.0);
   EXPECT_EQ(file.state(), Link::State::closed);
-  EXPECT_NE(file.trouble().find("/dev/null: "), std::string::npos) << file.trouble();
+  EXPECT_EQ(file.trouble(), "/dev/null: is no serial line");
+  Link nobody(parse_address("unix:/tmp/no-such-socket"));
+  nobody.advance(1.0);
+  EXPECT_NE(nobody.trouble().find("does the simulator run?"), std::string::npos);
+  Link nowhere(parse_address("tcp:no-such-host.invalid:8101"));
+  nowhere.advance(1.0);
+  EXPECT_EQ(nowhere.state(), Link::State::closed);
+  EXPECT_NE(nowhere.trouble().find("no-such-host.invalid: "), std::string::npos);
 }
 
 TEST(Link, SetsTheLine) {

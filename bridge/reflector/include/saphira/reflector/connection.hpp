@@ -18,7 +18,8 @@ class Connection {
  public:
   enum class State { closed, sync0, sync1, sync2, open };
 
-  static constexpr double kRetry = 0.2;  ///< [s] a lost packet is sent again
+  static constexpr double kRetry = 0.2;     ///< [s] a lost packet is sent again
+  static constexpr double kPatience = 5.0;  ///< [s] without an answer that leads on
 
   /// The link is up. `in_session`: the server may be in a session from before, as behind a serial
   /// line, whose loss it does not see.
@@ -33,6 +34,9 @@ class Connection {
   State state() const { return state_; }
   bool open() const { return state_ == State::open; }
   const protocol::RobotIdentity& identity() const { return identity_; }
+  /// Nothing that leads on has come for so long that another connection may do better: a server
+  /// that hangs, a half of a network connection whose other half is gone.
+  bool is_hopeless(double now) const;
   /// When to call tick next (while neither closed nor open).
   double due() const { return sent_ + kRetry; }
   /// What it waits for, in words.
@@ -45,6 +49,7 @@ class Connection {
   bool in_session_ = false;
   protocol::RobotIdentity identity_;
   double sent_ = 0.0;
+  double answered_ = 0.0;  ///< what led on, or the beginning
   int tries_ = 0;
 };
 

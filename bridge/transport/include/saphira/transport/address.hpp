@@ -6,9 +6,10 @@ namespace saphira::transport {
 
 /// Where a robot server is to be found (manual Table 5-6), as people write it:
 ///   /dev/ttyS0, /dev/ttyUSB0@19200   a serial line, or a pseudo-terminal [9600 baud, 8N1]
-///   serial:/path@38400,8E1,rtscts    the same elsewhere, with all its settings
-///   unix:/path, or a path elsewhere  a local socket (the simulator's)
-///   tcp:host:port                    a network
+///   serial:/path@38400,8E1,rtscts    the same with all its settings
+///   unix:/path                       a local socket (the simulator's)
+///   /path, ./path, /path@19200       either: what it is shows when it is there; with a rate, a
+///   line tcp:host:port                    a network
 struct Address {
   enum class Kind { serial, local, tcp };
   Kind kind = Kind::local;
@@ -18,7 +19,11 @@ struct Address {
   int stop_bits = 1;          ///< 1, 2
   bool flow_control = false;  ///< by RTS and CTS
   int port = 0;
+  bool plain_path = false;  ///< no prefix says what it is: `settle` finds out
 
+  /// Where it is a plain path, looks what is there now: a character device is a serial line, all
+  /// else a local socket.
+  void settle();
   std::string text() const;
 };
 

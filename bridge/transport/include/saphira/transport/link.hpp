@@ -46,6 +46,7 @@ class Link {
 
  private:
   void open(double now);
+  void open_tcp(double now);
   void opened();
   bool flush(double now);
   std::size_t queued() const;
@@ -59,7 +60,8 @@ class Link {
   double next_try_ = 0.0;
   double give_up_ = 0.0;
   double backoff_ = 0.0;
-  bool heard_ = false;  ///< something came since it was opened
+  std::size_t tries_ = 0;  ///< of the addresses that a host's name has, in turn
+  bool heard_ = false;     ///< something came since it was opened
   std::vector<std::uint8_t> waiting_;
 };
 
