@@ -44,6 +44,7 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       behavior_schemas_(node.reader(bus::topics::kBehaviorSchemas)),
       claims_(node.reader(bus::topics::kBeliefClaims)),
       goals_(node.reader(bus::topics::kGoals)),
+      grants_(node.reader(bus::topics::kGrant)),
       intentions_(node.writer(bus::topics::kIntentions)),
       recall_(node.writer(bus::topics::kRecallIntentions)),
       statuses_(node.writer(bus::topics::kGoalStatus)),
@@ -93,6 +94,8 @@ bool Shell::step(const bus::Stop& stop) {
   look_around(step->robot, stop, inputs.around);
   inputs.events = take_events();
   inputs.claims = take_claims();
+  take_estop();
+  inputs.estop = estop_;
   processes_.step(stamp_);
   if (!execution_.works())
     inputs.hold = execution_.name() + " is suspended";
@@ -338,6 +341,22 @@ void Shell::publish_beliefs() {
     if (sample.beliefs().size() < kMostBeliefs)
       sample.beliefs().push_back(to_bus(belief));
   beliefs_.write(sample);
+}
+
+/// Of any grant since the last step: one that was pressed and reset meanwhile counts as well. The
+/// grant says nothing else here, so it matters to nobody when it comes.
+void Shell::take_estop() {
+  bool pressed = false;
+  for (const auto& sample : grants_.take()) {
+    if (sample.info.disposed)
+      continue;
+    const v1::Grant& grant = sample.data;
+    if (grant.estopped())
+      estop_ = grant.estop_source().empty() ? "a program without a name" : grant.estop_source();
+    else if (!pressed)
+      estop_.clear();
+    pressed = pressed || grant.estopped();
+  }
 }
 
 std::vector<GoalEvent> Shell::take_events() {

@@ -57,6 +57,7 @@ class Shell {
                                            std::uint32_t cycles);
 
   std::vector<GoalEvent> take_events();
+  void take_estop();
   void idle();
   std::vector<ClaimEvent> take_claims();
   void take_map(std::optional<std::uint64_t> revision, const bus::Stop& stop);
@@ -86,6 +87,8 @@ class Shell {
   bool schemas_known_ = false;
   bus::Reader<v1::BeliefClaim> claims_;
   bus::Reader<v1::Goal> goals_;
+  bus::Reader<v1::Grant> grants_;
+  std::string estop_;  ///< which program pressed the emergency stop that is latched
   bus::Writer<v1::Intentions> intentions_;
   bus::Writer<v1::Intentions> recall_;
   bus::Writer<v1::GoalStatus> statuses_;

@@ -135,6 +135,7 @@ Outputs Executor::step(const Inputs& inputs) {
   }
   check_deadlines(inputs.robot);
   replace();
+  obey_estop(inputs.estop);
   for (const ClaimEvent& claim : inputs.claims)
     beliefs_->take(claim, now_);
   const World world{inputs.robot, inputs.around, *beliefs_, now_};
@@ -458,7 +459,8 @@ void Executor::check_deadlines(const Robot& robot) {
   }
 }
 
-/// Ends what a stop replaces: what was asked for before it and is not more important.
+/// Ends what a stop replaces: whatever drives and was asked for before it. A stop is stronger than
+/// any priority.
 void Executor::replace() {
   for (auto& [id, stop] : entries_) {
     if (!open(stop.status) || !stop.schema->replaces || stop.replaced)
@@ -467,11 +469,23 @@ void Executor::replace() {
     for (auto& [other_id, other] : entries_) {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
-      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier &&
-          other.goal.priority <= stop.goal.priority)
+      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier)
         end(other, GoalState::kCanceled, GoalCode::kPreempted,
             "stopped by " + name_of_goal(stop.goal));
     }
+  }
+}
+
+/// While an emergency stop is latched no goal is to drive, now or after its reset: what was meant
+/// before does not go on by itself.
+void Executor::obey_estop(const std::string& source) {
+  if (source.empty())
+    return;
+  for (auto& [id, entry] : entries_) {
+    if (open(entry.status) && !entry.schema->concurrent && !entry.schema->replaces)
+      end(entry, GoalState::kCanceled, GoalCode::kPreempted,
+          "emergency stop, pressed by " + quoted(source) +
+              ": saphira estop reset releases it, then ask anew");
   }
 }
 

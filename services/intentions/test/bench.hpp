@@ -39,14 +39,10 @@ class Bench {
   }
   void step_without_moving() {
     ++cycle;
-    out = executor.step({epoch,
-                         cycle,
-                         world.robot,
-                         world.levels,
-                         cycle - 1,
-                         std::exchange(events, {}),
-                         {},
-                         std::exchange(troubles, {})});
+    Inputs inputs{epoch, cycle, world.robot, world.levels, cycle - 1, std::exchange(events, {})};
+    inputs.troubles = std::exchange(troubles, {});
+    inputs.estop = estop;
+    out = executor.step(inputs);
     note(out.news);
   }
   void hear() { note(executor.hear(std::exchange(events, {}))); }
@@ -72,6 +68,7 @@ class Bench {
   std::uint64_t cycle = 0;
   std::vector<GoalEvent> events;
   std::vector<BehaviorTrouble> troubles;  ///< of the next step
+  std::string estop;                      ///< which program pressed the emergency stop; empty: none
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them
   std::size_t published = 0;

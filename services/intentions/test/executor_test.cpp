@@ -107,34 +107,70 @@ TEST(Executor, AChangedPriorityCounts) {
   EXPECT_EQ(bench.state(2), GoalState::kUnderway);
 }
 
-TEST(Executor, AStopEndsWhatIsNotMoreImportant) {
+TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
   Bench bench;
   bench.ask(1, "drive", kSlow);
   bench.ask(2, "go_to", kFar);
-  bench.ask(3, "drive", kSlow, 1);
+  bench.ask(3, "drive", kSlow, 1000);
   bench.step();
   bench.step();
-  bench.ask(4, "stop", {});
+  ASSERT_EQ(bench.state(3), GoalState::kUnderway);
+  bench.ask(4, "stop", {}, -1000);
   bench.ask(5, "go_to", kFar);
   bench.step();
-  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
-  EXPECT_EQ(bench.status(1).code, GoalCode::kPreempted);
-  EXPECT_EQ(bench.status(1).reason, "stopped by goal 1:4 (stop) of \"somebody\"");
-  EXPECT_EQ(bench.state(2), GoalState::kCanceled);
-  EXPECT_EQ(bench.state(3), GoalState::kUnderway);
+  for (const std::uint64_t stopped : {1U, 2U, 3U}) {
+    EXPECT_EQ(bench.state(stopped), GoalState::kCanceled);
+    EXPECT_EQ(bench.status(stopped).code, GoalCode::kPreempted);
+    EXPECT_EQ(bench.status(stopped).reason, "stopped by goal 1:4 (stop) of \"somebody\"");
+  }
+  EXPECT_EQ(bench.state(5), GoalState::kUnderway) << "it came after the stop";
   EXPECT_EQ(bench.state(4), GoalState::kWaiting);
-  EXPECT_EQ(bench.state(5), GoalState::kWaiting);  // it came after the stop
-  bench.ask(6, "stop", {}, 1);
+  bench.ask(6, "stop", {});
   bench.step();
-  EXPECT_EQ(bench.state(3), GoalState::kCanceled);
-  for (int i = 0; i < 10; ++i)
+  EXPECT_EQ(bench.state(5), GoalState::kCanceled);
+  for (int i = 0; i < 20; ++i)
     bench.step();
   EXPECT_EQ(bench.state(6), GoalState::kSucceeded);
   EXPECT_EQ(bench.state(4), GoalState::kSucceeded);  // a stop does not end another
-  EXPECT_EQ(bench.state(5), GoalState::kCanceled);
   bench.ask(7, "go_to", kFar);
   bench.step();
   EXPECT_EQ(bench.state(7), GoalState::kUnderway);
+}
+
+TEST(Executor, AStopEndsWhatAPersonHasInterrupted) {
+  Bench bench;
+  bench.ask(1, "drive", kSlow, 5);
+  bench.step();
+  ASSERT_TRUE(bench.executor.interrupt(bench.out.nodes.at(0).id));
+  bench.step();
+  bench.ask(2, "stop", {});
+  bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kCanceled);
+}
+
+TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
+  Bench bench;
+  bench.ask(1, "go_to", kFar, 7);
+  bench.ask(2, "drive", kSlow);
+  bench.step();
+  bench.estop = "button";
+  bench.step();
+  bench.ask(3, "go_to", kFar, 9);
+  bench.step();
+  for (const std::uint64_t ended : {1U, 2U, 3U}) {
+    EXPECT_EQ(bench.state(ended), GoalState::kCanceled);
+    EXPECT_EQ(bench.status(ended).code, GoalCode::kPreempted);
+    EXPECT_EQ(bench.status(ended).reason,
+              "emergency stop, pressed by \"button\": saphira estop reset releases it, then ask "
+              "anew");
+  }
+  EXPECT_TRUE(bench.out.behaviors.empty());
+  bench.estop.clear();
+  bench.step();
+  EXPECT_TRUE(bench.out.behaviors.empty()) << "nothing goes on by itself";
+  bench.ask(4, "drive", kSlow);
+  bench.step();
+  EXPECT_EQ(bench.state(4), GoalState::kUnderway);
 }
 
 TEST(Executor, ADeadlineCountsFromAcceptance) {

@@ -76,6 +76,29 @@ TEST_F(ShellTest, DrivesToAGoalAndSaysSo) {
   EXPECT_TRUE(robot.intended->behavior_control());
 }
 
+TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
+  start();
+  auto grants = robot_node.writer(bus::topics::kGrant);
+  const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
+  cycle();
+  cycle();
+  ASSERT_EQ(state(id), v1::GOAL_UNDERWAY);
+  v1::Grant grant;
+  grant.estopped(true);
+  grant.estop_source("button");
+  grants.write(grant);
+  grants.write(v1::Grant());  // reset before the service looked
+  cycle();
+  EXPECT_EQ(state(id), v1::GOAL_CANCELED) << bus::describe(*goals.status(id));
+  EXPECT_EQ(goals.status(id)->reason().find("emergency stop, pressed by \"button\""), 0U);
+  EXPECT_TRUE(robot.intended->behaviors().empty());
+  grants.write(v1::Grant());
+  const v1::GoalId next = goals.ask(go_to(5.0, 0.0));
+  cycle();
+  cycle();
+  EXPECT_EQ(state(next), v1::GOAL_UNDERWAY) << bus::describe(*goals.status(next));
+}
+
 TEST_F(ShellTest, PublishesTheTree) {
   start();
   goals.ask(go_to(1.0, 0.5));

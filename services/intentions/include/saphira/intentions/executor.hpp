@@ -37,6 +37,7 @@ struct Inputs {
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
   std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
   std::string hold{};                       ///< why all goals are to wait; empty: they are not
+  std::string estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
 };
 
 /// What became of the goals since the last time.
@@ -141,6 +142,7 @@ class Executor {
   void pass_changes();
   void check_deadlines(const Robot& robot);
   void replace();
+  void obey_estop(const std::string& source);
   std::string step_of(const IntentionNode& node) const;
   Entry* best();
   Entry* arbitrate();
