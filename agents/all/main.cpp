@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   robot.robot = "pioneer";
   bridge::BridgeOptions link;
   link.robots_folder = config + "/robots";
-  // The keeper needs a process with one thread. Here the robot dies with whoever drives it.
+  // Here the simulated robot dies with whoever drives it.
   link.keeper = false;
   behaviors::ShellOptions moves;
   intentions::ShellOptions goals;

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <pty.h>
 #include <signal.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <fstream>
@@ -155,7 +157,8 @@ bool has(const std::string& text, const std::string& part) {
 TEST_F(CliTest, WithoutArgumentsItHelps) {
   const Outcome outcome = run({});
   EXPECT_EQ(outcome.code, 0);
-  for (const char* name : {"demo", "up", "status", "list", "echo", "log", "goal", "drive", "bench"})
+  for (const char* name :
+       {"demo", "up", "status", "list", "echo", "log", "goal", "drive", "estop", "bench"})
     EXPECT_TRUE(has(outcome.text, name)) << name;
 }
 
@@ -293,7 +296,7 @@ TEST_F(CliTest, DriveIsADeadMan) {
           test::domain().c_str(), "drive", static_cast<char*>(nullptr));
     _exit(127);
   }
-  // What it draws has to be read, or it blocks.
+  // What it draws is looked at in the end.
   std::string drawn;
   std::thread reader([&] {
     std::array<char, 4096> buffer{};
@@ -328,6 +331,15 @@ TEST_F(CliTest, DriveIsADeadMan) {
   }
   press('k');
   EXPECT_TRUE(test::wait_until([&] { return newest().active() && newest().velocity() == 0.0; }));
+  const auto handed_back = [&] {
+    const auto all = scripted.teleop();
+    return std::any_of(all.begin(), all.end(), [](const v1::MotorCommand& command) {
+      return command.hand_back() && !command.active();
+    });
+  };
+  EXPECT_FALSE(handed_back()) << "a release alone hands nothing back";
+  press('h');
+  EXPECT_TRUE(test::wait_until(handed_back));
   press('q');
   int status = 0;
   EXPECT_EQ(waitpid(pid, &status, 0), pid);
@@ -342,6 +354,121 @@ TEST_F(CliTest, DriveIsADeadMan) {
   reader.join();
   close(terminal);
   EXPECT_TRUE(has(drawn, "12.5 V")) << drawn;
+}
+
+// A frozen ssh, or Ctrl-S: what is drawn goes nowhere, and what is driven is driven on.
+TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
+  Scripted scripted(robot_);
+  int terminal = -1;
+  std::array<char, 256> name{};
+  winsize size{24, 100, 0, 0};
+  const pid_t pid = forkpty(&terminal, name.data(), nullptr, &size);
+  ASSERT_GE(pid, 0);
+  if (pid == 0) {
+    const std::string program = test::program("saphira");
+    execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
+          test::domain().c_str(), "drive", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  std::string drawn;
+  std::array<char, 4096> buffer{};
+  while (!has(drawn, "12.5 V")) {
+    const ssize_t n = read(terminal, buffer.data(), buffer.size());
+    ASSERT_GT(n, 0);
+    drawn.append(buffer.data(), static_cast<std::size_t>(n));
+  }
+  const int frozen = open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(frozen, 0);
+  ASSERT_EQ(tcflow(frozen, TCOOFF), 0);
+  const auto newest = [&] {
+    const auto all = scripted.teleop();
+    return all.empty() ? v1::MotorCommand() : all.back();
+  };
+  EXPECT_TRUE(test::wait_until([&] {
+    const char key = 'i';
+    EXPECT_EQ(::write(terminal, &key, 1), 1);
+    std::this_thread::sleep_for(milliseconds(50));
+    return newest().active() && newest().velocity() > 0.1;
+  }));
+  // And when the keys stop as well, the robot is released.
+  EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
+  const std::uint64_t released = newest().number();
+  EXPECT_TRUE(test::wait_until([&] { return newest().number() > released + 10; }))
+      << "it goes on saying that it does not drive";
+  const char quit = 'q';
+  EXPECT_EQ(::write(terminal, &quit, 1), 1);
+  int status = 0;
+  EXPECT_EQ(waitpid(pid, &status, 0), pid);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  close(frozen);
+  close(terminal);
+}
+
+/// A command whose output nobody reads.
+class Unread {
+ public:
+  explicit Unread(std::vector<std::string> words) {
+    std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
+    for (std::string& word : words)
+      argv.push_back(word.data());
+    argv.push_back(nullptr);
+    EXPECT_EQ(pipe2(pipe_.data(), O_CLOEXEC), 0);
+    EXPECT_GT(fcntl(pipe_[1], F_SETPIPE_SZ, 4096), 0);
+    pid_ = fork();
+    if (pid_ == 0) {
+      dup2(pipe_[1], STDOUT_FILENO);
+      dup2(pipe_[1], STDERR_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
+    close(pipe_[1]);
+  }
+  ~Unread() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    close(pipe_[0]);
+  }
+  Unread(const Unread&) = delete;
+  Unread& operator=(const Unread&) = delete;
+  /// Whether nothing more can be written.
+  bool full() const {
+    int waiting = 0;
+    return ioctl(pipe_[0], FIONREAD, &waiting) == 0 && waiting >= 4096 - 256;
+  }
+  void signal(int number) const { kill(pid_, number); }
+  bool ended() const { return waitpid(pid_, nullptr, WNOHANG) == pid_; }
+
+ private:
+  std::array<int, 2> pipe_{};
+  pid_t pid_ = -1;
+};
+
+TEST_F(CliTest, UpSupervisesWhenNobodyReadsWhatItPrints) {
+  const std::string pids = folder_.path("pids");
+  const std::string file = write("loud.yaml",
+                                 "programs:\n"
+                                 "  - {name: loud, program: sh, bus: false,\n"
+                                 "     arguments: [-c, \"echo $$ >> " +
+                                     pids +
+                                     "; while true; do echo much to say and nobody to read it; "
+                                     "done\"]}\n");
+  std::vector<std::string> words = command({"up", file});
+  words[0] = test::program(words[0]);
+  const Unread up(words);
+  const auto started = [&] {
+    std::ifstream in(pids);
+    std::vector<pid_t> all;
+    for (pid_t pid = 0; in >> pid;)
+      all.push_back(pid);
+    return all;
+  };
+  ASSERT_TRUE(test::wait_until([&] { return !started().empty() && up.full(); }));
+  kill(started().front(), SIGKILL);
+  EXPECT_TRUE(test::wait_until([&] { return started().size() >= 2; }));
+  up.signal(SIGTERM);
+  EXPECT_TRUE(test::wait_until([&] { return up.ended(); }));
+  EXPECT_NE(kill(started().back(), 0), 0) << "what it started is stopped";
 }
 
 TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {

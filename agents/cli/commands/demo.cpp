@@ -22,6 +22,7 @@
 #include "saphira/cli/deployment.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/picture.hpp"
+#include "saphira/cli/printer.hpp"
 #include "saphira/cli/supervisor.hpp"
 #include "saphira/cli/trace.hpp"
 #include "saphira/geometry/pose.hpp"
@@ -164,6 +165,8 @@ class Watcher {
                   pose.y, (goal_ - pose.position()).norm(), robot_->velocity());
     std::string line = text.data();
     line += (grant_ ? std::string(name_of(grant_->role())) : "?") + " drives";
+    if (grant_ && !latched(*grant_).empty())
+      line += ", " + latched(*grant_);
     if (grant_ && grant_->guard() != v1::GUARD_NONE)
       line += ", the guard " + std::string(name_of(grant_->guard()));
     line += nearest();
@@ -237,7 +240,7 @@ class Screen {
  public:
   explicit Screen(bool wanted) : on_(wanted) {
     if (on_)
-      put("\x1b[?1049h\x1b[?25l");
+      print("\x1b[?1049h\x1b[?25l");
   }
   ~Screen() { leave(); }
   Screen(const Screen&) = delete;
@@ -245,8 +248,10 @@ class Screen {
 
   bool on() const { return on_; }
   void leave() {
-    if (on_)
-      put("\x1b[?25h\x1b[?1049l");
+    if (!on_)
+      return;
+    out().flush(milliseconds(100));  // the last picture belongs on the other page
+    print("\x1b[?25h\x1b[?1049l");
     on_ = false;
   }
 
@@ -258,22 +263,18 @@ class Screen {
       columns = size.ws_col;
       rows = size.ws_row;
     }
-    std::string out = "\x1b[H";
+    std::string page = "\x1b[H";
     for (const std::string& line : watcher.picture(columns, rows - 2, utf8_))
-      out += line + "\r\n";
+      page += line + "\r\n";
     const std::string line = watcher.line(status);
     const auto width = static_cast<std::size_t>(columns);
-    out += "\x1b[K" + line.substr(0, width) + "\r\n\x1b[K";
+    page += "\x1b[K" + line.substr(0, width) + "\r\n\x1b[K";
     if (line.size() > width)
-      out += line.substr(width, width - 1);
-    put(out);
+      page += line.substr(width, width - 1);
+    out().show(page);
   }
 
  private:
-  static void put(const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
-  }
   bool on_;
   bool utf8_ = is_utf8();
 };
@@ -295,6 +296,7 @@ class Demo {
     const bool interrupted = stop.requested();
     supervisor_.stop();
     screen_.leave();
+    flush_output();
     return report(interrupted);
   }
 
@@ -304,7 +306,7 @@ class Demo {
     if (kept_.size() > kKeptLines)
       kept_.pop_front();
     if (options_.verbose && !screen_.on())
-      std::cerr << kept_.back() << '\n';
+      complain("%s\n", kept_.back().c_str());
   }
 
   bool lines() const { return !screen_.on() && !options_.json; }
@@ -323,11 +325,10 @@ class Demo {
     goal.deadline(options_.time_limit);
     const v1::GoalId id = goals.ask(goal);
     if (lines()) {
-      std::printf("robot %s on domain %u: saphira --robot %s --domain %u status shows it\n",
-                  node_options_.robot.c_str(), node_options_.domain, node_options_.robot.c_str(),
-                  node_options_.domain);
-      std::printf("goal %s, in %.0f s at most\n", describe(goal).c_str(), options_.time_limit);
-      std::fflush(stdout);
+      print("robot %s on domain %u: saphira --robot %s --domain %u status shows it\n",
+            node_options_.robot.c_str(), node_options_.domain, node_options_.robot.c_str(),
+            node_options_.domain);
+      print("goal %s, in %.0f s at most\n", describe(goal).c_str(), options_.time_limit);
     }
 
     // In lockstep the goal is there before the first step, so that it is taken at the same cycle
@@ -387,10 +388,8 @@ class Demo {
   void show(const Watcher& watcher) {
     if (screen_.on())
       screen_.draw(watcher, status_);
-    else if (lines()) {
-      std::printf("%s\n", watcher.line(status_).c_str());
-      std::fflush(stdout);
-    }
+    else if (lines())
+      print("%s\n", watcher.line(status_).c_str());
   }
 
   bool gave_up(Clock::time_point last_news, const Processes& processes) {

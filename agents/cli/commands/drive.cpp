@@ -12,6 +12,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/key_drive.hpp"
+#include "saphira/cli/printer.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "watch.hpp"
 
@@ -21,14 +22,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPeriod{50};  ///< of the commands; the bridge's lease is 300 ms
-constexpr int kReleases = 4;
+constexpr milliseconds kPeriod{50};        ///< of the commands; the bridge's lease is 300 ms
+constexpr int kReleases = 4;               ///< of the last word: the topic is best effort
+constexpr double kHandBackLimit = 5.0;     ///< [s]
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
 constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
 
 /// The terminal as a keyboard: keys come at once and are not echoed. Restored with the object, and
-/// by the signals that end or stop a process without its destructors.
+/// by the signals that end or stop a process without its destructors. Nothing here waits for a
+/// terminal that nobody reads.
 class RawTerminal {
  public:
   RawTerminal() {
@@ -43,12 +46,11 @@ class RawTerminal {
     raw.c_cc[VMIN] = 0;
     raw.c_cc[VTIME] = 0;
     tcsetattr(STDIN_FILENO, TCSANOW, &raw);
-    std::fputs("\x1b[?25l", stdout);
+    print("\x1b[?25l");
   }
   ~RawTerminal() {
     tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-    std::fputs("\x1b[?25h\n", stdout);
-    std::fflush(stdout);
+    print("\x1b[?25h\n");
   }
   RawTerminal(const RawTerminal&) = delete;
   RawTerminal& operator=(const RawTerminal&) = delete;
@@ -75,19 +77,16 @@ class Teleop {
         commands_(node_.writer(bus::topics::kDriveTeleop)),
         robots_(node_.reader(bus::topics::kRobotState)),
         descriptions_(node_.reader(bus::topics::kRobotDescription)),
-        grants_(node_.reader(bus::topics::kGrant)) {
-    source_ = "keyboard";
-    if (const char* user = getlogin())
-      source_ += std::string(" of ") + user;
-  }
+        grants_(node_.reader(bus::topics::kGrant)) {}
 
   int run(const bus::Stop& stop) {
     const RawTerminal terminal;
-    std::fputs(
+    print(
         "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
-        "g constant velocity on/off   c obstacle avoidance   q quit\n"
-        "Keep a key down: without keys the robot stops.\n\n",
-        stdout);
+        "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n"
+        "Keep a key down: without keys the robot stops. After you have driven, goals wait until "
+        "you\n"
+        "hand the robot back (h, or later: saphira drive hand-back).\n\n\n\n");
     auto due = Clock::now();
     while (!stop.requested() && !quit_) {
       std::array<pollfd, 3> fds{
@@ -110,6 +109,38 @@ class Teleop {
     }
     finish();
     return bus::kExitOk;
+  }
+
+  /// Lets autonomy drive again after a person has driven.
+  int hand_back(const bus::Stop& stop) {
+    bool waited = false;
+    double again = 0.0;
+    const auto began = Clock::now();
+    while (!stop.requested() && seconds_since(began) < kHandBackLimit) {
+      node_.wait(milliseconds(20), &stop);
+      take();
+      if (!grant_)
+        continue;
+      if (!grant_->waits_for_hand_back() && !grant_->estopped()) {
+        print("%s\n", waited ? "handed back: autonomy may drive"
+                             : ("nothing waits to be handed back: " + describe(*grant_)).c_str());
+        return bus::kExitOk;
+      }
+      waited = true;
+      if (!refusal_.empty()) {
+        complain("saphira: not handed back: %s\n", refusal_.c_str());
+        return bus::kExitFailed;
+      }
+      if (seconds_since(began) >= again) {
+        write({}, true);
+        again = seconds_since(began) + 0.1;
+      }
+    }
+    complain("saphira: %s\n", grant_ ? "the bridge has not confirmed that the robot is handed back"
+                                     : ("not handed back: no bridge is heard; " +
+                                        who_is_there(node_.options(), processes_))
+                                           .c_str());
+    return bus::kExitFailed;
   }
 
  private:
@@ -143,6 +174,12 @@ class Teleop {
       case DriveKey::constant:
         toggle_constant();
         return;
+      case DriveKey::hand_back:
+        keys_.release();
+        hand_backs_left_ = kReleases;
+        drove_ = true;
+        note_ = "handed back: autonomy may drive";
+        return;
       default:
         break;
     }
@@ -166,6 +203,8 @@ class Teleop {
     goal.functor("drive");
     goal.arguments({bus::number("speed", kConstantVelocity)});
     constant_ = goals_.ask(goal);
+    hand_backs_left_ = kReleases;
+    drove_ = true;
     note_ = "constant velocity on: the behaviors drive, avoiding what is in the way";
   }
 
@@ -187,8 +226,8 @@ class Teleop {
     if (const auto grant = grants_.take_newest()) {
       grant_ = *grant;
       for (const v1::Refusal& refusal : grant->refused())
-        if (refusal.role() == v1::ROLE_TELEOP) {
-          refusal_ = refusal.source() + ": " + refusal.reason();
+        if (refusal.role() == v1::ROLE_TELEOP && refusal.source() == source_) {
+          refusal_ = refusal.reason();
           refused_at_ = Clock::now();
         }
     }
@@ -201,19 +240,18 @@ class Teleop {
       }
   }
 
+  /// Once it has driven, it says until its end that it does not: so the bridge knows that it is
+  /// alive, and that a release that got lost was meant.
   void send() {
     const KeyDrive::Setpoint setpoint = keys_.setpoint(now());
-    // The release is said several times: the topic is best effort.
+    drove_ = drove_ || setpoint.active;
     if (setpoint.active)
-      releases_left_ = kReleases;
-    else if (releases_left_ > 0)
-      --releases_left_;
-    else
-      return;
-    write(setpoint);
+      hand_backs_left_ = 0;
+    if (drove_)
+      write(setpoint, hand_backs_left_ > 0 && hand_backs_left_-- > 0);
   }
 
-  void write(const KeyDrive::Setpoint& setpoint) {
+  void write(const KeyDrive::Setpoint& setpoint, bool hand_back = false) {
     v1::MotorCommand command;
     // The stamp says which picture of the robot the person has: an old one is refused.
     if (robot_)
@@ -221,6 +259,7 @@ class Teleop {
     command.source(source_);
     command.number(++number_);
     command.active(setpoint.active);
+    command.hand_back(hand_back);
     command.translation(v1::TRANSLATION_VELOCITY);
     command.velocity(setpoint.velocity);
     command.rotation(v1::ROTATION_RELATIVE_HEADING);
@@ -258,25 +297,27 @@ class Teleop {
     winsize size{};
     const std::size_t width =
         ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79U;
-    std::string out = drawn_ ? "\x1b[2F" : "";
+    std::string picture = "\x1b[2F";
     bool first = true;
     for (const std::string* each : {&line, &second, &third}) {
-      out += first ? "\r\x1b[K" : "\n\x1b[K";
+      picture += first ? "\r\x1b[K" : "\n\x1b[K";
       first = false;
-      out += each->substr(0, width);
+      picture += each->substr(0, width);
     }
-    drawn_ = true;
-    std::fputs(out.c_str(), stdout);
-    std::fflush(stdout);
+    out().show(picture);
   }
 
-  /// The grant is given back, which stops the robot.
+  /// The robot is released, which stops it. It is not handed back by that.
   void finish() {
     keys_.release();
-    while (releases_left_ > 0) {
+    for (int i = 0; drove_ && i < kReleases; ++i) {
       send();
       node_.wait(milliseconds(20));
     }
+    take();
+    out().flush(milliseconds(100));  // the last picture comes before it
+    if (grant_ && grant_->waits_for_hand_back())
+      print("\n%s\n", latched(*grant_).c_str());
     if (constant_) {
       end_constant();
       goals_.delivered(500);
@@ -293,11 +334,11 @@ class Teleop {
 
   KeyDrive keys_;
   std::string input_;
-  std::string source_;
+  std::string source_ = person("keyboard");
   std::uint64_t number_ = 0;
-  int releases_left_ = 0;
+  bool drove_ = false;
+  int hand_backs_left_ = 0;
   bool quit_ = false;
-  bool drawn_ = false;
   std::optional<v1::GoalId> constant_;
   std::optional<v1::RobotState> robot_;
   Clock::time_point robot_came_;
@@ -318,8 +359,18 @@ int drive(const bus::NodeOptions& options, const bus::Stop& stop) {
 }  // namespace
 
 void add_drive(CLI::App& app, Chosen& chosen) {
-  app.add_subcommand("drive", "Drive by keyboard; the robot moves only while keys come")
-      ->callback([&chosen] { chosen.run = drive; });
+  CLI::App* command =
+      app.add_subcommand("drive", "Drive by keyboard; the robot moves only while keys come");
+  CLI::App* back = command->add_subcommand(
+      "hand-back", "After a person has driven: lets goals and behaviors drive again");
+  command->require_subcommand(0, 1);
+  command->callback([back, &chosen] {
+    chosen.run = drive;
+    if (back->parsed())
+      chosen.run = [](const bus::NodeOptions& options, const bus::Stop& stop) {
+        return Teleop(options).hand_back(stop);
+      };
+  });
 }
 
 }  // namespace saphira::cli

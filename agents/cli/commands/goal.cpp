@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/goal_words.hpp"
+#include "saphira/cli/printer.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -22,6 +23,23 @@ struct Options {
   bool keep = false;
 };
 
+/// Says once what keeps a goal from driving the robot, and when that is over.
+class Latches {
+ public:
+  explicit Latches(bus::Node& node) : grants_(node.reader(bus::topics::kGrant)) {}
+  void poll() {
+    const auto grant = grants_.take_newest();
+    if (!grant || latched(*grant) == last_)
+      return;
+    last_ = latched(*grant);
+    print("           %s\n", last_.empty() ? "autonomy may drive" : last_.c_str());
+  }
+
+ private:
+  bus::Reader<v1::Grant> grants_;
+  std::string last_;
+};
+
 /// Prints each change of a goal's status once.
 class Follower {
  public:
@@ -31,8 +49,7 @@ class Follower {
     const std::string key = bus::describe(status.state()) + status.step() + status.reason() +
                             std::to_string(std::floor(status.progress() * 10.0));
     if (key != last_) {
-      std::printf("%7.1f s  %s\n", status.elapsed(), bus::describe(status).c_str());
-      std::fflush(stdout);
+      print("%7.1f s  %s\n", status.elapsed(), bus::describe(status).c_str());
       last_ = key;
     }
     return bus::ended(status.state());
@@ -59,10 +76,10 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
   Processes processes(node);
   bus::GoalClient goals(node, "saphira goal");
   const v1::GoalId id = goals.ask(goal);
-  std::printf("goal %s  %s\n", bus::describe(id).c_str(), describe(goal).c_str());
-  std::fflush(stdout);
+  print("goal %s  %s\n", bus::describe(id).c_str(), describe(goal).c_str());
 
   Follower follower;
+  Latches latches(node);
   const auto began = Clock::now();
   double told = 0.0;
   bool canceled = false;
@@ -72,20 +89,21 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
     node.wait(milliseconds(200), canceled ? nullptr : &stop);
     processes.poll();
     goals.poll();
+    latches.poll();
     const auto status = goals.status(id);
     if (status && follower.show(*status))
       return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
     if (!status && seconds_since(began) > told + 3.0) {
       told += 3.0;
-      std::cerr << "saphira: no answer yet: " << who_is_there(node_options, processes) << '\n';
+      complain("saphira: no answer yet: %s\n", who_is_there(node_options, processes).c_str());
     }
     if (!status && seconds_since(began) > 15.0) {
-      std::cerr << "saphira: given up\n";
+      complain("saphira: given up\n");
       goals.cancel(id);
       return bus::kExitFailed;
     }
     if (stop.requested() && options.keep) {
-      std::printf("left underway; saphira goal cancel %s ends it\n", bus::describe(id).c_str());
+      print("left underway; saphira goal cancel %s ends it\n", bus::describe(id).c_str());
       return bus::kExitFailed;
     }
     if (stop.requested() && !canceled) {
@@ -94,7 +112,7 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
       canceled_at = Clock::now();
     }
     if (canceled && seconds_since(canceled_at) > 2.0) {
-      std::cerr << "saphira: withdrawn, and nothing was heard of it within 2 s\n";
+      complain("saphira: withdrawn, and nothing was heard of it within 2 s\n");
       return bus::kExitFailed;
     }
   }
@@ -124,10 +142,10 @@ int cancel(const Options& options, const bus::NodeOptions& node_options, const b
     if (status && follower.show(*status))
       return bus::kExitOk;
   }
-  std::cerr << "saphira: "
-            << (asked ? "withdrawn, and it has not ended yet"
-                      : "nothing is known of this goal; " + who_is_there(node_options, processes))
-            << '\n';
+  complain(
+      "saphira: %s\n",
+      asked ? "withdrawn, and it has not ended yet"
+            : ("nothing is known of this goal; " + who_is_there(node_options, processes)).c_str());
   return bus::kExitFailed;
 }
 

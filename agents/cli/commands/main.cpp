@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "saphira/cli/printer.hpp"
 
 int main(int argc, char** argv) {
   using namespace saphira;
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
         app.require_subcommand(0, 1);
         cli::add_demo(app, chosen);
         cli::add_up(app, chosen);
+        cli::add_estop(app, chosen);
         cli::add_status(app, chosen);
         cli::add_goal(app, chosen);
         cli::add_intentions(app, chosen);
@@ -33,8 +35,11 @@ int main(int argc, char** argv) {
           command->fallthrough(command->get_name() != "bench");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
-        if (chosen.run)
-          return chosen.run(options, stop);
+        if (chosen.run) {
+          const int code = chosen.run(options, stop);
+          cli::flush_output();
+          return code;
+        }
         std::fputs(root->help().c_str(), stdout);
         std::fputs("\n./saphira test builds and runs the tests. README.md says how to begin.\n",
                    stdout);

@@ -10,6 +10,7 @@
 #include "maps/shell/convert.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
+#include "saphira/cli/printer.hpp"
 #include "saphira/maps/drawing.hpp"
 #include "saphira/maps/route.hpp"
 #include "watch.hpp"
@@ -29,12 +30,15 @@ class View {
       : node(options),
         processes(node),
         options_(options),
+        grants_(node.reader(bus::topics::kGrant)),
         maps_(node.reader(bus::topics::kMap)),
         registrations_(node.reader(bus::topics::kRegistration)) {}
 
   /// True where a new sample of registration came.
   bool poll() {
     processes.poll();
+    if (const auto grant = grants_.take_newest())
+      holds = latched(*grant);
     if (auto newest = maps_.take_newest()) {
       sample = std::move(newest);
       map = maps::from_bus(*sample);
@@ -78,9 +82,11 @@ class View {
   maps::Map map;
   std::optional<v1::Registration> registration;
   std::uint64_t next_request = node.instance();  ///< random at first
+  std::string holds;                             ///< what is latched, in words
 
  private:
   bus::NodeOptions options_;
+  bus::Reader<v1::Grant> grants_;
   bus::Reader<v1::Map> maps_;
   bus::Reader<v1::Registration> registrations_;
 };
@@ -95,8 +101,10 @@ int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
   auto told = Clock::now() - std::chrono::seconds(1);
   do {
     if (view.registration && seconds_since(told) >= 1.0) {
-      std::printf("%8.1f s  %s\n", 0.1 * static_cast<double>(view.registration->stamp().cycle()),
-                  describe(*view.registration, view.map).c_str());
+      std::printf("%8.1f s  %s%s%s\n",
+                  0.1 * static_cast<double>(view.registration->stamp().cycle()),
+                  describe(*view.registration, view.map).c_str(), view.holds.empty() ? "" : "; ",
+                  view.holds.c_str());
       std::fflush(stdout);
       told = Clock::now();
     }
@@ -327,6 +335,8 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     const auto status = goals.status(goal);
     done = status && bus::ended(status->state());
     std::string news = status ? (done ? status->reason() : status->step()) : std::string();
+    if (!done && !view.holds.empty())
+      news += (news.empty() ? "" : "; ") + view.holds;
     if (now_corridors != corridors || now_doors != doors)
       news += (news.empty() ? "" : "; ") + std::to_string(now_corridors) + " corridors, " +
               std::to_string(now_doors) + " doors";
@@ -335,9 +345,9 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     if (news.empty() || news == told)
       continue;
     told = news;
-    std::printf("%8.1f s  %s\n", status ? status->elapsed() : 0.0, news.c_str());
-    std::fflush(stdout);
+    print("%8.1f s  %s\n", status ? status->elapsed() : 0.0, news.c_str());
   }
+  flush_output();
   const auto status = goals.status(goal);
   const bool whole = status && status->state() == v1::GOAL_SUCCEEDED;
   if (status && status->state() == v1::GOAL_REFUSED)

@@ -56,6 +56,7 @@ class Mind {
 
   const v1::Intentions* intentions() const { return intentions_.newest(); }
   const v1::Behaviors* behaviors() const { return behaviors_.newest(); }
+  const v1::Grant* grant() const { return grants_.newest(); }
   const v1::BehaviorSchema* schema(const std::string& name) const;
   const v1::Beliefs* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
   bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }

@@ -81,18 +81,19 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
   return bus::kExitOk;
 }
 
-std::string header(const v1::Stamp& stamp) {
-  return "cycle " + std::to_string(stamp.cycle()) + "\n";
+std::string header(const v1::Stamp& stamp, const Mind& mind) {
+  const std::string holds = mind.grant() == nullptr ? "" : latched(*mind.grant());
+  return "cycle " + std::to_string(stamp.cycle()) + (holds.empty() ? "" : "  " + holds) + "\n";
 }
 
 int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const bus::Stop& stop) {
-  return show(options, stop, watch, "intentions",
-              [](const Mind& mind) -> std::optional<std::string> {
-                const v1::Intentions* const newest = mind.intentions();
-                if (newest == nullptr)
-                  return std::nullopt;
-                return header(newest->stamp()) + intentions_display(*newest, mind.behaviors());
-              });
+  return show(
+      options, stop, watch, "intentions", [](const Mind& mind) -> std::optional<std::string> {
+        const v1::Intentions* const newest = mind.intentions();
+        if (newest == nullptr)
+          return std::nullopt;
+        return header(newest->stamp(), mind) + intentions_display(*newest, mind.behaviors());
+      });
 }
 
 int behaviors(const std::string& name, const WatchOptions& watch, const bus::NodeOptions& options,
@@ -103,7 +104,7 @@ int behaviors(const std::string& name, const WatchOptions& watch, const bus::Nod
                 if (newest == nullptr)
                   return std::nullopt;
                 if (name.empty())
-                  return header(newest->stamp()) + behaviors_display(*newest);
+                  return header(newest->stamp(), mind) + behaviors_display(*newest);
                 std::string names;
                 for (const v1::BehaviorState& state : newest->behaviors()) {
                   names += (names.empty() ? "" : ", ") + state.name();
@@ -114,10 +115,10 @@ int behaviors(const std::string& name, const WatchOptions& watch, const bus::Nod
                     for (const v1::IntendedBehavior& one : mind.intentions()->behaviors())
                       if (one.name() == state.name())
                         intended = &one;
-                  return header(newest->stamp()) +
+                  return header(newest->stamp(), mind) +
                          behavior_display(state, intended, mind.schema(state.schema()));
                 }
-                return header(newest->stamp()) + "no behavior " + name + "; there are " +
+                return header(newest->stamp(), mind) + "no behavior " + name + "; there are " +
                        (names.empty() ? "none now" : names) + "\n";
               });
 }

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "run_folder.hpp"
 #include "saphira/cli/deployment.hpp"
+#include "saphira/cli/printer.hpp"
 #include "saphira/cli/supervisor.hpp"
 #include "watch.hpp"
 
@@ -42,18 +43,17 @@ Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
     const auto index =
         static_cast<std::size_t>(std::find(names.begin(), names.end(), from) - names.begin());
     const std::string_view name = from.empty() ? "saphira" : from;
-    std::string out;
+    std::string text;
     if (colors)
-      out += from.empty() ? "\x1b[1m" : "\x1b[3" + std::to_string(2 + index % 5) + "m";
-    out += name;
-    out.append(width - std::min(width, name.size()), ' ');
-    out += " | ";
+      text += from.empty() ? "\x1b[1m" : "\x1b[3" + std::to_string(2 + index % 5) + "m";
+    text += name;
+    text.append(width - std::min(width, name.size()), ' ');
+    text += " | ";
     if (colors)
-      out += "\x1b[0m";
-    out += line;
-    out += '\n';
-    std::fwrite(out.data(), 1, out.size(), stdout);
-    std::fflush(stdout);
+      text += "\x1b[0m";
+    text += line;
+    text += '\n';
+    out().print(text);
   };
 }
 

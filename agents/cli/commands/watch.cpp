@@ -1,5 +1,7 @@
 #include "watch.hpp"
 
+#include <unistd.h>
+
 namespace saphira::cli {
 
 void Processes::poll() {
@@ -38,6 +40,11 @@ const char* name_of(bus::Profile profile) {
       return "wan";
   }
   return "?";
+}
+
+std::string person(const std::string& program) {
+  const char* const user = getlogin();
+  return user == nullptr ? program : program + " of " + user;
 }
 
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes) {

@@ -40,6 +40,9 @@ class Processes {
 /// The profile's word: host, lan, wan.
 const char* name_of(bus::Profile profile);
 
+/// A program of this name and the person who runs it, for people: "keyboard of ann".
+std::string person(const std::string& program);
+
 /// What is there to hear us, in words, for when nobody answers.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
 

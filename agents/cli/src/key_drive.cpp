@@ -35,6 +35,9 @@ std::optional<DriveKey> plain_key(char c) {
     case 'c':
     case 'C':
       return DriveKey::avoidance;
+    case 'h':
+    case 'H':
+      return DriveKey::hand_back;
     case 'q':
     case 'Q':
     case '\x03':

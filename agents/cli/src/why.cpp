@@ -47,6 +47,8 @@ Explanation Reason::stopped() const {
   const std::string idle = idle_reason();
   std::string sentence = "The robot stands because nobody drives it: " + grant.reason();
   Cause cause{"wheels", "The robot is told to stand", {grant_cause()}};
+  if (grant.waits_for_hand_back() && grant.reason().find("hand-back") == std::string::npos)
+    sentence += "; " + latched(grant);
   if (!idle.empty()) {
     sentence += "; " + idle;
     cause.because.front().because.push_back({"goal", idle, {}});
@@ -58,7 +60,7 @@ Explanation Reason::by_hand() const {
   const v1::Grant& grant = *scene_.grant;
   std::string sentence;
   if (grant.role() == v1::ROLE_ESTOP)
-    sentence = "The robot is told to stop because " + grant.source() + " holds the emergency stop";
+    sentence = "The robot is told to stop: " + latched(grant);
   else
     sentence = "The robot is told to drive at " + speed_text(grant.velocity()) + " because " +
                grant.source() + " drives it (" + cli::name_of(grant.role()) + ")";

@@ -204,6 +204,8 @@ Cause Reason::grant_cause() const {
   Cause cause{"grant", std::string(cli::name_of(grant.role())), {}};
   if (grant.role() == v1::ROLE_NONE)
     cause.text = "nobody drives";
+  else if (grant.estopped())
+    cause.text = "emergency stop";
   else
     cause.text = grant.source() + " drives as " + cli::name_of(grant.role());
   if (!grant.reason().empty())

@@ -77,11 +77,28 @@ const char* name_of(v1::GuardAction action) {
   return "?";
 }
 
+std::string latched(const v1::Grant& grant) {
+  if (grant.estopped())
+    return "EMERGENCY STOP, pressed by " +
+           (grant.estop_source().empty() ? "a program without a name" : grant.estop_source()) +
+           ": the robot stands until saphira estop reset";
+  if (grant.waits_for_hand_back())
+    return "autonomy waits until the robot is handed back: saphira drive hand-back";
+  return {};
+}
+
 std::string describe(const v1::Grant& grant) {
-  std::string text = name_of(grant.role());
-  text += grant.role() == v1::ROLE_NONE ? " drives" : " drives (" + grant.source() + ")";
-  if (!grant.reason().empty())
-    text += ": " + grant.reason();
+  std::string text;
+  if (grant.estopped()) {
+    text = latched(grant);
+  } else {
+    text = name_of(grant.role());
+    text += grant.role() == v1::ROLE_NONE ? " drives" : " drives (" + grant.source() + ")";
+    if (!grant.reason().empty())
+      text += ": " + grant.reason();
+    if (grant.waits_for_hand_back() && grant.reason().find("hand-back") == std::string::npos)
+      text += "; " + latched(grant);
+  }
   if (grant.guard() != v1::GUARD_NONE)
     text += "; the guard " + std::string(name_of(grant.guard())) + ": " + grant.guard_reason();
   for (const v1::Refusal& refusal : grant.refused())

@@ -313,7 +313,21 @@ TEST_F(WhyTest, APersonDrives) {
                                "not drive it. The robot is told"));
   scene.grant->role(v1::ROLE_ESTOP);
   scene.grant->source("panel");
-  EXPECT_EQ(sentence(), "The robot is told to stop because panel holds the emergency stop.");
+  scene.grant->estopped(true);
+  scene.grant->estop_source("panel");
+  EXPECT_EQ(sentence(),
+            "The robot is told to stop: EMERGENCY STOP, pressed by panel: the robot stands until "
+            "saphira estop reset.");
+}
+
+TEST_F(WhyTest, AutonomyWaitsToBeHandedTheRobotBack) {
+  scene.grant->role(v1::ROLE_NONE);
+  scene.grant->reason("keyboard (teleop) does not want to drive");
+  scene.grant->waits_for_hand_back(true);
+  EXPECT_NE(sentence().find("nobody drives it: keyboard (teleop) does not want to drive; autonomy "
+                            "waits until the robot is handed back: saphira drive hand-back"),
+            std::string::npos)
+      << sentence();
 }
 
 TEST_F(WhyTest, NotKnown) {

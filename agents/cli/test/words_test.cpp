@@ -44,6 +44,21 @@ TEST(MissingServices, AreNamed) {
             "");
 }
 
+TEST(DescribeGrant, SaysWhatIsLatchedAndHowItIsReleased) {
+  v1::Grant grant;
+  EXPECT_EQ(latched(grant), "");
+  grant.reason("keyboard (teleop) does not want to drive");
+  grant.waits_for_hand_back(true);
+  EXPECT_EQ(describe(grant),
+            "nobody drives: keyboard (teleop) does not want to drive; autonomy waits until the "
+            "robot is handed back: saphira drive hand-back");
+  grant.role(v1::ROLE_ESTOP);
+  grant.estopped(true);
+  grant.estop_source("panel");
+  EXPECT_EQ(describe(grant),
+            "EMERGENCY STOP, pressed by panel: the robot stands until saphira estop reset");
+}
+
 TEST(DescribeGrant, SaysWhoWhyAndWhatTheGuardDoes) {
   v1::Grant grant;
   grant.role(v1::ROLE_NONE);

@@ -18,6 +18,7 @@ enum class DriveKey {
   keep,       ///< . or return: go on as it is
   constant,   ///< g: constant velocity on or off
   avoidance,  ///< c: obstacle avoidance
+  hand_back,  ///< h: lets autonomy drive again
   quit,       ///< q, Ctrl-C, Ctrl-D
 };
 

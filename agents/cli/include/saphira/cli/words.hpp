@@ -14,7 +14,11 @@ const char* name_of(v1::LogLevel level);
 const char* name_of(v1::Role role);
 const char* name_of(v1::GuardAction action);
 
-/// One line: who holds the grant and why, and what the guard did.
+/// What holds until a person releases it, with the command that does: an emergency stop and which
+/// program pressed it, or that autonomy waits to be handed the robot back. Empty where neither
+/// does.
+std::string latched(const v1::Grant& grant);
+/// One line: who holds the grant and why, what is latched, and what the guard did.
 std::string describe(const v1::Grant& grant);
 
 /// Text in aligned columns; numbers (what starts with a digit) to the right. The first row is the

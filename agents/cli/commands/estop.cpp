@@ -1,0 +1,152 @@
+// The emergency stop, and its reset.
+#include <random>
+
+#include "commands.hpp"
+#include "saphira/cli/printer.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kAgain{20};  ///< between two commands: the topic is best effort
+constexpr double kPatience = 2.0;   ///< [s] then it is said that nothing confirms
+constexpr double kResetLimit = 5.0;
+constexpr int kReleases = 4;
+
+/// A stop button of the terminal.
+class Button {
+ public:
+  explicit Button(const bus::NodeOptions& options)
+      : node_(options),
+        stops_(node_.writer(bus::topics::kDriveEstop)),
+        resets_(node_.writer(bus::topics::kEstopReset)),
+        grants_(node_.reader(bus::topics::kGrant)),
+        processes_(node_),
+        source_(person("saphira estop")) {}
+
+  /// Presses until the bridge says that the stop is latched, for as long as that may take.
+  int press(const bus::Stop& stop) {
+    double told = 0.0;
+    while (!stop.requested()) {
+      write(true);
+      node_.wait(kAgain, &stop);
+      poll();
+      if (grant_ && grant_->estopped()) {
+        // Latched: the bridge holds it without us. Let go, so that it can be reset.
+        for (int i = 0; i < kReleases; ++i) {
+          write(false);
+          node_.wait(milliseconds(5));
+        }
+        print("robot %s: %s (confirmed by the bridge after %.2f s)\n",
+              node_.options().robot.c_str(), latched(*grant_).c_str(), seconds_since(began_));
+        return bus::kExitOk;
+      }
+      if (seconds_since(began_) < told + kPatience)
+        continue;
+      told = seconds_since(began_);
+      complain(
+          "saphira: NOT CONFIRMED: no bridge has answered for %.0f s. Stop the robot by its own "
+          "switch. (%s.) This goes on trying; Ctrl-C ends it.\n",
+          told, why_nobody().c_str());
+    }
+    complain("saphira: ended without a confirmation: whether the robot is stopped is not known\n");
+    return bus::kExitFailed;
+  }
+
+  int reset(const bus::Stop& stop) {
+    v1::EstopReset reset;
+    reset.source(source_);
+    std::random_device random;
+    bool asked = false;
+    bool seen = false;
+    double again = 0.0;
+    while (!stop.requested() && seconds_since(began_) < kResetLimit) {
+      node_.wait(kAgain, &stop);
+      poll();
+      if (!grant_)
+        continue;
+      seen = seen || grant_->estopped();
+      if (!grant_->estopped()) {
+        if (!seen)
+          print("no emergency stop is latched\n");
+        else
+          print("the emergency stop is reset; the robot stands until a new command: %s\n",
+                grant_->waits_for_hand_back() ? latched(*grant_).c_str()
+                                              : "saphira goal ..., or saphira drive");
+        return bus::kExitOk;
+      }
+      if (!refused_.empty()) {
+        complain("saphira: not reset: %s\n", refused_.c_str());
+        return bus::kExitFailed;
+      }
+      if (asked && seconds_since(began_) < again)
+        continue;
+      asked = true;
+      again = seconds_since(began_) + 0.5;
+      reset.number((static_cast<std::uint64_t>(random()) << 32U) | random());
+      resets_.write(reset);
+    }
+    complain("saphira: %s\n", asked ? "the bridge has not confirmed the reset"
+                                    : ("not reset: no bridge is heard; " + why_nobody()).c_str());
+    return bus::kExitFailed;
+  }
+
+ private:
+  void write(bool active) {
+    v1::MotorCommand command;
+    command.source(source_);
+    command.number(++number_);
+    command.active(active);
+    stops_.write(command);
+  }
+
+  void poll() {
+    processes_.poll();
+    for (auto& sample : grants_.take()) {
+      if (sample.info.disposed)
+        continue;
+      grant_ = sample.data;
+      for (const v1::Refusal& refusal : grant_->refused())
+        if (refusal.role() == v1::ROLE_ESTOP && refusal.source() == source_)
+          refused_ = refusal.reason();
+    }
+  }
+
+  std::string why_nobody() const { return who_is_there(node_.options(), processes_); }
+
+  Clock::time_point began_ = Clock::now();
+  bus::Node node_;
+  bus::Writer<v1::MotorCommand> stops_;
+  bus::Writer<v1::EstopReset> resets_;
+  bus::Reader<v1::Grant> grants_;
+  Processes processes_;
+  std::string source_;
+  std::uint64_t number_ = 0;
+  std::optional<v1::Grant> grant_;
+  std::string refused_;
+};
+
+}  // namespace
+
+void add_estop(CLI::App& app, Chosen& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "estop", "Emergency stop: the robot stands until `saphira estop reset`, whatever else runs");
+  CLI::App* reset =
+      command->add_subcommand("reset", "Releases it; the robot stands until a new command");
+  command->require_subcommand(0, 1);
+  command->footer(
+      "Exit code 0: a bridge has confirmed it; 1: none has. Who drives by then does not drive on\n"
+      "after the reset: goals are ended, a person lets the keys go first.");
+  command->callback([reset, &chosen] {
+    const bool released = reset->parsed();
+    chosen.run = [released](const bus::NodeOptions& options, const bus::Stop& stop) {
+      Button button(options);
+      return released ? button.reset(stop) : button.press(stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

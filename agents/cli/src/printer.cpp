@@ -1,0 +1,170 @@
+#include "saphira/cli/printer.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <condition_variable>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLastMoment{1000};  // for what a program says at its end
+
+/// False where nobody will ever read.
+bool write_all(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = ::write(fd, text.data(), text.size());
+    if (n > 0) {
+      text.remove_prefix(static_cast<std::size_t>(n));
+    } else if (n < 0 && errno == EAGAIN) {
+      // Somebody else made it non-blocking, as some shells do.
+      pollfd ready{fd, POLLOUT, 0};
+      ::poll(&ready, 1, -1);
+    } else if (n < 0 && errno != EINTR) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::string formatted(const char* format, std::va_list arguments) {
+  std::va_list again;
+  va_copy(again, arguments);
+  const int size = std::vsnprintf(nullptr, 0, format, arguments);
+  std::string text(static_cast<std::size_t>(size < 0 ? 0 : size) + 1, '\0');
+  std::vsnprintf(text.data(), text.size(), format, again);
+  va_end(again);
+  text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+struct Printer::Shared {
+  int fd;
+  std::size_t room;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::string lines;
+  std::string picture;
+  std::size_t left_out = 0;  ///< texts
+  bool printing = false;
+  bool closed = false;
+  bool end = false;
+};
+
+Printer::Printer(int fd, std::size_t room) : shared_(std::make_shared<Shared>()) {
+  shared_->fd = fd;
+  shared_->room = room;
+  // Signals are for the thread that waits for them.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread([shared = shared_] { run(shared); }).detach();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+Printer::~Printer() {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->end = true;
+  shared_->changed.notify_all();
+}
+
+void Printer::run(const std::shared_ptr<Shared>& shared) {
+  std::unique_lock lock(shared->mutex);
+  while (true) {
+    shared->changed.wait(
+        lock, [&] { return shared->end || !shared->lines.empty() || !shared->picture.empty(); });
+    if (shared->end)
+      return;
+    std::string text = std::exchange(shared->lines, {});
+    if (shared->left_out > 0)
+      text += "(" + std::to_string(std::exchange(shared->left_out, 0)) +
+              " messages were left out: nobody read)\n";
+    text += std::exchange(shared->picture, {});
+    shared->printing = true;
+    lock.unlock();
+    const bool read = write_all(shared->fd, text);
+    lock.lock();
+    shared->printing = false;
+    shared->closed = shared->closed || !read;
+    shared->changed.notify_all();
+  }
+}
+
+void Printer::print(std::string_view text) {
+  const std::lock_guard lock(shared_->mutex);
+  if (shared_->closed)
+    return;
+  if (shared_->lines.size() + text.size() > shared_->room)
+    ++shared_->left_out;
+  else
+    shared_->lines += text;
+  shared_->changed.notify_all();
+}
+
+void Printer::show(std::string_view picture) {
+  const std::lock_guard lock(shared_->mutex);
+  if (shared_->closed)
+    return;
+  shared_->picture = picture;
+  shared_->changed.notify_all();
+}
+
+bool Printer::flush(milliseconds limit) {
+  std::unique_lock lock(shared_->mutex);
+  return shared_->changed.wait_for(lock, limit, [&] {
+    return shared_->closed ||
+           (!shared_->printing && shared_->lines.empty() && shared_->picture.empty());
+  });
+}
+
+bool Printer::closed() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->closed;
+}
+
+// Never destroyed: the threads of both live as long as the process.
+Printer& out() {
+  static auto* const printer = new Printer(STDOUT_FILENO);
+  return *printer;
+}
+
+Printer& err() {
+  static auto* const printer = new Printer(STDERR_FILENO);
+  return *printer;
+}
+
+void print(const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  out().print(formatted(format, arguments));
+  va_end(arguments);
+}
+
+void complain(const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  err().print(formatted(format, arguments));
+  va_end(arguments);
+}
+
+void flush_output() {
+  out().flush(kLastMoment);
+  err().flush(kLastMoment);
+}
+
+}  // namespace saphira::cli
