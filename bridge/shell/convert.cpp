@@ -161,6 +161,9 @@ v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarde
   out.guard(kGuardActions.theirs(guarded.action));
   out.guard_reason(guarded.reason);
   out.velocity(guarded.velocity);
+  out.estopped(grant.estopped);
+  out.estop_source(grant.estop_source);
+  out.waits_for_hand_back(grant.waits_for_hand_back);
   for (const authority::Refusal& refusal : refused) {
     if (out.refused().size() == 16)
       break;
@@ -215,6 +218,7 @@ authority::Command to_command(const v1::MotorCommand& command, authority::Role r
   out.cycle = command.stamp().cycle();
   out.number = command.number();
   out.active = command.active();
+  out.hand_back = command.hand_back();
   out.received = received;
   return out;
 }

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
@@ -8,7 +9,7 @@ int main(int argc, char** argv) {
   saphira::bridge::BridgeOptions options;
   options.robots_folder = saphira::config_folder() + "/robots";
   double lease_ms = options.lease * 1000.0;
-  double quiet_ms = options.quiet * 1000.0;
+  std::optional<double> quiet_ms;
   bool no_guard = false;
   bool no_keeper = false;
   bool vision = false;
@@ -25,8 +26,10 @@ int main(int argc, char** argv) {
             ->capture_default_str();
         app.add_option("--lease-ms", lease_ms, "a command drives for so long")
             ->capture_default_str();
-        app.add_option("--quiet-ms", quiet_ms, "stillness between a person and autonomy")
-            ->capture_default_str();
+        app.add_option("--quiet-ms", quiet_ms,
+                       "after a person has driven, autonomy drives again when the person's program "
+                       "has said for so long that it does not drive (usual: never, only when it is "
+                       "handed back)");
         app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
         app.add_option("--state", options.state_file,
                        "file that keeps the robot's position over a restart");
@@ -42,7 +45,8 @@ int main(int argc, char** argv) {
       },
       [&](const saphira::bus::NodeOptions& node, const saphira::bus::Stop& stop) {
         options.lease = lease_ms / 1000.0;
-        options.quiet = quiet_ms / 1000.0;
+        if (quiet_ms)
+          options.quiet = *quiet_ms / 1000.0;
         options.guard = !no_guard;
         options.keeper = !no_keeper;
         if (vision) {

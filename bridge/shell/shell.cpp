@@ -30,6 +30,7 @@ constexpr double kWaitForDriver =
     0.05;  // [s] from a packet until what is due goes without its answer
 constexpr std::chrono::microseconds kSpin{500};
 constexpr double kBeat = 0.05;         // [s] of the keeper
+constexpr double kTellKeeper = 10.0;   // [s] that a new keeper is told of in the status
 constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
 // [s] from the start until the robot is asked: who may stop it, and another bridge that has it, are
 // found by then, in two announcements of a program (idl/bus).
@@ -46,8 +47,11 @@ std::uint64_t milliseconds_since_1970() {
                                         .count());
 }
 
-/// Zero setpoints, for a server in a session.
-std::vector<std::uint8_t> stop_packets() {
+/// What stops a robot in a session at once: the server's emergency stop, or zero setpoints where it
+/// has none.
+std::vector<std::uint8_t> stop_packets(const protocol::RobotParameters& robot) {
+  if (protocol::has_emergency_stop(robot))
+    return protocol::encode(protocol::EmergencyStop{});
   std::vector<std::uint8_t> out = protocol::encode(protocol::Velocity{0.0});
   const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
   out.insert(out.end(), turn.begin(), turn.end());
@@ -70,7 +74,7 @@ std::uint64_t driver_of(const authority::WriterId& writer) {
 }
 
 std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
-  return wanted ? std::make_unique<transport::Keeper>(stop_packets()) : nullptr;
+  return wanted ? std::make_unique<transport::Keeper>() : nullptr;
 }
 
 /// Checks what a person gave before anything is made of it.
@@ -98,12 +102,15 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       grant_writer_(node_.writer(bus::topics::kGrant)),
       state_recall_(node_.writer(bus::topics::kRecallRobot)),
       grant_recall_(node_.writer(bus::topics::kRecallGrant)),
+      resets_(node_.reader(bus::topics::kEstopReset)),
       permits_(node_.reader(bus::topics::kStepPermit)),
       namesakes_(node_),
       link_(transport::parse_address(options_.robot_port)),
       devices_(node_, reflector_),
       arbiter_({options_.lease, options_.quiet, 3}),
-      position_file_(options_.state_file) {
+      position_file_(options_.state_file),
+      latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched"),
+      kept_(latch_file_.read()) {
   drives_.push_back({Role::estop, node_.reader(bus::topics::kDriveEstop), {}, false});
   drives_.push_back({Role::teleop, node_.reader(bus::topics::kDriveTeleop), {}, false});
   drives_.push_back({Role::direct, node_.reader(bus::topics::kDriveDirect), {}, false});
@@ -114,6 +121,11 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
     settings.enabled = options_.guard;
   if (!lockstep_ && !in_memory_)
     hold_off_ = BootClock::seconds() + look_around(node.profile);
+
+  arbiter_.restore(kept_);
+  if (kept_.estopped)
+    node_.warn("an emergency stop is latched from before the start, pressed by " +
+               kept_.estop_source + ": saphira estop reset releases it");
 
   const std::string kept = position_file_.read();
   memory_ = reflector::from_text(kept);
@@ -201,10 +213,8 @@ int Shell::timeout_ms(double now) const {
 // ---- The robot's side.
 
 void Shell::tend_link(double now) {
-  if (keeper_ && now - last_beat_ >= kBeat) {
-    keeper_->beat();
-    last_beat_ = now;
-  }
+  if (keeper_ && now - last_beat_ >= kBeat)
+    beat(now);
   if (now < hold_off_)
     return;
   // A link that a write found dead, before it is opened again.
@@ -262,6 +272,17 @@ void Shell::tend_link(double now) {
                    ? "robot link silent for 0.5 s: the robot is told to stop"
                    : "no packet for 0.5 s that can be true: the robot is told to stop");
   }
+}
+
+void Shell::beat(double now) {
+  last_beat_ = now;
+  const bool alive = keeper_->alive();
+  const int restarts = keeper_->restarts();
+  keeper_->beat();
+  if (alive && !keeper_->alive())
+    node_.warn("the keeper died or hangs: another one is started");
+  if (keeper_->restarts() > restarts)
+    keeper_new_until_ = now + kTellKeeper;
 }
 
 void Shell::receive(double now) {
@@ -359,6 +380,8 @@ void Shell::opened(double now) {
   arbiter_.connect(epoch_);
   grant_ = {};
   guarded_ = {};
+  if (arbiter_.latches().estopped)
+    reflector_.emergency_stop();
   bad_before_ = parser_.counters().bad_packets();
   doubts_.reset();
   last_packet_ = now;
@@ -369,7 +392,7 @@ void Shell::opened(double now) {
   flush(now);  // the zero setpoints
   // The world of a single-stepped simulator stands still by itself.
   if (keeper_ && !lockstep_)
-    keeper_->watch(link_.fd());
+    keeper_->watch(link_.fd(), stop_packets(reflector_.parameters()));
   description_writer_.write(
       to_bus(reflector_.parameters(), robot, stamp_, link_.address().text(), lockstep_));
   node_.info("connected to " + who + ", " + reflector_.parameters().file);
@@ -437,7 +460,7 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
 void Shell::lost(const std::string& why, double now) {
   // The server may hear us where we do not hear it, and would go on with what it was told last.
   if (epoch_ != 0 && link_.state() == transport::Link::State::open) {
-    send(stop_packets(), now);
+    send(stop_packets(reflector_.parameters()), now);
     send(protocol::encode(protocol::Close{}), now);
   }
   if (epoch_ != 0) {
@@ -493,6 +516,7 @@ void Shell::take_all(double now) {
   bool driver = false;
   for (Drive& drive : drives_)
     driver = take_drive(drive, now) || driver;
+  take_resets();
   if (const auto permit = permits_.take_newest())
     permit_ = permit->until_cycle();
   if (epoch_ != 0 && !lockstep_) {
@@ -501,6 +525,7 @@ void Shell::take_all(double now) {
     if (driver || !grant_.same_driver(before))
       flush(now);
   }
+  keep_latches();
   devices_.take(stamp_, epoch_ != 0);  // nothing waits for them
   if (epoch_ != 0 && lockstep_)
     step(now);
@@ -538,6 +563,38 @@ bool Shell::take_drive(Drive& drive, double now) {
   return driver;
 }
 
+void Shell::take_resets() {
+  for (const auto& sample : resets_.take()) {
+    if (sample.info.disposed || !arbiter_.latches().estopped)
+      continue;
+    const std::string source = source_of(sample.data);
+    const std::string why = arbiter_.reset(source, time());
+    node_.info(why.empty() ? "emergency stop reset by " + source
+                           : "emergency stop not reset by " + source + ": " + why);
+  }
+}
+
+/// What is latched, onto the disk and to everybody, when it has changed. Neither waits for a cycle
+/// of the robot: there may be none.
+void Shell::keep_latches() {
+  const authority::Latches& now = arbiter_.latches();
+  if (now == kept_)
+    return;
+  if (now.estopped && !kept_.estopped)
+    node_.warn("emergency stop, pressed by " + now.estop_source +
+               ": the robot stands until saphira estop reset" +
+               (latch_file_.path().empty() ? " (without --state a restart forgets it)" : ""));
+  const bool estop = now.estopped != kept_.estopped;
+  kept_ = now;
+  if (const std::string trouble = latch_file_.write(now); !trouble.empty())
+    node_.error("what is latched is not kept over a restart: " + trouble);
+  if (!estop || (epoch_ != 0 && !lockstep_))
+    return;
+  grant_ = arbiter_.decide(time(), stamp_.cycle());
+  guarded_ = {};
+  publish_grant();
+}
+
 // ---- Between the two.
 
 void Shell::decide() {
@@ -564,17 +621,22 @@ void Shell::decide() {
   }
   wanted.velocity = guarded_.velocity;
   wanted.rotation_velocity = guarded_.rotation_velocity;
-  reflector_.hold(wanted);
+  // Who presses an emergency stop, and a robot that is not heard any more, want the hardest stop.
+  if (grant.role == Role::estop || link_silent_)
+    reflector_.emergency_stop();
+  else
+    reflector_.hold(wanted);
   if (guarded_.action == authority::GuardAction::stop && guarded_.action != action_before)
     words_.push_back("guard: " + guarded_.reason);
   grant_ = std::move(grant);
-  expires_at_ = t + grant_.expires_in + 1e-4;
-  if (changed) {
+  // What is latched does not expire.
+  expires_at_ = grant_.role == Role::estop ? kForEver : t + grant_.expires_in + 1e-4;
+  if (changed && grant_.role != Role::estop) {
     words_.push_back(grant_.role == Role::none
                          ? "nobody drives: " + grant_.reason
                          : grant_.source + " drives (" + authority::name(grant_.role) + ")");
-    grant_changed_ = true;
   }
+  grant_changed_ = grant_changed_ || changed;
 }
 
 void Shell::flush(double now) {
@@ -622,6 +684,8 @@ void Shell::publish_grant() {
   grant_changed_ = false;
   const v1::Grant grant = to_bus(grant_, guarded_, arbiter_.take_refused(), stamp_);
   grant_writer_.write(grant);
+  if (epoch_ == 0)
+    return;
   // With the grant, not with the state: the services wait for that.
   grant_recall_.write(grant);
   if (recalled_ != stamp_ && newest_state_.stamp() == stamp_) {
@@ -658,6 +722,9 @@ Shell::Condition Shell::condition(double now) const {
             stepped_ || stamp_.cycle() == 0
                 ? "waits for a permit to step"
                 : "waits for the behaviors' command for cycle " + std::to_string(stamp_.cycle())};
+  if (arbiter_.latches().estopped)
+    return {v1::SERVICE_DEGRADED, "emergency stop, pressed by " + arbiter_.latches().estop_source +
+                                      ": saphira estop reset releases it"};
   if (epoch_ != 0 && !doubt.empty())
     return {v1::SERVICE_DEGRADED, doubt};
   if (epoch_ != 0 && reflector_.state().information.emergency_stop.value_or(false))
@@ -668,6 +735,9 @@ Shell::Condition Shell::condition(double now) const {
   if (keeper_ && !keeper_->alive())
     return {v1::SERVICE_DEGRADED,
             "the keeper is gone: nobody stops the robot when the bridge hangs"};
+  if (keeper_ && last_beat_ < keeper_new_until_)
+    return {v1::SERVICE_DEGRADED, "the keeper died or hung; another one was started (" +
+                                      std::to_string(keeper_->restarts()) + " so far)"};
   return {};
 }
 
@@ -675,6 +745,11 @@ void Shell::publish_status(double now) {
   if (now - status_at_ < kCycle)
     return;
   status_at_ = now;
+  if (epoch_ == 0) {
+    // Without a robot there are no cycles; what is latched is told all the same.
+    grant_ = arbiter_.decide(time(), 0);
+    publish_grant();
+  }
   v1::ServiceStatus& status = node_.status();
   const Condition condition = this->condition(now);
   status.state(condition.state);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "camera.hpp"
 #include "device_topics.hpp"
 #include "doubts.hpp"
+#include "latch_file.hpp"
 #include "namesakes.hpp"
 #include "position_file.hpp"
 #include "saphira/authority/arbiter.hpp"
@@ -26,23 +28,24 @@ namespace saphira::bridge {
 
 struct BridgeOptions {
   std::string robot_port = transport::default_address();
-  std::string robots_folder = "config/robots";  ///< of the parameter files
-  double lease = 0.3;                           ///< [s] in lockstep cycles x 0.1
-  double quiet = 2.0;                           ///< [s]
+  std::string robots_folder = "config/robots";             ///< of the parameter files
+  double lease = 0.3;                                      ///< [s] in lockstep cycles x 0.1
+  double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;
-  std::string state_file;  ///< keeps the odom frame over a restart; empty: none
+  /// Keeps the odom frame over a restart, and with ".latched" behind its name an emergency stop;
+  /// empty: none.
+  std::string state_file;
   bool free_step = false;  ///< lockstep: step without a permit
   /// What is said to the camera of a Fast Track vision system at the start (manual 9.1), such as
   /// "pioneer_a_mode=2"; empty: it is not asked for packets.
   std::vector<std::string> vision;
-  bool keeper = true;  ///< needs a process with one thread: not where services share a process
+  bool keeper = true;
 };
 
 /// The bridge as a service: one robot server on one side, the bus on the other.
 class Shell {
  public:
-  /// std::invalid_argument for a wrong option; std::runtime_error where the bus fails. Forks the
-  /// keeper before the node makes its threads.
+  /// std::invalid_argument for a wrong option; std::runtime_error where the bus fails.
   Shell(const bus::NodeOptions& node, BridgeOptions options,
         std::shared_ptr<bus::MemoryBus> memory = nullptr);
 
@@ -56,6 +59,7 @@ class Shell {
 
   // The robot's side.
   void tend_link(double now);
+  void beat(double now);
   void receive(double now);
   void packet(const protocol::Bytes& body, double now);
   void opened(double now);
@@ -70,6 +74,8 @@ class Shell {
   void take_all(double now);
   struct Drive;
   bool take_drive(Drive& drive, double now);
+  void take_resets();
+  void keep_latches();
 
   // Between the two.
   void decide();
@@ -104,6 +110,7 @@ class Shell {
     bool follows_cycles = false;  ///< the same: answers each packet
   };
   std::vector<Drive> drives_;
+  bus::Reader<v1::EstopReset> resets_;
   bus::Reader<v1::StepPermit> permits_;
   Namesakes namesakes_;
 
@@ -126,6 +133,8 @@ class Shell {
   std::optional<reflector::OdometryMemory> memory_;
   reflector::Slack slack_;
   PositionFile position_file_;
+  LatchFile latch_file_;
+  authority::Latches kept_;  ///< what the file has
   v1::Stamp stamp_;
   v1::RobotState newest_state_;
   v1::Stamp recalled_;  ///< of the newest state that was put where it is recalled
@@ -139,9 +148,10 @@ class Shell {
   double last_packet_ = 0.0;
   double last_heard_ = 0.0;  ///< an information packet, though it could not be true
   double last_beat_ = 0.0;
-  double hold_off_ = 0.0;    ///< the robot is not asked before
-  double expires_at_ = 0.0;  ///< the lease of the one who drives
-  double flush_at_ = 0.0;    ///< what is due is sent then, if the driver says nothing before; 0: no
+  double keeper_new_until_ = 0.0;  ///< the status tells that the keeper was replaced
+  double hold_off_ = 0.0;          ///< the robot is not asked before
+  double expires_at_ = 0.0;        ///< the lease of the one who drives
+  double flush_at_ = 0.0;  ///< what is due is sent then, if the driver says nothing before; 0: no
   bool link_silent_ = false;
   bool grant_changed_ = false;
   std::uint64_t bad_before_ = 0;  ///< of the parser, when the epoch began

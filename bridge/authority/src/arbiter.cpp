@@ -9,7 +9,16 @@ namespace {
 
 constexpr std::size_t kMaxRefused = 16;    // the sequence in Grant
 constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that strangers can take
+constexpr std::size_t kMaxPressed = 64;    // the same of emergency stops
 constexpr double kTick = 1e-9;             // [s] 3 cycles x 0.1 s are not over after 3 cycles
+constexpr double kNever = -1e300;          // [s]
+
+constexpr std::array kDriving{Role::teleop, Role::direct, Role::behaviors};
+constexpr const char* kHandBack = "saphira drive hand-back";
+
+bool is_autonomy(Role role) {
+  return role == Role::direct || role == Role::behaviors;
+}
 
 std::string seconds(double value) {
   char text[32];
@@ -37,13 +46,15 @@ const char* name(Role role) {
 
 void Arbiter::let_go() {
   for (Player& p : players_)
-    p.held = p.held && p.newest.role == Role::estop;
+    p.held = false;
+  // The person's program counts as alive when it is heard again.
+  quiet_heard_ = kNever;
 }
 
 void Arbiter::connect(std::uint64_t epoch) {
   epoch_ = epoch;
   deaf_cycle_ = 0;
-  deaf_until_ = -1e300;
+  deaf_until_ = kNever;
   let_go();
 }
 
@@ -61,6 +72,16 @@ void Arbiter::refuse(Role role, const std::string& source, const std::string& re
     refused_.push_back(std::move(refusal));
 }
 
+void Arbiter::press(const Command& command) {
+  if (!latches_.estopped)
+    latches_ = {true, command.source, latches_.wait};
+  if (pressed_.size() >= kMaxPressed && !pressed_.contains(command.writer))
+    pressed_.erase(std::min_element(pressed_.begin(), pressed_.end(), [](auto& a, auto& b) {
+      return a.second.received < b.second.received;
+    }));
+  pressed_[command.writer] = {command.source, command.received};
+}
+
 bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   const auto no = [&](const std::string& reason) {
     refuse(command.role, command.source, reason);
@@ -68,11 +89,17 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   };
   if (command.role == Role::none)
     return no("no role");
+  // An emergency stop is heard whatever its number, and whatever it answers.
+  if (command.role == Role::estop) {
+    if (command.active)
+      press(command);
+    else
+      pressed_.erase(command.writer);
+    return true;
+  }
   const auto key = std::make_pair(command.role, command.writer);
   auto known = numbers_.find(key);
-  // A button that says the same again is still pressed.
-  if (known != numbers_.end() && command.number <= known->second.newest &&
-      command.role != Role::estop)
+  if (known != numbers_.end() && command.number <= known->second.newest)
     return no("repeated command number");
   if (known == numbers_.end()) {
     if (numbers_.size() >= kMaxWriters)
@@ -83,50 +110,79 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   }
   known->second = {command.number, ++offers_};
 
+  if (!command.active)
+    return release(command, cycle);
+  if (const std::string wrong = stale(command, cycle); !wrong.empty())
+    return no(wrong);
   Player& p = player(command.role);
-  const bool holds = p.held && p.newest.writer == command.writer;
-  // A release is never refused to the one who drives: whatever is wrong with it, it means stop.
-  if (!command.active) {
-    if (holds) {
-      p.newest.active = false;
-      p.newest.number = command.number;
-      p.newest.received = command.received;
-    } else if (!p.held) {
-      p.held = true;
-      p.newest = command;
-    }
-    return true;
-  }
-  // An emergency stop is heard whatever it answers, and its age is that of its arrival.
-  if (command.role == Role::estop) {
-    p.held = true;
-    p.newest = command;
-    p.newest.cycle = 0;
-    return true;
-  }
-  if (epoch_ == 0)
-    return no("no robot is connected");
-  if (command.epoch != epoch_ && (command.epoch != 0 || command.cycle != 0))
-    return no("answers another epoch");
-  if (command.received < deaf_until_)
-    return no("received while the robot was silent, or the bridge caught up after a gap");
-  if (command.cycle != 0) {
-    if (command.cycle > cycle)
-      return no("answers a cycle that has not been");
-    if (command.cycle <= deaf_cycle_)
-      return no("answers a cycle from before a gap");
-    if (cycle - command.cycle > settings_.intent_cycles)
-      return no("answers an old cycle");
-  }
-  if (p.held && !holds && p.newest.active &&
-      command.received - p.newest.received <= settings_.lease + kTick)
+  const bool heard = p.held && p.newest.active && fresh(p, command.received);
+  if (heard && p.newest.writer != command.writer)
     return no("the role is held by " + p.newest.source);
+  if (command.role == Role::teleop) {
+    quiet_heard_ = kNever;
+    let_go_first_ = let_go_first_ && heard;
+  }
   p.held = true;
   p.newest = command;
   return true;
 }
 
+/// A release is never refused to the one who drives: whatever is wrong with it, it means stop.
+bool Arbiter::release(const Command& command, std::uint64_t cycle) {
+  Player& p = player(command.role);
+  const bool held = p.held && p.newest.active && fresh(p, command.received);
+  const bool holds = p.held && p.newest.writer == command.writer;
+  if (holds || !held) {
+    p.held = true;
+    p.newest = command;
+    p.newest.active = false;
+  }
+  if (command.role != Role::teleop)
+    return true;
+  let_go_first_ = let_go_first_ && held && !holds;
+  if (command.writer == person_) {
+    if (command.received - quiet_heard_ > settings_.lease + kTick)
+      quiet_since_ = command.received;
+    quiet_heard_ = command.received;
+  }
+  if (!command.hand_back || latches_.wait == Wait::none)
+    return true;
+  std::string wrong = stale(command, cycle);
+  if (latches_.estopped)
+    wrong = "an emergency stop is latched: saphira estop reset comes before handing back";
+  else if (held && !holds)
+    wrong = "cannot hand back what " + p.newest.source + " drives";
+  if (wrong.empty())
+    latches_.wait = Wait::none;
+  else
+    refuse(command.role, command.source, wrong);
+  return true;
+}
+
+/// Why a command that asks for something cannot be meant for now; empty where it can.
+std::string Arbiter::stale(const Command& command, std::uint64_t cycle) const {
+  if (epoch_ == 0)
+    return "no robot is connected";
+  if (command.epoch != epoch_ && (command.epoch != 0 || command.cycle != 0))
+    return "answers another epoch";
+  if (command.received < deaf_until_)
+    return "received while the robot was silent, or the bridge caught up after a gap";
+  if (command.cycle != 0) {
+    if (command.cycle > cycle)
+      return "answers a cycle that has not been";
+    if (command.cycle <= deaf_cycle_)
+      return "answers a cycle from before a gap";
+    if (cycle - command.cycle > settings_.intent_cycles)
+      return "answers an old cycle";
+  }
+  return {};
+}
+
 void Arbiter::lost(Role role, const WriterId& writer, double now) {
+  if (role == Role::estop)
+    pressed_.erase(writer);
+  if (role == Role::teleop && writer == person_)
+    quiet_heard_ = kNever;
   Player& p = player(role);
   if (p.held && p.newest.writer == writer && p.newest.active) {
     p.newest.active = false;
@@ -134,10 +190,41 @@ void Arbiter::lost(Role role, const WriterId& writer, double now) {
   }
 }
 
+std::string Arbiter::reset(const std::string& source, double now) {
+  if (!latches_.estopped)
+    return "no emergency stop is latched";
+  for (const auto& [writer, press] : pressed_) {
+    if (now >= press.received - kTick && now - press.received <= settings_.lease + kTick) {
+      std::string why = press.source + " still presses the emergency stop: let it go first";
+      refuse(Role::estop, source, why);
+      return why;
+    }
+  }
+  pressed_.clear();
+  latches_.estopped = false;
+  latches_.estop_source.clear();
+  // Only what was at rest before the reset, and heard to be, can begin anew by itself. The
+  // behaviors come to rest when their goals end, which an emergency stop does. Whoever was not
+  // heard may not know of it.
+  const Player& behaviors = player(Role::behaviors);
+  const Player& direct = player(Role::direct);
+  const bool rests = behaviors.held && !behaviors.newest.active && fresh(behaviors, now) &&
+                     !(direct.held && direct.newest.active);
+  if (!rests && latches_.wait == Wait::none)
+    latches_.wait = Wait::reset;
+  const Player& person = player(Role::teleop);
+  let_go_first_ = person.held && person.newest.active && fresh(person, now);
+  quiet_heard_ = kNever;
+  return {};
+}
+
+/// Heard within its lease. What came later than now came before the cycles began anew.
+bool Arbiter::fresh(const Player& p, double now) const {
+  return now >= p.newest.received - kTick && now - p.newest.received <= settings_.lease + kTick;
+}
+
 bool Arbiter::live(const Player& p, double now, std::uint64_t cycle) const {
-  // What came later than now came before the cycles began anew.
-  return p.held && p.newest.active && now >= p.newest.received - kTick &&
-         now - p.newest.received <= settings_.lease + kTick &&
+  return p.held && p.newest.active && fresh(p, now) &&
          (p.newest.cycle == 0 || cycle - p.newest.cycle <= settings_.intent_cycles);
 }
 
@@ -151,39 +238,77 @@ std::string Arbiter::why_not(const Player& p, double now, std::uint64_t cycle) c
   return who + " answers an old cycle: " + std::to_string(cycle - p.newest.cycle) + " ago";
 }
 
-Grant Arbiter::decide(double now, std::uint64_t cycle) {
-  Grant grant;
-  Role strongest = Role::none;
-  for (const Role role : kRoles) {
-    if (live(player(role), now, cycle)) {
-      strongest = role;
-      break;
-    }
+Role Arbiter::strongest(double now, std::uint64_t cycle) const {
+  for (const Role role : kDriving) {
+    if (live(player(role), now, cycle))
+      return role;
   }
-  // The end of a person's driving, by release or by silence, begins the quiet time. By silence it
-  // counts from the end of the lease, however late that is noticed.
-  if (is_person(person_) && !is_person(strongest)) {
-    const Player& p = player(person_);
-    const bool released = p.held && !p.newest.active;
-    quiet_after_ = person_;
-    quiet_until_ = (released ? p.newest.received : std::min(now, person_seen_)) + settings_.quiet;
-  }
-  person_ = is_person(strongest) ? strongest : Role::none;
-  if (person_ != Role::none)
-    person_seen_ = player(person_).newest.received + settings_.lease;
+  return Role::none;
+}
 
-  if (strongest != Role::none && !is_person(strongest) && now < quiet_until_ - kTick) {
-    grant.reason = std::string("quiet after ") + name(quiet_after_) + ": " +
-                   seconds(quiet_until_ - now) + " left";
-    for (const Role role : kRoles) {
-      if (live(player(role), now, cycle))
-        refuse(role, player(role).newest.source, std::string("quiet after ") + name(quiet_after_));
+/// Why a role with a live command does not drive; empty where it may.
+std::string Arbiter::why_to_stand(Role role) const {
+  if (latches_.estopped)
+    return "an emergency stop is latched, pressed by " + latches_.estop_source +
+           ": saphira estop reset releases it";
+  if (role == Role::teleop && let_go_first_)
+    return "drove when the emergency stop was reset: let go first, then drive";
+  if (!is_autonomy(role))
+    return {};
+  switch (latches_.wait) {
+    case Wait::driven:
+      return std::string("a person drove last: autonomy waits until the robot is handed back (") +
+             kHandBack + ")";
+    case Wait::reset:
+      return std::string(
+                 "an emergency stop was reset, and what was meant before it does not go "
+                 "on by itself: autonomy waits until the robot is handed back (") +
+             kHandBack + ")";
+    case Wait::none:
+      break;
+  }
+  return {};
+}
+
+/// By option, the quiet time of a person whose program is alive hands the robot back.
+void Arbiter::end_wait(double now) {
+  if (latches_.wait == Wait::driven && now - quiet_heard_ <= settings_.lease + kTick &&
+      now - quiet_since_ >= settings_.quiet - kTick)
+    latches_.wait = Wait::none;
+}
+
+Grant Arbiter::decide(double now, std::uint64_t cycle) {
+  const Role role = strongest(now, cycle);
+  if (!latches_.estopped)
+    end_wait(now);
+  Grant grant;
+  grant.estopped = latches_.estopped;
+  grant.estop_source = latches_.estop_source;
+  const std::string why = why_to_stand(role);
+  if (role != Role::none && !why.empty()) {
+    for (const Role other : kDriving) {
+      if (live(player(other), now, cycle))
+        refuse(other, player(other).newest.source, why);
     }
+  }
+  if (role == Role::teleop && why.empty()) {
+    latches_.wait = Wait::driven;
+    person_ = player(role).newest.writer;
+  }
+  grant.waits_for_hand_back = latches_.wait != Wait::none && role != Role::teleop;
+  if (latches_.estopped) {
+    grant.role = Role::estop;
+    grant.source = latches_.estop_source;
+    grant.reason = "the emergency stop is latched: saphira estop reset releases it";
     return grant;
   }
-  if (strongest == Role::none) {
-    for (const Role role : kRoles) {
-      const Player& p = player(role);
+  if (!why.empty()) {
+    grant.reason = why;
+    return grant;
+  }
+  if (role == Role::none) {
+    for (const Role each : kDriving) {
+      const Player& p = player(each);
       if (p.held && (grant.reason.empty() || p.newest.active))
         grant.reason = why_not(p, now, cycle);
     }
@@ -194,17 +319,17 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
     return grant;
   }
 
-  const Player& p = player(strongest);
-  grant.role = strongest;
+  const Player& p = player(role);
+  grant.role = role;
   grant.writer = p.newest.writer;
   grant.source = p.newest.source;
   grant.command_age = now - p.newest.received;
   grant.expires_in = settings_.lease - grant.command_age;
-  grant.reason = std::string(name(strongest)) + " is the strongest role with a live command";
-  for (const Role role : kRoles) {
-    if (role > strongest && live(player(role), now, cycle))
-      refuse(role, player(role).newest.source,
-             std::string(name(strongest)) + " is stronger and drives");
+  grant.reason = std::string(name(role)) + " is the strongest role with a live command";
+  for (const Role other : kDriving) {
+    if (other > role && live(player(other), now, cycle))
+      refuse(other, player(other).newest.source,
+             std::string(name(role)) + " is stronger and drives");
   }
   return grant;
 }

@@ -2,44 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "scene.hpp"
+
 namespace saphira::authority {
 namespace {
 
-WriterId writer(int n) {
-  WriterId id{};
-  id[0] = static_cast<std::uint8_t>(n);
-  return id;
-}
-
-/// A connected arbiter with a clock and numbered writers.
-struct Scene {
-  Arbiter arbiter;
-  double now = 10.0;
-  std::uint64_t cycle = 100;
-  std::uint64_t number = 0;
-
-  Scene() { arbiter.connect(1); }
-  Command command(Role role, int who, bool active = true) {
-    Command c;
-    c.role = role;
-    c.writer = writer(who);
-    c.source = std::string(name(role)) + std::to_string(who);
-    c.epoch = 1;
-    c.cycle = cycle;
-    c.number = ++number;
-    c.active = active;
-    c.received = now;
-    return c;
-  }
-  bool offer(Role role, int who, bool active = true) {
-    return arbiter.offer(command(role, who, active), cycle);
-  }
-  void wait(int cycles) {
-    now += 0.1 * cycles;
-    cycle += static_cast<std::uint64_t>(cycles);
-  }
-  Role driver() { return arbiter.decide(now, cycle).role; }
-};
+using test::Scene;
+using test::writer;
 
 TEST(Arbiter, NobodyAskedNobodyDrives) {
   Scene s;
@@ -50,12 +19,12 @@ TEST(Arbiter, NobodyAskedNobodyDrives) {
 
 // Every set of roles that want to drive: the strongest does, the others hear why not.
 TEST(Arbiter, TheStrongestLiveRoleDrives) {
-  for (unsigned set = 1; set < 16; ++set) {
+  for (unsigned set = 1; set < 8; ++set) {
     Scene s;
     Role expected = Role::none;
     int weaker = -1;
-    for (int i = 0; i < 4; ++i) {
-      if ((set & (1U << i)) == 0)
+    for (int i = 1; i < 4; ++i) {
+      if ((set & (1U << (i - 1))) == 0)
         continue;
       const Role role = kRoles[static_cast<std::size_t>(i)];
       ASSERT_TRUE(s.offer(role, i));
@@ -112,7 +81,7 @@ TEST(Arbiter, AWriterThatIsGoneReleases) {
   s.arbiter.lost(Role::teleop, writer(3), s.now);
   EXPECT_EQ(s.driver(), Role::teleop);
   s.arbiter.lost(Role::teleop, writer(1), s.now);
-  EXPECT_EQ(s.driver(), Role::none) << "and quiet";
+  EXPECT_EQ(s.driver(), Role::none) << "and the behaviors wait";
 }
 
 TEST(Arbiter, RepeatedNumbersAreRefused) {
@@ -142,49 +111,6 @@ TEST(Arbiter, ASecondWriterWaitsUntilTheFirstIsDone) {
   EXPECT_EQ(s.arbiter.decide(s.now, s.cycle).source, "direct2");
   s.wait(4);
   EXPECT_TRUE(s.offer(Role::direct, 1)) << "the lease of the second ended";
-}
-
-TEST(Arbiter, AutonomyWaitsForTheQuietTimeAfterARelease) {
-  Scene s;
-  s.offer(Role::teleop, 1);
-  s.offer(Role::behaviors, 2);
-  EXPECT_EQ(s.driver(), Role::teleop);
-  s.offer(Role::teleop, 1, false);
-  const double released = s.now;
-  while (s.now - released < 1.95) {
-    s.offer(Role::behaviors, 2);
-    const Grant grant = s.arbiter.decide(s.now, s.cycle);
-    ASSERT_EQ(grant.role, Role::none);
-    ASSERT_NE(grant.reason.find("quiet after teleop"), std::string::npos);
-    s.wait(1);
-  }
-  s.offer(Role::behaviors, 2);
-  EXPECT_EQ(s.driver(), Role::behaviors);
-}
-
-TEST(Arbiter, ADroppedJoystickDoesNotMakeTheRobotDriveOff) {
-  Scene s;
-  s.offer(Role::teleop, 1);
-  EXPECT_EQ(s.driver(), Role::teleop);
-  const double last = s.now;
-  while (s.now - last < 0.3 + 1.85) {
-    s.wait(1);
-    s.offer(Role::behaviors, 2);
-    const Role role = s.driver();
-    ASSERT_NE(role, Role::behaviors) << s.now - last;
-  }
-  s.wait(2);
-  s.offer(Role::behaviors, 2);
-  EXPECT_EQ(s.driver(), Role::behaviors);
-}
-
-TEST(Arbiter, APersonNeedNotWait) {
-  Scene s;
-  s.offer(Role::estop, 1);
-  EXPECT_EQ(s.driver(), Role::estop);
-  s.offer(Role::estop, 1, false);
-  s.offer(Role::teleop, 2);
-  EXPECT_EQ(s.driver(), Role::teleop);
 }
 
 TEST(Arbiter, ANewConnectionNeedsANewCommand) {
@@ -242,45 +168,6 @@ TEST(Arbiter, AfterAGapNothingFromBeforeDrives) {
   ++s.cycle;
   EXPECT_TRUE(s.offer(Role::behaviors, 1));
   EXPECT_EQ(s.driver(), Role::behaviors);
-}
-
-TEST(Arbiter, AnEmergencyStopIsHeardWhateverItAnswers) {
-  Scene s;
-  s.arbiter.forget(s.cycle, s.now + 10.0);
-  Command c = s.command(Role::estop, 1);
-  c.epoch = 77;
-  c.cycle = 1;
-  EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
-  EXPECT_EQ(s.driver(), Role::estop);
-}
-
-TEST(Arbiter, AnEmergencyStopHoldsOnOverAGapAndAConnection) {
-  Scene s;
-  s.offer(Role::estop, 1);
-  s.arbiter.forget(s.cycle, s.now + 0.1);
-  EXPECT_EQ(s.driver(), Role::estop);
-  s.arbiter.connect(0);
-  EXPECT_EQ(s.driver(), Role::estop);
-  s.arbiter.connect(2);
-  s.offer(Role::behaviors, 2);
-  EXPECT_EQ(s.driver(), Role::estop);
-  s.wait(4);
-  EXPECT_EQ(s.driver(), Role::none) << "for its lease";
-  // Where cycles are the clock, it begins anew with them.
-  s.offer(Role::estop, 1);
-  s.now = 0.0;
-  EXPECT_EQ(s.driver(), Role::none);
-}
-
-TEST(Arbiter, AButtonThatSaysTheSameAgainIsStillPressed) {
-  Scene s;
-  Command c = s.command(Role::estop, 1);
-  for (int i = 0; i < 10; ++i) {
-    c.received = s.now;
-    EXPECT_TRUE(s.arbiter.offer(c, s.cycle));
-    EXPECT_EQ(s.driver(), Role::estop);
-    s.wait(2);
-  }
 }
 
 TEST(Arbiter, NobodyDrivesARobotThatIsSilent) {

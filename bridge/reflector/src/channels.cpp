@@ -9,6 +9,7 @@ namespace {
 constexpr protocol::Number kVel = protocol::Number::kVelocity;
 constexpr protocol::Number kHead = protocol::Number::kHeading;
 constexpr protocol::Number kRvel = protocol::Number::kRotationVelocity;
+constexpr protocol::Number kEstop = protocol::Number::kEmergencyStop;
 
 constexpr double kTick = 1e-6;           // [s] five cycles of 0.1 s are 0.5 s
 constexpr double kShownVelocity = 0.02;  // [m/s]
@@ -36,6 +37,8 @@ protocol::Command to_command(const Order& order) {
       return protocol::Heading{radians(order.argument)};
     case kRvel:
       return protocol::RotationVelocity{radians(order.argument)};
+    case kEstop:
+      return protocol::EmergencyStop{};
     default:
       return protocol::Pulse{};
   }
@@ -46,6 +49,17 @@ void Channels::connect() {
   channels_[1] = {};
   channels_[0].want = kNoMove;
   channels_[1].want = kNoTurn;
+  brake_.reset();
+}
+
+void Channels::brake(bool on) {
+  if (!on) {
+    brake_.reset();
+  } else if (!brake_) {
+    // What was sent before means nothing after it: when the brake ends, setpoints go out anew.
+    connect();
+    brake_.emplace().want = {kEstop, 0};
+  }
 }
 
 void Channels::want(const Setpoints& setpoints, double rotation) {
@@ -62,6 +76,11 @@ void Channels::want(const Setpoints& setpoints, double rotation) {
 }
 
 void Channels::cycle(const Shown& shown) {
+  if (brake_) {
+    brake_->in_cycle = false;
+    brake_->shown = std::abs(shown.velocity) <= kShownVelocity &&
+                    std::abs(shown.rotation_velocity) <= kShownRotation;
+  }
   for (Channel& channel : channels_) {
     channel.in_cycle = false;
     const Order& want = channel.want;
@@ -86,19 +105,27 @@ bool Channels::is_due(const Channel& channel, double now) {
 }
 
 bool Channels::pending(double now) const {
+  if (brake_)
+    return is_due(*brake_, now);
   return is_due(channels_[0], now) || is_due(channels_[1], now);
 }
 
 std::vector<Order> Channels::due(double now) {
   std::vector<Order> out;
-  for (Channel& channel : channels_) {
+  const auto take = [&](Channel& channel) {
     if (!is_due(channel, now))
-      continue;
+      return;
     channel.sent = channel.want;
     channel.at = now;
     channel.in_cycle = true;
     out.push_back(channel.want);
+  };
+  if (brake_) {
+    take(*brake_);
+    return out;
   }
+  for (Channel& channel : channels_)
+    take(channel);
   return out;
 }
 

@@ -83,7 +83,14 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
   return state_;
 }
 
+void Reflector::emergency_stop() {
+  motion_.stop();
+  channels_.want({}, odometry_.rotation());
+  channels_.brake(protocol::has_emergency_stop(parameters_));
+}
+
 void Reflector::hold(const Setpoints& setpoints) {
+  channels_.brake(false);
   channels_.want(setpoints, odometry_.rotation());
 }
 

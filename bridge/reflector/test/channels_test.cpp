@@ -47,6 +47,31 @@ TEST(Channels, AChangeGoesOutAtOnceAndOnceACycle) {
   EXPECT_TRUE(channels.due(100.14).empty());
 }
 
+TEST(Channels, AnEmergencyStopIsSentInsteadOfSetpoints) {
+  const std::vector<Order> brake{{protocol::Number::kEmergencyStop, 0}};
+  Channels channels;
+  channels.connect();
+  channels.due(100.0);
+  channels.want(speed(0.3), 0.0);
+  channels.due(100.1);
+  channels.cycle({0.3, 0.0, 0.0});
+  channels.brake(true);
+  EXPECT_EQ(channels.due(100.11), brake);
+  channels.brake(true);
+  EXPECT_TRUE(channels.due(100.12).empty()) << "once a cycle";
+  EXPECT_EQ(channels.sent_velocity(), 0.0);
+  channels.cycle({0.2, 0.0, 0.0});
+  EXPECT_EQ(channels.due(100.21), brake) << "it still moves";
+  channels.cycle({0.0, 0.5, 0.0});
+  EXPECT_EQ(channels.due(100.31), brake) << "it still turns";
+  channels.cycle({});
+  EXPECT_TRUE(channels.due(100.41).empty());
+  EXPECT_FALSE(channels.pending(100.7));
+  EXPECT_EQ(channels.due(100.82), brake) << "the beat";
+  channels.brake(false);
+  EXPECT_EQ(channels.due(100.9), (std::vector<Order>{kVelZero, kRvelZero}));
+}
+
 TEST(Channels, RepeatsUntilShownAndThenEveryHalfSecond) {
   Channels channels;
   channels.connect();

@@ -1,163 +1,110 @@
 #include "saphira/transport/keeper.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
-#include <sys/prctl.h>
+#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/places.hpp"
 
 namespace saphira::transport {
 
 namespace {
 
-using Clock = BootClock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kRepeat{100};  // the manual's most frequent command (5.2)
+constexpr milliseconds kPause{1000};  // between two starts
+constexpr int kUnanswered = 40;       // heartbeats: 2 s, by a keeper that has its own to do
 
-void say(const char* text) {
-  // Nothing can be done where stderr is gone or nobody reads it; the robot matters more.
-  pollfd ready{STDERR_FILENO, POLLOUT, 0};
-  if (::poll(&ready, 1, 0) == 1 && (ready.revents & POLLOUT) != 0) [[maybe_unused]]
-    const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
-}
-
-/// Writes to the robot, whatever kind of line it is, without waiting long for it.
-void write_stop(int fd, std::span<const std::uint8_t> stop) {
-  std::size_t done = 0;
-  for (int tries = 0; done < stop.size() && tries < 5; ++tries) {
-    const ssize_t n = ::write(fd, stop.data() + done, stop.size() - done);
-    if (n > 0) {
-      done += static_cast<std::size_t>(n);
-    } else if (n < 0 && errno == EAGAIN) {
-      pollfd ready{fd, POLLOUT, 0};
-      ::poll(&ready, 1, 20);
-    } else if (n < 0 && errno != EINTR) {
-      return;
-    }
+/// Whatever else is open belongs to the bridge: a pipe that the keeper held would never end.
+struct Inherited {
+  posix_spawn_file_actions_t files{};
+  posix_spawnattr_t attributes{};
+  explicit Inherited(int socket) {
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, socket, kKeeperSocket);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addclosefrom_np(&files, kKeeperSocket + 1);
+    posix_spawnattr_init(&attributes);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   }
-}
-
-/// One message: a word, and with 'W' a descriptor. 0 at the end of the bridge.
-char receive(int socket, int& passed) {
-  char word = 0;
-  iovec part{&word, 1};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  passed = -1;
-  ssize_t n = 0;
-  do
-    n = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
-  while (n < 0 && errno == EINTR);
-  for (cmsghdr* c = CMSG_FIRSTHDR(&message); n > 0 && c != nullptr; c = CMSG_NXTHDR(&message, c)) {
-    if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SCM_RIGHTS)
-      std::memcpy(&passed, CMSG_DATA(c), sizeof passed);
+  ~Inherited() {
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
   }
-  return n > 0 ? word : '\0';
-}
-
-[[noreturn]] void keep(int socket, const std::vector<std::uint8_t>& stop, milliseconds silence) {
-  // It outlives what ends the bridge: the signals of the terminal are for the bridge, whose end is
-  // heard on the socket.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGQUIT, SIGPIPE, SIGUSR1, SIGUSR2})
-    ::signal(signal, SIG_IGN);
-  ::prctl(PR_SET_NAME, "saphira-keeper");
-  ::prctl(PR_SET_PDEATHSIG, 0);
-  int robot = -1;
-  bool acting = false;
-  auto heard = Clock::now();
-  while (true) {
-    pollfd ready{socket, POLLIN, 0};
-    int timeout = -1;
-    if (robot >= 0) {
-      const auto left = std::chrono::duration_cast<milliseconds>(heard + silence - Clock::now());
-      timeout = acting ? static_cast<int>(kRepeat.count())
-                       : std::max(0, static_cast<int>(left.count()) + 1);
-    }
-    const int n = ::poll(&ready, 1, timeout);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n > 0) {
-      int passed = -1;
-      const char word = receive(socket, passed);
-      if (word == '\0') {
-        if (robot >= 0) {
-          write_stop(robot, stop);
-          write_stop(robot, stop);  // once for a line that was cut within a packet
-          say("saphira-bridge keeper: the bridge is gone; the robot is stopped\n");
-        }
-        ::_exit(0);
-      }
-      if (word == 'W' || word == 'U') {
-        if (robot >= 0)
-          ::close(robot);
-        robot = passed;
-      }
-      heard = Clock::now();
-      if (acting)
-        say("saphira-bridge keeper: the bridge is back\n");
-      acting = false;
-      continue;
-    }
-    if (robot >= 0 && Clock::now() - heard >= silence) {
-      write_stop(robot, stop);
-      if (!std::exchange(acting, true))
-        say("saphira-bridge keeper: the bridge is silent; the robot is stopped\n");
-    }
-  }
-}
+  Inherited(const Inherited&) = delete;
+  Inherited& operator=(const Inherited&) = delete;
+};
 
 }  // namespace
 
-Keeper::Keeper(const std::vector<std::uint8_t>& stop, std::chrono::milliseconds silence) {
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
-    throw std::runtime_error(std::string("keeper: no socket pair: ") + std::strerror(errno));
-  pid_ = ::fork();
-  if (pid_ < 0) {
-    ::close(ends[0]);
-    ::close(ends[1]);
-    throw std::runtime_error(std::string("keeper: no second process: ") + std::strerror(errno));
-  }
-  if (pid_ == 0) {
-    // Whatever else is open belongs to the bridge: a pipe that the keeper held would never end.
-    const int kept = ::fcntl(ends[1], F_DUPFD_CLOEXEC, 3);
-    for (int fd = 0; fd < 1024; ++fd) {
-      if (fd != kept && fd != STDERR_FILENO)
-        ::close(fd);
-    }
-    keep(kept, stop, silence);
-  }
-  ::close(ends[1]);
-  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  socket_ = ends[0];
-  alive_ = true;
+Keeper::Keeper(milliseconds silence, std::string program)
+    : silence_(silence), program_(std::move(program)) {
+  if (program_.empty())
+    program_ = program_folder() + "/saphira-keeper";
+  if (const std::string trouble = start(); !trouble.empty())
+    throw std::runtime_error(trouble);
 }
 
 Keeper::~Keeper() {
-  ::close(socket_);
-  int status = 0;
-  ::waitpid(pid_, &status, 0);
+  end();
 }
 
-bool Keeper::send(char word, int fd) {
-  iovec part{&word, 1};
+std::string Keeper::start() {
+  started_ = BootClock::now();
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    return std::string("keeper: no socket pair: ") + std::strerror(errno);
+  std::string silence = std::to_string(silence_.count());
+  std::array<char*, 3> argv{program_.data(), silence.data(), nullptr};
+  const Inherited inherited(ends[1]);
+  const int error = ::posix_spawn(&pid_, program_.c_str(), &inherited.files, &inherited.attributes,
+                                  argv.data(), environ);
+  ::close(ends[1]);
+  if (error != 0) {
+    ::close(ends[0]);
+    pid_ = -1;
+    return "keeper: " + program_ + ": " + std::strerror(error);
+  }
+  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  socket_ = ends[0];
+  alive_ = true;
+  told_ = watched_ < 0;
+  unanswered_ = 0;
+  return {};
+}
+
+/// It ends by itself when it does not hear the bridge any more, after stopping a robot that it
+/// keeps; one that hangs does not.
+void Keeper::end() {
+  if (socket_ >= 0)
+    ::close(std::exchange(socket_, -1));
+  if (pid_ <= 0)
+    return;
+  if (!alive_)
+    ::kill(pid_, SIGKILL);
+  int status = 0;
+  ::waitpid(std::exchange(pid_, -1), &status, 0);
+  alive_ = false;
+}
+
+bool Keeper::send(char word, int fd, const std::vector<std::uint8_t>& rest) {
+  std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(word)};
+  bytes.insert(bytes.end(), rest.begin(), rest.end());
+  iovec part{bytes.data(), bytes.size()};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
   msghdr message{};
   message.msg_iov = &part;
@@ -179,9 +126,10 @@ bool Keeper::send(char word, int fd) {
   return false;
 }
 
-void Keeper::watch(int fd) {
+void Keeper::watch(int fd, std::vector<std::uint8_t> stop) {
   watched_ = fd;
-  told_ = alive_ && send('W', fd);
+  stop_ = std::move(stop);
+  told_ = alive_ && send('W', fd, stop_);
 }
 
 void Keeper::unwatch() {
@@ -189,13 +137,38 @@ void Keeper::unwatch() {
   told_ = alive_ && send('U', -1);
 }
 
+void Keeper::hear() {
+  std::array<char, 16> words{};
+  while (alive_) {
+    const ssize_t n = ::recv(socket_, words.data(), words.size(), MSG_DONTWAIT);
+    if (n > 0) {
+      unanswered_ = 0;
+    } else if (n == 0) {
+      alive_ = false;
+    } else {
+      if (errno != EAGAIN && errno != EINTR)
+        alive_ = false;
+      return;
+    }
+  }
+}
+
 void Keeper::beat() {
-  if (!alive_)
-    return;
+  hear();
+  if (alive_ && unanswered_ >= kUnanswered)
+    alive_ = false;  // it hangs
+  if (!alive_) {
+    if (BootClock::now() - started_ < kPause)
+      return;
+    end();
+    if (!start().empty())
+      return;
+    ++restarts_;
+  }
   if (!told_)
-    told_ = send(watched_ >= 0 ? 'W' : 'U', watched_);
-  else
-    send('B', -1);
+    told_ = watched_ >= 0 ? send('W', watched_, stop_) : send('U', -1);
+  ++unanswered_;
+  send('B', -1);
 }
 
 }  // namespace saphira::transport

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <stdexcept>
 #include <string>
 
 namespace saphira::transport {
@@ -16,6 +18,11 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 const std::vector<std::uint8_t> kStop{'S', 'T', 'O', 'P'};
+
+std::string program() {
+  const char* const folder = std::getenv("SAPHIRA_BIN_DIR");
+  return std::string(folder == nullptr ? "." : folder) + "/saphira-keeper";
+}
 
 /// A robot at the end of a socket pair.
 struct Robot {
@@ -39,8 +46,8 @@ struct Robot {
 
 TEST(Keeper, IsSilentWhileTheHeartBeats) {
   Robot robot;
-  Keeper keeper(kStop, milliseconds(300));
-  keeper.watch(robot.ends[0]);
+  Keeper keeper(milliseconds(300), program());
+  keeper.watch(robot.ends[0], kStop);
   for (int i = 0; i < 12; ++i) {
     keeper.beat();
     EXPECT_EQ(robot.hear(50), "");
@@ -49,8 +56,8 @@ TEST(Keeper, IsSilentWhileTheHeartBeats) {
 
 TEST(Keeper, StopsTheRobotWhenTheHeartIsSilentAndUntilItBeats) {
   Robot robot;
-  Keeper keeper(kStop, milliseconds(300));
-  keeper.watch(robot.ends[0]);
+  Keeper keeper(milliseconds(300), program());
+  keeper.watch(robot.ends[0], kStop);
   const auto start = Clock::now();
   EXPECT_EQ(robot.hear(5000), "STOP");
   EXPECT_GE(Clock::now() - start, milliseconds(290));
@@ -67,10 +74,10 @@ TEST(Keeper, StopsTheRobotWhenTheHeartIsSilentAndUntilItBeats) {
 TEST(Keeper, KeepsWhatItIsGivenAlone) {
   Robot robot;
   Robot other;
-  Keeper keeper(kStop, milliseconds(50));
+  Keeper keeper(milliseconds(50), program());
   EXPECT_EQ(robot.hear(200), "") << "no robot yet";
-  keeper.watch(robot.ends[0]);
-  keeper.watch(other.ends[0]);
+  keeper.watch(robot.ends[0], kStop);
+  keeper.watch(other.ends[0], kStop);
   EXPECT_EQ(other.hear(5000), "STOP");
   EXPECT_EQ(robot.hear(0), "");
   keeper.unwatch();
@@ -91,8 +98,8 @@ TEST(Keeper, EndsWithTheBridgeAfterStoppingTheRobot) {
   const pid_t bridge = ::fork();
   ASSERT_GE(bridge, 0);
   if (bridge == 0) {
-    Keeper keeper(kStop, milliseconds(10000));
-    keeper.watch(robot.ends[0]);
+    Keeper keeper(milliseconds(10000), program());
+    keeper.watch(robot.ends[0], kStop);
     ::close(robot.ends[1]);
     const char up = 'u';
     if (::write(ready[1], &up, 1) != 1)
@@ -116,16 +123,47 @@ TEST(Keeper, EndsWithTheBridgeAfterStoppingTheRobot) {
   ::close(ready[1]);
 }
 
-TEST(Keeper, ItsOwnEndIsNoticed) {
+/// Beats until another process keeps the robot.
+bool replaced(Keeper& keeper, int before) {
+  const auto limit = Clock::now() + std::chrono::seconds(60);
+  while (keeper.pid() == before && Clock::now() < limit) {
+    keeper.beat();
+    ::poll(nullptr, 0, 20);
+  }
+  return keeper.pid() != before;
+}
+
+TEST(Keeper, OneThatDiesIsReplacedAndKeepsTheSameRobot) {
   Robot robot;
-  Keeper keeper(kStop);
-  keeper.watch(robot.ends[0]);
+  Keeper keeper(milliseconds(300), program());
+  keeper.watch(robot.ends[0], kStop);
   ASSERT_TRUE(keeper.alive());
   ::kill(keeper.pid(), SIGKILL);
-  const auto limit = Clock::now() + std::chrono::seconds(10);
-  while (keeper.alive() && Clock::now() < limit)
-    keeper.beat();
-  EXPECT_FALSE(keeper.alive());
+  ASSERT_TRUE(replaced(keeper, keeper.pid()));
+  EXPECT_TRUE(keeper.alive());
+  EXPECT_EQ(keeper.restarts(), 1);
+  EXPECT_EQ(robot.hear(5000), "STOP") << "now the heart is silent";
+}
+
+TEST(Keeper, OneThatHangsIsReplaced) {
+  Robot robot;
+  Keeper keeper(milliseconds(300), program());
+  keeper.watch(robot.ends[0], kStop);
+  const int first = keeper.pid();
+  ::kill(first, SIGSTOP);
+  ASSERT_TRUE(replaced(keeper, first));
+  EXPECT_TRUE(keeper.alive());
+  EXPECT_NE(::kill(first, 0), 0) << "two keepers would stop the robot against each other";
+}
+
+TEST(Keeper, AMissingProgramIsNamed) {
+  try {
+    const Keeper keeper(milliseconds(300), "/nowhere/saphira-keeper");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "keeper: /nowhere/saphira-keeper: No such file or directory");
+  }
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
   EXPECT_LE(still, last + 5 + 1) << "0.5 s, and the cycle that had begun";
 }
 
-TEST(Bridge, APersonTakesOverAndAutonomyWaits) {
+TEST(Bridge, APersonTakesOverAndAutonomyWaitsToBeHandedTheRobotBack) {
   Scene scene;
   scene.start_simulator();
   scene.start_bridge();
@@ -100,9 +100,23 @@ TEST(Bridge, APersonTakesOverAndAutonomyWaits) {
   by_hand.number(by_hand.number() + 1);
   teleop.write(by_hand);
   ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_NONE; }));
+  EXPECT_TRUE(scene.grant.waits_for_hand_back());
+  ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
+  // Nothing changes by itself: not by time, nor because the person's program is gone.
   const std::uint64_t released = scene.state.stamp().cycle();
-  ASSERT_TRUE(scene.until([&] { return scene.grant.role() == v1::ROLE_DIRECT; }));
-  EXPECT_GE(scene.grant.stamp().cycle(), released + 18) << "two seconds of quiet";
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > released + 30; }));
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
+  EXPECT_NE(scene.grant.reason().find("saphira drive hand-back"), std::string::npos);
+  EXPECT_TRUE(scene.rests());
+
+  by_hand.hand_back(true);
+  ASSERT_TRUE(scene.until([&] {
+    by_hand.number(by_hand.number() + 1);
+    by_hand.stamp(scene.state.stamp());
+    teleop.write(by_hand);
+    return scene.grant.role() == v1::ROLE_DIRECT;
+  })) << scene.grant.reason();
+  EXPECT_FALSE(scene.grant.waits_for_hand_back());
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.18; }));
 }
 

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "saphira/authority/latches.hpp"
 
 namespace saphira::authority {
 
@@ -13,10 +16,6 @@ enum class Role { none, estop, teleop, direct, behaviors };
 inline constexpr std::array kRoles{Role::estop, Role::teleop, Role::direct, Role::behaviors};
 
 const char* name(Role role);
-/// A person's role: when it ends, autonomy waits for the quiet time.
-inline bool is_person(Role role) {
-  return role == Role::estop || role == Role::teleop;
-}
 
 using WriterId = std::array<std::uint8_t, 16>;
 
@@ -30,12 +29,15 @@ struct Command {
   std::uint64_t cycle = 0;   ///< the same; 0 from a writer without cycles
   std::uint64_t number = 0;  ///< counts the writer's commands
   bool active = false;       ///< the dead-man: false releases
+  bool hand_back = false;    ///< a person's release that lets autonomy drive again
   double received = 0.0;     ///< [s]
 };
 
 struct Settings {
   double lease = 0.3;  ///< [s] a command drives for so long after it was received
-  double quiet = 2.0;  ///< [s] the robot stands still so long after a person's role ended
+  /// [s] After a person has driven, autonomy drives again without being handed the robot back when
+  /// the person's program has said without a pause for so long that it does not drive.
+  double quiet = std::numeric_limits<double>::infinity();
   std::uint64_t intent_cycles = 3;  ///< a command that answers an older cycle than this is stale
 };
 
@@ -50,9 +52,12 @@ struct Grant {
   Role role = Role::none;  ///< none: nobody drives, the robot is to be stopped
   WriterId writer{};
   std::string source;
-  std::string reason;        ///< why this one, or why nobody
-  double expires_in = 0.0;   ///< [s] until the lease of the newest command ends
-  double command_age = 0.0;  ///< [s] of the newest command
+  std::string reason;                ///< why this one, or why nobody
+  double expires_in = 0.0;           ///< [s] until the lease of the newest command ends
+  double command_age = 0.0;          ///< [s] of the newest command
+  bool estopped = false;             ///< an emergency stop is latched
+  std::string estop_source;          ///< which program pressed it
+  bool waits_for_hand_back = false;  ///< autonomy waits until a person hands the robot back
 
   /// Whether the same one drives (a change means: stop first, then obey).
   bool same_driver(const Grant& other) const {
@@ -63,27 +68,37 @@ struct Grant {
 /// Decides who drives the robot: the strongest role whose newest command is younger than its lease.
 /// It keeps what was offered and knows no clock. Refuses, with a reason: a repeated number, another
 /// epoch, an answer to an old cycle, a second writer in a role that is held.
+///
+/// Two things are latched, over connections and, with latches() and restore(), over a restart:
+/// - An emergency stop: nobody drives until it is reset. What asked to drive before the reset does
+///   not drive after it: a person lets go first; autonomy must have come to rest by itself, as it
+///   does when its goals end, or it waits to be handed the robot back.
+/// - After a person has driven, autonomy waits to be handed the robot back.
 class Arbiter {
  public:
   explicit Arbiter(Settings settings = {}) : settings_(settings) {}
 
   const Settings& settings() const { return settings_; }
 
-  /// A connection to a robot began (or ended: epoch 0). Nobody holds a grant from before; an
-  /// emergency stop holds on.
+  /// A connection to a robot began (or ended: epoch 0). Nobody holds a grant from before.
   void connect(std::uint64_t epoch);
   /// The caller was deaf for a while (stopped, hung, without packets): nobody holds a grant from
-  /// before; an emergency stop holds on. What is received before `until`, or answers a cycle up to
-  /// `cycle`, may have waited in a queue and is refused.
+  /// before. What is received before `until`, or answers a cycle up to `cycle`, may have waited in
+  /// a queue and is refused.
   void forget(std::uint64_t cycle, double until);
 
   /// Takes a command as it comes, at robot cycle `cycle`. True when it was accepted: it is then the
   /// newest of its role. (Accepted does not mean that it drives: see decide.)
   bool offer(const Command& command, std::uint64_t cycle);
-  /// A writer is gone from the bus: as if it had released its role.
+  /// A writer is gone from the bus: as if it had released its role. An emergency stop stays.
   void lost(Role role, const WriterId& writer, double now);
   /// Refuses a command for a reason that the caller found (a value that is no number).
   void refuse(Role role, const std::string& source, const std::string& reason);
+
+  /// Releases the emergency stop. Returns why not, in words; empty where it is released.
+  std::string reset(const std::string& source, double now);
+  const Latches& latches() const { return latches_; }
+  void restore(const Latches& latches) { latches_ = latches; }
 
   /// Who drives now.
   Grant decide(double now, std::uint64_t cycle);
@@ -103,8 +118,15 @@ class Arbiter {
   const Player& player(Role role) const { return players_[static_cast<std::size_t>(role)]; }
   Player& player(Role role) { return players_[static_cast<std::size_t>(role)]; }
   void let_go();
+  void press(const Command& command);
+  bool release(const Command& command, std::uint64_t cycle);
+  std::string stale(const Command& command, std::uint64_t cycle) const;
+  bool fresh(const Player& p, double now) const;
   bool live(const Player& p, double now, std::uint64_t cycle) const;
   std::string why_not(const Player& p, double now, std::uint64_t cycle) const;
+  Role strongest(double now, std::uint64_t cycle) const;
+  std::string why_to_stand(Role role) const;
+  void end_wait(double now);
 
   Settings settings_;
   std::uint64_t epoch_ = 0;
@@ -120,10 +142,18 @@ class Arbiter {
   /// again never drives.
   std::map<std::pair<Role, WriterId>, Numbers> numbers_;
   std::uint64_t offers_ = 0;
-  Role person_ = Role::none;  ///< the person's role that drove when last decided
-  Role quiet_after_ = Role::none;
-  double quiet_until_ = -1e300;
-  double person_seen_ = -1e300;  ///< end of the person's newest lease
+
+  Latches latches_;
+  struct Press {
+    std::string source;
+    double received = 0.0;
+  };
+  std::map<WriterId, Press> pressed_;  ///< emergency stops that have not been let go
+  bool let_go_first_ = false;          ///< the person drove when the emergency stop was reset
+  WriterId person_{};                  ///< the person's program that drove last
+  double quiet_since_ = 0.0;           ///< it says since then that it does not drive
+  double quiet_heard_ = -1e300;        ///< when it said so last
+
   std::vector<Refusal> refused_;
   std::uint64_t refused_count_ = 0;
 };

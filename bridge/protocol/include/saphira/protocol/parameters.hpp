@@ -98,6 +98,11 @@ struct RobotParameters {
   bool operator==(const RobotParameters&) const = default;
 };
 
+/// Whether the server has ESTOP, which brakes harder than a velocity of zero.
+inline bool has_emergency_stop(const RobotParameters& parameters) {
+  return parameters.protocol != Protocol::kPsos;
+}
+
 /// Reads the text of a parameter file; `file` names it in errors. Keywords may stand in any order
 /// and case, each at most once; the value may stand on the line behind its keyword. Of a file in
 /// ARIA's form, with sections, what is not known is passed over. FileError where it is wrong, where

@@ -37,6 +37,9 @@ class Channels {
   void connect();
   /// The setpoints to be held. `rotation`: server's frame to odom [rad].
   void want(const Setpoints& setpoints, double rotation);
+  /// The server's emergency stop (ESTOP) instead of setpoints, for as long as this is on: until the
+  /// server shows rest, and every 0.5 s. A velocity would end it.
+  void brake(bool on);
   /// An information packet came: a new cycle.
   void cycle(const Shown& shown);
 
@@ -58,6 +61,7 @@ class Channels {
   static bool is_due(const Channel& channel, double now);
 
   std::array<Channel, 2> channels_;  ///< translation, rotation
+  std::optional<Channel> brake_;     ///< while it is on
 };
 
 }  // namespace saphira::reflector

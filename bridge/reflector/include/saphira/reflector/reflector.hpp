@@ -60,6 +60,8 @@ class Reflector {
 
   /// The setpoints that the server is to hold, after whatever the guard made of motion().
   void hold(const Setpoints& setpoints);
+  /// The hardest stop that the server has, instead of setpoints, until hold() is called again.
+  void emergency_stop();
   /// The devices: what is asked of them, and what became of it.
   void request(const std::string& source, std::uint64_t number, const Wish& wish) {
     devices_.request(source, number, wish, parameters_);

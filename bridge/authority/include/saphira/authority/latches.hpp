@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+namespace saphira::authority {
+
+/// Why autonomy waits for a person.
+enum class Wait {
+  none,
+  driven,  ///< a person drove last
+  reset,   ///< an emergency stop was reset while autonomy asked to drive, or was not heard
+};
+
+/// What holds until a person releases it, whatever happens to the programs.
+struct Latches {
+  bool estopped = false;
+  std::string estop_source;  ///< which program pressed it
+  Wait wait = Wait::none;
+  bool operator==(const Latches&) const = default;
+};
+
+/// One line of text. Empty where nothing is latched.
+std::string to_text(const Latches& latches);
+/// The same back. A text that cannot be read means an emergency stop: nobody can tell that there
+/// was none.
+Latches latches_from_text(const std::string& text);
+
+}  // namespace saphira::authority

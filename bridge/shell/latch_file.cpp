@@ -1,0 +1,44 @@
+#include "latch_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+namespace saphira::bridge {
+
+authority::Latches LatchFile::read() const {
+  std::error_code error;
+  if (path_.empty() || (!std::filesystem::exists(path_, error) && !error))
+    return {};
+  // The file is there because something was latched: an empty one says as little as a bad one.
+  std::ifstream file(path_);
+  std::string line;
+  const bool whole = std::getline(file, line) && !file.eof();
+  return authority::latches_from_text(whole ? line + "\n" : "?");
+}
+
+std::string LatchFile::write(const authority::Latches& latches) const {
+  if (path_.empty())
+    return {};
+  const std::string text = authority::to_text(latches);
+  std::error_code error;
+  if (text.empty()) {
+    std::filesystem::remove(path_, error);
+    return error ? path_ + ": " + error.message() : "";
+  }
+  // Another name first: a kill leaves the old file or the new one.
+  const std::string fresh = path_ + ".new";
+  std::ofstream file(fresh, std::ios::trunc);
+  file << text;
+  file.close();
+  if (!file)
+    return fresh + ": " + std::strerror(errno);
+  std::filesystem::rename(fresh, path_, error);
+  return error ? path_ + ": " + error.message() : "";
+}
+
+}  // namespace saphira::bridge

@@ -1,0 +1,47 @@
+#include "latch_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "process.hpp"
+
+namespace saphira::bridge {
+namespace {
+
+using authority::Latches;
+using authority::Wait;
+
+TEST(LatchFile, IsReadByTheNextOneAndGoneWithTheLatch) {
+  const test::TempDir folder;
+  const std::string path = folder.path("latched");
+  EXPECT_EQ(LatchFile(path).read(), Latches{});
+  const Latches latches{true, "a button", Wait::driven};
+  EXPECT_EQ(LatchFile(path).write(latches), "");
+  EXPECT_EQ(LatchFile(path).read(), latches);
+  EXPECT_EQ(LatchFile(path).write({}), "");
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(LatchFile(path).write({}), "") << "twice is no trouble";
+}
+
+TEST(LatchFile, OneThatCannotBeReadIsAnEmergencyStop) {
+  const test::TempDir folder;
+  const std::string path = folder.path("latched");
+  std::ofstream(path).close();
+  EXPECT_TRUE(LatchFile(path).read().estopped);
+  std::ofstream(path) << "noise";
+  EXPECT_TRUE(LatchFile(path).read().estopped);
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  EXPECT_TRUE(LatchFile(path).read().estopped);
+}
+
+TEST(LatchFile, SaysWhereItCannotBeWritten) {
+  EXPECT_EQ(LatchFile("").write({true, "a button", Wait::none}), "");
+  const std::string trouble = LatchFile("/nowhere/at/all").write({true, "a button", Wait::none});
+  EXPECT_NE(trouble.find("/nowhere/at/all.new: No such file"), std::string::npos) << trouble;
+}
+
+}  // namespace
+}  // namespace saphira::bridge

@@ -1,0 +1,92 @@
+// A stop is a stop: by a goal, by the emergency stop, and by the end of the program that wanted the
+// robot to drive.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "system.hpp"
+
+namespace saphira::test {
+namespace {
+
+Process command_line(const System& system, const std::vector<std::string>& words) {
+  std::vector<std::string> argv{"saphira", "--robot", system.robot(), "--domain", domain()};
+  argv.insert(argv.end(), words.begin(), words.end());
+  return {argv, system.folder().path("cli." + words.back())};
+}
+
+/// For so many cycles of the robot.
+bool stays_still(const System& system, long cycles) {
+  const long begin = system.truth().cycle;
+  bool still = true;
+  const bool passed = wait_until([&] {
+    still = still && system.truth().still();
+    return system.truth().cycle >= begin + cycles;
+  });
+  return passed && still;
+}
+
+TEST(Stop, EndsAGoalOfAnyPriority) {
+  System system;
+  system.start_all();
+  v1::Goal wanted;
+  wanted.functor("go_to");
+  wanted.arguments({bus::point("position", 8.0, 0.0, 0.0, v1::FRAME_ODOM)});
+  wanted.priority(1000);
+  const v1::GoalId goal = system.goals().ask(wanted);
+  ASSERT_TRUE(system.wait_moving()) << system.output();
+  Process stop = command_line(system, {"goal", "stop"});
+  EXPECT_EQ(stop.wait(), 0) << stop.output();
+  const auto status = system.wait_end(goal);
+  ASSERT_TRUE(status) << system.output();
+  EXPECT_EQ(status->state(), v1::GOAL_CANCELED);
+  EXPECT_EQ(status->reason().find("stopped by goal "), 0U) << status->reason();
+  EXPECT_TRUE(stays_still(system, 20)) << system.output();
+}
+
+TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {
+  System system;
+  system.start_all();
+  const v1::GoalId goal = system.go_to(8.0, 0.0);
+  ASSERT_TRUE(system.wait_moving()) << system.output();
+  Process estop = command_line(system, {"estop"});
+  EXPECT_EQ(estop.wait(), 0) << estop.output();
+  ASSERT_TRUE(system.wait_still(std::chrono::seconds(30))) << system.output();
+  const auto status = system.wait_end(goal);
+  ASSERT_TRUE(status) << system.output();
+  EXPECT_EQ(status->state(), v1::GOAL_CANCELED);
+  EXPECT_EQ(status->reason().find("emergency stop, pressed by"), 0U) << status->reason();
+
+  // While it is latched, nothing that is asked for drives.
+  const v1::GoalId meanwhile = system.go_to(8.0, 0.0);
+  ASSERT_TRUE(system.wait_end(meanwhile)) << system.output();
+  EXPECT_TRUE(stays_still(system, 10)) << system.output();
+
+  Process reset = command_line(system, {"estop", "reset"});
+  EXPECT_EQ(reset.wait(), 0) << reset.output();
+  EXPECT_TRUE(stays_still(system, 20)) << system.output();
+
+  const v1::GoalId again = system.go_to(8.0, 0.0);
+  EXPECT_TRUE(system.wait_moving()) << system.output();
+  system.goals().cancel(again);
+  EXPECT_TRUE(system.wait_still(std::chrono::seconds(30)));
+}
+
+// Its goal says: cancel when I die. (saphira goal without --keep.)
+TEST(Stop, TheEndOfAGoalsWriterIsNoticedBeforeTheRobotHasGoneFar) {
+  System system;
+  system.start_all();
+  Process client = command_line(system, {"goal", "drive", "0.3"});
+  ASSERT_TRUE(system.wait_moving()) << client.output() << system.output();
+  const Truth lost = system.truth();
+  client.signal(SIGKILL);
+  ASSERT_TRUE(wait_until([&] { return system.stood_still(lost.cycle).has_value(); }))
+      << system.output();
+  const long took = *system.stood_still(lost.cycle) - lost.cycle;
+  std::printf("stood %ld cycles after the client was killed\n", took);
+  RecordProperty("cycles_to_standstill", std::to_string(took));
+  EXPECT_LE(took, 30) << "a second is meant; the participant's own lease would be ten or more";
+  EXPECT_TRUE(stays_still(system, 20)) << system.output();
+}
+
+}  // namespace
+}  // namespace saphira::test

@@ -1,0 +1,224 @@
+// The emergency stop of the bridge, with a robot that drives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "scene.hpp"
+
+namespace saphira::test {
+namespace {
+
+/// A stop button with a program of its own.
+class Button {
+ public:
+  explicit Button(Scene& scene) : node_(scene.node.options()) { command_.source("button"); }
+
+  void say(bool pressed) {
+    command_.active(pressed);
+    command_.number(command_.number() + 1);
+    writer_.write(command_);
+  }
+  void reset() {
+    v1::EstopReset reset;
+    reset.source("key switch");
+    reset.number(++resets_);
+    reset_writer_.write(reset);
+  }
+
+ private:
+  bus::Node node_;
+  bus::Writer<v1::MotorCommand> writer_ = node_.writer(bus::topics::kDriveEstop);
+  bus::Writer<v1::EstopReset> reset_writer_ = node_.writer(bus::topics::kEstopReset);
+  v1::MotorCommand command_;
+  std::uint64_t resets_ = 0;
+};
+
+struct Driving : Scene {
+  Driving() {
+    bridge_options = {"--state", folder.path("state")};
+    start_simulator();
+    start_bridge();
+    forward(command, 0.3);
+    drives = true;
+  }
+  bool moves() {
+    return until([&] { return state.velocity() > 0.25; });
+  }
+  bool stopped() const { return grant.estopped() && grant.role() == v1::ROLE_ESTOP && rests(); }
+  /// Presses until it is confirmed, and until the robot rests.
+  bool press(Button& button) {
+    return until([&] {
+      button.say(true);
+      return stopped();
+    });
+  }
+  /// For so many cycles of the robot; false where it moved, or the stop was let go.
+  bool stays_stopped(std::uint64_t cycles) {
+    const std::uint64_t begin = state.stamp().cycle();
+    bool still = true;
+    const bool passed = until([&] {
+      still = still && stopped();
+      return state.stamp().cycle() >= begin + cycles;
+    });
+    return passed && still;
+  }
+};
+
+TEST(BridgeEstop, HoldsWithoutItsButtonOverANewConnectionAndARestart) {
+  Driving scene;
+  ASSERT_TRUE(scene.moves()) << scene.bridge_log();
+  {
+    Button button(scene);
+    ASSERT_TRUE(scene.press(button)) << scene.bridge_log();
+  }
+  EXPECT_EQ(scene.grant.estop_source(), "button");
+  // The driver asks on; the button's program is gone, its lease and any quiet time are over.
+  EXPECT_TRUE(scene.stays_stopped(40));
+
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  scene.start_simulator();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > epoch; }));
+  EXPECT_TRUE(scene.stays_stopped(10));
+
+  const std::uint64_t second = scene.state.stamp().epoch();
+  scene.bridge->signal(SIGKILL);
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > second; }))
+      << scene.bridge_log();
+  EXPECT_TRUE(scene.stays_stopped(10));
+  EXPECT_EQ(scene.grant.estop_source(), "button");
+  EXPECT_EQ(scene.status.state(), v1::SERVICE_DEGRADED);
+  EXPECT_NE(scene.status.reason().find("emergency stop, pressed by button"), std::string::npos);
+}
+
+TEST(BridgeEstop, IsReleasedByAResetAloneAndTheOldCommandDoesNotGoOn) {
+  Driving scene;
+  ASSERT_TRUE(scene.moves()) << scene.bridge_log();
+  Button button(scene);
+  ASSERT_TRUE(scene.press(button));
+  // Refused while somebody presses, and said why.
+  ASSERT_TRUE(scene.until([&] {
+    button.say(true);
+    button.reset();
+    const auto& refused = scene.grant.refused();
+    return std::any_of(refused.begin(), refused.end(), [](const v1::Refusal& refusal) {
+      return refusal.source() == "key switch" &&
+             refusal.reason().find("button still presses") != std::string::npos;
+    });
+  }));
+  EXPECT_TRUE(scene.grant.estopped());
+  button.say(false);
+  ASSERT_TRUE(scene.until([&] {
+    button.reset();
+    return !scene.grant.estopped();
+  }));
+  // The driver never let go: it does not drive on.
+  EXPECT_TRUE(scene.grant.waits_for_hand_back());
+  const std::uint64_t reset = scene.state.stamp().cycle();
+  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > reset + 30; }));
+  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
+  EXPECT_TRUE(scene.rests());
+}
+
+TEST(BridgeEstop, IsConfirmedWithoutARobot) {
+  Scene scene;
+  scene.robot_port = scene.folder.path("nobody");
+  scene.start_bridge();
+  Button button(scene);
+  ASSERT_TRUE(scene.until([&] {
+    button.say(true);
+    return scene.grant.estopped();
+  })) << scene.bridge_log();
+  // A robot that is switched on later does not drive.
+  button.say(false);
+  scene.robot_port = scene.folder.path("robot");
+  scene.start_bridge();
+  EXPECT_TRUE(scene.until([&] { return !scene.grant.estopped(); })) << "no --state, no memory";
+}
+
+/// The way from the press to the standstill [m], of a robot at 0.4 m/s.
+double way_to_standstill(const std::string& robot_file) {
+  Scene scene;
+  scene.robot_file = robot_file;
+  scene.start_simulator();
+  scene.start_bridge();
+  forward(scene.command, 0.4);
+  scene.drives = true;
+  EXPECT_TRUE(scene.until([&] { return scene.state.velocity() > 0.38; })) << scene.bridge_log();
+  Button button(scene);
+  std::uint64_t pressed = 0;
+  EXPECT_TRUE(scene.until([&] {
+    button.say(true);
+    if (pressed == 0 && scene.grant.estopped())
+      pressed = scene.grant.stamp().cycle();
+    return scene.grant.estopped() && scene.rests();
+  }));
+  double begin = 0.0;
+  double end = 0.0;
+  for (const sim::TraceRow& row : scene.trace()) {
+    if (row.cycle == pressed)
+      begin = row.pose_in_world.x;
+    end = row.pose_in_world.x;
+  }
+  return end - begin;
+}
+
+// By a velocity of zero it would be 0.27 m at the server's 0.3 m/s2.
+TEST(BridgeEstop, BrakesHarderThanAStopWhereTheRobotCan) {
+  EXPECT_LT(way_to_standstill("p3dx.p"), 0.15);
+}
+
+TEST(BridgeEstop, StopsARobotThatHasNoEmergencyStop) {
+  EXPECT_LT(way_to_standstill("pioneer.p"), 0.15);
+}
+
+Process command_line(const Scene& scene, std::vector<std::string> words) {
+  std::vector<std::string> argv{"saphira", "--robot", scene.robot, "--domain", domain()};
+  argv.insert(argv.end(), words.begin(), words.end());
+  std::string file = "cli";
+  for (const std::string& word : words)
+    file += "." + word;
+  return {argv, scene.folder.path(file)};
+}
+
+TEST(BridgeEstop, ByTheCommandLine) {
+  Driving scene;
+  ASSERT_TRUE(scene.moves()) << scene.bridge_log();
+  Process estop = command_line(scene, {"estop"});
+  ASSERT_TRUE(scene.until([&] { return scene.stopped(); })) << estop.output();
+  EXPECT_EQ(estop.wait(), 0) << estop.output();
+  EXPECT_NE(estop.output().find("EMERGENCY STOP, pressed by saphira estop"), std::string::npos);
+  EXPECT_TRUE(scene.stays_stopped(10)) << "it needs nobody";
+
+  Process status = command_line(scene, {"status"});
+  EXPECT_TRUE(scene.until([&] { return !status.running(); }));
+  EXPECT_NE(status.output().find("drive: EMERGENCY STOP, pressed by"), std::string::npos)
+      << status.output();
+
+  Process reset = command_line(scene, {"estop", "reset"});
+  ASSERT_TRUE(scene.until([&] { return !reset.running(); }));
+  EXPECT_EQ(reset.wait(), 0) << reset.output();
+  EXPECT_NE(reset.output().find("the emergency stop is reset"), std::string::npos)
+      << reset.output();
+  EXPECT_TRUE(scene.until([&] { return scene.grant.waits_for_hand_back(); }));
+  EXPECT_TRUE(scene.rests());
+
+  Process back = command_line(scene, {"drive", "hand-back"});
+  ASSERT_TRUE(scene.until([&] { return !back.running(); }));
+  EXPECT_EQ(back.wait(), 0) << back.output();
+  EXPECT_TRUE(scene.moves());
+}
+
+TEST(BridgeEstop, TheCommandLineSaysThatNobodyConfirms) {
+  const Scene scene;
+  Process estop = command_line(scene, {"estop"});
+  ASSERT_TRUE(wait_until([&] { return estop.output().find("NOT CONFIRMED") != std::string::npos; }))
+      << estop.output();
+  EXPECT_TRUE(estop.running()) << "it goes on trying";
+  estop.signal(SIGINT);
+  EXPECT_EQ(estop.wait(), 1);
+}
+
+}  // namespace
+}  // namespace saphira::test
