@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSame = 0.002;            // [m]
 constexpr double kFlat = radians(5.0);     // a wall that turns by less goes straight on
+constexpr double kSquare = radians(2.0);   // an inner corner that is off by more is no mirror
 constexpr double kSameArm = radians(1.0);  // walls that lie upon each other
 
 bool before(const Vec2& a, const Vec2& b) {
@@ -56,7 +57,7 @@ std::vector<Corner> find_corners(const std::vector<Segment>& segments) {
   for (const Vec2& end : ends) {
     const auto near = [&](const Corner& c) { return (c.point - end).norm() <= kSame; };
     if (std::none_of(first_from(corners, end.x() - kSame), corners.end(), near))
-      corners.push_back({end, {}});
+      corners.push_back({end, {}, 0.0});
   }
   for (const Segment& segment : segments) {
     const auto [low, high] = std::minmax(segment.from.x(), segment.to.x());
@@ -64,9 +65,13 @@ std::vector<Corner> find_corners(const std::vector<Segment>& segments) {
          corner != corners.end() && corner->point.x() <= high + kSame; ++corner) {
       if ((nearest_point(segment, corner->point) - corner->point).norm() > kSame)
         continue;
-      for (const Vec2& end : {segment.from, segment.to})
-        if ((end - corner->point).norm() > kSame)
-          add_arm(*corner, end);
+      for (const Vec2& end : {segment.from, segment.to}) {
+        const double length = (end - corner->point).norm();
+        if (length <= kSame)
+          continue;
+        add_arm(*corner, end);
+        corner->shortest = corner->shortest == 0.0 ? length : std::min(corner->shortest, length);
+      }
     }
   }
   for (Corner& corner : corners)
@@ -77,7 +82,7 @@ std::vector<Corner> find_corners(const std::vector<Segment>& segments) {
   return corners;
 }
 
-bool is_sharp_from(const Corner& corner, const Vec2& viewer) {
+CornerShape shape_from(const Corner& corner, const Vec2& viewer) {
   const Vec2 away = viewer - corner.point;
   const double at = norm_angle(std::atan2(away.y(), away.x()));
   // The sector between the two arms that the viewer stands between.
@@ -85,7 +90,11 @@ bool is_sharp_from(const Corner& corner, const Vec2& viewer) {
   const bool wraps = next == corner.arms.begin() || next == corner.arms.end();
   const double sector =
       wraps ? corner.arms.front() + 2.0 * kPi - corner.arms.back() : *next - *std::prev(next);
-  return !is_flat(sector);
+  if (is_flat(sector))
+    return CornerShape::kNone;
+  if (sector > kPi)
+    return CornerShape::kEdge;
+  return std::abs(sector - kPi / 2.0) <= kSquare ? CornerShape::kInner : CornerShape::kNone;
 }
 
 }  // namespace saphira::sim

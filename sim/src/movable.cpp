@@ -9,6 +9,7 @@ namespace {
 constexpr double kMillimetre = 0.001;
 constexpr double kMax = 1e7;        // [mm]
 constexpr double kMostTime = 1e6;   // [s]
+constexpr double kMostLoss = 60.0;  // [dB]
 constexpr double kMostSpeed = 5e3;  // [mm/s]
 
 Vec2 point(LineReader& in, const std::string& of, const Pose& frame) {
@@ -135,6 +136,9 @@ bool MovableReader::read(std::string_view word, LineReader& in, const Pose& fram
   } else if (word == "tall") {
     Look& look = last_look(in, word);
     look.height = size(in, "height");
+  } else if (word == "cloth") {
+    Look& look = last_look(in, word);
+    look.cloth = in.number("loss of an echo in dB", 0.0, kMostLoss);
   } else {
     return false;
   }

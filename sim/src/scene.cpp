@@ -23,6 +23,16 @@ constexpr double kGiven = 1e-7;  // [m]
 // Ticks after which a sonar's sound has passed whoever could hear it: 14 m.
 constexpr std::uint64_t kPingTicks = 4;
 
+// A person's legs at the height of a robot's sonars, and their pace.
+constexpr double kShin = 0.06;   // [m] radius
+constexpr double kApart = 0.10;  // [m] from the person's middle, to each side
+constexpr double kStep = 0.30;   // [m] before the middle and behind it
+
+// Numbers of things as sonars know them, kind by kind.
+constexpr std::uint32_t kOfPersons = 1U << 24U;
+constexpr std::uint32_t kOfPosts = 2U << 24U;
+constexpr std::uint32_t kOfSegments = 3U << 24U;
+
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -37,16 +47,43 @@ bool intersect(const Segment& a, const Segment& b) {
   return b_from * b_to <= 0.0 && a_from * a_to <= 0.0 && (b_from != b_to || a_from != a_to);
 }
 
+void look_towards(Person& person, const Vec2& point) {
+  const Vec2 way = point - person.at;
+  if (way.squaredNorm() > 0.0)
+    person.heading = std::atan2(way.y(), way.x());
+}
+
 double distance_to(const Segment& segment, const Vec2& point) {
   return (nearest_point(segment, point) - point).norm();
 }
 
 }  // namespace
 
+std::array<Shin, 2> shins(const Person& person) {
+  std::array<Shin, 2> pair;
+  for (std::size_t i = 0; i < 2; ++i) {
+    double ahead = 0.0;
+    if (person.way > 0.0) {
+      // While a foot stands the middle passes over it; then it overtakes the middle.
+      const double pace = person.way / (4.0 * kStep) + 0.25 + 0.5 * static_cast<double>(i);
+      const double part = pace - std::floor(pace);
+      pair[i].swings = part >= 0.5;
+      ahead = part < 0.5 ? kStep * (1.0 - 4.0 * part) : kStep * (4.0 * part - 3.0);
+    }
+    const Pose pose{person.at.x(), person.at.y(), person.heading};
+    pair[i].disc = {transform(pose, Vec2(ahead, i == 0 ? kApart : -kApart)), kShin};
+  }
+  return pair;
+}
+
 Scene::Scene(const World& world) : world_(&world) {
   const MovablePlans& plans = world.movable;
   for (const PersonPlan& plan : plans.persons) {
     persons_.push_back({&plan, plan.at});
+    const auto walk = std::find_if(plan.script.begin(), plan.script.end(),
+                                   [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; });
+    if (walk != plan.script.end())
+      look_towards(persons_.back(), walk->to);
     for (const PersonPlan::Leg& leg : plan.script)
       fastest_ = std::max(fastest_, leg.speed);
   }
@@ -105,6 +142,8 @@ void Scene::tick() {
     turn(i);
   for (const auto& robot : robots_)
     robot->tick();
+  if (watch_)
+    watch_();
 }
 
 void Scene::sound(const Ping& ping) {
@@ -146,11 +185,14 @@ bool Scene::set_box(std::string_view name, const Pose& pose_in_world) {
 
 void Scene::walk(Person& person) {
   const std::vector<PersonPlan::Leg>& script = person.plan->script;
-  if (person.leg >= script.size())
+  if (person.leg >= script.size()) {
+    person.way = 0.0;
     return;
+  }
   const PersonPlan::Leg& leg = script[person.leg];
   bool done = false;
   if (leg.speed == 0.0) {
+    person.way = 0.0;
     person.waited += kTick;
     done = person.waited > leg.wait - kTick / 2.0;
   } else {
@@ -158,8 +200,12 @@ void Scene::walk(Person& person) {
     const double step = leg.speed * kTick;
     const double left = way.norm();
     const Vec2 to = left <= step ? leg.to : Vec2(person.at + way * (step / left));
-    if (!lets_pass(person, to))
+    if (!lets_pass(person, to)) {
+      person.way = 0.0;
       return;
+    }
+    look_towards(person, leg.to);
+    person.way += std::min(left, step);
     person.at = to;
     done = left <= step;
   }
@@ -321,6 +367,35 @@ void Scene::add_movable(const Vec2& point, double reach, RobotNumber but, Things
   for (const Segment& segment : segments_)
     if ((nearest_point(segment, point) - point).squaredNorm() <= reach * reach)
       things.segments.push_back(segment);
+}
+
+void Scene::add_echoes(const Vec2& point, double reach, RobotNumber but, double cloth,
+                       Echoes& echoes) const {
+  const auto add = [&](const Disc& disc, const Surface& surface) {
+    const double far = reach + disc.radius;
+    if ((disc.centre - point).squaredNorm() > far * far)
+      return;
+    echoes.things.discs.push_back(disc);
+    echoes.discs.push_back(surface);
+  };
+  for (std::uint32_t i = 0; i < hulls_.size(); ++i)
+    if (i != but)
+      add(hulls_[i], {0.0, false, i});
+  for (std::uint32_t i = 0; i < persons_.size(); ++i) {
+    std::uint32_t id = kOfPersons + 2 * i;
+    for (const Shin& shin : shins(persons_[i]))
+      add(shin.disc, {persons_[i].plan->look.cloth.value_or(cloth), shin.swings, id++});
+  }
+  for (std::uint32_t i = 0; i < posts_.size(); ++i)
+    add(posts_[i], {world_->movable.posts[i].look.cloth.value_or(0.0), false, kOfPosts + i});
+  for (std::uint32_t i = 0; i < segments_.size(); ++i) {
+    if ((nearest_point(segments_[i], point) - point).squaredNorm() > reach * reach)
+      continue;
+    const Look& look =
+        i < doors_.size() ? doors_[i].plan->look : boxes_[(i - doors_.size()) / 4].plan->look;
+    echoes.things.segments.push_back(segments_[i]);
+    echoes.segments.push_back({look.cloth.value_or(0.0), false, kOfSegments + 3 * i});
+  }
 }
 
 double Scene::distance(const Vec2& point, RobotNumber but) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/sim/acoustics.hpp"
+
 namespace saphira::sim {
 
 namespace {
@@ -19,16 +21,43 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
 // What stands nearer than this before a thing hides it [m]: not its own sides.
 constexpr double kBefore = 0.01;
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+// What chance adds to the strength of an echo stays for so long.
+constexpr double kLuckLasts = 0.3;  // [s]
+// More standard deviations than matter.
+constexpr double kSure = 4.0;
+
+// Numbers of what stands fast, beyond those of what moves (Surface::id). Narrow sides of furniture
+// share one.
+constexpr std::uint32_t kOfCorners = 4U << 24U;
+constexpr Surface kWall{0.0, false, 5U << 24U};
 
 SonarModel with_range(SonarModel model, double range) {
   model.max_range = std::min(model.max_range, range);
   return model;
 }
 
+// Farther off the axis nothing is heard.
+double widest_cosine(const SonarModel& model) {
+  const double most = model.strength + kSure * std::max(model.spread, model.soft_spread);
+  double angle = 0.0;
+  while (angle < kPi / 2.0 && 2.0 * beam_loss(angle) <= most)
+    angle += radians(0.5);
+  return std::max(0.0, std::cos(angle));
+}
+
+// Whether it is so narrow that it scatters sound more than it mirrors it.
+bool is_strip(double squared_width, double range) {
+  return squared_width < kWavelength * range;
+}
+
 }  // namespace
+
+SonarModel in_world(SonarModel model, const SonarPlan& plan) {
+  model.strength = plan.strength.value_or(model.strength);
+  model.cloth = plan.cloth.value_or(model.cloth);
+  model.spread = plan.spread.value_or(model.spread);
+  return model;
+}
 
 std::vector<std::uint8_t> default_polling(std::size_t sonars, int arrays) {
   const auto count = static_cast<std::size_t>(std::max(arrays, 1));
@@ -45,7 +74,7 @@ Sonars::Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& 
     : scene_(&scene),
       self_(self),
       units_(parameters.sonars),
-      model_(with_range(model, parameters.sonar_max_range)),
+      model_(with_range(in_world(model, scene.world().sonar), parameters.sonar_max_range)),
       near_(scene.world(), model_.max_range + farthest(units_)),
       random_(seed, 2),
       crosstalk_(seed, 3),
@@ -54,11 +83,9 @@ Sonars::Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& 
       // Robots that are switched on together do not fire together.
       progress_(self == kNobody ? 0 : static_cast<int>(self % static_cast<RobotNumber>(period_))),
       reach_(model_.max_range + farthest(units_)),
-      corner_cosine_(std::cos(model_.corner_cone / 2.0)) {
-  const double widest = std::max({model_.lost_angle, model_.corner_cone / 2.0, model_.cone / 2.0});
-  // A wider one is taken for a half-plane.
-  if (widest < radians(89.0))
-    widest_ = {std::cos(widest), std::sin(widest)};
+      beam_cosine_(widest_cosine(model_)),
+      direct_cosine_(std::cos(model_.direct_cone / 2.0)),
+      seed_(seed) {
   set_default_polling();
 }
 
@@ -88,48 +115,21 @@ std::optional<SonarEcho> Sonars::tick(const Pose& robot_in_world) {
 
 SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   const Pose at = compose(robot_in_world, units_[number].pose_in_robot);
-  Firing firing{at.position(), at.direction(), 0.0, std::nullopt};
+  Firing firing{number, at.position(), at.direction(), 0.0, std::nullopt};
+  ++firings_;
   scene_->sound({self_, scene_->ticks(), firing.origin, firing.ahead});
   // Always the same draws, so that one reading's fate does not shift those of the next.
   const bool dropped = random_.chance(model_.dropout);
   const bool rough = random_.chance(model_.roughness);
-  const bool corners_lost = random_.chance(model_.corner_loss);
   firing.aside = random_.uniform();
   const double noise = random_.normal();
   const bool crosstalk = crosstalk_.chance(model_.crosstalk);
 
-  // Only what reaches into the widest sector that is listened to.
-  const Vec2& ahead = firing.ahead;
-  const Vec2 aside(-ahead.y() * widest_.y(), ahead.x() * widest_.y());
-  const Vec2 leftmost = widest_.x() * ahead + aside;
-  const Vec2 rightmost = widest_.x() * ahead - aside;
-  in_beam_.segments.clear();
-  in_beam_.discs.clear();
-  scene_->add_movable(robot_in_world.position(), reach_, self_, in_beam_);
-  const std::size_t movable = in_beam_.segments.size();
-  for (const Segment& segment : near_.around(robot_in_world.position())) {
-    const Vec2 from = segment.from - firing.origin;
-    const Vec2 to = segment.to - firing.origin;
-    if ((cross(leftmost, from) > 0.0 && cross(leftmost, to) > 0.0) ||
-        (cross(rightmost, from) < 0.0 && cross(rightmost, to) < 0.0) ||
-        (from.dot(ahead) < 0.0 && to.dot(ahead) < 0.0))
-      continue;
-    in_beam_.segments.push_back(segment);
-  }
-
+  gather(robot_in_world.position(), firing);
   hear_surfaces(firing);
-  if (!corners_lost) {
-    for (const Corner* corner : near_.corners_around(robot_in_world.position()))
-      if (in_corner_cone(firing, corner->point - firing.origin) &&
-          is_sharp_from(*corner, firing.origin))
-        hear_corner(corner->point, 0.0, firing);
-    for (std::size_t i = 0; i < movable; ++i) {
-      hear_corner(in_beam_.segments[i].from, 0.0, firing);
-      hear_corner(in_beam_.segments[i].to, 0.0, firing);
-    }
-    for (const Disc& disc : in_beam_.discs)
-      hear_corner(disc.centre, disc.radius, firing);
-  }
+  hear_corners(robot_in_world.position(), firing);
+  for (std::size_t i = 0; i < in_beam_.discs.size(); ++i)
+    hear_disc(in_beam_.things.discs[i], in_beam_.discs[i], firing);
   if (rough)
     hear_rough(at, firing);
 
@@ -148,60 +148,160 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   return {number, std::max(range, model_.min_range)};
 }
 
-bool Sonars::is_first(const Firing& firing, const Vec2& way, double range) const {
-  return range < firing.nearest.value_or(model_.max_range) &&
-         (range < kBefore || !cast_ray(in_beam_, firing.origin, way.normalized(), range - kBefore));
-}
-
-// Every surface where it is met at a right angle.
-void Sonars::hear_surfaces(Firing& firing) const {
-  const double sure = model_.critical_angle;
-  for (const Segment& segment : in_beam_.segments) {
-    const Vec2 along = segment.to - segment.from;
-    const double t = (firing.origin - segment.from).dot(along) / along.squaredNorm();
-    if (t < 0.0 || t > 1.0)
-      continue;
-    const Vec2 way = segment.from + t * along - firing.origin;
-    const double range = way.norm();
-    if (range >= firing.nearest.value_or(model_.max_range))
-      continue;
-    const double lost = std::max(sure, model_.lost_angle - model_.lost_per_metre * range);
-    const double off = sure + firing.aside * (lost - sure);
-    if (way.dot(firing.ahead) >= range * std::cos(off) && is_first(firing, way, range))
-      firing.nearest = range;
+// What is before the sonar and near enough.
+void Sonars::gather(const Vec2& robot, const Firing& firing) {
+  in_beam_.things.segments.clear();
+  in_beam_.things.discs.clear();
+  in_beam_.segments.clear();
+  in_beam_.discs.clear();
+  scene_->add_echoes(robot, reach_, self_, model_.cloth, in_beam_);
+  for (const Segment& segment : near_.around(robot)) {
+    const Vec2 from = segment.from - firing.origin;
+    const Vec2 to = segment.to - firing.origin;
+    if (from.dot(firing.ahead) >= 0.0 || to.dot(firing.ahead) >= 0.0)
+      in_beam_.things.segments.push_back(segment);
   }
 }
 
-// A corner, or a round thing about it.
-void Sonars::hear_corner(const Vec2& corner, double radius, Firing& firing) const {
-  const Vec2 way = corner - firing.origin;
-  const double middle = way.norm();
-  const double range = middle - radius;
-  if (range > 0.0 && in_corner_cone(firing, way) && is_first(firing, way, range))
+bool Sonars::is_first(const Firing& firing, const Vec2& way, double range) const {
+  return range < firing.nearest.value_or(model_.max_range) &&
+         (range < kBefore ||
+          !cast_ray(in_beam_.things, firing.origin, way.normalized(), range - kBefore));
+}
+
+void Sonars::hear_surfaces(Firing& firing) const {
+  for (std::size_t i = 0; i < in_beam_.things.segments.size(); ++i) {
+    const Segment& segment = in_beam_.things.segments[i];
+    const bool wall = i >= in_beam_.segments.size();
+    const Surface& surface = wall ? kWall : in_beam_.segments[i];
+    const Vec2 along = segment.to - segment.from;
+    const double squared_width = along.squaredNorm();
+    const double t = (firing.origin - segment.from).dot(along) / squared_width;
+    const bool beside = t < 0.0 || t > 1.0;
+    const double limit = firing.nearest.value_or(model_.max_range);
+    if (beside && !is_strip(squared_width, limit))
+      continue;
+    const Vec2 way = segment.from + t * along - firing.origin;
+    if (way.squaredNorm() >= limit * limit)
+      continue;
+    const double range = way.norm();
+    if (is_strip(squared_width, range))
+      hear_strip(segment, surface, firing);
+    else if (beside)
+      continue;
+    else if (surface.loss > 0.0)
+      hear(way, range, 0.0, surface, firing);
+    else
+      hear_wall(way, range, firing);
+  }
+}
+
+// A smooth surface, where it is met at a right angle.
+void Sonars::hear_wall(const Vec2& way, double range, Firing& firing) const {
+  const double sure = model_.critical_angle;
+  const double lost = std::max(sure, model_.lost_angle - model_.lost_per_metre * range);
+  const double off = sure + firing.aside * (lost - sure);
+  if (way.dot(firing.ahead) >= range * std::cos(off) && is_first(firing, way, range))
     firing.nearest = range;
 }
 
-bool Sonars::in_corner_cone(const Firing& firing, const Vec2& way) const {
+void Sonars::hear_strip(const Segment& segment, const Surface& surface, Firing& firing) const {
+  const Vec2 along = segment.to - segment.from;
+  const double width = along.norm();
+  const Vec2 way = (segment.from + segment.to) / 2.0 - firing.origin;
+  const double range = way.norm();
+  if (range <= 0.0)
+    return;
+  const double sine = std::min(1.0, std::abs(way.dot(along)) / (range * width));
+  hear(way, range, strip_loss(width, range) + strip_lobe_loss(width, std::asin(sine)), surface,
+       firing);
+}
+
+void Sonars::hear_corners(const Vec2& robot, Firing& firing) {
+  for (const Corner* corner : near_.corners_around(robot)) {
+    const Vec2 way = corner->point - firing.origin;
+    const double range = way.norm();
+    if (range >= firing.nearest.value_or(model_.max_range) ||
+        way.dot(firing.ahead) <= beam_cosine_ * range)
+      continue;
+    const CornerShape shape = shape_from(*corner, firing.origin);
+    if (shape == CornerShape::kNone)
+      continue;
+    const double radius = corner->arms.size() == 1 ? model_.jamb : model_.edge;
+    const double loss = shape == CornerShape::kInner
+                            ? strip_loss(corner->shortest, range)
+                            : round_loss(std::min(radius, corner->shortest / 2.0), range);
+    const auto index = static_cast<std::uint32_t>(corner - scene_->world().corners.data());
+    hear(way, range, loss, {0.0, false, kOfCorners + index}, firing);
+  }
+  for (std::size_t i = 0; i < in_beam_.segments.size(); ++i) {
+    const Segment& segment = in_beam_.things.segments[i];
+    Surface surface = in_beam_.segments[i];
+    for (const Vec2& end : {segment.from, segment.to}) {
+      ++surface.id;
+      const Vec2 way = end - firing.origin;
+      const double range = way.norm();
+      if (range > 0.0)
+        hear(way, range, round_loss(model_.edge, range), surface, firing);
+    }
+  }
+}
+
+void Sonars::hear_disc(const Disc& disc, const Surface& surface, Firing& firing) const {
+  const Vec2 way = disc.centre - firing.origin;
+  const double range = way.norm() - disc.radius;
+  if (range > 0.0)
+    hear(way, range, round_loss(disc.radius, range), surface, firing);
+}
+
+void Sonars::hear(const Vec2& way, double range, double shape, const Surface& surface,
+                  Firing& firing) const {
+  const double cosine = way.dot(firing.ahead) / way.norm();
+  if (cosine <= beam_cosine_ || range >= firing.nearest.value_or(model_.max_range))
+    return;
+  double margin = model_.strength - shape - surface.loss - way_loss(range) -
+                  2.0 * beam_loss(std::acos(std::min(1.0, cosine)));
+  const double spread = surface.loss > 0.0 ? model_.soft_spread : model_.spread;
+  // A leg that swings is mostly tilted away.
+  if (surface.swings)
+    margin = std::min(margin, 0.0);
+  if (margin < -kSure * spread)
+    return;
+  if (margin < kSure * spread)
+    margin += spread * luck(firing.number, surface.id);
+  if (margin > 0.0 && is_first(firing, way, range))
+    firing.nearest = range + lateness(margin);
+}
+
+double Sonars::luck(std::uint8_t number, std::uint32_t thing) const {
+  const double time = static_cast<double>(firings_) * period_ * kTick / arrays_;
+  const auto epoch = static_cast<std::uint64_t>(time / kLuckLasts);
+  Random random(seed_ ^ epoch << 32U, static_cast<std::uint64_t>(thing) << 8U | number);
+  random.next();
+  return random.normal();
+}
+
+bool Sonars::in_direct_cone(const Firing& firing, const Vec2& way) const {
   const double along = way.dot(firing.ahead);
-  return along >= 0.0 && along * along >= corner_cosine_ * corner_cosine_ * way.squaredNorm();
+  return along >= 0.0 && along * along >= direct_cosine_ * direct_cosine_ * way.squaredNorm();
 }
 
 // What other robots send comes straight, so it is loud, and from half as far as it seems.
 void Sonars::hear_others(Firing& firing) const {
   for (const Ping& ping : scene_->pings()) {
     const Vec2 way = ping.origin - firing.origin;
-    if (ping.robot == self_ || !in_corner_cone(firing, way))
+    if (ping.robot == self_ || !in_direct_cone(firing, way))
       continue;
     const double apart = way.norm();
     // How far the sound was on its way when this sonar began to listen.
     const double gone = static_cast<double>(scene_->ticks() - ping.tick) * kTick * kSound;
     const double range = (apart - gone) / 2.0;
     if (range < model_.min_range || range >= firing.nearest.value_or(model_.max_range) ||
-        -way.dot(ping.ahead) < apart * corner_cosine_)
+        -way.dot(ping.ahead) < apart * direct_cosine_)
       continue;
     // The other's sonar stands within its hull.
     const double free = apart - 2.0 * scene_->robot(ping.robot).radius();
-    if (free <= 0.0 || !cast_ray(in_beam_, firing.origin, way / apart, free))
+    if (free <= 0.0 || !cast_ray(in_beam_.things, firing.origin, way / apart, free))
       firing.nearest = range;
   }
 }
@@ -211,9 +311,9 @@ void Sonars::hear_rough(const Pose& at, Firing& firing) const {
     const double offset =
         model_.rays == 1 ? 0.0 : model_.cone * (static_cast<double>(i) / (model_.rays - 1) - 0.5);
     const Vec2 direction(std::cos(at.th + offset), std::sin(at.th + offset));
-    const auto hit =
-        cast_ray(in_beam_, firing.origin, direction, firing.nearest.value_or(model_.max_range));
-    if (hit)
+    const auto hit = cast_ray(in_beam_.things.segments, firing.origin, direction,
+                              firing.nearest.value_or(model_.max_range));
+    if (hit && is_first(firing, direction, hit->range))
       firing.nearest = hit->range;
   }
 }

@@ -64,14 +64,17 @@ class Parser {
       if (world_.start)
         in.fail("expected position once");
       world_.start = pose(in);
+    } else if (word == "sonar") {
+      sonar(in);
     } else if (word[0] == '-' || word[0] == '+' || word[0] == '.' ||
                (word[0] >= '0' && word[0] <= '9')) {
       in = number;
       segment(in);
     } else if (!movable_.read(word, in, frames_.back())) {
       in.fail(
-          "expected a segment (x y x y), width, height, push, pop, position, robot, person, "
-          "walk, wait, repeat, door, open, close, period, box, post, color or tall, found \"" +
+          "expected a segment (x y x y), width, height, push, pop, position, sonar, robot, person, "
+          "walk, wait, repeat, door, open, close, period, box, post, color, tall or cloth, found "
+          "\"" +
           std::string(word) + "\"");
     }
   }
@@ -81,6 +84,18 @@ class Parser {
     const double y = in.number("y in mm", -kMax, kMax) * kMillimetre;
     const double th = radians(in.number("theta in degrees", -3600, 3600));
     return {x, y, norm2_angle(th)};
+  }
+
+  void sonar(LineReader& in) {
+    const std::string_view what = in.word("strength, cloth or spread");
+    if (what == "strength")
+      world_.sonar.strength = in.number("strength of an echo in dB", 0.0, 100.0);
+    else if (what == "cloth")
+      world_.sonar.cloth = in.number("loss by people's clothes in dB", 0.0, 60.0);
+    else if (what == "spread")
+      world_.sonar.spread = in.number("spread of an echo's strength in dB", 0.0, 20.0);
+    else
+      in.fail("expected strength, cloth or spread, found \"" + std::string(what) + "\"");
   }
 
   void segment(LineReader& in) {

@@ -43,6 +43,45 @@ void run(Drive& drive, const std::string& world, std::uint64_t cycles, const Act
   total.add(score);
 }
 
+/// Follows a tour as a robot with activities does: it backs off where it is held up, and gives up a
+/// point that it does not reach. Behaviors alone press on where a person whom no sonar hears stands
+/// beside the hull, and do not find out of a room into which they have dodged people.
+class Walk {
+ public:
+  explicit Walk(const std::string& world) : tour_(patrol(world), true) {}
+
+  void act(Drive& drive) {
+    const Pose& pose = drive.seen().true_pose_in_world;
+    if ((pose.position() - last_).norm() > 0.1) {
+      last_ = pose.position();
+      held_up_ = 0;
+    }
+    if (tour_.reached() != reached_) {
+      reached_ = tour_.reached();
+      under_way_ = 0;
+    }
+    ++held_up_;
+    if (++under_way_ % kLongest == 0)
+      tour_.skip();
+    if (held_up_ > kPatience && held_up_ % kPatience < kBack)
+      drive.drive(-0.2, drive.seen().pose_in_odom.th);
+    else
+      tour_.act(drive, pose);
+  }
+
+ private:
+  // [cycles]
+  static constexpr int kPatience = 100;
+  static constexpr int kBack = 15;
+  static constexpr int kLongest = 1200;
+
+  Tour tour_;
+  Vec2 last_{0.0, 0.0};
+  std::size_t reached_ = 0;
+  int held_up_ = 0;
+  int under_way_ = 0;
+};
+
 Total tours(const std::string& world, int seeds, std::uint64_t cycles) {
   Total total;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -51,9 +90,9 @@ Total tours(const std::string& world, int seeds, std::uint64_t cycles) {
     options.seed = static_cast<std::uint64_t>(seed);
     options.errors = 2.0;
     Drive drive(options);
-    Tour tour(patrol(world), true);
+    Walk walk(world);
     run(
-        drive, world, cycles, [&](Drive& d) { tour.act(d, d.seen().true_pose_in_world); }, total);
+        drive, world, cycles, [&](Drive& d) { walk.act(d); }, total);
   }
   return total;
 }

@@ -29,7 +29,7 @@ sim::World wall_at(double x) {
 sim::SonarModel plain_rays() {
   sim::SonarModel model;
   model.critical_angle = model.lost_angle = 0.0;
-  model.corner_loss = 1.0;
+  model.strength = -100.0;
   model.roughness = 1.0;
   return model;
 }

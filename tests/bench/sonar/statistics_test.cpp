@@ -68,7 +68,7 @@ class MadeUpCorridor : public ::testing::Test {
 
 TEST_F(MadeUpCorridor, ItsWallsAndPostsAreFound) {
   sim::SonarModel exact;
-  exact.noise = exact.relative_noise = exact.dropout = exact.roughness = exact.corner_loss = 0.0;
+  exact.noise = exact.relative_noise = exact.dropout = exact.roughness = 0.0;
   const auto records = simulate(poses_, truth_, exact, 1);
   const Corridor found = fit_corridor(straight_part(records));
   EXPECT_NEAR(found.right.offset, -1.0, 0.02);

@@ -13,14 +13,20 @@ struct Segment;
 struct Corner {
   Vec2 point{0.0, 0.0};      ///< [m] in the world
   std::vector<double> arms;  ///< [rad] the directions of the walls that meet here, ascending
+  double shortest = 0.0;     ///< [m] the length of the shortest of these walls
 };
 
 /// The corners of all segments: their ends, but where a wall goes straight on. Ends that are nearer
 /// to each other than 2 mm are one.
 std::vector<Corner> find_corners(const std::vector<Segment>& segments);
 
-/// Whether the corner sends sound back to a viewer: on his side the walls turn. (Where a partition
-/// meets a wall from behind, the wall is smooth on this side.)
-bool is_sharp_from(const Corner& corner, const Vec2& viewer);
+/// What a corner is to somebody who stands on one side of it.
+enum class CornerShape {
+  kNone,   ///< smooth (a partition meets the wall from behind), or an inner corner that is not
+           ///< square
+  kEdge,   ///< the walls turn away: a weak echo
+  kInner,  ///< a square inner corner: two mirrors that send all sound back
+};
+CornerShape shape_from(const Corner& corner, const Vec2& viewer);
 
 }  // namespace saphira::sim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,9 @@ struct Look {
   std::string name;
   std::string color;    ///< directive color; empty: none that anybody looks for
   double height = 0.0;  ///< [m]
+  /// Directive cloth [dB]: of an echo, what the thing's surface swallows; else of a person what
+  /// sonars take all people's clothes for (SonarModel::cloth), of other things nothing.
+  std::optional<double> cloth;
 };
 
 /// Somebody who walks by a script.

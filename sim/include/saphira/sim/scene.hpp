@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saphira/protocol/parameters.hpp"
@@ -22,8 +24,10 @@ inline constexpr RobotNumber kNobody = std::numeric_limits<RobotNumber>::max();
 struct Person {
   const PersonPlan* plan = nullptr;
   Vec2 at{0.0, 0.0};
-  std::size_t leg = 0;  ///< of the script
-  double waited = 0.0;  ///< [s] in this leg
+  double heading = 0.0;  ///< [rad] where he looks
+  double way = 0.0;      ///< [m] walked since he stood; 0: stands
+  std::size_t leg = 0;   ///< of the script
+  double waited = 0.0;   ///< [s] in this leg
 };
 
 struct Door {
@@ -37,6 +41,27 @@ struct Door {
 struct Box {
   const BoxPlan* plan = nullptr;
   Pose pose_in_world;
+};
+
+/// A lower leg of a person: of one who walks, one stands on the floor while the other swings.
+struct Shin {
+  Disc disc;
+  bool swings = false;
+};
+std::array<Shin, 2> shins(const Person& person);
+
+/// How a thing that moves, or may be moved, answers a sonar.
+struct Surface {
+  double loss = 0.0;     ///< [dB] that its material swallows
+  bool swings = false;   ///< tilts to and fro, so that it answers half of the time at most
+  std::uint32_t id = 0;  ///< of the thing; that of a segment is followed by those of its ends
+};
+
+/// What a sonar may hear of what moves.
+struct Echoes {
+  Things things;
+  std::vector<Surface> segments;  ///< of things.segments; what follows are walls
+  std::vector<Surface> discs;     ///< of things.discs
 };
 
 /// A sonar's firing.
@@ -64,6 +89,8 @@ class Scene {
                    std::uint64_t seed);
 
   void tick();
+  /// What sees the truth of every tick, after it (contacts.hpp).
+  void set_watch(std::function<void()> watch) { watch_ = std::move(watch); }
   std::uint64_t ticks() const { return ticks_; }  ///< since the beginning
 
   const World& world() const { return *world_; }
@@ -89,6 +116,10 @@ class Scene {
   /// Adds the movable things (and posts) within `reach` of `point`, and some that are not, to
   /// `things`; not the robot `but`.
   void add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const;
+  /// The same as sonars have it, at the height of a robot's ring: of a person the legs, whose
+  /// clothes swallow `cloth` [dB] unless the world says otherwise.
+  void add_echoes(const Vec2& point, double reach, RobotNumber but, double cloth,
+                  Echoes& echoes) const;
   /// Whether there is anything movable but the robot `but`.
   bool has_movable(RobotNumber but) const {
     return !segments_.empty() || !persons_.empty() || !posts_.empty() ||
@@ -125,6 +156,7 @@ class Scene {
   std::vector<Ping> pings_;
   double fastest_ = 0.0;
   std::uint64_t ticks_ = 0;
+  std::function<void()> watch_;
 };
 
 }  // namespace saphira::sim

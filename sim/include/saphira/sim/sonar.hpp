@@ -11,9 +11,20 @@
 
 namespace saphira::sim {
 
-/// How a sonar hears. A smooth surface is a mirror to it: its echo comes from the point where it is
-/// met at a right angle, however the sonar points, or not at all. From aside, what is heard of a
-/// wall is its corners. The figures are from real sonars (README, "Against real sonars").
+/// How a sonar hears.
+///
+/// A wall is a mirror to it: its echo comes from the point where it is met at a right angle,
+/// however the sonar points, or not at all. The figures are from real sonars (README, "Against real
+/// sonars").
+///
+/// All other things (legs, posts, robots, edges, inner corners, narrow strips) answer with a margin
+/// above the threshold of
+///
+///     strength - loss by the shape - loss by the material - 2 x loss by the beam - loss by the way
+///
+/// in dB (acoustics.hpp), and are heard with the probability Phi(margin / spread). What chance adds
+/// stays the same for one sonar and one thing for 0.3 s. The nearest thing that is heard gives the
+/// range; what stands before it hides it.
 struct SonarModel {
   double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
   double min_range = 0.05;        ///< [m] nearer things read as this
@@ -26,9 +37,16 @@ struct SonarModel {
   /// ones, and at so much less for each metre that they are away.
   double lost_angle = radians(95.0);
   double lost_per_metre = radians(45.0);
-  double corner_cone =
-      radians(20.0);          ///< [rad] full width of the beam for corners and round things
-  double corner_loss = 0.04;  ///< probability that none of them is heard
+  /// [dB] How far an unhindered wall on the axis stands above the threshold. Real ones are between
+  /// 36 and 47. A world file may say otherwise, as of cloth and spread.
+  double strength = 40.0;
+  double cloth = 5.0;        ///< [dB] that people's clothes swallow; 2 to 10
+  double spread = 2.0;       ///< [dB] standard deviation of the strength of hard things...
+  double soft_spread = 5.0;  ///< ...and of soft ones
+  double edge = 0.005;       ///< [m] how round an edge of anything is...
+  double jamb = 0.05;        ///< [m] ...and the end of a wall, which stands for a door post
+  /// [rad] full width of the beam in which the sound of another robot's sonar is heard
+  double direct_cone = radians(20.0);
   /// Probability that a sonar hears, where it is nearer, the echo of what the array beside it has
   /// sent. Firings of one array are too far apart in time for that.
   double crosstalk = 0.01;
@@ -38,6 +56,9 @@ struct SonarModel {
   double cone = radians(25.0);  ///< [rad] full width
   int rays = 9;
 };
+
+/// That with what a world says.
+SonarModel in_world(SonarModel model, const SonarPlan& plan);
 
 /// [m/s] of sound.
 inline constexpr double kSound = 343.0;
@@ -75,19 +96,29 @@ class Sonars {
   SonarEcho fire(std::uint8_t number, const Pose& robot_in_world);
 
  private:
-  // Where it fires from, how far aside it hears smooth surfaces, and what it has heard.
+  // Which sonar fires, from where, how far aside it hears walls, and what it has heard.
   struct Firing {
+    std::uint8_t number = 0;
     Vec2 origin;
     Vec2 ahead;
     double aside = 0.0;             // [0, 1) from the critical angle to the lost one
     std::optional<double> nearest;  // [m]
   };
+  void gather(const Vec2& robot, const Firing& firing);
   void hear_rough(const Pose& at, Firing& firing) const;
   void hear_surfaces(Firing& firing) const;
-  void hear_corner(const Vec2& corner, double radius, Firing& firing) const;
+  void hear_wall(const Vec2& way, double range, Firing& firing) const;
+  void hear_strip(const Segment& segment, const Surface& surface, Firing& firing) const;
+  void hear_corners(const Vec2& robot, Firing& firing);
+  void hear_disc(const Disc& disc, const Surface& surface, Firing& firing) const;
+  // An echo from `way` away, whose shape loses `shape` [dB].
+  void hear(const Vec2& way, double range, double shape, const Surface& surface,
+            Firing& firing) const;
+  // What chance does to the strength of one thing's echo [standard deviations].
+  double luck(std::uint8_t number, std::uint32_t thing) const;
   // Whether nothing stands before that, and it is nearer than what has been heard.
   bool is_first(const Firing& firing, const Vec2& way, double range) const;
-  bool in_corner_cone(const Firing& firing, const Vec2& way) const;
+  bool in_direct_cone(const Firing& firing, const Vec2& way) const;
   void hear_others(Firing& firing) const;
 
   Scene* scene_;
@@ -99,14 +130,16 @@ class Sonars {
   Random crosstalk_;  // apart, so that the two can be told apart in a run
   std::vector<std::uint8_t> sequence_;
   std::size_t next_ = 0;
-  int period_;        // [ticks] of one array
-  int arrays_;        // firings in a period
-  int progress_ = 0;  // to the next firing, when it has come to a period
-  double reach_;      // [m] from the robot's middle
-  double corner_cosine_;
-  Vec2 widest_{0.0, 1.0};         // cosine and sine of the largest angle off the axis that matters
+  int period_;          // [ticks] of one array
+  int arrays_;          // firings in a period
+  int progress_ = 0;    // to the next firing, when it has come to a period
+  double reach_;        // [m] from the robot's middle
+  double beam_cosine_;  // of the angle off the axis beyond which only walls are heard
+  double direct_cosine_;
   std::optional<double> before_;  // [m] what the last firing has heard
-  Things in_beam_;
+  std::uint64_t seed_;
+  std::uint64_t firings_ = 0;
+  Echoes in_beam_;
 };
 
 }  // namespace saphira::sim

@@ -35,6 +35,13 @@ struct Hit {
   double incidence = 0.0;  ///< [rad] 0: along the normal of the segment, pi/2: grazing
 };
 
+/// What a world file says of how sonars hear in it (directive sonar); else SonarModel's.
+struct SonarPlan {
+  std::optional<double> strength;  ///< [dB]
+  std::optional<double> cloth;     ///< [dB]
+  std::optional<double> spread;    ///< [dB]
+};
+
 /// A world description file (manual 3.3 and 11) in SI units; its frame `world` has its origin in
 /// the lower left corner.
 struct World {
@@ -45,6 +52,7 @@ struct World {
   std::vector<Corner> corners;  ///< of the segments
   std::optional<Pose> start;    ///< directive position: the robot's start_in_world
   MovablePlans movable;         ///< what is no wall
+  SonarPlan sonar;
 };
 
 /// Reads the text of a world file; `file` names it in errors. Width and height come first. Several
