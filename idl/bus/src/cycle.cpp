@@ -6,8 +6,15 @@
 #include <set>
 #include <utility>
 
+#include "epochs.hpp"
+#include "internal.hpp"
+#include "neighbours.hpp"
+
 namespace saphira::bus {
 namespace {
+
+using internal::Epochs;
+using internal::Peers;
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(500);
@@ -21,6 +28,16 @@ constexpr double kQuietLockstep = 2.0;
 constexpr std::uint64_t kDegradedSteps = 10;
 // RobotStates that wait: more than a bridge in lockstep can be ahead.
 constexpr std::size_t kPending = 32;
+// Until a state is refused whose writer has described no robot.
+constexpr double kUndescribed = 2.0;
+// So many states in a row that are behind the newest one: that one was wrong, not they.
+constexpr int kBehind = 3;
+// [s] without a state of the robot, while others step, after which this program is deaf; and until
+// it tries again to be heard.
+constexpr double kDeaf = 10.0;
+constexpr double kDeafAgain = 60.0;
+// Refusals that are told. Whoever makes more of them makes them up.
+constexpr std::size_t kMostTold = 1000;
 constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
 
 double since(Clock::time_point time) {
@@ -34,17 +51,26 @@ struct Cycle::Impl {
       : node(the_node),
         status(the_node.status()),
         lockstep(the_node.options().lockstep),
-        robot(the_node.reader(topics::kRobotState)) {}
+        robot(the_node.reader(topics::kRobotState)),
+        descriptions(the_node.reader(topics::kRobotDescription)),
+        statuses(the_node.reader(topics::kStatus)) {}
 
-  bool left_before(std::uint64_t other) const { return left.contains(other); }
-
-  void refuse(const char* topic, const v1::Stamp& stamp, const char* why) {
+  void refuse(const char* topic, const v1::Stamp& stamp, const std::string& why) {
     ++status.refused_samples();
-    trouble(std::string("refuses samples of ") + topic + " " + why);
-    if (told.insert({topic, stamp.epoch()}).second)
+    refusal = std::string("refuses samples of ") + topic + " " + why;
+    refusal_until = status.steps() + kDegradedSteps;
+    if (told.size() < kMostTold && told.insert(std::string(topic) + why).second)
       node.warn(std::string("refused a sample of ") + topic + ", epoch " +
                 std::to_string(stamp.epoch()) + " cycle " + std::to_string(stamp.cycle()) + ", " +
                 why);
+  }
+
+  // Who wrote it, for people.
+  std::string program(const WriterId& writer) const {
+    for (const EndpointEntry& entry : internal::transport_of(node).endpoints())
+      if (entry.id == internal::to_hex(writer))
+        return entry.program + " (process " + std::to_string(entry.pid) + " at " + entry.host + ")";
+    return "an unknown program";
   }
 
   void trouble(std::string text) {
@@ -52,51 +78,143 @@ struct Cycle::Impl {
     degraded_until = status.steps() + kDegradedSteps;
   }
 
-  void adopt(std::uint64_t next_epoch) {
-    if (epoch != 0) {
-      left.insert(epoch);
-      for (auto& slot : inputs)
-        slot->forget(epoch);
-    }
-    epoch = next_epoch;
-    last = 0;
+  // Forgets the steps of the epoch, or of a part of it that was wrong.
+  void begin_at(std::uint64_t cycle) {
+    last = cycle - 1;
     joining = true;
-    fresh = true;
+    behind = 0;
     pending.clear();
-    node.info("epoch " + std::to_string(epoch));
+  }
+
+  void adopt(std::uint64_t left) {
+    if (left != 0)
+      for (auto& slot : inputs)
+        slot->forget(left);
+    begin_at(1);
+    fresh = true;
+    node.info("epoch " + std::to_string(epochs.epoch()));
+  }
+
+  void drain_statuses() {
+    for (const WriterId& gone : statuses.take_lost())
+      neighbours.lose(gone);
+    statuses.visit([&](const v1::ServiceStatus& other, const SampleInfo& info) {
+      if (info.disposed)
+        neighbours.lose(info.writer);
+      else if (other.instance() != status.instance())
+        neighbours.hear(info.writer, other, Clock::now());
+    });
+  }
+
+  // Another program of this name serves this robot: two of them would contradict each other.
+  bool yields() {
+    const auto other = neighbours.serves_instead(status);
+    if (!other)
+      return false;
+    status.state() = v1::SERVICE_WAITING;
+    status.reason() = *other;
+    joining = true;
+    return true;
+  }
+
+  // The library may leave one side of a match deaf for ever. Others hear the robot: begin anew.
+  void note_deafness() {
+    if (!pending.empty() || !arrived.empty() || since(waiting_since) < kDeaf ||
+        since(renewed) < kDeafAgain || !neighbours.stepping_since(waiting_since, Clock::now()))
+      return;
+    renewed = Clock::now();
+    node.warn("hears no robot/state, though others of this robot do: begins anew on the bus");
+    internal::transport_of(node).renew();
   }
 
   void drain() {
+    for (const WriterId& gone : robot.take_lost())
+      epochs.lose(Peers::program_of(gone));
+    descriptions.visit([&](const v1::RobotDescription& description, const SampleInfo& info) {
+      if (!info.disposed && description.stamp().epoch() != 0)
+        epochs.describe(Peers::program_of(info.writer), description.stamp().epoch());
+    });
     robot.visit([&](const v1::RobotState& state, const SampleInfo& info) {
-      const v1::Stamp& stamp = state.stamp();
       if (info.disposed)
         return;
-      if (stamp.epoch() == 0 || stamp.cycle() == 0)
-        return refuse(topics::kRobotState.name, stamp, "without epoch or cycle");
-      if (stamp.epoch() != epoch) {
-        if (left_before(stamp.epoch()))
-          return refuse(topics::kRobotState.name, stamp, "of an epoch that was left");
-        adopt(stamp.epoch());
-      }
-      if (stamp.cycle() <= (pending.empty() ? last : pending.back().stamp().cycle()))
-        return refuse(topics::kRobotState.name, stamp, "behind the newest one");
-      if (pending.empty()) {
-        waiting_since = Clock::now();
-        quiet = false;
-      }
-      pending.push_back(state);
-      if (pending.size() > kPending)
-        pending.pop_front();
+      if (state.stamp().epoch() == 0 || state.stamp().cycle() == 0)
+        return refuse(topics::kRobotState.name, state.stamp(), "without epoch or cycle");
+      arrived.push_back({state, info.writer, Clock::now()});
     });
+    // Those whose description has not come yet stay, in their order.
+    std::erase_if(arrived, [&](const Arrived& one) { return !undecided(one); });
+    while (arrived.size() > kPending) {
+      refuse_stray(arrived.front());
+      arrived.pop_front();
+    }
     for (auto& slot : inputs)
       slot->drain([&](const v1::Stamp& stamp) {
-        // An epoch that is not known yet is kept: its first RobotState may still be on the way.
-        const bool good = stamp.epoch() != 0 && !left_before(stamp.epoch());
+        const bool good = stamp.epoch() != 0 && epochs.useful(stamp.epoch());
         if (!good)
           refuse(slot->name(), stamp,
-                 stamp.epoch() == 0 ? "without epoch" : "of an epoch that was left");
+                 stamp.epoch() == 0 ? "without epoch"
+                                    : "of an epoch that was left, or of another bridge's");
         return good;
       });
+  }
+
+  struct Arrived {
+    v1::RobotState state;
+    WriterId writer;
+    Clock::time_point when;
+  };
+
+  bool undecided(const Arrived& one) {
+    const std::uint64_t before = epochs.epoch();
+    switch (epochs.judge(Peers::program_of(one.writer), one.state.stamp().epoch())) {
+      case Epochs::Verdict::adopt:
+        adopt(before);
+        [[fallthrough]];
+      case Epochs::Verdict::take:
+        take(one.state);
+        return false;
+      case Epochs::Verdict::wait:
+        if (since(one.when) < kUndescribed)
+          return true;
+        refuse_stray(one);
+        return false;
+      case Epochs::Verdict::foreign:
+        refuse(topics::kRobotState.name, one.state.stamp(),
+               "of another bridge, " + program(one.writer) + ", with a robot of the same name");
+        return false;
+      case Epochs::Verdict::left:
+        refuse(topics::kRobotState.name, one.state.stamp(), "of an epoch that was left");
+        return false;
+    }
+    return false;
+  }
+
+  void refuse_stray(const Arrived& one) {
+    refuse(topics::kRobotState.name, one.state.stamp(),
+           "of " + program(one.writer) + ", which has described no robot for this epoch");
+  }
+
+  // Of the bridge and the epoch that are followed.
+  void take(const v1::RobotState& state) {
+    const std::uint64_t cycle = state.stamp().cycle();
+    if (cycle <= (pending.empty() ? last : pending.back().stamp().cycle())) {
+      refuse(topics::kRobotState.name, state.stamp(), "behind the newest one");
+      // The bridge counts up. One wrong number must not make all that come after it deaf.
+      behind = cycle == behind_cycle + 1 ? behind + 1 : 1;
+      behind_cycle = cycle;
+      if (behind < kBehind)
+        return;
+      node.warn("goes back to cycle " + std::to_string(cycle) + ": the newest one was wrong");
+      begin_at(cycle);
+    }
+    behind = 0;
+    if (pending.empty()) {
+      waiting_since = Clock::now();
+      quiet = false;
+    }
+    pending.push_back(state);
+    if (pending.size() > kPending)
+      pending.pop_front();
   }
 
   // Live: the newest state, at once.
@@ -112,8 +230,8 @@ struct Cycle::Impl {
       trouble("skipped a cycle");
     }
     for (auto& slot : inputs) {
-      const std::uint64_t found = slot->newest(epoch, cycle - 1);
-      slot->select(epoch, found);
+      const std::uint64_t found = slot->newest(epochs.epoch(), cycle - 1);
+      slot->select(epochs.epoch(), found);
       if (found + 1 == cycle)
         continue;
       step.stale = true;
@@ -132,12 +250,12 @@ struct Cycle::Impl {
   Inputs inputs_for(std::uint64_t cycle) const {
     Inputs result = Inputs::here;
     for (const auto& slot : inputs) {
-      if (cycle == 1 || slot->newest(epoch, cycle - 1) == cycle - 1)
+      if (cycle == 1 || slot->newest(epochs.epoch(), cycle - 1) == cycle - 1)
         continue;
       // Samples of a writer come in order: one that is later says that this one will not come.
-      if (slot->newest(epoch, kAny) >= cycle)
+      if (slot->newest(epochs.epoch(), kAny) >= cycle)
         return Inputs::gone;
-      if (joining && quiet && slot->newest(epoch, kAny) == 0)
+      if (joining && quiet && slot->newest(epochs.epoch(), kAny) == 0)
         continue;
       result = Inputs::missing;
     }
@@ -172,8 +290,8 @@ struct Cycle::Impl {
         continue;
       }
       for (auto& slot : inputs) {
-        const bool there = cycle > 1 && slot->newest(epoch, cycle - 1) == cycle - 1;
-        slot->select(epoch, there ? cycle - 1 : 0);
+        const bool there = cycle > 1 && slot->newest(epochs.epoch(), cycle - 1) == cycle - 1;
+        slot->select(epochs.epoch(), there ? cycle - 1 : 0);
         step.stale |= cycle > 1 && !there;
       }
       if (step.stale)
@@ -189,12 +307,14 @@ struct Cycle::Impl {
     const auto nobody = [](std::size_t matched) {
       return matched == 0 ? ": nobody writes it" : "";
     };
+    if (pending.empty() && !arrived.empty())
+      return std::string("waits for ") + topics::kRobotDescription.name;
     if (pending.empty())
       return std::string("waits for ") + topics::kRobotState.name +
              (last > 0 ? " of cycle " + std::to_string(last + 1) : "") + nobody(robot.matched());
     const std::uint64_t cycle = pending.front().stamp().cycle();
     for (const auto& slot : inputs)
-      if (slot->newest(epoch, cycle - 1) + 1 != cycle)
+      if (slot->newest(epochs.epoch(), cycle - 1) + 1 != cycle)
         return std::string("waits for ") + slot->name() + " of cycle " + std::to_string(cycle - 1) +
                nobody(slot->matched());
     return "waits";
@@ -213,8 +333,11 @@ struct Cycle::Impl {
     ++status.steps();
     if (!degraded.empty() && status.steps() >= degraded_until)
       degraded.clear();
-    status.state() = degraded.empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED;
-    status.reason() = degraded;
+    if (!refusal.empty() && status.steps() >= refusal_until)
+      refusal.clear();
+    // That somebody else meddles is worse than that a sample came late, and may be its cause.
+    status.reason() = refusal.empty() ? degraded : refusal;
+    status.state() = status.reason().empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED;
   }
 
   void publish_status() {
@@ -231,18 +354,26 @@ struct Cycle::Impl {
   v1::ServiceStatus& status;
   const bool lockstep;
   Reader<v1::RobotState> robot;
+  Reader<v1::RobotDescription> descriptions;
+  Reader<v1::ServiceStatus> statuses;
+  internal::Neighbours neighbours;
+  Epochs epochs;
+  std::deque<Arrived> arrived;  // and not known yet whose they are
   std::vector<std::unique_ptr<detail::InputSlot>> inputs;
   std::deque<v1::RobotState> pending;  // of this epoch, not yet stepped, in order
-  std::uint64_t epoch = 0;
-  std::uint64_t last = 0;  // cycle of this epoch that was stepped last
-  bool joining = true;     // no step of this epoch yet
-  bool fresh = true;       // the next step is the first of its epoch
-  bool quiet = false;      // nothing was due for so long that it should be said
-  std::set<std::uint64_t> left;
-  std::set<std::pair<std::string, std::uint64_t>> told;
+  std::uint64_t last = 0;              // cycle of this epoch that was stepped last
+  bool joining = true;                 // no step of this epoch yet
+  bool fresh = true;                   // the next step is the first of its epoch
+  bool quiet = false;                  // nothing was due for so long that it should be said
+  int behind = 0;                      // states in a row that were behind the newest one
+  std::uint64_t behind_cycle = 0;
+  std::set<std::string> told;
   std::string degraded;
   std::uint64_t degraded_until = 0;
+  std::string refusal;
+  std::uint64_t refusal_until = 0;
   Clock::time_point waiting_since = Clock::now();
+  Clock::time_point renewed = Clock::now();
   Clock::time_point began;
   Clock::time_point looked;  // around, by a step or by `idle`
   std::uint64_t timed = 0;
@@ -264,8 +395,10 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
   while (!stop.requested()) {
     if (self.lockstep)
       self.node.rouse();
+    self.drain_statuses();
     self.drain();
-    auto step = self.lockstep ? self.due_lockstep() : self.due_live();
+    const bool yields = self.yields();
+    auto step = yields ? std::nullopt : self.lockstep ? self.due_lockstep() : self.due_live();
     if (step) {
       step->new_epoch = std::exchange(self.fresh, false);
       self.joining = false;
@@ -274,7 +407,7 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       self.began = Clock::now();
       return step;
     }
-    if (self.lockstep && self.node.spin(kSpin)) {
+    if (self.lockstep && !yields && self.node.spin(kSpin)) {
       self.node.clear_wake();
       continue;
     }
@@ -285,7 +418,10 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       self.node.wait(rest, &stop);
       continue;
     }
-    self.note_waiting();
+    if (!yields) {
+      self.note_waiting();
+      self.note_deafness();
+    }
     self.publish_status();
     if (idle)
       idle();

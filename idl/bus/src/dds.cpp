@@ -21,15 +21,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dds_bus.hpp"
 #include "dds_convert.hpp"
-#include "dds_discovery.hpp"
-#include "dds_network.hpp"
-#include "dds_presence.hpp"
 #include "dds_qos.hpp"
 #include "dds_types.hpp"
 #include "internal.hpp"
-#include "peers.hpp"
-#include "saphira/bus/topics.hpp"
+#include "kept.hpp"
 
 namespace saphira::bus::internal {
 namespace {
@@ -38,80 +35,13 @@ namespace fdds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-constexpr std::uint32_t kMaxDomain = 232;
-
-// The participant and what its endpoints share; lives as long as the last of them.
-class Bus {
- public:
-  Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> the_wake)
-      : wake(std::move(the_wake)), peers(wake), discovery(wake, peers), robot(options.robot) {
-    if (options.domain > kMaxDomain)
-      throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
-                               std::to_string(kMaxDomain) + "]");
-    set_up_library();
-    auto* factory = fdds::DomainParticipantFactory::get_instance();
-    participant = factory->create_participant(options.domain, participant_qos(options), &discovery,
-                                              fdds::StatusMask::none());
-    if (participant == nullptr)
-      throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
-                               ": Fast DDS refused the settings");
-    for (auto& type : all_types())
-      type.register_type(participant);
-    fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;
-    fdds::SubscriberQos subscriber_qos = fdds::SUBSCRIBER_QOS_DEFAULT;
-    if (!robot.empty()) {
-      publisher_qos.partition().push_back(robot.c_str());
-      subscriber_qos.partition().push_back(robot.c_str());
-    }
-    if (participant->enable() == ReturnCode_t::RETCODE_OK) {
-      publisher = participant->create_publisher(publisher_qos);
-      subscriber = participant->create_subscriber(subscriber_qos);
-    }
-    if (publisher == nullptr || subscriber == nullptr) {
-      close();
-      throw std::runtime_error("no bus on domain " + std::to_string(options.domain) +
-                               ": no network socket could be opened for it");
-    }
-    presence_ = std::make_unique<Presence>(
-        peers, instance, topic(topics::kPresence.name, type_of<v1::Presence>().name), publisher,
-        subscriber);
-  }
-  ~Bus() { close(); }
-  Bus(const Bus&) = delete;
-  Bus& operator=(const Bus&) = delete;
-
-  fdds::Topic* topic(const char* name, const char* type) {
-    if (auto* description = participant->lookup_topicdescription(name))
-      return dynamic_cast<fdds::Topic*>(description);
-    return participant->create_topic(name, type, fdds::TOPIC_QOS_DEFAULT);
-  }
-
-  const std::shared_ptr<Wake> wake;
-  Peers peers;
-  Discovery discovery;
-  const std::string robot;
-  fdds::DomainParticipant* participant = nullptr;
-  fdds::Publisher* publisher = nullptr;
-  fdds::Subscriber* subscriber = nullptr;
-
- private:
-  void close() {
-    presence_.reset();
-    participant->set_listener(nullptr);
-    participant->delete_contained_entities();
-    fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
-  }
-
-  std::unique_ptr<Presence> presence_;
-};
-
-EndpointEntry own_entry(const Bus& bus, const char* topic, const TypeInfo& type,
+EndpointEntry own_entry(const std::string& robot, const char* topic, const TypeInfo& type,
                         const Policies& policies, bool writer) {
   EndpointEntry own;
   own.topic = topic;
   own.type = type.name;
   own.writer = writer;
-  own.robot = bus.robot;
+  own.robot = robot;
   own.reliable = policies.reliable;
   own.durability = policies.transient_local ? "transient_local" : "volatile";
   own.liveliness = "automatic";
@@ -119,45 +49,68 @@ EndpointEntry own_entry(const Bus& bus, const char* topic, const TypeInfo& type,
   return own;
 }
 
-class DdsWriter : public RawWriter, public fdds::DataWriterListener {
+class DdsWriter : public RawWriter, public Endpoint, public fdds::DataWriterListener {
  public:
   DdsWriter(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
             const TypeInfo& type)
-      : bus_(std::move(bus)), own_(own_entry(*bus_, topic, type, policies, true)) {
+      : bus_(std::move(bus)),
+        own_(own_entry(bus_->robot(), topic, type, policies, true)),
+        policies_(policies),
+        type_(type) {
+    bus_->peers.add(ends_);
+    try {
+      bus_->add(*this);
+    } catch (...) {
+      bus_->peers.remove(ends_);
+      throw;
+    }
+  }
+  ~DdsWriter() override {
+    bus_->remove(*this);
+    bus_->peers.remove(ends_);
+  }
+  DdsWriter(const DdsWriter&) = delete;
+  DdsWriter& operator=(const DdsWriter&) = delete;
+
+  void open(Session& session) override {
+    discovery_ = &session.discovery;
     fdds::DataWriterQos qos = fdds::DATAWRITER_QOS_DEFAULT;
-    set_common_qos(qos, policies, policies.writer_depth);
+    set_common_qos(qos, policies_, policies_.writer_depth);
     qos.reliability().max_blocking_time = milliseconds(100);
     qos.publish_mode().kind = fdds::SYNCHRONOUS_PUBLISH_MODE;
     // dispose() is to withdraw and to forget. A writer that ends withdraws nothing by that (Fast
     // DDS does not unregister then).
     qos.writer_data_lifecycle().autodispose_unregistered_instances = true;
-    if (policies.heartbeat_ms > 0)
-      qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(policies.heartbeat_ms);
-    auto* dds_topic = bus_->topic(topic, type.name);
-    bus_->peers.add(ends_);
-    if (dds_topic != nullptr)
-      writer_ = bus_->publisher->create_datawriter(
-          dds_topic, qos, this,
+    if (policies_.heartbeat_ms > 0)
+      qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(policies_.heartbeat_ms);
+    if (auto* topic = session.topic(own_.topic.c_str(), type_.name))
+      writer_ = session.publisher->create_datawriter(
+          topic, qos, this,
           fdds::StatusMask::publication_matched() << fdds::StatusMask::offered_incompatible_qos());
-    if (writer_ == nullptr) {
-      bus_->peers.remove(ends_);
-      throw std::runtime_error(std::string("no writer on topic ") + topic);
-    }
+    if (writer_ == nullptr)
+      throw std::runtime_error("no writer on topic " + own_.topic);
     own_.id = to_hex(to_id(writer_->guid()));
-    bus_->discovery.add_own(own_);
+    session.discovery.add_own(own_);
+    kept_.each([&](const void* sample) { writer_->write(const_cast<void*>(sample)); });
   }
-  ~DdsWriter() override {
+  void close(Session& session) override {
     writer_->set_listener(nullptr);
-    bus_->publisher->delete_datawriter(writer_);
-    bus_->peers.remove(ends_);
-    bus_->discovery.remove_own(own_.id);
+    session.publisher->delete_datawriter(writer_);
+    session.discovery.remove_own(own_.id);
+    bus_->peers.restart(ends_);
+    writer_ = nullptr;
   }
-  DdsWriter(const DdsWriter&) = delete;
-  DdsWriter& operator=(const DdsWriter&) = delete;
 
   // Fast DDS takes a writable pointer and only reads it.
-  bool write(const void* sample) override { return writer_->write(const_cast<void*>(sample)); }
+  bool write(const void* sample) override {
+    const auto session = bus_->hold();
+    if (policies_.kept_by_session)
+      kept_.put(type_, sample, policies_.writer_depth);
+    return writer_->write(const_cast<void*>(sample));
+  }
   bool dispose(const void* sample) override {
+    const auto session = bus_->hold();
+    kept_.erase(type_, sample);
     // An instance that another writer has written is withdrawn as well: it has to be made known
     // here first.
     writer_->register_instance(const_cast<void*>(sample));
@@ -171,6 +124,7 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
     constexpr int kSlice = 50;
     constexpr int kHeartbeats = 400;
     for (int waited = 0; waited < timeout_ms; waited += kSlice) {
+      const auto session = bus_->hold();
       const int slice = std::min(kSlice, timeout_ms - waited);
       if (writer_->wait_for_acknowledgments(milliseconds(slice)) == ReturnCode_t::RETCODE_OK)
         return true;
@@ -191,62 +145,82 @@ class DdsWriter : public RawWriter, public fdds::DataWriterListener {
   }
   void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
                                    const fdds::OfferedIncompatibleQosStatus& status) override {
-    bus_->discovery.add_incompatible(own_.topic, own_.writer, status.last_policy_id);
+    discovery_->add_incompatible(own_.topic, own_.writer, status.last_policy_id);
   }
 
  private:
   std::shared_ptr<Bus> bus_;
   EndpointEntry own_;
+  const Policies policies_;
+  const TypeInfo& type_;
   fdds::DataWriter* writer_ = nullptr;
-  Ends ends_;
+  Discovery* discovery_ = nullptr;  // of the session
+  Kept kept_;
+  Ends ends_{Ends::Side::readers};
 };
 
-class DdsReader : public RawReader, public fdds::DataReaderListener {
+class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderListener {
  public:
   DdsReader(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
             const TypeInfo& type)
       : bus_(std::move(bus)),
-        own_(own_entry(*bus_, topic, type, policies, false)),
+        own_(own_entry(bus_->robot(), topic, type, policies, false)),
+        policies_(policies),
         type_(type),
         scratch_(type.create(), type.destroy) {
+    bus_->peers.add(ends_);
+    try {
+      bus_->add(*this);
+    } catch (...) {
+      bus_->peers.remove(ends_);
+      throw;
+    }
+  }
+  ~DdsReader() override {
+    bus_->remove(*this);
+    bus_->peers.remove(ends_);
+  }
+  DdsReader(const DdsReader&) = delete;
+  DdsReader& operator=(const DdsReader&) = delete;
+
+  void open(Session& session) override {
+    discovery_ = &session.discovery;
     fdds::DataReaderQos qos = fdds::DATAREADER_QOS_DEFAULT;
-    set_common_qos(qos, policies, policies.reader_depth);
-    if (type.keyed) {
+    set_common_qos(qos, policies_, policies_.reader_depth);
+    if (type_.keyed) {
       // With either of the DYNAMIC modes a reader never sees that an instance was withdrawn: the
       // message has no payload, and a buffer of no size is not to be had.
       qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
       qos.resource_limits().allocated_samples = 1;
     }
-    auto* dds_topic = bus_->topic(topic, type.name);
-    bus_->peers.add(ends_);
-    if (dds_topic != nullptr)
-      reader_ = bus_->subscriber->create_datareader(
-          dds_topic, qos, this,
+    if (auto* topic = session.topic(own_.topic.c_str(), type_.name))
+      reader_ = session.subscriber->create_datareader(
+          topic, qos, this,
           fdds::StatusMask::data_available() << fdds::StatusMask::subscription_matched()
                                              << fdds::StatusMask::requested_incompatible_qos());
-    if (reader_ == nullptr) {
-      bus_->peers.remove(ends_);
-      throw std::runtime_error(std::string("no reader on topic ") + topic);
-    }
+    if (reader_ == nullptr)
+      throw std::runtime_error("no reader on topic " + own_.topic);
     own_.id = to_hex(to_id(reader_->guid()));
-    bus_->discovery.add_own(own_);
+    session.discovery.add_own(own_);
   }
-  ~DdsReader() override {
+  void close(Session& session) override {
     reader_->set_listener(nullptr);
-    bus_->subscriber->delete_datareader(reader_);
-    bus_->peers.remove(ends_);
-    bus_->discovery.remove_own(own_.id);
+    session.subscriber->delete_datareader(reader_);
+    session.discovery.remove_own(own_.id);
+    bus_->peers.restart(ends_);
+    reader_ = nullptr;
+    taken_before_ = taken_;
   }
-  DdsReader(const DdsReader&) = delete;
-  DdsReader& operator=(const DdsReader&) = delete;
 
   void take(const std::function<void(const void*, const SampleInfo&)>& each) override {
     fdds::SampleInfo dds_info;
-    while (reader_->take_next_sample(scratch_.get(), &dds_info) == ReturnCode_t::RETCODE_OK) {
+    while (take_next(dds_info)) {
       SampleInfo info;
       info.writer = to_id(dds_info.sample_identity.writer_guid());
       if (internal::take_malformed()) {
-        bus_->discovery.add_malformed(own_.topic, dds_info.sample_identity.writer_guid());
+        add_malformed(dds_info.sample_identity.writer_guid());
+      } else if (was_taken(dds_info.sample_identity)) {
+        continue;
       } else if (dds_info.valid_data) {
         if (type_.keyed)
           remember(dds_info.instance_handle);
@@ -278,11 +252,36 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
   }
   void on_requested_incompatible_qos(fdds::DataReader* /*reader*/,
                                      const fdds::RequestedIncompatibleQosStatus& status) override {
-    bus_->discovery.add_incompatible(own_.topic, own_.writer, status.last_policy_id);
+    discovery_->add_incompatible(own_.topic, own_.writer, status.last_policy_id);
   }
 
  private:
   using Holder = std::unique_ptr<void, void (*)(void*)>;
+
+  // The session is held for this call alone: who takes may write meanwhile.
+  bool take_next(fdds::SampleInfo& info) {
+    const auto session = bus_->hold();
+    return reader_->take_next_sample(scratch_.get(), &info) == ReturnCode_t::RETCODE_OK;
+  }
+
+  void add_malformed(const rtps::GUID_t& writer) {
+    const auto session = bus_->hold();
+    bus_->session().discovery.add_malformed(own_.topic, writer);
+  }
+
+  // A writer that still lives sends its history again to the reader of a new session.
+  bool was_taken(const rtps::SampleIdentity& sample) {
+    if (!policies_.transient_local)
+      return false;
+    const auto number = sample.sequence_number().to64long();
+    const auto before = taken_before_.find(sample.writer_guid());
+    if (before != taken_before_.end() && number <= before->second)
+      return true;
+    if (taken_.size() >= kMostWriters && !taken_.contains(sample.writer_guid()))
+      taken_.clear();
+    taken_[sample.writer_guid()] = number;
+    return false;
+  }
 
   // get_key_value() is not supported: what was withdrawn is known by this alone.
   void remember(const rtps::InstanceHandle_t& handle) {
@@ -292,13 +291,21 @@ class DdsReader : public RawReader, public fdds::DataReaderListener {
     type_.copy(scratch_.get(), found->second.get());
   }
 
+  // Writers come and go for months. Forgetting them costs no more than a sample that comes twice.
+  static constexpr std::size_t kMostWriters = 1000;
+
   std::shared_ptr<Bus> bus_;
   EndpointEntry own_;
+  const Policies policies_;
   const TypeInfo& type_;
   fdds::DataReader* reader_ = nullptr;
+  Discovery* discovery_ = nullptr;  // of the session
   Holder scratch_;
   std::map<rtps::InstanceHandle_t, Holder> last_;
-  Ends ends_;
+  // Of each writer the number of the sample that was taken last: now, and when the session began.
+  std::map<rtps::GUID_t, std::uint64_t> taken_;
+  std::map<rtps::GUID_t, std::uint64_t> taken_before_;
+  Ends ends_{Ends::Side::writers};
 };
 
 class DdsTransport : public Transport {
@@ -314,10 +321,20 @@ class DdsTransport : public Transport {
                                          const TypeInfo& type) override {
     return std::make_unique<DdsReader>(bus_, topic, policies, type);
   }
-  std::vector<EndpointEntry> endpoints() const override { return bus_->discovery.endpoints(); }
-  std::vector<std::string> take_troubles() override { return bus_->discovery.take_troubles(); }
-  Malformed take_malformed() override { return bus_->discovery.take_malformed(); }
-  void watch_endpoints(bool watch) override { bus_->discovery.watch(watch); }
+  std::vector<EndpointEntry> endpoints() const override {
+    const auto session = bus_->hold();
+    return bus_->session().discovery.endpoints();
+  }
+  std::vector<std::string> take_troubles() override {
+    const auto session = bus_->hold();
+    return bus_->session().discovery.take_troubles();
+  }
+  Malformed take_malformed() override {
+    const auto session = bus_->hold();
+    return bus_->session().discovery.take_malformed();
+  }
+  void watch_endpoints(bool watch) override { bus_->watch(watch); }
+  void renew() override { bus_->renew_soon(); }
 
  private:
   std::shared_ptr<Bus> bus_;

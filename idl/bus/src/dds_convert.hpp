@@ -39,13 +39,4 @@ inline WriterId to_id(const eprosima::fastrtps::rtps::InstanceHandle_t& handle) 
   return id;
 }
 
-inline std::string to_hex(const WriterId& id) {
-  std::string text;
-  for (const auto byte : id) {
-    text += "0123456789abcdef"[byte >> 4U];
-    text += "0123456789abcdef"[byte & 15U];
-  }
-  return text;
-}
-
 }  // namespace saphira::bus::internal

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "dds_convert.hpp"
+#include "dds_sieve.hpp"
 #include "internal.hpp"
 #include "log.hpp"
 
@@ -26,11 +27,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 // How many programs of one machine can be found by a peer that knows nothing but its address.
 constexpr std::uint32_t kProgramsPerPeer = 12;
-// [ms] of silence after which discovery drops a program. Long: one that stood still and comes back
-// before is still matched, while one that was dropped by one side alone may never be heard again by
-// that side (Fast DDS 2.9 keeps the other side's half of the match). That a program has died is
-// noticed by its presence.
-constexpr int kLease = 60000;
 // [ms] between two announcements of a program: what a restarted one waits at the most until it is
 // found.
 constexpr int kAnnouncement = 250;
@@ -63,21 +59,27 @@ rtps::Locator_t locator(const std::string& address) {
 }
 
 void check_interface(const std::string& address) {
-  std::vector<rtps::IPFinder::info_IP> found;
-  rtps::IPFinder::getIPs(&found, true);
+  const auto found = own_addresses();
+  if (found.contains(address))
+    return;
   std::string all;
-  for (const auto& ip : found) {
-    if (ip.type != rtps::IPFinder::IP4 && ip.type != rtps::IPFinder::IP4_LOCAL)
-      continue;
-    if (ip.name == address)
-      return;
-    all += " " + ip.name;
-  }
+  for (const auto& own : found)
+    all += " " + own;
   throw std::runtime_error("interface \"" + address +
                            "\" is not an address of this machine, which has" + all);
 }
 
 }  // namespace
+
+std::set<std::string> own_addresses() {
+  std::vector<rtps::IPFinder::info_IP> found;
+  rtps::IPFinder::getIPs(&found, true);
+  std::set<std::string> addresses;
+  for (const auto& ip : found)
+    if (ip.type == rtps::IPFinder::IP4 || ip.type == rtps::IPFinder::IP4_LOCAL)
+      addresses.insert(ip.name);
+  return addresses;
+}
 
 void set_up_library() {
   static const bool once = [] {
@@ -106,7 +108,7 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
 
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.discovery_config.leaseDuration = milliseconds(kLease);
+  builtin.discovery_config.leaseDuration = milliseconds(1000 * static_cast<int>(kLease.count()));
   builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kAnnouncement);
   std::string own_address = "127.0.0.1";
   switch (options.profile) {
@@ -136,7 +138,7 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
       builtin.initialPeersList.push_back(locator(peer));
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(udp));
   return qos;
 }
 

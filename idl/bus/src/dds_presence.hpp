@@ -1,52 +1,46 @@
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
-#include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <map>
 #include <mutex>
-#include <thread>
 
-#include "peers.hpp"
+#include "dds_bus.hpp"
+#include "saphira/bus/topics.hpp"
 
 namespace saphira::bus::internal {
 
-/// Says ten times a second that this program is there, and notices which others do not.
+/// Says that this program is there, and hears which others are.
 ///
-/// It has a thread of its own: this is about processes that are gone, and a program that is slow
-/// in one cycle is not. Neither Fast DDS's liveliness nor a deadline does it: they take a program
-/// that slept for a witness of everybody else's death.
-class Presence : public eprosima::fastdds::dds::DataReaderListener {
+/// This is about processes that are gone: a program that is slow in one cycle is not, so a thread
+/// beside its loop turns it. Neither Fast DDS's liveliness nor a deadline does it: they take a
+/// program that slept for a witness of everybody else's death.
+class Presence : public Endpoint, public eprosima::fastdds::dds::DataReaderListener {
  public:
-  /// instance: as in ServiceStatus. The topic's entities must outlive this.
-  Presence(Peers& peers, std::uint64_t instance, eprosima::fastdds::dds::Topic* topic,
-           eprosima::fastdds::dds::Publisher* publisher,
-           eprosima::fastdds::dds::Subscriber* subscriber);
-  ~Presence() override;
-  Presence(const Presence&) = delete;
-  Presence& operator=(const Presence&) = delete;
+  /// instance: as in ServiceStatus.
+  Presence(Peers& peers, std::uint64_t instance);
+
+  void open(Session& session) override;
+  void close(Session& session) override;
+
+  /// Ten times a second, from one thread.
+  void tick();
+  /// Of the programs that are expected, the one that was not heard for longest.
+  BootClock::duration longest_silence(BootClock::time_point now) const;
 
   void on_subscription_matched(
       eprosima::fastdds::dds::DataReader* /*reader*/,
       const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
 
  private:
-  void run();
-
   Peers& peers_;
-  const std::uint64_t instance_;
-  eprosima::fastdds::dds::Publisher* const publisher_;
-  eprosima::fastdds::dds::Subscriber* const subscriber_;
+  v1::Presence own_;
   eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
   eprosima::fastdds::dds::DataReader* reader_ = nullptr;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool ends_ = false;
-  std::thread thread_;
+  mutable std::mutex mutex_;
+  std::map<Peers::Program, BootClock::time_point> heard_;
 };
 
 }  // namespace saphira::bus::internal

@@ -21,6 +21,9 @@ struct Policies {
   int reader_depth = 1;
   int lifespan_ms = 0;   ///< [0: for ever]
   int heartbeat_ms = 0;  ///< of a reliable writer; how soon a lost sample is noticed
+  /// A node that begins anew on the bus writes again what this writer holds: a state is told again,
+  /// an event or a wish is not.
+  bool kept_by_session = false;
 };
 
 Policies policies(Qos qos, bool lockstep);
@@ -75,6 +78,8 @@ class Transport {
   virtual Malformed take_malformed() { return {}; }
   /// Whether a change of endpoints() wakes the node.
   virtual void watch_endpoints(bool watch) = 0;
+  /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
+  virtual void renew() {}
 };
 
 /// instance: as in ServiceStatus.
@@ -88,6 +93,16 @@ std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
 bool partitions_meet(const std::string& one, const std::string& other);
 
 std::string host_name();
+
+/// The id of an endpoint, as EndpointEntry has it.
+inline std::string to_hex(const WriterId& id) {
+  std::string text;
+  for (const auto byte : id) {
+    text += "0123456789abcdef"[byte >> 4U];
+    text += "0123456789abcdef"[byte & 15U];
+  }
+  return text;
+}
 
 /// Whether a node of this program that has ended was at work: had a cycle of a robot.
 std::atomic<bool>& has_worked();

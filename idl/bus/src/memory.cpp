@@ -24,7 +24,8 @@ class MemoryReader;
 class MemoryBus {
  public:
   std::mutex mutex;
-  std::uint64_t endpoints_made = 0;
+  std::uint64_t nodes_made = 0;
+  std::uint32_t endpoints_made = 0;
   std::vector<internal::MemoryWriter*> writers;
   std::vector<internal::MemoryReader*> readers;
 };
@@ -58,7 +59,19 @@ struct Common {
   EndpointEntry entry;
   Policies policies;
   const TypeInfo* type;
+  std::uint64_t node;
 };
+
+// As over DDS the first 12 bytes are the node's.
+WriterId next_id(const Common& common) {
+  WriterId id{};
+  for (unsigned i = 0; i < 8; ++i)
+    id[i] = static_cast<std::uint8_t>(common.node >> (8U * i));
+  const std::uint32_t number = ++common.bus->endpoints_made;
+  for (unsigned i = 0; i < 4; ++i)
+    id[12 + i] = static_cast<std::uint8_t>(number >> (8U * i));
+  return id;
+}
 
 class MemoryWriter : public RawWriter {
  public:
@@ -132,10 +145,8 @@ void match(MemoryWriter& writer, MemoryReader& reader) {
 
 MemoryWriter::MemoryWriter(Common the_common) : common(std::move(the_common)) {
   const std::scoped_lock lock(common.bus->mutex);
-  const std::uint64_t number = ++common.bus->endpoints_made;
-  for (unsigned i = 0; i < 8; ++i)
-    id[i] = static_cast<std::uint8_t>(number >> (8U * i));
-  common.entry.id = std::to_string(number);
+  id = next_id(common);
+  common.entry.id = to_hex(id);
   common.bus->writers.push_back(this);
   for (auto* reader : common.bus->readers)
     match(*this, *reader);
@@ -174,7 +185,7 @@ std::size_t MemoryWriter::matched() const {
 
 MemoryReader::MemoryReader(Common the_common) : common(std::move(the_common)) {
   const std::scoped_lock lock(common.bus->mutex);
-  common.entry.id = std::to_string(++common.bus->endpoints_made);
+  common.entry.id = to_hex(next_id(common));
   common.bus->readers.push_back(this);
   for (auto* writer : common.bus->writers)
     match(*writer, *this);
@@ -223,7 +234,10 @@ class MemoryTransport : public Transport {
  public:
   MemoryTransport(const NodeOptions& options, std::shared_ptr<MemoryBus> bus,
                   std::shared_ptr<Wake> wake)
-      : options_(options), bus_(std::move(bus)), wake_(std::move(wake)) {}
+      : options_(options), bus_(std::move(bus)), wake_(std::move(wake)) {
+    const std::scoped_lock lock(bus_->mutex);
+    node_ = ++bus_->nodes_made;
+  }
 
   std::unique_ptr<RawWriter> make_writer(const char* topic, const Policies& policies,
                                          const TypeInfo& type) override {
@@ -266,12 +280,13 @@ class MemoryTransport : public Transport {
     entry.durability = policies.transient_local ? "transient_local" : "volatile";
     entry.liveliness = "automatic";
     entry.ownership = "shared";
-    return {bus_, wake_, troubles_, entry, policies, &type};
+    return {bus_, wake_, troubles_, entry, policies, &type, node_};
   }
 
   NodeOptions options_;
   std::shared_ptr<MemoryBus> bus_;
   std::shared_ptr<Wake> wake_;
+  std::uint64_t node_ = 0;
   std::shared_ptr<std::vector<std::string>> troubles_ =
       std::make_shared<std::vector<std::string>>();
 };

@@ -9,9 +9,11 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <random>
 #include <stdexcept>
 
+#include "heartbeat.hpp"
 #include "internal.hpp"
 #include "log.hpp"
 
@@ -71,6 +73,17 @@ struct Node::Impl {
     log_writer.emplace(transport->make_writer(
         topics::kLog.name, internal::policies(topics::kLog.qos, options.lockstep),
         type_of<v1::LogRecord>()));
+    const char* const why = std::getenv(kRestartedVariable);
+    if (why != nullptr && *why != 0)
+      log(v1::LOG_WARNING, std::string(kStartedAgain) + why);
+  }
+
+  // To the supervisor, which cannot tell by the bus whether a program is deaf or not heard.
+  void beat(std::uint64_t flags) const {
+    if (status.state() == v1::SERVICE_WAITING &&
+        status.reason().starts_with(std::string("waits for ") + topics::kRobotState.name))
+      flags |= Heartbeat::kWaitsForRobot;
+    internal::send({status.instance(), status.stamp().epoch(), status.stamp().cycle(), flags});
   }
 
   void note_troubles() {
@@ -132,6 +145,7 @@ Node::Node(NodeOptions options, std::shared_ptr<MemoryBus> memory)
 Node::~Node() {
   if (impl_->status.stamp().cycle() > 0)
     internal::has_worked() = true;
+  impl_->beat(Heartbeat::kEnds);
   // Gone in good order: nobody has to wait until the status is old.
   if (impl_->published) {
     impl_->status_writer->dispose(impl_->status);
@@ -230,6 +244,7 @@ bool Node::publish_status() {
     self.last_published = now;
   }
   self.status_writer->write(self.status);
+  self.beat(0);
   self.published_state = self.status.state();
   self.published_reason = self.status.reason();
   self.published = true;

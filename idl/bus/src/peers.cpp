@@ -24,6 +24,7 @@ void Peers::remove(Ends& ends) {
 void Peers::match(Ends& ends, const WriterId& other) {
   const std::scoped_lock lock(mutex_);
   ends.matched_.insert(other);
+  ends.before_.erase(other);
   count(ends);
   wake_->signal();
 }
@@ -34,11 +35,21 @@ void Peers::unmatch(Ends& ends, const WriterId& other) {
     return;
   const auto program = programs_.find(program_of(other));
   if (program == programs_.end() || !program->second.absent)
-    ends.lost_.push_back(other);
+    ends.lose(other);
   else if (!program->second.expected && !has_matches(program->first))
     programs_.erase(program);
   count(ends);
   wake_->signal();
+}
+
+void Peers::restart(Ends& ends) {
+  const std::scoped_lock lock(mutex_);
+  for (const WriterId& other : ends.matched_)
+    if (!is_absent(program_of(other)))
+      ends.before_.insert(other);
+  ends.matched_.clear();
+  ends.ticks_left_ = kRestart;
+  count(ends);
 }
 
 std::vector<WriterId> Peers::take_lost(Ends& ends) {
@@ -70,6 +81,9 @@ void Peers::forget(const Program& program) {
 
 void Peers::tick(const std::set<Program>& heard) {
   const std::scoped_lock lock(mutex_);
+  for (Ends* ends : ends_)
+    if (!ends->before_.empty() && --ends->ticks_left_ <= 0)
+      lose_old_matches(*ends);
   for (auto& [program, silence] : programs_) {
     if (heard.contains(program)) {
       silence.ticks = 0;
@@ -102,10 +116,18 @@ void Peers::count(Ends& ends) const {
 void Peers::change(const Program& program, bool absent) {
   for (Ends* ends : ends_) {
     if (absent)
-      std::copy_if(ends->matched_.begin(), ends->matched_.end(), std::back_inserter(ends->lost_),
-                   [&](const WriterId& other) { return program_of(other) == program; });
+      for (const WriterId& other : ends->matched_)
+        if (program_of(other) == program)
+          ends->lose(other);
     count(*ends);
   }
+  wake_->signal();
+}
+
+void Peers::lose_old_matches(Ends& ends) {
+  for (const WriterId& other : ends.before_)
+    ends.lose(other);
+  ends.before_.clear();
   wake_->signal();
 }
 

@@ -19,13 +19,23 @@ namespace saphira::bus::internal {
 /// The other ends that one endpoint is matched with.
 class Ends {
  public:
+  enum class Side { readers, writers };  ///< what they are; only of writers it is told who is lost
+  explicit Ends(Side side) : side_(side) {}
   /// Those whose program is there.
   std::size_t present() const { return present_; }
 
  private:
   friend class Peers;
 
+  void lose(const WriterId& other) {
+    if (side_ == Side::writers)
+      lost_.push_back(other);
+  }
+
+  const Side side_;
   std::set<WriterId> matched_;
+  std::set<WriterId> before_;  ///< of the session before, not matched again yet
+  int ticks_left_ = 0;         ///< until those of `before_` are lost
   std::vector<WriterId> lost_;
   std::atomic<std::size_t> present_{0};
 };
@@ -48,6 +58,8 @@ class Peers {
   static constexpr int kSilent = 7;
   /// The same for a program that was never heard: it may still be on its way to find our reader.
   static constexpr int kSilentAtFirst = 50;
+  /// Ticks for the matches of the session before to be made again.
+  static constexpr int kRestart = 50;
 
   explicit Peers(std::shared_ptr<Wake> wake) : wake_(std::move(wake)) {}
 
@@ -56,6 +68,8 @@ class Peers {
   void remove(Ends& ends);
   void match(Ends& ends, const WriterId& other);
   void unmatch(Ends& ends, const WriterId& other);
+  /// This node begins anew on the bus: what was matched is to be matched again soon, or is lost.
+  void restart(Ends& ends);
   /// Other ends that are gone since the last call, by discovery or by their program's silence.
   std::vector<WriterId> take_lost(Ends& ends);
   /// Whether one of them is matched and not there.
@@ -79,6 +93,7 @@ class Peers {
   bool is_absent(const Program& program) const;
   void count(Ends& ends) const;
   void change(const Program& program, bool absent);
+  void lose_old_matches(Ends& ends);
   bool has_matches(const Program& program) const;
 
   const std::shared_ptr<Wake> wake_;

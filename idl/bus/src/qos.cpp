@@ -18,7 +18,8 @@ Policies policies(Qos qos, bool lockstep) {
                                  .transient_local = true,
                                  .writer_depth = 8,
                                  .reader_depth = 8,
-                                 .heartbeat_ms = 50}
+                                 .heartbeat_ms = 50,
+                                 .kept_by_session = true}
                       : Policies{.reader_depth = 4};
     case Qos::command:
       return {.reliable = true,
@@ -27,15 +28,21 @@ Policies policies(Qos qos, bool lockstep) {
               .lifespan_ms = 2000,
               .heartbeat_ms = 100};
     case Qos::latched:
-      // In lockstep the one that somebody else had in a certain cycle may be wanted: it is not
-      // overwritten before it is looked at.
+      // What comes between two looks is not overwritten: two writers of a topic without a key (two
+      // bridges) are both heard, and in lockstep the one that somebody else had in a certain cycle
+      // may be wanted.
       return {.reliable = true,
               .transient_local = true,
-              .reader_depth = lockstep ? 8 : 1,
-              .heartbeat_ms = 100};
+              .reader_depth = 8,
+              .heartbeat_ms = 100,
+              .kept_by_session = true};
     case Qos::goal:
-    case Qos::status:
+      // Not told again after a long sleep: what was asked for then may be over, or canceled because
+      // its agent fell silent, and nobody is there to see the robot drive off.
       return {.reliable = true, .transient_local = true, .heartbeat_ms = 100};
+    case Qos::status:
+      return {
+          .reliable = true, .transient_local = true, .heartbeat_ms = 100, .kept_by_session = true};
     case Qos::event:
       return {.reliable = true,
               .transient_local = true,

@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <atomic>
+#include <set>
 #include <thread>
 
 #include "harness.hpp"
@@ -19,6 +20,7 @@ class Cycles : public OnEachBus {
     service_ = node("service", "", lockstep);
     cycle_ = std::make_unique<Cycle>(*service_);
     input_ = &cycle_->input(topics::kIntentions);
+    description_.emplace(bridge_->writer(topics::kRobotDescription));
     robot_.emplace(bridge_->writer(topics::kRobotState));
     intentions_.emplace(other_->writer(topics::kIntentions));
     ASSERT_TRUE(eventually(*bridge_, [&] { return robot_->matched() == 1; }));
@@ -51,6 +53,8 @@ class Cycles : public OnEachBus {
 
   // Live samples are read one by one: they are not kept for a reader that is behind.
   void send(std::uint64_t epoch, std::uint64_t number) {
+    if (described_.insert(epoch).second)
+      description_->write(description(epoch));
     robot_->write(robot_state(epoch, number));
   }
   void send_intentions(std::uint64_t epoch, std::uint64_t number) {
@@ -64,6 +68,8 @@ class Cycles : public OnEachBus {
   std::unique_ptr<Node> service_;
   std::unique_ptr<Cycle> cycle_;
   Input<v1::Intentions>* input_ = nullptr;
+  std::set<std::uint64_t> described_;
+  std::optional<Writer<v1::RobotDescription>> description_;
   std::optional<Writer<v1::RobotState>> robot_;
   std::optional<Writer<v1::Intentions>> intentions_;
 };
@@ -165,6 +171,72 @@ TEST_P(Cycles, SamplesOfAnEpochThatWasLeftAreRefused) {
   ASSERT_EQ(step(), 2U);
   EXPECT_EQ(input_->value(), nullptr);
   EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
+}
+
+TEST_P(Cycles, StrayStatesOfOthersDoNotMakeItDeaf) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  auto stray = node("stray");
+  auto writer = stray->writer(topics::kRobotState);
+  ASSERT_TRUE(eventually(*stray, [&] { return writer.matched() == 1; }));
+  writer.write(robot_state(77, 5));       // an epoch that nobody has described
+  writer.write(robot_state(1, 1000000));  // the epoch that is followed
+  service_->wait(absence());
+  for (std::uint64_t number = 2; number <= 20; ++number) {
+    send(1, number);
+    EXPECT_EQ(step(), number);
+  }
+  ASSERT_TRUE(eventually(*service_, [&] {
+    next(milliseconds(1));
+    return service_->status().refused_samples() == 2;
+  }));
+  EXPECT_EQ(cycle_->stamp().epoch(), 1U);
+}
+
+TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  auto second = node("second-bridge");
+  auto describes = second->writer(topics::kRobotDescription);
+  auto writer = second->writer(topics::kRobotState);
+  ASSERT_TRUE(
+      eventually(*second, [&] { return writer.matched() == 1 && describes.matched() > 0; }));
+  describes.write(description(2));
+  writer.write(robot_state(2, 50));
+  ASSERT_TRUE(eventually(*service_, [&] {
+    next(milliseconds(1));
+    return service_->status().refused_samples() == 1;
+  }));
+  send(1, 2);
+  EXPECT_EQ(step(), 2U);
+  EXPECT_EQ(service_->status().state(), v1::SERVICE_DEGRADED);
+  EXPECT_NE(service_->status().reason().find("second-bridge"), std::string::npos)
+      << service_->status().reason();
+  robot_.reset();
+  description_.reset();
+  bridge_.reset();
+  ASSERT_TRUE(eventually(*second, [&] {
+    writer.write(robot_state(2, 51));
+    return next(milliseconds(1)).has_value();
+  }));
+  EXPECT_EQ(cycle_->stamp().epoch(), 2U);
+}
+
+TEST_P(Cycles, OneWrongNumberOfTheBridgeDoesNotMakeItDeaf) {
+  start(false);
+  send(1, 1);
+  EXPECT_EQ(step(), 1U);
+  send(1, 1000000);
+  EXPECT_EQ(step(), 1000000U);
+  send(1, 2);
+  send(1, 3);
+  EXPECT_TRUE(no_step());
+  send(1, 4);
+  EXPECT_EQ(step(), 4U);
+  send(1, 5);
+  EXPECT_EQ(step(), 5U);
 }
 
 TEST_P(Cycles, StateWithoutEpochIsRefused) {
@@ -303,6 +375,8 @@ class Lockstep : public OnEachBus {
   std::thread bridge() {
     return std::thread([this] {
       auto own = node("bridge", "", true);
+      auto describes = own->writer(topics::kRobotDescription);
+      describes.write(description(9));
       auto robot_writer = own->writer(topics::kRobotState);
       auto reader = own->reader(topics::kBehaviors);
       for (std::uint64_t number = 1; number <= kCycles; ++number) {

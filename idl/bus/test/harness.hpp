@@ -95,6 +95,12 @@ inline v1::RobotState robot_state(std::uint64_t epoch, std::uint64_t cycle) {
   return result;
 }
 
+inline v1::RobotDescription description(std::uint64_t epoch) {
+  v1::RobotDescription result;
+  result.stamp(stamp(epoch, 0));
+  return result;
+}
+
 inline v1::Intentions intentions(std::uint64_t epoch, std::uint64_t cycle) {
   v1::Intentions result;
   result.stamp(stamp(epoch, cycle));

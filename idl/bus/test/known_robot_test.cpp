@@ -81,10 +81,18 @@ TEST_F(KnownRobots, InLockstepItIsWaitedFor) {
 TEST_F(KnownRobots, InLockstepNobodyWaitsForWhatWasReplaced) {
   Node node(named("service", true), bus_);
   KnownRobot robot(node);
-  describe(7);
-  describe(8);  // the robot came again before anybody looked
+  describe(8);  // the robot came again before this service was there
   EXPECT_EQ(robot.of(7, patience_.stop()), Knowledge::none);
   EXPECT_FALSE(patience_.stop().requested());
+  EXPECT_EQ(robot.of(8, patience_.stop()), Knowledge::fresh);
+}
+
+TEST_F(KnownRobots, TwoThatCameBetweenTwoLooksAreBothKnown) {
+  Node node(named("service", false), bus_);
+  KnownRobot robot(node);
+  describe(7);
+  describe(8);
+  EXPECT_EQ(robot.of(7, patience_.stop()), Knowledge::fresh);
   EXPECT_EQ(robot.of(8, patience_.stop()), Knowledge::fresh);
 }
 

@@ -35,7 +35,7 @@ class PeersTest : public testing::Test {
 
   std::shared_ptr<Wake> wake_ = std::make_shared<Wake>();
   Peers peers_{wake_};
-  Ends ends_;
+  Ends ends_{Ends::Side::writers};
 };
 
 TEST_F(PeersTest, SilentProgramIsLostOnceWithAllItsEnds) {
@@ -110,6 +110,18 @@ TEST_F(PeersTest, MatchOfAnAbsentProgramCountsWhenItIsHeard) {
   EXPECT_EQ(ends_.present(), 1U);
   peers_.tick({program(1)});
   EXPECT_EQ(ends_.present(), 4U);
+}
+
+TEST_F(PeersTest, AfterARestartWhatIsNotMatchedAgainIsLost) {
+  peers_.restart(ends_);
+  EXPECT_EQ(ends_.present(), 0U);
+  peers_.match(ends_, end_of(1, 2));
+  for (int i = 0; i < Peers::kRestart - 1; ++i)
+    peers_.tick({program(1)});
+  EXPECT_TRUE(peers_.take_lost(ends_).empty());
+  peers_.tick({program(1)});
+  EXPECT_EQ(peers_.take_lost(ends_), (std::vector<WriterId>{end_of(1, 1), end_of(2, 1)}));
+  EXPECT_EQ(ends_.present(), 1U);
 }
 
 }  // namespace

@@ -106,6 +106,77 @@ TEST_F(Processes, WriterThatNappedIsThereAgainWithoutAnotherMatch) {
   EXPECT_TRUE(goals.take_lost().empty());
 }
 
+TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
+  NodeOptions options = node_->options();
+  options.name = "sleeper";
+  Node sleeper(options);
+  auto tiles = sleeper.writer(topics::kGrid);
+  auto wishes = sleeper.writer(topics::kGoals);
+  auto log = node_->reader(topics::kMessages);
+  auto said = sleeper.writer(topics::kMessages);
+  auto read_tiles = node_->reader(topics::kGrid);
+  auto read_wishes = node_->reader(topics::kGoals);
+  v1::GridTile tile;
+  for (int i = 0; i < 3; ++i) {
+    tile.column(i);
+    tiles.write(tile);
+  }
+  tiles.dispose(tile);
+  wishes.write(goal(1));
+  said.write(v1::Message());
+  const auto first = take_at_least(*node_, read_wishes, 1);
+  take_at_least(*node_, log, 1);
+  ASSERT_TRUE(eventually(*node_, [&] { return read_tiles.matched() == 1; }));
+  std::size_t before = 0;
+  ASSERT_TRUE(eventually(*node_, [&] { return (before += read_tiles.take().size()) >= 2; }));
+
+  internal::transport_of(sleeper).renew();
+  EXPECT_EQ(take_at_least(*node_, read_tiles, 2).size(), 2U);
+  std::vector<WriterId> lost;
+  EXPECT_TRUE(eventually(*node_, [&] { return !(lost = read_wishes.take_lost()).empty(); }));
+  EXPECT_EQ(lost, std::vector<WriterId>{first.at(0).info.writer});
+  // What it writes now is heard, and nothing of before comes again.
+  ASSERT_TRUE(eventually(*node_, [&] { return read_wishes.matched() == 1 && log.matched() == 1; }));
+  wishes.write(goal(2));
+  said.write(v1::Message());
+  const auto next = take_at_least(*node_, read_wishes, 1);
+  ASSERT_EQ(next.size(), 1U);
+  EXPECT_EQ(next[0].data.id().number(), 2U);
+  EXPECT_EQ(take_at_least(*node_, log, 1).size(), 1U);
+}
+
+TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
+  NodeOptions options = node_->options();
+  options.name = "sleeper";
+  Node sleeper(options);
+  auto said = node_->writer(topics::kMessages);
+  auto wishes = node_->writer(topics::kGoals);
+  auto hears = sleeper.reader(topics::kMessages);
+  auto reads = sleeper.reader(topics::kGoals);
+  auto writer = peer("writer");
+  v1::Message message;
+  message.text("one");
+  said.write(message);
+  wishes.write(goal(5));
+  EXPECT_EQ(take_at_least(sleeper, hears, 1).size(), 1U);
+  EXPECT_EQ(take_at_least(sleeper, reads, 2).size(), 2U);
+
+  writer.signal(SIGKILL);  // what dies during the sleep
+  writer.wait();
+  internal::transport_of(sleeper).renew();
+  message.text("two");
+  said.write(message);
+  wishes.write(goal(6));
+  const auto heard = take_at_least(sleeper, hears, 1);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_EQ(heard[0].data.text(), "two");
+  const auto read = take_at_least(sleeper, reads, 1);
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].data.id().number(), 6U);
+  EXPECT_TRUE(eventually(sleeper, [&] { return reads.take_lost().size() == 1; }));
+  EXPECT_TRUE(reads.take().empty());
+}
+
 TEST_F(Processes, WriterThatEndsIsLostAtOnce) {
   auto goals = node_->reader(topics::kGoals);
   auto writer = peer("writer");

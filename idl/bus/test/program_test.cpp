@@ -24,6 +24,8 @@ void step(const NodeOptions& options, const Stop& stop) {
   auto robot = bridge.writer(topics::kRobotState);
   Node node(options, bus);
   Cycle cycle(node);
+  auto describes = bridge.writer(topics::kRobotDescription);
+  describes.write(description(1));
   robot.write(robot_state(1, 1));
   ASSERT_TRUE(cycle.next(stop));
   cycle.done();

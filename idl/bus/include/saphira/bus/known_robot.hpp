@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "saphira/bus/node.hpp"
@@ -29,7 +30,9 @@ class KnownRobot {
 
   Node& node_;
   Reader<v1::RobotDescription> reader_;
-  std::optional<v1::RobotDescription> newest_;
+  /// Of this bridge's last epochs, and of other bridges with a robot of the same name.
+  static constexpr std::size_t kRecent = 16;
+  std::deque<v1::RobotDescription> recent_;
   std::optional<v1::RobotDescription> description_;
 };
 

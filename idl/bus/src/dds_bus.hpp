@@ -1,0 +1,106 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <shared_mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dds_discovery.hpp"
+#include "peers.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus::internal {
+
+class Presence;
+
+/// A participant and what is made of it.
+class Session {
+ public:
+  Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  eprosima::fastdds::dds::Topic* topic(const char* name, const char* type);
+
+  Discovery discovery;
+  eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber = nullptr;
+
+ private:
+  void close();
+};
+
+/// Something of a session that is made again in the next one.
+class Endpoint {
+ public:
+  virtual ~Endpoint() = default;
+  virtual void open(Session& session) = 0;
+  /// Before the session ends.
+  virtual void close(Session& session) = 0;
+};
+
+/// What the endpoints of a node share; lives as long as the last of them. Ten times a second its
+/// thread tells the others that this program is there, and looks whether they are.
+///
+/// A program that stood still for about as long as the lease of discovery, or longer, may have been
+/// dropped by the others without having dropped them, and would not be heard again by some (Fast
+/// DDS 2.9). It notices that it stood still and begins anew, with a participant that nobody knows.
+class Bus {
+ public:
+  Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> wake);
+  ~Bus();
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// Opens it, now and in each session to come.
+  void add(Endpoint& endpoint);
+  void remove(Endpoint& endpoint);
+
+  /// While it is held, the session is the same.
+  std::shared_lock<std::shared_mutex> hold() const { return std::shared_lock(mutex_); }
+  Session& session() const { return *session_; }
+  const std::string& robot() const { return options_.robot; }
+  /// As after a long sleep.
+  void renew_soon();
+
+  const std::shared_ptr<Wake> wake;
+  Peers peers;
+  /// Whether a change of endpoints() wakes the node.
+  void watch(bool on);
+
+ private:
+  void run();
+  void note_sleep();
+  void renew();
+
+  const NodeOptions options_;
+  mutable std::shared_mutex mutex_;  // exclusive for who changes the session or the endpoints
+  std::unique_ptr<Session> session_;
+  std::unique_ptr<Presence> presence_;
+  std::vector<Endpoint*> endpoints_;
+  bool watched_ = false;
+  std::set<std::string> addresses_;  // of this machine, when the session began
+
+  std::mutex thread_mutex_;
+  std::condition_variable ended_;
+  bool ends_ = false;
+  std::atomic<bool> renewal_due_{false};
+  BootClock::time_point due_since_;
+  BootClock::time_point last_turn_ = BootClock::now();
+  std::thread thread_;
+};
+
+}  // namespace saphira::bus::internal

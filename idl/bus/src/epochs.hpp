@@ -1,0 +1,50 @@
+#pragma once
+
+// Which bridge's epochs a service follows. Pure.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "peers.hpp"
+
+namespace saphira::bus::internal {
+
+/// An epoch belongs to the bridge that has described its robot for it. A service follows one bridge
+/// until that one is gone; whatever others of the same robot's name write is refused.
+class Epochs {
+ public:
+  using Program = Peers::Program;
+  enum class Verdict {
+    take,     ///< of the epoch that is followed
+    adopt,    ///< the first one of an epoch that is followed from now on
+    wait,     ///< its writer's description may still be on the way
+    foreign,  ///< of another bridge than the one that is followed
+    left      ///< of an epoch that was left
+  };
+
+  /// A program has described its robot for an epoch.
+  void describe(const Program& program, std::uint64_t epoch);
+  /// A program is gone; when it is the bridge that is followed, another may be.
+  void lose(const Program& program);
+  /// What is to be done with a state of the robot; follows its bridge where there is none.
+  Verdict judge(const Program& writer, std::uint64_t epoch);
+  /// Whether what other services write for this epoch is of use, now or soon.
+  bool useful(std::uint64_t epoch) const;
+  /// The epoch that is followed; 0 before the first.
+  std::uint64_t epoch() const { return epoch_; }
+  bool has_bridge() const { return bridge_.has_value(); }
+
+ private:
+  static constexpr std::size_t kMostPrograms = 64;
+  static constexpr std::size_t kMostLeft = 1000;
+
+  std::optional<Program> bridge_;
+  std::uint64_t epoch_ = 0;
+  std::map<Program, std::uint64_t> described_;
+  std::set<std::uint64_t> left_;
+};
+
+}  // namespace saphira::bus::internal

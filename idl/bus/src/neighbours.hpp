@@ -1,0 +1,43 @@
+#pragma once
+
+// What the status of the other programs of this robot means for a service. Pure.
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "saphira/bus/endpoint.hpp"
+#include "saphira/bus/topics.hpp"
+
+namespace saphira::bus::internal {
+
+/// Of several programs of one name for one robot (two deployments, or one that is started again
+/// before the death of the last one was noticed) one serves: the one that serves already; of two
+/// that do, the one that has done so for longer than a moment; of two that have, the one with the
+/// smaller instance. Each comes to the same end by itself.
+class Neighbours {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  void hear(const WriterId& writer, const v1::ServiceStatus& status, Time now);
+  void lose(const WriterId& writer);
+
+  /// The program that serves in place of `own`, in words.
+  std::optional<std::string> serves_instead(const v1::ServiceStatus& own) const;
+  /// Whether some other program has been stepping without a break since that time, so that its
+  /// robot is heard.
+  bool stepping_since(Time since, Time now) const;
+
+ private:
+  struct Neighbour {
+    v1::ServiceStatus status;
+    Time changed;  ///< its stamp, last
+    Time began;    ///< to change without a break
+  };
+
+  std::map<WriterId, Neighbour> all_;
+};
+
+}  // namespace saphira::bus::internal
