@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 namespace saphira::cli {
@@ -21,6 +22,22 @@ void make_own(const std::string& path) {
     throw std::runtime_error(path + " cannot be made, or is not ours");
 }
 
+std::string own_folder() {
+  const std::string ours = "/tmp/saphira-" + std::to_string(getuid());
+  make_own(ours);
+  return ours;
+}
+
+/// Opens and locks it; -1 when somebody else has.
+int lock(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0)
+    return file;
+  if (file >= 0)
+    close(file);
+  return -1;
+}
+
 }  // namespace
 
 RunFolder::RunFolder() {
@@ -30,16 +47,11 @@ RunFolder::RunFolder() {
 }
 
 RunFolder::RunFolder(const std::string& name) {
-  const std::string ours = "/tmp/saphira-" + std::to_string(getuid());
-  make_own(ours);
-  path_ = ours + "/" + name;
+  path_ = own_folder() + "/" + name;
   make_own(path_);
-  lock_ = open((path_ + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    if (lock_ >= 0)
-      close(lock_);
+  lock_ = lock(path_ + "/lock");
+  if (lock_ < 0)
     throw std::runtime_error("this deployment is running already: " + path_ + "/lock is held");
-  }
 }
 
 RunFolder::~RunFolder() {
@@ -49,6 +61,30 @@ RunFolder::~RunFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
+}
+
+ProgramLocks::~ProgramLocks() {
+  for (const int file : locks_)
+    close(file);
+}
+
+void ProgramLocks::hold(const std::string& program, const std::string& robot, unsigned domain,
+                        const std::string& holder) {
+  const std::string folder = own_folder() + "/programs";
+  make_own(folder);
+  const std::string path = folder + "/" + program + "-" + robot + "-" + std::to_string(domain);
+  const int file = lock(path);
+  if (file < 0) {
+    std::string other;
+    std::getline(std::ifstream(path), other);
+    throw std::runtime_error(program + " of robot " + robot + " in domain " +
+                             std::to_string(domain) + " runs on this machine already" +
+                             (other.empty() ? "" : ", started by " + other) +
+                             ": stop that one, or take another --robot or --domain");
+  }
+  locks_.push_back(file);
+  if (ftruncate(file, 0) != 0 || write(file, holder.data(), holder.size()) < 0)
+    throw std::runtime_error(path + " cannot be written");
 }
 
 }  // namespace saphira::cli

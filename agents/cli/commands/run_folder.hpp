@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace saphira::cli {
 
@@ -21,6 +22,23 @@ class RunFolder {
  private:
   std::string path_;
   int lock_ = -1;
+};
+
+/// That a robot has each of its programs once on this machine, by whatever deployments.
+class ProgramLocks {
+ public:
+  ProgramLocks() = default;
+  ~ProgramLocks();
+  ProgramLocks(const ProgramLocks&) = delete;
+  ProgramLocks& operator=(const ProgramLocks&) = delete;
+
+  /// holder: which deployment this is, for who comes second. std::runtime_error that names the
+  /// holder when the program of that robot and domain is held.
+  void hold(const std::string& program, const std::string& robot, unsigned domain,
+            const std::string& holder);
+
+ private:
+  std::vector<int> locks_;
 };
 
 }  // namespace saphira::cli

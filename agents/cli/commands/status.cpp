@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include "commands.hpp"
+#include "saphira/base/heartbeat.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -18,7 +20,10 @@ constexpr milliseconds kListen{1300};
 class StatusView {
  public:
   explicit StatusView(bus::Node& node)
-      : node_(node), processes_(node), grants_(node.reader(bus::topics::kGrant)) {}
+      : node_(node),
+        processes_(node),
+        grants_(node.reader(bus::topics::kGrant)),
+        log_(node.reader(bus::topics::kLog)) {}
 
   void poll() {
     processes_.poll();
@@ -26,6 +31,9 @@ class StatusView {
       grant_ = std::move(grant);
       grant_came_ = Clock::now();
     }
+    for (const auto& sample : log_.take())
+      if (sample.data.text().starts_with(kStartedAgain))
+        started_again_[sample.data.instance()] = sample.data.name() + " was " + sample.data.text();
   }
 
   std::string text() const {
@@ -43,6 +51,8 @@ class StatusView {
       text += "drive: " + describe(*grant_) + "\n";
     if (const std::string missing = missing_services(all); !missing.empty())
       text += "not on the bus: " + missing + "\n";
+    for (const auto& [instance, words] : started_again_)
+      text += words + "\n";
     return text;
   }
 
@@ -52,6 +62,8 @@ class StatusView {
   bus::Node& node_;
   Processes processes_;
   bus::Reader<v1::Grant> grants_;
+  bus::Reader<v1::LogRecord> log_;
+  std::map<std::uint64_t, std::string> started_again_;  ///< by the supervisor, and why
   std::optional<v1::Grant> grant_;
   Clock::time_point grant_came_;
 };

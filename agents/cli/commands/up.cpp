@@ -68,8 +68,13 @@ int up(const std::string& name, const std::vector<std::string>& set,
   places.run = folder.path();
   places.robot = options.robot;
   std::vector<ChildSpec> children = command_lines(deployment, places, set);
-  for (ChildSpec& child : children)
+  ProgramLocks locks;
+  for (ChildSpec& child : children) {
     child.environment.merge(as_environment(options));
+    if (!child.robot.empty())
+      locks.hold(child.name, child.robot, deployment.bus.domain.value_or(options.domain),
+                 deployment.file + " (process " + std::to_string(getpid()) + ")");
+  }
 
   const Supervisor::Print print = prefixed(children);
   Supervisor supervisor(std::move(children), print);

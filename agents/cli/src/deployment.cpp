@@ -323,6 +323,7 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
     for (const Placed& argument : program.arguments)
       child.argv.push_back(replaced(deployment, argument, values));
     if (program.bus) {
+      child.robot = values["robot"];
       const BusOptions& bus = deployment.bus;
       const auto add = [&child](const std::string& option, const std::string& value) {
         child.argv.push_back(option);

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,6 +25,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstBackoff{100};
 constexpr milliseconds kLastBackoff{5000};
+/// How often it looks whether somebody hangs.
+constexpr milliseconds kWatch{1000};
 constexpr std::size_t kLongestLine = 4096;  ///< longer ones are broken up
 
 bool is_crash(int status) {
@@ -67,18 +70,58 @@ milliseconds until(Supervisor::Clock::time_point when) {
                   std::chrono::ceil<milliseconds>(when - Supervisor::Clock::now()));
 }
 
+std::vector<std::string> robots_of(const std::vector<ChildSpec>& children) {
+  std::vector<std::string> robots;
+  for (const ChildSpec& child : children)
+    robots.push_back(child.robot);
+  return robots;
+}
+
+/// Both ends of a pipe, closed with the object unless they are taken.
+class Pipe {
+ public:
+  Pipe() {
+    if (pipe2(ends_, O_CLOEXEC | O_NONBLOCK) != 0)
+      throw std::runtime_error(std::string("no pipe: ") + strerror(errno));
+  }
+  ~Pipe() {
+    for (const int end : ends_)
+      if (end >= 0)
+        close(end);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int out() const { return ends_[1]; }
+  int take_in() { return std::exchange(ends_[0], -1); }
+  /// The writing end, as the child is told of it.
+  std::string name() const {
+    struct stat info {};
+    fstat(ends_[1], &info);
+    return std::to_string(ends_[1]) + ":" + std::to_string(info.st_ino);
+  }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
 }  // namespace
 
 Supervisor::Supervisor(std::vector<ChildSpec> children, Print print, milliseconds proven)
-    : print_(std::move(print)), proven_(proven) {
-  for (ChildSpec& spec : children)
-    slots_.push_back({std::move(spec), 0, -1, 0, {}, {}, {}, {}, false});
+    : print_(std::move(print)), proven_(proven), watchdog_(robots_of(children)) {
+  for (ChildSpec& spec : children) {
+    slots_.emplace_back();
+    slots_.back().spec = std::move(spec);
+  }
 }
 
 Supervisor::~Supervisor() {
   stop();
   for (const Stream& stream : streams_)
     close(stream.fd);
+  for (const Slot& slot : slots_)
+    if (slot.beats >= 0)
+      close(slot.beats);
 }
 
 void Supervisor::start() {
@@ -89,7 +132,11 @@ void Supervisor::start() {
 void Supervisor::launch(std::size_t index) {
   Slot& slot = slots_[index];
   // Everything that allocates comes before the fork: another thread may hold the heap's lock.
-  std::vector<std::string> environment = merged_environment(slot.spec.environment);
+  std::map<std::string, std::string> added = slot.spec.environment;
+  Pipe beats;
+  added[kHeartbeatVariable] = beats.name();
+  added[kRestartedVariable] = slot.trouble;
+  std::vector<std::string> environment = merged_environment(added);
   const std::vector<char*> argv = pointers(slot.spec.argv);
   const std::vector<char*> env = pointers(environment);
   int ends[2];
@@ -116,6 +163,7 @@ void Supervisor::launch(std::size_t index) {
     dup2(null, STDIN_FILENO);
     dup2(ends[1], STDOUT_FILENO);
     dup2(ends[1], STDERR_FILENO);
+    fcntl(beats.out(), F_SETFD, 0);
     execve(argv[0], argv.data(), env.data());
     const char* why = strerrordesc_np(errno);
     for (const char* text : {"cannot run ", static_cast<const char*>(argv[0]), ": ", why, "\n"})
@@ -126,6 +174,11 @@ void Supervisor::launch(std::size_t index) {
   close(ends[1]);
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
   streams_.push_back({ends[0], index, {}});
+  if (slot.beats >= 0)
+    close(slot.beats);
+  slot.beats = beats.take_in();
+  slot.trouble.clear();
+  watchdog_.forget(index);
   slot.pid = pid;
   slot.pid_fd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   slot.started = Clock::now();
@@ -138,10 +191,36 @@ void Supervisor::step(milliseconds timeout, std::initializer_list<int> wake_fds)
   for (const Slot& slot : slots_)
     if (slot.due)
       timeout = std::min(timeout, until(*slot.due));
+  timeout = std::min(timeout, kWatch);
+  const auto began = BootClock::now();
   poll_once(timeout, wake_fds);
+  watch(BootClock::now() - began, timeout);
   for (std::size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].due && Clock::now() >= *slots_[i].due)
       launch_again(i);
+}
+
+void Supervisor::read_beats(std::size_t index) {
+  Heartbeat beat;
+  while (slots_[index].beats >= 0 && read(slots_[index].beats, &beat, sizeof beat) == sizeof beat)
+    watchdog_.hear(index, beat, Clock::now());
+}
+
+void Supervisor::watch(BootClock::duration waited, milliseconds timeout) {
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    read_beats(i);
+  if (waited > timeout + kWatch)
+    watchdog_.slept(Clock::now());
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    if (slot.pid == 0 || !slot.spec.restart || !slot.trouble.empty())
+      continue;
+    if (const auto trouble = watchdog_.trouble(i, Clock::now())) {
+      slot.trouble = *trouble;
+      say(slot.spec.name + ": " + *trouble + "; killed");
+      kill(slot.pid, SIGKILL);
+    }
+  }
 }
 
 void Supervisor::launch_again(std::size_t index) {

@@ -65,6 +65,25 @@ TEST_F(SupervisorTest, GivesTheEnvironment) {
   EXPECT_TRUE(run_until(supervisor, [&] { return said("a|hello"); })) << all();
 }
 
+TEST_F(SupervisorTest, KillsWhatHangsAndStartsItAgainWithTheReason) {
+  // A node's heartbeats, and then none.
+  Supervisor supervisor({shell("a",
+                               "echo \"again: $SAPHIRA_STARTED_AGAIN\"\n"
+                               "fd=${SAPHIRA_HEARTBEAT%%:*}\n"
+                               "for i in 1 2 3 4 5 6; do head -c 32 /dev/zero >/dev/fd/$fd; done\n"
+                               "exec sleep 1000"),
+                         shell("b", "exec sleep 1000")},
+                        keep());
+  supervisor.start();
+  const pid_t other = supervisor.children()[1].pid;
+  EXPECT_TRUE(run_until(supervisor, [&] {
+    return said("a|again: it hung: no sign of life for 10 s");
+  })) << all();
+  EXPECT_TRUE(said("|a: it hung: no sign of life for 10 s; killed")) << all();
+  EXPECT_TRUE(said("a|again: ")) << all();
+  EXPECT_EQ(supervisor.children()[1].pid, other) << "it says nothing, and is not judged";
+}
+
 TEST_F(SupervisorTest, StartsAgainWhatIsKilledAndBacksOff) {
   Supervisor supervisor({shell("a", "exec sleep 60")}, keep());
   supervisor.start();

@@ -12,6 +12,9 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/cli/watchdog.hpp"
+
 namespace saphira::cli {
 
 /// A child of the supervisor.
@@ -20,11 +23,13 @@ struct ChildSpec {
   std::vector<std::string> argv;                   ///< argv[0] is a path
   std::map<std::string, std::string> environment;  ///< added to our own
   bool restart = true;
+  std::string robot = {};  ///< whose program it is on the bus; empty: it knows nothing of the bus
 };
 
 /// Runs programs: starts them in order, prints what they print line by line, starts again what
 /// ends (after 100 ms, then twice as long each time up to 5 s; back to 100 ms once it has proven
-/// itself by running for 10 s), and stops all in the reverse order. The children get SIGTERM from
+/// itself by running for 10 s), kills what hangs or is deaf, as the watchdog has it, so that it is
+/// started again, and stops all in the reverse order. The children get SIGTERM from
 /// the kernel when the supervisor dies, and a process group each, so that Ctrl-C reaches the
 /// supervisor alone.
 ///
@@ -78,6 +83,8 @@ class Supervisor {
     std::chrono::milliseconds backoff{};
     bool misused = false;
     bool crashed = false;
+    int beats = -1;       ///< the pipe of its heartbeats
+    std::string trouble;  ///< for which it was killed
   };
   struct Stream {
     int fd;
@@ -92,12 +99,15 @@ class Supervisor {
   void poll_once(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
   bool read_stream(Stream& stream);
   void reap(std::size_t index);
+  void read_beats(std::size_t index);
+  void watch(BootClock::duration waited, std::chrono::milliseconds timeout);
   void say(const std::string& text) { print_({}, text); }
 
   std::vector<Slot> slots_;
   std::vector<Stream> streams_;  ///< outlive their child: a grandchild may hold them
   Print print_;
   std::chrono::milliseconds proven_;  ///< a child that ran this long starts afresh
+  Watchdog watchdog_;
   bool stopping_ = false;
 };
 
