@@ -80,9 +80,9 @@ std::vector<std::string> robots_of(const std::vector<ChildSpec>& children) {
 /// Both ends of a pipe, closed with the object unless they are taken.
 class Pipe {
  public:
-  Pipe() {
+  explicit Pipe(const std::string& child) {
     if (pipe2(ends_, O_CLOEXEC | O_NONBLOCK) != 0)
-      throw std::runtime_error(std::string("no pipe: ") + strerror(errno));
+      throw std::runtime_error(child + " cannot be started, no pipe: " + strerror(errno));
   }
   ~Pipe() {
     for (const int end : ends_)
@@ -133,7 +133,7 @@ void Supervisor::launch(std::size_t index) {
   Slot& slot = slots_[index];
   // Everything that allocates comes before the fork: another thread may hold the heap's lock.
   std::map<std::string, std::string> added = slot.spec.environment;
-  Pipe beats;
+  Pipe beats(slot.spec.name);
   added[kHeartbeatVariable] = beats.name();
   added[kRestartedVariable] = slot.trouble;
   std::vector<std::string> environment = merged_environment(added);

@@ -37,14 +37,14 @@ bool is_loopback(const std::string& address) {
 }  // namespace
 
 Session::Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers)
-    : discovery(wake, peers) {
+    : discovery(wake, peers, options.profile == Profile::wan ? kProgramsPerPeer : 0) {
   if (options.domain > kMaxDomain)
     throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
                              std::to_string(kMaxDomain) + "]");
   set_up_library();
   auto* factory = fdds::DomainParticipantFactory::get_instance();
-  participant = factory->create_participant(options.domain, participant_qos(options), &discovery,
-                                            fdds::StatusMask::none());
+  participant = factory->create_participant(options.domain, participant_qos(options, mute_),
+                                            &discovery, fdds::StatusMask::none());
   if (participant == nullptr)
     throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
                              ": Fast DDS refused the settings");
@@ -170,6 +170,7 @@ void Bus::renew() {
   }
   try {
     const std::unique_lock lock(mutex_);
+    session_->mute();
     for (Endpoint* endpoint : endpoints_)
       endpoint->close(*session_);
     session_ = std::move(fresh);
@@ -183,7 +184,7 @@ void Bus::renew() {
     write_log(v1::LOG_ERROR, options_.name + ": could not begin anew: " + error.what());
     std::_Exit(kExitBroken);
   }
-  write_log(v1::LOG_WARNING, options_.name + ": stood still for long; began anew on the bus");
+  write_log(v1::LOG_WARNING, options_.name + ": began anew on the bus");
   wake->signal();
 }
 

@@ -1,5 +1,6 @@
 #include "dds_discovery.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <sstream>
 #include <utility>
@@ -125,8 +126,21 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     program.host = field(data, "host=");
     const std::string pid = field(data, "pid=");
     std::from_chars(pid.data(), pid.data() + pid.size(), program.pid);
+    count_programs_here();
   }
   changed();
+}
+
+void Discovery::count_programs_here() {
+  const auto here = static_cast<std::size_t>(
+      std::count_if(programs_.begin(), programs_.end(),
+                    [](const auto& item) { return item.second.host == host_name(); }));
+  if (most_here_ == 0 || here < most_here_ || !told_.insert({"programs", "here"}).second)
+    return;
+  troubles_.push_back("other machines look for " + std::to_string(most_here_) +
+                      " programs on this one, and there are " + std::to_string(here + 1) +
+                      ": some are not found unless this machine's --peer names the others");
+  wake_->signal();
 }
 
 void Discovery::on_subscriber_discovery(fdds::DomainParticipant* /*participant*/,
@@ -188,7 +202,7 @@ std::vector<EndpointEntry> Discovery::endpoints() const {
 
 std::vector<std::string> Discovery::take_troubles() {
   const std::scoped_lock lock(mutex_);
-  std::vector<std::string> texts;
+  std::vector<std::string> texts = std::exchange(troubles_, {});
   std::erase_if(incompatible_, [&](const auto& item) {
     return tell_incompatible(item.first, Clock::now() - item.second > kUnexplained, texts);
   });

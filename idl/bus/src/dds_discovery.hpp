@@ -20,8 +20,9 @@ namespace saphira::bus::internal {
 /// What was discovered of others, and what did not match. Filled by Fast DDS's threads.
 class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  Discovery(std::shared_ptr<Wake> wake, const Peers& peers)
-      : wake_(std::move(wake)), peers_(peers) {}
+  /// most_here: programs of this machine that others can find [0: any number].
+  Discovery(std::shared_ptr<Wake> wake, const Peers& peers, std::size_t most_here)
+      : wake_(std::move(wake)), peers_(peers), most_here_(most_here) {}
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -69,12 +70,15 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   /// yet.
   bool tell_incompatible(const Incompatible& found, bool late, std::vector<std::string>& texts);
 
+  void count_programs_here();
+
   template <class Proxy>
   void put(const Proxy& proxy, bool writer, bool removed);
   void changed();
 
   const std::shared_ptr<Wake> wake_;
   const Peers& peers_;
+  const std::size_t most_here_;
   std::atomic<bool> watched_{false};
   mutable std::mutex mutex_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, Program> programs_;
@@ -82,6 +86,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   std::vector<EndpointEntry> own_;
   std::map<Incompatible, std::chrono::steady_clock::time_point> incompatible_;  ///< since when
   std::set<std::pair<std::string, std::string>> told_;
+  std::vector<std::string> troubles_;
   Malformed malformed_;
   bool type_check_due_ = false;
 };

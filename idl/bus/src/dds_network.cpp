@@ -12,6 +12,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dds_convert.hpp"
@@ -25,8 +26,6 @@ namespace {
 namespace fdds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-// How many programs of one machine can be found by a peer that knows nothing but its address.
-constexpr std::uint32_t kProgramsPerPeer = 12;
 // [ms] between two announcements of a program: what a restarted one waits at the most until it is
 // found.
 constexpr int kAnnouncement = 250;
@@ -100,7 +99,8 @@ void set_up_library() {
   static_cast<void>(once);
 }
 
-fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
+fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
+                                           std::shared_ptr<const std::atomic<bool>> mute) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   const std::string who = "host=" + host_name() + ";pid=" + std::to_string(getpid()) + ";";
@@ -138,7 +138,8 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options) {
       builtin.initialPeersList.push_back(locator(peer));
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(udp));
+  qos.transport().user_transports.push_back(
+      std::make_shared<SieveDescriptor>(udp, std::move(mute)));
   return qos;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -15,6 +18,10 @@ namespace saphira::bus::internal {
 /// by its presence.
 constexpr std::chrono::seconds kLease{60};
 
+/// wan: how many programs of one machine can be found by a peer that knows nothing but its address.
+/// Each announces itself to so many places on each peer.
+constexpr std::uint32_t kProgramsPerPeer = 20;
+
 /// The IPv4 addresses of this machine that a participant would use now.
 std::set<std::string> own_addresses();
 
@@ -22,7 +29,8 @@ std::set<std::string> own_addresses();
 void set_up_library();
 
 /// How a program finds others and by which addresses. std::runtime_error where a peer or the
-/// interface is not to be had.
-eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeOptions& options);
+/// interface is not to be had. While `mute` is set it sends nothing.
+eprosima::fastdds::dds::DomainParticipantQos participant_qos(
+    const NodeOptions& options, std::shared_ptr<const std::atomic<bool>> mute);
 
 }  // namespace saphira::bus::internal

@@ -27,7 +27,7 @@ class Sieve : public transport::ChainingTransport {
   bool send(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return low->send(buffer, size, begin, end, timeout);
+    return *descriptor_.mute || low->send(buffer, size, begin, end, timeout);
   }
 
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* buffer,

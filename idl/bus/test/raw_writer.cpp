@@ -1,5 +1,6 @@
 #include "raw_writer.hpp"
 
+#include <atomic>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -68,7 +69,8 @@ RawWriter::RawWriter(std::uint32_t domain, const std::string& robot, const std::
   NodeOptions options;
   options.name = "raw";
   auto* factory = fdds::DomainParticipantFactory::get_instance();
-  impl_->participant = factory->create_participant(domain, internal::participant_qos(options));
+  impl_->participant = factory->create_participant(
+      domain, internal::participant_qos(options, std::make_shared<std::atomic<bool>>(false)));
   fdds::TypeSupport(new AnyBytes(type, keyed)).register_type(impl_->participant);
   impl_->participant->enable();
   fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;

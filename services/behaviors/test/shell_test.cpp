@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "node_options.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -165,12 +166,26 @@ TEST_P(LiveShellTest, ReleasesWhenTheIntentIsOld) {
   }
 }
 
-TEST_P(LiveShellTest, WaitsForTheDescriptionWithoutHoldingUpTheBridge) {
-  one({behavior("ConstantVelocity", 2)});
-  EXPECT_FALSE(command.active());
-  EXPECT_EQ(service.status().state(), v1::SERVICE_WAITING);
-  EXPECT_EQ(service.status().reason(), "waits for robot/description");
-  describe();
+TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
+  bus::Reader<v1::ServiceStatus> statuses{bridge.reader(bus::topics::kStatus)};
+  bool said = false;
+  std::thread later([&] {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!said && std::chrono::steady_clock::now() < end) {
+      state();  // refused after a while: nobody has described the robot
+      bridge.wait(std::chrono::milliseconds(50));
+      for (const auto& sample : statuses.take())
+        said = said || sample.data.reason() == "waits for robot/description";
+    }
+    describe();
+    state();
+  });
+  ASSERT_TRUE(shell.step(stop));
+  later.join();
+  EXPECT_TRUE(said);
+  intend({behavior("ConstantVelocity", 2)});
+  commands.take();
+  behaviors.take();
   one({});
   EXPECT_TRUE(command.active());
   EXPECT_EQ(service.status().state(), v1::SERVICE_RUNNING);
