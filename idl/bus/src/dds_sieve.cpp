@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <mutex>
 #include <string>
 
 #include "log.hpp"
@@ -34,7 +35,7 @@ class Sieve : public transport::ChainingTransport {
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     const auto sound = static_cast<std::uint32_t>(sound_length(buffer, size));
-    if (sound == 0)
+    if (sound == 0 || !plausible(buffer, sound))
       return;
     try {
       next->OnDataReceived(buffer, sound, local, remote);
@@ -44,7 +45,14 @@ class Sieve : public transport::ChainingTransport {
   }
 
  private:
+  bool plausible(const rtps::octet* buffer, std::uint32_t size) {
+    const std::scoped_lock lock(mutex_);
+    return sequences_.plausible(buffer, size);
+  }
+
   SieveDescriptor descriptor_;
+  std::mutex mutex_;  // each port has a thread
+  Sequences sequences_;
 };
 
 }  // namespace

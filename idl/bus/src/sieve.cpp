@@ -1,5 +1,6 @@
 #include "sieve.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace saphira::bus::internal {
@@ -11,6 +12,43 @@ constexpr std::size_t kSubmessageHeader = 4;
 constexpr std::uint8_t kPad = 0x01;
 constexpr std::uint8_t kInfoTimestamp = 0x09;
 constexpr std::uint8_t kStatistics = 0x80;
+constexpr std::uint8_t kAcknack = 0x06;
+constexpr std::uint8_t kHeartbeat = 0x07;
+constexpr std::uint8_t kGap = 0x08;
+constexpr std::uint8_t kInfoSource = 0x0c;
+constexpr std::uint8_t kData = 0x15;
+constexpr std::uint8_t kDataFragment = 0x16;
+
+/// A submessage of a sound message.
+struct Submessage {
+  std::uint8_t id;
+  bool little;
+  const std::uint8_t* data;  // behind its header
+  std::size_t size;
+
+  std::uint64_t word(std::size_t at) const {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      value = value << 8U | data[at + (little ? 3 - i : i)];
+    return value;
+  }
+  /// A sequence number: its high word first.
+  std::uint64_t number(std::size_t at) const { return word(at) << 32U | word(at + 4); }
+};
+
+/// The one that begins there; `next` is where the one behind it does.
+Submessage submessage(const std::uint8_t* message, std::size_t size, std::size_t at,
+                      std::size_t& next) {
+  Submessage result{message[at], (message[at + 1] & 1U) != 0, message + at + kSubmessageHeader, 0};
+  const std::size_t one = message[at + 2];
+  const std::size_t other = message[at + 3];
+  result.size = result.little ? one | other << 8U : one << 8U | other;
+  // The last one may leave its length open.
+  if (result.size == 0 && result.id != kPad && result.id != kInfoTimestamp)
+    result.size = size - at - kSubmessageHeader;
+  next = at + kSubmessageHeader + ((result.size + 3) & ~std::size_t{3});
+  return result;
+}
 
 }  // namespace
 
@@ -24,18 +62,54 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size) {
     const std::uint8_t id = packet[at];
     if (id == kStatistics)
       return at == kHeader ? 0 : at;
-    const bool little = (packet[at + 1] & 1U) != 0;
-    const std::size_t one = packet[at + 2];
-    const std::size_t other = packet[at + 3];
-    const std::size_t length = little ? one | other << 8U : one << 8U | other;
-    // The last one may leave its length open.
-    if (length == 0 && id != kPad && id != kInfoTimestamp)
-      return size;
-    if (length > size - at - kSubmessageHeader)
+    std::size_t next = 0;
+    if (submessage(packet, size, at, next).size > size - at - kSubmessageHeader)
       return 0;
-    at += kSubmessageHeader + ((length + 3) & ~std::size_t{3});
+    at = next;
   }
   return size;
+}
+
+bool Sequences::plausible(const std::uint8_t* message, std::size_t size) {
+  std::size_t next = 0;
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (part.id == kInfoSource)
+      return true;  // what follows is of somebody else, whom we do not know
+    const bool data = part.id == kData || part.id == kDataFragment;
+    // Where the writer's id and the highest number stand, as the standard has it.
+    const std::size_t writer = data ? 8 : 4;
+    const std::size_t number = part.id == kHeartbeat ? 16 : data ? 12 : 8;
+    if (!(data || part.id == kHeartbeat || part.id == kGap || part.id == kAcknack) ||
+        part.size < 24)
+      continue;
+    Key key{};
+    std::memcpy(key.data(), message + 8, 12);
+    std::memcpy(key.data() + 12, part.data + writer, 4);
+    if (part.id == kAcknack)
+      std::memcpy(key.data() + 16, part.data, 4);
+    if (!follows(key, part.number(number)) || (part.id == kGap && !follows(key, part.number(16))))
+      return false;
+  }
+  return true;
+}
+
+bool Sequences::follows(const Key& key, std::uint64_t number) {
+  if (known_.size() >= kMost)
+    known_.clear();
+  const auto [found, is_new] = known_.try_emplace(key, Known{number, 0, 0});
+  Known& known = found->second;
+  if (is_new || number <= known.newest + kLeap) {
+    known.newest = std::max(known.newest, number);
+    return true;
+  }
+  const bool again = number + kLeap >= known.doubtful && number <= known.doubtful + kLeap;
+  known.times = again ? known.times + 1 : 1;
+  known.doubtful = number;
+  if (known.times < 3)
+    return false;
+  known.newest = number;
+  return true;
 }
 
 }  // namespace saphira::bus::internal

@@ -73,5 +73,59 @@ TEST(Sieve, WhatDoesNotHoldTogetherIsDropped) {
   EXPECT_EQ(sound(other), 0U);
 }
 
+/// A heartbeat of the writer 1 of a participant, up to that sample.
+Bytes heartbeat(std::uint8_t participant, std::uint32_t high, std::uint32_t low) {
+  Bytes bytes = header();
+  bytes[8] = participant;
+  add(bytes, 0x07, 28);
+  bytes[24 + 7] = 1;
+  for (unsigned i = 0; i < 4; ++i) {
+    bytes[24 + 16 + i] = static_cast<std::uint8_t>(high >> (8U * i));
+    bytes[24 + 20 + i] = static_cast<std::uint8_t>(low >> (8U * i));
+  }
+  return bytes;
+}
+
+TEST(Sequences, LeapIsBelievedWhenItIsSaidThreeTimes) {
+  Sequences sequences;
+  const auto ask = [&](const Bytes& bytes) {
+    return sequences.plausible(bytes.data(), bytes.size());
+  };
+  EXPECT_TRUE(ask(heartbeat(1, 0, 5000)));  // whoever comes late begins anywhere
+  EXPECT_TRUE(ask(heartbeat(1, 0, 5001)));
+  EXPECT_TRUE(ask(heartbeat(1, 0, 10)));  // what is sent again is behind
+  EXPECT_FALSE(ask(heartbeat(1, 7, 5002)));
+  EXPECT_FALSE(ask(heartbeat(1, 0x7fffffff, 5002)));
+  EXPECT_TRUE(ask(heartbeat(1, 0, 5002)));
+  EXPECT_TRUE(ask(heartbeat(2, 7, 5002)));  // another writer
+  // It was away for long.
+  EXPECT_FALSE(ask(heartbeat(1, 0, 90000)));
+  EXPECT_FALSE(ask(heartbeat(1, 0, 90001)));
+  EXPECT_TRUE(ask(heartbeat(1, 0, 90002)));
+  EXPECT_TRUE(ask(heartbeat(1, 0, 90003)));
+}
+
+TEST(Sequences, EveryKindOfSubmessageIsRead) {
+  for (const int id : {0x06, 0x07, 0x08, 0x15, 0x16}) {
+    Sequences sequences;
+    Bytes bytes = header();
+    add(bytes, static_cast<std::uint8_t>(id), 40);
+    EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size()));
+    const std::size_t number = id == 0x07 ? 16 : id >= 0x15 ? 12 : 8;
+    bytes[24 + number] = 1;  // 2^32
+    EXPECT_FALSE(sequences.plausible(bytes.data(), bytes.size())) << id;
+  }
+}
+
+TEST(Sequences, ShortSubmessagesAreNotReadBeyondTheirEnd) {
+  for (int id = 0; id < 256; ++id)
+    for (std::size_t length = 0; length < 30; ++length) {
+      Sequences sequences;
+      Bytes bytes = header();
+      add(bytes, static_cast<std::uint8_t>(id), length);
+      EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size()));
+    }
+}
+
 }  // namespace
 }  // namespace saphira::bus::internal
