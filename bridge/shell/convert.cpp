@@ -183,7 +183,8 @@ std::string trouble(const v1::MotorCommand& command) {
   } numbers[] = {{"velocity", command.velocity()},
                  {"distance", command.distance()},
                  {"rotation_velocity", command.rotation_velocity()},
-                 {"heading", command.heading()}};
+                 {"heading", command.heading()},
+                 {"contact_speed", command.contact_speed()}};
   for (const auto& number : numbers) {
     // Beyond any robot and any angle that means something; also keeps the packet's integers whole.
     if (!std::isfinite(number.value) || std::abs(number.value) > 1e4)

@@ -31,6 +31,9 @@ int main(int argc, char** argv) {
                        "has said for so long that it does not drive (usual: never, only when it is "
                        "handed back)");
         app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
+        app.add_option("--contact-speed", options.contact_speed,
+                       "m/s at the most, up to 0.15, where a driver means contact; 0: never")
+            ->capture_default_str();
         app.add_option("--state", options.state_file,
                        "file that keeps the robot's position over a restart");
         app.add_flag("--free-step", options.free_step, "lockstep: step without a permit");

@@ -40,6 +40,7 @@ double look_around(bus::Profile profile) {
 constexpr double kHoldOff = 2.0;  // [s] until a robot that could not be served is tried again
 constexpr std::uint64_t kMotorsCycles = 10;  // then the motors should be on
 constexpr double kCycle = 0.1;               // [s] manual 2.1.1
+constexpr double kMostContact = 0.15;        // [m/s] that a robot may touch with
 
 std::uint64_t milliseconds_since_1970() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -83,6 +84,8 @@ BridgeOptions checked(BridgeOptions options) {
   if (!std::filesystem::is_directory(options.robots_folder))
     throw std::invalid_argument("--robots " + options.robots_folder +
                                 ": expected a folder with robot parameter files");
+  if (!(options.contact_speed >= 0.0) || options.contact_speed > kMostContact)
+    throw std::invalid_argument("--contact-speed: expected 0 (never) to 0.15 m/s");
   if (!(options.lease > 0.0) || !(options.quiet >= 0.0))
     throw std::invalid_argument("--lease-ms: expected more than 0; --quiet-ms: 0 or more");
   return options;
@@ -117,8 +120,10 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
   drives_.push_back({Role::behaviors, node_.reader(bus::topics::kDriveBehaviors), {}, false});
   if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
-  for (authority::GuardSettings& settings : guards_)
+  for (authority::GuardSettings& settings : guards_) {
     settings.enabled = options_.guard;
+    settings.max_contact_velocity = options_.contact_speed;
+  }
   if (!lockstep_ && !in_memory_)
     hold_off_ = BootClock::seconds() + look_around(node.profile);
 
@@ -555,6 +560,7 @@ bool Shell::take_drive(Drive& drive, double now) {
     if (command.active) {
       drive.motion = to_motion(in);
       drive.motion.driver = driver_of(sample.info.writer);
+      drive.contact_speed = in.contact_speed();
       drive.follows_cycles = in.stamp().cycle() != 0;
     }
   }
@@ -617,7 +623,7 @@ void Shell::decide() {
   if (grant.role != Role::none && grant.role != Role::estop) {
     guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant.role)], body_,
                                 echoes_.seen_from(reflector_.state().pose_in_odom), wanted.velocity,
-                                wanted.rotation_velocity);
+                                wanted.rotation_velocity, contact_speed_of(grant.role));
   }
   wanted.velocity = guarded_.velocity;
   wanted.rotation_velocity = guarded_.rotation_velocity;
@@ -637,6 +643,13 @@ void Shell::decide() {
                          : grant_.source + " drives (" + authority::name(grant_.role) + ")");
   }
   grant_changed_ = grant_changed_ || changed;
+}
+
+double Shell::contact_speed_of(Role role) const {
+  for (const Drive& drive : drives_)
+    if (drive.role == role)
+      return drive.contact_speed;
+  return 0.0;
 }
 
 void Shell::flush(double now) {

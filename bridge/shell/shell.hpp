@@ -32,6 +32,7 @@ struct BridgeOptions {
   double lease = 0.3;                                      ///< [s] in lockstep cycles x 0.1
   double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;
+  double contact_speed = 0.15;  ///< [m/s] at the most where a driver means contact; 0: never
   /// Keeps the odom frame over a restart, and with ".latched" behind its name an emergency stop;
   /// empty: none.
   std::string state_file;
@@ -79,6 +80,7 @@ class Shell {
 
   // Between the two.
   void decide();
+  double contact_speed_of(authority::Role role) const;
   void flush(double now);
   void step(double now);
   void publish_grant();
@@ -108,6 +110,7 @@ class Shell {
     bus::Reader<v1::MotorCommand> reader;
     reflector::Motion motion;     ///< of the newest accepted command
     bool follows_cycles = false;  ///< the same: answers each packet
+    double contact_speed = 0.0;   ///< [m/s] the same: contact is meant
   };
   std::vector<Drive> drives_;
   bus::Reader<v1::EstopReset> resets_;

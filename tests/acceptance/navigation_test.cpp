@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "system.hpp"
@@ -36,6 +37,32 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   EXPECT_LT(truth.x, 9.0);
   EXPECT_GT(truth.y, 8.0);
   EXPECT_TRUE(system.wait_still(std::chrono::seconds(5)));
+}
+
+// It means contact, and the guard is on: it touches the wall, slowly.
+TEST(NavigationAcceptance, BumpAndGoBumps) {
+  System system;
+  system.start_all();
+  v1::Goal goal;
+  goal.functor("turn_to");  // to the corridor's wall, 0.8 m away
+  goal.arguments({bus::number("heading", 1.57)});
+  ASSERT_TRUE(system.wait_end(system.goals().ask(goal))) << system.output();
+  goal.functor("bump-and-go");
+  goal.arguments({bus::number("bumps", 1.0)});
+  const v1::GoalId id = system.goals().ask(goal);
+  Truth before;
+  std::optional<double> speed_of_contact;
+  const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
+    const Truth truth = system.truth();
+    if (truth.contacts > 0 && !speed_of_contact)
+      speed_of_contact = before.velocity;
+    before = truth;
+  });
+  ASSERT_TRUE(status) << system.output();
+  EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
+  EXPECT_EQ(status->reason(), "ran into 1 things");
+  ASSERT_TRUE(speed_of_contact) << "it touched nothing";
+  EXPECT_LE(*speed_of_contact, 0.12);
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 // What comes out of the parser must stand in the input as a packet, whatever the pieces.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
 #include "saphira/protocol/check.hpp"
 #include "saphira/protocol/command.hpp"
+#include "saphira/protocol/impossible.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/protocol/server_packet.hpp"
@@ -39,7 +41,14 @@ void decode_everything(const protocol::Bytes& body) {
       protocol::decode_packet(body));
   if (auto packet = protocol::decode_information(body)) {
     const protocol::RobotParameters parameters;
-    protocol::interpret(*packet, parameters);
+    protocol::ServerPacket possible = *packet;
+    const auto impossible = protocol::take_out_impossible(possible, parameters);
+    if (!impossible || !impossible->whole) {
+      const auto in =
+          protocol::interpret(std::get<protocol::InformationPacket>(possible), parameters);
+      require(std::abs(in.velocity) <= 2.0 && std::abs(in.rotation_velocity) <= 7.0);
+      require(std::abs(in.th) <= kPi && in.sonars.empty() && in.ptu <= protocol::kLongestPulse);
+    }
     protocol::DeadReckoning().update(*packet, parameters);
     const protocol::Bytes copy = protocol::encode(*packet);
     const auto back =

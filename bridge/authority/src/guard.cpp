@@ -79,7 +79,7 @@ double free_distance(const std::vector<Vec2>& points, double radius, double side
 }
 
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
-              double velocity, double rotation_velocity) {
+              double velocity, double rotation_velocity, double contact_speed) {
   Guarded out{velocity, rotation_velocity, GuardAction::none, {}};
   if (!settings.enabled)
     return out;
@@ -126,7 +126,13 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
   const double a = body.deceleration > 0.0 ? body.deceleration : 0.5;
   const double t = settings.reaction;
   const double safe = distance <= 0.0 ? 0.0 : a * (std::sqrt(t * t + 2.0 * distance / a) - t);
-  if (speed > safe) {
+  const double contact = forward ? std::min(contact_speed, settings.max_contact_velocity) : 0.0;
+  if (speed > safe && contact > safe) {
+    if (speed > contact)
+      act(GuardAction::slow,
+          text("something %.2f m ahead, and contact is meant: slowed to %.2f m/s", free, contact));
+    speed = std::min(speed, contact);
+  } else if (speed > safe) {
     if (safe < kCreep) {
       speed = 0.0;
       act(GuardAction::stop,

@@ -145,5 +145,29 @@ TEST(Echoes, AreForgotten) {
   EXPECT_EQ(echoes.seen_from({}).size(), 0U) << "too old";
 }
 
+// Contact that is meant: slower than stopping would be, and only forward.
+TEST(Guard, LetsADriverTouchWhoMeansIt) {
+  GuardSettings settings;
+  Body body;
+  body.radius = 0.22;
+  body.deceleration = 2.0;
+  body.sees_behind = true;
+  const auto at = [&](double distance, double velocity, double contact) {
+    return guard(settings, body, {{body.radius + distance, 0.0}, {-body.radius - distance, 0.0}},
+                 velocity, 0.0, contact);
+  };
+  EXPECT_DOUBLE_EQ(at(0.03, 0.2, 0.0).velocity, 0.0) << "nothing is meant";
+  EXPECT_DOUBLE_EQ(at(0.03, 0.2, 0.1).velocity, 0.1);
+  EXPECT_EQ(at(0.03, 0.2, 0.1).action, GuardAction::slow);
+  EXPECT_NE(at(0.03, 0.2, 0.1).reason.find("contact is meant"), std::string::npos);
+  EXPECT_DOUBLE_EQ(at(0.0, 0.05, 0.1).velocity, 0.05) << "slower than allowed";
+  EXPECT_DOUBLE_EQ(at(0.0, 0.5, 5.0).velocity, settings.max_contact_velocity);
+  EXPECT_DOUBLE_EQ(at(0.03, -0.2, 0.1).velocity, 0.0) << "backward nobody looks";
+  EXPECT_DOUBLE_EQ(at(0.3, 0.2, 0.1).velocity, at(0.3, 0.2, 0.0).velocity)
+      << "far off it makes no difference";
+  settings.max_contact_velocity = 0.0;
+  EXPECT_DOUBLE_EQ(at(0.03, 0.2, 0.1).velocity, 0.0) << "never, by option";
+}
+
 }  // namespace
 }  // namespace saphira::authority

@@ -179,6 +179,7 @@ v1::MotorCommand command_to_bus(const Output& output) {
   if (output.active) {
     command.translation(v1::TRANSLATION_VELOCITY);
     command.velocity(output.speed);
+    command.contact_speed(output.contact_speed);
     command.rotation(v1::ROTATION_HEADING);
     command.heading(output.heading_in_odom);
   }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -11,6 +13,9 @@
 
 namespace saphira::behaviors {
 namespace {
+
+/// The parameter by which a behavior says that it means contact: [m/s] at no more than this.
+constexpr const char* kContact = "contact";
 
 /// Nothing that is not a number may get to the robot. Returns what is wrong.
 std::string check(Evaluation& evaluation) {
@@ -92,6 +97,7 @@ Output Executive::step(const Inputs& inputs) {
           (output.trouble.empty() ? "" : "; ") + instance.intended.name + ": " + wrong;
   }
   output.blend = blend(blended, inputs.robot.velocity);
+  output.contact_speed = contact_speed(blended);
   for (std::size_t i = 0; i < instances_.size(); ++i)
     output.behaviors.push_back({instances_[i].intended.name, instances_[i].intended.schema,
                                 instances_[i].intended.running, std::move(blended[i])});
@@ -115,6 +121,15 @@ Output Executive::step(const Inputs& inputs) {
   output.speed = output.blend.moving ? std::clamp(output.blend.speed, -limit, limit) : 0.0;
   output.heading_in_odom = norm2_angle(inputs.robot.pose_in_odom.th + output.blend.turn);
   return output;
+}
+
+double Executive::contact_speed(const std::vector<Blended>& blended) const {
+  std::optional<double> least;
+  for (std::size_t i = 0; i < instances_.size(); ++i)
+    if (blended[i].recommends_speed && blended[i].speed_weight > 0.0)
+      least = std::min(least.value_or(std::numeric_limits<double>::infinity()),
+                       instances_[i].parameters.number_if_any(kContact).value_or(0.0));
+  return std::max(least.value_or(0.0), 0.0);
 }
 
 std::string Executive::reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom) {

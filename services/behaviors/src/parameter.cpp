@@ -117,6 +117,14 @@ double Parameters::number(std::string_view name) const {
   return std::get<double>(find(name).value);
 }
 
+std::optional<double> Parameters::number_if_any(std::string_view name) const {
+  for (const Item& item : items_)
+    if (const double* const number = std::get_if<double>(&item.value);
+        number != nullptr && item.name == name)
+      return *number;
+  return {};
+}
+
 const std::string& Parameters::text(std::string_view name) const {
   return std::get<std::string>(find(name).value);
 }

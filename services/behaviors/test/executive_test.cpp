@@ -85,6 +85,22 @@ TEST_F(ExecutiveTest, RemovesWhatIsNotIntended) {
   EXPECT_EQ(counts_.inits, 2);
 }
 
+TEST_F(ExecutiveTest, ContactIsMeantWhereAllMeanIt) {
+  const auto bump = [](double contact, const char* name = "bump") {
+    return Intended{
+        name, "ConstantVelocity", 2, true, {number("speed", 0.2), number("contact", contact)}};
+  };
+  EXPECT_EQ(step({{"go", "ConstantVelocity", 2, true, {}}}).contact_speed, 0.0);
+  EXPECT_EQ(step({bump(0.1)}).contact_speed, 0.1);
+  EXPECT_EQ(step({bump(0.1), bump(0.05, "softly")}).contact_speed, 0.05);
+  EXPECT_EQ(step({bump(0.1), {"p", "Probe", 2, true, {}}}).contact_speed, 0.0)
+      << "the other one does not mean it";
+  EXPECT_EQ(step({bump(0.1), {"stop", "Stop", 3, true, {}}}).contact_speed, 0.1)
+      << "the other one has no say";
+  EXPECT_EQ(step({bump(0.1), {"stop", "Stop", 0, true, {}}}).contact_speed, 0.0);
+  EXPECT_FALSE(step({bump(0.5)}).missing.empty()) << "that is no creeping";
+}
+
 TEST_F(ExecutiveTest, AnotherSchemaIsAnotherBehavior) {
   step({{"p", "Probe", 0, true, {}}});
   const Output output = step({{"p", "Stop", 0, true, {}}});

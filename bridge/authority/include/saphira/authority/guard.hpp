@@ -41,11 +41,12 @@ struct GuardSettings {
   double max_velocity = 0.0;           ///< [m/s]; 0: the robot's own
   double max_blind_velocity = 0.15;    ///< [m/s] to where no sonar sees; 0: the robot's own
   double max_rotation_velocity = 0.0;  ///< [rad/s]; 0: the robot's own
-  double margin = 0.06;         ///< [m] the hull is to stand at least so far from what is ahead
-  double side_margin = 0.01;    ///< [m] by which the path is wider than the hull, each side
-  double reaction = 0.3;        ///< [s] until a stop takes effect: sonar cycle, link, server
-  double slow_distance = 0.0;   ///< [m] below which slow_velocity holds; 0: none
-  double slow_velocity = 0.15;  ///< [m/s]
+  double margin = 0.06;       ///< [m] the hull is to stand at least so far from what is ahead
+  double side_margin = 0.01;  ///< [m] by which the path is wider than the hull, each side
+  double reaction = 0.3;      ///< [s] until a stop takes effect: sonar cycle, link, server
+  double max_contact_velocity = 0.15;  ///< [m/s] of a driver who means contact; 0: never
+  double slow_distance = 0.0;          ///< [m] below which slow_velocity holds; 0: none
+  double slow_velocity = 0.15;         ///< [m/s]
 };
 
 enum class GuardAction { none, limit, slow, stop };
@@ -95,7 +96,9 @@ double free_distance(const std::vector<Vec2>& points, double radius, double side
 
 /// Cuts a wanted motion to what is safe now. Pure. Not for the emergency stop: that only stops.
 /// Rotation on the spot is never stopped: the hull is round, and turning is the way out.
+/// `contact_speed`: the driver means to touch what is ahead, forward and at no more than this
+/// [m/s]; 0: it does not.
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
-              double velocity, double rotation_velocity);
+              double velocity, double rotation_velocity, double contact_speed = 0.0);
 
 }  // namespace saphira::authority

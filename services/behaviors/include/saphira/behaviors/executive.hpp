@@ -62,6 +62,7 @@ struct Output {
   bool active = false;
   std::string inactive_reason;
   double speed = 0.0;            ///< [m/s]
+  double contact_speed = 0.0;    ///< [m/s] contact is meant, at no more than this; 0: none is
   double heading_in_odom = 0.0;  ///< [rad] (-pi, pi]
 };
 
@@ -98,6 +99,9 @@ class Executive {
     std::unique_ptr<Behavior> behavior;
     bool initialised = false;
   };
+  /// Contact is meant where every behavior with a say on the speed means it: the least of what they
+  /// allow. One that avoids, and has something to say, forbids it.
+  double contact_speed(const std::vector<Blended>& blended) const;
   /// Makes the instances what is intended; returns what was wrong.
   std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
   /// `same` is the instance of that name and schema; nullptr where there is none.

@@ -55,6 +55,8 @@ class Parameters {
                                          const Pose& robot_in_odom, std::string& trouble);
 
   double number(std::string_view name) const;
+  /// Nothing where the schema has no such number.
+  std::optional<double> number_if_any(std::string_view name) const;
   const std::string& text(std::string_view name) const;
   /// In odom; nothing where it was not given.
   std::optional<Pose> point(std::string_view name) const;
