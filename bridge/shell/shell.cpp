@@ -335,11 +335,28 @@ void Shell::other(const protocol::ServerPacket& any, std::uint8_t type, double n
   if (type == static_cast<std::uint8_t>(protocol::PacketType::kReset1) ||
       type == static_cast<std::uint8_t>(protocol::PacketType::kReset2))
     return lost("the robot's controller was reset", now);
+  if (const auto* const set = std::get_if<protocol::ConfigPacket>(&any))
+    heed(*set);
   const auto* const seen = std::get_if<protocol::VisionPacket>(&any);
   if (seen == nullptr || !camera_)
     devices_.packet(any, type, stamp_);
   else if (stamp_.cycle() > 0)  // before, the robot's place is not known
     camera_->packet(*seen, newest_state_);
+}
+
+/// The robot brakes as it says that it is set, whatever it was asked for.
+void Shell::heed(const protocol::ConfigPacket& set) {
+  const double asked = reflector_.parameters().deceleration;
+  const double brakes = set.deceleration * 0.001;
+  if (brakes <= 0.0 || brakes > 0.95 * asked)
+    return;
+  if (body_.deceleration > brakes) {
+    char text[96];
+    std::snprintf(text, sizeof text, "the robot brakes with %.2f m/s2, not with %.2f as asked for",
+                  brakes, asked);
+    node_.warn(text);
+  }
+  body_.deceleration = brakes;
 }
 
 bool Shell::send(const protocol::Bytes& packet, double now) {

@@ -66,6 +66,7 @@ class Shell {
   void opened(double now);
   void information(const protocol::InformationPacket& packet, double now);
   void other(const protocol::ServerPacket& any, std::uint8_t type, double now);
+  void heed(const protocol::ConfigPacket& set);
   bool send(const protocol::Bytes& packet, double now);
   void lost(const std::string& why, double now);
   /// Whether the loop was heard in time; if not, all that was received before counts as old.

@@ -42,10 +42,8 @@ constexpr double kLookout = 1.0;  // [m]
 constexpr double kContactEnds = 0.005;  // [m]
 
 // What a client may set.
-constexpr double kLeastAcceleration = 0.001;  // [m/s2]
-constexpr double kMostAcceleration = 10.0;
+constexpr double kLeastAcceleration = 0.001;         // [m/s2]
 constexpr double kLeastRotationAcceleration = 0.01;  // [rad/s2]
-constexpr double kMostRotationAcceleration = 50.0;
 
 // The falling side of a trapezoid: the largest speed from which, after one more tick at it, one can
 // still stop at the setpoint.
@@ -81,6 +79,9 @@ Robot::Robot(Scene& scene, std::size_t number, const protocol::RobotParameters& 
       deceleration_(parameters.deceleration),
       rotation_acceleration_(parameters.rotation_acceleration),
       rotation_deceleration_(parameters.rotation_deceleration),
+      max_acceleration_(std::max({parameters.max_acceleration, acceleration_, deceleration_})),
+      max_rotation_acceleration_(std::max(
+          {parameters.max_rotation_acceleration, rotation_acceleration_, rotation_deceleration_})),
       rotation_per_difference_(parameters.rotation_per_difference),
       encode_jitter_(parameters.encode_jitter),
       angle_jitter_(parameters.angle_jitter),
@@ -154,11 +155,11 @@ void Robot::set_max_velocity(double velocity) {
 }
 
 void Robot::set_acceleration(double acceleration) {
-  acceleration_ = std::clamp(acceleration, kLeastAcceleration, kMostAcceleration);
+  acceleration_ = std::clamp(acceleration, kLeastAcceleration, max_acceleration_);
 }
 
 void Robot::set_deceleration(double deceleration) {
-  deceleration_ = std::clamp(deceleration, kLeastAcceleration, kMostAcceleration);
+  deceleration_ = std::clamp(deceleration, kLeastAcceleration, max_acceleration_);
 }
 
 void Robot::set_max_rotation_velocity(double velocity) {
@@ -167,12 +168,12 @@ void Robot::set_max_rotation_velocity(double velocity) {
 
 void Robot::set_rotation_acceleration(double acceleration) {
   rotation_acceleration_ =
-      std::clamp(acceleration, kLeastRotationAcceleration, kMostRotationAcceleration);
+      std::clamp(acceleration, kLeastRotationAcceleration, max_rotation_acceleration_);
 }
 
 void Robot::set_rotation_deceleration(double deceleration) {
   rotation_deceleration_ =
-      std::clamp(deceleration, kLeastRotationAcceleration, kMostRotationAcceleration);
+      std::clamp(deceleration, kLeastRotationAcceleration, max_rotation_acceleration_);
 }
 
 bool Robot::place(const Pose& pose_in_world) {

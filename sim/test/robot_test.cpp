@@ -337,6 +337,23 @@ TEST(Robot, MovesAWayByATrapezoid) {
   EXPECT_LT(robot.pose_in_odom().x, 0.6);
 }
 
+TEST(Robot, NoAccelerationIsSetBeyondWhatItCan) {
+  const World world = empty();
+  Scene scene(world);
+  RobotParameters parameters;
+  parameters.deceleration = 0.3;
+  parameters.max_acceleration = 2.0;
+  Robot& robot = scene.add_robot(parameters, {}, 1);
+  robot.set_deceleration(100.0);
+  robot.set_velocity(0.4);
+  run(robot, 400);
+  const double from = robot.pose_in_world().x;
+  robot.set_velocity(0.0);
+  run(robot, 100);
+  EXPECT_FALSE(robot.moving());
+  EXPECT_NEAR(robot.pose_in_world().x - from, 0.4 * 0.4 / (2.0 * 2.0), 0.003);
+}
+
 TEST(Robot, WheelsSlipInAnEmergencyStop) {
   const World world = empty();
   Scene scene(world);

@@ -41,6 +41,8 @@ struct NumberKeyword {
 
 using P = RobotParameters;
 constexpr double kDegree = kPi / 180.0;
+constexpr double kMaxRotAcceleration = 300.0 * kDegree;   // [rad/s2]
+constexpr double kStopRotDeceleration = 200.0 * kDegree;  // [rad/s2]
 // The later names of the same things are taken as well, so that the files of later robots load.
 constexpr std::array kNumbers{
     NumberKeyword{"AngleConvFactor", &P::angle_unit, 1.0, 1e-9, 1.0},
@@ -61,6 +63,10 @@ constexpr std::array kNumbers{
     NumberKeyword{"RotAccel", &P::rotation_acceleration, kDegree, 1.0, 100000.0},
     NumberKeyword{"RotDeceleration", &P::rotation_deceleration, kDegree, 1.0, 100000.0},
     NumberKeyword{"RotDecel", &P::rotation_deceleration, kDegree, 1.0, 100000.0},
+    NumberKeyword{"MaxAcceleration", &P::max_acceleration, kMillimetre, 1.0, 100000.0},
+    NumberKeyword{"MaxRotAcceleration", &P::max_rotation_acceleration, kDegree, 1.0, 100000.0},
+    NumberKeyword{"StopDeceleration", &P::stop_deceleration, kMillimetre, 0.0, 100000.0},
+    NumberKeyword{"StopRotDeceleration", &P::stop_rotation_deceleration, kDegree, 0.0, 100000.0},
     NumberKeyword{"EncodeJitter", &P::encode_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleJitter", &P::angle_jitter, 1.0, 0.0, 1.0},
     NumberKeyword{"AngleDrift", &P::angle_drift, 1.0, 0.0, 1.0},
@@ -277,10 +283,34 @@ class Parser {
                                       std::pair{"settableaccsdecs", &P::settable_accelerations}})
       if (!seen_.contains(name))
         parameters_.*field = later;
+    finish_accelerations();
     if (parameters_.length == 0.0)
       parameters_.length = 2.0 * parameters_.radius;
     if (parameters_.width == 0.0)
       parameters_.width = 2.0 * parameters_.radius;
+  }
+
+  // The limits are those of the servers since P2OS, the decelerations what stops a robot of their
+  // size softly enough for what stands on it.
+  void finish_accelerations() {
+    P& p = parameters_;
+    if (!p.settable_accelerations) {
+      p.max_acceleration = std::max(p.acceleration, p.deceleration);
+      p.max_rotation_acceleration = std::max(p.rotation_acceleration, p.rotation_deceleration);
+      p.stop_deceleration = p.stop_rotation_deceleration = 0.0;
+      return;
+    }
+    const auto usual = [&](std::string_view keyword, double P::*field, double value) {
+      if (!seen_.contains(std::string(keyword)))
+        p.*field = value;
+    };
+    usual("maxacceleration", &P::max_acceleration, 2.0);
+    usual("maxrotacceleration", &P::max_rotation_acceleration, kMaxRotAcceleration);
+    usual("stopdeceleration", &P::stop_deceleration, 0.6);
+    usual("stoprotdeceleration", &P::stop_rotation_deceleration, kStopRotDeceleration);
+    p.stop_deceleration = std::min(p.stop_deceleration, p.max_acceleration);
+    p.stop_rotation_deceleration =
+        std::min(p.stop_rotation_deceleration, p.max_rotation_acceleration);
   }
 
   // Steps to the line behind where the value stands there.

@@ -495,10 +495,12 @@ ConfigPacket config_of(const RobotParameters& parameters, const std::string& nam
   c.velocity_top = c.velocity_max = counts(p.max_velocity * 1000.0);
   c.rotation_acceleration = counts(degrees(p.rotation_acceleration));
   c.rotation_deceleration = counts(degrees(p.rotation_deceleration));
-  c.rotation_acceleration_top = std::max(c.rotation_acceleration, c.rotation_deceleration);
+  c.rotation_acceleration_top = std::max({counts(degrees(p.max_rotation_acceleration)),
+                                          c.rotation_acceleration, c.rotation_deceleration});
   c.acceleration = counts(p.acceleration * 1000.0);
   c.deceleration = counts(p.deceleration * 1000.0);
-  c.acceleration_top = std::max(c.acceleration, c.deceleration);
+  c.acceleration_top =
+      std::max({counts(p.max_acceleration * 1000.0), c.acceleration, c.deceleration});
   c.pwm_max = 500;
   c.name = name;
   c.cycle = 100;

@@ -356,6 +356,16 @@ constexpr const char* kAriaForm =
     "Section Laser 2 parameters\n"
     "LaserX 0\n";
 
+TEST(Parameters, DecelerationsThatTheBridgeSetsStayWithinTheRobotsLimits) {
+  const RobotParameters later = load_parameters(source("config/robots/p3dx.p"));
+  EXPECT_DOUBLE_EQ(later.stop_deceleration, 0.6);
+  EXPECT_NEAR(degrees(later.stop_rotation_deceleration), 200.0, 1e-9);
+  EXPECT_DOUBLE_EQ(later.max_acceleration, 2.0);
+  const RobotParameters first = load_parameters(source("config/robots/pioneer.p"));
+  EXPECT_EQ(first.stop_deceleration, 0.0) << "it cannot be set";
+  EXPECT_DOUBLE_EQ(first.max_acceleration, 2.0) << "its own deceleration";
+}
+
 TEST(Parameters, AFileInTheFormOfAria) {
   const auto p = parse_parameters(kAriaForm, "aria.p");
   EXPECT_EQ(p.subclass, "p3dx-sh");

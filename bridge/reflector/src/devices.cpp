@@ -227,7 +227,17 @@ void Devices::begin(const protocol::RobotParameters& parameters) {
   for (const ServerWish wish :
        {ServerWish{ServerAction::motors, 1}, ServerWish{ServerAction::configuration, 0}}) {
     request("bridge", 0, wish, parameters);
-    items_.at({Wish(wish).index(), action_of(wish)}).quiet = true;
+    Item& item = items_.at({Wish(wish).index(), action_of(wish)});
+    item.quiet = true;
+    if (wish.action != ServerAction::configuration)
+      continue;
+    // Before the question how the robot is set, so that the answer shows what it takes of this.
+    std::vector<protocol::Command> brakes;
+    if (parameters.stop_deceleration > 0.0)
+      brakes.emplace_back(protocol::Acceleration{-parameters.stop_deceleration});
+    if (parameters.stop_rotation_deceleration > 0.0)
+      brakes.emplace_back(protocol::RotationAcceleration{-parameters.stop_rotation_deceleration});
+    item.commands.insert(item.commands.begin(), brakes.begin(), brakes.end());
   }
 }
 

@@ -17,6 +17,10 @@ constexpr double kBraking = 0.5;  // [s] and the line's delay
 
 void Reflector::configure(const protocol::RobotParameters& parameters) {
   parameters_ = parameters;
+  // As the session sets it (Devices::begin).
+  parameters_.deceleration = std::max(parameters.deceleration, parameters.stop_deceleration);
+  parameters_.rotation_deceleration =
+      std::max(parameters.rotation_deceleration, parameters.stop_rotation_deceleration);
   Odometry::Settings odometry;
   odometry.distance_unit = parameters.distance_unit;
   odometry.max_velocity = parameters.max_velocity;

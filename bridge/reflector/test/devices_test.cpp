@@ -180,6 +180,25 @@ TEST(Devices, ALaterRobotIsSwitchedOnAndAskedWhatItIsLike) {
   EXPECT_EQ(b.devices.requests().back().state, RequestState::shown);
 }
 
+TEST(Devices, AStrongerDecelerationIsSetBeforeTheQuestionHowItIsSet) {
+  protocol::RobotParameters parameters = of(protocol::Protocol::kP2os);
+  parameters.stop_deceleration = 0.6;
+  parameters.stop_rotation_deceleration = 2.0;
+  Bench b(parameters);
+  b.devices.begin(b.parameters);
+  int rounds = 0;
+  for (int i = 0; i < 30; ++i) {
+    const std::vector<Command> due = b.devices.due(b.now += 0.1);
+    const auto set = std::find(due.begin(), due.end(), Command(protocol::Acceleration{-0.6}));
+    if (set == due.end())
+      continue;
+    ++rounds;
+    EXPECT_EQ(set[1], Command(protocol::RotationAcceleration{-2.0}));
+    EXPECT_EQ(set[2], Command(protocol::ConfigRequest{1}));
+  }
+  EXPECT_EQ(rounds, 3) << "a packet may be lost";
+}
+
 TEST(Devices, FlagsOfArcosShowMotorsSonarsAndTheAnalogPort) {
   Bench b(of(protocol::Protocol::kArcos));
   b.packet.ptu = protocol::kFlagSonars;

@@ -144,6 +144,7 @@ class Robot {
   double move_velocity_, turn_velocity_;         // what moves and turns use
   double acceleration_, deceleration_;
   double rotation_acceleration_, rotation_deceleration_;
+  double max_acceleration_, max_rotation_acceleration_;  // what they can be set to
   double rotation_per_difference_;
   double encode_jitter_, angle_jitter_, drift_;
   Random random_;

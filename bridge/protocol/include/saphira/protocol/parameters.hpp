@@ -78,6 +78,10 @@ struct RobotParameters {
   double deceleration = 2.0;                      ///< [m/s2] Deceleration
   double rotation_acceleration = radians(300.0);  ///< [rad/s2] RotAcceleration
   double rotation_deceleration = radians(300.0);  ///< [rad/s2] RotDeceleration
+  double max_acceleration = 0.0;  ///< [m/s2] MaxAcceleration: what SETA can set, either way
+  double max_rotation_acceleration = 0.0;  ///< [rad/s2] MaxRotAcceleration, of SETRA
+  double stop_deceleration = 0.0;          ///< [m/s2] StopDeceleration: the bridge sets it; 0: none
+  double stop_rotation_deceleration = 0.0;  ///< [rad/s2] StopRotDeceleration; likewise
 
   // Errors of the simulated dead reckoning, manual Table 3-1. How the simulator reads them is said
   // in saphira/sim/robot.hpp.

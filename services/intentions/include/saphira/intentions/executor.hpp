@@ -37,7 +37,8 @@ struct Inputs {
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
   std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
   std::string hold{};                       ///< why all goals are to wait; empty: they are not
-  std::string estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
+  std::string
+      estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
 };
 
 /// What became of the goals since the last time.

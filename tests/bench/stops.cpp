@@ -1,0 +1,228 @@
+// How long and how far a robot rolls after what drives it is lost: each model in the simulator,
+// over a line that tells nobody when it is cut. The simulator's trace is the truth.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "bench.hpp"
+#include "process.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/trace.hpp"
+#include "serial_line.hpp"
+
+using namespace saphira;
+using std::chrono::milliseconds;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kDomain = "196";
+constexpr double kStill = 0.003;  // [m/s]
+constexpr double kCycle = 0.1;    // [s]
+constexpr milliseconds kLimit{60000};
+
+enum class Loss { driver, bridge, line, estop };
+constexpr std::array kLosses{Loss::driver, Loss::bridge, Loss::line, Loss::estop};
+constexpr std::array kNames{"driver", "bridge", "line", "estop"};
+
+struct Roll {
+  double time = 0.0;  ///< [s]
+  double way = 0.0;   ///< [m]
+};
+
+/// A robot, its line, a bridge and a driver.
+class Ride {
+ public:
+  Ride(std::string robot_file, double velocity)
+      : robot_file_(std::move(robot_file)), velocity_(velocity), node_(options()) {
+    std::ofstream(folder_.path("floor.wld"))
+        << "width 100000 height 20000\nposition 2000 10000 0\n";
+    simulator_ = std::make_unique<bench::Child>(std::vector<std::string>{
+        "saphira-sim", "--world", folder_.path("floor.wld"), "--robot", robot_file_, "--socket",
+        folder_.path("robot"), "--trace", folder_.path("trace.csv")});
+    line_ = std::make_unique<test::SerialLine>(folder_.path("tty"), folder_.path("robot"), 38400);
+    start_bridge();
+  }
+
+  Roll lose(Loss loss) {
+    drive_ = true;
+    need(until([&] { return newest().velocity >= 0.97 * velocity_; }), "it does not drive");
+    const std::vector<sim::TraceRow> before = rows();
+    if (loss == Loss::driver)
+      drive_ = false;
+    else if (loss == Loss::bridge)
+      ::kill(bridge_->pid(), SIGKILL);
+    else if (loss == Loss::line)
+      line_->cut(true);
+    else
+      pressed_ = true;
+    need(until([&] { return std::abs(newest().velocity) <= kStill; }), "it does not stop");
+    // By rows, one a cycle: the numbers of cycles begin anew with each connection.
+    const std::vector<sim::TraceRow> all = rows();
+    const std::size_t lost = before.size() - 1;
+    std::size_t still = lost;
+    while (still + 1 < all.size() && std::abs(all[still].velocity) > kStill)
+      ++still;
+    const Roll roll{
+        static_cast<double>(still - lost) * kCycle,
+        (all[still].pose_in_world.position() - all[lost].pose_in_world.position()).norm()};
+    // As before.
+    drive_ = false;
+    pressed_ = false;
+    line_->cut(false);
+    if (loss == Loss::bridge)
+      start_bridge();
+    return roll;
+  }
+
+ private:
+  bus::NodeOptions options() const {
+    bus::NodeOptions out;
+    out.name = "bench";
+    out.robot = robot_;
+    out.domain = static_cast<std::uint32_t>(std::stoul(kDomain));
+    return out;
+  }
+
+  void start_bridge() {
+    bridge_.reset();
+    bridge_ = std::make_unique<bench::Child>(std::vector<std::string>{
+        "saphira-bridge", "--robot", robot_, "--domain", kDomain, "--robots",
+        std::filesystem::path(robot_file_).parent_path().string(), "--robot-port",
+        "serial:" + folder_.path("tty") + "@38400"});
+  }
+
+  std::vector<sim::TraceRow> rows() const {
+    if (!std::filesystem::exists(folder_.path("trace.csv")))
+      return {};
+    return sim::parse_trace(read_file(folder_.path("trace.csv")), "trace.csv");
+  }
+  sim::TraceRow newest() const {
+    const auto all = rows();
+    return all.empty() ? sim::TraceRow{} : all.back();
+  }
+
+  bool until(const std::function<bool()>& condition) {
+    const auto end = Clock::now() + kLimit;
+    while (Clock::now() < end) {
+      node_.wait(milliseconds(25));
+      if (const auto state = states_.take_newest())
+        state_ = *state;
+      if (drive_)
+        write(driver_, true);
+      if (pressed_)
+        write(button_, true);
+      if (condition())
+        return true;
+    }
+    return false;
+  }
+
+  void write(bus::Writer<v1::MotorCommand>& writer, bool active) {
+    v1::MotorCommand command;
+    command.source("bench");
+    command.stamp(state_.stamp());
+    command.number(++number_);
+    command.active(active);
+    command.translation(v1::TRANSLATION_VELOCITY);
+    command.velocity(velocity_);
+    writer.write(command);
+  }
+
+  void need(bool done, const std::string& what) const {
+    if (!done)
+      throw std::runtime_error(robot_file_ + ": " + what);
+  }
+
+  std::string robot_file_;
+  double velocity_;
+  std::string robot_ = "stops" + std::to_string(getpid());
+  test::TempDir folder_;
+  bus::Node node_;
+  bus::Writer<v1::MotorCommand> driver_ = node_.writer(bus::topics::kDriveDirect);
+  bus::Writer<v1::MotorCommand> button_ = node_.writer(bus::topics::kDriveEstop);
+  bus::Reader<v1::RobotState> states_ = node_.reader(bus::topics::kRobotState);
+  std::unique_ptr<bench::Child> simulator_;
+  std::unique_ptr<test::SerialLine> line_;
+  std::unique_ptr<bench::Child> bridge_;
+  v1::RobotState state_;
+  bool drive_ = false;
+  bool pressed_ = false;
+  std::uint64_t number_ = 0;
+};
+
+nlohmann::json measure(const std::string& file, double wanted) {
+  const protocol::RobotParameters robot = protocol::load_parameters(file);
+  const double velocity = std::min(wanted, robot.max_velocity);
+  Ride ride(file, velocity);
+  nlohmann::json out{{"robot", std::filesystem::path(file).stem().string()},
+                     {"velocity_m_s", velocity}};
+  std::printf("%-14s %4.2f m/s", out["robot"].get<std::string>().c_str(), velocity);
+  for (const Loss loss : kLosses) {
+    const Roll roll = ride.lose(loss);
+    const char* const name = kNames.at(static_cast<std::size_t>(loss));
+    out[name] = {{"s", roll.time}, {"m", roll.way}};
+    std::printf("   %s %.1f s %.2f m", name, roll.time, roll.way);
+    std::fflush(stdout);
+  }
+  std::printf("\n");
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"How far each robot rolls when its driver, its bridge or its line is lost"};
+  bool json = false;
+  double velocity = 0.4;
+  std::vector<std::string> names;
+  app.add_flag("--json", json, "one JSON object on the last line");
+  app.add_option("--velocity", velocity, "[m/s], or the robot's own limit")
+      ->check(CLI::Range(0.05, 2.0))
+      ->capture_default_str();
+  app.add_option("robots", names, "names of config/robots (usual: all)");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const std::string folder = config_folder() + "/robots";
+    if (names.empty()) {
+      for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".p")
+          names.push_back(entry.path().stem().string());
+      std::sort(names.begin(), names.end());
+    }
+    nlohmann::json robots = nlohmann::json::array();
+    double worst[kLosses.size()] = {};
+    for (const std::string& name : names) {
+      robots.push_back(measure(find_file(folder, name, ".p"), velocity));
+      for (std::size_t i = 0; i < kLosses.size(); ++i)
+        worst[i] = std::max(worst[i], robots.back().at(kNames.at(i)).at("m").get<double>());
+    }
+    if (json) {
+      nlohmann::json result{{"robots", robots}};
+      for (std::size_t i = 0; i < kLosses.size(); ++i)
+        result[std::string(kNames.at(i)) + "_m_max"] = worst[i];
+      std::printf("%s\n", result.dump().c_str());
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira-bench-stops: %s\n", error.what());
+    return 1;
+  }
+}
