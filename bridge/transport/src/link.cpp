@@ -14,11 +14,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <thread>
+#include <utility>
 
 #include "baud.hpp"
 
@@ -87,6 +90,32 @@ std::string holder(int fd) {
 
 }  // namespace
 
+/// What a thread finds; written before `done`, read behind it.
+struct Link::LookUp {
+  struct Place {
+    sockaddr_storage address{};
+    socklen_t size = 0;
+  };
+  int code = 0;
+  std::vector<Place> places;
+  std::atomic<bool> done{false};
+
+  void find(const std::string& host, int port, int flags) {
+    addrinfo hints{};
+    hints.ai_socktype = SOCK_STREAM;
+    hints.ai_flags = AI_NUMERICSERV | flags;
+    addrinfo* list = nullptr;
+    code = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &list);
+    for (const addrinfo* each = list; each != nullptr; each = each->ai_next) {
+      Place& place = places.emplace_back();
+      std::memcpy(&place.address, each->ai_addr, each->ai_addrlen);
+      place.size = each->ai_addrlen;
+    }
+    if (list != nullptr)
+      ::freeaddrinfo(list);
+  }
+};
+
 short Link::poll_events() const {
   short events = POLLIN;
   if (state_ == State::connecting || !waiting_.empty())
@@ -112,6 +141,7 @@ void Link::close(const std::string& why, double now) {
     ::close(fd_);
   }
   fd_ = -1;
+  look_up_.reset();
   state_ = State::closed;
   waiting_.clear();
   trouble_ = why;
@@ -163,29 +193,35 @@ void Link::open(double now) {
       return close(address_.name + ": nobody listens there (does the simulator run?)", now);
     return fail(address_.name);
   }
-  open_tcp(now);
+  look_up(now);
+}
+
+/// A resolver that has no network takes its time, and meanwhile others want to be heard: so a
+/// thread asks it. A numeric address needs none.
+void Link::look_up(double now) {
+  look_up_ = std::make_shared<LookUp>();
+  look_up_->find(address_.name, address_.port, AI_NUMERICHOST);
+  if (look_up_->code == 0)
+    return open_tcp(now);
+  state_ = State::connecting;
+  trouble_ = "looks up " + address_.name;
+  give_up_ = std::numeric_limits<double>::infinity();
+  std::thread([of = look_up_, host = address_.name, port = address_.port] {
+    of->find(host, port, 0);
+    of->done = true;
+  }).detach();
 }
 
 void Link::open_tcp(double now) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  hints.ai_flags = AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  const int code =
-      ::getaddrinfo(address_.name.c_str(), std::to_string(address_.port).c_str(), &hints, &found);
-  if (code != 0)
-    return close(address_.name + ": " + ::gai_strerror(code), now);
   // A name may have several addresses, of which the robot listens to one: a try, one of them.
-  std::vector<const addrinfo*> addresses;
-  for (const addrinfo* each = found; each != nullptr; each = each->ai_next)
-    addresses.push_back(each);
-  const addrinfo& chosen = *addresses[tries_++ % addresses.size()];
-  fd_ = ::socket(chosen.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const int result = fd_ < 0 ? -1 : ::connect(fd_, chosen.ai_addr, chosen.ai_addrlen);
-  const int error = errno;
-  ::freeaddrinfo(found);
-  errno = error;
-  if (result != 0 && (fd_ < 0 || error != EINPROGRESS))
+  const std::shared_ptr<LookUp> found = std::exchange(look_up_, nullptr);
+  if (found->code != 0)
+    return close(address_.name + ": " + ::gai_strerror(found->code), now);
+  const LookUp::Place& chosen = found->places[tries_++ % found->places.size()];
+  const auto* const place = reinterpret_cast<const sockaddr*>(&chosen.address);
+  fd_ = ::socket(place->sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  const int result = fd_ < 0 ? -1 : ::connect(fd_, place, chosen.size);
+  if (result != 0 && (fd_ < 0 || errno != EINPROGRESS))
     return close(address_.text() + ": " + error_text(), now);
   // A command packet is sent when it is ready, not when there are more.
   const int on = 1;
@@ -200,6 +236,11 @@ void Link::open_tcp(double now) {
 void Link::advance(double now) {
   if (state_ == State::closed && now >= next_try_)
     open(now);
+  if (state_ == State::connecting && look_up_) {
+    if (!look_up_->done)
+      return;
+    open_tcp(now);
+  }
   if (state_ == State::connecting) {
     pollfd ready{fd_, POLLOUT, 0};
     if (::poll(&ready, 1, 0) > 0) {

@@ -257,7 +257,10 @@ Map parse_map(std::string_view text, const std::string& file) {
 }
 
 Map load_map(const std::string& path) {
-  return parse_map(read_file(path), path);
+  const std::string text = read_file(path);
+  if (!text.ends_with('"'))  // a name is whole
+    expect_last_line_break(text, path);
+  return parse_map(text, path);
 }
 
 std::string to_text(const Map& map) {

@@ -1,7 +1,10 @@
 #include "saphira/maps/map.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -158,6 +161,25 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"POS (1) 0, 0, 0 \"\"\n", 1, 17, "a name between"},
         Broken{"POS (1) 0, 0, 0 \"a\rb\"\n", 1, 17, "without control characters"},
         Broken{"POS (1) 0, 0, nan\n", 1, 15, "a number (theta"}));
+
+TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
+  const std::string path =
+      ::testing::TempDir() + "saphira-cut-" + std::to_string(::getpid()) + ".map";
+  const auto load = [&path](const std::string& text) {
+    std::ofstream(path) << text;
+    return load_map(path).features.size();
+  };
+  EXPECT_EQ(load("DOOR (1) 1000, 2000, 90, 900\n"), 1U);
+  EXPECT_EQ(load("DOOR (1) 1000, 2000, 90, 900 \"EJ-231\""), 1U) << "a name is whole";
+  try {
+    load("DOOR (1) 1000, 2000, 90, 900\nDOOR (2) 1000, 2000, 90, 90");
+    ADD_FAILURE() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.line(), 2);
+    EXPECT_NE(std::string(error.what()).find("cut off"), std::string::npos);
+  }
+  std::remove(path.c_str());
+}
 
 }  // namespace
 }  // namespace saphira::maps

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,9 +11,9 @@
 
 namespace saphira::transport {
 
-/// The bytes to and from a robot server. Never blocks (but for the look-up of a host's name).
-/// A link that is lost is tried again, first after 50 ms, then less often, at least twice a second.
-/// Times are seconds of a steady clock.
+/// The bytes to and from a robot server. Never blocks: a host's name is looked up by a thread of
+/// its own, which may outlive the link. A link that is lost is tried again, first after 50 ms, then
+/// less often, at least twice a second. Times are seconds of a steady clock.
 class Link {
  public:
   enum class State { closed, connecting, open };
@@ -46,6 +47,7 @@ class Link {
 
  private:
   void open(double now);
+  void look_up(double now);
   void open_tcp(double now);
   void opened();
   bool flush(double now);
@@ -60,8 +62,10 @@ class Link {
   double next_try_ = 0.0;
   double give_up_ = 0.0;
   double backoff_ = 0.0;
-  std::size_t tries_ = 0;  ///< of the addresses that a host's name has, in turn
-  bool heard_ = false;     ///< something came since it was opened
+  struct LookUp;
+  std::shared_ptr<LookUp> look_up_;  ///< under way, or done and not yet used
+  std::size_t tries_ = 0;            ///< of the addresses that a host's name has, in turn
+  bool heard_ = false;               ///< something came since it was opened
   std::vector<std::uint8_t> waiting_;
 };
 

@@ -39,7 +39,8 @@ struct Map {
 /// Reads the text of a map file; `file` names it in errors. FileError where it is wrong.
 Map parse_map(std::string_view text, const std::string& file);
 
-/// The same from a file.
+/// The same from a file. Its last line has a line break, or ends with a name: half a number would
+/// be read as a whole one.
 Map load_map(const std::string& path);
 
 /// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.
