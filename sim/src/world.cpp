@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "saphira/base/text.hpp"
+#include "world_check.hpp"
 
 namespace saphira::sim {
 
@@ -27,20 +29,32 @@ class Parser {
     for (const Line& line : lines_) {
       LineReader in(world_.file, line);
       while (!in.at_end())
-        directive(in);
+        directive(in, line);
     }
     if (!has_width_ || !has_height_)
       throw FileError(world_.file, lines_.empty() ? 1 : lines_.back().number, 1,
                       has_width_ ? "expected height" : "expected width");
     world_.corners = find_corners(world_.segments);
     world_.movable = movable_.plans();
+    for (const Claim& claim : claims_)
+      if (const auto trouble = claim.trouble(world_))
+        throw FileError(world_.file, claim.place.line, claim.place.column, *trouble, claim.line);
     return std::move(world_);
   }
 
  private:
-  void directive(LineReader& in) {
+  using Trouble = std::function<std::optional<std::string>(const World&)>;
+  // What a line says that can be right or wrong only when all walls are known.
+  struct Claim {
+    Place place;
+    std::string_view line;
+    Trouble trouble;
+  };
+
+  void directive(LineReader& in, const Line& line) {
     LineReader number(in);  // to read the same word as a number
     const std::string_view word = in.word("a directive");
+    const Place place{line.number, static_cast<int>(word.data() - line.text.data()) + 1};
     if (word == "width" || word == "height") {
       bool& has = word == "width" ? has_width_ : has_height_;
       if (has)
@@ -64,19 +78,54 @@ class Parser {
       if (world_.start)
         in.fail("expected position once");
       world_.start = pose(in);
+      world_.start_place = place;
+      claims_.push_back({place, line.text,
+                         [](const World& world) { return trouble_of_start(world, *world.start); }});
     } else if (word == "sonar") {
       sonar(in);
     } else if (word[0] == '-' || word[0] == '+' || word[0] == '.' ||
                (word[0] >= '0' && word[0] <= '9')) {
       in = number;
       segment(in);
-    } else if (!movable_.read(word, in, frames_.back())) {
+    } else if (movable_.read(word, in, frames_.back())) {
+      if (const Trouble trouble = trouble_of(word))
+        claims_.push_back({place, line.text, trouble});
+      if (word == "robot")
+        world_.robot_places.push_back(place);
+    } else {
       in.fail(
           "expected a segment (x y x y), width, height, push, pop, position, sonar, robot, person, "
           "walk, wait, repeat, door, open, close, period, box, post, color, tall or cloth, found "
           "\"" +
           std::string(word) + "\"");
     }
+  }
+
+  // What the directive that has been read claims; nothing where it cannot be wrong.
+  Trouble trouble_of(std::string_view word) const {
+    const MovablePlans& plans = movable_.plans();
+    if (word == "robot")
+      return [i = plans.robots.size() - 1](const World& world) {
+        return trouble_of_start(world, world.movable.robots[i]);
+      };
+    if (word == "person")
+      return [i = plans.persons.size() - 1](const World& world) {
+        return trouble_of_person(world, i);
+      };
+    if (word == "walk")
+      return [i = plans.persons.size() - 1, leg = plans.persons.back().script.size() - 1](
+                 const World& world) { return trouble_of_leg(world, i, leg); };
+    if (word == "repeat")
+      return [i = plans.persons.size() - 1](const World& world) {
+        return trouble_of_repeat(world, i);
+      };
+    if (word == "door")
+      return [i = plans.doors.size() - 1](const World& world) { return trouble_of_door(world, i); };
+    if (word == "box")
+      return [i = plans.boxes.size() - 1](const World& world) { return trouble_of_box(world, i); };
+    if (word == "post")
+      return [i = plans.posts.size() - 1](const World& world) { return trouble_of_post(world, i); };
+    return {};
   }
 
   static Pose pose(LineReader& in) {
@@ -112,6 +161,7 @@ class Parser {
   std::vector<Line> lines_;
   World world_;
   MovableReader movable_;
+  std::vector<Claim> claims_;         // in the order of their lines
   std::vector<Pose> frames_{Pose{}};  // frame_in_world; the last one is in force
   bool has_width_ = false;
   bool has_height_ = false;

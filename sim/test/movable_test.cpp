@@ -84,7 +84,35 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenLine{"door d 0 0 900 0 90 open 5 period 4", 35, "no shorter"},
         BrokenLine{"box b 0 0 0 600", 16, "width"}, BrokenLine{"box b 0 0 0 600 0 5", 17, "width"},
         BrokenLine{"post p 0 0", 11, "radius"}, BrokenLine{"color red", 1, "before this color"},
-        BrokenLine{"robot 0 0", 10, "theta"}, BrokenLine{"tall 5", 1, "before this tall"}));
+        BrokenLine{"robot 0 0", 10, "theta"}, BrokenLine{"tall 5", 1, "before this tall"},
+        // What the walls make wrong.
+        BrokenLine{"position 5000 -10 0", 1, "in the world"},
+        BrokenLine{"robot 10001 5000 0", 1, "in the world"},
+        BrokenLine{"position 5 5000 0", 1, "not in a wall"},
+        BrokenLine{"post p 5000 5000 100 position 5050 5000 0", 22, "not in the post \"p\""},
+        BrokenLine{"robot 5000 5000 0 box b 5000 5100 45 500 500 5", 1, "not in the box \"b\""},
+        BrokenLine{"person ann 12000 5000", 1, "in the world"},
+        BrokenLine{"person ann 5000 10", 1, "not in a wall"},
+        BrokenLine{"person ann 1000 1000 walk 1000 -500 800", 22, "in the world"},
+        BrokenLine{"person ann 1000 1000 walk 5000 1000 800 3000 0 3000 2000", 22, "no wall"},
+        BrokenLine{"3000 0 3000 2000 person ann 1000 1000 wait 2 walk 1000 3000 800 "
+                   "walk 5000 3000 800 walk 5000 500 800 repeat",
+                   102, "no wall"},
+        BrokenLine{"person ann 1000 1000 walk 5000 1000 800 post p 3000 1050 60", 22, "no post"},
+        BrokenLine{"door d 1000 2000 2000 2000 90 1500 0 1500 5000", 1, "no wall"},
+        BrokenLine{"door d 9500 2000 10500 2000 90", 1, "in the world"},
+        BrokenLine{"box b 5000 200 0 600 500 5", 1, "in the world"},
+        BrokenLine{"box b 5000 1000 0 600 500 5 4000 1000 6000 1100", 1, "in no wall"},
+        BrokenLine{"post p 5000 50 100", 1, "in no wall"}));
+
+// Against a wall, through a door that is shut, and where the walls of furniture are is all right.
+TEST(Movable, WhatStandsCloseIsNotRefused) {
+  EXPECT_NO_THROW(world("post p 5000 100 100  box b 5000 1050 0 500 500 5  4000 800 6000 800"));
+  EXPECT_NO_THROW(
+      world("3000 0 3000 2000  3000 2900 3000 10000  door d 3000 2000 3000 2900 90 "
+            "person ann 1000 2450 walk 5000 2450 800 wait 1 walk 1000 2450 800 repeat"));
+  EXPECT_NO_THROW(world("person ann 5000 100"));
+}
 
 TEST(Movable, PeopleWalkByTheirScripts) {
   const World it =

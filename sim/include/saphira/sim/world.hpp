@@ -35,6 +35,12 @@ struct Hit {
   double incidence = 0.0;  ///< [rad] 0: along the normal of the segment, pi/2: grazing
 };
 
+/// Where in a world file something is said.
+struct Place {
+  int line = 1;
+  int column = 1;
+};
+
 /// What a world file says of how sonars hear in it (directive sonar); else SonarModel's.
 struct SonarPlan {
   std::optional<double> strength;  ///< [dB]
@@ -51,11 +57,14 @@ struct World {
   std::vector<Segment> segments;
   std::vector<Corner> corners;  ///< of the segments
   std::optional<Pose> start;    ///< directive position: the robot's start_in_world
-  MovablePlans movable;         ///< what is no wall
+  Place start_place;
+  std::vector<Place> robot_places;  ///< of movable.robots
+  MovablePlans movable;             ///< what is no wall
   SonarPlan sonar;
 };
 
-/// Reads the text of a world file; `file` names it in errors. Width and height come first. Several
+/// Reads the text of a world file; `file` names it in errors. What stands or walks in it is
+/// checked against its walls. Width and height come first. Several
 /// directives may stand on one line. A position (and a robot) is absolute, whatever has been pushed
 /// (the manual gives relative coordinates to segments only). FileError where it is wrong.
 World parse_world(std::string_view text, const std::string& file);
