@@ -94,8 +94,18 @@ int main(int argc, char** argv) {
   auto* socket = app.add_option("--socket", options.socket,
                                 "Local socket to listen on (default: $ROBOT_SOCKET, otherwise "
                                 "/tmp/saphira-robot-<uid>)");
-  app.add_option("--tcp", options.tcp, "TCP port to listen on instead; 0: a free one")
-      ->excludes(socket);
+  auto* tcp = app.add_option("--tcp", options.tcp, "TCP port to listen on instead; 0: a free one")
+                  ->excludes(socket);
+  std::string terminal;
+  auto* pty =
+      app.add_option("--pty", terminal,
+                     "A pseudo-terminal to talk on instead, as on a serial line: a symbolic "
+                     "link to it is put at this path (default: " +
+                         saphira::sim::default_terminal() + ")")
+          ->expected(0, 1)
+          ->type_name("PATH")
+          ->excludes(socket)
+          ->excludes(tcp);
   app.add_option("--tcp-address", options.tcp_address,
                  "Address of the TCP port; anybody who reaches it can drive the robot")
       ->capture_default_str();
@@ -135,6 +145,8 @@ int main(int argc, char** argv) {
     for (std::string& file : robots)
       file = saphira::find_file(config + "/robots", file, ".p");
     options.world = saphira::find_file(config + "/worlds", options.world, ".wld");
+    if (pty->count() > 0)
+      options.terminal = terminal.empty() ? saphira::sim::default_terminal() : terminal;
     set_robots(options, robots, positions, count);
     options.rate = rate == "max" ? saphira::sim::kMaxRate : std::stod(rate);
     if (!plot_files.empty()) {

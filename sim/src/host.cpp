@@ -42,12 +42,17 @@ constexpr double kGap = 0.050;  // [s]
 constexpr int kMostAhead = 10;    // [cycles]
 constexpr double kGivenUp = 2.0;  // [s]
 
+// How often to look whether somebody has opened a terminal.
+constexpr int kLook = 50;  // [ms]
+
 // Bytes that may wait for a client that does not read. It then loses whole packets, the newest:
 // they are stale when it wakes.
 constexpr std::size_t kMost = 65536;
 
-/// `number` of the robot, from 1.
-Listener listen(const HostOptions& options, std::size_t number) {
+/// `number` of the robot, from 1. None behind a terminal.
+std::optional<Listener> listen(const HostOptions& options, std::size_t number) {
+  if (options.terminal)
+    return std::nullopt;
   if (!options.tcp)
     return Listener::local(numbered(options.socket.value_or(default_socket()), number));
   const std::size_t port = *options.tcp == 0 ? 0 : *options.tcp + number - 1;
@@ -164,18 +169,23 @@ class Station {
                           : std::nullopt,
                       options.seed + number);
     }
-    log("listening on " + listener_.name() + (options.step ? ", single-step" : ""));
+    if (options.terminal)
+      terminal_.emplace(numbered(*options.terminal, number + 1));
+    log("listening on " + (terminal_ ? terminal_->name() : listener_->name()) +
+        (options.step ? ", single-step" : ""));
   }
 
   void add_to(std::vector<pollfd>& fds) const {
     const auto events = static_cast<short>(output_.empty() ? POLLIN : POLLIN | POLLOUT);
-    fds.push_back({client_.get(), events, 0});  // poll leaves out those below zero
-    fds.push_back({listener_.fd(), POLLIN, 0});
+    fds.push_back({line(), events, 0});  // poll leaves out those below zero
+    fds.push_back({listener_ ? listener_->fd() : -1, POLLIN, 0});
   }
   void add_viewers_to(std::vector<pollfd>& fds) const {
     if (stereo_)
       stereo_->add_to(fds);
   }
+  /// For a client to open the terminal, which poll() does not tell.
+  bool waits_for_terminal() const { return terminal_ && !terminal_open_; }
   bool packet_pending() const { return server().packet_pending(); }
 
   // For free running: whether the client may still be at work on what it has been sent. It is not
@@ -191,7 +201,7 @@ class Station {
   void gap() { simulation_.gap(number_); }
 
   void accept() {
-    Fd fd = listener_.accept();
+    Fd fd = listener_->accept();
     if (!fd)
       return;
     if (client_) {
@@ -208,21 +218,29 @@ class Station {
     log("a client has connected");
   }
 
+  /// Whether somebody has the terminal open now.
+  void look_at_terminal() {
+    if (!terminal_ || terminal_->is_open() == terminal_open_)
+      return;
+    terminal_open_ = !terminal_open_;
+    log(terminal_open_ ? "a client has opened the terminal" : "the client has closed the terminal");
+  }
+
   void read_client() {
     // What was said before this was heard, in that order.
-    if (client_)
+    if (line() >= 0)
       send(server().take_output());
-    if (!client_)
+    if (line() < 0)
       return;
     std::array<std::uint8_t, 4096> buffer{};
-    const ssize_t size = ::read(client_.get(), buffer.data(), buffer.size());
+    const ssize_t size = ::read(line(), buffer.data(), buffer.size());
     if (size > 0) {
       cycles_ = 0;
       heard_ = Clock::now();
       const protocol::ByteView bytes(buffer.data(), static_cast<std::size_t>(size));
       watch(protocol::Side::kClient, bytes);
       simulation_.receive(number_, bytes);
-    } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
+    } else if (!terminal_ && (size == 0 || (errno != EAGAIN && errno != EINTR))) {
       hang_up("the client has gone");
     }
   }
@@ -230,7 +248,7 @@ class Station {
   /// Sends what there is to send, and writes down what there is to write down.
   void write(bool live) {
     const protocol::Bytes fresh = server().take_output();
-    if (client_)
+    if (line() >= 0)
       send(fresh);
     const auto rows = server().take_trace();
     trace_.write(rows);
@@ -259,6 +277,8 @@ class Station {
       log_(prefix_ + text);
   }
   Server& server() const { return simulation_.server(number_); }
+  /// To the client; below zero while there is none.
+  int line() const { return terminal_ ? (terminal_open_ ? terminal_->fd() : -1) : client_.get(); }
 
   void watch(protocol::Side side, protocol::ByteView bytes) {
     if (!check_ || bytes.empty())
@@ -275,17 +295,26 @@ class Station {
       output_.insert(output_.end(), fresh.begin(), fresh.end());
     }
     while (!output_.empty()) {
-      const ssize_t size = ::send(client_.get(), output_.data(), output_.size(), MSG_NOSIGNAL);
+      const ssize_t size = terminal_ ? ::write(line(), output_.data(), output_.size())
+                                     : ::send(line(), output_.data(), output_.size(), MSG_NOSIGNAL);
       if (size > 0) {
         output_.erase(output_.begin(), output_.begin() + size);
       } else if (errno == EINTR) {
         continue;
       } else {
-        if (errno != EAGAIN)
+        if (terminal_)
+          lose_output();
+        else if (errno != EAGAIN)
           hang_up("the client has gone");
         return;
       }
     }
+  }
+
+  // Nobody reads: as on a line, what was said is gone, and what is said next is fresh.
+  void lose_output() {
+    terminal_->forget();
+    output_.clear();
   }
 
   void hang_up(const std::string& why) {
@@ -306,7 +335,9 @@ class Station {
   Simulation& simulation_;
   RobotNumber number_;
   TraceFile trace_;
-  Listener listener_;
+  std::optional<Listener> listener_;
+  std::optional<Terminal> terminal_;
+  bool terminal_open_ = false;
   Fd client_;
   protocol::Bytes output_;
   std::optional<LineCheck> check_;
@@ -326,7 +357,12 @@ class Host {
   void run(int stop_fd) {
     std::vector<pollfd> fds;
     while (true) {
-      const int timeout = schedule();
+      int timeout = schedule();
+      for (const auto& station : stations_) {
+        station->look_at_terminal();
+        if (station->waits_for_terminal())
+          timeout = timeout < 0 ? kLook : std::min(timeout, kLook);
+      }
       // In that order: stop, timer, then each robot's client and listener, then who looks on.
       fds.clear();
       fds.push_back({stop_fd, POLLIN, 0});
@@ -443,6 +479,10 @@ std::string default_socket() {
   return "/tmp/saphira-robot-" + std::to_string(::getuid());
 }
 
+std::string default_terminal() {
+  return "/tmp/saphira-robot-" + std::to_string(::getuid()) + ".tty";
+}
+
 std::string numbered(const std::string& path, std::size_t number) {
   if (number <= 1)
     return path;
@@ -461,7 +501,7 @@ void run(const HostOptions& options, int stop_fd) {
   const World world = load_world(options.world);
   Simulation simulation(world);
   const auto add = [&](const std::string& file, const std::optional<Pose>& start,
-                       std::size_t number) {
+                       const std::optional<Place>& place, std::size_t number) {
     const protocol::RobotParameters parameters = protocol::load_parameters(file);
     if (options.log)
       for (const std::string& warning : parameters.warnings)
@@ -477,16 +517,25 @@ void run(const HostOptions& options, int stop_fd) {
     try {
       simulation.add(parameters, *start, server_options);
     } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(options.world + ": " + error.what());
+      if (place)
+        throw FileError(options.world, place->line, place->column, error.what());
+      throw std::runtime_error("--position of robot " + std::to_string(number + 1) + ": " +
+                               error.what());
     }
   };
-  add(options.robot, options.position ? options.position : world.start, 0);
+  if (options.position)
+    add(options.robot, options.position, std::nullopt, 0);
+  else
+    add(options.robot, world.start, world.start_place, 0);
   for (std::size_t i = 0; i < options.more.size(); ++i) {
     const RobotOptions& robot = options.more[i];
     std::optional<Pose> start = robot.position;
-    if (!start && i < world.movable.robots.size())
+    std::optional<Place> place;
+    if (!start && i < world.movable.robots.size()) {
       start = world.movable.robots[i];
-    add(robot.robot.empty() ? options.robot : robot.robot, start, i + 1);
+      place = world.robot_places[i];
+    }
+    add(robot.robot.empty() ? options.robot : robot.robot, start, place, i + 1);
   }
   Host(options, simulation).run(stop_fd);
 }

@@ -1,12 +1,17 @@
 #include "listener.hpp"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
+#include <poll.h>
+#include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -92,6 +97,49 @@ Listener Listener::tcp(const std::string& text, std::uint16_t port) {
   if (::getsockname(out.fd_.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0)
     out.name_ = text + ":" + std::to_string(ntohs(address.sin_port));
   return out;
+}
+
+Terminal::Terminal(std::string link) : link_(std::move(link)) {
+  master_.reset(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
+  std::array<char, 64> device{};
+  if (!master_ || ::grantpt(master_.get()) != 0 || ::unlockpt(master_.get()) != 0 ||
+      ::ptsname_r(master_.get(), device.data(), device.size()) != 0)
+    fail("pseudo-terminal");
+  device_ = device.data();
+  // A new one would send back what comes until its client has set it.
+  termios settings{};
+  ::tcgetattr(master_.get(), &settings);
+  ::cfmakeraw(&settings);
+  ::tcsetattr(master_.get(), TCSANOW, &settings);
+  // That nobody has it open is seen only after somebody had.
+  const Fd once(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  // A simulator that was killed leaves its link behind.
+  struct stat there {};
+  if (::lstat(link_.c_str(), &there) == 0) {
+    if (!S_ISLNK(there.st_mode))
+      throw std::runtime_error("terminal " + link_ +
+                               ": there is a file already that is no symbolic link");
+    ::unlink(link_.c_str());
+  }
+  if (::symlink(device_.c_str(), link_.c_str()) != 0)
+    fail("terminal " + link_);
+}
+
+Terminal::~Terminal() {
+  // Unless another simulator has put its own there meanwhile.
+  std::array<char, 64> target{};
+  const ssize_t size = ::readlink(link_.c_str(), target.data(), target.size() - 1);
+  if (size > 0 && device_ == target.data())
+    ::unlink(link_.c_str());
+}
+
+bool Terminal::is_open() const {
+  pollfd look{master_.get(), 0, 0};
+  return ::poll(&look, 1, 0) >= 0 && (look.revents & POLLHUP) == 0;
+}
+
+void Terminal::forget() const {
+  ::tcflush(master_.get(), TCOFLUSH);
 }
 
 }  // namespace saphira::sim

@@ -58,4 +58,28 @@ class Listener {
   ino_t inode_ = 0;
 };
 
+/// A pseudo-terminal: what a client opens in place of a serial line. A symbolic link leads to it,
+/// and is removed at the end. As on a real line nobody is told that the client has gone, and what
+/// nobody reads is lost. std::runtime_error where it cannot be had.
+class Terminal {
+ public:
+  explicit Terminal(std::string link);
+  ~Terminal();
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  int fd() const { return master_.get(); }
+  /// The link, and the device that it leads to.
+  std::string name() const { return link_ + " (" + device_ + ")"; }
+  /// Whether a client has it open.
+  bool is_open() const;
+  /// Forgets what has been written to it and not been read.
+  void forget() const;
+
+ private:
+  std::string link_;
+  std::string device_;
+  Fd master_;
+};
+
 }  // namespace saphira::sim

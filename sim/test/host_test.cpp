@@ -25,6 +25,8 @@
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/sim/trace.hpp"
+#include "saphira/transport/address.hpp"
+#include "saphira/transport/link.hpp"
 
 namespace saphira::sim {
 namespace {
@@ -46,6 +48,10 @@ bool wait_for(const Condition& condition) {
     std::this_thread::sleep_for(1ms);
   }
   return true;
+}
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 class Client {
@@ -188,6 +194,83 @@ TEST_F(HostTest, ServesLive) {
   EXPECT_GT(trace().back().pose_in_world.x, 1.6);
   stop();
   EXPECT_FALSE(std::filesystem::exists(*options_.socket));
+}
+
+// As a bridge opens a serial line, goes, and comes back.
+TEST_F(HostTest, ServesATerminal) {
+  options_.socket.reset();
+  options_.terminal = directory_ + "/tty";
+  start();
+  ASSERT_TRUE(logs("listening on " + *options_.terminal));
+  const auto heart = [this] {
+    transport::Link link(transport::parse_address("serial:" + *options_.terminal + "@9600"));
+    EXPECT_TRUE(wait_for([&] {
+      link.advance(now());
+      return link.state() == transport::Link::State::open;
+    })) << link.trouble();
+    protocol::PacketParser parser;
+    const auto hear = [&](const auto& wanted) {
+      return wait_for([&] {
+        std::vector<std::uint8_t> bytes;
+        EXPECT_TRUE(link.read(bytes, now())) << link.trouble();
+        parser.feed(bytes);
+        while (const auto body = parser.next())
+          if (wanted(*body))
+            return true;
+        return false;
+      });
+    };
+    EXPECT_TRUE(link.write(encode(protocol::Close{}), now()));  // whoever spoke before
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_TRUE(link.write(protocol::encode_sync(i), now()));
+      EXPECT_TRUE(hear([&](const Bytes& body) { return protocol::sync_number(body) == i; })) << i;
+    }
+    EXPECT_TRUE(link.write(encode(protocol::Open{}), now()));
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_TRUE(
+          hear([](const Bytes& body) { return protocol::decode_information(body).has_value(); }));
+    }
+  };
+  heart();
+  EXPECT_TRUE(logs("the client has closed the terminal"));
+  heart();
+  stop();
+  EXPECT_FALSE(std::filesystem::is_symlink(*options_.terminal));
+}
+
+TEST_F(HostTest, ATerminalTakesNoFilesPlace) {
+  options_.socket.reset();
+  options_.terminal = directory_ + "/tty";
+  std::ofstream(*options_.terminal) << "precious";
+  try {
+    run(options_, stop_);
+    FAIL() << "it ran";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("is no symbolic link"), std::string::npos);
+  }
+  EXPECT_EQ(read_file(*options_.terminal), "precious");
+}
+
+// The file is right for a smaller robot.
+TEST_F(HostTest, AStartWithoutRoomIsNamedByItsPlace) {
+  const std::string world = directory_ + "/narrow.wld";
+  std::ofstream(world) << "width 4000 height 4000\n0 0 4000 0\n  position 2000 150 0\n"
+                          "robot 2000 160 0\n";
+  options_.world = world;
+  const auto trouble = [&] {
+    try {
+      run(options_, stop_);
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(trouble().find("narrow.wld:3:3: "), std::string::npos) << trouble();
+  options_.position = Pose{2.0, 2.0, 0.0};
+  options_.more.push_back({});
+  EXPECT_NE(trouble().find("narrow.wld:4:1: "), std::string::npos) << trouble();
+  options_.more[0].position = Pose{2.0, 2.1, 0.0};
+  EXPECT_NE(trouble().find("--position of robot 2: "), std::string::npos) << trouble();
 }
 
 TEST_F(HostTest, TheWatchdogWorksLive) {

@@ -31,6 +31,9 @@ struct HostOptions {
   /// Numeric address that the port is bound to. The protocol has no password: whoever reaches the
   /// port drives the robot.
   std::string tcp_address = "127.0.0.1";
+  /// Path of a symbolic link to a pseudo-terminal that a client opens instead, as it would open a
+  /// serial line. Of further robots as with the socket.
+  std::optional<std::string> terminal;
   std::uint64_t seed = 1;
   bool step = false;  ///< single-step from the start
   /// Times real time, in (0, 1000], or kMaxRate: as fast as the machine computes and the clients
@@ -55,6 +58,9 @@ struct HostOptions {
 
 /// $ROBOT_SOCKET, otherwise /tmp/saphira-robot-<uid> (manual 3.1).
 std::string default_socket();
+
+/// /tmp/saphira-robot-<uid>.tty.
+std::string default_terminal();
 
 /// The name of a file or socket for robot `number`, which counts from 1: "run.csv", "run-2.csv".
 std::string numbered(const std::string& path, std::size_t number);
