@@ -17,6 +17,14 @@ constexpr std::string_view kChannel = "pioneer_";
 constexpr std::string_view kColorIs = "_color=";
 constexpr int kSoundUnitsInCycle = 5;  // of 20 ms
 
+// PeopleBots have infrared sensors that look up at tables, on their digital inputs: a bit that is
+// clear says that there is one. The first one (p2pb) has none.
+bool has_table_sensors(const RobotParameters& parameters) {
+  constexpr std::array kPeopleBots{"p2pp", "perfpb", "perfpb+", "peoplebot-sh"};
+  return std::find(kPeopleBots.begin(), kPeopleBots.end(), parameters.subclass) !=
+         kPeopleBots.end();
+}
+
 template <class... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
@@ -133,7 +141,10 @@ VisionPacket FastTrack::look(const Scene& scene, RobotNumber robot) const {
 }
 
 Devices::Devices(const RobotParameters& parameters, const std::string& name)
-    : parameters_(parameters), name_(name), later_(parameters.protocol != Protocol::kPsos) {}
+    : parameters_(parameters),
+      name_(name),
+      later_(parameters.protocol != Protocol::kPsos),
+      digital_input_(has_table_sensors(parameters) ? 0xFF : 0) {}
 
 Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& out) {
   const auto taken = [](bool have) { return have ? Answer::kTaken : Answer::kMissing; };

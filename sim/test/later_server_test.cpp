@@ -148,6 +148,22 @@ TEST(LaterServer, ConfigurationSaysWhatTheFileSays) {
   EXPECT_NE(config.serial, "SIM");  // ARIA would expect a simulator's laser
 }
 
+// ARIA stops a PeopleBot while a bit of its table sensors is clear.
+TEST(LaterServer, NoTableIsBeforeAPeopleBotAtRest) {
+  for (const auto& [robot, inputs] : {std::pair{"p2pp", 0xFF},
+                                      {"perfpb", 0xFF},
+                                      {"perfpb+", 0xFF},
+                                      {"peoplebot-sh", 0xFF},
+                                      {"p2pb", 0},
+                                      {"p3dx-sh", 0}}) {
+    Bench b(robot);
+    b.open();
+    b.send(protocol::IoRequest{1});
+    EXPECT_EQ(b.last<protocol::IoPacket>().digital_inputs, Bytes{static_cast<std::uint8_t>(inputs)})
+        << robot;
+  }
+}
+
 TEST(LaterServer, PacketsOnRequest) {
   Bench b("peoplebot-sh");
   b.open();

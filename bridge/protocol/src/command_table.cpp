@@ -49,7 +49,9 @@ constexpr std::array kRules{
     CommandRule{Number::kStop, "STOP", ArgumentForm::kOptional, Origin::kLater, 0, 65535, ""},
     CommandRule{Number::kDigitalOutput, "DIGOUT", ArgumentForm::kInteger, Origin::kManual, 0, 65535,
                 "bits"},
-    CommandRule{Number::kTimer, "TIMER", ArgumentForm::kInteger, Origin::kManual, 0, 7, "pin"},
+    // The manual knows pins 0 to 7. Clients of later robots switch the power of a laser by it: the
+    // port (11) in the high byte, on or off in the low one.
+    CommandRule{Number::kTimer, "TIMER", ArgumentForm::kInteger, Origin::kManual, 0, 0x0BFF, "pin"},
     CommandRule{Number::kWheelVelocities, "VEL2", ArgumentForm::kPair, Origin::kManual, -127, 127,
                 "Vel2Divisor"},
     CommandRule{Number::kGripper, "GRIPPER", ArgumentForm::kInteger, Origin::kManual, 0, 17, ""},

@@ -159,6 +159,14 @@ TEST_F(CheckTest, ArgumentsThatMayBeMissing) {
   EXPECT_EQ(checker_.violations(), 0U);
 }
 
+// As clients of later robots have it for a laser.
+TEST_F(CheckTest, TheTimersCommandSwitchesAPortToo) {
+  open();
+  for (const Bytes& body : {Bytes{31, 0x3B, 7, 0}, Bytes{31, 0x3B, 0, 11}, Bytes{31, 0x3B, 1, 11}})
+    client(frame(body));
+  EXPECT_EQ(checker_.violations(), 0U);
+}
+
 TEST_F(CheckTest, InformationBeforeOpen) {
   synchronize();
   server(encode(information()));
