@@ -76,9 +76,14 @@ std::array<Shin, 2> shins(const Person& person) {
   return pair;
 }
 
-Scene::Scene(const World& world) : world_(&world) {
+Scene::Scene(const World& world)
+    : world_(&world),
+      hulls_near_(world.width, world.height),
+      persons_near_(world.width, world.height) {
   const MovablePlans& plans = world.movable;
   for (const PersonPlan& plan : plans.persons) {
+    persons_near_.put(static_cast<std::uint32_t>(persons_.size()), plan.at);
+    widest_person_ = std::max(widest_person_, plan.radius + kStep);
     persons_.push_back({&plan, plan.at});
     const auto walk = std::find_if(plan.script.begin(), plan.script.end(),
                                    [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; });
@@ -126,6 +131,8 @@ Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose&
     throw std::invalid_argument("the robot would stand in a wall: the nearest thing is " +
                                 std::to_string(free) + " m from its middle, its radius is " +
                                 std::to_string(parameters.radius) + " m");
+  hulls_near_.put(static_cast<std::uint32_t>(hulls_.size()), start_in_world.position());
+  widest_hull_ = std::max(widest_hull_, parameters.radius);
   hulls_.push_back({start_in_world.position(), parameters.radius});
   robots_.push_back(
       std::make_unique<Robot>(*this, robots_.size(), parameters, start_in_world, seed));
@@ -136,8 +143,10 @@ Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose&
 
 void Scene::tick() {
   ++ticks_;
-  for (Person& person : persons_)
-    walk(person);
+  for (std::uint32_t i = 0; i < persons_.size(); ++i) {
+    walk(persons_[i]);
+    persons_near_.put(i, persons_[i].at);
+  }
   for (std::size_t i = 0; i < doors_.size(); ++i)
     turn(i);
   for (const auto& robot : robots_)
@@ -159,6 +168,7 @@ void Scene::sound(const Ping& ping) {
 
 void Scene::moved(RobotNumber number) {
   hulls_[number].centre = robots_[number]->pose_in_world().position();
+  hulls_near_.put(static_cast<std::uint32_t>(number), hulls_[number].centre);
 }
 
 bool Scene::set_door(std::string_view name, bool open) {
@@ -220,7 +230,8 @@ void Scene::walk(Person& person) {
 // Whether nothing is in his way that was not already behind him.
 bool Scene::lets_pass(const Person& person, const Vec2& to) {
   const double radius = person.plan->radius;
-  for (const Disc& hull : hulls_) {
+  for (const std::uint32_t i : hulls_near_.near(to, radius + widest_hull_ + kManners)) {
+    const Disc& hull = hulls_[i];
     const double after = (hull.centre - to).norm();
     if (after < radius + hull.radius + kManners && after < (hull.centre - person.at).norm())
       return false;
@@ -350,7 +361,7 @@ void Scene::put(std::size_t number, const Pose& pose_in_world) {
 }
 
 void Scene::add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const {
-  for (std::size_t i = 0; i < hulls_.size(); ++i) {
+  for (const std::uint32_t i : hulls_near_.near(point, reach + widest_hull_)) {
     const double far = reach + hulls_[i].radius;
     if (i != but && (hulls_[i].centre - point).squaredNorm() <= far * far)
       things.discs.push_back(hulls_[i]);
@@ -360,8 +371,8 @@ void Scene::add_movable(const Vec2& point, double reach, RobotNumber but, Things
     if ((disc.centre - point).squaredNorm() <= far * far)
       things.discs.push_back(disc);
   };
-  for (const Person& person : persons_)
-    add({person.at, person.plan->radius});
+  for (const std::uint32_t i : persons_near_.near(point, reach + widest_person_))
+    add({persons_[i].at, persons_[i].plan->radius});
   for (const Disc& post : posts_)
     add(post);
   for (const Segment& segment : segments_)
@@ -378,10 +389,10 @@ void Scene::add_echoes(const Vec2& point, double reach, RobotNumber but, double 
     echoes.things.discs.push_back(disc);
     echoes.discs.push_back(surface);
   };
-  for (std::uint32_t i = 0; i < hulls_.size(); ++i)
+  for (const std::uint32_t i : hulls_near_.near(point, reach + widest_hull_))
     if (i != but)
       add(hulls_[i], {0.0, false, i});
-  for (std::uint32_t i = 0; i < persons_.size(); ++i) {
+  for (const std::uint32_t i : persons_near_.near(point, reach + widest_person_)) {
     std::uint32_t id = kOfPersons + 2 * i;
     for (const Shin& shin : shins(persons_[i]))
       add(shin.disc, {persons_[i].plan->look.cloth.value_or(cloth), shin.swings, id++});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/sim/grid.hpp"
 #include "saphira/sim/movable.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/world.hpp"
@@ -148,7 +149,11 @@ class Scene {
   const World* world_;
   std::vector<std::unique_ptr<Robot>> robots_;
   std::vector<Disc> hulls_;  // of the robots, by number
+  Grid hulls_near_;
+  double widest_hull_ = 0.0;  // [m] radius
   std::vector<Person> persons_;
+  Grid persons_near_;
+  double widest_person_ = 0.0;
   std::vector<Door> doors_;
   std::vector<Box> boxes_;
   std::vector<Disc> posts_;
