@@ -496,6 +496,22 @@ TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
   EXPECT_TRUE(has(up.output(), "all stopped")) << up.output();
 }
 
+TEST_F(CliTest, UpGivesARobotEachOfItsProgramsOnce) {
+  const std::string programs =
+      "programs:\n"
+      "  - {name: behaviors, program: sh, arguments: [-c, exec sleep 600]}\n";
+  const std::string first = write("first.yaml", programs);
+  const std::string second = write("second.yaml", programs);
+  test::Process up(command({"up", first}), folder_.path("up"));
+  ASSERT_TRUE(test::wait_until([&] { return has(up.output(), "1 programs of"); })) << up.output();
+  const Outcome other = run({"up", second});
+  EXPECT_NE(other.code, 0);
+  EXPECT_TRUE(has(other.text, "behaviors of robot " + robot_)) << other.text;
+  EXPECT_TRUE(has(other.text, "started by " + first)) << other.text;
+  up.signal(SIGTERM);
+  EXPECT_EQ(up.wait(), 0);
+}
+
 TEST_F(CliTest, UpNamesTheMistakeInADeployment) {
   const std::string file = write("bad.yaml", "programs:\n  - program: sh\n    argments: []\n");
   const Outcome outcome = run({"up", file});

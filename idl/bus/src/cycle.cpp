@@ -373,7 +373,7 @@ struct Cycle::Impl {
   std::string refusal;
   std::uint64_t refusal_until = 0;
   Clock::time_point waiting_since = Clock::now();
-  Clock::time_point renewed = Clock::now();
+  Clock::time_point renewed = Clock::now() - std::chrono::minutes(2);
   Clock::time_point began;
   Clock::time_point looked;  // around, by a step or by `idle`
   std::uint64_t timed = 0;

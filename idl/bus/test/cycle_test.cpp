@@ -29,7 +29,8 @@ class Cycles : public OnEachBus {
   }
 
   // The next step, or nothing when there is none for so long.
-  std::optional<Step> next(milliseconds patience) {
+  std::optional<Step> next(milliseconds patience) { return next(*cycle_, patience); }
+  static std::optional<Step> next(Cycle& cycle, milliseconds patience) {
     Stop stop;
     Stop over;
     std::thread guard([&] {
@@ -37,7 +38,7 @@ class Cycles : public OnEachBus {
       if (poll(&fd, 1, static_cast<int>(patience.count())) == 0)
         stop.request();
     });
-    auto result = cycle_->next(stop);
+    auto result = cycle.next(stop);
     over.request();
     guard.join();
     return result;
@@ -222,6 +223,37 @@ TEST_P(Cycles, SecondBridgeIsRefusedAndNamedUntilTheFirstIsGone) {
     return next(milliseconds(1)).has_value();
   }));
   EXPECT_EQ(cycle_->stamp().epoch(), 2U);
+}
+
+TEST_P(Cycles, SecondServiceOfTheNameWaitsUntilTheFirstIsGone) {
+  start(false);
+  auto second = node("service");
+  Cycle waiting(*second);
+  waiting.input(topics::kIntentions);
+  ASSERT_TRUE(eventually(*bridge_, [&] { return robot_->matched() == 2; }));
+  std::uint64_t number = 0;
+  ASSERT_TRUE(eventually(*second, [&] {
+    send(1, ++number);
+    EXPECT_EQ(step(), number);
+    if (next(waiting, milliseconds(1)))
+      waiting.done();
+    return second->status().reason().starts_with("another service, process ");
+  }));
+  EXPECT_EQ(second->status().state(), v1::SERVICE_WAITING);
+  const std::uint64_t before = second->status().steps();
+  for (int i = 0; i < 5; ++i) {
+    send(1, ++number);
+    EXPECT_EQ(step(), number);
+    EXPECT_FALSE(next(waiting, milliseconds(1)));
+  }
+  EXPECT_EQ(second->status().steps(), before);
+  cycle_.reset();
+  service_.reset();
+  ASSERT_TRUE(eventually(*second, [&] {
+    send(1, ++number);
+    return next(waiting, milliseconds(1)).has_value();
+  }));
+  EXPECT_EQ(second->status().state(), v1::SERVICE_RUNNING);
 }
 
 TEST_P(Cycles, OneWrongNumberOfTheBridgeDoesNotMakeItDeaf) {
