@@ -188,12 +188,12 @@ TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
   const std::string two = robot("two");
   auto a = node("a", one);
   auto b = node("b", two);
-  auto fleet = node("fleet", "*");
+  auto fleet = node("fleet", robot("*"));  // "*" alone would meet tests that run beside this one
   auto writer_a = a->writer(topics::kGoals);
   auto writer_b = b->writer(topics::kGoals);
   auto reader_b = b->reader(topics::kGoals);
   auto reader_fleet = fleet->reader(topics::kGoals);
-  const std::uint64_t mark = a->instance();  // "*" also hears tests that run beside this one
+  const std::uint64_t mark = a->instance();
   auto goal_a = goal(1);
   goal_a.id().writer(mark);
   auto goal_b = goal(2);
