@@ -88,7 +88,8 @@ bool Sequences::plausible(const std::uint8_t* message, std::size_t size) {
     std::memcpy(key.data() + 12, part.data + writer, 4);
     if (part.id == kAcknack)
       std::memcpy(key.data() + 16, part.data, 4);
-    if (!follows(key, part.number(number)) || (part.id == kGap && !follows(key, part.number(16))))
+    if ((part.id == kHeartbeat && part.number(8) > part.number(16) + 1) ||
+        !follows(key, part.number(number)) || (part.id == kGap && !follows(key, part.number(16))))
       return false;
   }
   return true;
@@ -97,9 +98,9 @@ bool Sequences::plausible(const std::uint8_t* message, std::size_t size) {
 bool Sequences::follows(const Key& key, std::uint64_t number) {
   if (known_.size() >= kMost)
     known_.clear();
-  const auto [found, is_new] = known_.try_emplace(key, Known{number, 0, 0});
+  const auto [found, is_new] = known_.try_emplace(key);
   Known& known = found->second;
-  if (is_new || number <= known.newest + kLeap) {
+  if (number <= known.newest + (is_new ? kBeginning : kLeap)) {
     known.newest = std::max(known.newest, number);
     return true;
   }

@@ -23,6 +23,8 @@ class Sequences {
   bool plausible(const std::uint8_t* message, std::size_t size);
 
   static constexpr std::uint64_t kLeap = 1024;
+  /// Up to here a writer's first number is believed at once: Fast DDS counts so far in no time.
+  static constexpr std::uint64_t kBeginning = 1U << 20U;
 
  private:
   /// Of whom it is: the participant, the writer, and of an acknowledgement the reader.

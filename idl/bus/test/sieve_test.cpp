@@ -97,12 +97,23 @@ TEST(Sequences, LeapIsBelievedWhenItIsSaidThreeTimes) {
   EXPECT_FALSE(ask(heartbeat(1, 7, 5002)));
   EXPECT_FALSE(ask(heartbeat(1, 0x7fffffff, 5002)));
   EXPECT_TRUE(ask(heartbeat(1, 0, 5002)));
-  EXPECT_TRUE(ask(heartbeat(2, 7, 5002)));  // another writer
+  EXPECT_TRUE(ask(heartbeat(2, 0, 900000)));  // another writer
+  EXPECT_FALSE(ask(heartbeat(3, 7, 5002)));   // a third one, whose first number is absurd
+  EXPECT_TRUE(ask(heartbeat(3, 0, 7)));
   // It was away for long.
   EXPECT_FALSE(ask(heartbeat(1, 0, 90000)));
   EXPECT_FALSE(ask(heartbeat(1, 0, 90001)));
   EXPECT_TRUE(ask(heartbeat(1, 0, 90002)));
   EXPECT_TRUE(ask(heartbeat(1, 0, 90003)));
+}
+
+TEST(Sequences, HeartbeatThatBeginsBehindItsEndIsRefused) {
+  Sequences sequences;
+  Bytes bytes = heartbeat(1, 0, 20);
+  bytes[24 + 12] = 21;
+  EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size()));  // nothing is left
+  bytes[24 + 12] = 22;
+  EXPECT_FALSE(sequences.plausible(bytes.data(), bytes.size()));
 }
 
 TEST(Sequences, EveryKindOfSubmessageIsRead) {
