@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "convert.hpp"
+#include "saphira/authority/age.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/bus/program.hpp"
@@ -110,7 +111,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       namesakes_(node_),
       link_(transport::parse_address(options_.robot_port)),
       devices_(node_, reflector_),
-      arbiter_({options_.lease, options_.quiet, 3}),
+      arbiter_({options_.lease, options_.quiet}),
       position_file_(options_.state_file),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched"),
       kept_(latch_file_.read()) {
@@ -641,6 +642,7 @@ void Shell::decide() {
     guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant.role)], body_,
                                 echoes_.seen_from(reflector_.state().pose_in_odom), wanted.velocity,
                                 wanted.rotation_velocity, contact_speed_of(grant.role));
+    guarded_ = authority::slow_for_age(std::move(guarded_), grant.command_age, kCycle);
   }
   wanted.velocity = guarded_.velocity;
   wanted.rotation_velocity = guarded_.rotation_velocity;

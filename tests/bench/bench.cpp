@@ -1,6 +1,7 @@
 #include "bench.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Starts argv; stdout goes to `out`, or nowhere.
-pid_t start(std::vector<std::string> argv, int out) {
+pid_t start(std::vector<std::string> argv, int out, int network) {
   if (argv.at(0).find('/') == std::string::npos)
     argv[0] = program_folder() + "/" + argv[0];
   std::vector<char*> pointers;
@@ -34,6 +35,8 @@ pid_t start(std::vector<std::string> argv, int out) {
     throw std::runtime_error("fork failed");
   if (pid == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (network >= 0 && setns(network, CLONE_NEWNET) != 0)
+      _exit(126);
     const int null = open("/dev/null", O_RDWR);
     dup2(null, 0);
     dup2(out < 0 ? null : out, 1);
@@ -46,18 +49,19 @@ pid_t start(std::vector<std::string> argv, int out) {
 
 }  // namespace
 
-Child::Child(std::vector<std::string> argv) : pid_(start(std::move(argv), -1)) {}
+Child::Child(std::vector<std::string> argv, int network)
+    : pid_(start(std::move(argv), -1, network)) {}
 
 Child::~Child() {
   kill(pid_, SIGTERM);
   waitpid(pid_, nullptr, 0);
 }
 
-std::string output_of(const std::vector<std::string>& argv) {
+std::string output_of(const std::vector<std::string>& argv, int network) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw std::runtime_error("pipe failed");
-  const pid_t pid = start(argv, ends[1]);
+  const pid_t pid = start(argv, ends[1], network);
   close(ends[1]);
   std::string text;
   char buffer[4096];

@@ -11,7 +11,8 @@ namespace saphira::bench {
 /// A child with its output dropped; terminated with the object.
 class Child {
  public:
-  explicit Child(std::vector<std::string> argv);
+  /// `network`: a file descriptor of the network namespace that it runs in; below 0: this one.
+  explicit Child(std::vector<std::string> argv, int network = -1);
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -22,7 +23,7 @@ class Child {
 };
 
 /// Runs a program to its end and returns what it wrote to stdout; std::runtime_error when it fails.
-std::string output_of(const std::vector<std::string>& argv);
+std::string output_of(const std::vector<std::string>& argv, int network = -1);
 
 /// CPU seconds that a process has used, and its resident memory [MB]. 0 when it is gone.
 double cpu_seconds(pid_t pid);

@@ -49,6 +49,11 @@ Explanation Reason::stopped() const {
   Cause cause{"wheels", "The robot is told to stand", {grant_cause()}};
   if (grant.waits_for_hand_back() && grant.reason().find("hand-back") == std::string::npos)
     sentence += "; " + latched(grant);
+  if (auto age = age_cause()) {
+    if (!scene_.behaviors->limit_reason().empty())
+      sentence += "; " + age->text;
+    cause.because.push_back(std::move(*age));
+  }
   if (!idle.empty()) {
     sentence += "; " + idle;
     cause.because.front().because.push_back({"goal", idle, {}});

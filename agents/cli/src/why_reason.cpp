@@ -10,6 +10,9 @@
 namespace saphira::cli {
 namespace {
 
+/// [s] What is older is worth mentioning.
+constexpr double kOldInput = 0.3;
+
 bool same(const v1::GoalId& a, const v1::GoalId& b) {
   return a.writer() == b.writer() && a.number() == b.number();
 }
@@ -227,6 +230,26 @@ std::optional<Cause> Reason::guard_cause() const {
                {}};
 }
 
+std::optional<Cause> Reason::age_cause() const {
+  if (!scene_.behaviors)
+    return std::nullopt;
+  const v1::Behaviors& all = *scene_.behaviors;
+  if (!all.limit_reason().empty())
+    return Cause{"age",
+                 all.limit_reason() + (all.speed_limit() > 0.0 ? ", so it drives no faster than " +
+                                                                     speed_text(all.speed_limit())
+                                                               : ""),
+                 {}};
+  const double command_age = scene_.grant ? scene_.grant->command_age() : 0.0;
+  if (std::max(all.input_age(), command_age) < kOldInput)
+    return std::nullopt;
+  return Cause{"age",
+               format("the network, or a computer, is slow: what was intended was %.1f s old, ",
+                      all.input_age()) +
+                   format("and the command answers what was %.1f s ago", command_age),
+               {}};
+}
+
 Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
   Cause cause{
       "rule",
@@ -315,6 +338,8 @@ Cause Reason::wheels(const std::string& text) {
     cause.because.push_back(grant_cause());
   if (auto guard = guard_cause())
     cause.because.push_back(std::move(*guard));
+  if (auto age = age_cause())
+    cause.because.push_back(std::move(*age));
   if (scene_.behaviors) {
     cause.because.push_back(channel_cause(Channel::speed));
     cause.because.push_back(channel_cause(Channel::turn));

@@ -51,6 +51,8 @@ class Reason {
 
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
+  /// What is old of what the behaviors act on, and what that does to the speed.
+  std::optional<Cause> age_cause() const;
   Cause rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
   Cause behavior_cause(const Say& say, Channel channel);
   Cause channel_cause(Channel channel);

@@ -266,6 +266,38 @@ TEST_F(WhyTest, TheGuardComesFirst) {
             "ahead: stopped (margin 0.20 m)); the behaviors want 0.30 m/s.");
 }
 
+TEST_F(WhyTest, ASlowNetworkIsSaidAndHowSlow) {
+  scene.behaviors->input_age(0.6);
+  scene.behaviors->speed_limit(0.3);
+  scene.behaviors->limit_reason("the network, or a computer, is slow: intentions are 0.5 s old");
+  const Explanation slow = why(scene);
+  EXPECT_NE(slow.sentence.find("intentions are 0.5 s old, so it drives no faster than 0.30 m/s"),
+            std::string::npos)
+      << slow.sentence;
+  EXPECT_NE(to_text(slow).find("- the network, or a computer, is slow"), std::string::npos);
+  // Where it drives no faster anyway the sentence is about something else.
+  scene.behaviors->limit_reason("");
+  scene.grant->command_age(0.4);
+  const Explanation slower = why(scene);
+  EXPECT_EQ(slower.sentence.find("slow"), std::string::npos) << slower.sentence;
+  EXPECT_NE(to_text(slower).find("what was intended was 0.6 s old"), std::string::npos)
+      << to_text(slower);
+  // Fresh, as on one machine.
+  scene.behaviors->input_age(0.1);
+  scene.grant->command_age(0.1);
+  EXPECT_EQ(to_text(why(scene)).find("slow"), std::string::npos);
+}
+
+TEST_F(WhyTest, ACutLinkIsWhyNobodyDrives) {
+  scene.grant->role(v1::ROLE_NONE);
+  scene.grant->reason("behaviors (behaviors) does not want to drive");
+  scene.behaviors->speed_limit(0.0);
+  scene.behaviors->limit_reason(
+      "no newer intent has come for 3 cycles: intentions, or the network to it, is gone");
+  EXPECT_NE(why(scene).sentence.find("no newer intent has come for 3 cycles"), std::string::npos)
+      << why(scene).sentence;
+}
+
 TEST_F(WhyTest, NobodyDrives) {
   scene.grant->role(v1::ROLE_NONE);
   scene.grant->reason("behaviors (behaviors) does not want to drive");

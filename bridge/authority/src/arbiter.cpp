@@ -12,6 +12,12 @@ constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that strangers c
 constexpr std::size_t kMaxPressed = 64;    // the same of emergency stops
 constexpr double kTick = 1e-9;             // [s] 3 cycles x 0.1 s are not over after 3 cycles
 constexpr double kNever = -1e300;          // [s]
+constexpr double kCycle = 0.1;             // [s]
+
+/// [s] since the cycle that a command answers.
+double age_of(const Command& command, std::uint64_t cycle) {
+  return kCycle * static_cast<double>(cycle - command.cycle);
+}
 
 constexpr std::array kDriving{Role::teleop, Role::direct, Role::behaviors};
 constexpr const char* kHandBack = "saphira drive hand-back";
@@ -122,6 +128,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
     quiet_heard_ = kNever;
     let_go_first_ = let_go_first_ && heard;
   }
+  if (!heard || command.cycle == 0 || command.cycle > p.newest.cycle)
+    p.moved_on = command.received;
   p.held = true;
   p.newest = command;
   return true;
@@ -172,7 +180,7 @@ std::string Arbiter::stale(const Command& command, std::uint64_t cycle) const {
       return "answers a cycle that has not been";
     if (command.cycle <= deaf_cycle_)
       return "answers a cycle from before a gap";
-    if (cycle - command.cycle > settings_.intent_cycles)
+    if (age_of(command, cycle) > settings_.oldest + kTick)
       return "answers an old cycle";
   }
   return {};
@@ -225,7 +233,8 @@ bool Arbiter::fresh(const Player& p, double now) const {
 
 bool Arbiter::live(const Player& p, double now, std::uint64_t cycle) const {
   return p.held && p.newest.active && fresh(p, now) &&
-         (p.newest.cycle == 0 || cycle - p.newest.cycle <= settings_.intent_cycles);
+         now - p.moved_on <= settings_.lease + kTick &&
+         (p.newest.cycle == 0 || age_of(p.newest, cycle) <= settings_.oldest + kTick);
 }
 
 std::string Arbiter::why_not(const Player& p, double now, std::uint64_t cycle) const {
@@ -235,7 +244,10 @@ std::string Arbiter::why_not(const Player& p, double now, std::uint64_t cycle) c
   if (now - p.newest.received > settings_.lease + kTick)
     return "the lease of " + who + " ran out: its newest command is " +
            seconds(now - p.newest.received) + " old";
-  return who + " answers an old cycle: " + std::to_string(cycle - p.newest.cycle) + " ago";
+  if (now - p.moved_on > settings_.lease + kTick)
+    return who + " repeats what it answered " + seconds(now - p.moved_on) +
+           " ago: it hangs, or does not hear the robot";
+  return who + " answers what was " + seconds(age_of(p.newest, cycle)) + " ago, which is too old";
 }
 
 Role Arbiter::strongest(double now, std::uint64_t cycle) const {
@@ -323,8 +335,8 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   grant.role = role;
   grant.writer = p.newest.writer;
   grant.source = p.newest.source;
-  grant.command_age = now - p.newest.received;
-  grant.expires_in = settings_.lease - grant.command_age;
+  grant.command_age = p.newest.cycle == 0 ? now - p.newest.received : age_of(p.newest, cycle);
+  grant.expires_in = settings_.lease - (now - p.moved_on);
   grant.reason = std::string(name(role)) + " is the strongest role with a live command";
   for (const Role other : kDriving) {
     if (other > role && live(player(other), now, cycle))

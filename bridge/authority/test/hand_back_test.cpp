@@ -96,7 +96,7 @@ TEST(HandBack, CountsOnlyFromAPersonAndForNow) {
   EXPECT_EQ(s.next(), Role::none) << "a program cannot hand the robot to itself";
   c = s.command(Role::teleop, 1, false);
   c.hand_back = true;
-  c.cycle = s.cycle - 10;
+  c.cycle = s.cycle - 31;
   s.arbiter.offer(c, s.cycle);
   EXPECT_EQ(s.next(), Role::none) << "an old word";
   c = s.command(Role::teleop, 1, false);

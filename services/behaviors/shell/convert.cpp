@@ -44,7 +44,8 @@ RobotModel from_bus(const v1::RobotDescription& description) {
 }
 
 RobotNow from_bus(const v1::RobotState& state) {
-  return {lps::from_bus(state.pose_in_odom()), state.velocity(), state.rotation_velocity()};
+  return {lps::from_bus(state.pose_in_odom()), state.velocity(), state.rotation_velocity(),
+          state.target_heading_in_odom()};
 }
 
 Argument from_bus(const v1::Argument& argument) {
@@ -122,6 +123,9 @@ v1::Behaviors to_bus(const Output& output) {
   sample.turn(output.blend.turn);
   sample.moving(output.blend.moving);
   sample.speed(output.blend.speed);
+  sample.input_age(output.input_age);
+  sample.speed_limit(output.speed_limit);
+  sample.limit_reason(output.limit_reason);
   for (const Missing& missing : output.missing) {
     sample.missing().emplace_back();
     sample.missing().back().name(missing.name);

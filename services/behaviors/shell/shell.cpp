@@ -1,5 +1,7 @@
 #include "behaviors/shell/shell.hpp"
 
+#include <algorithm>
+
 #include "behaviors/shell/convert.hpp"
 #include "behaviors/shell/plugin.hpp"
 #include "lps/shell/convert.hpp"
@@ -11,6 +13,8 @@ namespace {
 constexpr std::uint64_t kLook = 10;
 constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
 constexpr std::chrono::seconds kIdleLook{1};
+/// [s] A command is replaced a cycle after the one that it answers, where nothing is slow.
+constexpr double kOrdinaryAge = 0.1;
 
 }  // namespace
 
@@ -24,6 +28,8 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       recall_(node.writer(bus::topics::kRecallBehaviors)),
       processes_(node, table_),
       schemas_(node.writer(bus::topics::kBehaviorSchemas)) {
+  if (!node.options().lockstep)
+    grants_.emplace(node.reader(bus::topics::kGrant));
   sources_.add(Folder(behaviors_folder()));
   for (const std::string& path : options.plugins) {
     Registry plugin;
@@ -52,6 +58,7 @@ bool Shell::step(const bus::Stop& stop) {
   const Knowledge known = robot_.of(cycle_.stamp().epoch(), stop);
   if (known == Knowledge::fresh) {
     executive_.reset(from_bus(robot_.description()));
+    delay_ = {};
     odom_.reset();
     odom_since_ = 0;
   }
@@ -67,6 +74,8 @@ bool Shell::step(const bus::Stop& stop) {
     odom_ = step->robot.odom();
     inputs.robot = from_bus(step->robot);
     inputs.sonars = lps::sonars_from_bus(step->robot);
+    take_delay();
+    inputs.delay = std::max(delay_.peak(), 0.0);
     std::optional<Intent> intent;
     const v1::Intentions* const sample = intentions_.value();
     if (sample != nullptr && sample->stamp().cycle() >= odom_since_)
@@ -86,6 +95,14 @@ bool Shell::step(const bus::Stop& stop) {
     look();
   cycle_.done();
   return true;
+}
+
+void Shell::take_delay() {
+  const auto grant = grants_ ? grants_->take_newest() : std::nullopt;
+  const bool mine = grant && grant->role() == v1::ROLE_BEHAVIORS &&
+                    grant->stamp().epoch() == cycle_.stamp().epoch() &&
+                    grant->source() == node_.options().name;
+  delay_.hear(mine ? grant->command_age() - kOrdinaryAge : 0.0);
 }
 
 void Shell::look() {
@@ -123,6 +140,17 @@ void Shell::publish(const Output& output) {
   if (output.trouble != trouble_ && !output.trouble.empty())
     node_.warn("behaviors that cannot be had: " + output.trouble);
   trouble_ = output.trouble;
+  if (!output.slow.empty()) {
+    node_.status().state(v1::SERVICE_DEGRADED);
+    node_.status().reason(output.slow + ": the robot drives more slowly");
+  }
+  if (output.slow.empty() == slow_) {
+    if (slow_)
+      node_.info("the network is fast enough again");
+    else
+      node_.warn(output.slow + ": the robot drives more slowly");
+    slow_ = !slow_;
+  }
   if (output.active != active_)
     node_.info(output.active ? "drives" : "does not drive: " + output.inactive_reason);
   active_ = output.active;

@@ -36,6 +36,8 @@ class Shell {
 
  private:
   void publish(const Output& output);
+  /// Takes what the bridge says of how old the commands are when it obeys them.
+  void take_delay();
   /// Takes behavior files that have changed.
   void look();
 
@@ -43,6 +45,8 @@ class Shell {
   bus::Cycle cycle_;
   bus::Input<v1::Intentions>& intentions_;
   bus::KnownRobot robot_;
+  std::optional<bus::Reader<v1::Grant>> grants_;  ///< none in lockstep: there is no delay
+  PeakAge delay_;
   bus::Writer<v1::MotorCommand> commands_;
   bus::Writer<v1::Behaviors> behaviors_;
   bus::Writer<v1::Behaviors> recall_;
@@ -61,6 +65,7 @@ class Shell {
   std::chrono::steady_clock::time_point looked_;  ///< when look() was last called
   std::uint64_t number_ = 0;                      ///< of the newest motor command
   std::string trouble_;
+  bool slow_ = false;
   bool active_ = false;
 };
 

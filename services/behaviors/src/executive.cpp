@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <limits>
 #include <map>
@@ -11,11 +12,39 @@
 #include <tuple>
 #include <utility>
 
+#include "free_path.hpp"
+#include "saphira/behaviors/foresight.hpp"
+
 namespace saphira::behaviors {
 namespace {
 
 /// The parameter by which a behavior says that it means contact: [m/s] at no more than this.
 constexpr const char* kContact = "contact";
+constexpr double kCycle = 0.1;           // [s]
+constexpr double kFarEnough = 3.0;       // [m] of free way that is looked at
+constexpr double kMargin = 0.05;         // [m] by which what the sonars see may be nearer,
+constexpr double kMarginOfRange = 0.03;  // and that per metre
+constexpr const char* kSlow = "the network, or a computer, is slow: ";
+
+std::string number(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string seconds(double value) {
+  return number("%.1f s", value);
+}
+
+std::string meters(double value) {
+  return number("%.2f m", value);
+}
+
+/// The age of the intent [cycles].
+double intent_cycles(const Inputs& inputs) {
+  const std::uint64_t intended = inputs.intent->cycle;
+  return inputs.cycle > intended ? static_cast<double>(inputs.cycle - intended) : 0.0;
+}
 
 /// Nothing that is not a number may get to the robot. Returns what is wrong.
 std::string check(Evaluation& evaluation) {
@@ -53,28 +82,40 @@ void Executive::reset() {
   reconciled_.clear();
   reconcile_trouble_.clear();
   missing_.clear();
+  newest_intent_ = 0;
+  intent_came_ = 0;
+  intent_age_ = {};
 }
 
 void Executive::reset(RobotModel model) {
   model_ = std::move(model);
   lps_ = lps::LocalPerceptualSpace(model_.lps);
-  instances_.clear();
-  reconciled_.clear();
-  reconcile_trouble_.clear();
-  missing_.clear();
+  reset();
 }
 
 Output Executive::step(const Inputs& inputs) {
   lps_.update(inputs.robot.pose_in_odom, inputs.sonars, inputs.cycle);
   Output output;
   if (inputs.intent != nullptr) {
+    if (newest_intent_ != inputs.intent->cycle || intent_came_ == 0) {
+      newest_intent_ = inputs.intent->cycle;
+      intent_came_ = inputs.cycle;
+    }
+    // That of the cycle before is as young as it can be.
+    intent_age_.hear(kCycle * (intent_cycles(inputs) - 1.0));
+    output.input_age = kCycle * intent_cycles(inputs);
     output.control = inputs.intent->control;
     output.trouble = reconcile(inputs.intent->behaviors, inputs.robot.pose_in_odom);
     output.missing = missing_;
   }
 
+  const bool late = inputs.delay > 0.0;
+  const RobotNow ahead = late ? foresee(inputs.robot, inputs.delay) : inputs.robot;
+  std::optional<lps::LocalPerceptualSpace> seen_ahead;
+  if (late)
+    seen_ahead = lps_.seen_from(ahead.pose_in_odom);
   Shared shared;
-  const Context context{model_, inputs.robot, lps_, inputs.cycle, shared};
+  const Context context{model_, ahead, late ? *seen_ahead : lps_, inputs.cycle, shared};
   std::vector<Blended> blended(instances_.size());
   bool running = false;
   for (std::size_t i = instances_.size(); i-- > 0;) {
@@ -102,24 +143,16 @@ Output Executive::step(const Inputs& inputs) {
     output.behaviors.push_back({instances_[i].intended.name, instances_[i].intended.schema,
                                 instances_[i].intended.running, std::move(blended[i])});
 
-  if (inputs.intent == nullptr)
-    output.inactive_reason = "nothing has been intended yet";
-  else if (inputs.cycle > inputs.intent->cycle + settings_.intent_lease)
-    output.inactive_reason = "the newest intent is " +
-                             std::to_string(inputs.cycle - inputs.intent->cycle) + " cycles old";
-  else if (!output.control)
-    output.inactive_reason = "behavior control is off";
-  else if (const auto missing = std::find_if(missing_.begin(), missing_.end(),
-                                             [](const Missing& one) { return one.running; });
-           missing != missing_.end())
-    output.inactive_reason = missing->name + " cannot be made: " + missing->reason;
-  else if (!running)
-    output.inactive_reason = "no running behavior is intended";
+  output.inactive_reason = why_inactive(inputs, running);
   output.active = output.inactive_reason.empty();
   // Where nobody recommends a speed the robot stands: the last setpoint belongs to a past context.
   const double limit = model_.max_velocity;
   output.speed = output.blend.moving ? std::clamp(output.blend.speed, -limit, limit) : 0.0;
-  output.heading_in_odom = norm2_angle(inputs.robot.pose_in_odom.th + output.blend.turn);
+  output.heading_in_odom = norm2_angle(ahead.pose_in_odom.th + output.blend.turn);
+  if (inputs.intent != nullptr && !(output.limit_reason = why_unheard(inputs)).empty())
+    output.speed_limit = 0.0;
+  else
+    limit_speed(inputs, output);
   return output;
 }
 
@@ -130,6 +163,61 @@ double Executive::contact_speed(const std::vector<Blended>& blended) const {
       least = std::min(least.value_or(std::numeric_limits<double>::infinity()),
                        instances_[i].parameters.number_if_any(kContact).value_or(0.0));
   return std::max(least.value_or(0.0), 0.0);
+}
+
+std::string Executive::why_unheard(const Inputs& inputs) const {
+  if (inputs.cycle >= intent_came_ + settings_.intent_lease)
+    return "no newer intent has come for " + std::to_string(inputs.cycle - intent_came_) +
+           " cycles: intentions, or the network to it, is gone";
+  if (intent_age_.peak() > kOldest)
+    return kSlow + ("the newest intent is " + seconds(kCycle * intent_cycles(inputs))) +
+           " old, which is too old to drive by";
+  return {};
+}
+
+std::string Executive::why_inactive(const Inputs& inputs, bool running) const {
+  if (inputs.intent == nullptr)
+    return "nothing has been intended yet";
+  if (std::string unheard = why_unheard(inputs); !unheard.empty())
+    return unheard;
+  if (!inputs.intent->control)
+    return "behavior control is off";
+  const auto missing = std::find_if(missing_.begin(), missing_.end(),
+                                    [](const Missing& one) { return one.running; });
+  if (missing != missing_.end())
+    return missing->name + " cannot be made: " + missing->reason;
+  return running ? "" : "no running behavior is intended";
+}
+
+void Executive::limit_speed(const Inputs& inputs, Output& output) {
+  const double old = intent_age_.peak();
+  const double age = old + inputs.delay;
+  if (age <= 0.0)
+    return;
+  output.speed_limit = speed_for_age(age);
+  std::string why = inputs.delay <= 0.0
+                        ? ""
+                        : "commands work " + seconds(inputs.delay) + " after what they answer";
+  if (old > 0.0)
+    why = "intentions are " + seconds(old) + " old" + (why.empty() ? "" : ", " + why);
+  if (output.speed_limit < std::max(std::abs(output.speed), model_.max_velocity))
+    output.slow = kSlow + why;
+  // What stands in the way was seen from where the robot was then.
+  if (inputs.delay > 0.0 && output.speed != 0.0) {
+    const double free =
+        free_path(lps_.obstacles(), output.speed > 0.0 ? 0.0 : kPi, model_.radius, kFarEnough);
+    const double stops = std::max(output.contact_speed,  // that much where contact is meant
+                                  speed_that_stops(free - kMargin - kMarginOfRange * free,
+                                                   inputs.delay + kCycle, model_.deceleration));
+    if (stops < output.speed_limit) {
+      output.speed_limit = stops;
+      why += ", " + meters(free) + " are free";
+    }
+  }
+  if (std::abs(output.speed) <= output.speed_limit)
+    return;
+  output.speed = std::copysign(output.speed_limit, output.speed);
+  output.limit_reason = kSlow + why;
 }
 
 std::string Executive::reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@ struct Drive {
   std::uint64_t limit = 1500;  ///< [cycles]
   std::uint64_t seed = 1;
   sim::SonarModel sonar;
+  std::size_t late = 0;  ///< [cycles] each command works so long after what it answers
 };
 
 struct DriveResult {
@@ -64,7 +66,14 @@ inline DriveResult drive(const sim::World& world, const protocol::RobotParameter
   DriveResult run;
   std::vector<lps::SonarReading> readings;
   Intent intent{0, true, what.behaviors};
-  double swing = 0.0;  // [rad] turned since it last changed sides
+  struct Command {
+    bool active;
+    double speed;
+    double heading;
+  };
+  std::deque<Command> on_the_way;
+  double heading = 0.0;  // that the robot was told last
+  double swing = 0.0;    // [rad] turned since it last changed sides
   Pose last = robot.pose_in_world();
   while (run.cycles < what.limit) {
     ++run.cycles;
@@ -92,6 +101,8 @@ inline DriveResult drive(const sim::World& world, const protocol::RobotParameter
                   {robot.pose_in_odom(), robot.velocity(), robot.rotation_velocity()},
                   std::exchange(readings, {}),
                   &intent};
+    inputs.robot.target_heading_in_odom = heading;
+    inputs.delay = 0.1 * static_cast<double>(what.late);
     const Output output = executive.step(inputs);
     if (watch)
       watch(robot, inputs, output, executive);
@@ -99,10 +110,17 @@ inline DriveResult drive(const sim::World& world, const protocol::RobotParameter
       run.arrived = true;
       break;
     }
+    on_the_way.push_back({output.active, output.speed, output.heading_in_odom});
+    if (on_the_way.size() <= what.late)
+      continue;
+    const Command now = on_the_way.front();
+    on_the_way.pop_front();
     // Whole millimetres and degrees, as the robot's commands have them.
-    robot.set_velocity(output.active ? std::round(output.speed * 1000.0) / 1000.0 : 0.0);
-    if (output.active)
-      robot.set_heading(radians(std::round(degrees(output.heading_in_odom))));
+    robot.set_velocity(now.active ? std::round(now.speed * 1000.0) / 1000.0 : 0.0);
+    if (now.active) {
+      heading = radians(std::round(degrees(now.heading)));
+      robot.set_heading(heading);
+    }
   }
   run.contacts = robot.contacts();
   run.end_in_world = robot.pose_in_world();

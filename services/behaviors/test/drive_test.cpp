@@ -64,7 +64,8 @@ struct Expected {
   double detour = 1.4;      ///< path over the straight line, at the most, on average
   double swings = 12.0;     ///< on average
   double speed = 0.3;
-  int late = 0;  ///< runs that may not arrive within two and a half minutes
+  int late = 0;           ///< runs that may not arrive within two and a half minutes
+  std::size_t delay = 0;  ///< [cycles] of the commands
 };
 
 void expect_arrivals(const sim::World& world, const Pose& start, const Vec2& goal,
@@ -77,6 +78,7 @@ void expect_arrivals(const sim::World& world, const Pose& start, const Vec2& goa
     what.goal_in_odom = goal;
     what.behaviors = go_to(goal, expected.speed);
     what.seed = seed;
+    what.late = expected.delay;
     const DriveResult run = drive(world, pioneer(), start, what);
     late += run.arrived ? 0 : 1;
     EXPECT_LE(late, expected.late)
@@ -113,6 +115,15 @@ TEST(Drive, AroundACornerStraightAhead) {
 
 TEST(Drive, AroundAWall) {
   expect_arrivals(hall(box(6000, 10000, 0, 200, 4000)), {3, 10, 0}, {6, 0.5}, {.detour = 1.7});
+}
+
+// The behaviors on another machine, and a quarter of a second each way to it.
+TEST(Drive, OverASlowNetwork) {
+  const Expected slow{.swings = 20, .delay = 5};
+  expect_arrivals(hall(""), {2, 10, 0}, {8, 3}, slow);
+  expect_arrivals(hall(box(6000, 10000, 0, 600, 600)), {3, 10, 0}, {6, 0}, slow);
+  expect_arrivals(hall(box(6000, 10000, 45, 800, 800)), {3, 10, 0}, {6, 0}, slow);
+  expect_arrivals(field(1), {1.5, 10, 0}, {13, 0}, slow);
 }
 
 TEST(Drive, AlongASlantingWall) {

@@ -131,7 +131,8 @@ TEST_F(ExecutiveTest, AnOldIntentDoesNotDrive) {
   EXPECT_TRUE(executive_.step({102, robot_, {}, &intent}).active);
   const Output output = executive_.step({103, robot_, {}, &intent});
   EXPECT_FALSE(output.active);
-  EXPECT_EQ(output.inactive_reason, "the newest intent is 3 cycles old");
+  EXPECT_EQ(output.inactive_reason,
+            "no newer intent has come for 2 cycles: intentions, or the network to it, is gone");
   EXPECT_FALSE(executive_.step({104, robot_, {}, nullptr}).active);
 }
 

@@ -1,6 +1,7 @@
 #include "intentions/shell/convert.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lps/shell/convert.hpp"
@@ -266,6 +267,12 @@ std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors) {
   for (const v1::BehaviorState& behavior : behaviors.behaviors())
     result.push_back({behavior.name(), behavior.goal(), behavior.progress()});
   return result;
+}
+
+std::uint64_t intent_age_from_bus(const v1::Behaviors& behaviors) {
+  // A behaviors service that does not say so acts on what was intended in the cycle before.
+  const double cycles = std::clamp(behaviors.input_age() / kTick, 1.0, 1e6);
+  return static_cast<std::uint64_t>(std::llround(std::isfinite(cycles) ? cycles : 1.0));
 }
 
 std::vector<BehaviorTrouble> troubles_from_bus(const v1::Behaviors& behaviors) {

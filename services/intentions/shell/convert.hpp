@@ -37,6 +37,8 @@ v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);
 std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors);
+/// [cycles] of the intentions that they evaluated.
+std::uint64_t intent_age_from_bus(const v1::Behaviors& behaviors);
 std::vector<BehaviorTrouble> troubles_from_bus(const v1::Behaviors& behaviors);
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas);
 

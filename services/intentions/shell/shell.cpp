@@ -84,6 +84,7 @@ bool Shell::step(const bus::Stop& stop) {
     inputs.behaviors = from_bus(*behaviors);
     inputs.troubles = troubles_from_bus(*behaviors);
     inputs.behaviors_cycle = behaviors->stamp().cycle();
+    inputs.intent_age = intent_age_from_bus(*behaviors);
   }
   if (const v1::Registration* const registration =
           registration_ == nullptr ? nullptr : registration_->value()) {

@@ -141,8 +141,8 @@ Outputs Executor::step(const Inputs& inputs) {
   const World world{inputs.robot, inputs.around, *beliefs_, now_};
   beliefs_->look(world);
   if (inputs.behaviors_cycle > 0)
-    forest_.hear(inputs.behaviors,
-                 now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle));
+    forest_.hear(inputs.behaviors, now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle +
+                                                             inputs.intent_age));
   forest_.hear(inputs.troubles);
   if (robot_here_) {
     arbitrate();

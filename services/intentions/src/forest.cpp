@@ -15,10 +15,6 @@
 namespace saphira::intentions {
 namespace {
 
-/// A level that the behaviors service published less than this long after the parameters were
-/// intended is of the parameters before: it reads the intentions of the cycle before its own, and
-/// one cycle more where, live, they came too late for it.
-constexpr Ticks kLevelDelay = 2;
 /// Of a behavior that says nothing else: as the manual's own example has it (8.1.2).
 constexpr int kUsualPriority = 2;
 
@@ -292,7 +288,7 @@ void Forest::hear(const std::vector<BehaviorLevel>& levels, Ticks tick) {
     std::from_chars(level.name.data() + mark + 1, level.name.data() + level.name.size(), id);
     Node* const node = at(id);
     if (node != nullptr && !node->activity && node->behavior.name == level.name &&
-        tick >= node->since + kLevelDelay)
+        tick > node->since)
       node->level = level.goal;
   }
 }

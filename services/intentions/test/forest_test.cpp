@@ -178,15 +178,15 @@ TEST(Forest, ALevelCountsOnlyForTheParametersThatItIsOf) {
                }));
   forest.step(1, kRobot);
   const std::string name = forest.behaviors().at(0).name;
-  forest.hear({{name, 0.7, 0.0}}, 2);  // may be of what was intended before
+  forest.hear({{name, 0.7, 0.0}}, 1);  // may be of what was intended before
   forest.step(3, kRobot);
   EXPECT_EQ(level, 0.0);
-  forest.hear({{name, 0.7, 0.0}, {"another", 1.0, 0.0}}, 3);
+  forest.hear({{name, 0.7, 0.0}, {"another", 1.0, 0.0}}, 2);
   forest.step(4, kRobot);
   EXPECT_EQ(level, 0.7);
   x = 2.0;
   forest.step(5, kRobot);
-  forest.hear({{name, 0.7, 0.0}}, 5);
+  forest.hear({{name, 0.7, 0.0}}, 4);
   forest.step(6, kRobot);
   EXPECT_EQ(level, 0.0);
 }

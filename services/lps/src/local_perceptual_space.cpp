@@ -76,11 +76,17 @@ void LocalPerceptualSpace::update(const Pose& robot_in_odom,
     const double part = static_cast<double>(i + 1) / static_cast<double>(readings.size());
     take(readings[i], compose(before, {part * moved.x, part * moved.y, part * moved.th}));
   }
-  front_.move_to(robot_in_odom_);
-  left_.move_to(robot_in_odom_);
-  right_.move_to(robot_in_odom_);
-  memory_.collect(robot_in_odom_);
+  register_readings();
   register_artifacts();
+}
+
+LocalPerceptualSpace LocalPerceptualSpace::seen_from(const Pose& robot_in_odom) const {
+  LocalPerceptualSpace seen = *this;
+  seen.robot_in_global_ = compose(robot_in_global_, relative(robot_in_odom_, robot_in_odom));
+  seen.robot_in_odom_ = robot_in_odom;
+  seen.register_readings();
+  seen.register_artifacts();
+  return seen;
 }
 
 void LocalPerceptualSpace::take(const SonarReading& reading, const Pose& robot_in_odom) {
@@ -190,6 +196,13 @@ Artifact* LocalPerceptualSpace::find(std::uint32_t id) {
 void LocalPerceptualSpace::move_robot(double dx, double dy, double dth) {
   robot_in_global_ = compose(robot_in_global_, {dx, dy, dth});
   register_artifacts();
+}
+
+void LocalPerceptualSpace::register_readings() {
+  front_.move_to(robot_in_odom_);
+  left_.move_to(robot_in_odom_);
+  right_.move_to(robot_in_odom_);
+  memory_.collect(robot_in_odom_);
 }
 
 void LocalPerceptualSpace::register_artifacts() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saphira/authority/latches.hpp"
+#include "saphira/base/age.hpp"
 
 namespace saphira::authority {
 
@@ -34,11 +35,14 @@ struct Command {
 };
 
 struct Settings {
-  double lease = 0.3;  ///< [s] a command drives for so long after it was received
+  /// [s] A command drives for so long after it was received. Those that follow only count where
+  /// they answer newer cycles: a lease is what tells a link that is cut, or a driver that hangs,
+  /// from one that is slow, so it does not depend on how old the commands are.
+  double lease = 0.3;
   /// [s] After a person has driven, autonomy drives again without being handed the robot back when
   /// the person's program has said without a pause for so long that it does not drive.
   double quiet = std::numeric_limits<double>::infinity();
-  std::uint64_t intent_cycles = 3;  ///< a command that answers an older cycle than this is stale
+  double oldest = kOldest;  ///< [s] a command that answers an older cycle than this is refused
 };
 
 struct Refusal {
@@ -52,9 +56,11 @@ struct Grant {
   Role role = Role::none;  ///< none: nobody drives, the robot is to be stopped
   WriterId writer{};
   std::string source;
-  std::string reason;                ///< why this one, or why nobody
-  double expires_in = 0.0;           ///< [s] until the lease of the newest command ends
-  double command_age = 0.0;          ///< [s] of the newest command
+  std::string reason;       ///< why this one, or why nobody
+  double expires_in = 0.0;  ///< [s] until the lease of the newest command ends
+  /// [s] Of the newest command: since the cycle that it answers; of one without cycles, since it
+  /// was received.
+  double command_age = 0.0;
   bool estopped = false;             ///< an emergency stop is latched
   std::string estop_source;          ///< which program pressed it
   bool waits_for_hand_back = false;  ///< autonomy waits until a person hands the robot back
@@ -113,6 +119,7 @@ class Arbiter {
   struct Player {
     bool held = false;
     Command newest;
+    double moved_on = 0.0;  ///< [s] when one was received that answers a newer cycle than before
   };
 
   const Player& player(Role role) const { return players_[static_cast<std::size_t>(role)]; }

@@ -27,8 +27,9 @@ struct RobotModel {
 /// The robot in this cycle.
 struct RobotNow {
   Pose pose_in_odom;
-  double velocity = 0.0;           ///< [m/s]
-  double rotation_velocity = 0.0;  ///< [rad/s]
+  double velocity = 0.0;                ///< [m/s]
+  double rotation_velocity = 0.0;       ///< [rad/s]
+  double target_heading_in_odom = 0.0;  ///< [rad] that the robot turns to
 };
 
 enum class Side { none, left, right };

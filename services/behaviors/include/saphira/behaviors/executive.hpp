@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saphira/base/age.hpp"
 #include "saphira/behaviors/behavior.hpp"
 #include "saphira/behaviors/blend.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
@@ -34,6 +35,9 @@ struct Inputs {
   RobotNow robot;
   std::vector<lps::SonarReading> sonars;  ///< new ones, in firing order
   const Intent* intent = nullptr;         ///< the newest; nullptr where none has come
+  /// [s] from the cycle that a command answers until it comes to work, beyond the ordinary: what
+  /// the network takes from the robot and back to it.
+  double delay = 0.0;
 };
 
 /// One behavior as it stands.
@@ -64,10 +68,18 @@ struct Output {
   double speed = 0.0;            ///< [m/s]
   double contact_speed = 0.0;    ///< [m/s] contact is meant, at no more than this; 0: none is
   double heading_in_odom = 0.0;  ///< [rad] (-pi, pi]
+
+  double input_age = 0.0;     ///< [s] of the intent
+  double speed_limit = -1.0;  ///< [m/s] that the age of all that it acts on allows; below 0: none
+  std::string limit_reason;   ///< empty: the speed was not limited
+  /// What is slow, and how slow, while the robot has to drive more slowly for it; empty: nothing
+  /// is.
+  std::string slow;
 };
 
 struct ExecutiveSettings {
-  /// The age of the intent [cycles] from which on nobody is taken to intend anything.
+  /// [cycles] without a newer intent, however old it is, after which nobody is taken to intend
+  /// anything: that is how a service that was killed, or a link that was cut, shows.
   std::uint64_t intent_lease = 2;
 };
 
@@ -77,6 +89,10 @@ struct ExecutiveSettings {
 /// All behaviors are evaluated also while control is off, or the intent is too old to drive by.
 /// While one that is to run cannot be made the others do not drive: it may be the one that looks
 /// out.
+///
+/// What it acts on may be old: the intent when it comes over a slow network, and the robot's state
+/// when the network lies between the robot and this. The older, the slower the robot
+/// (saphira/base/age.hpp), and behaviors see the robot where it will be when the command works.
 class Executive {
  public:
   Executive(Registry registry, RobotModel model, ExecutiveSettings settings = {});
@@ -102,6 +118,12 @@ class Executive {
   /// Contact is meant where every behavior with a say on the speed means it: the least of what they
   /// allow. One that avoids, and has something to say, forbids it.
   double contact_speed(const std::vector<Blended>& blended) const;
+  /// What is wrong with the intent's age; empty where nothing is.
+  std::string why_unheard(const Inputs& inputs) const;
+  /// Why the behaviors are not to drive; empty where they are.
+  std::string why_inactive(const Inputs& inputs, bool running) const;
+  /// Takes note of how old everything is, and cuts the speed to what that allows.
+  void limit_speed(const Inputs& inputs, Output& output);
   /// Makes the instances what is intended; returns what was wrong.
   std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
   /// `same` is the instance of that name and schema; nullptr where there is none.
@@ -118,6 +140,9 @@ class Executive {
   std::uint64_t reconciled_revision_ = 0;
   std::string reconcile_trouble_;
   std::vector<Missing> missing_;
+  std::uint64_t newest_intent_ = 0;  ///< its cycle
+  std::uint64_t intent_came_ = 0;    ///< the cycle in which it was there first
+  PeakAge intent_age_;               ///< beyond the ordinary
 };
 
 }  // namespace saphira::behaviors

@@ -32,6 +32,7 @@ struct Inputs {
   Robot robot;
   std::vector<BehaviorLevel> behaviors;
   std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
+  std::uint64_t intent_age = 1;       ///< [cycles] of what was intended then, when they computed it
   std::vector<GoalEvent> events;      ///< since the last step, oldest first
   Surroundings around{};
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made

@@ -87,7 +87,8 @@ class Forest {
   bool held(std::uint32_t id, Hold why) const;
   void remove(std::uint32_t id);
 
-  /// Takes in what the behaviors service published in cycle `tick`.
+  /// Takes in what the behaviors service said of what was intended in cycle `tick`. That of the
+  /// cycle in which a behavior's parameters were intended does not count yet, nor what is older.
   void hear(const std::vector<BehaviorLevel>& levels, Ticks tick);
   /// A behavior that cannot be made fails the intention that has begun it.
   void hear(const std::vector<BehaviorTrouble>& troubles);

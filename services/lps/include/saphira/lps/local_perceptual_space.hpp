@@ -59,6 +59,8 @@ class LocalPerceptualSpace {
   /// the robot turns by ten in a cycle, half a sonar's cone.
   void update(const Pose& robot_in_odom, const std::vector<SonarReading>& readings,
               std::uint64_t cycle);
+  /// The same as it will look when the robot is at `robot_in_odom`.
+  LocalPerceptualSpace seen_from(const Pose& robot_in_odom) const;
   /// Forgets everything but the settings.
   void reset();
 
@@ -111,6 +113,8 @@ class LocalPerceptualSpace {
 
  private:
   void take(const SonarReading& reading, const Pose& robot_in_odom);
+  /// What is remembered, in the frame of the robot where it is now.
+  void register_readings();
   void register_artifacts();
 
   LpsSettings settings_;

@@ -1,0 +1,27 @@
+#include "saphira/authority/age.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "saphira/base/age.hpp"
+
+namespace saphira::authority {
+
+Guarded slow_for_age(Guarded guarded, double age, double fresh) {
+  const double limit = speed_for_age(age - fresh);
+  if (std::abs(guarded.velocity) <= limit)
+    return guarded;
+  // What stops or slows it more is the reason that is told.
+  if (guarded.action <= GuardAction::limit) {
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "%.2f m/s cut to %.2f: the command answers what the robot said %.1f s ago",
+                  guarded.velocity, limit, age);
+    guarded.reason = text;
+    guarded.action = GuardAction::limit;
+  }
+  guarded.velocity = std::copysign(limit, guarded.velocity);
+  return guarded;
+}
+
+}  // namespace saphira::authority
