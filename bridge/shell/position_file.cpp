@@ -3,12 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+
+#include "saphira/base/durable.hpp"
 
 namespace saphira::bridge {
 namespace {
@@ -20,6 +21,14 @@ constexpr std::size_t kSize = 256;
 PositionFile::PositionFile(std::string path) : path_(std::move(path)) {
   if (path_.empty())
     return;
+  trouble_ = read_or_set_aside(path_, [this](const std::string& content) {
+    const std::string_view padded = std::string_view(content).substr(0, content.find('\n'));
+    const auto line = unsealed_line(padded.substr(0, padded.find_last_not_of(' ') + 1));
+    if (line)
+      found_ = reflector::from_text(std::string(*line) + "\n");
+    if (!found_)
+      throw std::runtime_error("it holds no position of the robot");
+  });
   fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd_ < 0)
     throw std::invalid_argument("--state " + path_ + ": " + std::strerror(errno));
@@ -34,19 +43,13 @@ void PositionFile::close() {
     ::close(std::exchange(fd_, -1));
 }
 
-std::string PositionFile::read() const {
-  if (fd_ < 0)
-    return {};
-  std::array<char, 2 * kSize> buffer{};
-  const ssize_t n = ::pread(fd_, buffer.data(), buffer.size(), 0);
-  return {buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0))};
-}
-
 std::string PositionFile::write(const reflector::OdometryMemory& memory) {
   if (fd_ < 0)
     return {};
   // One write of one size: a kill leaves the old line or the new one.
   std::string text = reflector::to_text(memory);
+  text.pop_back();  // its line break
+  text = sealed_line(text);
   text.resize(kSize, ' ');
   text.back() = '\n';
   const ssize_t written = ::pwrite(fd_, text.data(), text.size(), 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "saphira/reflector/odometry.hpp"
@@ -15,9 +16,10 @@ class PositionFile {
   PositionFile(const PositionFile&) = delete;
   PositionFile& operator=(const PositionFile&) = delete;
 
-  const std::string& path() const { return path_; }
-  /// What is in it, for reflector::from_text; empty where it is new, or nothing is kept.
-  std::string read() const;
+  /// What was in it; nothing where it is new, or nothing is kept.
+  const std::optional<reflector::OdometryMemory>& found() const { return found_; }
+  /// What was wrong with it, and what became of it; empty: nothing.
+  const std::string& trouble() const { return trouble_; }
   /// Why it could not be kept, in words, and empty where it was. After that it is given up.
   std::string write(const reflector::OdometryMemory& memory);
 
@@ -25,6 +27,8 @@ class PositionFile {
   void close();
 
   std::string path_;
+  std::optional<reflector::OdometryMemory> found_;
+  std::string trouble_;
   int fd_ = -1;
 };
 

@@ -133,12 +133,11 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
     node_.warn("an emergency stop is latched from before the start, pressed by " +
                kept_.estop_source + ": saphira estop reset releases it");
 
-  const std::string kept = position_file_.read();
-  memory_ = reflector::from_text(kept);
+  memory_ = position_file_.found();
   if (memory_)
     last_odom_ = memory_->odom;
-  else if (!kept.empty())
-    node_.warn(position_file_.path() + " holds no position: a new one begins");
+  if (!position_file_.trouble().empty())
+    node_.warn(position_file_.trouble());
 }
 
 double Shell::time() const {

@@ -23,23 +23,49 @@ TEST(PositionFile, IsReadByTheNextOne) {
   memory.server_in_odom = {1.0, -2.0, 0.25};
   {
     PositionFile file(folder.path("state"));
-    EXPECT_EQ(file.read(), "");
+    EXPECT_FALSE(file.found());
     memory.odom = 6;
     EXPECT_EQ(file.write(memory), "");
     memory.odom = 7;
     EXPECT_EQ(file.write(memory), "");
   }
   EXPECT_EQ(content(folder.path("state")).size(), 256U) << "one line of one size";
-  const auto back = reflector::from_text(PositionFile(folder.path("state")).read());
+  const auto back = PositionFile(folder.path("state")).found();
   ASSERT_TRUE(back);
   EXPECT_EQ(back->odom, 7U);
   EXPECT_EQ(back->raw.y, 200);
   EXPECT_EQ(back->server_in_odom, memory.server_in_odom);
 }
 
+TEST(PositionFile, WhatIsDamagedIsSetAsideAndNotTakenForAnother) {
+  const test::TempDir folder;
+  const std::string path = folder.path("state");
+  reflector::OdometryMemory memory;
+  memory.odom = 7;
+  memory.raw = {100, 200, 0.5};
+  EXPECT_EQ(PositionFile(path).write(memory), "");
+  const std::string whole = content(path);
+  const std::size_t end = whole.find("  ");  // what fills it up does not count
+  for (std::size_t i = 0; i < end; ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string damaged = whole;
+      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+      std::ofstream(path) << damaged;
+      const PositionFile file(path);
+      EXPECT_FALSE(file.found()) << i << " " << bit;
+      EXPECT_NE(file.trouble().find("state.damaged"), std::string::npos) << file.trouble();
+      EXPECT_EQ(content(path + ".damaged"), damaged);
+    }
+    std::ofstream(path) << whole.substr(0, i);
+    EXPECT_FALSE(PositionFile(path).found()) << i;
+  }
+  std::ofstream(path) << whole;
+  EXPECT_TRUE(PositionFile(path).found());
+}
+
 TEST(PositionFile, WithoutAPathNothingIsKept) {
   PositionFile file("");
-  EXPECT_EQ(file.read(), "");
+  EXPECT_FALSE(file.found());
   EXPECT_EQ(file.write({}), "");
 }
 

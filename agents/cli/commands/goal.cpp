@@ -47,7 +47,7 @@ class Follower {
   bool show(const v1::GoalStatus& status) {
     // Progress alone is news every tenth.
     const std::string key = bus::describe(status.state()) + status.step() + status.reason() +
-                            std::to_string(std::floor(status.progress() * 10.0));
+                            status.note() + std::to_string(std::floor(status.progress() * 10.0));
     if (key != last_) {
       print("%7.1f s  %s\n", status.elapsed(), bus::describe(status).c_str());
       last_ = key;

@@ -221,6 +221,8 @@ std::string describe(const v1::GoalStatus& status) {
   if (!status.reason().empty())
     line += (ended(status.state()) ? ": " : " [") + status.reason() +
             (ended(status.state()) ? "" : "]");
+  if (!status.note().empty())
+    line += "; it " + status.note();
   return line;
 }
 

@@ -169,6 +169,7 @@ GoalStatus from_bus(const v1::GoalStatus& status) {
   result.level = status.level();
   result.trend = kTrends.ours(status.trend(), Trend::kSteady);
   result.elapsed = status.elapsed();
+  result.note = status.note();
   return result;
 }
 
@@ -186,6 +187,7 @@ v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   result.level(status.level);
   result.trend(kTrends.theirs(status.trend));
   result.elapsed(status.elapsed);
+  result.note(status.note);
   return result;
 }
 

@@ -4,18 +4,37 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
+#include <utility>
 
+#include "saphira/base/durable.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::intentions {
+namespace {
+
+constexpr const char* kWork = ".work";
+
+}  // namespace
 
 MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(path)) {
   if (path_.empty())
     return;
-  if (std::filesystem::exists(path_))
-    memory_ = read_journal(path_, read_file(path_));
+  const auto note = [this](std::string trouble) {
+    if (!trouble.empty())
+      troubles_.push_back(std::move(trouble));
+  };
+  note(read_or_set_aside(path_, [this](const std::string& content) {
+    std::vector<FileError> damaged;
+    memory_ = read_journal(path_, content, damaged);
+    if (!damaged.empty())
+      throw std::runtime_error(std::to_string(damaged.size()) +
+                               " of its lines are damaged, the others count; the first:\n" +
+                               damaged.front().what());
+  }));
+  note(read_or_set_aside(path_ + kWork, [this](const std::string& content) {
+    memory_.work = read_work(path_ + kWork, unsealed(content, path_ + kWork));
+  }));
   std::vector<Ending>& endings = memory_.endings;
   if (endings.size() > most)
     endings.erase(endings.begin(), endings.end() - static_cast<std::ptrdiff_t>(most));
@@ -32,6 +51,10 @@ MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(pat
   good = good && append(lines);
   if (!good || std::rename(fresh.c_str(), path_.c_str()) != 0)
     throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
+}
+
+bool MemoryFile::keep(const Work& work) const {
+  return path_.empty() || replace_file(path_ + kWork, sealed(write_work(work)));
 }
 
 bool MemoryFile::append(const std::string& lines) {

@@ -3,20 +3,28 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "saphira/intentions/journal.hpp"
 
 namespace saphira::intentions {
 
-/// The journal on a disk. A killed service loses nothing; a computer that loses its power may lose
-/// the last few lines, since nothing waits for the disk.
+/// The journal on a disk, and beside it (FILE.work) what has been done of the open goals. A killed
+/// service loses nothing; a computer that loses its power may lose the last few lines, since
+/// nothing waits for the disk.
 class MemoryFile {
  public:
   /// Reads what is there and begins the file anew, without what has been superseded and with the
-  /// newest `most` endings. An empty path remembers nothing.
+  /// newest `most` endings. What is damaged is set aside; what can be read of the journal counts.
+  /// An empty path remembers nothing. std::runtime_error where it cannot be written.
   explicit MemoryFile(std::string path, std::size_t most = kMostEndings);
 
   const Memory& memory() const { return memory_; }
+  /// What was damaged, in words.
+  const std::vector<std::string>& troubles() const { return troubles_; }
+  bool keeps() const { return !path_.empty(); }
+  /// In the place of what was kept before. False where it could not be written.
+  bool keep(const Work& work) const;
   /// False where it could not be written: then none of it is there.
   bool append(const std::string& lines);
 
@@ -27,6 +35,7 @@ class MemoryFile {
 
   std::string path_;
   Memory memory_;
+  std::vector<std::string> troubles_;
   std::unique_ptr<std::FILE, Close> file_;
   long size_ = 0;  ///< of what has been written whole
 };

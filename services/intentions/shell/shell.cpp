@@ -56,11 +56,14 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
       memory_(options.memory_file),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
-      executor_(built_in(), memory_.memory(), {.functions = functions_}),
+      executor_(built_in(), memory_.memory(),
+                {.remembers_work = memory_.keeps(), .functions = functions_}),
       processes_(node, table_,
                  [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
                    return ask_intention(name, action, cycles);
                  }) {
+  for (const std::string& trouble : memory_.troubles())
+    node_.warn(trouble);
   if (!options.vision && !node.options().lockstep)
     unasked_vision_.emplace(node.reader(bus::topics::kVision));
   look();
@@ -102,6 +105,7 @@ bool Shell::step(const bus::Stop& stop) {
     inputs.hold = execution_.name() + " is suspended";
   const Outputs outputs = executor_.step(inputs);
   nodes_ = outputs.nodes;
+  remember(outputs.news);
 
   v1::Intentions sample;
   sample.stamp(stamp_);
@@ -125,11 +129,15 @@ bool Shell::step(const bus::Stop& stop) {
 
 void Shell::idle() {
   processes_.idle();
-  publish(executor_.hear(take_events()));
+  const News news = executor_.hear(take_events());
+  remember(news);
+  publish(news);
   // A simulator that is being single-stepped may stand still for as long as it likes.
   if (robot_here_ && !node_.options().lockstep && Clock::now() - stepped_ > kSilence) {
     robot_here_ = false;
-    publish(executor_.robot_gone());
+    const News gone = executor_.robot_gone();
+    remember(gone);
+    publish(gone);
   }
 }
 
@@ -384,8 +392,7 @@ std::vector<GoalEvent> Shell::take_events() {
   return events;
 }
 
-void Shell::publish(const News& news) {
-  // On the disk before anybody hears of an end: nobody sees a goal that has ended begin again.
+void Shell::remember(const News& news) {
   std::string lines;
   for (const Placement& placement : news.placed)
     lines += write_line(placement);
@@ -393,7 +400,11 @@ void Shell::publish(const News& news) {
     lines += write_line(ending);
   if (!lines.empty() && !memory_.append(lines))
     node_.warn("the memory file cannot be written: a restart may do a finished goal again");
+  if (news.work && !memory_.keep(*news.work))
+    node_.warn("the memory file cannot be written: a restart may do again what has been done");
+}
 
+void Shell::publish(const News& news) {
   for (const GoalStatus& status : news.changed) {
     if (!statuses_.write(to_bus(status, stamp_)))
       node_.warn("the status of goal " + describe(status.id) + " did not get onto the bus");

@@ -38,7 +38,7 @@ struct ShellOptions {
 /// The intentions service on the bus. To be made and run in one thread.
 class Shell {
  public:
-  /// Throws FileError or std::runtime_error where the memory file cannot be read or written.
+  /// std::runtime_error where the memory file cannot be written.
   explicit Shell(bus::Node& node, const ShellOptions& options = {});
 
   /// Steps until stop is requested.
@@ -69,6 +69,8 @@ class Shell {
   /// Takes activity files that have changed.
   void look();
   void publish(const News& news);
+  /// Onto the disk, before anybody hears of it: nothing that has been said or done is done again.
+  void remember(const News& news);
   void publish(const std::vector<Said>& said);
   void publish(const std::vector<MapRequest>& requests);
   void publish_beliefs();

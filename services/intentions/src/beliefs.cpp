@@ -39,11 +39,14 @@ void Beliefs::set(std::string_view name, Value value, std::string_view who, Tick
     return;
   set_[std::move(key)] = {std::string(name), std::move(value), std::string(who), now};
   ++revision_;
+  ++set_revision_;
 }
 
 void Beliefs::unset(std::string_view name) {
-  if (set_.erase(normal(name)) > 0)
-    ++revision_;
+  if (set_.erase(normal(name)) == 0)
+    return;
+  ++revision_;
+  ++set_revision_;
 }
 
 void Beliefs::take(const ClaimEvent& event, Ticks now) {
@@ -88,6 +91,13 @@ Value Beliefs::get(std::string_view name, const World& world) const {
 bool Beliefs::known(std::string_view name) const {
   return stored(name) != nullptr ||
          (functions_ != nullptr && functions_->condition(name) != nullptr);
+}
+
+std::vector<Belief> Beliefs::set_by_activities() const {
+  std::vector<Belief> result;
+  for (const auto& [name, belief] : set_)
+    result.push_back(belief);
+  return result;
 }
 
 std::vector<Belief> Beliefs::all() const {

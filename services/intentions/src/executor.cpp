@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "forest_node.hpp"
+
 namespace saphira::intentions {
 namespace {
 
@@ -36,7 +38,7 @@ std::string name_of_goal(const Goal& goal) {
 /// Whether somebody who watches wants to hear of it at once.
 bool differs(const GoalStatus& a, const GoalStatus& b) {
   return a.state != b.state || a.code != b.code || a.reason != b.reason || a.step != b.step ||
-         a.requester != b.requester || a.functor != b.functor;
+         a.requester != b.requester || a.functor != b.functor || a.note != b.note;
 }
 
 bool open(const GoalStatus& status) {
@@ -72,6 +74,7 @@ Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions opti
   forest_ = Forest(registry_, beliefs_, options_.forest);
   for (const Placement& placement : memory.placements)
     remembered_places_[placement.id] = placement;
+  remembered_work_ = memory.work;
   for (const Ending& ending : memory.endings)
     remember(ending);
 }
@@ -145,26 +148,28 @@ Outputs Executor::step(const Inputs& inputs) {
                                                              inputs.intent_age));
   forest_.hear(inputs.troubles);
   if (robot_here_) {
-    arbitrate();
-    begin_concurrent();
+    arbitrate(world);
+    begin_concurrent(world);
   }
   forest_.step(world);
   // The next goal begins in the cycle in which the one before it ends: without a gap in what is
   // intended, in which the robot would be released.
   for (int begun = 0; collect() && robot_here_ && begun < kBeginsPerCycle; ++begun) {
-    if (const Entry* const next = arbitrate())
+    if (const Entry* const next = arbitrate(world))
       forest_.begin(next->node, world);
   }
   forget_ended();
   for (auto& [id, entry] : entries_)
     measure(entry);
-  return {forest_.behaviors(),        forest_.nodes(),     take_news(),
-          forest_.behavior_control(), forest_.take_said(), forest_.take_map_requests()};
+  Outputs outputs{forest_.behaviors(),        forest_.nodes(),     take_news(),
+                  forest_.behavior_control(), forest_.take_said(), forest_.take_map_requests()};
+  outputs.news.work = take_work();
+  return outputs;
 }
 
 void Executor::pass_time(const Inputs& inputs) {
   if (epoch_ == 0)
-    now_ = 0;
+    recall(inputs);
   else if (inputs.epoch != epoch_)
     ++now_;
   else if (inputs.cycle > cycle_)
@@ -375,6 +380,8 @@ void Executor::meet_odom(std::uint64_t odom) {
       if (open(entry.status) && entry.node != 0 && entry.schema->program) {
         forest_.remove(entry.node);
         entry.node = 0;
+        entry.status.note =
+            "was begun anew at its first step: the robot's dead reckoning has begun anew";
       }
     }
   }
@@ -388,6 +395,7 @@ void Executor::place(Entry& entry, const Robot& robot) {
   const auto found = remembered_places_.find(entry.goal.id);
   const bool before = found != remembered_places_.end() && is_of(found->second, entry.arguments);
   Placement placement;
+  entry.before = before;
   if (before) {
     placement = found->second;
     if (placement.epoch == epoch_ && placement.cycle <= cycle_)
@@ -514,7 +522,7 @@ Executor::Entry* Executor::best() {
 }
 
 /// Gives the robot to the best goal; the one that is underway now, nullptr where there is none.
-Executor::Entry* Executor::arbitrate() {
+Executor::Entry* Executor::arbitrate(const World& world) {
   Entry* const chosen = best();
   if (chosen == nullptr)
     return nullptr;
@@ -532,11 +540,11 @@ Executor::Entry* Executor::arbitrate() {
     else
       suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
   }
-  begin(*chosen);
+  begin(*chosen, world);
   return chosen;
 }
 
-void Executor::begin(Entry& entry) {
+void Executor::begin(Entry& entry, const World& world) {
   if (entry.status.state != GoalState::kUnderway) {
     entry.status.state = GoalState::kUnderway;
     entry.status.code = GoalCode::kNone;
@@ -544,17 +552,82 @@ void Executor::begin(Entry& entry) {
     if (entry.node != 0)
       forest_.resume(entry.node);
   }
-  if (entry.node == 0)
-    entry.node = forest_.plant(entry.goal.id, describe(entry.goal.id), entry.goal.functor,
-                               entry.schema->make(entry.arguments), entry.schema->priority,
-                               entry.schema->timeout, entry.schema->concurrent);
+  if (entry.node != 0)
+    return;
+  entry.node = forest_.plant(entry.goal.id, describe(entry.goal.id), entry.goal.functor,
+                             entry.schema->make(entry.arguments), entry.schema->priority,
+                             entry.schema->timeout, entry.schema->concurrent);
+  if (std::exchange(entry.before, false))
+    take_up(entry, world);
+}
+
+/// Goes on with what was done of a goal before the service was restarted.
+void Executor::take_up(Entry& entry, const World& world) {
+  const auto done = std::find_if(remembered_work_.goals.begin(), remembered_work_.goals.end(),
+                                 [&](const GoalWork& work) { return work.id == entry.goal.id; });
+  std::string why;
+  try {
+    if (remembered_work_.epoch == 0)
+      throw ActivityError("what had been done of it is not remembered");
+    if (done == remembered_work_.goals.end() || done->functor != entry.goal.functor)
+      return;  // it had not begun
+    if (remembered_work_.odom != world.robot.odom)
+      throw ActivityError("the robot's dead reckoning has begun anew");
+    forest_.restore(entry.node, done->intentions, world);
+    return;
+  } catch (const ActivityError& error) {
+    why = error.what();
+  }
+  // What is built in only needs its arguments, which are places and headings.
+  if (entry.schema->program)
+    entry.status.note = "was begun anew at its first step: intentions was restarted, and " + why;
+}
+
+/// Goes on from before a restart of the service: the clock, and what activities had set.
+void Executor::recall(const Inputs& inputs) {
+  const Work& work = remembered_work_;
+  if (work.epoch == 0)
+    return;
+  const bool same = work.epoch == inputs.epoch && inputs.cycle >= work.cycle;
+  now_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
+  for (auto& [id, entry] : entries_) {  // heard before the first step
+    entry.accepted += now_;
+    entry.ended += now_;
+    entry.published_at += now_;
+  }
+  if (work.odom == inputs.robot.odom)
+    for (const Belief& belief : work.beliefs)
+      beliefs_->set(belief.name, belief.value, belief.said_by, belief.since);
+}
+
+std::optional<Work> Executor::take_work() {
+  const bool changed = forest_.take_changed();
+  const bool set = set_revision_ != beliefs_->set_revision();
+  set_revision_ = beliefs_->set_revision();
+  if (!options_.remembers_work || !odom_ || !(changed || set))
+    return std::nullopt;
+  Work work{epoch_, cycle_, *odom_, now_, {}, {}};
+  work.beliefs = beliefs_->set_by_activities();
+  // Who has set it keeps that with what it does.
+  std::erase_if(work.beliefs,
+                [](const Belief& belief) { return normal(belief.name) == kBehaviorControl; });
+  for (const auto& [id, entry] : entries_)
+    if (entry.node != 0)
+      work.goals.push_back({id, entry.goal.functor, forest_.save(entry.node)});
+  // What waits to be taken up is still what was remembered.
+  for (const GoalWork& done : remembered_work_.goals) {
+    const auto entry = entries_.find(done.id);
+    if (!remembered_.contains(done.id) && (entry == entries_.end() || entry->second.before))
+      work.goals.push_back(done);
+  }
+  return work;
 }
 
 /// Those that are underway beside the one that drives, from the cycle on in which they came.
-void Executor::begin_concurrent() {
+void Executor::begin_concurrent(const World& world) {
   for (auto& [id, entry] : entries_) {
     if (open(entry.status) && entry.schema->concurrent)
-      begin(entry);
+      begin(entry, world);
   }
 }
 

@@ -79,6 +79,7 @@ std::uint32_t Forest::plant(const GoalId& goal, std::string_view name, std::stri
   nodes_.emplace(id, std::move(node));
   roots_.push_back(id);
   order_is_old_ = true;
+  changed_ = true;
   return id;
 }
 
@@ -99,12 +100,14 @@ Forest::Node& Forest::add(Node& parent, std::string_view name, std::string_view 
   node->concurrent = parent.concurrent;
   parent.children.push_back(id);
   order_is_old_ = true;
+  changed_ = true;
   return *nodes_.emplace(id, std::move(node)).first->second;
 }
 
 std::uint32_t Forest::start(Node& parent, const Start& start, const World& world) {
   if (nodes_.size() >= options_.max_intentions)
-    throw ActivityError("there are " + std::to_string(nodes_.size()) + " intentions already");
+    throw ActivityError("there are " + std::to_string(nodes_.size()) +
+                        " intentions already: does an activity begin others without end?");
   if (parent.children.size() >= options_.max_children)
     throw ActivityError(parent.shown.schema + " has begun " +
                         std::to_string(parent.children.size()) + " intentions already");
@@ -118,6 +121,7 @@ std::uint32_t Forest::start(Node& parent, const Start& start, const World& world
   Node& child =
       add(parent, start.name, schema ? schema->name : std::string(start.schema), start.blocking);
   const std::uint32_t id = child.shown.id;
+  child.given = fixed_in_odom(start.arguments, world.robot);
   if (start.name.empty())
     child.shown.name = "I" + std::to_string(id);
   child.timeout = start.timeout > 0 || !schema ? start.timeout : ticks(schema->timeout);
@@ -146,6 +150,12 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
   if (known == nullptr && registry_->knows_behaviors())
     throw ActivityError("there is neither an activity nor a behavior " +
                         quoted(std::string(start.schema)));
+  const auto others = std::count_if(nodes_.begin(), nodes_.end(), [](const auto& each) {
+    return !each.second->activity && !finished(each.second->shown.state);
+  });
+  if (static_cast<std::size_t>(others) > options_.max_behaviors)
+    throw ActivityError("there are " + std::to_string(options_.max_behaviors) +
+                        " behaviors already: does an activity begin others without end?");
   node.behavior.schema = registry_->behavior_name(start.schema);
   node.shown.schema = node.behavior.schema;
   node.shown.label = "B";
@@ -167,6 +177,7 @@ void Forest::make_behavior(Node& node, const Start& start, const World& world) {
 void Forest::interrupt(std::uint32_t id, Hold why) {
   Node& node = *nodes_.at(id);
   node.holds |= static_cast<unsigned>(why);
+  changed_ = true;
   if (!node.suspended)
     suspend(node);
 }
@@ -190,6 +201,7 @@ void Forest::suspend(Node& node) {
 void Forest::resume(std::uint32_t id, Hold why) {
   Node& node = *nodes_.at(id);
   node.holds &= ~static_cast<unsigned>(why);
+  changed_ = true;
   const Node* const parent = at(node.shown.parent);
   if (node.holds == 0 && (parent == nullptr || !parent->suspended))
     wake(node);
@@ -236,6 +248,7 @@ void Forest::drop(std::uint32_t id) {
   if (control_off_.erase(id) > 0 && control_off_.empty())
     beliefs_->unset(kBehaviorControl);
   order_is_old_ = true;
+  changed_ = true;
   node.gone = true;
   const auto found = nodes_.find(id);
   graves_.push_back(std::move(found->second));
@@ -314,6 +327,7 @@ void Forest::watch(Node& node, const World& world) {
     return;
   node.parameters.place(node.behavior.parameters, world);
   if (node.until_satisfied && node.level.value_or(0.0) >= kSatisfied) {
+    changed_ = true;
     node.shown.state = IntentionState::kSuccess;
     node.outcome = {IntentionState::kSuccess, GoalCode::kNone, "satisfied"};
   } else if (node.timeout > 0 && world.now - node.begun >= node.timeout) {
@@ -395,6 +409,7 @@ void Forest::conclude(Node& node, bool interrupted, const World& world) {
     node.shown.state = IntentionState::kRunning;
   }
   const bool ends = finished(node.shown.state);
+  changed_ = changed_ || ends;
   // Nothing is left running by one that does not run (manual 8.1.4, and rule 3 of 8.4).
   if (ends || (interrupted && !node.activity->keeps_children()))
     remove_children(node);

@@ -48,6 +48,7 @@ class Forest::Handle : public Self {
   void believe(const std::string& name, Value value) override;
 
   void say(std::string step) override { node_.shown.step = std::move(step); }
+  void moved_on() override { forest_.changed_ = true; }
   void progress(double done) override { node_.progress = done >= 0.0 ? std::min(done, 1.0) : 0.0; }
   void succeed(std::string reason) override;
   void fail(GoalCode code, std::string reason) override;

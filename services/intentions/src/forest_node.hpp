@@ -30,6 +30,7 @@ struct Forest::Node {
   Ticks begun = 0;
   std::optional<double> level;
   Outcome outcome;
+  Bindings given;  ///< what it was begun with by another; points from the robot are in odom
   // Of a behavior.
   std::string label;
   IntendedBehavior behavior;

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
@@ -64,6 +65,21 @@ Pose read_pose(LineReader& reader) {
   return pose;
 }
 
+Ending read_ending(LineReader& reader, const Line& line) {
+  Ending ending;
+  ending.id = read_id(reader);
+  ending.state = read_name<GoalState>(reader, "the state at the end, such as succeeded");
+  if (!ended(ending.state))
+    reader.fail(std::string("expected the state at the end, such as succeeded, found \"") +
+                name_of(ending.state) + "\"");
+  ending.code = read_name<GoalCode>(reader, "a code, such as none");
+  // A reason is free text: the rest of the line.
+  const std::string_view code = line.words.at(4).text;
+  const auto begin = static_cast<std::size_t>(code.data() + code.size() - line.text.data());
+  ending.reason = line.text.substr(std::min(begin + 1, line.text.size()));
+  return ending;
+}
+
 /// What is behind the id.
 void read_placement(LineReader& reader, Placement& placement) {
   placement.epoch = read_count(reader, "the epoch of acceptance", 10);
@@ -78,6 +94,29 @@ void read_placement(LineReader& reader, Placement& placement) {
   }
 }
 
+void read_line(const std::string& file, int number, std::string_view text,
+               std::map<GoalId, Placement>& placements, std::vector<Ending>& endings) {
+  const std::vector<Line> lines = split_lines(text);
+  if (lines.size() != 1)
+    throw FileError(file, number, 1, "expected \"placed\" or \"ended\"", text);
+  Line line = lines.front();
+  line.number = number;
+  LineReader reader(file, line);
+  const std::string_view kind = reader.word("\"placed\" or \"ended\"");
+  if (kind == "placed") {
+    Placement placement;
+    placement.id = read_id(reader);
+    read_placement(reader, placement);
+    placements[placement.id] = std::move(placement);
+  } else if (kind == "ended") {
+    Ending ending = read_ending(reader, line);
+    placements.erase(ending.id);
+    endings.push_back(std::move(ending));
+  } else {
+    reader.fail("expected \"placed\" or \"ended\", found \"" + std::string(kind) + "\"");
+  }
+}
+
 }  // namespace
 
 std::string write_line(const Ending& ending) {
@@ -85,8 +124,9 @@ std::string write_line(const Ending& ending) {
   std::replace_if(
       reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
       ' ');
-  return "ended " + write_id(ending.id) + " " + name_of(ending.state) + " " + name_of(ending.code) +
-         " " + reason + "\n";
+  return sealed_line("ended " + write_id(ending.id) + " " + name_of(ending.state) + " " +
+                     name_of(ending.code) + " " + reason) +
+         "\n";
 }
 
 std::string write_line(const Placement& placement) {
@@ -97,50 +137,31 @@ std::string write_line(const Placement& placement) {
     for (const Pose& pose : {point.given, point.in_odom})
       line += " " + exact(pose.x) + " " + exact(pose.y) + " " + exact(pose.th);
   }
-  return line + "\n";
+  return sealed_line(line) + "\n";
 }
 
-Memory read_journal(const std::string& file, std::string_view content) {
-  // A reason is free text: comments and empty lines do not exist in this file, so the part before
-  // it is split by the common rules and the reason is the rest of the line.
-  const std::size_t whole = content.rfind('\n');
-  content = whole == std::string_view::npos ? std::string_view() : content.substr(0, whole + 1);
+Memory read_journal(const std::string& file, std::string_view content,
+                    std::vector<FileError>& damaged) {
   std::map<GoalId, Placement> placements;
-  std::map<GoalId, FileError> unreadable;  // of placements: what has been superseded does not count
   std::vector<Ending> endings;
-  for (const Line& line : split_lines(content)) {
-    LineReader reader(file, line);
-    const std::string_view kind = reader.word("\"placed\" or \"ended\"");
-    if (kind == "placed") {
-      Placement placement;
-      placement.id = read_id(reader);
-      unreadable.erase(placement.id);
-      try {
-        read_placement(reader, placement);
-        placements[placement.id] = std::move(placement);
-      } catch (const FileError& error) {
-        unreadable.emplace(placement.id, error);
-      }
-    } else if (kind == "ended") {
-      Ending ending;
-      ending.id = read_id(reader);
-      ending.state = read_name<GoalState>(reader, "the state at the end, such as succeeded");
-      if (!ended(ending.state))
-        reader.fail(std::string("expected the state at the end, such as succeeded, found \"") +
-                    name_of(ending.state) + "\"");
-      ending.code = read_name<GoalCode>(reader, "a code, such as none");
-      const std::string_view code = line.words.at(4).text;
-      const auto begin = static_cast<std::size_t>(code.data() + code.size() - line.text.data());
-      ending.reason = line.text.substr(std::min(begin + 1, line.text.size()));
-      placements.erase(ending.id);
-      unreadable.erase(ending.id);
-      endings.push_back(std::move(ending));
-    } else {
-      reader.fail("expected \"placed\" or \"ended\", found \"" + std::string(kind) + "\"");
+  int number = 0;
+  while (!content.empty()) {
+    const std::size_t end = content.find('\n');
+    if (end == std::string_view::npos)
+      break;  // what a crash left of a write
+    const std::string_view text = content.substr(0, end);
+    content.remove_prefix(end + 1);
+    ++number;
+    try {
+      const std::optional<std::string_view> line = unsealed_line(text);
+      if (!line)
+        throw FileError(file, number, 1, "the line is not as it was written: its sum is wrong",
+                        text);
+      read_line(file, number, *line, placements, endings);
+    } catch (const FileError& error) {
+      damaged.push_back(error);
     }
   }
-  if (!unreadable.empty())
-    throw FileError(unreadable.begin()->second);
   Memory memory;
   for (auto& [id, placement] : placements)
     memory.placements.push_back(std::move(placement));

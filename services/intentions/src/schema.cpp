@@ -184,14 +184,19 @@ std::string check_arguments(const Schema& schema, const Arguments& arguments, Ar
   return schema.check ? schema.check(complete) : std::string();
 }
 
-std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bindings,
-                                      const Robot& robot) {
+Bindings fixed_in_odom(const Bindings& bindings, const Robot& robot) {
   Bindings fixed = bindings;
   for (auto& [name, value] : fixed) {
     const Point* const point = value.point();
     if (point != nullptr && point->frame == Frame::kRobot)
       value = Value(Point{compose(robot.pose_in_odom, point->pose), Frame::kOdom});
   }
+  return fixed;
+}
+
+std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bindings,
+                                      const Robot& robot) {
+  const Bindings fixed = fixed_in_odom(bindings, robot);
   Arguments arguments;
   Bindings others;  // that no argument can hold
   for (const auto& [name, value] : fixed) {

@@ -59,6 +59,12 @@ class Bench {
       journal += write_line(each);
   }
 
+  /// What a service remembers that is started now.
+  Memory memory() const {
+    std::vector<FileError> damaged;
+    return read_journal("memory", journal, damaged);
+  }
+
   const GoalStatus& status(std::uint64_t number) const { return statuses.at(number); }
   GoalState state(std::uint64_t number) const { return status(number).state; }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 #include "intentions/shell/shell.hpp"
@@ -152,6 +153,52 @@ TEST_F(IntentionsProgram, GoesOnAfterAKill) {
   }));
   ASSERT_TRUE(watcher.status(done)) << service.output();
   EXPECT_EQ(watcher.status(done)->state(), v1::GOAL_SUCCEEDED);
+}
+
+// Killed at 90 degrees of a half turn, it turns the other 90, and not another 180.
+TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
+  bus::Node node(test::node_options("robot", robot));
+  ScriptedBus site(node);
+  std::optional<test::Process> service(std::in_place, command(), dir.path("log"));
+  v1::Goal goal;
+  goal.functor("about-turn");
+  const v1::GoalId id = goals.ask(goal);
+  double turned = 0.0;
+  bool killed = false;
+  EXPECT_TRUE(test::wait_until([&] {
+    const double before = site.world.robot.pose_in_odom.th;
+    site.publish_state();
+    bool acted = false;
+    for (int i = 0; i < 10 && !(acted = site.act()); ++i)
+      node.wait(milliseconds(10));
+    if (!acted)
+      site.world.move({}, site.cycle);  // nobody drives: it stands
+    turned += norm2_angle(site.world.robot.pose_in_odom.th - before);
+    if (!killed && turned > kPi / 2.0) {
+      killed = true;
+      service->signal(SIGKILL);
+      service->wait();
+      service.emplace(command(), dir.path("log2"));
+    }
+    goals.poll();
+    const auto status = goals.status(id);
+    return status && bus::ended(status->state());
+  })) << told(id);
+  EXPECT_TRUE(killed);
+  EXPECT_EQ(goals.status(id)->state(), v1::GOAL_SUCCEEDED) << told(id);
+  EXPECT_EQ(goals.status(id)->note(), "");
+  EXPECT_NEAR(turned, kPi, 0.15);
+}
+
+TEST_F(IntentionsProgram, StartsWithADamagedMemoryAndSaysSo) {
+  std::ofstream(dir.path("memory")) << "ended 1f 2 succeeded none fine\nplaced \x81\n";
+  std::ofstream(dir.path("memory.work")) << "nonsense\n";
+  test::Process service(command(), dir.path("log"));
+  Robot10Hz world(robot);
+  const v1::GoalId id = goals.ask(go_to(0.3, 0.0));
+  EXPECT_TRUE(reaches(goals, id, v1::GOAL_SUCCEEDED)) << told(id) << service.output();
+  EXPECT_NE(service.output().find("memory.damaged"), std::string::npos) << service.output();
+  EXPECT_NE(service.output().find("memory.work.damaged"), std::string::npos);
 }
 
 TEST_F(IntentionsProgram, SaysWhatIsWrongWithItsMemory) {

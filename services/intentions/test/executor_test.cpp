@@ -447,7 +447,7 @@ TEST(Executor, ARestartNeverRedoesAFinishedGoal) {
   bench.ask(1, "go_to", {point("position", {0.5, 0.0, 0.0})});
   while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
   }
-  Bench again(read_journal("memory", bench.journal));
+  Bench again(bench.memory());
   again.world = bench.world;
   again.ask(1, "go_to", {point("position", {0.5, 0.0, 0.0})});
   again.step();
@@ -467,7 +467,7 @@ TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
   for (int i = 0; i < 20; ++i)
     bench.step();
 
-  Bench again(read_journal("memory", bench.journal));
+  Bench again(bench.memory());
   again.world = bench.world;
   again.cycle = bench.cycle + 10;
   again.write(second);  // the order in which they come again does not matter
@@ -486,7 +486,7 @@ TEST(Executor, ARestartKnowsThatThePositionIsLost) {
   Bench bench;
   bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
   bench.step();
-  Bench again(read_journal("memory", bench.journal));
+  Bench again(bench.memory());
   again.world.robot.odom = 2;
   again.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
   again.step();

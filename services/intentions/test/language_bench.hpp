@@ -16,7 +16,7 @@ namespace saphira::intentions {
 class Stage {
  public:
   explicit Stage(const std::string& activities, const Functions& functions = core_functions(),
-                 std::size_t most = 65536) {
+                 std::size_t most = ForestOptions{}.max_intentions) {
     options.forest.max_intentions = most;
     options.functions = std::make_shared<const Functions>(functions);
     Registry registry = built_in();

@@ -84,13 +84,47 @@ TEST(MemoryFile, KeepsTheNewestEndings) {
   EXPECT_EQ(MemoryFile(path).memory().endings.size(), 3U);
 }
 
-TEST(MemoryFile, ABadFileIsAnErrorAndStaysAsItIs) {
+TEST(MemoryFile, WhatIsDamagedIsSetAsideAndTheRestCounts) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");
-  std::ofstream(path) << "something else\n";
-  EXPECT_THROW(MemoryFile{path}, FileError);
-  EXPECT_EQ(read_file(path), "something else\n");
+  const std::string content = write_line(kEnding) + "something else\n";
+  std::ofstream(path) << content;
+  const MemoryFile memory(path);
+  EXPECT_EQ(memory.memory().endings, std::vector{kEnding});
+  ASSERT_EQ(memory.troubles().size(), 1U);
+  EXPECT_NE(memory.troubles()[0].find("goals.memory.damaged"), std::string::npos)
+      << memory.troubles()[0];
+  EXPECT_EQ(read_file(path + ".damaged"), content);
+  EXPECT_EQ(read_file(path), write_line(kEnding));
+  EXPECT_TRUE(MemoryFile(path).troubles().empty());
   EXPECT_THROW(MemoryFile{dir.path("no/such/folder")}, std::runtime_error);
+}
+
+TEST(MemoryFile, RemembersTheWorkAndSetsAsideWhatIsDamagedOfIt) {
+  const test::TempDir dir;
+  const std::string path = dir.path("goals.memory");
+  const Work work{0xfedcba9876543210ULL,
+                  12,
+                  2,
+                  77,
+                  {{{0xfedcba9876543210ULL, 7}, "about-turn", Value(Value::List{1.5, "a b"})}},
+                  {{"*speed*", Value(0.3), "patrol", -4}}};
+  EXPECT_TRUE(MemoryFile(path).keep(work));
+  EXPECT_EQ(MemoryFile(path).memory().work, work);
+  const std::string whole = read_file(path + ".work");
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    for (const int bit : {0, 3, 6}) {
+      std::string damaged = whole;
+      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+      std::ofstream(path + ".work") << damaged;
+      const MemoryFile memory(path);
+      EXPECT_EQ(memory.memory().work, Work{}) << i << " " << bit;
+      EXPECT_EQ(memory.troubles().size(), 1U) << i << " " << bit;
+    }
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    std::ofstream(path + ".work") << whole.substr(0, length);
+    EXPECT_EQ(MemoryFile(path).memory().work, Work{}) << length;
+  }
 }
 
 }  // namespace

@@ -669,11 +669,37 @@ TEST(Modality, NothingGrowsWithoutBound) {
   EXPECT_EQ(deep.status(1).state, GoalState::kFailed);
   EXPECT_NE(deep.status(1).reason.find("64 deep"), std::string::npos) << deep.status(1).reason;
 
-  Stage wide(activity("(:again (INTEND :Follow () :blocking nil)) (GOTO :again)"));
+  Stage wide(activity("(:again (INTEND :part () :blocking nil)) (GOTO :again)") +
+             "(defintention :part :goals '((WAIT-FOR stalled :forever t)))");
   wide.ask(1, "it");
   wide.step(3000);
   EXPECT_EQ(wide.status(1).state, GoalState::kFailed);
   EXPECT_EQ(wide.status(1).reason, "it has begun 1024 intentions already");
+
+  Stage driving(activity("(:again (INTEND :Follow () :blocking nil)) (GOTO :again)"));
+  driving.ask(1, "it");
+  driving.step(3000);
+  EXPECT_EQ(driving.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(driving.status(1).reason,
+            "there are 256 behaviors already: does an activity begin others without end?");
+
+  // Each begins two that wait: as many as there may be, and then it ends with the reason.
+  Stage crowd(
+      "(defintention :it :goals '((INTEND :half () :blocking nil) (INTEND :half ())))"
+      "(defintention :half :goals '((SPLIT (INTEND :many ()) (INTEND :many ()))"
+      " (WAIT-FOR stalled :forever t)))"
+      "(defintention :many :goals '((:again (INTEND :one () :blocking nil)) (GOTO :again)))"
+      "(defintention :one :goals '((SPLIT (INTEND :two ()) (INTEND :two ()))"
+      " (WAIT-FOR stalled :forever t)))"
+      "(defintention :two :goals '((WAIT-FOR stalled :forever t)))");
+  crowd.ask(1, "it");
+  std::size_t most = 0;
+  for (int i = 0; i < 100; ++i) {
+    crowd.step();
+    most = std::max(most, crowd.out.nodes.size());
+  }
+  EXPECT_LE(most, 300U);
+  EXPECT_GE(most, 200U) << "the bound was not tried";
 
   Stage parallel(activity("(:again (SPLIT (WAIT-FOR stalled :forever t))) (GOTO :again)"));
   parallel.ask(1, "it");

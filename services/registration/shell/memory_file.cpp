@@ -1,12 +1,8 @@
 #include "registration/shell/memory_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <charconv>
-#include <cstdio>
-#include <filesystem>
 
+#include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/edit.hpp"
@@ -76,33 +72,6 @@ std::string read_name(LineReader& reader) {
   return name;
 }
 
-/// Closes itself.
-class File {
- public:
-  File(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
-  ~File() {
-    if (fd_ >= 0)
-      ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  bool write(std::string_view text) const {
-    while (!text.empty()) {
-      const ssize_t n = ::write(fd_, text.data(), text.size());
-      if (n < 0)
-        return false;
-      text.remove_prefix(static_cast<std::size_t>(n));
-    }
-    return true;
-  }
-  /// Waits until it is on the disk.
-  bool sync() const { return ::fsync(fd_) == 0; }
-
- private:
-  int fd_;
-};
-
 }  // namespace
 
 std::string to_text(const Remembered& remembered) {
@@ -126,10 +95,11 @@ std::string to_text(const Remembered& remembered) {
   for (std::size_t i = 0; i < remembered.map.features.size(); ++i)
     if (remembered.map.features[i].learned)
       text += " " + std::to_string(i);
-  return text + std::string(kMapFollows) + maps::to_text(remembered.map);
+  return sealed(text + std::string(kMapFollows) + maps::to_text(remembered.map));
 }
 
-Remembered parse_remembered(std::string_view text, const std::string& file) {
+Remembered parse_remembered(std::string_view sealed_text, const std::string& file) {
+  const std::string_view text = unsealed(sealed_text, file);
   const std::size_t end = text.find(kMapFollows);
   const std::vector<Line> lines = split_lines(text.substr(0, end));
   Remembered result;
@@ -187,26 +157,6 @@ Remembered parse_remembered(std::string_view text, const std::string& file) {
     if (index < result.map.features.size())
       result.map.features[index].learned = true;
   return result;
-}
-
-std::optional<Remembered> load_remembered(const std::string& path) {
-  if (!std::filesystem::exists(path))
-    return std::nullopt;
-  return parse_remembered(read_file(path), path);
-}
-
-bool save_text(const std::string& path, const std::string& text) {
-  const std::string fresh = path + ".new";
-  {
-    const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
-    // The content before the name: else a power cut may leave the name of an empty file.
-    if (!file.write(text) || !file.sync())
-      return false;
-  }
-  if (std::rename(fresh.c_str(), path.c_str()) != 0)
-    return false;
-  const auto folder = std::filesystem::path(path).parent_path();
-  return File(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY).sync();
 }
 
 }  // namespace saphira::registration

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,15 +20,9 @@ struct Remembered {
   std::set<std::uint32_t> closed_doors;
 };
 
-/// std::invalid_argument where the map is none that a file holds.
+/// With its sum. std::invalid_argument where the map is none that a file holds.
 std::string to_text(const Remembered& remembered);
 /// FileError with line and column where the text is none of ours.
 Remembered parse_remembered(std::string_view text, const std::string& file);
-
-/// Nothing where there is no such file. FileError as above.
-std::optional<Remembered> load_remembered(const std::string& path);
-/// Replaces the file in one go: whoever reads it finds the old one or the new one, also after the
-/// power was cut. Waits for the disk. False where it cannot.
-bool save_text(const std::string& path, const std::string& text);
 
 }  // namespace saphira::registration

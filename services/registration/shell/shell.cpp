@@ -8,6 +8,7 @@
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "registration/shell/convert.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/maps/topology.hpp"
 
@@ -85,16 +86,16 @@ Shell::Shell(bus::Node& node, const ShellOptions& options)
   publish_map();
 }
 
-/// Takes up what the memory file holds, where that is of use. No memory is bad enough not to begin.
+/// Takes up what the memory file holds, where that is of use.
 void Shell::recall() {
-  try {
-    remembered_ = load_remembered(options_.memory_file);
-    if (remembered_)
-      check(remembered_->map);
-  } catch (const std::exception& error) {
-    remembered_.reset();
-    node_.warn(options_.memory_file + " is of no use, it begins anew: " + error.what());
-  }
+  const std::string trouble =
+      read_or_set_aside(options_.memory_file, [this](const std::string& content) {
+        Remembered found = parse_remembered(content, options_.memory_file);
+        check(found.map);
+        remembered_ = std::move(found);
+      });
+  if (!trouble.empty())
+    node_.warn(trouble);
   // Somebody wants another map than when it was written: the memory is of another place.
   if (remembered_ && remembered_->option != options_.map_file)
     remembered_.reset();
@@ -446,7 +447,9 @@ void Shell::remember() {
   }
   try {
     // A disk may take longer than a cycle.
-    saving_ = std::async(std::launch::async, save_text, options_.memory_file, to_text(now));
+    saving_ = std::async(std::launch::async, [file = options_.memory_file, text = to_text(now)] {
+      return replace_file(file, text, true);
+    });
   } catch (const std::exception& error) {
     tell_saved(false);
   }

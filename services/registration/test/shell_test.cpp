@@ -16,6 +16,7 @@
 #include "interpretation/shell/shell.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
@@ -612,10 +613,7 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   a.map = maps::load_map(map_path("office"));
   a.map.features.back().learned = true;
   a.closed_doors = {112, 115};
-  EXPECT_FALSE(load_remembered(folder.path("memory")));
-  ASSERT_TRUE(save_text(folder.path("memory"), to_text(a)));
-  const auto b = load_remembered(folder.path("memory"));
-  ASSERT_TRUE(b);
+  const std::optional<Remembered> b = parse_remembered(to_text(a), "memory");
   EXPECT_EQ(b->memory.odom, a.memory.odom);
   EXPECT_EQ(b->memory.pose_in_odom, a.memory.pose_in_odom);
   EXPECT_EQ(b->memory.pose_in_map, a.memory.pose_in_map);
@@ -628,26 +626,40 @@ TEST(MemoryFile, ReadsWhatItWrote) {
   EXPECT_EQ(b->changed, a.changed);
   EXPECT_EQ(b->map, a.map);
   EXPECT_EQ(b->closed_doors, a.closed_doors);
-  EXPECT_THROW(parse_remembered("odom 1\nnonsense 2\nmap\n", "m"), FileError);
-  EXPECT_THROW(parse_remembered("odom 1\n", "m"), FileError);
-  EXPECT_THROW(parse_remembered("odom x\nmap\n", "m"), FileError);
-  EXPECT_THROW(parse_remembered("source a%2\nmap\n", "m"), FileError);
+  EXPECT_THROW(parse_remembered(sealed("odom 1\nnonsense 2\nmap\n"), "m"), FileError);
+  EXPECT_THROW(parse_remembered(sealed("odom 1\n"), "m"), FileError);
+  EXPECT_THROW(parse_remembered(sealed("odom x\nmap\n"), "m"), FileError);
+  EXPECT_THROW(parse_remembered(sealed("source a%2\nmap\n"), "m"), FileError);
+}
+
+TEST(MemoryFile, WhatIsDamagedIsNotTakenForAnother) {
+  Remembered a;
+  a.option = "a.map";
+  const std::string whole = to_text(a);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const int bit : {0, 3, 6}) {
+      std::string damaged = whole;
+      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+      EXPECT_THROW(parse_remembered(damaged, "m"), FileError) << i << " " << bit;
+    }
+    EXPECT_THROW(parse_remembered(whole.substr(0, i), "m"), FileError) << i;
+  }
 }
 
 TEST(MemoryFile, IsOnTheDiskBeforeItReplacesTheOldOne) {
   Folder folder;
   const std::string path = folder.path("memory");
-  ASSERT_TRUE(save_text(path, "old\n"));
+  ASSERT_TRUE(replace_file(path, "old\n", true));
   watched = path;
   synced.clear();
-  ASSERT_TRUE(save_text(path, "new\n"));
+  ASSERT_TRUE(replace_file(path, "new\n", true));
   watched.clear();
   ASSERT_EQ(synced.size(), 2U);
   EXPECT_EQ(synced[0].path, path + ".new");
   EXPECT_EQ(synced[0].target, "old");
   EXPECT_EQ(synced[1].path, std::filesystem::path(path).parent_path());
   EXPECT_EQ(synced[1].target, "new");
-  EXPECT_FALSE(save_text(folder.path("nowhere/memory"), "new\n"));
+  EXPECT_FALSE(replace_file(folder.path("nowhere/memory"), "new\n", true));
 }
 
 }  // namespace

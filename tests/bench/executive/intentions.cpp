@@ -63,7 +63,10 @@ std::unique_ptr<Executor> executor(const std::string& text) {
     throw std::logic_error(loaded.troubles.front().text());
   for (const Schema& schema : loaded.schemas)
     registry.add(schema);
-  return std::make_unique<Executor>(std::move(registry));
+  // More than a service has: what one costs does not depend on the others.
+  return std::make_unique<Executor>(
+      std::move(registry), Memory{},
+      ExecutorOptions{.forest = {.max_intentions = 65536, .max_behaviors = 65536}});
 }
 
 Inputs first_inputs() {

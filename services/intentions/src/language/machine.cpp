@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <list>
+#include <map>
 #include <utility>
 
 #include "language/program.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/intentions/beliefs.hpp"
 #include "saphira/intentions/forest.hpp"
+#include "saved.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -57,6 +61,7 @@ class Machine : public Activity {
     if (self.state() == IntentionState::kInterrupted) {
       if (!suspended_at_)
         suspended_at_ = self.now();
+      self.moved_on();
       return;
     }
     if (begun_at_ < 0)
@@ -75,6 +80,9 @@ class Machine : public Activity {
   }
 
   void child_ended(Self& self) override { go_on(self); }
+
+  Value save() const override;
+  void restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) override;
 
   bool waits_for(std::uint32_t child) const override {
     return std::any_of(threads_.begin(), threads_.end(), [&](const Thread& thread) {
@@ -151,6 +159,7 @@ class Machine : public Activity {
   void go_on(Self& self) {
     // Threads that end may let others go on, which stand before them: until nothing moves. A thread
     // begins one goal-set in a cycle at most, so that this comes to an end.
+    bool any = false;
     for (bool moved = true; moved && !over_;) {
       moved = false;
       for (auto thread = threads_.begin(); thread != threads_.end() && !over_; ++thread)
@@ -161,7 +170,10 @@ class Machine : public Activity {
           bequeath(*thread);
         thread = gone ? threads_.erase(thread) : std::next(thread);
       }
+      any = any || moved;
     }
+    if (any)
+      self.moved_on();
     if (over_)
       return;
     show(self);
@@ -677,6 +689,105 @@ class Machine : public Activity {
   std::size_t shown_at_ = kNowhere;
   bool shown_waiting_ = false;
 };
+
+// --- what outlives the service
+
+/// A program by what it does: what was saved of another version of it is of no use.
+std::string mark_of(const Program& program) {
+  Fnv1a hash;
+  const auto add = [&](const std::string& text) {
+    hash.add(text);
+    hash.add(std::uint8_t{0});
+  };
+  for (const std::string& local : program.locals)
+    add(local);
+  for (const Step& step : program.steps) {
+    add(step.text);
+    hash.add(static_cast<std::uint8_t>(step.op));
+    hash.add(static_cast<std::uint8_t>(step.set));
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "v%016llx", static_cast<unsigned long long>(hash.value()));
+  return text;
+}
+
+Value Machine::save() const {
+  Value::List threads;
+  for (const Thread& thread : threads_) {
+    Value::List children;
+    for (const Child& child : thread.children)
+      children.emplace_back(Value::List{count(child.id), Value::truth(child.kept)});
+    threads.emplace_back(Value::List{
+        count(thread.id), count(thread.parent), count(thread.owner), count(thread.at),
+        Value::truth(thread.waiting), Value::truth(thread.fresh),
+        Value(static_cast<double>(thread.holds)), Value(static_cast<double>(thread.held_since)),
+        Value::truth(thread.over), Value::truth(thread.restores),
+        Value(static_cast<double>(thread.since)), Value(static_cast<double>(thread.limit)),
+        count(thread.child), Value(thread.threshold), Value(std::move(children)),
+        Value(thread.failed), Value(static_cast<double>(static_cast<int>(thread.code))),
+        Value::truth(thread.has_failed)});
+  }
+  return Value(Value::List{Value(mark_of(*program_)), Value(locals_), Value(std::move(threads)),
+                           count(last_thread_), Value(static_cast<double>(begun_at_)),
+                           suspended_at_ ? Value(static_cast<double>(*suspended_at_)) : Value(),
+                           Value(outcome_), Value(reason_)});
+}
+
+void Machine::restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
+  Saved all(saved);
+  if (all.text() != mark_of(*program_))
+    throw ActivityError("the schema " + program_->name + " is another than it was");
+  const std::vector<Value> locals = all.any().list();
+  if (locals.size() != locals_.size())
+    throw ActivityError("what was remembered of " + program_->name + " is not whole");
+  const auto now = [&](std::uint32_t before) -> std::uint32_t {
+    const auto found = children.find(before);
+    return found == children.end() ? 0 : found->second;
+  };
+  std::list<Thread> threads;
+  for (const Value& one : all.any().list()) {
+    Saved in(one);
+    Thread& thread = threads.emplace_back();
+    thread.id = in.whole<std::size_t>();
+    thread.parent = in.whole<std::size_t>();
+    thread.owner = in.whole<std::size_t>();
+    thread.at = in.whole<std::size_t>();
+    thread.waiting = in.yes();
+    thread.fresh = in.yes();
+    thread.holds = in.whole<int>();
+    thread.held_since = in.whole<Ticks>();
+    thread.over = in.yes();
+    thread.restores = in.yes();
+    thread.since = in.whole<Ticks>();
+    thread.limit = in.whole<Ticks>();
+    thread.child = now(in.whole<std::uint32_t>());
+    thread.threshold = in.number();
+    for (const Value& child : in.any().list()) {
+      Saved each(child);
+      const std::uint32_t id = now(each.whole<std::uint32_t>());
+      if (id != 0)
+        thread.children.push_back({id, each.yes()});
+    }
+    thread.failed = in.text();
+    thread.code = static_cast<GoalCode>(in.whole<int>());
+    thread.has_failed = in.yes();
+    if (thread.at >= program_->steps.size())
+      throw ActivityError("what was remembered of " + program_->name + " is not whole");
+  }
+  if (threads.empty())
+    throw ActivityError("what was remembered of " + program_->name + " is not whole");
+  const auto last_thread = all.whole<std::size_t>();
+  const Ticks begun_at = all.whole<Ticks>();
+  const Value suspended = all.any();
+  outcome_ = all.text();
+  reason_ = all.text();
+  if (suspended.number() != nullptr)
+    suspended_at_ = static_cast<Ticks>(*suspended.number());
+  locals_ = locals;
+  threads_ = std::move(threads);
+  last_thread_ = last_thread;
+  begun_at_ = begun_at;
+}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -131,6 +132,8 @@ class Self {
 
   /// What is being done now, for people: short, and the same from cycle to cycle.
   virtual void say(std::string step) = 0;
+  /// What Activity::save() gives is another than before.
+  virtual void moved_on() = 0;
   virtual void progress(double done) = 0;  ///< [0..1]
   virtual void succeed(std::string reason) = 0;
   virtual void fail(GoalCode code, std::string reason) = 0;
@@ -156,6 +159,15 @@ class Activity {
   /// While it is interrupted its children are interrupted too, and resumed with it; otherwise they
   /// are removed.
   virtual bool keeps_children() const { return false; }
+  /// What it has done, to go on from after a restart of the service; nil: its arguments are all
+  /// that it needs.
+  virtual Value save() const { return {}; }
+  /// Goes on from what save() gave. `children`: their numbers now, by those they had. ActivityError
+  /// where it cannot: then it is as if it had not been called.
+  virtual void restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
+    static_cast<void>(saved);
+    static_cast<void>(children);
+  }
   /// Other arguments for the one that is running; false where it has to be begun anew.
   virtual bool change(const Arguments& arguments) {
     static_cast<void>(arguments);

@@ -55,6 +55,10 @@ class Beliefs {
   const Belief* stored(std::string_view name) const;
   /// By name.
   std::vector<Belief> all() const;
+  /// What activities have set, by name.
+  std::vector<Belief> set_by_activities() const;
+  /// Larger whenever that has changed.
+  std::uint64_t set_revision() const { return set_revision_; }
   /// Larger whenever all() has changed.
   std::uint64_t revision() const { return revision_; }
 
@@ -69,6 +73,7 @@ class Beliefs {
   std::map<std::string, Belief, std::less<>> conditions_;
   std::size_t claim_count_ = 0;
   std::uint64_t revision_ = 0;
+  std::uint64_t set_revision_ = 0;
   Ticks looked_ = std::numeric_limits<Ticks>::min();  ///< when conditions_ is of
 };
 

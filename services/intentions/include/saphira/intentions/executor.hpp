@@ -32,7 +32,6 @@ struct Inputs {
   Robot robot;
   std::vector<BehaviorLevel> behaviors;
   std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
-  std::uint64_t intent_age = 1;       ///< [cycles] of what was intended then, when they computed it
   std::vector<GoalEvent> events;      ///< since the last step, oldest first
   Surroundings around{};
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
@@ -40,6 +39,8 @@ struct Inputs {
   std::string hold{};                       ///< why all goals are to wait; empty: they are not
   std::string
       estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
+  /// [cycles] Of what was intended, when the behaviors were computed.
+  std::uint64_t intent_age = 1;
 };
 
 /// What became of the goals since the last time.
@@ -48,6 +49,8 @@ struct News {
   std::vector<GoalId> withdrawn;    ///< ended long ago: their status is to be withdrawn
   std::vector<Placement> placed;    ///< to be remembered over a restart
   std::vector<Ending> endings;      ///< to be remembered over a restart
+  /// The same, in the place of what was remembered before; none: it is as it was.
+  std::optional<Work> work;
 };
 
 /// What a step gives.
@@ -65,6 +68,7 @@ struct ExecutorOptions {
   std::size_t max_shown = 1024;  ///< ended goals whose status stays; the oldest are withdrawn
   std::size_t max_open = 256;    ///< goals that may be open at once
   std::size_t max_ended = kMostEndings;
+  bool remembers_work = false;  ///< whether somebody keeps News::work
   /// Whose conditions are beliefs. None: those of core_functions().
   std::shared_ptr<const Functions> functions{};
   ForestOptions forest{};
@@ -119,6 +123,7 @@ class Executor {
     Ticks ended = 0;
     std::uint32_t node = 0;  ///< root of its tree; 0: not begun
     GoalStatus status;
+    bool before = false;  ///< it was accepted before a restart of the service
     std::string refusal;  ///< of the newest change, which does not count; empty: none
     std::optional<GoalStatus> published;
     Ticks published_at = 0;
@@ -147,9 +152,12 @@ class Executor {
   void obey_estop(const std::string& source);
   std::string step_of(const IntentionNode& node) const;
   Entry* best();
-  Entry* arbitrate();
-  void begin(Entry& entry);
-  void begin_concurrent();
+  Entry* arbitrate(const World& world);
+  void begin(Entry& entry, const World& world);
+  void take_up(Entry& entry, const World& world);
+  void begin_concurrent(const World& world);
+  void recall(const Inputs& inputs);
+  std::optional<Work> take_work();
   void measure(Entry& entry);
   bool collect();
   News take_news();
@@ -160,6 +168,8 @@ class Executor {
   Forest forest_;
   Entries entries_;
   std::map<GoalId, Placement> remembered_places_;
+  Work remembered_work_;
+  std::uint64_t set_revision_ = 0;
   std::map<GoalId, Ending> remembered_;
   std::deque<GoalId> remembered_order_;
   std::deque<GoalId> ended_order_;  ///< of the entries that have ended, the first to end first

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saphira/intentions/activity.hpp"
@@ -50,10 +51,11 @@ struct Said {
 };
 
 struct ForestOptions {
-  std::size_t max_intentions = 65536;  ///< in all
-  std::size_t max_children = 1024;     ///< of one intention
-  std::size_t max_depth = 64;          ///< intentions within intentions
-  std::size_t max_begun = 1024;        ///< in one cycle; more begin in the next one
+  std::size_t max_intentions = 4096;  ///< in all: what one that begins others without end may cost
+  std::size_t max_behaviors = 256;    ///< of them: what Intentions holds
+  std::size_t max_children = 1024;    ///< of one intention
+  std::size_t max_depth = 64;         ///< intentions within intentions
+  std::size_t max_begun = 1024;       ///< in one cycle; more begin in the next one
 };
 
 /// Why an intention does not go on. All of them have to be lifted.
@@ -82,6 +84,15 @@ class Forest {
   std::uint32_t plant(const GoalId& goal, std::string_view name, std::string_view schema,
                       std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0,
                       bool concurrent = false);
+  /// What has been done in the tree of a root, to go on from after a restart of the service; nil
+  /// where it is more than can be remembered.
+  Value save(std::uint32_t root) const;
+  /// Makes a tree that was planted just now what save() gave. ActivityError where that cannot be
+  /// (another version of the schema, a thing that is seen no more): it is then as it was planted.
+  void restore(std::uint32_t root, const Value& saved, const World& world);
+  /// Whether what save() gives may have changed since the last call.
+  bool take_changed() { return std::exchange(changed_, false); }
+
   void interrupt(std::uint32_t id, Hold why = Hold::kGoal);
   void resume(std::uint32_t id, Hold why = Hold::kGoal);
   bool held(std::uint32_t id, Hold why) const;
@@ -135,6 +146,8 @@ class Forest {
   Node* named(const Node& top, std::string_view name, const Node& seeker) const;
   std::uint32_t start(Node& parent, const Start& start, const World& world);
   void make_behavior(Node& node, const Start& start, const World& world);
+  Value save_one(const Node& node) const;
+  Node& restore_one(Node& parent, const Value& saved, const World& world);
   void watch(Node& node, const World& world);
   void remove_children(Node& parent);
   void drop(std::uint32_t id);
@@ -156,6 +169,7 @@ class Forest {
   std::vector<Node*> order_;      ///< of stepping
   std::vector<Node*> behaviors_;  ///< in the order in which they were intended
   bool order_is_old_ = false;
+  bool changed_ = false;
   /// Removed since the last step: whoever is being stepped may be among them.
   std::vector<std::unique_ptr<Node>> graves_;
   std::uint32_t last_id_ = 0;

@@ -101,6 +101,7 @@ struct GoalStatus {
   double elapsed = 0.0;   ///< [s] of robot time since acceptance
   double level = 0.0;     ///< [0..1] how far it is satisfied
   Trend trend = Trend::kSteady;
+  std::string note;  ///< what is worth knowing beside the state; empty: nothing
 
   bool operator==(const GoalStatus&) const = default;
 };

@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/base/text.hpp"
 #include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/work.hpp"
 
 namespace saphira::intentions {
 
@@ -40,24 +42,27 @@ struct Placement {
 };
 
 /// Endings that are remembered; the oldest are forgotten.
-inline constexpr std::size_t kMostEndings = 65536;
+inline constexpr std::size_t kMostEndings = 8192;
 
 /// What the service remembers over a restart.
 struct Memory {
   std::vector<Placement> placements;  ///< of goals that have not ended
   std::vector<Ending> endings;        ///< oldest first
+  Work work;                          ///< of goals that have begun
 
   bool operator==(const Memory&) const = default;
 };
 
-/// Lines of the journal, with their line break:
+/// Lines of the journal, with their line break, each behind its sum (saphira/base/durable.hpp):
 ///   placed writer(hex) number epoch cycle odom {name x y th x y th}
 ///   ended writer(hex) number state code reason...
 std::string write_line(const Placement& placement);
 std::string write_line(const Ending& ending);
 
 /// Reads those lines; the newest of an id counts. A last line without its line break is what a
-/// crash left of a write: it is skipped. FileError for any other line that cannot be read.
-Memory read_journal(const std::string& file, std::string_view content);
+/// crash left of a write: it is skipped. Lines that are not as they were written are skipped and
+/// told.
+Memory read_journal(const std::string& file, std::string_view content,
+                    std::vector<FileError>& damaged);
 
 }  // namespace saphira::intentions

@@ -96,6 +96,9 @@ class Registry {
 /// nothing is. Where nothing is, `complete` is the arguments with the defaults filled in.
 std::string check_arguments(const Schema& schema, const Arguments& arguments, Arguments& complete);
 
+/// The same, with points from the robot fixed in odom.
+Bindings fixed_in_odom(const Bindings& bindings, const Robot& robot);
+
 /// An instance for values of every kind. Points from the robot are fixed in odom. ActivityError
 /// where the arguments are not what the schema takes.
 std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bindings,

@@ -1,0 +1,125 @@
+#include "saphira/base/durable.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "saphira/base/fnv1a.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLineSum = 8;  // digits
+constexpr std::string_view kSum = "; sum ";
+
+std::string sum_of(std::string_view text) {
+  Fnv1a hash;
+  hash.add(text);
+  char digits[20];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
+  return digits;
+}
+
+std::string short_sum_of(std::string_view text) {
+  return sum_of(text).substr(0, kLineSum);
+}
+
+/// Closes itself.
+class File {
+ public:
+  File(const std::string& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0644)) {}
+  ~File() {
+    if (fd_ >= 0)
+      ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  bool write(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t n = ::write(fd_, text.data(), text.size());
+      if (n < 0)
+        return false;
+      text.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return fd_ >= 0;
+  }
+  bool sync() const { return ::fsync(fd_) == 0; }
+
+ private:
+  int fd_;
+};
+
+}  // namespace
+
+std::string sealed_line(std::string_view line) {
+  return short_sum_of(line) + " " + std::string(line);
+}
+
+std::optional<std::string_view> unsealed_line(std::string_view line) {
+  if (line.size() <= kLineSum || line[kLineSum] != ' ')
+    return std::nullopt;
+  const std::string_view rest = line.substr(kLineSum + 1);
+  if (short_sum_of(rest) != line.substr(0, kLineSum))
+    return std::nullopt;
+  return rest;
+}
+
+std::string sealed(std::string text) {
+  const std::string sum = sum_of(text);
+  return text.append(kSum).append(sum).append("\n");
+}
+
+std::string_view unsealed(std::string_view text, const std::string& file) {
+  const std::size_t last = text.rfind(kSum);
+  const std::string_view whole = text.substr(0, last);
+  if (last == std::string_view::npos ||
+      text.substr(last) != std::string(kSum) + sum_of(whole) + "\n")
+    throw FileError(file, 1, 1, "it is not as it was written: its sum is missing or wrong");
+  return whole;
+}
+
+std::string read_or_set_aside(const std::string& path,
+                              const std::function<void(const std::string& content)>& understand) {
+  std::error_code error;
+  // One that is empty was made, and never written.
+  if (!fs::is_regular_file(path, error) || fs::file_size(path, error) == 0)
+    return {};
+  std::string why;
+  try {
+    understand(read_file(path));
+    return {};
+  } catch (const std::exception& trouble) {
+    why = trouble.what();
+  }
+  const std::string aside = path + ".damaged";
+  fs::rename(path, aside, error);
+  return path + " cannot be used, and is begun anew" +
+         (error ? " (it could not be set aside: " + error.message() + ")"
+                : "; it is set aside as " + aside) +
+         ": " + why;
+}
+
+bool replace_file(const std::string& path, std::string_view text, bool sync) {
+  const std::string fresh = path + ".new";
+  {
+    const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
+    // The content before the name: else a power cut may leave the name of an empty file.
+    if (!file.write(text) || (sync && !file.sync()))
+      return false;
+  }
+  if (std::rename(fresh.c_str(), path.c_str()) != 0)
+    return false;
+  if (!sync)
+    return true;
+  const auto folder = fs::path(path).parent_path();
+  return File(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY).sync();
+}
+
+}  // namespace saphira

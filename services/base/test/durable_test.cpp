@@ -1,0 +1,99 @@
+#include "saphira/base/durable.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira {
+namespace {
+
+/// A folder that goes with the object.
+class Folder {
+ public:
+  Folder() {
+    if (mkdtemp(path_.data()) == nullptr)
+      throw std::runtime_error("no folder in /tmp");
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string path(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_ = "/tmp/saphira-durable-XXXXXX";
+};
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST(Durable, ASealedLineIsWhatItWas) {
+  const std::string line = sealed_line("placed 1f 2 the rest; of it");
+  EXPECT_EQ(unsealed_line(line), "placed 1f 2 the rest; of it");
+  for (std::size_t i = 0; i < line.size(); ++i)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string damaged = line;
+      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+      EXPECT_FALSE(unsealed_line(damaged)) << i << " " << bit;
+    }
+  for (std::size_t length = 0; length < line.size(); ++length)
+    EXPECT_FALSE(unsealed_line(std::string_view(line).substr(0, length)));
+}
+
+TEST(Durable, ASealedTextIsWhatItWas) {
+  const std::string text = "one\ntwo\n";
+  const std::string whole = sealed(text);
+  EXPECT_EQ(unsealed(whole, "file"), text);
+  EXPECT_EQ(unsealed(sealed(""), "file"), "");
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string damaged = whole;
+      damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+      EXPECT_THROW(unsealed(damaged, "file"), FileError) << i << " " << bit;
+    }
+    EXPECT_THROW(unsealed(whole.substr(0, i), "file"), FileError);
+  }
+  EXPECT_THROW(unsealed(whole + "more\n", "file"), FileError);
+}
+
+TEST(Durable, WhatCannotBeUnderstoodIsSetAside) {
+  const Folder folder;
+  const std::string path = folder.path("state");
+  const auto understand = [](const std::string& text) {
+    if (text != "good")
+      throw std::runtime_error("it is bad");
+  };
+  EXPECT_EQ(read_or_set_aside(path, understand), "") << "there is none";
+  write(path, "good");
+  EXPECT_EQ(read_or_set_aside(path, understand), "");
+  EXPECT_TRUE(std::filesystem::exists(path));
+  write(path, "bad");
+  const std::string said = read_or_set_aside(path, understand);
+  EXPECT_NE(said.find(path + ".damaged"), std::string::npos) << said;
+  EXPECT_NE(said.find("it is bad"), std::string::npos) << said;
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(read_file(path + ".damaged"), "bad");
+  // The next one takes its place.
+  write(path, "worse");
+  EXPECT_NE(read_or_set_aside(path, understand), "");
+  EXPECT_EQ(read_file(path + ".damaged"), "worse");
+}
+
+TEST(Durable, AFileIsReplacedWhole) {
+  const Folder folder;
+  const std::string path = folder.path("state");
+  EXPECT_TRUE(replace_file(path, "one"));
+  EXPECT_EQ(read_file(path), "one");
+  EXPECT_TRUE(replace_file(path, "two", true));
+  EXPECT_EQ(read_file(path), "two");
+  EXPECT_FALSE(std::filesystem::exists(path + ".new"));
+  EXPECT_FALSE(replace_file(folder.path("nowhere/state"), "three"));
+}
+
+}  // namespace
+}  // namespace saphira

@@ -1,0 +1,257 @@
+#include "saphira/intentions/work.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/base/text.hpp"
+#include "saphira/intentions/executor.hpp"
+#include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/language.hpp"
+#include "scripted_robot.hpp"
+
+// What has been done is not done again: the service is killed and restarted at every cycle of a
+// run, and the robot does all in all what it does without that.
+namespace saphira::intentions {
+namespace {
+
+/// A service that can be killed, with its disk, a robot, and one goal whose writer lives on.
+class Site {
+ public:
+  Site(std::string activities, std::string functor, Arguments arguments = {})
+      : activities_(std::move(activities)) {
+    goal_.id = {1, 1};
+    goal_.requester = "somebody";
+    goal_.functor = std::move(functor);
+    goal_.arguments = std::move(arguments);
+    start();
+  }
+
+  void start() {
+    Registry registry = built_in();
+    const Loaded loaded = load_text("test.act", activities_, *functions_, registry);
+    EXPECT_TRUE(loaded.ok());
+    for (const Schema& schema : loaded.schemas)
+      registry.add(schema);
+    std::vector<FileError> damaged;
+    Memory memory = read_journal("journal", journal, damaged);
+    EXPECT_TRUE(damaged.empty());
+    if (!work.empty())
+      memory.work = read_work("work", work);
+    executor_ = std::make_unique<Executor>(
+        std::move(registry), memory,
+        ExecutorOptions{.remembers_work = true, .functions = functions_});
+    events_ = {{GoalEvent::Kind::kWritten, goal_}};
+  }
+  /// It is dead for so many cycles, in which the robot stands.
+  void kill(int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      ++cycle;
+      world.move({}, cycle);
+    }
+    world.levels.clear();
+    start();
+  }
+  void change_activities(std::string text) { activities_ = std::move(text); }
+
+  void step() {
+    ++cycle;
+    Inputs inputs;
+    inputs.epoch = epoch;
+    inputs.cycle = cycle;
+    inputs.robot = world.robot;
+    inputs.behaviors = world.levels;
+    inputs.behaviors_cycle = cycle - 1;
+    inputs.events = std::exchange(events_, {});
+    const Outputs out = executor_->step(inputs);
+    for (const GoalStatus& each : out.news.changed)
+      status = each;
+    for (const Placement& each : out.news.placed)
+      journal += write_line(each);
+    for (const Ending& each : out.news.endings)
+      journal += write_line(each);
+    if (out.news.work)
+      work = write_work(*out.news.work);
+    for (const Said& each : out.said)
+      said += each.text + "\n";
+    const Pose before = world.robot.pose_in_odom;
+    world.move(out.behaviors, cycle);
+    turned += norm2_angle(world.robot.pose_in_odom.th - before.th);
+    driven += (world.robot.pose_in_odom.position() - before.position()).norm();
+  }
+  bool over() const { return ended(status.state); }
+
+  ScriptedRobot world;
+  std::uint64_t epoch = 100;
+  std::uint64_t cycle = 0;
+  std::string journal;  ///< what is on the disk
+  std::string work;
+  GoalStatus status;
+  std::string said;
+  double turned = 0.0;  ///< [rad]
+  double driven = 0.0;  ///< [m]
+
+ private:
+  std::string activities_;
+  Goal goal_;
+  std::shared_ptr<const Functions> functions_ = std::make_shared<const Functions>(core_functions());
+  std::unique_ptr<Executor> executor_;
+  std::vector<GoalEvent> events_;
+};
+
+constexpr const char* kAboutTurn =
+    "(defintention :about-turn :goals '((INTEND :Stop () :blocking nil :priority 3)"
+    " (INTEND :TurnTo ((goal . (offset (robot) -1000 0)) (success_angle . 0.1)) :timeout 20s)"
+    " (WAIT-FOR at-rest :timeout 5s)))";
+
+constexpr const char* kErrand =
+    "(defintention :errand :goals '((EXECUTE (setq *pace* 0.4))"
+    " (INTEND :Stop () :blocking nil :priority 3 :name stand)"
+    " (EXECUTE (say \"sets out\"))"
+    " (INTEND :GoToPos ((goal . (offset (robot) 1 0)) (speed . *pace*) (radius . 0.05))"
+    "   :timeout 20s)"
+    " (EXECUTE (say \"has ~a\" 'it))"
+    " (INTEND :detour ((far . 0.6)) :name way)"
+    " (AND (INTEND :TurnTo ((goal . (offset (robot) 0 1000)) (success_angle . 0.1)))"
+    "      ((WAIT-FOR (> (elapsed) 4) :timeout 20s) (EXECUTE (say \"was there\"))))"
+    " (MAINTAIN connected :by (FAIL \"no robot\")"
+    "   (INTEND :detour ((far . 0.3))))"
+    " ((= round 0))"
+    " (:again (= round (+ round 1)) (EXECUTE (say \"round ~a\" round))"
+    "   (WAIT-FOR at-rest :timeout 5s) (IF (< round 3) (GOTO :again)))"
+    " (SUCCEED \"~a, ~a\" (state 'way) *pace*)))"
+    "(defintention :detour :params ((far :number 1)) :goals '("
+    " ((= was (robot))"
+    "  (INTEND :GoToPos ((goal . (offset (robot) far 0)) (speed . 0.2) (radius . 0.05))))"
+    " (EXECUTE (say \"~a cm on\" (floor (+ 0.5 (* 100 (distance was))))))"
+    " (WAIT-FOR at-rest :timeout 5s)))";
+
+TEST(Work, ReadsWhatItWrote) {
+  const Work work{
+      0x8000000000000001ULL,
+      12,
+      3,
+      77,
+      {{{0xfedcba9876543210ULL, 7},
+        "about-turn",
+        Value(Value::List{Value(1.0 / 3.0), Value("a \"b\" ; c"), Value(), Value::truth(true),
+                          Value(Point{{1.5, -2.0, 3.0}, Frame::kMap}),
+                          Value(Value::List{Value(-4.0), Value(Reference{})})})}},
+      {{"*speed*", Value(0.3), "patrol", -17}}};
+  EXPECT_EQ(read_work("work", write_work(work)), work);
+}
+
+TEST(Work, SaysWhereItCannotBeRead) {
+  EXPECT_THROW(read_work("work", ""), FileError);
+  EXPECT_THROW(read_work("work", "(at x1 x2 x3 4)\n(goal x1"), FileError);
+  EXPECT_THROW(read_work("work", "(at x1 x2 x3 4)\n(goal 5)\n"), FileError);
+  EXPECT_THROW(read_work("work", "(at x1 x2 x3 4)\nnonsense\n"), FileError);
+}
+
+TEST(Work, AHalfTurnIsAHalfTurnWheneverTheServiceIsKilled) {
+  Site whole(kAboutTurn, "about-turn");
+  std::uint64_t cycles = 0;
+  for (; !whole.over() && cycles < 200; ++cycles)
+    whole.step();
+  ASSERT_EQ(whole.status.state, GoalState::kSucceeded) << whole.status.reason;
+  EXPECT_NEAR(whole.turned, kPi, 0.11);
+  for (std::uint64_t at = 1; at < cycles; ++at) {
+    Site site(kAboutTurn, "about-turn");
+    for (std::uint64_t i = 0; !site.over() && i < 300; ++i) {
+      site.step();
+      if (i + 1 == at)
+        site.kill(3);
+    }
+    EXPECT_EQ(site.status.state, GoalState::kSucceeded) << at << " " << site.status.reason;
+    EXPECT_NEAR(site.turned, whole.turned, 0.11) << "killed at cycle " << at;
+    EXPECT_EQ(site.status.note, "") << at;
+  }
+}
+
+TEST(Work, AHalfTurnIsAHalfTurnHoweverOftenTheServiceIsKilled) {
+  Site site(kAboutTurn, "about-turn");
+  for (int i = 0; !site.over() && i < 300; ++i) {
+    site.step();
+    if (!site.over() && i % 5 == 4)
+      site.kill(1);
+  }
+  EXPECT_EQ(site.status.state, GoalState::kSucceeded) << site.status.reason;
+  EXPECT_NEAR(site.turned, kPi, 0.11);
+}
+
+TEST(Work, StepsThatAreDoneAreNotDoneAgain) {
+  Site whole(kErrand, "errand");
+  std::uint64_t cycles = 0;
+  for (; !whole.over() && cycles < 500; ++cycles)
+    whole.step();
+  ASSERT_EQ(whole.status.state, GoalState::kSucceeded) << whole.status.reason << whole.said;
+  EXPECT_EQ(whole.status.reason, "success, 0.4");
+  EXPECT_NEAR(whole.driven, 1.9, 0.2);
+  for (std::uint64_t at = 1; at < cycles; ++at) {
+    Site site(kErrand, "errand");
+    for (std::uint64_t i = 0; !site.over() && i < 700; ++i) {
+      site.step();
+      if (i + 1 == at)
+        site.kill(2);
+    }
+    EXPECT_EQ(site.status.state, GoalState::kSucceeded) << at << " " << site.status.reason;
+    EXPECT_EQ(site.status.reason, whole.status.reason) << at;
+    EXPECT_EQ(site.said, whole.said) << "killed at cycle " << at;
+    EXPECT_NEAR(site.driven, whole.driven, 0.1) << "killed at cycle " << at;
+    EXPECT_NEAR(site.turned, whole.turned, 0.11) << "killed at cycle " << at;
+  }
+}
+
+// The bridge was restarted as well, and keeps its odom frame.
+TEST(Work, AnotherEpochGoesOn) {
+  Site site(kAboutTurn, "about-turn");
+  for (int i = 0; i < 10; ++i)
+    site.step();
+  site.epoch = 101;
+  site.cycle = 0;
+  site.kill(0);
+  for (int i = 0; !site.over() && i < 300; ++i)
+    site.step();
+  EXPECT_EQ(site.status.state, GoalState::kSucceeded) << site.status.reason;
+  EXPECT_NEAR(site.turned, kPi, 0.11);
+}
+
+TEST(Work, WhatCannotBeTakenUpIsTold) {
+  struct Case {
+    const char* what;
+    std::function<void(Site&)> happens;
+    const char* told;
+  };
+  const Case cases[] = {
+      {"another version of the schema",
+       [](Site& site) {
+         site.change_activities(
+             "(defintention :about-turn :goals '((INTEND :TurnTo ((goal . (offset (robot) -1000 "
+             "0)) (success_angle . 0.2)))))");
+       },
+       "is another than it was"},
+      {"the file is gone", [](Site& site) { site.work.clear(); }, "is not remembered"},
+      {"another odom frame", [](Site& site) { site.world.robot.odom = 2; },
+       "dead reckoning has begun anew"},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.what);
+    Site site(kAboutTurn, "about-turn");
+    for (int i = 0; i < 8; ++i)
+      site.step();
+    one.happens(site);
+    site.kill(0);
+    site.step();
+    EXPECT_EQ(site.status.state, GoalState::kUnderway);
+    EXPECT_NE(site.status.note.find("begun anew"), std::string::npos) << site.status.note;
+    EXPECT_NE(site.status.note.find(one.told), std::string::npos) << site.status.note;
+  }
+}
+
+}  // namespace
+}  // namespace saphira::intentions
