@@ -49,14 +49,16 @@ std::uint64_t milliseconds_since_1970() {
                                         .count());
 }
 
-/// What stops a robot in a session at once: the server's emergency stop, or zero setpoints where it
-/// has none.
+/// What stops a robot in a session at once: zero setpoints, and the server's emergency stop where
+/// it should have one. Both, since some servers of that generation do not know it.
 std::vector<std::uint8_t> stop_packets(const protocol::RobotParameters& robot) {
-  if (protocol::has_emergency_stop(robot))
-    return protocol::encode(protocol::EmergencyStop{});
   std::vector<std::uint8_t> out = protocol::encode(protocol::Velocity{0.0});
   const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
   out.insert(out.end(), turn.begin(), turn.end());
+  if (protocol::has_emergency_stop(robot)) {
+    const protocol::Bytes stop = protocol::encode(protocol::EmergencyStop{});
+    out.insert(out.end(), stop.begin(), stop.end());
+  }
   return out;
 }
 

@@ -121,6 +121,9 @@ std::vector<Order> Channels::due(double now) {
     out.push_back(channel.want);
   };
   if (brake_) {
+    // These stop a server that does not know the emergency stop.
+    if (is_due(*brake_, now))
+      out = {kNoMove, kNoTurn};
     take(*brake_);
     return out;
   }

@@ -47,8 +47,10 @@ TEST(Channels, AChangeGoesOutAtOnceAndOnceACycle) {
   EXPECT_TRUE(channels.due(100.14).empty());
 }
 
-TEST(Channels, AnEmergencyStopIsSentInsteadOfSetpoints) {
-  const std::vector<Order> brake{{protocol::Number::kEmergencyStop, 0}};
+TEST(Channels, AnEmergencyStopIsSentBehindZeroSetpoints) {
+  const std::vector<Order> brake{{protocol::Number::kVelocity, 0},
+                                 {protocol::Number::kRotationVelocity, 0},
+                                 {protocol::Number::kEmergencyStop, 0}};
   Channels channels;
   channels.connect();
   channels.due(100.0);
