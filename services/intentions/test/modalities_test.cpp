@@ -691,7 +691,8 @@ TEST(Modality, NothingGrowsWithoutBound) {
       "(defintention :many :goals '((:again (INTEND :one () :blocking nil)) (GOTO :again)))"
       "(defintention :one :goals '((SPLIT (INTEND :two ()) (INTEND :two ()))"
       " (WAIT-FOR stalled :forever t)))"
-      "(defintention :two :goals '((WAIT-FOR stalled :forever t)))");
+      "(defintention :two :goals '((WAIT-FOR stalled :forever t)))",
+      core_functions(), 300);
   crowd.ask(1, "it");
   std::size_t most = 0;
   for (int i = 0; i < 100; ++i) {
