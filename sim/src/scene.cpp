@@ -12,6 +12,9 @@ namespace {
 // Nobody walks nearer to a robot than this, if it is he who walks.
 constexpr double kManners = 0.10;  // [m]
 
+// Somebody who has waited so long for the way to become free goes elsewhere [s].
+constexpr double kPatience = 4.0;
+
 constexpr double kDoorSpeed = kPi / 2.0;  // [rad/s]
 
 // A robot of the class that we have moves what does not hold faster than its own tyres.
@@ -212,18 +215,25 @@ void Scene::walk(Person& person) {
     const Vec2 to = left <= step ? leg.to : Vec2(person.at + way * (step / left));
     if (!lets_pass(person, to)) {
       person.way = 0.0;
+      person.waited += kTick;
+      if (person.waited > kPatience)
+        next_leg(person);
       return;
     }
+    person.waited = 0.0;
     look_towards(person, leg.to);
     person.way += std::min(left, step);
     person.at = to;
     done = left <= step;
   }
-  if (!done)
-    return;
+  if (done)
+    next_leg(person);
+}
+
+void Scene::next_leg(Person& person) {
   person.waited = 0.0;
   ++person.leg;
-  if (person.leg == script.size() && person.plan->repeats)
+  if (person.leg == person.plan->script.size() && person.plan->repeats)
     person.leg = 0;
 }
 

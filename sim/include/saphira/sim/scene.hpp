@@ -73,10 +73,11 @@ struct Ping {
   Vec2 ahead{1.0, 0.0};
 };
 
-/// A world and what moves in it: people who walk by their scripts and wait where a robot, a door or
-/// a box is in their way (they push a door open that is closed); doors, which stop where somebody
-/// stands in their way; boxes, which robots push; robots. One tick() moves everything by one tick
-/// of time, always in the same order, so that a scene is the same to the last bit in every run.
+/// A world and what moves in it: people, doors, boxes, robots. People walk by their scripts. They
+/// wait where a robot, a door or a box is in their way, push a closed door open, and after four
+/// seconds go on to the next place of the script. Doors stop where somebody stands in their way;
+/// robots push boxes. One tick() moves everything by one tick of time, always in the same order, so
+/// that a scene is the same to the last bit in every run.
 class Scene {
  public:
   /// The world outlives the scene.
@@ -140,6 +141,7 @@ class Scene {
   void put(std::size_t box, const Pose& pose_in_world);
 
   void walk(Person& person);
+  void next_leg(Person& person);
   bool lets_pass(const Person& person, const Vec2& to);
   void turn(std::size_t door);
   bool is_free(std::size_t box, const Pose& pose_in_world, RobotNumber pusher) const;
