@@ -369,27 +369,4 @@ v1::Devices to_bus(const std::vector<reflector::Request>& requests,
   return out;
 }
 
-void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,
-              std::vector<authority::Echo>& echoes, std::vector<authority::Silence>& silent) {
-  for (const protocol::Sonar& sonar : state.information.sonars) {
-    for (const protocol::SonarUnit& unit : parameters.sonars) {
-      if (unit.number != sonar.number)
-        continue;
-      if (sonar.echo)
-        echoes.push_back({sonar.number, state.pose_in_odom, unit.pose_in_robot, sonar.range});
-      else
-        silent.push_back({sonar.number, unit.pose_in_robot});
-    }
-  }
-}
-
-authority::Body to_body(const protocol::RobotParameters& parameters) {
-  authority::Body out;
-  out.radius = parameters.radius;
-  out.max_velocity = parameters.max_velocity;
-  out.max_rotation_velocity = parameters.max_rotation_velocity;
-  out.deceleration = parameters.deceleration;
-  return out;
-}
-
 }  // namespace saphira::bridge

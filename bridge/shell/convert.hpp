@@ -59,9 +59,4 @@ v1::Devices to_bus(const std::vector<reflector::Request>& requests,
                    const reflector::Devices::Reports& reports,
                    const protocol::Information& information, const v1::Stamp& stamp);
 
-/// The readings of a packet for the guard: those with an echo, and the sonars that fired without.
-void to_guard(const reflector::State& state, const protocol::RobotParameters& parameters,
-              std::vector<authority::Echo>& echoes, std::vector<authority::Silence>& silent);
-authority::Body to_body(const protocol::RobotParameters& parameters);
-
 }  // namespace saphira::bridge

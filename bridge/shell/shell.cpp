@@ -11,6 +11,7 @@
 
 #include "convert.hpp"
 #include "saphira/authority/age.hpp"
+#include "saphira/authority/robot.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/fnv1a.hpp"
 #include "saphira/bus/program.hpp"
@@ -398,7 +399,7 @@ void Shell::opened(double now) {
   stamp_.cycle(0);
   if (camera_)
     camera_->connect();
-  body_ = to_body(reflector_.parameters());
+  body_ = authority::body_of(reflector_.parameters());
   echoes_.clear();
   reflector_.open(time(), memory_, std::max(epoch_, last_odom_ + 1), slack_);
   arbiter_.connect(epoch_);
@@ -455,10 +456,8 @@ void Shell::information(const protocol::InformationPacket& packet, double now) {
     arbiter_.forget(stamp_.cycle() - 1, time());  // what was meant in the old frame
     echoes_.clear();
   }
-  std::vector<authority::Echo> echoes;
-  std::vector<authority::Silence> silent;
-  to_guard(state, reflector_.parameters(), echoes, silent);
-  echoes_.update(stamp_.cycle(), echoes, silent);
+  echoes_.update(stamp_.cycle(), state.pose_in_odom,
+                 authority::readings_of(state.information.sonars, reflector_.parameters()));
   body_.sees_ahead = echoes_.sees(stamp_.cycle(), true);
   body_.sees_behind = echoes_.sees(stamp_.cycle(), false);
   devices_.publish(stamp_);
@@ -641,8 +640,8 @@ void Shell::decide() {
   guarded_ = {wanted.velocity, wanted.rotation_velocity, authority::GuardAction::none, {}};
   if (grant.role != Role::none && grant.role != Role::estop) {
     guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant.role)], body_,
-                                echoes_.seen_from(reflector_.state().pose_in_odom), wanted.velocity,
-                                wanted.rotation_velocity, contact_speed_of(grant.role));
+                                echoes_.spots(), wanted.velocity, wanted.rotation_velocity,
+                                reflector_.state().rotation_velocity, contact_speed_of(grant.role));
     guarded_ = authority::slow_for_age(std::move(guarded_), grant.command_age, kCycle);
   }
   wanted.velocity = guarded_.velocity;

@@ -15,6 +15,7 @@
 #include "namesakes.hpp"
 #include "position_file.hpp"
 #include "saphira/authority/arbiter.hpp"
+#include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/protocol/packet.hpp"
@@ -126,7 +127,7 @@ class Shell {
   DeviceTopics devices_;
   std::optional<Camera> camera_;
   authority::Arbiter arbiter_;
-  authority::Echoes echoes_;
+  authority::EchoMap echoes_;
   authority::Body body_;
   std::vector<std::string> words_;                  ///< to be logged when the packets are out
   std::array<authority::GuardSettings, 5> guards_;  ///< by role

@@ -236,22 +236,6 @@ TEST(Convert, GrantAndGuard) {
   EXPECT_EQ(out.refused()[0].role(), v1::ROLE_BEHAVIORS);
 }
 
-TEST(Convert, ReadingsForTheGuard) {
-  protocol::RobotParameters p;
-  p.sonars = {{0, {0.1, 0.1, kPi / 2}}, {3, {0.13, 0.0, 0.0}}};
-  p.sonars.push_back({7, {-0.1, 0.0, kPi}});
-  reflector::State s;
-  s.information.sonars = {{3, 1.0, true}, {0, 5.0, false}, {9, 1.0, true}};
-  std::vector<authority::Echo> echoes;
-  std::vector<authority::Silence> silent;
-  to_guard(s, p, echoes, silent);
-  ASSERT_EQ(echoes.size(), 1U) << "a sonar that no file places is left out";
-  EXPECT_EQ(echoes[0].sonar, 3);
-  ASSERT_EQ(silent.size(), 1U);
-  EXPECT_EQ(silent[0].sonar, 0);
-  EXPECT_EQ(silent[0].sonar_in_robot, (Pose{0.1, 0.1, kPi / 2}));
-}
-
 TEST(Convert, VisionChannels) {
   protocol::VisionPacket packet;
   using Mode = protocol::VisionChannel::Mode;

@@ -1,9 +1,11 @@
 #include "drive/drive.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "behaviors/test/robot_model.hpp"
+#include "saphira/authority/robot.hpp"
 #include "saphira/base/places.hpp"
 
 namespace saphira::test {
@@ -12,6 +14,8 @@ namespace {
 protocol::RobotParameters parameters_of(const DriveOptions& options) {
   auto parameters =
       protocol::load_parameters(find_file(config_folder() + "/robots", options.robot, ".p"));
+  // As the bridge sets the robot at the connection.
+  parameters.deceleration = std::max(parameters.deceleration, parameters.stop_deceleration);
   parameters.encode_jitter *= options.errors;
   parameters.angle_jitter *= options.errors;
   parameters.angle_drift *= options.errors;
@@ -22,14 +26,18 @@ protocol::RobotParameters parameters_of(const DriveOptions& options) {
 
 Drive::Drive(const DriveOptions& options)
     : parameters_(parameters_of(options)),
-      world_(sim::load_world(find_file(config_folder() + "/worlds", options.world, ".wld"))),
+      world_(options.made_world
+                 ? *options.made_world
+                 : sim::load_world(find_file(config_folder() + "/worlds", options.world, ".wld"))),
       scene_(world_),
       robot_(&scene_.add_robot(parameters_,
                                options.start_in_world.value_or(world_.start.value_or(Pose{})),
                                options.seed)),
       sonars_(scene_, robot_->number(), parameters_, options.sonar, options.seed),
       executive_(options.behaviors.value_or(behaviors::predefined()),
-                 behaviors::model_of(parameters_)) {
+                 behaviors::model_of(parameters_)),
+      has_guard_(options.guard),
+      body_(authority::body_of(parameters_)) {
   seen_.pose_in_odom = robot_->pose_in_odom();
   seen_.true_pose_in_world = robot_->pose_in_world();
 }
@@ -58,9 +66,23 @@ const Seen& Drive::advance() {
                          : output_.active ? output_.heading_in_odom
                                           : seen_.pose_in_odom.th;
   // Whole millimetres and degrees, as the robot's commands have them.
-  robot_->set_velocity(std::round(speed * 1000.0) / 1000.0);
+  robot_->set_velocity(std::round(guard(speed) * 1000.0) / 1000.0);
   robot_->set_heading(radians(std::round(degrees(heading))));
   return seen_;
+}
+
+double Drive::guard(double speed) {
+  std::vector<protocol::Sonar> sonars;
+  for (const lps::SonarReading& reading : seen_.readings)
+    sonars.push_back({static_cast<std::uint8_t>(reading.sonar), reading.range, reading.echo});
+  echoes_.update(seen_.cycle, seen_.pose_in_odom, authority::readings_of(sonars, parameters_));
+  body_.sees_ahead = echoes_.sees(seen_.cycle, true);
+  body_.sees_behind = echoes_.sees(seen_.cycle, false);
+  authority::GuardSettings settings;
+  settings.enabled = has_guard_;
+  guarded_ =
+      authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity);
+  return guarded_.velocity;
 }
 
 void Drive::intend(std::vector<behaviors::Intended> intended, bool control) {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "saphira/authority/echo_map.hpp"
+#include "saphira/authority/guard.hpp"
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/robot.hpp"
@@ -15,12 +18,14 @@
 namespace saphira::test {
 
 struct DriveOptions {
-  std::string world = "office-floor";  ///< a name of config/worlds
-  std::string robot = "pioneer";       ///< a name of config/robots
+  std::string world = "office-floor";     ///< a name of config/worlds
+  std::shared_ptr<const sim::World> made_world;  ///< instead of it
+  std::string robot = "pioneer";          ///< a name of config/robots
   std::uint64_t seed = 1;
   double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
   std::optional<Pose> start_in_world;  ///< else the world's own
   sim::SonarModel sonar;
+  bool guard = true;  ///< beside the robot, as in the bridge
   /// Else the predefined ones.
   std::optional<behaviors::Registry> behaviors;
 };
@@ -63,11 +68,15 @@ class Drive {
   const sim::World& world() const { return world_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
   std::vector<lps::SonarMount> mounts() const;
+  /// What the guard made of it in the newest cycle.
+  const authority::Guarded& guarded() const { return guarded_; }
   sim::Scene& scene() { return scene_; }
   sim::Robot& robot() { return *robot_; }
   int contacts() const;
 
  private:
+  double guard(double speed);
+
   protocol::RobotParameters parameters_;
   sim::World world_;
   sim::Scene scene_;
@@ -77,6 +86,10 @@ class Drive {
   behaviors::Intent intent_;
   behaviors::Output output_;
   std::vector<behaviors::Intended> intended_;
+  bool has_guard_;
+  authority::Body body_;
+  authority::EchoMap echoes_;
+  authority::Guarded guarded_;
   bool control_ = true;
   bool by_hand_ = false;
   double speed_ = 0.0;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/lps/obstacle_memory.hpp"
+
+namespace saphira::authority {
+
+/// One firing of a sonar.
+struct Reading {
+  int sonar = 0;
+  Pose sonar_in_robot;
+  std::optional<double> range;  ///< [m] of the echo; none: silence
+};
+
+/// What the sonars have heard round the robot. An echo comes from somewhere on an arc across its
+/// sonar's axis, and what enters a gap between two beams is still there: the memory is the one that
+/// the behaviors steer by (saphira/lps), so that the two agree about what is in the way.
+class EchoMap {
+ public:
+  /// Echoes from farther away than `range` [m] do not matter.
+  explicit EchoMap(double range = 2.5) : range_(range) {}
+
+  /// A packet came, with these new readings in firing order, and the robot is here now.
+  void update(std::uint64_t cycle, const Pose& robot_in_odom, const std::vector<Reading>& readings);
+  void clear();
+
+  /// Where something is, in the robot's frame as of the last update.
+  const std::vector<Vec2>& spots() const { return memory_.points(); }
+  /// Whether some sonar within 60 degrees of straight ahead (or back) has fired in the last second
+  /// (a Pioneer's sonars fire every third cycle). At the beginning they have not had their turn.
+  bool sees(std::uint64_t cycle, bool ahead) const;
+
+ private:
+  double range_;
+  lps::ObstacleMemory memory_;
+  std::uint64_t fired_ahead_ = 0;  ///< the newest cycle in which such a sonar fired
+  std::uint64_t fired_behind_ = 0;
+};
+
+}  // namespace saphira::authority

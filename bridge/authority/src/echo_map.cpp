@@ -1,0 +1,41 @@
+#include "saphira/authority/echo_map.hpp"
+
+#include <cmath>
+
+namespace saphira::authority {
+
+namespace {
+
+constexpr double kTowards = radians(60.0);
+constexpr std::uint64_t kTurnCycles = 10;
+
+}  // namespace
+
+void EchoMap::clear() {
+  memory_.clear();
+  fired_ahead_ = 0;
+  fired_behind_ = 0;
+}
+
+void EchoMap::update(std::uint64_t cycle, const Pose& robot_in_odom,
+                     const std::vector<Reading>& readings) {
+  memory_.move_to(robot_in_odom);
+  for (const Reading& reading : readings) {
+    if (std::abs(norm2_angle(reading.sonar_in_robot.th)) < kTowards)
+      fired_ahead_ = cycle;
+    if (std::abs(norm2_angle(reading.sonar_in_robot.th + kPi)) < kTowards)
+      fired_behind_ = cycle;
+    const Pose sonar_in_odom = compose(robot_in_odom, reading.sonar_in_robot);
+    if (reading.range && *reading.range <= range_)
+      memory_.echo(sonar_in_odom, *reading.range);
+    else
+      memory_.silence(sonar_in_odom);
+  }
+  memory_.collect(robot_in_odom);
+}
+
+bool EchoMap::sees(std::uint64_t cycle, bool ahead) const {
+  return cycle <= (ahead ? fired_ahead_ : fired_behind_) + kTurnCycles;
+}
+
+}  // namespace saphira::authority

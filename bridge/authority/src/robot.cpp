@@ -1,0 +1,38 @@
+#include "saphira/authority/robot.hpp"
+
+#include <algorithm>
+
+namespace saphira::authority {
+
+namespace {
+
+constexpr double kLinkAndServer = 0.2;  // [s] packet, decision, command, motors
+
+}  // namespace
+
+Body body_of(const protocol::RobotParameters& parameters) {
+  Body body;
+  body.radius = parameters.radius;
+  body.max_velocity = parameters.max_velocity;
+  body.max_rotation_velocity = parameters.max_rotation_velocity;
+  body.deceleration = parameters.deceleration;
+  body.sonar_range = parameters.sonar_max_range;
+  // On average a sonar's turn is half a round away.
+  const double round = parameters.sonar_period * static_cast<double>(parameters.sonars.size()) /
+                       std::max(parameters.sonar_arrays, 1);
+  body.reaction = 0.5 * round + kLinkAndServer;
+  return body;
+}
+
+std::vector<Reading> readings_of(const std::vector<protocol::Sonar>& sonars,
+                                 const protocol::RobotParameters& parameters) {
+  std::vector<Reading> readings;
+  for (const protocol::Sonar& sonar : sonars)
+    for (const protocol::SonarUnit& unit : parameters.sonars)
+      if (unit.number == sonar.number)
+        readings.push_back({sonar.number, unit.pose_in_robot,
+                            sonar.echo ? std::optional<double>(sonar.range) : std::nullopt});
+  return readings;
+}
+
+}  // namespace saphira::authority

@@ -1,0 +1,316 @@
+#include "crossing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <queue>
+
+#include "saphira/base/places.hpp"
+#include "saphira/base/random.hpp"
+#include "saphira/sim/contacts.hpp"
+
+namespace saphira::test {
+
+namespace {
+
+constexpr double kCell = 0.1;     // [m]
+constexpr double kRoom = 0.15;    // [m] beside the hull
+constexpr double kComfort = 0.7;  // [m] more room than this is no better
+constexpr double kPersonRadius = 0.25;
+constexpr double kPersonRoom = 0.15;  // [m] more than beside a wall
+constexpr double kShortest = 2.0;     // [m] of a way worth driving
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Room round each cell of a world, and the cheapest ways from one of them.
+class Ways {
+ public:
+  Ways(const sim::World& world, double needed)
+      : needed_(needed),
+        columns_(static_cast<int>(world.width / kCell)),
+        rows_(static_cast<int>(world.height / kCell)),
+        room_(static_cast<std::size_t>(columns_ * rows_)) {
+    sim::Scene scene(world);
+    for (int i = 0; i < columns_ * rows_; ++i)
+      room_[static_cast<std::size_t>(i)] = scene.distance(centre(i));
+  }
+
+  Vec2 centre(int cell) const {
+    return {(cell % columns_ + 0.5) * kCell, (cell / columns_ + 0.5) * kCell};
+  }
+  double room(int cell) const { return room_[static_cast<std::size_t>(cell)]; }
+  double room(const Vec2& at) const {
+    const auto cell = cell_at(at);
+    return cell ? room(*cell) : 0.0;
+  }
+
+  /// The cell with enough room that is nearest to a place.
+  std::optional<int> nearest(const Vec2& at) const {
+    std::optional<int> best;
+    for (int i = 0; i < columns_ * rows_; ++i)
+      if (room(i) >= needed_ && (!best || (centre(i) - at).norm() < (centre(*best) - at).norm()))
+        best = i;
+    return best;
+  }
+
+  /// From here to everywhere: cost, length [m] and the cell before.
+  void spread(int from) {
+    cost_.assign(room_.size(), kNever);
+    length_.assign(room_.size(), kNever);
+    before_.assign(room_.size(), -1);
+    using Entry = std::pair<double, int>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    cost_[static_cast<std::size_t>(from)] = 0.0;
+    length_[static_cast<std::size_t>(from)] = 0.0;
+    open.emplace(0.0, from);
+    while (!open.empty()) {
+      const auto [cost, cell] = open.top();
+      open.pop();
+      if (cost > cost_[static_cast<std::size_t>(cell)])
+        continue;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int column = cell % columns_ + dx;
+          const int row = cell / columns_ + dy;
+          if (column < 0 || row < 0 || column >= columns_ || row >= rows_)
+            continue;
+          const int next = row * columns_ + column;
+          const auto n = static_cast<std::size_t>(next);
+          if (room(next) < needed_)
+            continue;
+          const double step = kCell * std::hypot(dx, dy);
+          const double tight = std::max(0.0, kComfort - room(next));
+          const double sum = cost + step * (1.0 + 4.0 * tight);
+          if (sum >= cost_[n])
+            continue;
+          cost_[n] = sum;
+          length_[n] = length_[static_cast<std::size_t>(cell)] + step;
+          before_[n] = cell;
+          open.emplace(sum, next);
+        }
+    }
+  }
+
+  /// The farthest cell within so many meters.
+  int farthest(double most) const {
+    int best = -1;
+    for (int i = 0; i < columns_ * rows_; ++i)
+      if (length(i) <= most && (best < 0 || length(i) > length(best)))
+        best = i;
+    return best;
+  }
+  double length(int cell) const { return length_[static_cast<std::size_t>(cell)]; }
+  std::vector<Vec2> way_to(int cell) const {
+    std::vector<Vec2> way;
+    for (; cell >= 0; cell = before_[static_cast<std::size_t>(cell)])
+      way.push_back(centre(cell));
+    std::reverse(way.begin(), way.end());
+    return way;
+  }
+  std::optional<int> cell_at(const Vec2& at) const {
+    const int column = static_cast<int>(at.x() / kCell);
+    const int row = static_cast<int>(at.y() / kCell);
+    if (at.x() < 0.0 || at.y() < 0.0 || column >= columns_ || row >= rows_)
+      return std::nullopt;
+    return row * columns_ + column;
+  }
+
+ private:
+  double needed_;
+  int columns_;
+  int rows_;
+  std::vector<double> room_;
+  std::vector<double> cost_;
+  std::vector<double> length_;
+  std::vector<int> before_;
+};
+
+sim::PersonPlan person_at(const Vec2& at, const std::string& name) {
+  sim::PersonPlan person;
+  person.look.name = name;
+  person.look.height = sim::kPersonHeight;
+  person.at = at;
+  person.radius = kPersonRadius;
+  return person;
+}
+
+/// A unit vector along the way at a point of it.
+Vec2 along(const std::vector<Vec2>& way, std::size_t at) {
+  const std::size_t from = at < 3 ? 0 : at - 3;
+  const std::size_t to = std::min(way.size() - 1, at + 3);
+  return (way[to] - way[from]).normalized();
+}
+
+/// Somebody stands on the way or a little aside, so that there is still a way.
+void add_standing(Crossing& crossing, const CrossingOptions& options, double needed,
+                  Random& random) {
+  for (int tries = 0; tries < 10; ++tries) {
+    const auto at = static_cast<std::size_t>(random.uniform(0.2, 0.85) *
+                                             static_cast<double>(crossing.way.size() - 1));
+    const Vec2 ahead = along(crossing.way, at);
+    const double aside = random.uniform(-0.5, 0.5);
+    const Vec2 place = crossing.way[at] + aside * Vec2(-ahead.y(), ahead.x());
+    if ((place - crossing.start_in_world.position()).norm() < needed + 1.0 ||
+        (place - crossing.way.back()).norm() < needed + 1.0 ||
+        sim::Scene(crossing.world).distance(place) < kPersonRadius + 0.05)
+      continue;
+    sim::World with = crossing.world;
+    with.movable.persons.push_back(
+        person_at(place, "standing" + std::to_string(with.movable.persons.size())));
+    // Nobody is passed as near as a wall.
+    sim::World wide = with;
+    for (sim::PersonPlan& person : wide.movable.persons)
+      person.radius += kPersonRoom;
+    Ways ways(wide, needed);
+    const auto start = ways.cell_at(crossing.start_in_world.position());
+    const auto goal = ways.cell_at(crossing.way.back());
+    ways.spread(*start);
+    if (ways.length(*goal) > 2.0 * options.most)
+      continue;
+    crossing.world = std::move(with);
+    return;
+  }
+}
+
+/// Somebody walks to and fro along the way, where there is room for two, on the right of his way.
+void add_walking(Crossing& crossing, double needed, Random& random) {
+  const std::vector<Vec2>& way = crossing.way;
+  const Ways ways(crossing.world, needed);
+  for (int tries = 0; tries < 20; ++tries) {
+    const auto from =
+        static_cast<std::size_t>(random.uniform(0.1, 0.8) * static_cast<double>(way.size() - 1));
+    const std::size_t to = std::min(way.size() - 1, from + 30);
+    const Vec2 line = way[to] - way[from];
+    if (line.norm() < 2.0)
+      continue;
+    const Vec2 ahead = line.normalized();
+    const Vec2 aside(-ahead.y(), ahead.x());
+    const double side = random.chance(0.5) ? 1.0 : -1.0;
+    // As far aside as there is room, and at most on the other's way.
+    double off = 0.0;
+    bool fits = false;
+    for (off = 0.2; off <= 1.2 && !fits; off += 0.1) {
+      fits = true;
+      for (double s = 0.0; s <= line.norm() && fits; s += kCell) {
+        const Vec2 mine = way[from] + s * ahead + side * off * aside;
+        const Vec2 robots = way[from] + s * ahead;
+        fits = ways.room(mine) >= kPersonRadius + 0.05 &&
+               ways.room(Vec2(robots - side * std::max(0.0, needed + kPersonRadius + 0.3 - off) *
+                                           aside)) >= needed;
+      }
+    }
+    if (!fits)
+      continue;
+    off -= 0.1;
+    const Vec2 a = way[from] + side * off * aside;
+    const Vec2 b = way[to] + side * off * aside;
+    if ((a - crossing.start_in_world.position()).norm() < needed + 0.8 ||
+        (b - crossing.start_in_world.position()).norm() < needed + 0.8 ||
+        (a - way.back()).norm() < needed + 0.6 || (b - way.back()).norm() < needed + 0.6)
+      continue;
+    sim::PersonPlan person =
+        person_at(a, "walking" + std::to_string(crossing.world.movable.persons.size()));
+    const double speed = std::clamp(1.3 + 0.25 * random.normal(), 0.6, 1.9);
+    const double pause = random.uniform(0.5, 4.0);
+    person.script = {{b, speed, 0.0}, {b, 0.0, pause}, {a, speed, 0.0}, {a, 0.0, pause}};
+    person.repeats = true;
+    crossing.world.movable.persons.push_back(std::move(person));
+    return;
+  }
+}
+
+/// A line for each new contact, with what the robot thought of it.
+void tell(const sim::ContactWatch& watch, std::size_t& told, const Drive& drive, double seconds) {
+  constexpr const char* kBlames[] = {"caused", "walked into", "unseen"};
+  for (; told < watch.contacts().size(); ++told) {
+    const sim::Contact& contact = watch.contacts()[told];
+    const Pose robot = drive.seen().true_pose_in_world;
+    const Vec2 at = to_frame(robot, contact.at_in_world);
+    std::printf(
+        "  at %.1f s: %s, %s; robot at (%.2f, %.2f) %.0f degrees, contact at (%.2f, %.2f) from it, "
+        "%.3f m/s towards it, heard for %.1f of %.1f s; behaviors want %.2f m/s, guard %.2f %s\n",
+        seconds, kBlames[static_cast<int>(contact.blame)],
+        contact.name.empty() ? "a wall" : contact.name.c_str(), robot.x, robot.y, degrees(robot.th),
+        at.x(), at.y(), contact.towards, contact.heard, contact.needed, drive.output().speed,
+        drive.guarded().velocity, drive.guarded().reason.c_str());
+  }
+}
+
+}  // namespace
+
+std::optional<Crossing> plan_crossing(const CrossingOptions& options,
+                                      const protocol::RobotParameters& robot) {
+  Crossing crossing;
+  crossing.world = sim::load_world(find_file(config_folder() + "/worlds", options.world, ".wld"));
+  const double needed = robot.radius + kRoom;
+  Ways ways(crossing.world, needed);
+  const auto start = ways.nearest(crossing.world.start.value_or(Pose{}).position());
+  if (!start)
+    return std::nullopt;
+  ways.spread(*start);
+  crossing.way = ways.way_to(ways.farthest(options.most));
+  crossing.length = static_cast<double>(crossing.way.size()) * kCell;
+  if (crossing.length < kShortest)
+    return std::nullopt;
+  const Vec2 ahead = along(crossing.way, 3);
+  crossing.start_in_world = {crossing.way.front().x(), crossing.way.front().y(),
+                             std::atan2(ahead.y(), ahead.x())};
+  Random random(options.seed, 71);
+  for (int i = 0; i < options.standing; ++i)
+    add_standing(crossing, options, needed, random);
+  for (int i = 0; i < options.walking; ++i)
+    add_walking(crossing, needed, random);
+  return crossing;
+}
+
+CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& options,
+                              const sim::SonarModel& sonar, bool trace) {
+  constexpr double kCarrot = 1.2;  // [m] ahead on the way
+  DriveOptions drive_options;
+  drive_options.made_world = std::make_shared<const sim::World>(crossing.world);
+  drive_options.robot = options.robot;
+  drive_options.seed = options.seed;
+  drive_options.start_in_world = crossing.start_in_world;
+  drive_options.sonar = sonar;
+  Drive drive(drive_options);
+  const double radius = drive.parameters().radius;
+  sim::ContactWatch watch(drive.scene(), drive.robot().number(), drive.parameters());
+  drive.scene().set_watch([&watch] { watch.tick(); });
+  std::size_t told = 0;
+  CrossingResult result;
+  // A Khepera creeps, since it hears so little.
+  const double slow = std::min(1.0, drive.parameters().sonar_max_range / 1.0);
+  const double limit = 120.0 + 20.0 * crossing.length / std::max(0.2, slow);
+  const double near = std::max(0.15, 0.5 * radius);
+  std::size_t at = 0;
+  while (result.seconds < limit) {
+    const Pose pose = drive.seen().true_pose_in_world;
+    for (std::size_t i = at; i < std::min(crossing.way.size(), at + 30); ++i)
+      if ((crossing.way[i] - pose.position()).norm() < (crossing.way[at] - pose.position()).norm())
+        at = i;
+    const std::size_t ahead =
+        std::min(crossing.way.size() - 1, at + static_cast<std::size_t>(kCarrot / kCell));
+    if ((crossing.way.back() - pose.position()).norm() < near) {
+      result.arrived = true;
+      break;
+    }
+    drive.go_to(transform(drive.seen().pose_in_odom, to_frame(pose, crossing.way[ahead])), 0.4,
+                near);
+    drive.advance();
+    result.seconds += 0.1;
+    if (trace)
+      tell(watch, told, drive, result.seconds);
+  }
+  result.closest = watch.closest_person();
+  for (const sim::Contact& contact : watch.contacts()) {
+    const bool person = contact.kind == sim::ThingKind::kPerson;
+    if (contact.blame == sim::Blame::kCaused)
+      ++(person ? result.caused : result.things);
+    else
+      ++result.other;
+  }
+  result.end_in_world = drive.seen().true_pose_in_world.position();
+  return result;
+}
+
+}  // namespace saphira::test

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drive/drive.hpp"
+
+namespace saphira::test {
+
+/// A drive across a world in which people stand and walk.
+struct Crossing {
+  sim::World world;  ///< with the people in it
+  Pose start_in_world;
+  std::vector<Vec2> way;  ///< [m] in the world, a point each 0.1 m; the last one is the goal
+  double length = 0.0;    ///< [m]
+};
+
+struct CrossingOptions {
+  std::string world;
+  std::string robot;
+  std::uint64_t seed = 1;
+  int standing = 2;
+  int walking = 2;
+  double most = 12.0;  ///< [m] the way is no longer than this
+};
+
+/// Plans it: from the world's start, or the nearest place with room for the robot, to the farthest
+/// place within `most`. Nobody stands where he would leave the robot no way; nobody walks where the
+/// robot and he could not pass each other. None where the robot has no way of 2 m in this world.
+std::optional<Crossing> plan_crossing(const CrossingOptions& options,
+                                      const protocol::RobotParameters& robot);
+
+struct CrossingResult {
+  bool arrived = false;
+  double seconds = 0.0;
+  double closest = 0.0;  ///< [m] hull to person, the least of the run
+  int caused = 0;        ///< contacts that the robot has caused
+  int other = 0;         ///< walked into at rest, or nothing that a sonar could hear
+  int things = 0;        ///< contacts with walls and things
+  Vec2 end_in_world{0.0, 0.0};
+};
+
+/// Drives it, with the guard of the bridge. `trace`: prints each contact.
+CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& options,
+                              const sim::SonarModel& sonar, bool trace = false);
+
+}  // namespace saphira::test
