@@ -18,9 +18,9 @@
 namespace saphira::test {
 
 struct DriveOptions {
-  std::string world = "office-floor";     ///< a name of config/worlds
+  std::string world = "office-floor";            ///< a name of config/worlds
   std::shared_ptr<const sim::World> made_world;  ///< instead of it
-  std::string robot = "pioneer";          ///< a name of config/robots
+  std::string robot = "pioneer";                 ///< a name of config/robots
   std::uint64_t seed = 1;
   double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
   std::optional<Pose> start_in_world;  ///< else the world's own

@@ -184,8 +184,8 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
         text("%.2f m/s cut to %.2f: no farther ahead can a person be heard", velocity, speed));
   }
   const double closing = std::min(settings.closing_velocity, kShareOfWay * reach / body.reaction);
-  const double careful = approach_speed(allowed.free - margin, settings.careful_velocity,
-                                        body.reaction, a, closing);
+  const double careful =
+      approach_speed(allowed.free - margin, settings.careful_velocity, body.reaction, a, closing);
   const double safe =
       std::min(careful, approach_speed(allowed.free - margin, 0.0, body.reaction, a));
   if (speed > safe) {

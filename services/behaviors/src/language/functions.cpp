@@ -102,11 +102,11 @@ void nearest_beside(Call& call, const double* a, double* out) {
   *out = kMillimetres * distance;
 }
 
-constexpr double kFree = 0.8;                 ///< of the reach: a way so far is free
+constexpr double kFree = 0.8;  ///< of the reach: a way so far is free
 /// [m] beside the hull, where there is room: a person reaches 0.2 m farther than the shin that is
 /// heard of him.
 constexpr double kRoom = 0.30;
-constexpr double kTight = 0.08;  ///< [m] beside the hull, at the least
+constexpr double kTight = 0.08;               ///< [m] beside the hull, at the least
 constexpr double kTightCost = radians(40.0);  ///< a tight way is worth so much of a turn
 constexpr double kWidest = radians(100.0);
 constexpr double kStep = radians(2.5);

@@ -88,8 +88,8 @@ std::vector<Vec2> corners(const Feature& feature, double margin = 0.0);
 /// empty where they do not overlap.
 std::vector<Vec2> overlap(const std::vector<Vec2>& a, const std::vector<Vec2>& b);
 
-/// Why a position is not within `margin` [m] of the rectangle round the map, in words; none where it
-/// is, and of an empty map.
+/// Why a position is not within `margin` [m] of the rectangle round the map, in words; none where
+/// it is, and of an empty map.
 std::optional<std::string> outside(const Map& map, const Vec2& position, double margin);
 
 /// The end points of the middle line along a feature's heading.
