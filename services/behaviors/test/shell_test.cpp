@@ -264,7 +264,7 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   EXPECT_GE(told->schemas().size(), 12U);
   EXPECT_EQ(told->trouble(), "");
   EXPECT_EQ(find(*told, "HoldDistance").source(), SAPHIRA_EXAMPLE_PLUGIN);
-  EXPECT_EQ(find(*told, "ConstantVelocity").parameters().size(), 1U);
+  EXPECT_EQ(find(*told, "ConstantVelocity").parameters().size(), 2U) << "speed, contact";
 
   bus::Stop stop;
   std::uint64_t cycle = 0;
