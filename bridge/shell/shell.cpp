@@ -641,7 +641,8 @@ void Shell::decide() {
   if (grant.role != Role::none && grant.role != Role::estop) {
     guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant.role)], body_,
                                 echoes_.spots(), wanted.velocity, wanted.rotation_velocity,
-                                reflector_.state().rotation_velocity, contact_speed_of(grant.role));
+                                reflector_.state().information.rotation_velocity,
+                                contact_speed_of(grant.role));
     guarded_ = authority::slow_for_age(std::move(guarded_), grant.command_age, kCycle);
   }
   wanted.velocity = guarded_.velocity;

@@ -9,7 +9,16 @@ namespace {
 constexpr double kTowards = radians(60.0);
 constexpr std::uint64_t kTurnCycles = 10;
 
+/// A robot may take ten seconds past a person whom it does not hear any more.
+lps::MemorySettings long_memory() {
+  lps::MemorySettings settings;
+  settings.fading = 0.985;
+  return settings;
+}
+
 }  // namespace
+
+EchoMap::EchoMap(double range) : range_(range), memory_(long_memory()) {}
 
 void EchoMap::clear() {
   memory_.clear();

@@ -102,26 +102,12 @@ void nearest_beside(Call& call, const double* a, double* out) {
   *out = kMillimetres * distance;
 }
 
-constexpr double kFree = 0.8;  ///< of the reach: a way so far is free
-/// [m] beside the hull, where there is room: a person reaches 0.2 m farther than the shin that is
-/// heard of him.
-constexpr double kRoom = 0.30;
+constexpr double kFree = 0.8;                 ///< of the reach: a way so far is free
+constexpr double kRoom = 0.12;                ///< [m] beside the hull, where there is room
 constexpr double kTight = 0.08;               ///< [m] beside the hull, at the least
 constexpr double kTightCost = radians(40.0);  ///< a tight way is worth so much of a turn
 constexpr double kWidest = radians(100.0);
 constexpr double kStep = radians(2.5);
-
-/// [0..1] How much of the room beside the hull is missing on the first `reach` of the way.
-double tightness(const std::vector<Vec2>& points, double direction, double radius, double reach) {
-  const Vec2 ahead(std::cos(direction), std::sin(direction));
-  double room = kRoom;
-  for (const Vec2& p : points) {
-    const double along = p.dot(ahead);
-    if (along > 0.0 && along < reach + radius)
-      room = std::min(room, std::abs(ahead.x() * p.y() - ahead.y() * p.x()) - radius);
-  }
-  return std::clamp((kRoom - room) / (kRoom - kTight), 0.0, 1.0);
-}
 
 /// The cheapest direction on that side of `wish`: the way off and the turn, and more where it is
 /// tight; one that is blocked costs more than any that is free.
@@ -144,8 +130,8 @@ const Way& way(Call& call, const double* a) {
     const double tight = free_path(points, direction, radius + kTight, reach);
     if (tight < kFree * reach)
       cost += 2.0 * kPi * (2.0 - tight / reach);
-    else
-      cost += kTightCost * tightness(points, direction, radius, kFree * reach);
+    else if (free_path(points, direction, radius + kRoom, reach) < kFree * reach)
+      cost += kTightCost;
     if (cost < best.cost)
       best = {direction, cost};
   }

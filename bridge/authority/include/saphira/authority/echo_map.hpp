@@ -17,12 +17,12 @@ struct Reading {
 };
 
 /// What the sonars have heard round the robot. An echo comes from somewhere on an arc across its
-/// sonar's axis, and what enters a gap between two beams is still there: the memory is the one that
-/// the behaviors steer by (saphira/lps), so that the two agree about what is in the way.
+/// sonar's axis, and what enters a gap between two beams is still there: the memory is that of the
+/// behaviors (saphira/lps), and forgets more slowly.
 class EchoMap {
  public:
   /// Echoes from farther away than `range` [m] do not matter.
-  explicit EchoMap(double range = 2.5) : range_(range) {}
+  explicit EchoMap(double range = 2.5);
 
   /// A packet came, with these new readings in firing order, and the robot is here now.
   void update(std::uint64_t cycle, const Pose& robot_in_odom, const std::vector<Reading>& readings);
