@@ -132,7 +132,7 @@ TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
   const World it = world("person ann 1000 5000 walk 8000 5000 1000");
   Scene scene(it);
   Robot& robot = scene.add_robot({}, {4.0, 5.0, kPi}, 1);
-  run(scene, 5.0);
+  run(scene, 3.5);
   EXPECT_NEAR(scene.persons()[0].at.x(), 4.0 - 0.22 - 0.25 - 0.1, 0.011);
   EXPECT_GT(robot.clearance(), 0.09);
   robot.set_velocity(0.3);
@@ -142,6 +142,16 @@ TEST(Movable, PeopleWaitForRobotsAndRobotsStopAtPeople) {
   robot.set_velocity(-0.3);
   run(scene, 3.0);
   EXPECT_GT(scene.persons()[0].at.x(), 3.9) << "walks on when the way is free";
+}
+
+TEST(Movable, SomebodyWhoWaitedLongGoesElsewhere) {
+  const World it = world("person ann 1000 5000 walk 8000 5000 1000 walk 3000 8000 1000");
+  Scene scene(it);
+  scene.add_robot({}, {4.0, 5.0, kPi}, 1);
+  run(scene, 6.0);
+  EXPECT_NEAR(scene.persons()[0].at.y(), 5.0, 1e-9) << "waits";
+  run(scene, 4.0);
+  EXPECT_NEAR(scene.persons()[0].at.y(), 8.0, 1e-9) << "gave this way up";
 }
 
 TEST(Movable, DoorsKeepTheirSchedule) {

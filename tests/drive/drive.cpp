@@ -80,8 +80,8 @@ double Drive::guard(double speed) {
   body_.sees_behind = echoes_.sees(seen_.cycle, false);
   authority::GuardSettings settings;
   settings.enabled = has_guard_;
-  guarded_ =
-      authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity);
+  guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
+                              by_hand_ ? 0.0 : output_.contact_speed);
   return guarded_.velocity;
 }
 

@@ -102,6 +102,8 @@ Explanation Reason::why() {
   const bool guarded = scene_.grant && scene_.grant->guard() != v1::GUARD_NONE;
   if (guarded)
     reasons.push_back(guard_cause()->text);
+  if (!scene_.behaviors->limit_reason().empty())
+    reasons.push_back(age_cause()->text);
   const double turn = scene_.behaviors->turning() ? scene_.behaviors->turn() : 0.0;
   std::vector<Say> speeds = says(Channel::speed);
   std::vector<Say> turns = says(Channel::turn);
