@@ -25,7 +25,7 @@ struct DriveOptions {
   double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
   std::optional<Pose> start_in_world;  ///< else the world's own
   sim::SonarModel sonar;
-  bool guard = true;  ///< beside the robot, as in the bridge
+  bool guard = false;  ///< beside the robot, as in the bridge: it makes drives slower
   /// Else the predefined ones.
   std::optional<behaviors::Registry> behaviors;
 };

@@ -272,6 +272,7 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   drive_options.seed = options.seed;
   drive_options.start_in_world = crossing.start_in_world;
   drive_options.sonar = sonar;
+  drive_options.guard = true;
   Drive drive(drive_options);
   const double radius = drive.parameters().radius;
   sim::ContactWatch watch(drive.scene(), drive.robot().number(), drive.parameters());

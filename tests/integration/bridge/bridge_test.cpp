@@ -213,8 +213,9 @@ TEST(Bridge, TheGuardStopsBeforeAWall) {
   scene.watch(milliseconds(1000));
   const auto rows = scene.trace();
   EXPECT_EQ(rows.back().contacts, 0);
-  EXPECT_GT(rows.back().clearance, 0.02);
-  EXPECT_LT(rows.back().clearance, 0.2) << "stopped needlessly early";
+  // Room for a person, who reaches farther than the shin that is heard.
+  EXPECT_GT(rows.back().clearance, 0.2);
+  EXPECT_LT(rows.back().clearance, 0.35) << "stopped needlessly early";
   std::printf("stood %.3f m before the wall\n", rows.back().clearance);
   // Turning away is free.
   forward(scene.command, 0.4, 0.8);
