@@ -444,8 +444,8 @@ class Unread {
   pid_t pid_ = -1;
 };
 
-// Known failure: the pipe does not become full within the limit. What supervision does then is tried
-// by hand only.
+// Known failure: the pipe does not become full within the limit. What supervision does then is
+// tried by hand only.
 TEST_F(CliTest, DISABLED_UpSupervisesWhenNobodyReadsWhatItPrints) {
   const std::string pids = folder_.path("pids");
   const std::string file = write("loud.yaml",
