@@ -93,7 +93,7 @@ std::optional<Wire> Line::next() {
 }
 
 std::optional<Wire> Line::expect(const std::function<bool(const Wire&)>& property, double seconds) {
-  const double until = now() + seconds;
+  const double until = now() + seconds * patience();
   while (true) {
     while (const auto body = next())
       if (property(*body))

@@ -32,12 +32,14 @@ class Line {
   virtual void wait(double seconds) = 0;
   virtual double now() const = 0;  ///< [s]
   /// Waits until a body with that property has come, takes all up to it, and returns it; nothing
-  /// when the time is up.
+  /// when the time is up, `seconds` times the patience of the line.
   std::optional<Wire> expect(const std::function<bool(const Wire&)>& property, double seconds);
   /// What has come and was not yet taken.
   std::optional<Wire> next();
 
  protected:
+  /// A program on a busy machine answers later than a robot does.
+  virtual double patience() const { return 1.0; }
   void collect(const Wire& bytes) { received_.insert(received_.end(), bytes.begin(), bytes.end()); }
 
  private:

@@ -25,6 +25,9 @@ class RealLine : public Line {
   /// Whether the other end has gone.
   bool closed() const { return closed_; }
 
+ protected:
+  double patience() const override { return 20.0; }
+
  private:
   int fd_;
   bool closed_ = false;

@@ -101,8 +101,10 @@ Output Executive::step(const Inputs& inputs) {
       newest_intent_ = inputs.intent->cycle;
       intent_came_ = inputs.cycle;
     }
-    // That of the cycle before is as young as it can be.
-    intent_age_.hear(kCycle * (intent_cycles(inputs) - 1.0));
+    // That of the cycle before is as young as it can be. What grows old in silence is no delay: when
+    // the network is back, the delay is what it was.
+    if (!silent(inputs))
+      intent_age_.hear(kCycle * (intent_cycles(inputs) - 1.0));
     output.input_age = kCycle * intent_cycles(inputs);
     output.control = inputs.intent->control;
     output.trouble = reconcile(inputs.intent->behaviors, inputs.robot.pose_in_odom);
@@ -165,8 +167,12 @@ double Executive::contact_speed(const std::vector<Blended>& blended) const {
   return std::max(least.value_or(0.0), 0.0);
 }
 
+bool Executive::silent(const Inputs& inputs) const {
+  return inputs.cycle >= intent_came_ + settings_.intent_lease;
+}
+
 std::string Executive::why_unheard(const Inputs& inputs) const {
-  if (inputs.cycle >= intent_came_ + settings_.intent_lease)
+  if (silent(inputs))
     return "no newer intent has come for " + std::to_string(inputs.cycle - intent_came_) +
            " cycles: intentions, or the network to it, is gone";
   if (intent_age_.peak() > kOldest)

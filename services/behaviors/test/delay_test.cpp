@@ -95,6 +95,30 @@ TEST_F(DelayTest, ACutStopsItAsSoonHoweverSlowTheNetworkIs) {
   }
 }
 
+TEST_F(DelayTest, AfterACutItDrivesAsBefore) {
+  ASSERT_EQ(step(1).speed, 0.4);
+  // The link is cut for four seconds: the robot's state comes again before the next intent does.
+  cycle += 40;
+  EXPECT_FALSE(step(42).active);
+  for (int i = 0; i < 5; ++i) {
+    const Output output = step(1);
+    ASSERT_TRUE(output.active) << output.inactive_reason;
+    ASSERT_EQ(output.speed, 0.4);
+    ASSERT_EQ(output.slow, "");
+  }
+}
+
+TEST_F(DelayTest, OneOldIntentIsSoonForgotten) {
+  step(1);
+  EXPECT_FALSE(step(45).active) << "it came late, and is the newest";
+  for (int i = 0; i < 20; ++i)
+    step(1);
+  EXPECT_TRUE(step(1).active);
+  for (int i = 0; i < 60; ++i)
+    step(1);
+  EXPECT_EQ(step(1).speed, 0.4);
+}
+
 TEST_F(DelayTest, LossAndJitterDoNotMakeTheSpeedJump) {
   double low = 1.0, high = 0.0;
   for (int i = 0; i < 200; ++i) {

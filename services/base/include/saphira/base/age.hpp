@@ -37,13 +37,14 @@ class PeakAge {
  public:
   /// The peak, one cycle later, with this new age [s].
   double hear(double age) {
-    peak_ = std::fmax(age, peak_ - kFading);
+    peak_ = std::fmax(age, age + kFading * (peak_ - age));
     return peak_;
   }
   double peak() const { return peak_; }
 
  private:
-  static constexpr double kFading = 0.01;  // [s] a cycle
+  // A cycle: half of a peak is forgotten after 2.3 s.
+  static constexpr double kFading = 0.97;
 
   double peak_ = 0.0;
 };

@@ -118,6 +118,8 @@ class Executive {
   /// Contact is meant where every behavior with a say on the speed means it: the least of what they
   /// allow. One that avoids, and has something to say, forbids it.
   double contact_speed(const std::vector<Blended>& blended) const;
+  /// No newer intent has come for the lease.
+  bool silent(const Inputs& inputs) const;
   /// What is wrong with the intent's age; empty where nothing is.
   std::string why_unheard(const Inputs& inputs) const;
   /// Why the behaviors are not to drive; empty where they are.
