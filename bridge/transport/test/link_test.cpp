@@ -286,7 +286,10 @@ TEST(Link, SaysWhatIsWrongWithALine) {
   EXPECT_NE(nobody.trouble().find("does the simulator run?"), std::string::npos);
   Link nowhere(parse_address("tcp:no-such-host.invalid:8101"));
   nowhere.advance(1.0);
-  EXPECT_EQ(nowhere.trouble(), "looks up no-such-host.invalid") << "nobody waits for the resolver";
+  // Nobody waits for the resolver, which may be quick.
+  if (nowhere.state() != Link::State::closed) {
+    EXPECT_EQ(nowhere.trouble(), "looks up no-such-host.invalid");
+  }
   EXPECT_TRUE(test::wait_until([&] {
     nowhere.advance(1.0);
     return nowhere.state() == Link::State::closed;

@@ -101,8 +101,8 @@ Output Executive::step(const Inputs& inputs) {
       newest_intent_ = inputs.intent->cycle;
       intent_came_ = inputs.cycle;
     }
-    // That of the cycle before is as young as it can be. What grows old in silence is no delay: when
-    // the network is back, the delay is what it was.
+    // That of the cycle before is as young as it can be. What grows old in silence is no delay:
+    // when the network is back, the delay is what it was.
     if (!silent(inputs))
       intent_age_.hear(kCycle * (intent_cycles(inputs) - 1.0));
     output.input_age = kCycle * intent_cycles(inputs);

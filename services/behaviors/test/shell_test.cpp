@@ -188,7 +188,8 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
   behaviors.take();
   one({});
   EXPECT_TRUE(command.active());
-  EXPECT_EQ(service.status().state(), v1::SERVICE_RUNNING);
+  // It may say that it skipped a cycle.
+  EXPECT_NE(service.status().state(), v1::SERVICE_WAITING) << service.status().reason();
 }
 
 // Manual 6.5: who suspends what drives has a robot that stands.
