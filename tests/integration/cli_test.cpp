@@ -211,6 +211,33 @@ TEST_F(CliTest, WatchShowsWhoIsLost) {
   EXPECT_EQ(watch.wait(), 0);
 }
 
+TEST_F(CliTest, StatusGoalAndMapSayThatTwoDeploymentsHaveTheRobot) {
+  const Scripted scripted(robot_);
+  std::optional<test::Process> second;
+  second.emplace(
+      std::vector<std::string>{"saphira-bridge", "--robot", robot_, "--domain", test::domain(),
+                               "--robot-port", "unix:" + folder_.path("none"), "--robots",
+                               test::source("config/robots")},
+      folder_.path("second"));
+  ASSERT_TRUE(test::wait_until([&] { return has(second->output(), "another bridge"); }))
+      << second->output();
+  const std::string expected =
+      "two deployments have this robot; a second time there are: bridge "
+      "(process " +
+      std::to_string(second->pid()) + " at ";
+  std::string status;
+  EXPECT_TRUE(test::wait_until([&] { return has(status = run({"status"}).text, expected); }))
+      << status;
+  test::Process map(command({"map", "list"}), folder_.path("map"));
+  test::Process goal(command({"goal", "drive", "0.2"}), folder_.path("goal"));
+  EXPECT_TRUE(test::wait_until([&] { return has(goal.output(), expected); })) << goal.output();
+  map.wait();
+  EXPECT_TRUE(has(map.output(), expected)) << map.output();
+  second.reset();
+  EXPECT_TRUE(test::wait_until([&] { return has(goal.output(), "one deployment"); }))
+      << goal.output();
+}
+
 TEST_F(CliTest, EchoPrintsSamplesAsJsonLines) {
   const Scripted scripted(robot_);
   const Outcome outcome = run({"echo", "robot/state", "-n", "2"});

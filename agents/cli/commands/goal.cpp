@@ -74,6 +74,7 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
 
   bus::Node node(node_options);
   Processes processes(node);
+  DeploymentWatch deployments(node, processes);
   bus::GoalClient goals(node, "saphira goal");
   const v1::GoalId id = goals.ask(goal);
   print("goal %s  %s\n", bus::describe(id).c_str(), describe(goal).c_str());
@@ -87,12 +88,14 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
   while (true) {
     // Once stop is requested its descriptor stays readable: then wait for the bus alone.
     node.wait(milliseconds(200), canceled ? nullptr : &stop);
-    processes.poll();
+    deployments.poll();
     goals.poll();
     latches.poll();
     const auto status = goals.status(id);
-    if (status && follower.show(*status))
+    if (status && follower.show(*status)) {
+      deployments.settle(stop);
       return status->state() == v1::GOAL_SUCCEEDED ? bus::kExitOk : bus::kExitFailed;
+    }
     if (!status && seconds_since(began) > told + 3.0) {
       told += 3.0;
       complain("saphira: no answer yet: %s\n", who_is_there(node_options, processes).c_str());
@@ -126,13 +129,14 @@ int cancel(const Options& options, const bus::NodeOptions& node_options, const b
   }
   bus::Node node(node_options);
   Processes processes(node);
+  DeploymentWatch deployments(node, processes);
   bus::GoalClient goals(node, "saphira goal");
   Follower follower;
   const auto began = Clock::now();
   bool asked = false;
   while (!stop.requested() && seconds_since(began) < 5.0) {
     node.wait(milliseconds(100), &stop);
-    processes.poll();
+    deployments.poll();
     goals.poll();
     const auto status = goals.status(*id);
     if (status && !asked) {
@@ -152,13 +156,15 @@ int cancel(const Options& options, const bus::NodeOptions& node_options, const b
 int list(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
+  DeploymentWatch deployments(node, processes);
   bus::GoalClient goals(node, "saphira goal");
   const auto end = Clock::now() + milliseconds(1300);
   while (!stop.requested() && Clock::now() < end) {
     node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
-    processes.poll();
+    deployments.poll();
     goals.poll();
   }
+  deployments.settle(stop);
   for (const v1::GoalStatus& status : goals.statuses())
     std::printf("%-24s %-10s by %s: %s\n", bus::describe(status.id()).c_str(),
                 status.functor().c_str(), status.requester().c_str(),

@@ -22,6 +22,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kPatience = 5.0;  ///< [s] for the map, and for an answer
+constexpr double kAllHeard = 0.5;  ///< [s] until every program of this robot has been found
 
 /// The map and the robot on it as they are on the bus.
 class View {
@@ -29,6 +30,7 @@ class View {
   explicit View(const bus::NodeOptions& options)
       : node(options),
         processes(node),
+        deployments(node, processes),
         options_(options),
         grants_(node.reader(bus::topics::kGrant)),
         maps_(node.reader(bus::topics::kMap)),
@@ -36,7 +38,7 @@ class View {
 
   /// True where a new sample of registration came.
   bool poll() {
-    processes.poll();
+    deployments.poll();
     if (const auto grant = grants_.take_newest())
       holds = latched(*grant);
     if (auto newest = maps_.take_newest()) {
@@ -55,8 +57,10 @@ class View {
     const auto began = Clock::now();
     while (!stop.requested() && seconds_since(began) < kPatience) {
       poll();
-      if (sample && (registration || !and_registration))
+      if (sample && (registration || !and_registration) && seconds_since(began) >= kAllHeard) {
+        deployments.settle(stop);
         return true;
+      }
       node.wait(milliseconds(100), &stop);
     }
     std::cerr << "saphira: no map: registration is not heard; " << who_is_there(options_, processes)
@@ -78,6 +82,7 @@ class View {
 
   bus::Node node;
   Processes processes;
+  DeploymentWatch deployments;
   std::optional<v1::Map> sample;
   maps::Map map;
   std::optional<v1::Registration> registration;

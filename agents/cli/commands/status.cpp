@@ -51,6 +51,8 @@ class StatusView {
       text += "drive: " + describe(*grant_) + "\n";
     if (const std::string missing = missing_services(all); !missing.empty())
       text += "not on the bus: " + missing + "\n";
+    if (const std::string second = second_deployment(all); !second.empty())
+      text += second + "\n";
     for (const auto& [instance, words] : started_again_)
       text += words + "\n";
     return text;

@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include "saphira/bus/status_words.hpp"
+#include "saphira/cli/printer.hpp"
+
 namespace saphira::cli {
 
 void Processes::poll() {
@@ -19,7 +22,8 @@ std::vector<SeenProcess> Processes::all() const {
   std::vector<SeenProcess> processes;
   for (const auto& [instance, entry] : entries_)
     if (!entry.gone && !entry.status.name().empty())
-      processes.push_back({entry.status, seconds_since(entry.came)});
+      processes.push_back(
+          {entry.status, seconds_since(entry.came), bus::has_namesake(entry.status)});
   return processes;
 }
 
@@ -28,6 +32,20 @@ std::uint64_t Processes::late_cycles() const {
   for (const auto& [instance, entry] : entries_)
     sum += entry.status.late_cycles();
   return sum;
+}
+
+void DeploymentWatch::poll() {
+  processes_.poll();
+  const double now = seconds_since(Clock::time_point{});
+  if (const auto news = second_.news(processes_.all(), now))
+    complain("saphira: %s\n", news->c_str());
+}
+
+void DeploymentWatch::settle(const bus::Stop& stop) {
+  while (second_.doubtful() && !stop.requested()) {
+    node_.wait(std::chrono::milliseconds(100), &stop);
+    poll();
+  }
 }
 
 const char* name_of(bus::Profile profile) {

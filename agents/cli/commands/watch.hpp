@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saphira/bus/node.hpp"
+#include "saphira/cli/second_deployment.hpp"
 #include "saphira/cli/words.hpp"
 
 namespace saphira::cli {
@@ -35,6 +36,22 @@ class Processes {
   };
   bus::Reader<v1::ServiceStatus> reader_;
   std::map<std::uint64_t, Entry> entries_;
+};
+
+/// Complains once when two deployments have this robot, whatever else a command shows.
+class DeploymentWatch {
+ public:
+  DeploymentWatch(bus::Node& node, Processes& processes) : node_(node), processes_(processes) {}
+
+  /// Takes in what the processes say, too.
+  void poll();
+  /// Before a command ends: waits until what was seen is certain.
+  void settle(const bus::Stop& stop);
+
+ private:
+  bus::Node& node_;
+  Processes& processes_;
+  SecondDeployment second_;
 };
 
 /// The profile's word: host, lan, wan.

@@ -141,7 +141,7 @@ std::string status_table(std::vector<SeenProcess> processes) {
   std::vector<std::vector<std::string>> rows{{"NAME", "STATE", "AGE s", "EPOCH", "CYCLE", "LATE",
                                               "STEP ms", "MAX", "CPU %", "MB", "HOST", "PID",
                                               "REASON"}};
-  for (const auto& [status, age] : processes) {
+  for (const auto& [status, age, namesake] : processes) {
     const bool lost = age > kLostAge;
     rows.push_back(
         {status.name(), lost ? "lost" : name_of(status.state()), fixed(age, 1),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "saphira/bus/status_words.hpp"
+
 namespace saphira::bus::internal {
 
 namespace {
@@ -46,8 +48,7 @@ std::optional<std::string> Neighbours::serves_instead(const v1::ServiceStatus& o
   for (const auto& [writer, neighbour] : all_) {
     const v1::ServiceStatus& other = neighbour.status;
     if (other.name() == own.name() && yields(own, other))
-      return "another " + other.name() + ", process " + std::to_string(other.pid()) + " at " +
-             other.host() + ", serves this robot; waits until that is gone";
+      return another(other) + " serves this robot; waits until that is gone";
   }
   return std::nullopt;
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "saphira/bus/status_words.hpp"
+
 namespace saphira::bus::internal {
 namespace {
 
@@ -60,6 +62,10 @@ TEST(Neighbours, WhoYieldsTakesOverWhenTheOtherIsGone) {
   ASSERT_TRUE(words);
   EXPECT_EQ(*words,
             "another behaviors, process 9 at attic, serves this robot; waits until that is gone");
+  auto status = own;
+  EXPECT_FALSE(has_namesake(status));
+  status.reason(*words);
+  EXPECT_TRUE(has_namesake(status));
   neighbours.lose({1});
   EXPECT_FALSE(neighbours.serves_instead(own));
 }

@@ -28,7 +28,8 @@ std::string table(const std::vector<std::vector<std::string>>& rows);
 /// What `saphira status` knows of a process.
 struct SeenProcess {
   v1::ServiceStatus status;
-  double age = 0.0;  ///< [s] since its newest status came
+  double age = 0.0;       ///< [s] since its newest status came
+  bool namesake = false;  ///< it says that another program of its name has this robot
 };
 /// The status is published once a second: older than this [s], take the process for dead.
 inline constexpr double kLostAge = 3.0;

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "system.h"
+
+namespace saphira::bus {
+
+// What programs say in the reason of their status and readers of the status act upon.
+
+/// Another program of the same name and for the same robot, such as "another bridge, process 12 at
+/// attic,". The reason begins with these words.
+std::string another(const v1::ServiceStatus& other);
+/// Whether the program has found another one of its name for its robot.
+bool has_namesake(const v1::ServiceStatus& status);
+/// Whether the program waits for what the bridge of its robot writes (robot/...).
+bool waits_for_robot(const v1::ServiceStatus& status);
+
+}  // namespace saphira::bus
