@@ -45,6 +45,7 @@ struct Options {
   unsigned rate = 200;  // packets a second
   std::uint64_t seed = 1;
   bool json = false;
+  std::string log;  // of the programs; empty: it goes with this one
 };
 
 [[noreturn]] void fail(const std::string& what) {
@@ -222,7 +223,8 @@ class Campaign {
       : options_(options), loopback_(options.domain), mutator_(options.seed) {}
 
   int run() {
-    Process up({"saphira", "up", "demo"}, folder_.path("up"), environment_);
+    Process up({"saphira", "up", "demo"}, options_.log.empty() ? folder_.path("up") : options_.log,
+               environment_);
     if (!goal("before")) {
       std::printf("the system did not come up:\n%s\n", up.output().c_str());
       return 1;
@@ -269,9 +271,12 @@ class Campaign {
     Process client({"saphira", "goal", "go", there_ ? "2" : "0.5", "0", "--deadline", "60"},
                    folder_.path("goal-" + name), environment_);
     const auto code = client.wait(std::chrono::seconds(120));
-    if (code != 0)
-      std::printf("%s\n", client.output().c_str());
-    return code == 0;
+    if (code == 0)
+      return true;
+    Process status({"saphira", "status"}, folder_.path("status-" + name), environment_);
+    status.wait();
+    std::printf("%s\n%s\n", client.output().c_str(), status.output().c_str());
+    return false;
   }
 
   void send_round() {
@@ -323,6 +328,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 3600));
   app.add_option("--rate", options.rate, "packets a second, at most")->check(CLI::Range(1, 100000));
   app.add_option("--seed", options.seed, "of the mutations");
+  app.add_option("--log", options.log, "file for what the programs print");
   app.add_flag("--json", options.json, "one JSON object on the last line");
   CLI11_PARSE(app, argc, argv);
   try {
