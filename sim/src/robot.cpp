@@ -83,6 +83,7 @@ Robot::Robot(Scene& scene, std::size_t number, const protocol::RobotParameters& 
       max_rotation_acceleration_(std::max(
           {parameters.max_rotation_acceleration, rotation_acceleration_, rotation_deceleration_})),
       rotation_per_difference_(parameters.rotation_per_difference),
+      max_wheel_velocity_(std::max(max_velocity_, wheel_share(max_rotation_velocity_))),
       encode_jitter_(parameters.encode_jitter),
       angle_jitter_(parameters.angle_jitter),
       drift_(parameters.angle_drift),
@@ -119,8 +120,10 @@ void Robot::set_rotation_velocity(double velocity) {
 }
 
 void Robot::set_wheel_velocities(double left, double right) {
-  set_velocity((left + right) / 2.0);
-  set_rotation_velocity((right - left) / 2.0 * rotation_per_difference_);
+  const Motion motion =
+      possible({(left + right) / 2.0, (right - left) / 2.0 * rotation_per_difference_});
+  set_velocity(motion.forward);
+  set_rotation_velocity(motion.turn);
 }
 
 void Robot::set_origin() {
@@ -186,12 +189,16 @@ bool Robot::place(const Pose& pose_in_world) {
   return true;
 }
 
+double Robot::wheel_share(double turn) const {
+  return turn / rotation_per_difference_;
+}
+
 double Robot::left_velocity() const {
-  return wheel_velocity_ - rotation_velocity_ / rotation_per_difference_;
+  return wheel_velocity_ - wheel_share(rotation_velocity_);
 }
 
 double Robot::right_velocity() const {
-  return wheel_velocity_ + rotation_velocity_ / rotation_per_difference_;
+  return wheel_velocity_ + wheel_share(rotation_velocity_);
 }
 
 double Robot::target_velocity() const {
@@ -233,16 +240,45 @@ double Robot::wanted_rotation_velocity() const {
   return std::copysign(speed, error);
 }
 
-void Robot::tick() {
+Robot::Motion Robot::possible(const Motion& wanted) const {
+  const double forward = std::abs(wanted.forward);
+  const double turn = std::abs(wanted.turn);
+  double share = 1.0;
+  const auto limit = [&share](double value, double most) {
+    if (value > most)
+      share = std::min(share, most / value);
+  };
+  limit(forward, max_velocity_);
+  limit(turn, max_rotation_velocity_);
+  limit(forward + wheel_share(turn), max_wheel_velocity_);
+  return {wanted.forward * share, wanted.turn * share};
+}
+
+Robot::Motion Robot::next_motion() const {
   const double deceleration =
       emergency_ ? std::max(deceleration_, kEmergencyDeceleration) : deceleration_;
-  wheel_velocity_ =
-      approach(wheel_velocity_, target_velocity(), acceleration_ * kTick, deceleration * kTick);
+  Motion target{target_velocity(), wanted_rotation_velocity()};
+  if (!controls_heading())
+    target = possible(target);
+  Motion next;
+  next.turn = approach(rotation_velocity_, target.turn, rotation_acceleration_ * kTick,
+                       rotation_deceleration_ * kTick);
+  const double left = max_wheel_velocity_ - wheel_share(std::abs(next.turn));
+  next.forward = approach(wheel_velocity_, std::clamp(target.forward, -left, left),
+                          acceleration_ * kTick, deceleration * kTick);
+  // Where the robot does not slow down as fast as its turn speeds up, the turn waits.
+  const double most = (max_wheel_velocity_ - std::abs(next.forward)) * rotation_per_difference_;
+  next.turn = std::clamp(next.turn, -most, most);
+  return next;
+}
+
+void Robot::tick() {
+  const Motion next = next_motion();
+  wheel_velocity_ = next.forward;
+  rotation_velocity_ = next.turn;
   const double pull = wheel_velocity_ - velocity_;
   velocity_ = std::abs(pull) <= kGrip * kTick ? wheel_velocity_
                                               : velocity_ + std::copysign(kGrip * kTick, pull);
-  rotation_velocity_ = approach(rotation_velocity_, wanted_rotation_velocity(),
-                                rotation_acceleration_ * kTick, rotation_deceleration_ * kTick);
   // The others may have come nearer.
   if (scene_->has_movable(number_))
     free_way_ -= scene_->fastest() * kTick;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
+#include "saphira/base/random.hpp"
 #include "saphira/sim/scene.hpp"
 
 namespace saphira::sim {
@@ -122,6 +124,159 @@ TEST(Robot, WheelVelocities) {
   run(robot, 100);
   EXPECT_NEAR(robot.velocity(), 0.15, 1e-9);
   EXPECT_EQ(robot.rotation_velocity(), 0.0);
+}
+
+// What the fastest motion straight on or on the spot needs.
+double wheel_limit(const RobotParameters& p) {
+  return std::max(p.max_velocity, p.max_rotation_velocity / p.rotation_per_difference);
+}
+
+TEST(Robot, BeyondTheWheelsLimitItStaysOnTheArc) {
+  const World world = empty();
+  const RobotParameters parameters;
+  for (const double forward : {0.4, -0.4})
+    for (const double turn : {radians(100.0), radians(-40.0)}) {
+      Scene scene(world);
+      Robot& robot = scene.add_robot(parameters, {}, 1);
+      robot.set_velocity(forward);
+      robot.set_rotation_velocity(turn);
+      run(robot, 300);
+      EXPECT_NEAR(robot.rotation_velocity() / robot.velocity(), turn / forward, 1e-9);
+      const double faster =
+          std::max(std::abs(robot.left_velocity()), std::abs(robot.right_velocity()));
+      EXPECT_NEAR(faster, wheel_limit(parameters), 1e-9);
+    }
+}
+
+TEST(Robot, WheelVelocitiesBeyondTheLimitKeepTheirRatio) {
+  const World world = empty();
+  const RobotParameters parameters;
+  const std::vector<std::pair<double, double>> asked{{2.0, 0.1}, {0.1, -2.0}, {0.5, 0.4},
+                                                     {1.0, 1.0}, {-0.6, 0.6}, {0.52, 0.25}};
+  for (const auto& [left, right] : asked) {
+    Scene scene(world);
+    Robot& robot = scene.add_robot(parameters, {}, 1);
+    robot.set_wheel_velocities(left, right);
+    run(robot, 300);
+    EXPECT_NEAR(robot.left_velocity() * right, robot.right_velocity() * left, 1e-9);
+    EXPECT_GT(std::abs(robot.left_velocity()) + std::abs(robot.right_velocity()), 0.5);
+    EXPECT_LE(std::abs(robot.left_velocity()), wheel_limit(parameters) + 1e-9);
+    EXPECT_LE(std::abs(robot.right_velocity()), wheel_limit(parameters) + 1e-9);
+  }
+}
+
+TEST(Robot, AtFullSpeedATurnWaitsUntilItsWheelCan) {
+  const World world = empty();
+  RobotParameters parameters;
+  parameters.max_velocity = 1.0;  // more than a turn on the spot needs of a wheel
+  Scene scene(world);
+  Robot& robot = scene.add_robot(parameters, {}, 1);
+  robot.set_velocity(1.0);
+  run(robot, 400);
+  EXPECT_NEAR(robot.right_velocity(), 1.0, 1e-9);
+  robot.set_heading(radians(90.0));
+  run(robot, 30);
+  EXPECT_LT(robot.velocity(), 0.9);
+  EXPECT_GT(robot.rotation_velocity(), 0.2);
+  run(robot, 600);
+  EXPECT_NEAR(robot.pose_in_odom().th, radians(90.0), 0.002);
+  EXPECT_NEAR(robot.velocity(), 1.0, 0.01);
+}
+
+TEST(Robot, TheWheelsLimitChangesNothingThatItDoesNotReach) {
+  const World world = empty();
+  RobotParameters parameters;
+  RobotParameters faster = parameters;
+  faster.max_velocity = 10.0;
+  Scene scene(world);
+  Robot& robot = scene.add_robot(parameters, {}, 1);
+  Robot& other = scene.add_robot(faster, {20.0, 0.0, 0.0}, 1);
+  const double turn = 0.99 * (wheel_limit(parameters) - 0.3) * parameters.rotation_per_difference;
+  for (Robot* each : {&robot, &other}) {
+    each->set_velocity(0.3);
+    each->set_rotation_velocity(turn);
+    run(*each, 100);
+    each->set_wheel_velocities(0.25, 0.52);
+    run(*each, 100);
+    each->set_velocity(0.0);
+    each->set_heading(1.0);
+    run(*each, 200);
+  }
+  EXPECT_EQ(robot.pose_in_odom(), other.pose_in_odom());
+}
+
+// Something that a client may say; whether it was an emergency stop.
+bool command_at_random(Robot& robot, const RobotParameters& p, Random& random) {
+  const double v = random.uniform(-1.5, 1.5) * p.max_velocity;
+  const double w = random.uniform(-1.5, 1.5) * p.max_rotation_velocity;
+  switch (random.next() % 8) {
+    case 0:
+      robot.set_velocity(v);
+      break;
+    case 1:
+      robot.set_rotation_velocity(w);
+      break;
+    case 2:
+      robot.set_heading(w);
+      break;
+    case 3:
+      robot.move_by(v);
+      break;
+    case 4:
+      robot.set_wheel_velocities(v, random.uniform(-1.5, 1.5) * p.max_velocity);
+      break;
+    case 5:
+      robot.emergency_stop();
+      return true;
+    case 6:
+      robot.brake(random.chance(0.3));
+      break;
+    default:
+      robot.set_velocity(v);
+      robot.set_rotation_velocity(w);
+  }
+  return false;
+}
+
+TEST(Robot, NoWheelIsEverFasterThanItsLimitAndNoSpeedJumps) {
+  const World world = empty();
+  RobotParameters slow_to_turn;
+  slow_to_turn.max_velocity = 2.2;
+  slow_to_turn.max_rotation_velocity = radians(500.0);
+  slow_to_turn.rotation_per_difference = 5.6;
+  slow_to_turn.acceleration = slow_to_turn.deceleration = 3.0;
+  slow_to_turn.rotation_acceleration = slow_to_turn.rotation_deceleration = radians(100.0);
+  RobotParameters slow_to_drive = slow_to_turn;
+  slow_to_drive.acceleration = slow_to_drive.deceleration = 0.3;
+  slow_to_drive.rotation_acceleration = slow_to_drive.rotation_deceleration = radians(1000.0);
+  for (const RobotParameters& p : {RobotParameters{}, slow_to_turn, slow_to_drive}) {
+    Scene scene(world);
+    Robot& robot = scene.add_robot(p, {}, 1);
+    Random random(7, 0);
+    bool emergency = false;  // until it stands
+    double at_limit = 0.0;   // [s]
+    double forward = 0.0;
+    double turn = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      emergency |= command_at_random(robot, p, random);
+      for (auto ticks = random.next() % 200; ticks > 0; --ticks) {
+        robot.tick();
+        const double left = robot.left_velocity();
+        const double right = robot.right_velocity();
+        const double faster = std::max(std::abs(left), std::abs(right));
+        ASSERT_LE(faster, wheel_limit(p) + 1e-9);
+        at_limit += faster > wheel_limit(p) - 1e-6 ? kTick : 0.0;
+        const double most = std::max({p.acceleration, p.deceleration, emergency ? 6.0 : 0.0});
+        ASSERT_LE(std::abs((left + right) / 2.0 - forward), most * kTick + 1e-9);
+        const double most_turn = std::max(p.rotation_acceleration, p.rotation_deceleration);
+        ASSERT_LE(std::abs(robot.rotation_velocity() - turn), most_turn * kTick + 1e-9);
+        forward = (left + right) / 2.0;
+        turn = robot.rotation_velocity();
+        emergency = emergency && robot.moving();
+      }
+    }
+    EXPECT_GT(at_limit, 1.0);
+  }
 }
 
 TEST(Robot, BrakingKeepsTheVelocityForLater) {

@@ -22,6 +22,12 @@ inline constexpr double kTick = 0.010;  // [s]
 /// a trapezoidal velocity function that is computed anew in every tick, so a new heading in the
 /// middle of a turn is taken up smoothly (manual 5.5, Figure 5-2).
 ///
+/// No wheel is faster than the fastest of two motions has it: straight on at the largest velocity
+/// that the parameters allow, or on the spot at their largest rotation. Two velocities that ask for
+/// more are made slower by the same factor, so that the arc stays. A turn to a heading is made as
+/// fast as on the spot, and the robot drives more slowly meanwhile. No speed jumps: where the robot
+/// cannot slow down so soon, the turn waits.
+///
 /// The wheels do what the motors want. The robot does what the wheels do, but that it changes its
 /// speed by no more than tyres can hold, so that they slip when it stops in an emergency, and that
 /// they slip while it pushes against what does not give. Other errors are in what the encoders say.
@@ -127,10 +133,18 @@ class Robot {
  private:
   enum class Translation { kVelocity, kWay };
   enum class Rotation { kVelocity, kHeading };
+  struct Motion {
+    double forward = 0.0;  // [m/s]
+    double turn = 0.0;     // [rad/s]
+  };
 
   bool powered() const { return enabled_ && !braked_; }
   double wanted_velocity() const;
   double wanted_rotation_velocity() const;
+  double wheel_share(double turn) const;  // [m/s] of the wheels
+  // The same arc, no faster than the parameters allow.
+  Motion possible(const Motion& wanted) const;
+  Motion next_motion() const;  // of the wheels
   void move(double way, double turn);
   const Things& around();
   double free_part(const Things& things, const Vec2& way, double& clearance_after);
@@ -146,6 +160,7 @@ class Robot {
   double rotation_acceleration_, rotation_deceleration_;
   double max_acceleration_, max_rotation_acceleration_;  // what they can be set to
   double rotation_per_difference_;
+  double max_wheel_velocity_;  // [m/s]
   double encode_jitter_, angle_jitter_, drift_;
   Random random_;
 
