@@ -8,16 +8,45 @@ namespace {
 
 // Nodes say something once a second: this is late for what is regular.
 constexpr std::chrono::seconds kLate{4};
+// Lives in a row in which a child waited and heard nothing: then it is not the child.
+constexpr int kDeafLives = 2;
+
+std::string seconds(std::chrono::seconds time) {
+  return std::to_string(time.count()) + " s";
+}
 
 }  // namespace
 
+bool Watchdog::Voice::steps_since(Time since, Time now) const {
+  return stepped && *stepped <= since && now - advanced <= kLate;
+}
+
+bool Watchdog::Voice::waits_for(std::chrono::seconds time, Time now) const {
+  return waits && now - *waits >= time;
+}
+
+bool Watchdog::Child::was_deaf() const {
+  return !voices.empty() && std::all_of(voices.begin(), voices.end(), [](const auto& item) {
+    return item.second.waits && !item.second.heard;
+  });
+}
+
 Watchdog::Watchdog(std::vector<std::string> robots) {
   for (std::string& robot : robots)
-    children_.push_back({std::move(robot), {}});
+    children_.push_back({std::move(robot), {}, 0});
 }
 
 void Watchdog::forget(std::size_t child) {
-  children_[child].voices.clear();
+  Child& gone = children_[child];
+  const bool bridge = std::any_of(gone.voices.begin(), gone.voices.end(),
+                                  [](const auto& item) { return item.second.bridge; });
+  gone.deaf_lives = gone.was_deaf() ? gone.deaf_lives + 1 : 0;
+  gone.voices.clear();
+  if (!bridge)
+    return;
+  for (Child& other : children_)
+    if (other.robot == gone.robot)
+      other.deaf_lives = 0;
 }
 
 void Watchdog::hear(std::size_t child, const Heartbeat& beat, Time now) {
@@ -28,7 +57,9 @@ void Watchdog::hear(std::size_t child, const Heartbeat& beat, Time now) {
   }
   Voice& voice = voices[beat.instance];
   ++voice.beats;
+  voice.bridge = (beat.flags & Heartbeat::kWritesRobot) != 0;
   if (beat.cycle != voice.cycle) {
+    voice.heard = true;
     if (!voice.stepped || now - voice.advanced > kLate)
       voice.stepped = now;
     voice.advanced = now;
@@ -54,26 +85,54 @@ void Watchdog::slept(Time now) {
 std::optional<std::string> Watchdog::trouble(std::size_t child, Time now) const {
   for (const auto& [instance, voice] : children_[child].voices) {
     if (voice.beats >= kRegular && now - voice.last >= kSilent)
-      return "it hung: no sign of life for " + std::to_string(kSilent.count()) + " s";
-    if (voice.waits && now - *voice.waits >= kDeaf && others_hear(child, *voice.waits, now))
-      return "it was deaf: no robot/state for " + std::to_string(kDeaf.count()) +
-             " s, while others of this robot had it";
+      return "it hung: no sign of life for " + seconds(kSilent);
+    if (!voice.bridge && deaf(child, voice, now))
+      return "it was deaf: no robot/state for " +
+             seconds(voice.waits_for(kAllDeaf, now) ? kAllDeaf : kDeaf) +
+             ", while the robot was there";
+    if (voice.bridge && mute(children_[child].robot, voice, now))
+      return "it was mute: its robot was there for " + seconds(kMute) +
+             ", and programs of this robot did not hear it";
   }
   return std::nullopt;
 }
 
-bool Watchdog::others_hear(std::size_t child, Time since, Time now) const {
-  for (std::size_t i = 0; i < children_.size(); ++i) {
-    if (i == child || children_[i].robot != children_[child].robot)
-      continue;
-    const auto& voices = children_[i].voices;
-    if (std::any_of(voices.begin(), voices.end(), [&](const auto& item) {
-          const Voice& voice = item.second;
-          return voice.stepped && *voice.stepped <= since && now - voice.advanced <= kLate;
-        }))
+template <class Is>
+bool Watchdog::any(const std::string& robot, std::optional<std::size_t> but, Is is) const {
+  for (std::size_t i = 0; i < children_.size(); ++i)
+    if (i != but && children_[i].robot == robot &&
+        std::any_of(children_[i].voices.begin(), children_[i].voices.end(),
+                    [&](const auto& item) { return is(children_[i], item.second); }))
       return true;
-  }
   return false;
+}
+
+bool Watchdog::deaf(std::size_t child, const Voice& voice, Time now) const {
+  if (!voice.waits_for(kDeaf, now))
+    return false;
+  const std::string& robot = children_[child].robot;
+  const auto hears = [&](const Child&, const Voice& other) {
+    return !other.bridge && other.steps_since(*voice.waits, now);
+  };
+  const auto has_robot = [&](const Child&, const Voice& other) {
+    return other.bridge && other.steps_since(now - kDeaf, now);
+  };
+  return any(robot, child, hears) ||
+         (voice.waits_for(kAllDeaf, now) && any(robot, child, has_robot));
+}
+
+bool Watchdog::mute(const std::string& robot, const Voice& bridge, Time now) const {
+  if (!bridge.steps_since(now - kMute, now))
+    return false;
+  const auto waits = [&](const Child&, const Voice& other) { return other.waits_for(kMute, now); };
+  const auto hears = [&](const Child&, const Voice& other) {
+    return !other.bridge && !other.waits && other.steps_since(now, now);
+  };
+  const auto never_hears = [&](const Child& child, const Voice& other) {
+    return child.deaf_lives >= kDeafLives && other.waits_for(kDeaf, now) && !other.heard;
+  };
+  return any(robot, std::nullopt, never_hears) ||
+         (any(robot, std::nullopt, waits) && !any(robot, std::nullopt, hears));
 }
 
 }  // namespace saphira::cli

@@ -119,12 +119,12 @@ struct Cycle::Impl {
 
   // The library may leave one side of a match deaf for ever. Others hear the robot: begin anew.
   void note_deafness() {
-    if (!pending.empty() || !arrived.empty() || since(waiting_since) < kDeaf ||
-        since(renewed) < kDeafAgain || !neighbours.stepping_since(waiting_since, Clock::now()))
+    if (!pending.empty() || since(waiting_since) < kDeaf || since(renewed) < kDeafAgain ||
+        !neighbours.stepping_since(waiting_since, Clock::now()))
       return;
     renewed = Clock::now();
     node.warn("hears no robot/state, though others of this robot do: begins anew on the bus");
-    internal::transport_of(node).renew();
+    node.begin_anew();
   }
 
   void drain() {

@@ -12,10 +12,12 @@
 #include <cstdlib>
 #include <random>
 #include <stdexcept>
+#include <string_view>
 
 #include "heartbeat.hpp"
 #include "internal.hpp"
 #include "log.hpp"
+#include "saphira/bus/status_words.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -80,9 +82,10 @@ struct Node::Impl {
 
   // To the supervisor, which cannot tell by the bus whether a program is deaf or not heard.
   void beat(std::uint64_t flags) const {
-    if (status.state() == v1::SERVICE_WAITING &&
-        status.reason().starts_with(std::string("waits for ") + topics::kRobotState.name))
+    if (waits_for_robot(status))
       flags |= Heartbeat::kWaitsForRobot;
+    if (writes_robot)
+      flags |= Heartbeat::kWritesRobot;
     internal::send({status.instance(), status.stamp().epoch(), status.stamp().cycle(), flags});
   }
 
@@ -125,6 +128,7 @@ struct Node::Impl {
   Clock::time_point last_published;
   double last_cpu = 0.0;
   bool published = false;
+  bool writes_robot = false;
   v1::ServiceState published_state = v1::SERVICE_STARTING;
   std::string published_reason;
 };
@@ -154,6 +158,7 @@ Node::~Node() {
 }
 
 std::unique_ptr<RawWriter> Node::make_writer(const char* topic, Qos qos, const TypeInfo& type) {
+  impl_->writes_robot |= std::string_view(topic) == topics::kRobotState.name;
   return impl_->transport->make_writer(topic, internal::policies(qos, impl_->options.lockstep),
                                        type);
 }
@@ -207,6 +212,10 @@ bool Node::spin(std::chrono::microseconds limit) {
 
 void Node::rouse() {
   impl_->wake->rouse();
+}
+
+void Node::begin_anew() {
+  impl_->transport->renew();
 }
 
 const NodeOptions& Node::options() const {

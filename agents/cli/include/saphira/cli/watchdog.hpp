@@ -11,16 +11,25 @@
 
 namespace saphira::cli {
 
-/// Which children hang or are deaf, by what they say of themselves. Pure: time is given to it.
+/// Which children hang, are deaf or are mute, by what they say of themselves. Pure: time is given
+/// to it.
 ///
-/// A node hangs when it has said something regularly and then nothing for 10 s. It is deaf when it
-/// hears no robot for 15 s while another child of the same robot does, all the time. A program has
-/// as many nodes as it likes; one that says nothing is not judged.
+/// A node hangs when it has said something regularly and then nothing for 10 s. A program has as
+/// many nodes as it likes; one that says nothing is not judged.
+///
+/// A node that waits for its robot is deaf, or the bridge of that robot is mute:
+/// - deaf after 15 s, where another child hears the robot all the time;
+/// - mute after 20 s, where no child of the robot hears it, though the bridge has its robot; or
+/// where
+///   a child has heard nothing in two lives and waits again;
+/// - deaf after 45 s as well where none hears it: the bridge was started again meanwhile.
 class Watchdog {
  public:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kSilent{10};
   static constexpr std::chrono::seconds kDeaf{15};
+  static constexpr std::chrono::seconds kMute{20};
+  static constexpr std::chrono::seconds kAllDeaf{45};
 
   /// robots: of each child.
   explicit Watchdog(std::vector<std::string> robots);
@@ -40,16 +49,28 @@ class Watchdog {
     int beats = 0;
     Time last;
     std::uint64_t cycle = 0;
+    bool heard = false;           // the robot, at some time
     std::optional<Time> stepped;  // since when it hears the robot
     Time advanced;                // newest
     std::optional<Time> waits;    // since when it hears none
+    bool bridge = false;          // it writes the robot's state, and so steps without hearing it
+
+    bool steps_since(Time since, Time now) const;
+    bool waits_for(std::chrono::seconds time, Time now) const;
   };
   struct Child {
     std::string robot;
     std::map<std::uint64_t, Voice> voices;  // by instance
+    int deaf_lives = 0;                     // in a row, until now: it waited and never heard
+
+    bool was_deaf() const;
   };
 
-  bool others_hear(std::size_t child, Time since, Time now) const;
+  /// Whether some node of the robot is so; `but` is a child that does not count.
+  template <class Is>
+  bool any(const std::string& robot, std::optional<std::size_t> but, Is is) const;
+  bool deaf(std::size_t child, const Voice& voice, Time now) const;
+  bool mute(const std::string& robot, const Voice& bridge, Time now) const;
 
   std::vector<Child> children_;
 };

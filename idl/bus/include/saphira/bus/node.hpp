@@ -84,6 +84,10 @@ class Node {
   /// itself. Not for who polls wake_fd.
   void rouse();
 
+  /// For a program that others do not hear, or that does not hear them: a new participant and all
+  /// endpoints again, soon. Readers and writers stay what they are to the program (README.md).
+  void begin_anew();
+
   const NodeOptions& options() const;
   /// Random, one a process start: ServiceStatus.instance, and the writer part of goal ids.
   std::uint64_t instance() const;

@@ -9,8 +9,9 @@ namespace saphira {
 /// not heard. The pipe is named by the environment: kHeartbeatVariable is "descriptor:inode".
 struct Heartbeat {
   enum Flags : std::uint64_t {
-    kWaitsForRobot = 1,  ///< hears no robot/state
+    kWaitsForRobot = 1,  ///< for robot/state, or for the robot's description
     kEnds = 2,           ///< the last one: this node ends in good order
+    kWritesRobot = 4,    ///< it is the bridge: it writes robot/state
   };
   std::uint64_t instance = 0;  ///< of ServiceStatus
   std::uint64_t epoch = 0;     ///< of its newest step
