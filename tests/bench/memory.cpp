@@ -37,6 +37,7 @@ struct Options {
 
 constexpr unsigned kBatch = 100;
 constexpr auto kPatience = 60s;
+constexpr auto kRunawayTime = 20s;
 
 // Each begins two that wait, up to the bound.
 constexpr const char* kRunaway =
@@ -65,11 +66,19 @@ class Misuse {
         goals.cancel(id);  // a writer of so many instances takes minutes to end
     }
   }
-  /// An activity that ends by its bound; the most memory meanwhile [MB].
+  /// An activity that has time to begin all that it may, and is canceled; the most memory
+  /// meanwhile [MB].
   double runaway() {
     bus::GoalClient goals(node_, "bench memory");
     const v1::GoalId id = goals.ask(goal("runaway"));
-    const double most = wait(goals, {id});
+    double most = 0.0;
+    for (const auto end = Clock::now() + kRunawayTime; Clock::now() < end;) {
+      node_.wait(20ms);
+      goals.poll();
+      most = std::max(most, bench::resident_mb(intentions_));
+    }
+    goals.cancel(id);
+    wait(goals, {id});
     std::printf("  %s\n", bus::describe(*goals.status(id)).c_str());
     return most;
   }
@@ -93,8 +102,7 @@ class Misuse {
     return goal;
   }
 
-  double wait(bus::GoalClient& goals, const std::vector<v1::GoalId>& ids) {
-    double most = 0.0;
+  void wait(bus::GoalClient& goals, const std::vector<v1::GoalId>& ids) {
     const auto end = Clock::now() + kPatience;
     const auto over = [&](const v1::GoalId& id) {
       const auto status = goals.status(id);
@@ -105,9 +113,7 @@ class Misuse {
         throw std::runtime_error("a goal did not end within a minute");
       node_.wait(20ms);
       goals.poll();
-      most = std::max(most, bench::resident_mb(intentions_));
     }
-    return most;
   }
 
   const Options options_;

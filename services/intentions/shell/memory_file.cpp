@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -17,7 +18,7 @@ constexpr const char* kWork = ".work";
 
 }  // namespace
 
-MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(path)) {
+MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(path)), most_(most) {
   if (path_.empty())
     return;
   const auto note = [this](std::string trouble) {
@@ -35,22 +36,44 @@ MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(pat
   note(read_or_set_aside(path_ + kWork, [this](const std::string& content) {
     memory_.work = read_work(path_ + kWork, unsealed(content, path_ + kWork));
   }));
-  std::vector<Ending>& endings = memory_.endings;
-  if (endings.size() > most)
-    endings.erase(endings.begin(), endings.end() - static_cast<std::ptrdiff_t>(most));
+  if (!begin(memory_))
+    throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
+}
+
+bool MemoryFile::begin(Memory& memory) {
+  std::vector<Ending>& endings = memory.endings;
+  if (endings.size() > most_)
+    endings.erase(endings.begin(), endings.end() - static_cast<std::ptrdiff_t>(most_));
   // Written beside it and moved over it: a crash in between leaves the old one whole.
   const std::string fresh = path_ + ".new";
-  file_.reset(std::fopen(fresh.c_str(), "we"));
+  std::unique_ptr<std::FILE, Close> file(std::fopen(fresh.c_str(), "we"));
   // Without a buffer, what could not be written is not tried again behind what comes next.
-  bool good = file_ != nullptr && std::setvbuf(file_.get(), nullptr, _IONBF, 0) == 0;
+  if (!file || std::setvbuf(file.get(), nullptr, _IONBF, 0) != 0)
+    return false;
   std::string lines;
-  for (const Placement& placement : memory_.placements)
+  for (const Placement& placement : memory.placements)
     lines += write_line(placement);
   for (const Ending& ending : endings)
     lines += write_line(ending);
-  good = good && append(lines);
-  if (!good || std::rename(fresh.c_str(), path_.c_str()) != 0)
-    throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
+  if (std::fwrite(lines.data(), 1, lines.size(), file.get()) != lines.size() ||
+      std::rename(fresh.c_str(), path_.c_str()) != 0)
+    return false;
+  file_ = std::move(file);
+  size_ = static_cast<long>(lines.size());
+  lines_ = memory.placements.size() + endings.size();
+  return true;
+}
+
+void MemoryFile::begin_anew() {
+  // Where that fails, on a full disk, the file goes on as it is until it has grown as much again.
+  lines_ = 0;
+  try {
+    std::vector<FileError> damaged;
+    Memory memory = read_journal(path_, read_file(path_), damaged);
+    begin(memory);
+  } catch (const std::exception&) {
+    return;
+  }
 }
 
 bool MemoryFile::keep(const Work& work) const {
@@ -60,6 +83,9 @@ bool MemoryFile::keep(const Work& work) const {
 bool MemoryFile::append(const std::string& lines) {
   if (!file_ || std::fwrite(lines.data(), 1, lines.size(), file_.get()) == lines.size()) {
     size_ += static_cast<long>(lines.size());
+    lines_ += static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
+    if (file_ && lines_ > 2 * most_)
+      begin_anew();
     return true;
   }
   // On a full disk: half a line must not be the beginning of the next one.

@@ -25,7 +25,9 @@ class MemoryFile {
   bool keeps() const { return !path_.empty(); }
   /// In the place of what was kept before. False where it could not be written.
   bool keep(const Work& work) const;
-  /// False where it could not be written: then none of it is there.
+  /// False where it could not be written: then none of it is there. A file of more than twice
+  /// `most` lines is begun anew as at the start: a service that runs for months does not fill the
+  /// disk.
   bool append(const std::string& lines);
 
  private:
@@ -33,7 +35,13 @@ class MemoryFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
+  /// Writes what is to be kept of it beside the file and puts that in its place.
+  bool begin(Memory& memory);
+  void begin_anew();
+
   std::string path_;
+  std::size_t most_;
+  std::size_t lines_ = 0;
   Memory memory_;
   std::vector<std::string> troubles_;
   std::unique_ptr<std::FILE, Close> file_;

@@ -64,6 +64,16 @@ bool is_of(const Placement& placement, const Arguments& arguments) {
   return point == placement.points.end();
 }
 
+/// To what is remembered of it. Letters of more than one byte stay whole.
+std::string shortened(const std::string& reason) {
+  if (reason.size() <= kLongestReason)
+    return reason;
+  std::size_t end = kLongestReason - 3;
+  while (end > 0 && (static_cast<unsigned char>(reason[end]) & 0xc0U) == 0x80U)
+    --end;
+  return reason.substr(0, end) + "...";
+}
+
 }  // namespace
 
 Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions options)
@@ -339,7 +349,7 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
   entry.status.step.clear();
   if (state == GoalState::kSucceeded)
     entry.status.progress = 1.0;
-  const Ending ending{entry.goal.id, state, entry.status.code, entry.status.reason};
+  const Ending ending{entry.goal.id, state, entry.status.code, shortened(entry.status.reason)};
   remembered_places_.erase(ending.id);
   remember(ending);
   endings_.push_back(ending);

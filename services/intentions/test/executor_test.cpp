@@ -36,6 +36,20 @@ TEST(Executor, RefusesWithAReason) {
   EXPECT_TRUE(bench.out.behaviors.empty());
 }
 
+TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
+  Bench bench;
+  const std::string functor(300, 'x');
+  bench.ask(1, functor, {});
+  bench.step();
+  const std::string whole = bench.status(1).reason;
+  ASSERT_GT(whole.size(), kLongestReason);
+  Bench again(bench.memory());
+  again.ask(1, functor, {});
+  again.step();
+  EXPECT_EQ(again.state(1), GoalState::kRefused);
+  EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
+}
+
 TEST(Executor, RefusesAnIdThatIsNone) {
   Bench bench;
   Goal goal = Bench::goal(0, "stop", {});

@@ -72,6 +72,24 @@ TEST(MemoryFile, WhatIsWrittenHalfIsTakenBack) {
   EXPECT_EQ(MemoryFile(path).memory().endings, (std::vector{kEnding, next}));
 }
 
+TEST(MemoryFile, DoesNotGrowForEver) {
+  const test::TempDir dir;
+  const std::string path = dir.path("goals.memory");
+  MemoryFile memory(path, 10);
+  ASSERT_TRUE(memory.append(write_line(Placement{{1, 1000}, 3, 4, 5, {}})));
+  std::size_t longest = 0;
+  for (std::uint64_t i = 1; i <= 200; ++i) {
+    ASSERT_TRUE(memory.append(
+        write_line(Ending{{1, i}, GoalState::kSucceeded, GoalCode::kNone, "arrived"})));
+    longest = std::max(longest, read_file(path).size());
+  }
+  EXPECT_LT(longest, 23 * write_line(kEnding).size() + 60);
+  const Memory kept = MemoryFile(path, 10).memory();
+  EXPECT_EQ(kept.endings.size(), 10U);
+  EXPECT_EQ(kept.endings.back().id.number, 200U);
+  EXPECT_EQ(kept.placements.size(), 1U) << "that goal has not ended";
+}
+
 TEST(MemoryFile, KeepsTheNewestEndings) {
   const test::TempDir dir;
   const std::string path = dir.path("goals.memory");

@@ -41,6 +41,9 @@ struct Placement {
   bool operator==(const Placement&) const = default;
 };
 
+/// Letters of an ending's reason that are remembered: thousands of goals may be refused with a list
+/// of all that could have been asked for.
+inline constexpr std::size_t kLongestReason = 120;
 /// Endings that are remembered; the oldest are forgotten.
 inline constexpr std::size_t kMostEndings = 8192;
 
