@@ -1,28 +1,58 @@
 #include "namesakes.hpp"
 
+#include "saphira/base/boot_clock.hpp"
+
 namespace saphira::bridge {
+
+namespace {
+
+bool serves(const v1::ServiceStatus& status) {
+  return status.state() == v1::SERVICE_RUNNING || status.state() == v1::SERVICE_DEGRADED;
+}
+
+}  // namespace
 
 Namesakes::Namesakes(bus::Node& node) : node_(node), statuses_(node.reader(bus::topics::kStatus)) {}
 
 void Namesakes::take() {
+  const double now = BootClock::seconds();
   for (const auto& sample : statuses_.take()) {
-    const v1::ServiceStatus& other = sample.data;
-    if (other.name() != node_.status().name() || other.instance() == node_.status().instance())
+    if (sample.data.instance() == node_.status().instance())
       continue;
-    const bool serves = !sample.info.disposed && (other.state() == v1::SERVICE_RUNNING ||
-                                                  other.state() == v1::SERVICE_DEGRADED);
-    if (!serves) {
-      others_.erase(sample.info.writer);
-      continue;
-    }
-    const auto [known, is_new] = others_.try_emplace(
-        sample.info.writer, "process " + std::to_string(other.pid()) + " at " + other.host());
-    if (is_new)
-      node_.error("another bridge, " + known->second + ", has a robot of the name \"" +
-                  node_.options().robot + "\": give one of them another name (--robot)");
+    if (sample.data.name() == node_.status().name())
+      note(sample.data, sample.info);
+    else if (sample.info.disposed)
+      audience_.lose(sample.info.writer);
+    else
+      audience_.hear(sample.info.writer, sample.data, now);
   }
-  for (const bus::WriterId& writer : statuses_.take_lost())
+  for (const bus::WriterId& writer : statuses_.take_lost()) {
     others_.erase(writer);
+    audience_.lose(writer);
+  }
+  // It has its robot, and nobody hears it: it is the bus that is broken.
+  if (has_robot() && audience_.begins_anew(now)) {
+    node_.warn("no program hears robot/state, and some wait for it: begins anew on the bus");
+    node_.begin_anew();
+  }
+}
+
+// In lockstep the robot waits for the services.
+bool Namesakes::has_robot() const {
+  const v1::ServiceStatus& own = node_.status();
+  return serves(own) && own.stamp().cycle() > 0 && !node_.options().lockstep;
+}
+
+void Namesakes::note(const v1::ServiceStatus& other, const bus::SampleInfo& info) {
+  if (info.disposed || !serves(other)) {
+    others_.erase(info.writer);
+    return;
+  }
+  const auto [known, is_new] = others_.try_emplace(
+      info.writer, "process " + std::to_string(other.pid()) + " at " + other.host());
+  if (is_new)
+    node_.error("another bridge, " + known->second + ", has a robot of the name \"" +
+                node_.options().robot + "\": give one of them another name (--robot)");
 }
 
 }  // namespace saphira::bridge

@@ -3,12 +3,14 @@
 #include <map>
 #include <string>
 
+#include "audience.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bridge {
 
-/// The other bridges that have a robot of this name. Whoever follows that name would obey them and
-/// this one.
+/// What the status of the other programs means for the bridge. Other bridges that have a robot of
+/// this name: whoever follows that name would obey them and this one. And the services: where none
+/// of them hears this bridge, it begins anew on the bus.
 class Namesakes {
  public:
   explicit Namesakes(bus::Node& node);
@@ -21,9 +23,13 @@ class Namesakes {
   const std::string& who() const { return others_.begin()->second; }
 
  private:
+  void note(const v1::ServiceStatus& other, const bus::SampleInfo& info);
+  bool has_robot() const;
+
   bus::Node& node_;
   bus::Reader<v1::ServiceStatus> statuses_;
   std::map<bus::WriterId, std::string> others_;
+  Audience audience_;
 };
 
 }  // namespace saphira::bridge

@@ -37,6 +37,31 @@ TEST(LatchFile, OneThatCannotBeReadIsAnEmergencyStop) {
   EXPECT_TRUE(LatchFile(path).read().estopped);
 }
 
+TEST(LatchFile, NoDamageReleasesWhatIsLatched) {
+  const test::TempDir folder;
+  const std::string path = folder.path("latched");
+  for (const Latches& latches :
+       {Latches{true, "a button", Wait::none}, Latches{true, "a button", Wait::driven},
+        Latches{false, "", Wait::driven}, Latches{false, "", Wait::reset}}) {
+    ASSERT_EQ(LatchFile(path).write(latches), "");
+    std::string whole;
+    std::getline(std::ifstream(path), whole, '\0');
+    const auto expect_latched = [&](const std::string& damaged) {
+      std::ofstream(path) << damaged;
+      const Latches read = LatchFile(path).read();
+      EXPECT_TRUE(read.estopped || read == latches) << damaged;
+    };
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      expect_latched(whole.substr(0, i));
+      for (int bit = 0; bit < 8; ++bit) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(damaged[i] ^ (1 << bit));
+        expect_latched(damaged);
+      }
+    }
+  }
+}
+
 TEST(LatchFile, SaysWhereItCannotBeWritten) {
   EXPECT_EQ(LatchFile("").write({true, "a button", Wait::none}), "");
   const std::string trouble = LatchFile("/nowhere/at/all").write({true, "a button", Wait::none});

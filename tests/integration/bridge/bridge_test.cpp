@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "node_options.hpp"
 #include "scene.hpp"
 
 namespace saphira::test {
@@ -181,6 +182,30 @@ TEST(Bridge, ASecondOneOfTheSameNameWaitsForTheFirst) {
   EXPECT_EQ(scene.state.stamp().epoch(), epoch);
   scene.bridge->signal(SIGTERM);
   EXPECT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > epoch; })) << second.output();
+}
+
+TEST(Bridge, OneThatNobodyHearsBeginsAnewOnTheBus) {
+  Scene scene;
+  scene.start_simulator();
+  scene.start_bridge();
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  const std::uint64_t epoch = scene.state.stamp().epoch();
+  forward(scene.command, 0.2);
+  scene.drives = true;
+  // The only program that follows the robot says that it does not hear it.
+  bus::Node deaf(node_options("behaviors", scene.robot));
+  deaf.status().state(v1::SERVICE_WAITING);
+  deaf.status().reason("waits for robot/state of cycle 7");
+  ASSERT_TRUE(scene.until([&] {
+    deaf.publish_status();
+    return scene.bridge_log().find("began anew on the bus") != std::string::npos;
+  })) << scene.bridge_log();
+  // The connection to the robot is the same, and who drove drives again.
+  const std::uint64_t cycle = scene.state.stamp().cycle();
+  EXPECT_TRUE(scene.until([&] {
+    return scene.state.stamp().cycle() > cycle + 5 && scene.state.velocity() > 0.18;
+  })) << scene.bridge_log();
+  EXPECT_EQ(scene.state.stamp().epoch(), epoch);
 }
 
 TEST(Bridge, RefusesWhatIsNoNumber) {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "saphira/bus/endpoint.hpp"
+#include "system.h"
+
+namespace saphira::bridge {
+
+/// Whether the programs that follow the robot hear what the bridge writes, by what their status
+/// says. Pure: time is given to it, in seconds.
+class Audience {
+ public:
+  /// [s] Services that do not hear the robot begin anew on the bus themselves after 10 s; a bridge
+  /// that none of them hears after that is mute.
+  static constexpr double kMute = 13.0;
+  /// [s] until a bridge that began anew does it again.
+  static constexpr double kAgain = 60.0;
+
+  void hear(const bus::WriterId& writer, const v1::ServiceStatus& status, double now);
+  void lose(const bus::WriterId& writer) { programs_.erase(writer); }
+
+  /// Whether to begin anew now: some program waits for the robot, none hears it, and that for
+  /// kMute. At most once in kAgain.
+  bool begins_anew(double now);
+
+ private:
+  struct Program {
+    v1::Stamp stamp;
+    bool steps = false;           ///< its stamp moves on, and it does not wait for the robot
+    std::optional<double> waits;  ///< for the robot, since when
+  };
+
+  std::map<bus::WriterId, Program> programs_;
+  std::optional<double> anew_;
+};
+
+}  // namespace saphira::bridge
