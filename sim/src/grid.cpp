@@ -8,7 +8,8 @@ namespace saphira::sim {
 
 namespace {
 
-constexpr double kCell = 1.5;            // [m]
+// Sonars look 5 m far: smaller cells are more in number than what stands in them.
+constexpr double kCell = 4.0;            // [m]
 constexpr std::size_t kMostCells = 512;  // in a row; those of larger worlds count to the last one
 
 constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
@@ -49,6 +50,8 @@ void Grid::put(std::uint32_t number, const Vec2& at) {
 
 const std::vector<std::uint32_t>& Grid::near(const Vec2& point, double reach) const {
   found_.clear();
+  if (cell_of_.empty())
+    return found_;
   const std::size_t left = column(point.x() - reach);
   const std::size_t right = column(point.x() + reach);
   const std::size_t top = row(point.y() + reach);

@@ -146,6 +146,11 @@ Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose&
 
 void Scene::tick() {
   ++ticks_;
+  // In order of time: the oldest go first.
+  const auto fresh = std::find_if(pings_.begin(), pings_.end(), [this](const Ping& ping) {
+    return ping.tick + kPingTicks > ticks_;
+  });
+  pings_.erase(pings_.begin(), fresh);
   for (std::uint32_t i = 0; i < persons_.size(); ++i) {
     walk(persons_[i]);
     persons_near_.put(i, persons_[i].at);
@@ -159,14 +164,8 @@ void Scene::tick() {
 }
 
 void Scene::sound(const Ping& ping) {
-  if (robots_.size() < 2 || ping.robot == kNobody)
-    return;
-  // In order of time: the oldest go first.
-  const auto fresh = std::find_if(pings_.begin(), pings_.end(), [&](const Ping& old) {
-    return old.tick + kPingTicks > ping.tick;
-  });
-  pings_.erase(pings_.begin(), fresh);
-  pings_.push_back(ping);
+  if (robots_.size() > 1 && ping.robot != kNobody)
+    pings_.push_back(ping);
 }
 
 void Scene::moved(RobotNumber number) {

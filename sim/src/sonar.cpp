@@ -190,7 +190,7 @@ void Sonars::hear_surfaces(Firing& firing) const {
     else if (beside)
       continue;
     else if (surface.loss > 0.0)
-      hear(way, range, 0.0, surface, firing);
+      hear(way, range, surface, firing, [] { return 0.0; });
     else
       hear_wall(way, range, firing);
   }
@@ -213,26 +213,30 @@ void Sonars::hear_strip(const Segment& segment, const Surface& surface, Firing& 
   if (range <= 0.0)
     return;
   const double sine = std::min(1.0, std::abs(way.dot(along)) / (range * width));
-  hear(way, range, strip_loss(width, range) + strip_lobe_loss(width, std::asin(sine)), surface,
-       firing);
+  hear(way, range, surface, firing,
+       [&] { return strip_loss(width, range) + strip_lobe_loss(width, std::asin(sine)); });
 }
 
 void Sonars::hear_corners(const Vec2& robot, Firing& firing) {
   for (const Corner* corner : near_.corners_around(robot)) {
     const Vec2 way = corner->point - firing.origin;
+    const double ahead = way.dot(firing.ahead);
+    if (ahead <= 0.0)
+      continue;
     const double range = way.norm();
-    if (range >= firing.nearest.value_or(model_.max_range) ||
-        way.dot(firing.ahead) <= beam_cosine_ * range)
+    if (range >= firing.nearest.value_or(model_.max_range) || ahead <= beam_cosine_ * range)
       continue;
     const CornerShape shape = shape_from(*corner, firing.origin);
     if (shape == CornerShape::kNone)
       continue;
     const double radius = corner->arms.size() == 1 ? model_.jamb : model_.edge;
-    const double loss = shape == CornerShape::kInner
-                            ? strip_loss(corner->shortest, range)
-                            : round_loss(std::min(radius, corner->shortest / 2.0), range);
+    const auto loss = [&] {
+      return shape == CornerShape::kInner
+                 ? strip_loss(corner->shortest, range)
+                 : round_loss(std::min(radius, corner->shortest / 2.0), range);
+    };
     const auto index = static_cast<std::uint32_t>(corner - scene_->world().corners.data());
-    hear(way, range, loss, {0.0, false, kOfCorners + index}, firing);
+    hear(way, range, {0.0, false, kOfCorners + index}, firing, loss);
   }
   for (std::size_t i = 0; i < in_beam_.segments.size(); ++i) {
     const Segment& segment = in_beam_.things.segments[i];
@@ -242,24 +246,27 @@ void Sonars::hear_corners(const Vec2& robot, Firing& firing) {
       const Vec2 way = end - firing.origin;
       const double range = way.norm();
       if (range > 0.0)
-        hear(way, range, round_loss(model_.edge, range), surface, firing);
+        hear(way, range, surface, firing, [&] { return round_loss(model_.edge, range); });
     }
   }
 }
 
 void Sonars::hear_disc(const Disc& disc, const Surface& surface, Firing& firing) const {
   const Vec2 way = disc.centre - firing.origin;
+  if (way.dot(firing.ahead) <= 0.0)
+    return;
   const double range = way.norm() - disc.radius;
   if (range > 0.0)
-    hear(way, range, round_loss(disc.radius, range), surface, firing);
+    hear(way, range, surface, firing, [&] { return round_loss(disc.radius, range); });
 }
 
-void Sonars::hear(const Vec2& way, double range, double shape, const Surface& surface,
-                  Firing& firing) const {
+template <class Loss>
+void Sonars::hear(const Vec2& way, double range, const Surface& surface, Firing& firing,
+                  const Loss& shape) const {
   const double cosine = way.dot(firing.ahead) / way.norm();
   if (cosine <= beam_cosine_ || range >= firing.nearest.value_or(model_.max_range))
     return;
-  double margin = model_.strength - shape - surface.loss - way_loss(range) -
+  double margin = model_.strength - shape() - surface.loss - way_loss(range) -
                   2.0 * beam_loss(std::acos(std::min(1.0, cosine)));
   const double spread = surface.loss > 0.0 ? model_.soft_spread : model_.spread;
   // A leg that swings is mostly tilted away.
@@ -290,7 +297,9 @@ bool Sonars::in_direct_cone(const Firing& firing, const Vec2& way) const {
 void Sonars::hear_others(Firing& firing) const {
   for (const Ping& ping : scene_->pings()) {
     const Vec2 way = ping.origin - firing.origin;
-    if (ping.robot == self_ || !in_direct_cone(firing, way))
+    // Most look elsewhere: the cheapest question first.
+    if (way.dot(ping.ahead) >= 0.0 || way.dot(firing.ahead) < 0.0 || ping.robot == self_ ||
+        !in_direct_cone(firing, way))
       continue;
     const double apart = way.norm();
     // How far the sound was on its way when this sonar began to listen.

@@ -111,9 +111,10 @@ class Sonars {
   void hear_strip(const Segment& segment, const Surface& surface, Firing& firing) const;
   void hear_corners(const Vec2& robot, Firing& firing);
   void hear_disc(const Disc& disc, const Surface& surface, Firing& firing) const;
-  // An echo from `way` away, whose shape loses `shape` [dB].
-  void hear(const Vec2& way, double range, double shape, const Surface& surface,
-            Firing& firing) const;
+  // An echo from `way` away, whose shape loses shape() [dB]: asked for only where it matters.
+  template <class Loss>
+  void hear(const Vec2& way, double range, const Surface& surface, Firing& firing,
+            const Loss& shape) const;
   // What chance does to the strength of one thing's echo [standard deviations].
   double luck(std::uint8_t number, std::uint32_t thing) const;
   // Whether nothing stands before that, and it is nearer than what has been heard.
