@@ -36,20 +36,6 @@ constexpr std::uint32_t kOfPersons = 1U << 24U;
 constexpr std::uint32_t kOfPosts = 2U << 24U;
 constexpr std::uint32_t kOfSegments = 3U << 24U;
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-bool intersect(const Segment& a, const Segment& b) {
-  const Vec2 along_a = a.to - a.from;
-  const Vec2 along_b = b.to - b.from;
-  const double b_from = cross(along_a, b.from - a.from);
-  const double b_to = cross(along_a, b.to - a.from);
-  const double a_from = cross(along_b, a.from - b.from);
-  const double a_to = cross(along_b, a.to - b.from);
-  return b_from * b_to <= 0.0 && a_from * a_to <= 0.0 && (b_from != b_to || a_from != a_to);
-}
-
 void look_towards(Person& person, const Vec2& point) {
   const Vec2 way = point - person.at;
   if (way.squaredNorm() > 0.0)

@@ -174,7 +174,9 @@ World parse_world(std::string_view text, const std::string& file) {
 }
 
 World load_world(const std::string& path) {
-  return parse_world(read_file(path), path);
+  const std::string text = read_file(path);
+  expect_last_line_break(text, path);
+  return parse_world(text, path);
 }
 
 Vec2 nearest_point(const Segment& segment, const Vec2& point) {
@@ -223,6 +225,16 @@ double distance(const Things& things, const Vec2& point) {
   for (const Disc& disc : things.discs)
     best = std::min(best, (disc.centre - point).norm() - disc.radius);
   return best;
+}
+
+bool intersect(const Segment& a, const Segment& b) {
+  const Vec2 along_a = a.to - a.from;
+  const Vec2 along_b = b.to - b.from;
+  const double b_from = cross(along_a, b.from - a.from);
+  const double b_to = cross(along_a, b.to - a.from);
+  const double a_from = cross(along_b, a.from - b.from);
+  const double a_to = cross(along_b, a.to - b.from);
+  return b_from * b_to <= 0.0 && a_from * a_to <= 0.0 && (b_from != b_to || a_from != a_to);
 }
 
 std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,

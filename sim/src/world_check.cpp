@@ -22,20 +22,6 @@ std::string metres(const Vec2& point) {
   return text.data();
 }
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-bool intersect(const Segment& a, const Segment& b) {
-  const Vec2 along_a = a.to - a.from;
-  const Vec2 along_b = b.to - b.from;
-  const double b_from = cross(along_a, b.from - a.from);
-  const double b_to = cross(along_a, b.to - a.from);
-  const double a_from = cross(along_b, a.from - b.from);
-  const double a_to = cross(along_b, a.to - b.from);
-  return b_from * b_to < 0.0 && a_from * a_to < 0.0;
-}
-
 const Segment* wall_across(const World& world, const Segment& way) {
   for (const Segment& wall : world.segments)
     if (intersect(way, wall))

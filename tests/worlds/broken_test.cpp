@@ -1,9 +1,13 @@
 // Each shipped world and map with one mistake in it, of ten kinds: the error names the line and the
 // column of the mistake.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 
@@ -256,6 +260,47 @@ TEST(BrokenFiles, EachWorldWithEachMistakeSaysWhere) {
   for (const std::string& stem : test::stems("config/worlds", ".wld"))
     for (const Kind& kind : kWorldMistakes)
       expect_error(test::source("config/worlds/" + stem + ".wld"), kind, sim::parse_world);
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> found;
+  for (const Line& line : split_lines(text))
+    for (const Word& word : line.words)
+      found.push_back(std::to_string(line.number) + " " + std::string(word.text));
+  return found;
+}
+
+// What is lost between two lines was never there, for all that a world file says. But no line is
+// read in part.
+TEST(BrokenFiles, EachWorldThatIsCutOffWithinALineIsRefused) {
+  const std::string path = ::testing::TempDir() + "cut-off-" + std::to_string(getpid()) + ".wld";
+  for (const std::string& stem : test::stems("config/worlds", ".wld")) {
+    const std::string text = read_file(test::source("config/worlds/" + stem + ".wld"));
+    ASSERT_TRUE(text.ends_with('\n')) << stem;
+    const std::vector<std::string> whole = words_of(text);
+    std::ofstream(path, std::ios::binary) << text;
+    int refused = 0;
+    for (std::size_t size = text.size(); size-- > 0;) {
+      std::filesystem::resize_file(path, size);
+      SCOPED_TRACE(stem + " cut to " + std::to_string(size) + " bytes");
+      try {
+        sim::load_world(path);
+        const auto left = words_of(text.substr(0, size));
+        ASSERT_LE(left.size(), whole.size());
+        ASSERT_TRUE(std::equal(left.begin(), left.end(), whole.begin()));
+        // The first word that is missing begins a line.
+        EXPECT_TRUE(left.empty() || left.size() == whole.size() ||
+                    std::atoi(left.back().c_str()) < std::atoi(whole[left.size()].c_str()));
+      } catch (const FileError& error) {
+        ++refused;
+        EXPECT_EQ(error.file(), path);
+        EXPECT_GE(error.line(), 1);
+        EXPECT_NE(std::string(error.what()).find("expected"), std::string::npos) << error.what();
+      }
+    }
+    EXPECT_GT(refused, 0);
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(BrokenFiles, EachMapWithEachMistakeSaysWhere) {

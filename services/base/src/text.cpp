@@ -119,7 +119,9 @@ void expect_last_line_break(std::string_view text, const std::string& file) {
   if (lines.empty())
     return;
   const Word& last = lines.back().words.back();
-  if (last.text.data() + last.text.size() != text.data() + text.size())
+  const char* const end = last.text.data() + last.text.size();
+  const std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
+  if (rest.find_first_not_of(" \t") != std::string_view::npos)
     return;
   throw FileError(file, lines.back().number, last.column + static_cast<int>(last.text.size()),
                   "expected a line break behind the last line (has the file been cut off?)",

@@ -33,15 +33,17 @@ TEST(Text, ErrorNamesThePlaceAndWhatWasExpected) {
   }
 }
 
-TEST(Text, ATextThatEndsWithinAWordWasCutOff) {
-  for (const char* whole : {"", "; comment", "a 1\n", "a 1\r", "a 1 ", "a 1; comment", "a 1\n\n"})
+TEST(Text, ATextThatEndsWithinALineWasCutOff) {
+  for (const char* whole : {"", "; comment", "a 1\n", "a 1\r", "a 1 \n", "a 1; comment", "a 1\n\n"})
     EXPECT_NO_THROW(expect_last_line_break(whole, "a.p")) << whole;
-  try {
-    expect_last_line_break("a 100\n\nb 20", "a.p");
-    FAIL() << "no error";
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.line(), 3);
-    EXPECT_EQ(error.column(), 5);
+  for (const char* cut : {"a 100\n\nb 20", "a 100\n\nb 20 ", "a 100\n\nb 20\t"}) {
+    try {
+      expect_last_line_break(cut, "a.p");
+      ADD_FAILURE() << "no error";
+    } catch (const FileError& error) {
+      EXPECT_EQ(error.line(), 3);
+      EXPECT_EQ(error.column(), 5);
+    }
   }
 }
 

@@ -69,7 +69,8 @@ struct World {
 /// (the manual gives relative coordinates to segments only). FileError where it is wrong.
 World parse_world(std::string_view text, const std::string& file);
 
-/// The same from a file.
+/// The same from a file, whose last line has a line break: it would not be noticed otherwise that a
+/// file was cut off within a number.
 World load_world(const std::string& path);
 
 /// The point of the segment that is nearest to `point`.
@@ -87,6 +88,14 @@ std::optional<Vec2> nearest_point(const Things& things, const Vec2& point);
 
 /// The distance to the nearest of the things, negative in a disc; infinite where there are none.
 double distance(const Things& things, const Vec2& point);
+
+/// [m2] Of two vectors: positive where b points to the left of a.
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Whether two segments have a point in common, be it an end; not where one lies upon the other.
+bool intersect(const Segment& a, const Segment& b);
 
 /// The first segment that a ray meets within `range`. `direction` is a unit vector.
 std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,

@@ -71,8 +71,8 @@ class LineReader {
   std::size_t next_ = 0;
 };
 
-/// FileError where the text ends within a word. Where a file was cut off, half a number would be
-/// read as a whole one; so the last line of a file that must be whole has a line break.
+/// FileError where the text ends within the words of a line. Half a number would be read as a whole
+/// one, half a line as all of it; so the last line of a file that must be whole has a line break.
 void expect_last_line_break(std::string_view text, const std::string& file);
 
 /// The whole content of a file; std::runtime_error that names it where it cannot be read.
