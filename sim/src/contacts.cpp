@@ -15,6 +15,12 @@ constexpr double kTurns = 0.01;      // [rad/s]
 constexpr double kSameThing = 0.1;   // [m] a wall that is so near to the point does not hide it
 constexpr std::size_t kOneWall = 0;  // all walls are one thing
 
+/// No sonar hears farther than it can, whatever is fair to expect of others.
+ContactSettings of_robot(ContactSettings settings, const protocol::RobotParameters& parameters) {
+  settings.most_range = std::min(settings.most_range, parameters.sonar_max_range);
+  return settings;
+}
+
 }  // namespace
 
 ContactWatch::ContactWatch(const Scene& scene, RobotNumber robot,
@@ -23,7 +29,7 @@ ContactWatch::ContactWatch(const Scene& scene, RobotNumber robot,
     : scene_(&scene),
       robot_(robot),
       parameters_(parameters),
-      settings_(settings),
+      settings_(of_robot(settings, parameters)),
       near_(scene.world(), parameters.radius + std::max(kLookout, settings.most_range)) {
   remember();
 }

@@ -11,13 +11,15 @@ namespace {
 
 constexpr double kCreep = 0.02;        // [m/s] slower is as good as standing
 constexpr double kDeceleration = 0.3;  // [m/s2] of a robot that does not say its own
+// The robot does not drive towards what comes from farther aside than 100 degrees.
+const double kAside = std::cos(radians(100.0));
 constexpr double kSameWay = radians(3.0);
 // [m] A robot whose sonars reach less keeps this share of their reach as margin.
 constexpr double kShareOfReach = 0.25;
 // What comes closer takes no more than this share of the reach until the robot brakes.
 constexpr double kShareOfWay = 0.1;
 
-std::string text(const char* format, double a, double b) {
+std::string text(const char* format, double a, double b = 0.0) {
   char out[128];
   std::snprintf(out, sizeof out, format, a, b);
   return out;
@@ -115,100 +117,148 @@ Allowed allow(const GuardSettings& settings, const Body& body, const std::vector
   return allowed;
 }
 
+/// A motion that is cut, limit by limit. The tightest one gives the reason.
+class Cut {
+ public:
+  Cut(const GuardSettings& settings, const Body& body, double velocity)
+      : settings_(settings),
+        body_(body),
+        wanted_(velocity),
+        reach_(std::min(settings.dependable_range, body.sonar_range)),
+        margin_(std::min(settings.margin, kShareOfReach * reach_)),
+        speed_(std::abs(velocity)) {
+    if (body_.deceleration <= 0.0)
+      body_.deceleration = kDeceleration;
+  }
+
+  void rotation(double wanted) {
+    turning_ = wanted;
+    const double most = limit_of(settings_.max_rotation_velocity, body_.max_rotation_velocity);
+    if (most <= 0.0 || std::abs(wanted) <= most)
+      return;
+    turning_ = std::copysign(most, wanted);
+    act(GuardAction::limit, text("rotation of %.2f rad/s cut to the limit of %.2f", wanted, most));
+  }
+
+  void robot() {
+    const double most = limit_of(settings_.max_velocity, body_.max_velocity);
+    if (most > 0.0)
+      cut(most, GuardAction::limit, text("%.2f m/s cut to the limit of %.2f", wanted_, most));
+    const double blind = settings_.max_blind_velocity;
+    if (blind > 0.0 && !(forward() ? body_.sees_ahead : body_.sees_behind))
+      cut(blind, GuardAction::limit,
+          text(forward() ? "%.2f m/s cut to %.2f: no sonar looks ahead"
+                         : "%.2f m/s cut to %.2f: no sonar looks behind",
+               wanted_, blind));
+    const double unheard = stops_within(reach_ - margin_, 0.0);
+    cut(unheard, GuardAction::limit,
+        text("%.2f m/s cut to %.2f: no farther ahead can a person be heard", wanted_, unheard));
+  }
+
+  void beside(const Allowed& allowed) {
+    cut(allowed.speed, GuardAction::slow,
+        text("something beside the path, %.2f m away: slowed to %.2f m/s", allowed.beside,
+             allowed.speed));
+    const double past = stops_within(allowed.until_beside - margin_, settings_.beside_velocity);
+    cut(past, GuardAction::slow,
+        text("something near the path, %.2f m ahead: slowed to %.2f m/s", allowed.until_beside,
+             past));
+  }
+
+  void ahead(double free) {
+    if (settings_.slow_distance > 0.0 && free < settings_.slow_distance)
+      cut(settings_.slow_velocity, GuardAction::slow, slowed(free, settings_.slow_velocity));
+    const double closing =
+        std::min(settings_.closing_velocity, kShareOfWay * reach_ / body_.reaction);
+    const double safe = std::min(stops_within(free - margin_, settings_.careful_velocity, closing),
+                                 stops_within(free - margin_, 0.0));
+    if (safe < kCreep)
+      cut(0.0, GuardAction::stop,
+          text("something %.2f m ahead: stopped (margin %.2f m)", free, margin_));
+    else
+      cut(safe, GuardAction::slow, slowed(free, safe));
+  }
+
+  /// The robot stands when what comes is there, and while it may stand there unheard.
+  void coming(const Approach& approach) {
+    const double ahead = forward() ? approach.at_in_robot.x() : -approach.at_in_robot.x();
+    const double away = approach.at_in_robot.norm();
+    if (ahead < kAside * away)
+      return;
+    const double gap = away - body_.radius;
+    const double safe = stops_within(gap - margin_, 0.0, approach.closing);
+    const std::string what =
+        approach.closing > 0.0
+            ? text("something comes at %.1f m/s, %.2f m away", approach.closing, gap)
+            : text("something came, and may stand %.2f m away", gap);
+    if (safe < kCreep)
+      cut(0.0, GuardAction::stop, what + ": stopped");
+    else
+      cut(safe, GuardAction::slow, what + text(": slowed to %.2f m/s", safe));
+  }
+
+  void contact(double meant, double free) {
+    const double speed =
+        forward() ? std::min({wanted_, meant, settings_.max_contact_velocity}) : 0.0;
+    if (speed <= speed_)
+      return;
+    speed_ = speed;
+    action_ = GuardAction::slow;
+    reason_ = text("something %.2f m ahead, and contact is meant: slowed to %.2f m/s", free, speed);
+  }
+
+  const Body& body() const { return body_; }
+  Guarded result() const { return {forward() ? speed_ : -speed_, turning_, action_, reason_}; }
+
+ private:
+  bool forward() const { return wanted_ >= 0.0; }
+  double stops_within(double way, double end, double closing = 0.0) const {
+    return approach_speed(way, end, body_.reaction, body_.deceleration, closing);
+  }
+  static std::string slowed(double free, double speed) {
+    return text("something %.2f m ahead: slowed to %.2f m/s", free, speed);
+  }
+  void cut(double speed, GuardAction action, std::string reason) {
+    if (speed_ <= speed)
+      return;
+    speed_ = speed;
+    act(action, std::move(reason));
+  }
+  void act(GuardAction action, std::string reason) {
+    action_ = std::max(action_, action);
+    reason_ = std::move(reason);
+  }
+
+  const GuardSettings& settings_;
+  Body body_;
+  double wanted_;
+  double reach_;   // [m] how far ahead a person is surely heard
+  double margin_;  // [m]
+  double speed_;
+  double turning_ = 0.0;
+  GuardAction action_ = GuardAction::none;
+  std::string reason_;
+};
+
 }  // namespace
 
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
-              double velocity, double rotation_velocity, double turning, double contact_speed) {
-  Guarded out{velocity, rotation_velocity, GuardAction::none, {}};
+              double velocity, double rotation_velocity, double turning, double contact_speed,
+              const std::vector<Approach>& approaches) {
   if (!settings.enabled)
-    return out;
-  const auto act = [&](GuardAction action, std::string reason) {
-    if (action > out.action) {
-      out.action = action;
-      out.reason = std::move(reason);
-    }
-  };
-
-  const double max_turn = limit_of(settings.max_rotation_velocity, body.max_rotation_velocity);
-  if (max_turn > 0.0 && std::abs(rotation_velocity) > max_turn) {
-    out.rotation_velocity = std::copysign(max_turn, rotation_velocity);
-    act(GuardAction::limit,
-        text("rotation of %.2f rad/s cut to the limit of %.2f", rotation_velocity, max_turn));
-  }
+    return {velocity, rotation_velocity, GuardAction::none, {}};
+  Cut cut(settings, body, velocity);
+  cut.rotation(rotation_velocity);
   if (velocity == 0.0)
-    return out;
-
-  const bool forward = velocity > 0.0;
-  double speed = std::abs(velocity);
-  const double max_speed = limit_of(settings.max_velocity, body.max_velocity);
-  if (max_speed > 0.0 && speed > max_speed) {
-    speed = max_speed;
-    act(GuardAction::limit, text("%.2f m/s cut to the limit of %.2f", velocity, max_speed));
-  }
-  if (!(forward ? body.sees_ahead : body.sees_behind) && settings.max_blind_velocity > 0.0 &&
-      speed > settings.max_blind_velocity) {
-    speed = settings.max_blind_velocity;
-    act(GuardAction::limit, text(forward ? "%.2f m/s cut to %.2f: no sonar looks ahead"
-                                         : "%.2f m/s cut to %.2f: no sonar looks behind",
-                                 velocity, speed));
-  }
-
-  Body braking = body;
-  if (braking.deceleration <= 0.0)
-    braking.deceleration = kDeceleration;
-  const double a = braking.deceleration;
-  const Allowed allowed = allow(settings, braking, points, forward, turning);
-  if (settings.slow_distance > 0.0 && allowed.free < settings.slow_distance &&
-      speed > settings.slow_velocity) {
-    speed = settings.slow_velocity;
-    act(GuardAction::slow, text("something %.2f m ahead: slowed to %.2f m/s", allowed.free, speed));
-  }
-  if (speed > allowed.speed) {
-    speed = allowed.speed;
-    act(GuardAction::slow,
-        text("something beside the path, %.2f m away: slowed to %.2f m/s", allowed.beside, speed));
-  }
-  const double reach = std::min(settings.dependable_range, body.sonar_range);
-  const double margin = std::min(settings.margin, kShareOfReach * reach);
-  const double past =
-      approach_speed(allowed.until_beside - margin, settings.beside_velocity, body.reaction, a);
-  if (speed > past) {
-    speed = past;
-    act(GuardAction::slow, text("something near the path, %.2f m ahead: slowed to %.2f m/s",
-                                allowed.until_beside, speed));
-  }
-  const double unheard = approach_speed(reach - margin, 0.0, body.reaction, a);
-  if (speed > unheard) {
-    speed = unheard;
-    act(GuardAction::limit,
-        text("%.2f m/s cut to %.2f: no farther ahead can a person be heard", velocity, speed));
-  }
-  const double closing = std::min(settings.closing_velocity, kShareOfWay * reach / body.reaction);
-  const double careful =
-      approach_speed(allowed.free - margin, settings.careful_velocity, body.reaction, a, closing);
-  const double safe =
-      std::min(careful, approach_speed(allowed.free - margin, 0.0, body.reaction, a));
-  if (speed > safe) {
-    if (safe < kCreep) {
-      speed = 0.0;
-      act(GuardAction::stop,
-          text("something %.2f m ahead: stopped (margin %.2f m)", allowed.free, margin));
-    } else {
-      speed = safe;
-      act(GuardAction::slow,
-          text("something %.2f m ahead: slowed to %.2f m/s", allowed.free, speed));
-    }
-  }
-  const double contact = forward ? std::min(contact_speed, settings.max_contact_velocity) : 0.0;
-  const double meant = std::min(std::abs(velocity), contact);
-  if (meant > speed) {
-    speed = meant;
-    out.action = GuardAction::slow;
-    out.reason = text("something %.2f m ahead, and contact is meant: slowed to %.2f m/s",
-                      allowed.free, speed);
-  }
-  out.velocity = forward ? speed : -speed;
-  return out;
+    return cut.result();
+  cut.robot();
+  const Allowed allowed = allow(settings, cut.body(), points, velocity > 0.0, turning);
+  cut.beside(allowed);
+  cut.ahead(allowed.free);
+  for (const Approach& approach : approaches)
+    cut.coming(approach);
+  cut.contact(contact_speed, allowed.free);
+  return cut.result();
 }
 
 }  // namespace saphira::authority
