@@ -11,7 +11,8 @@ namespace {
 constexpr double kCycle = 0.1;            // [s]
 constexpr std::uint64_t kApart = 5;       // [cycles] two firings are no farther apart
 constexpr std::uint64_t kComes = 10;      // [cycles] it is taken to come on for so long...
-constexpr std::uint64_t kStands = 40;     // [cycles] ...and then to stand for so long
+constexpr std::uint64_t kAlarm = 50;      // [cycles] ...and to stand there until the alarm ends
+constexpr std::uint64_t kPause = 20;      // [cycles] between two alarms
 constexpr double kFarthest = 2.5;         // [m]
 constexpr double kSlowest = 0.6;          // [m/s]
 constexpr double kFastest = 2.5;          // [m/s] what is faster is another thing
@@ -26,6 +27,7 @@ void Approaches::clear() {
   fired_.clear();
   came_.clear();
   noticed_.clear();
+  began_ = 0;
 }
 
 void Approaches::hear(std::uint64_t cycle, const Pose& robot_in_odom, const Reading& reading,
@@ -53,14 +55,20 @@ void Approaches::hear(std::uint64_t cycle, const Pose& robot_in_odom, const Read
     return (other.at_in_odom - at_in_odom).norm() < kSame;
   });
   noticed_.push_back({cycle, at_in_odom, closing});
-  if (!again)
-    came_[reading.sonar] = noticed_.back();
+  // Echoes that mislead do not hold the robot for ever: between two alarms it may drive.
+  if (again || (cycle > began_ + kAlarm && cycle < began_ + kAlarm + kPause && began_ > 0))
+    return;
+  if (began_ == 0 || cycle > began_ + kAlarm)
+    began_ = cycle;
+  came_[reading.sonar] = noticed_.back();
 }
 
 std::vector<Approach> Approaches::now(std::uint64_t cycle, const Pose& robot_in_odom) const {
   std::vector<Approach> coming;
+  if (cycle > began_ + kAlarm)
+    return coming;
   for (const auto& [sonar, came] : came_) {
-    if (cycle > came.cycle + kComes + kStands)
+    if (came.cycle < began_)
       continue;
     const Vec2 at = to_frame(robot_in_odom, came.at_in_odom);
     const std::uint64_t cycles = std::min(cycle - came.cycle, kComes);

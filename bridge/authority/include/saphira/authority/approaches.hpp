@@ -45,6 +45,7 @@ class Approaches {
 
   std::map<int, Firing> fired_;  ///< the newest of each sonar
   std::map<int, Came> came_;     ///< the newest of each sonar
+  std::uint64_t began_ = 0;      ///< the cycle in which the newest alarm began; 0: none yet
   std::deque<Came> noticed_;     ///< of the last half minute
 };
 
