@@ -642,7 +642,7 @@ void Shell::decide() {
     guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant.role)], body_,
                                 echoes_.spots(), wanted.velocity, wanted.rotation_velocity,
                                 reflector_.state().information.rotation_velocity,
-                                contact_speed_of(grant.role), echoes_.approaches());
+                                contact_speed_of(grant.role));
     guarded_ = authority::slow_for_age(std::move(guarded_), grant.command_age, kCycle);
   }
   wanted.velocity = guarded_.velocity;

@@ -81,7 +81,7 @@ double Drive::guard(double speed) {
   authority::GuardSettings settings;
   settings.enabled = has_guard_;
   guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
-                              by_hand_ ? 0.0 : output_.contact_speed, echoes_.approaches());
+                              by_hand_ ? 0.0 : output_.contact_speed);
   return guarded_.velocity;
 }
 

@@ -22,18 +22,12 @@ EchoMap::EchoMap(double range) : range_(range), memory_(long_memory()) {}
 
 void EchoMap::clear() {
   memory_.clear();
-  approaches_.clear();
-  coming_.clear();
   fired_ahead_ = 0;
   fired_behind_ = 0;
 }
 
 void EchoMap::update(std::uint64_t cycle, const Pose& robot_in_odom,
                      const std::vector<Reading>& readings) {
-  // What is known is where it was a cycle ago, which is near enough.
-  for (const Reading& reading : readings)
-    approaches_.hear(cycle, robot_in_odom, reading, memory_.points());
-  coming_ = approaches_.now(cycle, robot_in_odom);
   memory_.move_to(robot_in_odom);
   for (const Reading& reading : readings) {
     if (std::abs(norm2_angle(reading.sonar_in_robot.th)) < kTowards)

@@ -11,15 +11,13 @@ namespace {
 
 constexpr double kCreep = 0.02;        // [m/s] slower is as good as standing
 constexpr double kDeceleration = 0.3;  // [m/s2] of a robot that does not say its own
-// The robot does not drive towards what comes from farther aside than 100 degrees.
-const double kAside = std::cos(radians(100.0));
 constexpr double kSameWay = radians(3.0);
 // [m] A robot whose sonars reach less keeps this share of their reach as margin.
 constexpr double kShareOfReach = 0.25;
 // What comes closer takes no more than this share of the reach until the robot brakes.
 constexpr double kShareOfWay = 0.1;
 
-std::string text(const char* format, double a, double b = 0.0) {
+std::string text(const char* format, double a, double b) {
   char out[128];
   std::snprintf(out, sizeof out, format, a, b);
   return out;
@@ -179,24 +177,6 @@ class Cut {
       cut(safe, GuardAction::slow, slowed(free, safe));
   }
 
-  /// The robot stands when what comes is there, and while it may stand there unheard.
-  void coming(const Approach& approach) {
-    const double ahead = forward() ? approach.at_in_robot.x() : -approach.at_in_robot.x();
-    const double away = approach.at_in_robot.norm();
-    if (ahead < kAside * away)
-      return;
-    const double gap = away - body_.radius;
-    const double safe = stops_within(gap - margin_, 0.0, approach.closing);
-    const std::string what =
-        approach.closing > 0.0
-            ? text("something comes at %.1f m/s, %.2f m away", approach.closing, gap)
-            : text("something came, and may stand %.2f m away", gap);
-    if (safe < kCreep)
-      cut(0.0, GuardAction::stop, what + ": stopped");
-    else
-      cut(safe, GuardAction::slow, what + text(": slowed to %.2f m/s", safe));
-  }
-
   void contact(double meant, double free) {
     const double speed =
         forward() ? std::min({wanted_, meant, settings_.max_contact_velocity}) : 0.0;
@@ -243,8 +223,7 @@ class Cut {
 }  // namespace
 
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
-              double velocity, double rotation_velocity, double turning, double contact_speed,
-              const std::vector<Approach>& approaches) {
+              double velocity, double rotation_velocity, double turning, double contact_speed) {
   if (!settings.enabled)
     return {velocity, rotation_velocity, GuardAction::none, {}};
   Cut cut(settings, body, velocity);
@@ -255,8 +234,6 @@ Guarded guard(const GuardSettings& settings, const Body& body, const std::vector
   const Allowed allowed = allow(settings, cut.body(), points, velocity > 0.0, turning);
   cut.beside(allowed);
   cut.ahead(allowed.free);
-  for (const Approach& approach : approaches)
-    cut.coming(approach);
   cut.contact(contact_speed, allowed.free);
   return cut.result();
 }

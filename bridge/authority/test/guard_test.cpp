@@ -136,26 +136,6 @@ TEST(Guard, LooksWhereTheRobotTurnsTo) {
   EXPECT_LT(guard({}, kPioneer, points, 0.4, 1.5, 1.5).velocity, 0.5 * straight);
 }
 
-TEST(Guard, StandsWhenWhatComesIsThere) {
-  const auto velocity = [](const Vec2& at, double closing, double wanted = 0.4) {
-    return guard({}, kPioneer, {}, wanted, 0.0, 0.0, 0.0, {{at, closing}}).velocity;
-  };
-  EXPECT_EQ(velocity({2.4, 0.0}, 1.3), 0.4);
-  double last = 0.4;
-  for (double x = 2.0; x > 0.6; x -= 0.13) {  // a cycle of walking
-    EXPECT_LE(velocity({x, 0.0}, 1.3), last) << x;
-    last = velocity({x, 0.0}, 1.3);
-  }
-  EXPECT_EQ(last, 0.0);
-  EXPECT_EQ(velocity({0.0, 0.7}, 1.3), 0.0) << "from aside";
-  EXPECT_EQ(velocity({-0.7, 0.0}, 1.3), 0.4) << "from behind";
-  EXPECT_EQ(velocity({-0.7, 0.0}, 1.3, -0.15), 0.0) << "going back";
-  // It came and stands in a gap between the beams.
-  const Guarded out = guard({}, kPioneer, {}, 0.4, 0.0, 0.0, 0.0, {{{0.3, 0.3}, 0.0}});
-  EXPECT_EQ(out.action, GuardAction::stop);
-  EXPECT_EQ(out.reason, "something came, and may stand 0.20 m away: stopped");
-}
-
 TEST(Guard, SlowZone) {
   GuardSettings settings;
   settings.slow_distance = 0.9;

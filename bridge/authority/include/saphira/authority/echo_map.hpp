@@ -1,13 +1,20 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "saphira/authority/approaches.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/lps/obstacle_memory.hpp"
 
 namespace saphira::authority {
+
+/// One firing of a sonar.
+struct Reading {
+  int sonar = 0;
+  Pose sonar_in_robot;
+  std::optional<double> range;  ///< [m] of the echo; none: silence
+};
 
 /// What the sonars have heard round the robot. An echo comes from somewhere on an arc across its
 /// sonar's axis, and what enters a gap between two beams is still there: the memory is that of the
@@ -23,8 +30,6 @@ class EchoMap {
 
   /// Where something is, in the robot's frame as of the last update.
   const std::vector<Vec2>& spots() const { return memory_.points(); }
-  /// What comes towards the robot, as of the last update.
-  const std::vector<Approach>& approaches() const { return coming_; }
   /// Whether some sonar within 60 degrees of straight ahead (or back) has fired in the last second
   /// (a Pioneer's sonars fire every third cycle). At the beginning they have not had their turn.
   bool sees(std::uint64_t cycle, bool ahead) const;
@@ -32,8 +37,6 @@ class EchoMap {
  private:
   double range_;
   lps::ObstacleMemory memory_;
-  Approaches approaches_;
-  std::vector<Approach> coming_;
   std::uint64_t fired_ahead_ = 0;  ///< the newest cycle in which such a sonar fired
   std::uint64_t fired_behind_ = 0;
 };

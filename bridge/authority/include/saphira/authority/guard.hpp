@@ -20,12 +20,6 @@ struct Body {
   bool sees_ahead = true;    ///< the same of straight ahead
 };
 
-/// Something that comes towards the robot, or has come and may stand where no sonar hears it.
-struct Approach {
-  Vec2 at_in_robot{0.0, 0.0};  ///< [m]
-  double closing = 0.0;        ///< [m/s] beyond the robot's own motion; 0: it has come
-};
-
 /// What the guard does for one role. The limits are those of people: what a sonar hears of a person
 /// is a shin, and the person reaches some 0.2 m farther than that, ahead and aside.
 struct GuardSettings {
@@ -77,9 +71,9 @@ double approach_speed(double distance, double end, double reaction, double decel
 /// `points` is what was heard, in the robot's frame. Pure. Not for the emergency stop: that only
 /// stops. Rotation on the spot is never stopped: the hull is round, and turning is the way out.
 /// `contact_speed`: the driver means to touch what is ahead, forward and at no more than this
-/// [m/s]; 0: it does not. `approaches`: what comes towards the robot; it stands when that is there.
+/// [m/s]; 0: it does not.
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
               double velocity, double rotation_velocity, double turning = 0.0,
-              double contact_speed = 0.0, const std::vector<Approach>& approaches = {});
+              double contact_speed = 0.0);
 
 }  // namespace saphira::authority
