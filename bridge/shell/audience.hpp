@@ -8,8 +8,8 @@
 
 namespace saphira::bridge {
 
-/// Whether the programs that follow the robot hear what the bridge writes, by what their status
-/// says. Pure: time is given to it, in seconds.
+/// Decides from the status of the services whether they hear what the bridge writes. Pure: time is
+/// given to it, in seconds.
 class Audience {
  public:
   /// [s] Services that do not hear the robot begin anew on the bus themselves after 10 s; a bridge

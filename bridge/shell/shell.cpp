@@ -111,7 +111,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       grant_recall_(node_.writer(bus::topics::kRecallGrant)),
       resets_(node_.reader(bus::topics::kEstopReset)),
       permits_(node_.reader(bus::topics::kStepPermit)),
-      namesakes_(node_),
+      other_programs_(node_),
       link_(transport::parse_address(options_.robot_port)),
       devices_(node_, reflector_),
       arbiter_({options_.lease, options_.quiet}),
@@ -236,7 +236,7 @@ void Shell::tend_link(double now) {
     return;
   }
   if (connection_.state() == reflector::Connection::State::closed) {
-    if (namesakes_.any())
+    if (other_programs_.has_namesake())
       return;
     parser_.reset();
     last_bytes_ = now;
@@ -535,7 +535,7 @@ void Shell::remember() {
 // ---- The bus's side.
 
 void Shell::take_all(double now) {
-  namesakes_.take();
+  other_programs_.take();
   bool driver = false;
   for (Drive& drive : drives_)
     driver = take_drive(drive, now) || driver;
@@ -735,9 +735,9 @@ bool Shell::motors_off() const {
 Shell::Condition Shell::condition(double now) const {
   if (!robot_trouble_.empty())
     return {v1::SERVICE_WAITING, robot_trouble_};
-  if (namesakes_.any())
+  if (other_programs_.has_namesake())
     return {epoch_ != 0 ? v1::SERVICE_DEGRADED : v1::SERVICE_WAITING,
-            "another bridge, " + namesakes_.who() + ", has a robot of this name"};
+            "another bridge, " + other_programs_.namesake() + ", has a robot of this name"};
   if (link_.state() != transport::Link::State::open)
     return {v1::SERVICE_WAITING, "robot link: " + link_.trouble()};
   if (!connection_.open())

@@ -12,7 +12,7 @@
 #include "device_topics.hpp"
 #include "doubts.hpp"
 #include "latch_file.hpp"
-#include "namesakes.hpp"
+#include "other_programs.hpp"
 #include "position_file.hpp"
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/authority/echo_map.hpp"
@@ -117,7 +117,7 @@ class Shell {
   std::vector<Drive> drives_;
   bus::Reader<v1::EstopReset> resets_;
   bus::Reader<v1::StepPermit> permits_;
-  Namesakes namesakes_;
+  OtherPrograms other_programs_;
 
   transport::Link link_;
   protocol::PacketParser parser_;

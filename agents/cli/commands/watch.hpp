@@ -43,9 +43,9 @@ class DeploymentWatch {
  public:
   DeploymentWatch(bus::Node& node, Processes& processes) : node_(node), processes_(processes) {}
 
-  /// Takes in what the processes say, too.
+  /// Polls the processes as well.
   void poll();
-  /// Before a command ends: waits until what was seen is certain.
+  /// For the end of a command: waits until it is certain whether there is a second deployment.
   void settle(const bus::Stop& stop);
 
  private:

@@ -45,7 +45,7 @@ TEST(Age, APeakIsHeldAndFades) {
     EXPECT_LT(now, last);
     last = now;
   }
-  // Half of what is beyond is forgotten in 2.3 s, however much it was.
+  // A peak of any size halves in 2.3 s.
   last = age.hear(10.0);
   for (int i = 0; i < 23; ++i)
     age.hear(0.0);

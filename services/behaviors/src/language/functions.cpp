@@ -142,31 +142,17 @@ const Way& way(Call& call, const double* a) {
 constexpr double kAside = radians(60.0);  ///< no farther from the direction asked for
 constexpr double kMatters = 0.02;         ///< [m] less more room is not worth a turn
 
-/// How far [m] from the nearest of `points` a way of `reach` in `direction` leads past, at most
-/// `most`.
-double passes(const std::vector<Vec2>& points, double direction, double reach, double most) {
-  const double c = std::cos(direction);
-  const double s = std::sin(direction);
-  double away = most;
-  for (const Vec2& p : points) {
-    const double along = c * p.x() + s * p.y();
-    if (along > 0.0 && along < reach)
-      away = std::min(away, std::abs(c * p.y() - s * p.x()));
-  }
-  return away;
-}
-
 /// sfWideWay(direction, radius, reach)
 void wide_way(Call& call, const double* a, double* out) {
   const double radius = a[1] * kMetres;
   const double reach = std::clamp(a[2] * kMetres, 0.0, 10.0);
   const std::vector<Vec2>& points = near(call, reach + radius);
   *out = a[0];
-  double best = passes(points, a[0], reach, radius);
+  double best = clearance(points, a[0], reach, radius);
   for (int i = 1; i <= static_cast<int>(kAside / kStep) && best < radius; ++i)
     for (const double side : {1.0, -1.0}) {
       const double direction = a[0] + side * i * kStep;
-      const double away = passes(points, direction, reach, radius);
+      const double away = clearance(points, direction, reach, radius);
       if (away > best + kMatters) {
         best = away;
         *out = direction;

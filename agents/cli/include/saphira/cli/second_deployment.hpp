@@ -19,7 +19,7 @@ class SecondDeployment {
   /// [s] A program that was killed and started again finds the one before it for less than this.
   static constexpr double kCertain = 2.0;
 
-  /// What is to be told now, if anything. `now` in seconds, by any clock.
+  /// A message for the person, where there is a new one. `now` [s] is the time of any clock.
   std::optional<std::string> news(const std::vector<SeenProcess>& processes, double now);
   /// Whether something was seen that is not certain yet.
   bool doubtful() const { return seen_ != told_; }

@@ -19,9 +19,8 @@ namespace saphira::cli {
 ///
 /// A node that waits for its robot is deaf, or the bridge of that robot is mute:
 /// - deaf after 15 s, where another child hears the robot all the time;
-/// - mute after 20 s, where no child of the robot hears it, though the bridge has its robot; or
-/// where
-///   a child has heard nothing in two lives and waits again;
+/// - mute after 20 s, where no child of the robot hears it, though the bridge has its robot;
+/// - mute also where a child has heard nothing in two lives and waits again;
 /// - deaf after 45 s as well where none hears it: the bridge was started again meanwhile.
 class Watchdog {
  public:

@@ -13,7 +13,7 @@ namespace saphira::bus {
 std::string another(const v1::ServiceStatus& other);
 /// Whether the program has found another one of its name for its robot.
 bool has_namesake(const v1::ServiceStatus& status);
-/// Whether the program waits for what the bridge of its robot writes (robot/...).
+/// Whether the program waits for a sample of its robot (robot/...), which the bridge writes.
 bool waits_for_robot(const v1::ServiceStatus& status);
 
 }  // namespace saphira::bus

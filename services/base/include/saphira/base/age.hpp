@@ -43,7 +43,7 @@ class PeakAge {
   double peak() const { return peak_; }
 
  private:
-  // A cycle: half of a peak is forgotten after 2.3 s.
+  // A cycle: a peak halves in 2.3 s.
   static constexpr double kFading = 0.97;
 
   double peak_ = 0.0;

@@ -1,4 +1,4 @@
-#include "namesakes.hpp"
+#include "other_programs.hpp"
 
 #include "saphira/base/boot_clock.hpp"
 
@@ -12,9 +12,10 @@ bool serves(const v1::ServiceStatus& status) {
 
 }  // namespace
 
-Namesakes::Namesakes(bus::Node& node) : node_(node), statuses_(node.reader(bus::topics::kStatus)) {}
+OtherPrograms::OtherPrograms(bus::Node& node)
+    : node_(node), statuses_(node.reader(bus::topics::kStatus)) {}
 
-void Namesakes::take() {
+void OtherPrograms::take() {
   const double now = BootClock::seconds();
   for (const auto& sample : statuses_.take()) {
     if (sample.data.instance() == node_.status().instance())
@@ -38,12 +39,12 @@ void Namesakes::take() {
 }
 
 // In lockstep the robot waits for the services.
-bool Namesakes::has_robot() const {
+bool OtherPrograms::has_robot() const {
   const v1::ServiceStatus& own = node_.status();
   return serves(own) && own.stamp().cycle() > 0 && !node_.options().lockstep;
 }
 
-void Namesakes::note(const v1::ServiceStatus& other, const bus::SampleInfo& info) {
+void OtherPrograms::note(const v1::ServiceStatus& other, const bus::SampleInfo& info) {
   if (info.disposed || !serves(other)) {
     others_.erase(info.writer);
     return;

@@ -11,16 +11,16 @@ namespace saphira::bridge {
 /// What the status of the other programs means for the bridge. Other bridges that have a robot of
 /// this name: whoever follows that name would obey them and this one. And the services: where none
 /// of them hears this bridge, it begins anew on the bus.
-class Namesakes {
+class OtherPrograms {
  public:
-  explicit Namesakes(bus::Node& node);
+  explicit OtherPrograms(bus::Node& node);
 
   /// Takes in what the programs say of themselves. A new namesake is told to people as an error.
   void take();
 
-  bool any() const { return !others_.empty(); }
+  bool has_namesake() const { return !others_.empty(); }
   /// One of them, in words; only where there is any.
-  const std::string& who() const { return others_.begin()->second; }
+  const std::string& namesake() const { return others_.begin()->second; }
 
  private:
   void note(const v1::ServiceStatus& other, const bus::SampleInfo& info);

@@ -1,4 +1,4 @@
-#include "namesakes.hpp"
+#include "other_programs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,33 +19,33 @@ class NamesakesTest : public testing::Test {
     status.pid(12);
     said_ = node.writer(bus::topics::kStatus);
     said_->write(status);
-    namesakes.take();
+    programs.take();
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Node own{test::memory_options("bridge"), memory};
   bus::Node other{test::memory_options("bridge"), memory};
-  Namesakes namesakes{own};
+  OtherPrograms programs{own};
 
  private:
   std::optional<bus::Writer<v1::ServiceStatus>> said_;
 };
 
 TEST_F(NamesakesTest, AreBridgesThatServe) {
-  EXPECT_FALSE(namesakes.any());
+  EXPECT_FALSE(programs.has_namesake());
   say(other, v1::SERVICE_WAITING);
-  EXPECT_FALSE(namesakes.any()) << "it has no robot";
+  EXPECT_FALSE(programs.has_namesake()) << "it has no robot";
   say(other, v1::SERVICE_RUNNING);
-  ASSERT_TRUE(namesakes.any());
-  EXPECT_EQ(namesakes.who(), "process 12 at the attic");
+  ASSERT_TRUE(programs.has_namesake());
+  EXPECT_EQ(programs.namesake(), "process 12 at the attic");
 }
 
 TEST_F(NamesakesTest, AreNotThisOneAndNoOtherService) {
   say(own, v1::SERVICE_RUNNING);
-  EXPECT_FALSE(namesakes.any());
+  EXPECT_FALSE(programs.has_namesake());
   bus::Node behaviors{test::memory_options("behaviors"), memory};
   say(behaviors, v1::SERVICE_RUNNING);
-  EXPECT_FALSE(namesakes.any());
+  EXPECT_FALSE(programs.has_namesake());
 }
 
 TEST_F(NamesakesTest, AreNoMoreWhenTheirProgramIsGone) {
@@ -54,11 +54,11 @@ TEST_F(NamesakesTest, AreNoMoreWhenTheirProgramIsGone) {
     auto writer = other.writer(bus::topics::kStatus);
     status.state(v1::SERVICE_DEGRADED);
     writer.write(status);
-    namesakes.take();
-    EXPECT_TRUE(namesakes.any());
+    programs.take();
+    EXPECT_TRUE(programs.has_namesake());
   }
-  namesakes.take();
-  EXPECT_FALSE(namesakes.any());
+  programs.take();
+  EXPECT_FALSE(programs.has_namesake());
 }
 
 }  // namespace
