@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <map>
-#include <set>
 #include <utility>
+
+#include "saphira/registration/state.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -80,27 +79,30 @@ class Registration::Self {
         lines_(map_),
         field_(map_, lines_),
         model_(field_, settings_.range),
+        now_(settings_),
         search_(map_, lines_, model_, settings_.search, settings_.match, settings_.reckoning,
-                settings_.drift_error) {}
+                settings_.drift_error, now_.search) {}
   Self(const Self&) = delete;
   Self& operator=(const Self&) = delete;
 
   const Output& step(const Inputs& inputs);
-  const Output& output() const { return output_; }
+  const Output& output() const { return now_.output; }
   const maps::Map& map() const { return map_; }
   const Settings& settings() const { return settings_; }
-  bool on() const { return on_; }
+  bool on() const { return now_.on; }
 
   void place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
              double drift_variance, double confidence);
   void forget();
   void switch_on(bool on);
-  void take_over(const Self& other);
+  const RegistrationState& state() const { return now_; }
+  void set_state(RegistrationState state) { now_ = std::move(state); }
+  void follow_edit(const maps::Map& old);
   Memory save() const;
   void restore(const Memory& memory);
-  const std::set<std::uint32_t>& closed_doors() const { return presence_.closed(); }
+  const std::set<std::uint32_t>& closed_doors() const { return now_.presence.closed(); }
   void recall_closed(std::set<std::uint32_t> doors) {
-    presence_.recall(std::move(doors));
+    now_.presence.recall(std::move(doors));
     forget_looks();
   }
 
@@ -123,118 +125,83 @@ class Registration::Self {
   void find_environment();
   void report();
 
-  struct Done {
-    std::uint32_t percept;
-    std::uint64_t cycle;
-    Pose pose_in_odom;  // of the robot
-    double width;
-    double length;
-  };
-
   Settings settings_;
+
+  // From the map and the settings.
   maps::Map map_;
   LineMap lines_;
   Field field_;
   RangeModel model_;
-  Search search_;
 
-  ParticleCloud cloud_{settings_.cloud};
-  std::map<int, double> weighed_;  // [m] of way when a sonar was weighed last
-  double way_ = 0.0;               // [m] ever
-  double lead_ = 0.0;              // of the cloud before the filter
-  double cloud_score_ = 0.0;
-  bool leads_ = false;  // the cloud, and the filter is set by it
-  double led_ = 0.0;    // [m]
-  double trial_ = settings_.trial / 2.0;
-
-  Presence presence_{settings_.presence};
-  ObjectFinder objects_{settings_.objects};
-
-  bool on_ = true;
-  State state_ = State::unplaced;
-  std::optional<PoseFilter> filter_;
-  std::uint64_t cycle_ = 0;
-  std::optional<std::uint64_t> odom_;
-  Pose pose_in_odom_;
-  Pose moved_;                                          // in this cycle
-  double since_readings_ = 0.0;                         // [m] of way since readings corrected it
-  double turned_ = 0.0;                                 // [rad] ever, either way
-  std::deque<std::pair<std::uint64_t, double>> turns_;  // the same by cycle, of late
-  std::vector<Done> done_;
-  std::set<std::pair<std::uint64_t, int>> used_;  // readings of accepted percepts
-  std::optional<Memory> restored_;
-  Output output_;
+  RegistrationState now_;
+  Search search_;  // works on now_.search
 };
 
 /// What was heard from a pose, or of a map, that did not hold says nothing.
 void Registration::Self::forget_looks() {
-  presence_.recall(presence_.closed());
-  objects_ = ObjectFinder(settings_.objects);
+  now_.presence.recall(now_.presence.closed());
+  now_.objects = ObjectFinder(settings_.objects);
 }
 
 void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
                                double drift_variance, double confidence) {
-  filter_.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
+  now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
-  search_.believe(confidence * settings_.sure);
-  state_ = State::tracking;
-  done_.clear();
-  cloud_.clear();
-  leads_ = false;
+  now_.search.own_score = confidence * settings_.sure;
+  now_.state = State::tracking;
+  now_.done.clear();
+  now_.cloud.clear();
+  now_.leads = false;
   forget_looks();
 }
 
 void Registration::Self::forget() {
-  cloud_.clear();
-  filter_.reset();
+  now_.cloud.clear();
+  now_.filter.reset();
   search_.clear();
-  state_ = State::unplaced;
-  done_.clear();
+  now_.state = State::unplaced;
+  now_.done.clear();
   forget_looks();
 }
 
 void Registration::Self::switch_on(bool on) {
-  on_ = on;
+  now_.on = on;
   if (!on)
-    cloud_.clear();
+    now_.cloud.clear();
 }
 
-void Registration::Self::take_over(const Self& other) {
-  on_ = other.on_;
-  state_ = other.state_;
-  filter_ = other.filter_;
-  cloud_ = other.cloud_;
-  lead_ = other.lead_;
-  cloud_score_ = other.cloud_score_;
-  leads_ = other.leads_;
-  led_ = other.led_;
-  trial_ = other.trial_;
-  way_ = other.way_;
-  weighed_ = other.weighed_;
-  presence_ = other.presence_;
-  objects_ = other.objects_;
-  search_.believe(other.search_.own_score());
-  cycle_ = other.cycle_;
-  odom_ = other.odom_;
-  pose_in_odom_ = other.pose_in_odom_;
-  output_ = other.output_;
-  output_.matches.clear();
-  output_.presence = {};
-  output_.objects.clear();
-  restored_ = other.restored_;
+/// The state is of another version of the map: what names its artifacts is of that one.
+void Registration::Self::follow_edit(const maps::Map& old) {
+  now_.output.matches.clear();
+  now_.output.presence = {};
+  now_.output.objects.clear();
+  if (now_.output.environment) {
+    const maps::Feature& before = old.features[*now_.output.environment];
+    const auto same = std::find(map_.features.begin(), map_.features.end(), before);
+    now_.output.environment.reset();
+    if (same != map_.features.end())
+      now_.output.environment = static_cast<std::size_t>(same - map_.features.begin());
+  }
   find_environment();
+  // Places that explain what was seen on a map of somewhere else explain nothing here.
+  const bool elsewhere =
+      std::none_of(map_.features.begin(), map_.features.end(), [&](const maps::Feature& feature) {
+        return std::find(old.features.begin(), old.features.end(), feature) != old.features.end();
+      });
+  if (elsewhere)
+    now_.search.hypotheses.clear();
 }
 
 Memory Registration::Self::save() const {
   Memory memory;
-  memory.odom = odom_.value_or(0);
-  memory.pose_in_odom = pose_in_odom_;
-  memory.placed = filter_.has_value() && state_ != State::lost;
-  if (filter_) {
-    memory.pose_in_map = filter_->pose();
-    memory.covariance = filter_->covariance();
-    memory.drift = filter_->drift();
-    memory.confidence = output_.confidence;
+  memory.odom = now_.odom.value_or(0);
+  memory.pose_in_odom = now_.pose_in_odom;
+  memory.placed = now_.filter.has_value() && now_.state != State::lost;
+  if (now_.filter) {
+    memory.pose_in_map = now_.filter->pose();
+    memory.covariance = now_.filter->covariance();
+    memory.drift = now_.filter->drift();
+    memory.confidence = now_.output.confidence;
   }
   return memory;
 }
@@ -244,41 +211,41 @@ void Registration::Self::restore(const Memory& memory) {
     return;
   place(memory.pose_in_map, memory.covariance.topLeftCorner<3, 3>(), memory.drift,
         memory.covariance(3, 3), memory.confidence);
-  filter_->set_covariance(memory.covariance);
-  odom_ = memory.odom;
-  pose_in_odom_ = memory.pose_in_odom;
+  now_.filter->set_covariance(memory.covariance);
+  now_.odom = memory.odom;
+  now_.pose_in_odom = memory.pose_in_odom;
   report();
 }
 
 void Registration::Self::move(const Inputs& inputs) {
-  moved_ = Pose{};
-  if (odom_ && *odom_ == inputs.odom) {
-    moved_ = relative(pose_in_odom_, inputs.pose_in_odom);
-  } else if (odom_) {
+  now_.moved = Pose{};
+  if (now_.odom && *now_.odom == inputs.odom) {
+    now_.moved = relative(now_.pose_in_odom, inputs.pose_in_odom);
+  } else if (now_.odom) {
     // Dead reckoning begins anew: the robot has been switched off, and may have been moved a bit.
-    done_.clear();
-    used_.clear();
+    now_.done.clear();
+    now_.used.clear();
     search_.clear();
-    if (filter_)
-      filter_->widen(0.3, radians(10.0));
-    cloud_.clear();
+    if (now_.filter)
+      now_.filter->widen(0.3, radians(10.0));
+    now_.cloud.clear();
   }
-  odom_ = inputs.odom;
-  pose_in_odom_ = inputs.pose_in_odom;
-  cycle_ = inputs.cycle;
-  turned_ += std::abs(moved_.th);
-  turns_.emplace_back(cycle_, turned_);
-  if (turns_.size() > kTurns)
-    turns_.pop_front();
-  if (filter_)
-    filter_->move(moved_);
-  cloud_.move(moved_);
+  now_.odom = inputs.odom;
+  now_.pose_in_odom = inputs.pose_in_odom;
+  now_.cycle = inputs.cycle;
+  now_.turned += std::abs(now_.moved.th);
+  now_.turns.emplace_back(now_.cycle, now_.turned);
+  if (now_.turns.size() > kTurns)
+    now_.turns.pop_front();
+  if (now_.filter)
+    now_.filter->move(now_.moved);
+  now_.cloud.move(now_.moved);
 }
 
 std::vector<PlacedReading> Registration::Self::place(
     const std::vector<lps::SonarReading>& readings) const {
   std::vector<PlacedReading> placed;
-  const Pose before = compose(pose_in_odom_, relative(moved_, Pose{}));
+  const Pose before = compose(now_.pose_in_odom, relative(now_.moved, Pose{}));
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const auto mount =
         std::find_if(settings_.sonars.begin(), settings_.sonars.end(),
@@ -287,7 +254,8 @@ std::vector<PlacedReading> Registration::Self::place(
       continue;
     // They came one after the other while the robot moved.
     const double part = static_cast<double>(i + 1) / static_cast<double>(readings.size());
-    const Pose at = compose(before, {moved_.x * part, moved_.y * part, moved_.th * part});
+    const Pose at =
+        compose(before, {now_.moved.x * part, now_.moved.y * part, now_.moved.th * part});
     placed.push_back(
         {compose(at, mount->in_robot), readings[i].range, readings[i].echo, readings[i].sonar});
   }
@@ -299,7 +267,7 @@ bool Registration::Self::uses_old_readings(const Percept& percept) const {
     return false;
   const auto old = std::count_if(percept.readings.begin(), percept.readings.end(),
                                  [&](const lps::ReadingId& id) {
-                                   return used_.count({id.cycle, id.sonar}) != 0;
+                                   return now_.used.count({id.cycle, id.sonar}) != 0;
                                  });
   return 2 * static_cast<std::size_t>(old) > percept.readings.size();
 }
@@ -309,9 +277,9 @@ double Registration::Self::turned_since(const Percept& percept) const {
   const std::uint64_t cycle =
       percept.readings.empty() ? percept.seen : percept.readings[percept.readings.size() / 2].cycle;
   const auto at = std::lower_bound(
-      turns_.begin(), turns_.end(), cycle,
+      now_.turns.begin(), now_.turns.end(), cycle,
       [](const std::pair<std::uint64_t, double>& turn, std::uint64_t c) { return turn.first < c; });
-  return at == turns_.end() ? 0.0 : turned_ - at->second;
+  return at == now_.turns.end() ? 0.0 : now_.turned - at->second;
 }
 
 std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
@@ -321,9 +289,10 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
         percept.seen + settings_.fresh < inputs.cycle ||
         turned_since(percept) > settings_.most_turned)
       continue;
-    const auto last = std::find_if(done_.begin(), done_.end(),
-                                   [&](const Done& done) { return done.percept == percept.id; });
-    if (last != done_.end()) {
+    const auto last = std::find_if(
+        now_.done.begin(), now_.done.end(),
+        [&](const RegistrationState::Done& done) { return done.percept == percept.id; });
+    if (last != now_.done.end()) {
       const Pose since = relative(last->pose_in_odom, inputs.pose_in_odom);
       const bool point = percept.type == PointType::door || percept.type == PointType::junction ||
                          percept.type == PointType::breach;
@@ -332,7 +301,7 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
                 : std::hypot(since.x, since.y) < settings_.again &&
                       std::abs(since.th) < settings_.again_turned)
         continue;
-      done_.erase(last);
+      now_.done.erase(last);
     }
     result.push_back(&percept);
   }
@@ -344,44 +313,48 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
 
 void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
   for (const Percept* percept : percepts) {
-    done_.push_back({percept->id, cycle_, pose_in_odom_, percept->width, percept->length});
-    if (!filter_)
+    now_.done.push_back(
+        {percept->id, now_.cycle, now_.pose_in_odom, percept->width, percept->length});
+    if (!now_.filter)
       continue;
     if (percept->type != PointType::door && percept->type != PointType::junction &&
         uses_old_readings(*percept)) {
       Match result;
       result.percept = percept->id;
       result.reason = "its readings have been used";
-      output_.matches.push_back(result);
+      now_.output.matches.push_back(result);
       continue;
     }
-    const Pose before = filter_->pose();
-    const Eigen::Matrix3d covariance_before = filter_->pose_covariance();
-    const Match result = match(*percept, pose_in_odom_, map_, lines_, settings_.match, *filter_);
+    const Pose before = now_.filter->pose();
+    const Eigen::Matrix3d covariance_before = now_.filter->pose_covariance();
+    const Match result =
+        match(*percept, now_.pose_in_odom, map_, lines_, settings_.match, *now_.filter);
     // Walls are drawn through what dead reckoning put together; the cloud has their readings.
-    if (result.accepted && !cloud_.empty() && order(percept->type) >= order(PointType::junction))
-      cloud_.learn(before, covariance_before, filter_->pose(), filter_->pose_covariance());
+    if (result.accepted && !now_.cloud.empty() &&
+        order(percept->type) >= order(PointType::junction))
+      now_.cloud.learn(before, covariance_before, now_.filter->pose(),
+                       now_.filter->pose_covariance());
     if (result.accepted)
       for (const lps::ReadingId& id : percept->readings)
-        used_.insert({id.cycle, id.sonar});
-    output_.matches.push_back(result);
+        now_.used.insert({id.cycle, id.sonar});
+    now_.output.matches.push_back(result);
   }
-  while (used_.size() > kKeptReadings)
-    used_.erase(used_.begin());
-  if (done_.size() > 200)
-    done_.erase(done_.begin(), done_.begin() + 100);
+  while (now_.used.size() > kKeptReadings)
+    now_.used.erase(now_.used.begin());
+  if (now_.done.size() > 200)
+    now_.done.erase(now_.done.begin(), now_.done.begin() + 100);
 }
 
 void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
-  since_readings_ += std::hypot(moved_.x, moved_.y) + 0.3 * std::abs(moved_.th);
-  if (since_readings_ < settings_.search.spacing || !filter_ || leads_)
+  now_.since_readings += std::hypot(now_.moved.x, now_.moved.y) + 0.3 * std::abs(now_.moved.th);
+  if (now_.since_readings < settings_.search.spacing || !now_.filter || now_.leads)
     return;
-  since_readings_ = 0.0;
+  now_.since_readings = 0.0;
   for (const PlacedReading& reading : readings) {
     if (!reading.echo || reading.range > settings_.wall_range)
       continue;
-    const Pose robot = filter_->pose();
-    const Pose sensor = compose(robot, relative(pose_in_odom_, reading.sensor_in_odom));
+    const Pose robot = now_.filter->pose();
+    const Pose sensor = compose(robot, relative(now_.pose_in_odom, reading.sensor_in_odom));
     const Field::Nearest nearest = field_.nearest(sensor.position());
     if (nearest.towards.dot(sensor.direction()) < std::cos(settings_.range.facing))
       continue;
@@ -390,68 +363,69 @@ void Registration::Self::correct(const std::vector<PlacedReading>& readings) {
     jacobian.leftCols<2>() = -nearest.towards.transpose();
     jacobian(0, 2) = -nearest.towards.dot(Vec2(-arm.y(), arm.x()));
     const double spread =
-        std::sqrt((jacobian * filter_->covariance() * jacobian.transpose()).value());
+        std::sqrt((jacobian * now_.filter->covariance() * jacobian.transpose()).value());
     const Eigen::Matrix<double, 1, 1> innovation(reading.range - nearest.distance);
     if (std::abs(innovation.value()) > std::clamp(1.5 * spread, 0.15, 0.3))
       continue;
-    filter_->correct<1>(innovation, jacobian,
-                        Eigen::Matrix<double, 1, 1>(settings_.wall_sigma * settings_.wall_sigma));
+    now_.filter->correct<1>(
+        innovation, jacobian,
+        Eigen::Matrix<double, 1, 1>(settings_.wall_sigma * settings_.wall_sigma));
   }
 }
 
 void Registration::Self::look_around(const std::vector<PlacedReading>& readings) {
-  if (!filter_)
+  if (!now_.filter)
     return;
-  if (cloud_.empty()) {
-    cloud_.begin(filter_->pose(), filter_->pose_covariance(), filter_->drift(),
-                 std::max(settings_.cloud.drift, std::sqrt(filter_->covariance()(3, 3))));
-    lead_ = 0.0;
-    cloud_score_ = search_.own_score();
+  if (now_.cloud.empty()) {
+    now_.cloud.begin(now_.filter->pose(), now_.filter->pose_covariance(), now_.filter->drift(),
+                     std::max(settings_.cloud.drift, std::sqrt(now_.filter->covariance()(3, 3))));
+    now_.lead = 0.0;
+    now_.cloud_score = now_.search.own_score;
     return;
   }
-  const double way = std::hypot(moved_.x, moved_.y);
+  const double way = std::hypot(now_.moved.x, now_.moved.y);
   // Turning on the spot shows the same things again: what the map does not have, as a door that is
   // closed, would weigh more with each turn.
-  way_ += way;
+  now_.way += way;
   const double fading = std::exp(-way / settings_.lead_memory);
-  lead_ *= fading;
-  cloud_score_ *= fading;
+  now_.lead *= fading;
+  now_.cloud_score *= fading;
   const std::vector<PlacedReading> fresh = fresh_ones(readings);
   if (!fresh.empty()) {
-    const Pose middle = cloud_.estimate().pose;
+    const Pose middle = now_.cloud.estimate().pose;
     for (const PlacedReading& reading : fresh) {
-      const Pose in_robot = relative(pose_in_odom_, reading.sensor_in_odom);
+      const Pose in_robot = relative(now_.pose_in_odom, reading.sensor_in_odom);
       const auto worth = [&](const Pose& sensor_in_map) {
         return search_.worth(sensor_in_map, reading.range, reading.echo);
       };
-      cloud_.weigh(in_robot, worth);
+      now_.cloud.weigh(in_robot, worth);
       const double here = worth(compose(middle, in_robot));
-      cloud_score_ += here;
-      lead_ += here - worth(compose(filter_->pose(), in_robot));
+      now_.cloud_score += here;
+      now_.lead += here - worth(compose(now_.filter->pose(), in_robot));
     }
-    cloud_.select();
+    now_.cloud.select();
   }
-  if (!leads_ && std::abs(lead_) <= settings_.lead)
+  if (!now_.leads && std::abs(now_.lead) <= settings_.lead)
     return;  // neither is better
-  const ParticleCloud::Estimate there = cloud_.estimate();
-  if (leads_) {
-    filter_.emplace(there.pose, there.covariance, there.drift, there.drift_variance,
-                    settings_.reckoning);
-    lead_ = 0.0;
-    led_ += way;
-    if (led_ > trial_)
-      leads_ = false;
+  const ParticleCloud::Estimate there = now_.cloud.estimate();
+  if (now_.leads) {
+    now_.filter.emplace(there.pose, there.covariance, there.drift, there.drift_variance,
+                        settings_.reckoning);
+    now_.lead = 0.0;
+    now_.led += way;
+    if (now_.led > now_.trial)
+      now_.leads = false;
     return;
   }
-  const double apart = (there.pose.position() - filter_->pose().position()).norm();
-  const double turned = std::abs(norm2_angle(there.pose.th - filter_->pose().th));
+  const double apart = (there.pose.position() - now_.filter->pose().position()).norm();
+  const double turned = std::abs(norm2_angle(there.pose.th - now_.filter->pose().th));
   if (apart < settings_.lead_apart && turned < settings_.lead_turned)
     return;
-  if (lead_ < -settings_.lead)
-    cloud_.clear();  // and begins anew from the filter
+  if (now_.lead < -settings_.lead)
+    now_.cloud.clear();  // and begins anew from the filter
   // Where the filter has fitted better on the whole, it is what is seen here that the map lacks.
-  else if (lead_ > settings_.lead && cloud_score_ > search_.own_score() && dense(there))
-    follow(there, cloud_score_);
+  else if (now_.lead > settings_.lead && now_.cloud_score > now_.search.own_score && dense(there))
+    follow(there, now_.cloud_score);
 }
 
 bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
@@ -461,17 +435,17 @@ bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
 
 /// Dead reckoning is worse than the filter may take it to be: for some way the cloud leads.
 void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double score) {
-  if ((cloud.pose.position() - filter_->pose().position()).norm() > kNear ||
-      std::abs(norm2_angle(cloud.pose.th - filter_->pose().th)) > kNearTurn)
-    state_ = State::lost;  // said, so that who relies on the pose hears that it did not hold
-  filter_.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
-                  settings_.reckoning);
-  search_.believe(score);
-  done_.clear();
-  leads_ = true;
-  led_ = 0.0;
-  trial_ *= 2.0;
-  lead_ = 0.0;
+  if ((cloud.pose.position() - now_.filter->pose().position()).norm() > kNear ||
+      std::abs(norm2_angle(cloud.pose.th - now_.filter->pose().th)) > kNearTurn)
+    now_.state = State::lost;  // said, so that who relies on the pose hears that it did not hold
+  now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
+                      settings_.reckoning);
+  now_.search.own_score = score;
+  now_.done.clear();
+  now_.leads = true;
+  now_.led = 0.0;
+  now_.trial *= 2.0;
+  now_.lead = 0.0;
 }
 
 /// Those that do not repeat what their sonar heard a moment ago.
@@ -479,10 +453,10 @@ std::vector<PlacedReading> Registration::Self::fresh_ones(
     const std::vector<PlacedReading>& readings) {
   std::vector<PlacedReading> result;
   for (const PlacedReading& reading : readings) {
-    const auto last = weighed_.find(reading.sonar);
-    if (last != weighed_.end() && way_ < last->second + settings_.search.spacing)
+    const auto last = now_.weighed.find(reading.sonar);
+    if (last != now_.weighed.end() && now_.way < last->second + settings_.search.spacing)
       continue;
-    weighed_[reading.sonar] = way_;
+    now_.weighed[reading.sonar] = now_.way;
     result.push_back(reading);
   }
   return result;
@@ -490,17 +464,18 @@ std::vector<PlacedReading> Registration::Self::fresh_ones(
 
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
-  search_.step(pose_in_odom_, readings, percepts, filter_ ? &*filter_ : nullptr);
-  const auto best = search_.best(state_ == State::tracking);
+  search_.step(now_.pose_in_odom, readings, percepts, now_.filter ? &*now_.filter : nullptr);
+  const auto best = search_.best(now_.state == State::tracking);
   if (!best)
     return;
   const Pose there = best->hypothesis->filter.pose();
-  const bool near = filter_ && (there.position() - filter_->pose().position()).norm() < kNear &&
-                    std::abs(norm2_angle(there.th - filter_->pose().th)) < kNearTurn;
-  if (state_ == State::tracking && !near) {
+  const bool near = now_.filter &&
+                    (there.position() - now_.filter->pose().position()).norm() < kNear &&
+                    std::abs(norm2_angle(there.th - now_.filter->pose().th)) < kNearTurn;
+  if (now_.state == State::tracking && !near) {
     // Said before it is mended, so that who relies on the pose hears that it did not hold.
     if (best->likely)
-      state_ = State::lost;
+      now_.state = State::lost;
     return;
   }
   if (!best->sure)
@@ -509,103 +484,105 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
   const double drift_variance = found.covariance()(3, 3);
   place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 1.0);
   // It is the best of many: its own matches have made it surer than it may be.
-  filter_->widen(0.1, radians(3.0));
+  now_.filter->widen(0.1, radians(3.0));
 }
 
 /// What is missed of the map, and what stands where it has nothing.
 void Registration::Self::look_for_news(const Inputs& inputs,
                                        const std::vector<PlacedReading>& readings) {
-  if (state_ != State::tracking || search_.own_score() < settings_.sure ||
-      filter_->sigma_position() > settings_.sure_position)
+  if (now_.state != State::tracking || now_.search.own_score < settings_.sure ||
+      now_.filter->sigma_position() > settings_.sure_position)
     return;
   std::vector<Look> looks;
   for (const PlacedReading& reading : readings)
-    looks.push_back({compose(filter_->pose(), relative(pose_in_odom_, reading.sensor_in_odom)),
-                     reading.range, reading.echo});
+    looks.push_back(
+        {compose(now_.filter->pose(), relative(now_.pose_in_odom, reading.sensor_in_odom)),
+         reading.range, reading.echo});
   std::vector<std::uint32_t> open;
-  for (const Match& match : output_.matches)
+  for (const Match& match : now_.output.matches)
     if (match.accepted &&
         std::any_of(inputs.percepts.begin(), inputs.percepts.end(), [&](const Percept& percept) {
           return percept.id == match.percept && percept.type == PointType::door;
         }))
       open.push_back(match.artifact);
-  output_.presence = presence_.step(map_, cycle_, filter_->pose().position(), looks, open);
+  now_.output.presence =
+      now_.presence.step(map_, now_.cycle, now_.filter->pose().position(), looks, open);
   if (inputs.find_objects)
-    output_.objects = objects_.step(map_, field_, cycle_, looks);
+    now_.output.objects = now_.objects.step(map_, field_, now_.cycle, looks);
 }
 
 const Output& Registration::Self::step(const Inputs& inputs) {
-  output_.matches.clear();
-  output_.presence = {};
-  output_.objects.clear();
+  now_.output.matches.clear();
+  now_.output.presence = {};
+  now_.output.objects.clear();
   move(inputs);
-  if (on_ && !lines_.empty()) {
+  if (now_.on && !lines_.empty()) {
     const std::vector<PlacedReading> readings = place(inputs.readings);
     const std::vector<const Percept*> percepts = fresh(inputs);
     correct(percepts);
     correct(readings);
     look_around(readings);
     look_elsewhere(readings, percepts);
-    if (state_ == State::tracking && search_.own_score() < settings_.lost)
-      state_ = State::lost;
-    else if (state_ == State::lost && search_.own_score() > settings_.again_sure &&
+    if (now_.state == State::tracking && now_.search.own_score < settings_.lost)
+      now_.state = State::lost;
+    else if (now_.state == State::lost && now_.search.own_score > settings_.again_sure &&
              search_.own_is_best())
-      state_ = State::tracking;
+      now_.state = State::tracking;
     look_for_news(inputs, readings);
   }
   report();
-  return output_;
+  return now_.output;
 }
 
 void Registration::Self::find_environment() {
-  const auto before = output_.environment;
-  output_.environment.reset();
-  if (state_ != State::tracking && state_ != State::off)
+  const auto before = now_.output.environment;
+  now_.output.environment.reset();
+  if (now_.state != State::tracking && now_.state != State::off)
     return;
-  if (!filter_)
+  if (!now_.filter)
     return;
   int best = -1;
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& feature = map_.features[i];
     const int r = rank(feature.type);
-    if (r < best || !maps::contains(feature, filter_->pose().position()))
+    if (r < best || !maps::contains(feature, now_.filter->pose().position()))
       continue;
     // Where two of a kind cross, it stays in the one that it is in.
     if (r > best || (before && *before == i)) {
       best = r;
-      output_.environment = i;
+      now_.output.environment = i;
     }
   }
 }
 
 void Registration::Self::report() {
-  output_.state = on_ ? state_ : State::off;
-  if (filter_) {
-    output_.pose_in_map = filter_->pose();
-    output_.covariance = filter_->pose_covariance();
+  now_.output.state = now_.on ? now_.state : State::off;
+  if (now_.filter) {
+    now_.output.pose_in_map = now_.filter->pose();
+    now_.output.covariance = now_.filter->pose_covariance();
   } else {
-    output_.covariance = Eigen::Matrix3d::Identity() * 1e6;
+    now_.output.covariance = Eigen::Matrix3d::Identity() * 1e6;
   }
-  output_.confidence = 0.0;
-  if (!on_) {
-    output_.reason = "switched off: the pose goes on by dead reckoning";
-    output_.confidence = filter_ ? 0.5 : 0.0;
+  now_.output.confidence = 0.0;
+  if (!now_.on) {
+    now_.output.reason = "switched off: the pose goes on by dead reckoning";
+    now_.output.confidence = now_.filter ? 0.5 : 0.0;
   } else if (lines_.empty()) {
-    output_.reason = "the map has no walls";
-  } else if (state_ == State::unplaced) {
-    output_.confidence = 0.0;
-    output_.reason = search_.hypotheses().empty()
-                         ? "looking for where it is: no opening seen yet"
-                         : "looking for where it is: several places would do";
-  } else if (state_ == State::lost) {
-    output_.reason = "the readings do not fit the map at this pose";
+    now_.output.reason = "the map has no walls";
+  } else if (now_.state == State::unplaced) {
+    now_.output.confidence = 0.0;
+    now_.output.reason = now_.search.hypotheses.empty()
+                             ? "looking for where it is: no opening seen yet"
+                             : "looking for where it is: several places would do";
+  } else if (now_.state == State::lost) {
+    now_.output.reason = "the readings do not fit the map at this pose";
   } else {
-    output_.confidence = std::clamp(
-        (search_.own_score() - settings_.lost) / (settings_.sure - settings_.lost), 0.0, 1.0);
-    output_.reason = output_.confidence < 0.5 ? "the readings hardly fit the map"
-                     : filter_->sigma_position() > 0.5
-                         ? "nothing matched for long: by dead reckoning"
-                         : "matched with the map";
+    now_.output.confidence = std::clamp(
+        (now_.search.own_score - settings_.lost) / (settings_.sure - settings_.lost), 0.0, 1.0);
+    now_.output.reason = now_.output.confidence < 0.5 ? "the readings hardly fit the map"
+                         : now_.filter->sigma_position() > 0.5
+                             ? "nothing matched for long: by dead reckoning"
+                             : "matched with the map";
   }
   find_environment();
 }
@@ -629,7 +606,8 @@ const Output& Registration::output() const {
 
 void Registration::set_map(maps::Map map) {
   auto next = std::make_unique<Self>(self_->settings(), std::move(map));
-  next->take_over(*self_);
+  next->set_state(self_->state());
+  next->follow_edit(self_->map());
   self_ = std::move(next);
 }
 
@@ -660,6 +638,14 @@ const std::set<std::uint32_t>& Registration::closed_doors() const {
 
 void Registration::recall_closed(std::set<std::uint32_t> doors) {
   self_->recall_closed(std::move(doors));
+}
+
+const RegistrationState& Registration::state() const {
+  return self_->state();
+}
+
+void Registration::set_state(RegistrationState state) {
+  self_->set_state(std::move(state));
 }
 
 Memory Registration::save() const {

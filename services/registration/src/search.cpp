@@ -32,7 +32,7 @@ Pose inverse(const Pose& pose) {
 
 Search::Search(const maps::Map& map, const LineMap& lines, const RangeModel& model,
                const SearchSettings& settings, const MatchSettings& match_settings,
-               const ReckoningErrors& reckoning, double drift_error)
+               const ReckoningErrors& reckoning, double drift_error, SearchState& state)
     : map_(&map),
       maps_corridors_(std::any_of(
           map.features.begin(), map.features.end(),
@@ -42,15 +42,11 @@ Search::Search(const maps::Map& map, const LineMap& lines, const RangeModel& mod
       settings_(settings),
       match_settings_(match_settings),
       reckoning_(reckoning),
-      drift_error_(drift_error) {}
+      drift_error_(drift_error),
+      now_(state) {}
 
 void Search::clear() {
-  hypotheses_.clear();
-  history_.clear();
-  odom_.reset();
-  travelled_ = 0.0;
-  own_.reset();
-  own_score_ = 0.0;
+  now_ = {};
 }
 
 double Search::worth(const Pose& sensor_in_map, double range, bool echo) const {
@@ -60,44 +56,44 @@ double Search::worth(const Pose& sensor_in_map, double range, bool echo) const {
 }
 
 double Search::weigh(const Pose& pose, const PlacedReading& reading) const {
-  return worth(compose(pose, relative(*odom_, reading.sensor_in_odom)), reading.range,
+  return worth(compose(pose, relative(*now_.odom, reading.sensor_in_odom)), reading.range,
                reading.echo);
 }
 
 void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
                   const std::vector<const lps::Percept*>& fresh, const PoseFilter* own) {
-  own_.reset();
+  now_.own.reset();
   if (own != nullptr)
-    own_ = own->pose();
-  const Pose moved = odom_ ? relative(*odom_, pose_in_odom) : Pose{};
+    now_.own = own->pose();
+  const Pose moved = now_.odom ? relative(*now_.odom, pose_in_odom) : Pose{};
   const double way = std::hypot(moved.x, moved.y);
-  odom_ = pose_in_odom;
-  travelled_ += way + 0.3 * std::abs(moved.th);
+  now_.odom = pose_in_odom;
+  now_.travelled += way + 0.3 * std::abs(moved.th);
   const double fading = std::exp(-way / settings_.memory);
-  for (Hypothesis& h : hypotheses_) {
+  for (Hypothesis& h : now_.hypotheses) {
     h.filter.move(moved);
     h.way += way;
     h.score *= fading;
   }
-  own_score_ *= fading;
+  now_.own_score *= fading;
   // Readings of a robot that stands repeat one event.
-  if (travelled_ >= settings_.spacing) {
-    travelled_ -= settings_.spacing;
+  if (now_.travelled >= settings_.spacing) {
+    now_.travelled -= settings_.spacing;
     for (const PlacedReading& reading : readings) {
-      for (Hypothesis& h : hypotheses_)
+      for (Hypothesis& h : now_.hypotheses)
         h.score += weigh(h.filter.pose(), reading);
-      if (own_)
-        own_score_ += weigh(*own_, reading);
-      history_.push_back(reading);
+      if (now_.own)
+        now_.own_score += weigh(*now_.own, reading);
+      now_.history.push_back(reading);
     }
-    while (history_.size() > settings_.history)
-      history_.pop_front();
-    travelled_ = std::min(travelled_, settings_.spacing);
+    while (now_.history.size() > settings_.history)
+      now_.history.pop_front();
+    now_.travelled = std::min(now_.travelled, settings_.spacing);
   }
   for (const lps::Percept* percept : fresh) {
     const bool opening =
         percept->type == lps::PointType::door || percept->type == lps::PointType::junction;
-    for (Hypothesis& h : hypotheses_) {
+    for (Hypothesis& h : now_.hypotheses) {
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, h.filter);
       h.openings += opening && result.accepted ? 1 : 0;
       h.score += worth(*percept, result, h.filter.pose());
@@ -105,7 +101,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     if (own != nullptr) {
       PoseFilter copy = *own;
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
-      own_score_ += worth(*percept, result, own->pose());
+      now_.own_score += worth(*percept, result, own->pose());
     }
     if (opening)
       propose(*percept);
@@ -124,7 +120,7 @@ double Search::worth(const lps::Percept& percept, const Match& match,
   if (match.accepted)
     return each;
   // A map of walls alone does not say where there is no corridor and no door, but where a wall is.
-  const Pose seen_in_map = compose(robot_in_map, relative(*odom_, percept.pose_in_odom));
+  const Pose seen_in_map = compose(robot_in_map, relative(*now_.odom, percept.pose_in_odom));
   const bool denied = corridor
                           ? maps_corridors_
                           : !lines_->openings().empty() || is_wall(*lines_, seen_in_map.position());
@@ -132,7 +128,7 @@ double Search::worth(const lps::Percept& percept, const Match& match,
 }
 
 void Search::propose(const lps::Percept& percept) {
-  const Pose seen = relative(*odom_, percept.pose_in_odom);
+  const Pose seen = relative(*now_.odom, percept.pose_in_odom);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   const double position = percept.sigma_along * percept.sigma_along +
                           percept.sigma_across * percept.sigma_across + 0.1 * 0.1;
@@ -143,29 +139,29 @@ void Search::propose(const lps::Percept& percept) {
       continue;
     const Pose pose = compose(opening.pose_in_map, inverse(seen));
     const bool there = std::any_of(
-        hypotheses_.begin(), hypotheses_.end(),
+        now_.hypotheses.begin(), now_.hypotheses.end(),
         [&](const Hypothesis& h) { return same_place(h.filter.pose(), pose, 0.4, radians(8.0)); });
     if (there)
       continue;
     Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
                      0.0, 0.0, 1};
     // The newest first: most places need no more than a few.
-    for (auto reading = history_.rbegin(); reading != history_.rend() && fresh.score > -kPoor;
-         ++reading)
+    for (auto reading = now_.history.rbegin();
+         reading != now_.history.rend() && fresh.score > -kPoor; ++reading)
       fresh.score += weigh(pose, *reading);
     if (fresh.score > -kPoor)
-      hypotheses_.push_back(fresh);
+      now_.hypotheses.push_back(fresh);
   }
 }
 
 void Search::thin_out() {
-  if (hypotheses_.empty())
+  if (now_.hypotheses.empty())
     return;
-  std::stable_sort(hypotheses_.begin(), hypotheses_.end(),
+  std::stable_sort(now_.hypotheses.begin(), now_.hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
-  const double least = hypotheses_.front().score - settings_.hopeless;
+  const double least = now_.hypotheses.front().score - settings_.hopeless;
   std::vector<Hypothesis> left;
-  for (Hypothesis& h : hypotheses_) {
+  for (Hypothesis& h : now_.hypotheses) {
     if (left.size() >= settings_.hypotheses)
       break;
     // A young one has not had the time to be as good.
@@ -177,28 +173,28 @@ void Search::thin_out() {
     if (!twice)
       left.push_back(h);
   }
-  hypotheses_ = std::move(left);
+  now_.hypotheses = std::move(left);
 }
 
 bool Search::own_is_best() const {
   const auto other = best(true);
-  return !other || other->hypothesis->score < own_score_;
+  return !other || other->hypothesis->score < now_.own_score;
 }
 
 std::optional<Search::Best> Search::best(bool beside_own) const {
-  const bool own = beside_own && own_;
+  const bool own = beside_own && now_.own;
   const auto elsewhere = [](const Pose& a, const Pose& b) {
     return !same_place(a, b, 0.5, radians(15.0));
   };
-  const auto first = std::find_if(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& h) {
-    return !own || elsewhere(h.filter.pose(), *own_);
-  });
-  if (first == hypotheses_.end())
+  const auto first = std::find_if(
+      now_.hypotheses.begin(), now_.hypotheses.end(),
+      [&](const Hypothesis& h) { return !own || elsewhere(h.filter.pose(), *now_.own); });
+  if (first == now_.hypotheses.end())
     return std::nullopt;
   double second = 0.0;  // nothing in particular
   if (own)
-    second = std::max(second, own_score_);
-  for (const Hypothesis& h : hypotheses_)
+    second = std::max(second, now_.own_score);
+  for (const Hypothesis& h : now_.hypotheses)
     if (elsewhere(h.filter.pose(), first->filter.pose()))
       second = std::max(second, h.score);
   const double margin = first->score - second;

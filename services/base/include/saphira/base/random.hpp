@@ -36,6 +36,8 @@ class Random {
     return mean + deviation * radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
 
+  bool operator==(const Random&) const = default;
+
  private:
   std::uint64_t state_ = 0;
   std::uint64_t increment_;

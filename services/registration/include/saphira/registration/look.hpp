@@ -16,12 +16,15 @@ struct Look {
 
   /// Where the echo came from if it came from the axis.
   Vec2 end() const { return sensor_in_map.position() + range * sensor_in_map.direction(); }
+  bool operator==(const Look&) const = default;
 };
 
 /// How far apart looks must be not to repeat each other: in place or in bearing.
 struct LookSpacing {
   double way = 0.15;            ///< [m]
   double turn = radians(12.0);  ///< [rad]
+
+  bool operator==(const LookSpacing&) const = default;
 };
 
 /// Takes a look from there to the others. False, and not taken, where it repeats one of them.

@@ -40,6 +40,8 @@ struct Match {
   bool accepted = false;
   bool ambiguous = false;   ///< there are several that it could be
   std::string_view reason;  ///< why not
+
+  bool operator==(const Match&) const = default;
 };
 
 /// Matches a percept with what the map has of its kind, by the pose that the filter believes, and

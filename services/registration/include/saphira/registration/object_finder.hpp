@@ -26,6 +26,8 @@ struct ObjectFinderSettings {
   std::size_t kept = 40;          ///< looks at each
   std::size_t candidates = 50;    ///< the most
   std::uint64_t patience = 3000;  ///< [cycles] so long a few echoes wait for more
+
+  bool operator==(const ObjectFinderSettings&) const = default;
 };
 
 /// Things that stand where the map has nothing: what several readings from several places have met,
@@ -39,6 +41,8 @@ class ObjectFinder {
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
 
+  bool operator==(const ObjectFinder&) const = default;
+
  private:
   struct Candidate {
     std::vector<Look> met;
@@ -47,6 +51,8 @@ class ObjectFinder {
     std::uint64_t first = 0;
     std::uint64_t last = 0;
     std::optional<maps::Feature> told;  ///< id 0: not on the map yet
+
+    bool operator==(const Candidate&) const = default;
   };
   void follow_map(const maps::Map& map);
   Candidate* candidate_at(const Vec2& position);

@@ -20,6 +20,8 @@ struct CloudSettings {
 
   double least_position = 0.1;         ///< [m] one sigma at the start, at least...
   double least_turned = radians(4.0);  ///< [rad] ...and of the heading
+
+  bool operator==(const CloudSettings&) const = default;
 };
 
 /// Many poses that the robot could have, near the one that is believed, each with a drift of dead
@@ -58,11 +60,15 @@ class ParticleCloud {
   };
   Estimate estimate() const;
 
+  bool operator==(const ParticleCloud&) const = default;
+
  private:
   struct Particle {
     Pose pose;
     double drift = 0.0;
     double log_weight = 0.0;
+
+    bool operator==(const Particle&) const = default;
   };
   std::vector<double> weights() const;
 

@@ -13,6 +13,8 @@ struct ReckoningErrors {
   double turn = 0.05;                 ///< [rad] after a turn of 1 rad
   double heading = radians(0.5);      ///< [rad] after 1 m
   double drift_walk = radians(0.01);  ///< [rad/m] by which drift itself changes in 1 m
+
+  bool operator==(const ReckoningErrors&) const = default;
 };
 
 /// The robot's pose in the map and the drift of its dead reckoning (a constant turn per metre that
@@ -48,6 +50,8 @@ class PoseFilter {
   void set_pose(const Pose& pose, const Eigen::Matrix3d& covariance);
   /// Less sure of the pose.
   void widen(double position, double heading);
+
+  bool operator==(const PoseFilter&) const = default;
 
  private:
   State state_;

@@ -31,6 +31,8 @@ struct PresenceSettings {
   double slanted = radians(60.0);  ///< [rad] and what is behind it not from more aside
   int door_looks = 3;              ///< that agree: it is closed, or open
   std::uint64_t again = 20;        ///< [cycles] then a look from the same place counts, too
+
+  bool operator==(const PresenceSettings&) const = default;
 };
 
 /// What should be seen and is not (paper 3.2.2), by kind. OBJECTs, which people carry about, are
@@ -46,6 +48,7 @@ class Presence {
     std::vector<std::uint32_t> closed;  ///< doors that have been found closed now...
     std::vector<std::uint32_t> opened;  ///< ...or open
     bool empty() const { return gone.empty() && closed.empty() && opened.empty(); }
+    bool operator==(const News&) const = default;
   };
 
   /// What was heard from where the robot is sure to be; `seen` are the artifacts that percepts of
@@ -61,6 +64,8 @@ class Presence {
     closed_ = std::move(closed);
   }
 
+  bool operator==(const Presence&) const = default;
+
  private:
   struct Watched {
     maps::Feature feature;
@@ -70,6 +75,8 @@ class Presence {
     int score = 0;
     std::uint64_t counted = 0;  ///< cycle
     std::vector<Pose> agreeing;
+
+    bool operator==(const Watched&) const = default;
   };
   Watched& watch(const maps::Feature& feature);
   void look_at(Watched& watched, const Look& look, const maps::Map& map);

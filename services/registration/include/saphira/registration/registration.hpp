@@ -103,6 +103,8 @@ struct Output {
   /// What of the map is gone, closed or open again, and what is new, for whoever has the map.
   Presence::News presence;
   std::vector<maps::Feature> objects;
+
+  bool operator==(const Output&) const = default;
 };
 
 /// What a restart takes over.
@@ -115,6 +117,8 @@ struct Memory {
   double confidence = 0.0;
   bool placed = false;
 };
+
+struct RegistrationState;
 
 /// Where the robot is in the map: test_match_proc and test_environment_proc of manual 6.9.2, and
 /// anchoring of paper 3.2.
@@ -134,7 +138,7 @@ class Registration {
   const Output& step(const Inputs& inputs);
   const Output& output() const;
 
-  /// Another map, or the same one changed. The pose stays.
+  /// Another map, or the same one changed. The state stays.
   void set_map(maps::Map map);
   const maps::Map& map() const;
   /// Somebody says where the robot is.
@@ -147,6 +151,12 @@ class Registration {
   const std::set<std::uint32_t>& closed_doors() const;
   void recall_closed(std::set<std::uint32_t> doors);
 
+  /// All that it has learnt, see state.hpp.
+  const RegistrationState& state() const;
+  /// Goes on from there: `state` is of a Registration with the same map and settings.
+  void set_state(RegistrationState state);
+
+  /// What the service remembers over a restart: much less.
   Memory save() const;
   void restore(const Memory& memory);
 

@@ -20,6 +20,8 @@ struct PlacedReading {
   double range = 0.0;
   bool echo = false;
   int sonar = 0;
+
+  bool operator==(const PlacedReading&) const = default;
 };
 
 struct SearchSettings {
@@ -38,6 +40,27 @@ struct SearchSettings {
   double hopeless = 25.0;        ///< below the best one's score: given up
 };
 
+/// What a search has learnt.
+struct SearchState {
+  /// A place that is followed.
+  struct Hypothesis {
+    PoseFilter filter;
+    double score = 0.0;
+    double way = 0.0;  ///< [m] followed
+    int openings = 0;
+
+    bool operator==(const Hypothesis&) const = default;
+  };
+  std::vector<Hypothesis> hypotheses;
+  std::deque<PlacedReading> history;
+  std::optional<Pose> odom;
+  double travelled = 0.0;
+  std::optional<Pose> own;
+  double own_score = 0.0;  ///< what the place that is believed has been worth so far
+
+  bool operator==(const SearchState&) const = default;
+};
+
 /// Where in the whole map the robot is: places that would explain an opening that was seen are
 /// followed with a filter each, matched with what is seen afterwards, and weighed by raw readings
 /// (multiple hypothesis localisation, Jensfelt and Kristensen 2001). It costs little, since an
@@ -45,9 +68,12 @@ struct SearchSettings {
 /// a filter of 40000 particles had too few near the truth to survive in a floor of 36 by 28 m.
 class Search {
  public:
+  using Hypothesis = SearchState::Hypothesis;
+
+  /// Works on `state`. That, the map and all that is made of it outlive the search.
   Search(const maps::Map& map, const LineMap& lines, const RangeModel& model,
          const SearchSettings& settings, const MatchSettings& match_settings,
-         const ReckoningErrors& reckoning, double drift_error);
+         const ReckoningErrors& reckoning, double drift_error, SearchState& state);
 
   void clear();
   /// One cycle. `fresh` are the percepts that are to be matched in it; `own` is the place that is
@@ -55,18 +81,8 @@ class Search {
   void step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
             const std::vector<const lps::Percept*>& fresh, const PoseFilter* own);
 
-  struct Hypothesis {
-    PoseFilter filter;
-    double score = 0.0;
-    double way = 0.0;  ///< [m] followed
-    int openings = 0;
-  };
-  const std::vector<Hypothesis>& hypotheses() const { return hypotheses_; }
   /// How much better than anywhere a reading fits where its sonar is, as scores count it.
   double worth(const Pose& sensor_in_map, double range, bool echo) const;
-  /// What the place that is believed has been worth so far.
-  void believe(double score) { own_score_ = score; }
-  double own_score() const { return own_score_; }
   /// Whether no other place is worth more than the one that is believed.
   bool own_is_best() const;
   /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
@@ -94,12 +110,7 @@ class Search {
   MatchSettings match_settings_;
   ReckoningErrors reckoning_;
   double drift_error_;
-  std::vector<Hypothesis> hypotheses_;
-  std::deque<PlacedReading> history_;
-  std::optional<Pose> odom_;
-  double travelled_ = 0.0;
-  std::optional<Pose> own_;
-  double own_score_ = 0.0;
+  SearchState& now_;
 };
 
 }  // namespace saphira::registration

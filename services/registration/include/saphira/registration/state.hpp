@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "saphira/registration/object_finder.hpp"
+#include "saphira/registration/particle_cloud.hpp"
+#include "saphira/registration/presence.hpp"
+#include "saphira/registration/registration.hpp"
+#include "saphira/registration/search.hpp"
+
+namespace saphira::registration {
+
+/// All that a Registration has learnt since its start, and nothing that follows from its map or its
+/// settings. A value: a copy that is put back, or put into another Registration with the same map
+/// and settings, goes on to the last bit as the first one would have.
+///
+/// What a step leaves for a later one belongs here. A map edit keeps this whole, so that no member
+/// can be forgotten.
+struct RegistrationState {
+  /// A percept that has been matched.
+  struct Done {
+    std::uint32_t percept = 0;
+    std::uint64_t cycle = 0;
+    Pose pose_in_odom;  ///< of the robot
+    double width = 0.0;
+    double length = 0.0;
+
+    bool operator==(const Done&) const = default;
+  };
+
+  explicit RegistrationState(const Settings& settings)
+      : trial(settings.trial / 2.0),
+        cloud(settings.cloud),
+        presence(settings.presence),
+        objects(settings.objects) {}
+  bool operator==(const RegistrationState&) const = default;
+
+  bool on = true;
+  State state = State::unplaced;
+  std::optional<PoseFilter> filter;
+
+  // Dead reckoning.
+  std::uint64_t cycle = 0;
+  std::optional<std::uint64_t> odom;
+  Pose pose_in_odom;
+  Pose moved;                                          ///< in the newest cycle
+  double way = 0.0;                                    ///< [m] ever
+  double turned = 0.0;                                 ///< [rad] ever, either way
+  std::deque<std::pair<std::uint64_t, double>> turns;  ///< the same by cycle, of late
+
+  // What has corrected the pose.
+  std::vector<Done> done;
+  std::set<std::pair<std::uint64_t, int>> used;  ///< readings of accepted percepts
+  double since_readings = 0.0;                   ///< [m] of way since readings corrected it
+
+  // The cloud beside the filter.
+  double trial;                   ///< [m] that it leads before the filter is tried again
+  std::map<int, double> weighed;  ///< [m] of way when a sonar was weighed last
+  double lead = 0.0;              ///< of the cloud before the filter
+  double cloud_score = 0.0;
+  bool leads = false;  ///< the cloud, and the filter is set by it
+  double led = 0.0;    ///< [m]
+  ParticleCloud cloud;
+
+  SearchState search;
+  Presence presence;
+  ObjectFinder objects;
+  Output output;  ///< of the newest step
+};
+
+}  // namespace saphira::registration

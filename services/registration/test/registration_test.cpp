@@ -1,0 +1,196 @@
+#include "saphira/registration/registration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "saphira/base/random.hpp"
+#include "saphira/maps/edit.hpp"
+#include "saphira/registration/state.hpp"
+
+namespace saphira::registration {
+namespace {
+
+using lps::PointType;
+
+const maps::Map kMap = maps::parse_map(
+    "CORRIDOR (1) 10000, 0, 0, 20000, 2000\n"
+    "DOOR (2) 3000, 1000, -90, 900\n"
+    "DOOR (3) 6000, 1000, -90, 900\n"
+    "DOOR (4) 9000, -1000, 90, 900\n"
+    "OBJECT (5) 14000, 700, 0, 400, 400\n",
+    "test");
+constexpr int kSonars = 16;
+
+Settings settings() {
+  Settings result;
+  for (int i = 0; i < kSonars; ++i)
+    result.sonars.push_back({i, {0.0, 0.0, norm2_angle(2.0 * kPi * i / kSonars)}});
+  return result;
+}
+
+lps::Percept percept(std::uint32_t id, PointType type, const Pose& pose, std::uint64_t cycle) {
+  lps::Percept result;
+  result.id = id;
+  result.type = type;
+  result.pose_in_odom = pose;
+  result.length = type == PointType::wall ? 1.5 : 0.0;
+  result.width = type == PointType::wall ? 0.0 : 0.9;
+  result.sigma_along = 0.03;
+  result.sigma_across = 0.03;
+  result.sigma_heading = radians(1.0);
+  result.confidence = 1.0;
+  result.seen = cycle;
+  result.readings = {{cycle, static_cast<int>(id % kSonars)}};
+  return result;
+}
+
+/// Drives along the corridor, turns now and then, and hears walls, doors and what is not on the
+/// map.
+class Robot {
+ public:
+  explicit Robot(std::uint64_t seed) : random_(seed) {}
+
+  const Output& step(Registration& registration) {
+    ++cycle_;
+    const double turn = cycle_ % 90 < 12 ? radians(cycle_ % 180 < 90 ? 7.0 : -7.0) : 0.0;
+    const double way = turn == 0.0 ? 0.03 : 0.0;
+    truth_ = compose(truth_, {way, 0.0, turn});
+    if (truth_.x > 17.0 || truth_.x < 2.0)
+      truth_.th = norm2_angle(kPi - truth_.th);
+    truth_.y = std::clamp(truth_.y, -0.5, 0.5);
+    // Dead reckoning errs a little.
+    odom_ = compose(odom_, {way * random_.normal(1.0, 0.05), 0.0, turn + random_.normal(0, 0.002)});
+    readings_.clear();
+    for (int sonar = 0; sonar < kSonars; ++sonar)
+      hear(sonar);
+    percepts_.clear();
+    // Walls and doors are seen some cycles after their readings, from where they were then.
+    if (cycle_ % 5 == 0)
+      see(PointType::wall, {std::round(truth_.x), 1.0, 0.0});
+    for (const double x : {3.0, 6.0})
+      if (std::abs(truth_.x - x) < 0.5 && cycle_ % 3 == 0)
+        see(PointType::door, {x, 1.0, -kPi / 2});
+    return registration.step({cycle_, odom_number_, odom_, percepts_, readings_, true});
+  }
+  /// Dead reckoning begins anew.
+  void restart() { ++odom_number_; }
+
+ private:
+  void hear(int sonar) {
+    const double heading = truth_.th + 2.0 * kPi * sonar / kSonars;
+    const double across = std::sin(heading);
+    const double wall = (across > 0 ? 1.0 - truth_.y : 1.0 + truth_.y) / std::abs(across);
+    lps::SonarReading reading;
+    reading.sonar = sonar;
+    reading.echo = std::abs(across) > 0.95 || random_.chance(0.05);
+    reading.range = reading.echo ? std::min(4.9, wall * random_.normal(1.0, 0.01)) : 5.0;
+    readings_.push_back(reading);
+  }
+  void see(PointType type, const Pose& there) {
+    const Pose seen = compose(odom_, relative(truth_, there));
+    percepts_.push_back(
+        percept(++last_id_, type, seen, cycle_ - std::min<std::uint64_t>(cycle_, 6)));
+    percepts_.back().seen = cycle_;
+  }
+
+  Random random_;
+  std::uint64_t cycle_ = 0;
+  std::uint64_t odom_number_ = 1;
+  std::uint32_t last_id_ = 0;
+  Pose truth_{3.5, 0.0, 0.0};
+  Pose odom_;
+  std::vector<lps::SonarReading> readings_;
+  std::vector<lps::Percept> percepts_;
+};
+
+/// What is matched of a wall whose readings are older than a turn of 60 degrees.
+std::size_t matches_after_a_turn(const std::function<void(Registration&)>& then) {
+  Registration registration(settings(), kMap, Pose{10.0, 0.0, 0.0});
+  Pose odom;
+  std::uint64_t cycle = 0;
+  for (; cycle < 12; ++cycle) {
+    odom.th = radians(5.0) * static_cast<double>(cycle);
+    registration.step({cycle, 1, odom, {}, {}});
+  }
+  then(registration);
+  lps::Percept wall = percept(1, PointType::wall, {0.0, 1.0, 0.0}, 1);
+  wall.seen = cycle;
+  return registration.step({cycle, 1, odom, {wall}, {}}).matches.size();
+}
+
+TEST(Registration, AnEditOfTheMapForgetsNoTurn) {
+  EXPECT_EQ(matches_after_a_turn([](Registration&) {}), 0U);
+  EXPECT_EQ(matches_after_a_turn([](Registration& registration) {
+              maps::Editor editor(registration.map());
+              editor.remove(5);
+              registration.set_map(editor.map());
+            }),
+            0U);
+}
+
+void expect_same(Registration& a, Registration& b, int cycle) {
+  ASSERT_EQ(a.output(), b.output()) << "cycle " << cycle;
+  ASSERT_TRUE(a.state() == b.state()) << "cycle " << cycle;
+}
+
+void expect_no_difference(std::uint64_t seed, std::optional<Pose> start,
+                          const std::function<void(Registration&)>& edit) {
+  Registration a(settings(), kMap, start);
+  Registration b(settings(), kMap, start);
+  Robot robot_a(seed);
+  Robot robot_b(seed);
+  Random random(seed + 100);
+  int searched = 0;
+  for (int i = 0; i < 700; ++i) {
+    if (i == 400) {
+      robot_a.restart();
+      robot_b.restart();
+    }
+    robot_a.step(a);
+    robot_b.step(b);
+    expect_same(a, b, i);
+    searched += a.state().search.hypotheses.empty() ? 0 : 1;
+    if (random.chance(0.2))
+      edit(b);
+  }
+  EXPECT_GT(searched, 0);
+}
+
+TEST(Registration, TheSameMapOnceMoreChangesNothing) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    for (const std::optional<Pose> start :
+         {std::optional<Pose>({3.5, 0.0, 0.0}), std::optional<Pose>()})
+      expect_no_difference(seed, start,
+                           [](Registration& registration) { registration.set_map(kMap); });
+}
+
+TEST(Registration, AStateThatWasSavedAndRestoredGoesOnToTheLastBit) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    expect_no_difference(seed, Pose{3.5, 0.0, 0.0}, [](Registration& registration) {
+      const RegistrationState saved = registration.state();
+      Registration another(settings(), kMap);
+      another.set_state(saved);
+      registration = std::move(another);
+    });
+}
+
+TEST(Registration, OnAMapOfSomewhereElseThePlacesOfTheOldOneAreForgotten) {
+  Registration registration(settings(), kMap);
+  Robot robot(1);
+  for (int i = 0; i < 700 && registration.state().search.hypotheses.empty(); ++i)
+    robot.step(registration);
+  ASSERT_FALSE(registration.state().search.hypotheses.empty());
+  maps::Editor editor(kMap);
+  editor.remove(5);
+  registration.set_map(editor.map());
+  EXPECT_FALSE(registration.state().search.hypotheses.empty());
+  registration.set_map(maps::parse_map("CORRIDOR (1) 0, 5000, 0, 10000, 3000\n", "test"));
+  EXPECT_TRUE(registration.state().search.hypotheses.empty());
+}
+
+}  // namespace
+}  // namespace saphira::registration
