@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "forest_node.hpp"
 #include "saphira/intentions/beliefs.hpp"
@@ -17,24 +21,76 @@ namespace {
 /// Intentions of one goal: of more than these, what has been done is not remembered.
 constexpr std::size_t kMostRemembered = 256;
 
+/// What is remembered of one intention.
+struct SavedNode {
+  std::uint32_t id = 0;
+  std::uint32_t parent = 0;
+  bool is_activity = false;
+  std::optional<std::string> name;  ///< none: after its number
+  std::string schema;
+  Bindings given;
+  bool blocking = true;
+  bool until_satisfied = false;
+  int priority = 0;
+  Ticks timeout = 0;
+  Ticks begun = 0;
+  std::optional<Ticks> suspended_at;
+  unsigned holds = 0;
+  IntentionState state = IntentionState::kInit;
+  GoalCode code = GoalCode::kNone;
+  std::string reason;
+  Value activity;  ///< what Activity::save() gave
+
+  SavedNode() = default;
+  explicit SavedNode(const Value& saved) {
+    Loading in(saved);
+    fields(in, *this);
+  }
+  Value value() const {
+    Saving out;
+    fields(out, *this);
+    return out.value();
+  }
+
+ private:
+  template <class Archive, class Self>
+  static void fields(Archive& archive, Self& self) {
+    archive(self.id, self.parent, self.is_activity, self.name, self.schema, self.given,
+            self.blocking, self.until_satisfied, self.priority, self.timeout, self.begun,
+            self.suspended_at, self.holds, self.state, self.code, self.reason, self.activity);
+  }
+};
+
+/// No time passed for it while it was interrupted.
+Ticks begun_again(const SavedNode& saved, Ticks now) {
+  return saved.begun + (saved.suspended_at ? now - *saved.suspended_at : 0);
+}
+
 }  // namespace
 
 Value Forest::save_one(const Node& node) const {
-  Value::List given;
-  for (const auto& [name, value] : node.given)
-    given.emplace_back(Value::List{Value(name), value});
-  const auto tick = [&](Ticks time) { return Value(static_cast<double>(time)); };
-  const bool named = node.shown.name != "I" + std::to_string(node.shown.id);
-  return Value(Value::List{
-      count(node.shown.id), count(node.shown.parent), Value::truth(node.activity != nullptr),
-      named ? Value(node.shown.name) : Value(), Value(node.shown.schema), Value(std::move(given)),
-      Value::truth(node.shown.blocking), Value::truth(node.until_satisfied),
-      Value(static_cast<double>(node.shown.priority)), Value(static_cast<double>(node.timeout)),
-      tick(node.begun), node.suspended ? tick(node.suspended_at) : Value(),
-      Value(static_cast<double>(node.holds & ~static_cast<unsigned>(Hold::kGoal))),
-      Value(static_cast<double>(static_cast<int>(node.shown.state))),
-      Value(static_cast<double>(static_cast<int>(node.outcome.code))), Value(node.outcome.reason),
-      node.activity != nullptr ? node.activity->save() : Value()});
+  SavedNode saved;
+  saved.id = node.shown.id;
+  saved.parent = node.shown.parent;
+  saved.is_activity = node.activity != nullptr;
+  if (node.shown.name != "I" + std::to_string(node.shown.id))
+    saved.name = node.shown.name;
+  saved.schema = node.shown.schema;
+  saved.given = node.given;
+  saved.blocking = node.shown.blocking;
+  saved.until_satisfied = node.until_satisfied;
+  saved.priority = node.shown.priority;
+  saved.timeout = node.timeout;
+  saved.begun = node.begun;
+  if (node.suspended)
+    saved.suspended_at = node.suspended_at;
+  saved.holds = node.holds & ~static_cast<unsigned>(Hold::kGoal);
+  saved.state = node.shown.state;
+  saved.code = node.outcome.code;
+  saved.reason = node.outcome.reason;
+  if (node.activity != nullptr)
+    saved.activity = node.activity->save();
+  return saved.value();
 }
 
 Value Forest::save(std::uint32_t root) const {
@@ -52,61 +108,39 @@ Value Forest::save(std::uint32_t root) const {
   return Value(std::move(nodes));
 }
 
-Forest::Node& Forest::restore_one(Node& parent, const Value& saved, const World& world) {
-  Saved in(saved);
-  in.any();
-  in.any();
-  const bool is_activity = in.yes();
-  const std::string name = in.text();
-  const std::string schema_name = in.text();
-  Bindings given;
-  for (const Value& one : in.any().list()) {
-    Saved each(one);
-    std::string which = each.text();
-    given.emplace_back(std::move(which), each.any());
-  }
+Forest::Node& Forest::restore_one(Node& parent, const Value& value, const World& world) {
+  SavedNode saved(value);
   Start start;
-  start.schema = schema_name;
-  start.name = name;
-  start.arguments = given;
-  start.blocking = in.yes();
-  start.until_satisfied = in.yes();
-  start.priority = in.whole<int>();
-  start.timeout = in.whole<Ticks>();
-  const Ticks begun = in.whole<Ticks>();
-  const Value suspended = in.any();
-  in.any();  // its holds: when the whole tree is there
-  const auto state = static_cast<IntentionState>(in.whole<int>());
-  Outcome outcome;
-  outcome.code = static_cast<GoalCode>(in.whole<int>());
-  outcome.reason = in.text();
+  start.schema = saved.schema;
+  start.name = saved.name.value_or("");
+  start.arguments = saved.given;
+  start.blocking = saved.blocking;
+  start.until_satisfied = saved.until_satisfied;
+  start.priority = saved.priority;
+  start.timeout = saved.timeout;
 
-  Node& child = add(parent, start.name, schema_name, start.blocking);
-  child.given = std::move(given);
-  if (name.empty())
+  Node& child = add(parent, start.name, saved.schema, start.blocking);
+  child.given = std::move(saved.given);
+  if (!saved.name)
     child.shown.name = "I" + std::to_string(child.shown.id);
-  if (is_activity) {
-    const std::shared_ptr<const Schema> schema = registry_->share(schema_name);
+  if (saved.is_activity) {
+    const std::shared_ptr<const Schema> schema = registry_->share(saved.schema);
     if (!schema)
-      throw ActivityError("there is no activity " + schema_name + " any more");
+      throw ActivityError("there is no activity " + saved.schema + " any more");
     child.activity = instantiate(*schema, child.given, world.robot);
     // One that keeps its children goes on; others begin, and intend again what they need.
-    if (child.activity->keeps_children() && state != IntentionState::kInit)
+    if (child.activity->keeps_children() && saved.state != IntentionState::kInit)
       child.shown.state = IntentionState::kRunning;
-    child.shown.priority = *start.priority;
-  } else if (!finished(state)) {
+    child.shown.priority = saved.priority;
+  } else if (!finished(saved.state)) {
     make_behavior(child, start, world);
   }
-  child.timeout = start.timeout;
-  // No time passed for it while it was interrupted.
-  child.begun = suspended.number() == nullptr
-                    ? begun
-                    : begun + (world.now - static_cast<Ticks>(*suspended.number()));
-  if (finished(state)) {
-    child.shown.state = state;
+  child.timeout = saved.timeout;
+  child.begun = begun_again(saved, world.now);
+  if (finished(saved.state)) {
+    child.shown.state = saved.state;
     child.shown.label = "END";
-    outcome.state = state;
-    child.outcome = std::move(outcome);
+    child.outcome = {saved.state, saved.code, std::move(saved.reason)};
   }
   return child;
 }
@@ -115,23 +149,22 @@ void Forest::restore(std::uint32_t root, const Value& saved, const World& world)
   const Value::List& nodes = saved.list();
   if (nodes.size() < 2)
     throw ActivityError("it was more than can be remembered");
-  std::map<std::uint32_t, std::uint32_t> ids;
-  const auto old_id = [](const Value& one) { return Saved(one).whole<std::uint32_t>(); };
+  std::vector<SavedNode> known;
+  for (std::size_t i = 1; i < nodes.size(); ++i)
+    known.emplace_back(nodes[i]);
+  std::map<std::uint32_t, std::uint32_t> ids{{known[0].id, root}};
   try {
-    ids[old_id(nodes[1])] = root;
-    for (std::size_t i = 2; i < nodes.size(); ++i) {
-      Saved in(nodes[i]);
-      const auto id = in.whole<std::uint32_t>();
-      const auto parent = ids.find(in.whole<std::uint32_t>());
+    for (std::size_t i = 1; i < known.size(); ++i) {
+      const auto parent = ids.find(known[i].parent);
       if (parent == ids.end())
         throw ActivityError("what was remembered is not whole");
-      ids[id] = restore_one(*at(parent->second), nodes[i], world).shown.id;
+      ids[known[i].id] = restore_one(*at(parent->second), nodes[i + 1], world).shown.id;
     }
     // The root last: it is as it was planted when anything before it fails.
-    for (std::size_t i = nodes.size(); i-- > 1;) {
-      Node& node = *at(ids.at(old_id(nodes[i])));
-      if (node.activity != nullptr && !finished(node.shown.state) && !nodes[i].list().back().nil())
-        node.activity->restore(nodes[i].list().back(), ids);
+    for (auto one = known.rbegin(); one != known.rend(); ++one) {
+      Node& node = *at(ids.at(one->id));
+      if (node.activity != nullptr && !finished(node.shown.state) && !one->activity.nil())
+        node.activity->restore(one->activity, ids);
     }
   } catch (...) {
     remove_children(*at(root));
@@ -140,23 +173,11 @@ void Forest::restore(std::uint32_t root, const Value& saved, const World& world)
   Node& top = *at(root);
   if (top.activity->keeps_children())
     top.shown.state = IntentionState::kRunning;
-  Saved first(nodes[1]);
-  for (int i = 0; i < 10; ++i)
-    first.any();
-  top.begun = first.whole<Ticks>();
-  const Value suspended = first.any();
-  if (suspended.number() != nullptr)
-    top.begun += world.now - static_cast<Ticks>(*suspended.number());
-  for (std::size_t i = 1; i < nodes.size(); ++i) {
-    Saved in(nodes[i]);
-    const auto id = in.whole<std::uint32_t>();
-    for (int skipped = 0; skipped < 11; ++skipped)
-      in.any();
-    const auto holds = in.whole<unsigned>();
+  top.begun = begun_again(known[0], world.now);
+  for (const SavedNode& one : known)
     for (const Hold hold : {Hold::kActivity, Hold::kPerson})
-      if ((holds & static_cast<unsigned>(hold)) != 0)
-        interrupt(ids.at(id), hold);
-  }
+      if ((one.holds & static_cast<unsigned>(hold)) != 0)
+        interrupt(ids.at(one.id), hold);
   if (nodes[0].truthy()) {
     control_off_.insert(root);
     beliefs_->set(kBehaviorControl, Value(), top.shown.schema, world.now);

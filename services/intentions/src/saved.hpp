@@ -3,7 +3,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/value.hpp"
@@ -12,39 +15,89 @@
 /// lists.
 namespace saphira::intentions {
 
-inline Value count(std::size_t number) {
-  return Value(static_cast<double>(number));
-}
-
-/// The elements of a list that was saved, one after the other.
-class Saved {
+/// Writes the fields of a record one after the other, as a list. Reading takes the same call, so
+/// that a record names its fields once: see Loading.
+class Saving {
  public:
-  explicit Saved(const Value& list) : list_(list.list()) {}
-  const Value& any() {
+  template <class... T>
+  void operator()(const T&... fields) {
+    (list_.push_back(value_of(fields)), ...);
+  }
+  Value value() { return Value(std::move(list_)); }
+
+ private:
+  static Value value_of(const Value& value) { return value; }
+  static Value value_of(const std::string& text) { return Value(text); }
+  static Value value_of(const Bindings& bindings) {
+    Value::List list;
+    for (const auto& [name, value] : bindings)
+      list.emplace_back(Value::List{Value(name), value});
+    return Value(std::move(list));
+  }
+  static Value value_of(const Value::List& list) { return Value(list); }
+  template <class T>
+  static Value value_of(const std::optional<T>& field) {
+    return field ? value_of(*field) : Value();
+  }
+  static Value value_of(bool yes) { return Value::truth(yes); }
+  template <class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  static Value value_of(T number) { return Value(static_cast<double>(number)); }
+
+  Value::List list_;
+};
+
+/// Reads the fields that Saving has written. ActivityError where they are not there. The list has
+/// to outlive it.
+class Loading {
+ public:
+  explicit Loading(const Value& list) : list_(list.list()) {}
+  template <class... T>
+  void operator()(T&... fields) {
+    (read(next(), fields), ...);
+  }
+
+ private:
+  const Value& next() {
     if (next_ >= list_.size())
       throw ActivityError("what was remembered ends too early");
     return list_[next_++];
   }
-  double number() {
-    const double* const number = any().number();
+  static void read(const Value& value, Value& field) { field = value; }
+  static void read(const Value& value, Value::List& field) { field = value.list(); }
+  static void read(const Value& value, std::string& field) {
+    const std::string* const text = value.text();
+    field = text == nullptr ? std::string() : *text;
+  }
+  static void read(const Value& value, Bindings& field) {
+    for (const Value& one : value.list()) {
+      auto& [name, given] = field.emplace_back();
+      Loading in(one);
+      in(name, given);
+    }
+  }
+  static void read(const Value& value, bool& field) { field = value.truthy(); }
+  static void read(const Value& value, double& field) {
+    const double* const number = value.number();
     if (number == nullptr)
       throw ActivityError("what was remembered has no number where there should be one");
-    return *number;
+    field = *number;
   }
   template <class T>
-  T whole() {
-    const double value = number();
-    if (!(std::abs(value) < 9e15))
+  requires std::is_integral_v<T> || std::is_enum_v<T>
+  static void read(const Value& value, T& field) {
+    double number = 0.0;
+    read(value, number);
+    if (!(std::abs(number) < 9e15))
       throw ActivityError("what was remembered has a number that is too large");
-    return static_cast<T>(static_cast<std::int64_t>(value));
+    field = static_cast<T>(static_cast<std::int64_t>(number));
   }
-  std::string text() {
-    const std::string* const text = any().text();
-    return text == nullptr ? std::string() : *text;
+  template <class T>
+  static void read(const Value& value, std::optional<T>& field) {
+    if (!value.nil())
+      read(value, field.emplace());
   }
-  bool yes() { return any().truthy(); }
 
- private:
   const Value::List& list_;
   std::size_t next_ = 0;
 };

@@ -10,14 +10,13 @@ namespace saphira::intentions {
 namespace {
 
 // A whole number of 64 bits is a text: a number of the language does not hold them all.
-Value whole(std::uint64_t number) {
+std::string whole(std::uint64_t number) {
   char text[24];
   std::snprintf(text, sizeof text, "x%llx", static_cast<unsigned long long>(number));
-  return Value(text);
+  return text;
 }
 
-std::uint64_t read_whole(Saved& in) {
-  const std::string text = in.text();
+std::uint64_t read_whole(const std::string& text) {
   std::uint64_t number = 0;
   const char* const end = text.data() + text.size();
   if (text.empty() || text.front() != 'x' ||
@@ -27,26 +26,33 @@ std::uint64_t read_whole(Saved& in) {
   return number;
 }
 
+template <class... T>
+std::string line(const std::string& kind, const T&... fields) {
+  Saving out;
+  out(kind, fields...);
+  return to_text(out.value()) + "\n";
+}
+
 void read_line(const Value& line, Work& work) {
-  Saved in(line);
-  const std::string kind = in.text();
+  Loading in(line);
+  std::string kind;
+  std::string first;
+  std::string second;
+  in(kind);
   if (kind == "at") {
-    work.epoch = read_whole(in);
-    work.cycle = read_whole(in);
-    work.odom = read_whole(in);
-    work.now = in.whole<Ticks>();
+    std::string odom;
+    in(first, second, odom, work.now);
+    work.epoch = read_whole(first);
+    work.cycle = read_whole(second);
+    work.odom = read_whole(odom);
   } else if (kind == "goal") {
     GoalWork& goal = work.goals.emplace_back();
-    goal.id.writer = read_whole(in);
-    goal.id.number = read_whole(in);
-    goal.functor = in.text();
-    goal.intentions = in.any();
+    in(first, second, goal.functor, goal.intentions);
+    goal.id.writer = read_whole(first);
+    goal.id.number = read_whole(second);
   } else if (kind == "belief") {
     Belief& belief = work.beliefs.emplace_back();
-    belief.name = in.text();
-    belief.value = in.any();
-    belief.said_by = in.text();
-    belief.since = in.whole<Ticks>();
+    in(belief.name, belief.value, belief.said_by, belief.since);
   } else {
     throw ActivityError("expected \"at\", \"goal\" or \"belief\"");
   }
@@ -55,19 +61,12 @@ void read_line(const Value& line, Work& work) {
 }  // namespace
 
 std::string write_work(const Work& work) {
-  std::string text =
-      to_text(Value(Value::List{Value("at"), whole(work.epoch), whole(work.cycle), whole(work.odom),
-                                Value(static_cast<double>(work.now))})) +
-      "\n";
+  std::string text = line("at", whole(work.epoch), whole(work.cycle), whole(work.odom), work.now);
   for (const GoalWork& goal : work.goals)
-    text += to_text(Value(Value::List{Value("goal"), whole(goal.id.writer), whole(goal.id.number),
-                                      Value(goal.functor), goal.intentions})) +
-            "\n";
+    text +=
+        line("goal", whole(goal.id.writer), whole(goal.id.number), goal.functor, goal.intentions);
   for (const Belief& belief : work.beliefs)
-    text += to_text(Value(Value::List{Value("belief"), Value(belief.name), belief.value,
-                                      Value(belief.said_by),
-                                      Value(static_cast<double>(belief.since))})) +
-            "\n";
+    text += line("belief", belief.name, belief.value, belief.said_by, belief.since);
   return text;
 }
 

@@ -711,82 +711,68 @@ std::string mark_of(const Program& program) {
   return text;
 }
 
+/// All that is remembered of a thread but its children.
+template <class Archive, class T>
+void fields(Archive& archive, T& thread, Value::List& children) {
+  archive(thread.id, thread.parent, thread.owner, thread.at, thread.waiting, thread.fresh,
+          thread.holds, thread.held_since, thread.over, thread.restores, thread.since, thread.limit,
+          thread.child, thread.threshold, children, thread.failed, thread.code, thread.has_failed);
+}
+
 Value Machine::save() const {
   Value::List threads;
   for (const Thread& thread : threads_) {
     Value::List children;
-    for (const Child& child : thread.children)
-      children.emplace_back(Value::List{count(child.id), Value::truth(child.kept)});
-    threads.emplace_back(Value::List{
-        count(thread.id), count(thread.parent), count(thread.owner), count(thread.at),
-        Value::truth(thread.waiting), Value::truth(thread.fresh),
-        Value(static_cast<double>(thread.holds)), Value(static_cast<double>(thread.held_since)),
-        Value::truth(thread.over), Value::truth(thread.restores),
-        Value(static_cast<double>(thread.since)), Value(static_cast<double>(thread.limit)),
-        count(thread.child), Value(thread.threshold), Value(std::move(children)),
-        Value(thread.failed), Value(static_cast<double>(static_cast<int>(thread.code))),
-        Value::truth(thread.has_failed)});
+    for (const Child& child : thread.children) {
+      Saving out;
+      out(child.id, child.kept);
+      children.push_back(out.value());
+    }
+    Saving out;
+    fields(out, thread, children);
+    threads.push_back(out.value());
   }
-  return Value(Value::List{Value(mark_of(*program_)), Value(locals_), Value(std::move(threads)),
-                           count(last_thread_), Value(static_cast<double>(begun_at_)),
-                           suspended_at_ ? Value(static_cast<double>(*suspended_at_)) : Value(),
-                           Value(outcome_), Value(reason_)});
+  Saving out;
+  out(mark_of(*program_), locals_, threads, last_thread_, begun_at_, suspended_at_, outcome_,
+      reason_);
+  return out.value();
 }
 
 void Machine::restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
-  Saved all(saved);
-  if (all.text() != mark_of(*program_))
+  Machine next(program_, {});
+  std::string mark;
+  Value::List threads;
+  Loading in(saved);
+  in(mark);
+  if (mark != mark_of(*program_))
     throw ActivityError("the schema " + program_->name + " is another than it was");
-  const std::vector<Value> locals = all.any().list();
-  if (locals.size() != locals_.size())
-    throw ActivityError("what was remembered of " + program_->name + " is not whole");
+  in(next.locals_, threads, next.last_thread_, next.begun_at_, next.suspended_at_, next.outcome_,
+     next.reason_);
+  next.threads_.clear();
+  bool whole = next.locals_.size() == locals_.size() && !threads.empty();
   const auto now = [&](std::uint32_t before) -> std::uint32_t {
     const auto found = children.find(before);
     return found == children.end() ? 0 : found->second;
   };
-  std::list<Thread> threads;
-  for (const Value& one : all.any().list()) {
-    Saved in(one);
-    Thread& thread = threads.emplace_back();
-    thread.id = in.whole<std::size_t>();
-    thread.parent = in.whole<std::size_t>();
-    thread.owner = in.whole<std::size_t>();
-    thread.at = in.whole<std::size_t>();
-    thread.waiting = in.yes();
-    thread.fresh = in.yes();
-    thread.holds = in.whole<int>();
-    thread.held_since = in.whole<Ticks>();
-    thread.over = in.yes();
-    thread.restores = in.yes();
-    thread.since = in.whole<Ticks>();
-    thread.limit = in.whole<Ticks>();
-    thread.child = now(in.whole<std::uint32_t>());
-    thread.threshold = in.number();
-    for (const Value& child : in.any().list()) {
-      Saved each(child);
-      const std::uint32_t id = now(each.whole<std::uint32_t>());
-      if (id != 0)
-        thread.children.push_back({id, each.yes()});
+  for (const Value& one : threads) {
+    Thread& thread = next.threads_.emplace_back();
+    Value::List begun;
+    Loading each(one);
+    fields(each, thread, begun);
+    thread.child = now(thread.child);
+    for (const Value& value : begun) {
+      Child child;
+      Loading of_child(value);
+      of_child(child.id, child.kept);
+      child.id = now(child.id);
+      if (child.id != 0)
+        thread.children.push_back(child);
     }
-    thread.failed = in.text();
-    thread.code = static_cast<GoalCode>(in.whole<int>());
-    thread.has_failed = in.yes();
-    if (thread.at >= program_->steps.size())
-      throw ActivityError("what was remembered of " + program_->name + " is not whole");
+    whole = whole && thread.at < program_->steps.size();
   }
-  if (threads.empty())
+  if (!whole)
     throw ActivityError("what was remembered of " + program_->name + " is not whole");
-  const auto last_thread = all.whole<std::size_t>();
-  const Ticks begun_at = all.whole<Ticks>();
-  const Value suspended = all.any();
-  outcome_ = all.text();
-  reason_ = all.text();
-  if (suspended.number() != nullptr)
-    suspended_at_ = static_cast<Ticks>(*suspended.number());
-  locals_ = locals;
-  threads_ = std::move(threads);
-  last_thread_ = last_thread;
-  begun_at_ = begun_at;
+  *this = std::move(next);
 }
 
 }  // namespace
