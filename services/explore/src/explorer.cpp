@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saphira/base/shortest_ways.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::explore {
@@ -132,43 +133,29 @@ std::vector<std::size_t> Explorer::path(const std::vector<Vec2>& way, const Vec2
     return std::any_of(shut_.begin(), shut_.end(),
                        [&](const Vec2& p) { return (p - way[i]).norm() < 0.5; });
   };
-  std::vector<double> cost(n, kNone);
-  std::vector<std::size_t> previous(n, n);
-  std::vector<bool> done(n, false);
-  cost[n - 1] = 0.0;
-  std::size_t best = n;
+  ShortestWays ways(n);
+  ways.reach(n - 1, 0.0);
+  std::optional<std::size_t> best;
   double best_far = kNone;
-  for (;;) {
-    std::size_t next = n;
-    for (std::size_t i = 0; i < n; ++i)
-      if (!done[i] && cost[i] < kNone && (next == n || cost[i] < cost[next]))
-        next = i;
-    if (next == n)
-      break;
-    done[next] = true;
+  while (const auto next = ways.next()) {
     // As near as one gets; what is farther to go must be worth it.
-    const double far = (way[next] - to).norm() + 0.001 * cost[next];
+    const double far = (way[*next] - to).norm() + 0.001 * ways.cost(*next);
     if (far < best_far) {
       best_far = far;
       best = next;
     }
     for (std::size_t i = 0; i < n; ++i) {
-      if (done[i])
-        continue;
-      const double step = (way[i] - way[next]).norm();
-      if (step > kStep || (shut(i) && !shut(next)))
-        continue;
-      if (cost[next] + step < cost[i]) {
-        cost[i] = cost[next] + step;
-        previous[i] = next;
-      }
+      const double step = (way[i] - way[*next]).norm();
+      if (!ways.settled(i) && step <= kStep && (!shut(i) || shut(*next)))
+        ways.reach(i, ways.cost(*next) + step, next);
     }
   }
-  std::vector<std::size_t> out;
-  for (std::size_t i = best; i < n; i = previous[i])
-    out.insert(out.begin(), i);
-  length = best < n ? cost[best] + (way[best] - to).norm() : kNone;
-  return out;
+  if (!best) {
+    length = kNone;
+    return {};
+  }
+  length = ways.cost(*best) + (way[*best] - to).norm();
+  return ways.way_to(*best);
 }
 
 void Explorer::choose(const Inputs& inputs) {

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "saphira/base/shortest_ways.hpp"
 
 namespace saphira::maps {
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
 std::string where(const Vec2& position) {
   const auto mm = [](double metres) { return std::to_string(std::lround(metres * 1000.0)); };
@@ -100,53 +99,43 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     return {route, {}};
   }
 
-  // Dijkstra over links; a link is entered on one of its sides, so each has two states.
+  // Over links; a link is entered on one of its sides, so each has two states.
   const auto& links = topology_.links();
   const std::size_t states = links.size() * 2;
-  std::vector<double> cost(states, kNone);
-  std::vector<std::size_t> previous(states, states);
-  std::vector<bool> done(states, false);
+  ShortestWays ways(states);
   // State 2i: gone through link i into its `a`; 2i + 1: into its `b`.
   const auto entered = [&](std::size_t state) {
     const Link& link = links[state / 2];
     return state % 2 == 0 ? link.a : *link.b;
   };
-  const auto enter = [&](std::size_t region, const Vec2& at, double so_far, std::size_t by) {
+  const auto enter = [&](std::size_t region, const Vec2& at, double so_far,
+                         std::optional<std::size_t> by) {
     for (const std::size_t i : topology_.regions()[region].links) {
-      if (!usable(i) || (by < states && i == by / 2))
+      if (!usable(i) || (by && i == *by / 2))
         continue;
-      const std::size_t state = 2 * i + (links[i].a == region ? 1 : 0);
       const double length = so_far + (links[i].pose_in_map.position() - at).norm() +
                             (settings_.closed.contains(links[i].id) ? settings_.closed_costs : 0.0);
-      if (length < cost[state]) {
-        cost[state] = length;
-        previous[state] = by;
-      }
+      ways.reach(2 * i + (links[i].a == region ? 1 : 0), length, by);
     }
   };
   for (const std::size_t start : starts)
-    enter(start, from, 0.0, states);
+    enter(start, from, 0.0, std::nullopt);
   std::size_t best = states;
-  double best_cost = kNone;
-  for (;;) {
-    std::size_t next = states;
-    for (std::size_t i = 0; i < states; ++i)
-      if (!done[i] && cost[i] < kNone && (next == states || cost[i] < cost[next]))
-        next = i;
-    if (next == states || cost[next] >= best_cost)
+  double best_cost = ShortestWays::kNever;
+  while (const auto next = ways.next()) {
+    if (ways.cost(*next) >= best_cost)
       break;
-    done[next] = true;
-    const std::size_t region = entered(next);
-    const Vec2 at = links[next / 2].pose_in_map.position();
+    const std::size_t region = entered(*next);
+    const Vec2 at = links[*next / 2].pose_in_map.position();
     if (wanted(region, to)) {
-      const double whole = cost[next] + (to.point ? (*to.point - at).norm() : 0.0);
+      const double whole = ways.cost(*next) + (to.point ? (*to.point - at).norm() : 0.0);
       if (whole < best_cost) {
         best_cost = whole;
-        best = next;
+        best = *next;
       }
       continue;
     }
-    enter(region, at, cost[next], next);
+    enter(region, at, ways.cost(*next), *next);
   }
   if (best == states)
     return {std::nullopt,
@@ -155,9 +144,6 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
                 (settings_.blocked.empty() && settings_.blocked_links.empty() ? ""
                                                                               : " and not closed")};
 
-  std::vector<std::size_t> chain;
-  for (std::size_t state = best; state != states; state = previous[state])
-    chain.insert(chain.begin(), state);
   Route route;
   Vec2 at = from;
   std::optional<std::size_t> came_by;
@@ -168,7 +154,7 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     }
     route.legs.push_back(std::move(next));
   };
-  for (const std::size_t state : chain) {
+  for (const std::size_t state : ways.way_to(best)) {
     const std::size_t link = state / 2;
     const std::size_t region = state % 2 == 0 ? *links[link].b : links[link].a;
     add(leg(region, at, came_by, link, std::nullopt));

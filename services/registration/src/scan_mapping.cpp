@@ -4,11 +4,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <optional>
-#include <queue>
 #include <utility>
+
+#include "saphira/base/shortest_ways.hpp"
 
 namespace saphira::registration {
 
@@ -215,47 +215,34 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
 
 std::vector<Eigen::Matrix3d> ScanMapper::covariances(std::size_t from,
                                                      const std::vector<std::size_t>& of) const {
-  struct Known {
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // in the frame of `from`
-    bool reached = false;
-    bool settled = false;
-  };
   const auto doubt = [](const Eigen::Matrix3d& m) { return m(0, 0) + m(1, 1) + 100.0 * m(2, 2); };
-  std::vector<Known> known(poses_.size());
-  using Entry = std::pair<double, std::size_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
-  known[from].reached = true;
-  next.emplace(0.0, from);
+  // In the frame of `from`.
+  std::vector<Eigen::Matrix3d> known(poses_.size(), Eigen::Matrix3d::Zero());
+  ShortestWays ways(poses_.size());
+  ways.reach(from, 0.0);
   std::size_t open = of.size();
   std::vector<char> wanted(poses_.size(), 0);
   for (const std::size_t i : of)
     wanted[i] = 1;
   const double c0 = std::cos(poses_[from].th);
   const double s0 = std::sin(poses_[from].th);
-  while (!next.empty() && open > 0) {
-    const std::size_t i = next.top().second;
-    next.pop();
-    if (known[i].settled)
-      continue;
-    known[i].settled = true;
+  for (auto next = ways.next(); next && open > 0; next = ways.next()) {
+    const std::size_t i = *next;
     if (wanted[i] != 0)
       --open;
     // `step`: its covariance, in the frame of the node `frame`.
     const auto go = [&](std::size_t to, std::size_t frame, const Eigen::Matrix3d& step) {
-      if (known[to].settled)
+      if (ways.settled(to))
         return;
       const double dx = poses_[to].x - poses_[i].x;
       const double dy = poses_[to].y - poses_[i].y;
       Eigen::Matrix3d lever = Eigen::Matrix3d::Identity();
       lever(0, 2) = -(-s0 * dx + c0 * dy);
       lever(1, 2) = c0 * dx + s0 * dy;
-      const Eigen::Matrix3d covariance = lever * known[i].covariance * lever.transpose() +
-                                         turned(step, poses_[from].th - poses_[frame].th);
-      if (known[to].reached && doubt(covariance) >= doubt(known[to].covariance))
-        return;
-      known[to].reached = true;
-      known[to].covariance = covariance;
-      next.emplace(doubt(covariance), to);
+      const Eigen::Matrix3d covariance =
+          lever * known[i] * lever.transpose() + turned(step, poses_[from].th - poses_[frame].th);
+      if (ways.reach(to, doubt(covariance), i))
+        known[to] = covariance;
     };
     if (i > 0)
       go(i - 1, i, steps_[i]);
@@ -269,7 +256,7 @@ std::vector<Eigen::Matrix3d> ScanMapper::covariances(std::size_t from,
   std::vector<Eigen::Matrix3d> out;
   out.reserve(of.size());
   for (const std::size_t i : of)
-    out.push_back(known[i].covariance);
+    out.push_back(known[i]);
   return out;
 }
 
