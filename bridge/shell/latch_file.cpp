@@ -1,12 +1,13 @@
 #include "latch_file.hpp"
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <system_error>
+
+#include "saphira/base/durable.hpp"
 
 namespace saphira::bridge {
 
@@ -30,15 +31,7 @@ std::string LatchFile::write(const authority::Latches& latches) const {
     std::filesystem::remove(path_, error);
     return error ? path_ + ": " + error.message() : "";
   }
-  // Another name first: a kill leaves the old file or the new one.
-  const std::string fresh = path_ + ".new";
-  std::ofstream file(fresh, std::ios::trunc);
-  file << text;
-  file.close();
-  if (!file)
-    return fresh + ": " + std::strerror(errno);
-  std::filesystem::rename(fresh, path_, error);
-  return error ? path_ + ": " + error.message() : "";
+  return replace_file(path_, text) ? "" : path_ + ": " + std::strerror(errno);
 }
 
 }  // namespace saphira::bridge

@@ -65,7 +65,7 @@ TEST(LatchFile, NoDamageReleasesWhatIsLatched) {
 TEST(LatchFile, SaysWhereItCannotBeWritten) {
   EXPECT_EQ(LatchFile("").write({true, "a button", Wait::none}), "");
   const std::string trouble = LatchFile("/nowhere/at/all").write({true, "a button", Wait::none});
-  EXPECT_NE(trouble.find("/nowhere/at/all.new: No such file"), std::string::npos) << trouble;
+  EXPECT_NE(trouble.find("/nowhere/at/all: No such file"), std::string::npos) << trouble;
 }
 
 }  // namespace

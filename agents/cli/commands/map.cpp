@@ -1,13 +1,13 @@
 // The map and where the robot is on it: looked at, drawn, changed, and driven by.
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <set>
 
 #include "commands.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
+#include "saphira/base/durable.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
 #include "saphira/cli/printer.hpp"
@@ -126,8 +126,7 @@ int write_out(const std::string& path, const std::string& text) {
     std::fputs(text.c_str(), stdout);
     return bus::kExitOk;
   }
-  std::ofstream file(path, std::ios::trunc);
-  if (!(file << text) || !file.flush()) {
+  if (!replace_file(path, text, true)) {
     std::cerr << "saphira: " << path << ": cannot be written\n";
     return bus::kExitFailed;
   }

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -42,13 +43,15 @@ class File {
   File& operator=(const File&) = delete;
 
   bool write(std::string_view text) const {
+    if (fd_ < 0)
+      return false;
     while (!text.empty()) {
       const ssize_t n = ::write(fd_, text.data(), text.size());
       if (n < 0)
         return false;
       text.remove_prefix(static_cast<std::size_t>(n));
     }
-    return fd_ >= 0;
+    return true;
   }
   bool sync() const { return ::fsync(fd_) == 0; }
 
@@ -108,14 +111,17 @@ std::string read_or_set_aside(const std::string& path,
 
 bool replace_file(const std::string& path, std::string_view text, bool sync) {
   const std::string fresh = path + ".new";
-  {
+  const auto written = [&] {
     const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
     // The content before the name: else a power cut may leave the name of an empty file.
-    if (!file.write(text) || (sync && !file.sync()))
-      return false;
-  }
-  if (std::rename(fresh.c_str(), path.c_str()) != 0)
+    return file.write(text) && (!sync || file.sync());
+  };
+  if (!written() || std::rename(fresh.c_str(), path.c_str()) != 0) {
+    const int why = errno;
+    ::unlink(fresh.c_str());
+    errno = why;
     return false;
+  }
   if (!sync)
     return true;
   const auto folder = fs::path(path).parent_path();

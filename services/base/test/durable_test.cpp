@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -93,6 +94,12 @@ TEST(Durable, AFileIsReplacedWhole) {
   EXPECT_EQ(read_file(path), "two");
   EXPECT_FALSE(std::filesystem::exists(path + ".new"));
   EXPECT_FALSE(replace_file(folder.path("nowhere/state"), "three"));
+  EXPECT_EQ(errno, ENOENT);
+  // What cannot be replaced leaves nothing beside it.
+  std::filesystem::create_directories(folder.path("full/of"));
+  EXPECT_FALSE(replace_file(folder.path("full"), "four"));
+  EXPECT_EQ(errno, EISDIR);
+  EXPECT_FALSE(std::filesystem::exists(folder.path("full.new")));
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ std::string read_or_set_aside(const std::string& path,
                               const std::function<void(const std::string& content)>& understand);
 
 /// Puts a text in the place of a file: a crash leaves the old one or the new one, whole. `sync`:
-/// also a power cut does, which costs the time of the disk. False where it cannot be written.
+/// also a power cut does, which costs the time of the disk. False where it cannot be written: errno
+/// says why, and the old one is as it was.
 bool replace_file(const std::string& path, std::string_view text, bool sync = false);
 
 }  // namespace saphira
