@@ -39,7 +39,7 @@ class StatusView {
   std::string text() const {
     const auto all = processes_.all();
     if (all.empty())
-      return who_is_there(node_.options(), processes_) + "\n";
+      return who_is_there(node_.options(), processes_) + "\n" + silent_peers();
     std::string text = status_table(all);
     const double age = seconds_since(grant_came_);
     if (!grant_)
@@ -55,12 +55,21 @@ class StatusView {
       text += second + "\n";
     for (const auto& [instance, words] : started_again_)
       text += words + "\n";
-    return text;
+    return text + silent_peers();
   }
 
   bool anybody() const { return !processes_.all().empty(); }
 
  private:
+  std::string silent_peers() const {
+    std::string text;
+    for (const auto& peer : node_.silent_peers())
+      text += "peer " + peer +
+              ": nothing is heard from it; there, `saphira up` needs profile wan and domain " +
+              std::to_string(node_.options().domain) + ", and a network that lets UDP through\n";
+    return text;
+  }
+
   bus::Node& node_;
   Processes processes_;
   bus::Reader<v1::Grant> grants_;

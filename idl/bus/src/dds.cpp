@@ -334,6 +334,7 @@ class DdsTransport : public Transport {
     return bus_->session().discovery.take_malformed();
   }
   void watch_endpoints(bool watch) override { bus_->watch(watch); }
+  std::vector<std::string> silent_peers() const override { return bus_->silent_peers(); }
   void renew() override { bus_->renew_soon(); }
 
  private:

@@ -36,15 +36,17 @@ bool is_loopback(const std::string& address) {
 
 }  // namespace
 
-Session::Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers)
-    : discovery(wake, peers, options.profile == Profile::wan ? kProgramsPerPeer : 0) {
+Session::Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers,
+                 const std::shared_ptr<Machines>& machines)
+    : discovery(wake, peers, machines, options.profile == Profile::wan ? kProgramsPerPeer : 0) {
   if (options.domain > kMaxDomain)
     throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
                              std::to_string(kMaxDomain) + "]");
   set_up_library();
   auto* factory = fdds::DomainParticipantFactory::get_instance();
-  participant = factory->create_participant(options.domain, participant_qos(options, mute_),
-                                            &discovery, fdds::StatusMask::none());
+  participant =
+      factory->create_participant(options.domain, participant_qos(options, mute_, machines),
+                                  &discovery, fdds::StatusMask::none());
   if (participant == nullptr)
     throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
                              ": Fast DDS refused the settings");
@@ -77,6 +79,15 @@ void Session::close() {
   fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
+void Session::tell_heard(const std::string& machines) {
+  if (machines == told_heard_)
+    return;
+  fdds::DomainParticipantQos qos = participant->get_qos();
+  qos.user_data() = user_data(machines);
+  if (participant->set_qos(qos) == ReturnCode_t::RETCODE_OK)
+    told_heard_ = machines;
+}
+
 fdds::Topic* Session::topic(const char* name, const char* type) {
   if (auto* description = participant->lookup_topicdescription(name))
     return dynamic_cast<fdds::Topic*>(description);
@@ -87,7 +98,10 @@ Bus::Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wak
     : wake(std::move(the_wake)),
       peers(wake),
       options_(options),
-      session_(std::make_unique<Session>(options, wake, peers)),
+      machines_(options.profile == Profile::wan
+                    ? std::make_shared<Machines>(own_addresses(), peer_addresses(options))
+                    : nullptr),
+      session_(std::make_unique<Session>(options, wake, peers, machines_)),
       presence_(std::make_unique<Presence>(peers, instance)),
       addresses_(own_addresses()) {
   add(*presence_);
@@ -126,11 +140,18 @@ void Bus::renew_soon() {
   renewal_due_ = true;
 }
 
+std::vector<std::string> Bus::silent_peers() const {
+  return machines_ ? machines_->silent(BootClock::now().time_since_epoch())
+                   : std::vector<std::string>{};
+}
+
 void Bus::run() {
   std::unique_lock lock(thread_mutex_);
   while (!ends_) {
     lock.unlock();
     presence_->tick();
+    if (machines_)
+      session_->tell_heard(machines_->heard(BootClock::now().time_since_epoch()));
     note_sleep();
     if (renewal_due_)
       renew();
@@ -161,9 +182,11 @@ void Bus::renew() {
   if (options_.profile != Profile::host && !as_before &&
       (!any || BootClock::now() - due_since_ < kNetworkReturns))
     return;
+  if (machines_)
+    machines_->forget_told();  // by programs that the new session has to find again
   std::unique_ptr<Session> fresh;
   try {
-    fresh = std::make_unique<Session>(options_, wake, peers);
+    fresh = std::make_unique<Session>(options_, wake, peers, machines_);
   } catch (const std::exception& error) {
     write_log(v1::LOG_WARNING, options_.name + ": " + error.what() + "; tried again");
     return;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "dds_discovery.hpp"
+#include "machines.hpp"
 #include "peers.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/node.hpp"
@@ -27,7 +28,8 @@ class Presence;
 /// A participant and what is made of it.
 class Session {
  public:
-  Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers);
+  Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers,
+          const std::shared_ptr<Machines>& machines);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -39,6 +41,9 @@ class Session {
   /// matched_reader_remove against a writer's asynchronous thread).
   void mute() { *mute_ = true; }
 
+  /// Tells the others from which machines this program hears announcements.
+  void tell_heard(const std::string& machines);
+
   Discovery discovery;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;
@@ -47,6 +52,7 @@ class Session {
  private:
   void close();
 
+  std::string told_heard_;
   const std::shared_ptr<std::atomic<bool>> mute_ = std::make_shared<std::atomic<bool>>(false);
 };
 
@@ -82,6 +88,8 @@ class Bus {
   const std::string& robot() const { return options_.robot; }
   /// As after a long sleep.
   void renew_soon();
+  /// Named peers from which nothing was heard lately.
+  std::vector<std::string> silent_peers() const;
 
   const std::shared_ptr<Wake> wake;
   Peers peers;
@@ -94,6 +102,7 @@ class Bus {
   void renew();
 
   const NodeOptions options_;
+  const std::shared_ptr<Machines> machines_;  // wan alone
   mutable std::shared_mutex mutex_;  // exclusive for who changes the session or the endpoints
   std::unique_ptr<Session> session_;
   std::unique_ptr<Presence> presence_;

@@ -56,6 +56,10 @@ std::string field(const std::string& data, const std::string& key) {
   return data.substr(from, data.find(';', from) - from);
 }
 
+std::string to_text(const rtps::GuidPrefix_t& prefix) {
+  return {reinterpret_cast<const char*>(prefix.value), sizeof prefix.value};
+}
+
 /// Who has it, for people.
 std::string name(const EndpointEntry& endpoint) {
   return std::string(endpoint.writer ? "the writer of " : "the reader of ") +
@@ -114,6 +118,8 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
     // Fast DDS may tell that a program was found again before it tells that it was dropped.
     if (--program.discovered <= 0) {
+      if (machines_)
+        machines_->forget(to_text(prefix));
       programs_.erase(prefix);
       std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
     }
@@ -124,6 +130,8 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     const auto& bytes = info.info.m_userData.data_vec();
     const std::string data(bytes.begin(), bytes.end());
     program.host = field(data, "host=");
+    if (machines_)
+      machines_->tell(to_text(prefix), field(data, "hears="));
     const std::string pid = field(data, "pid=");
     std::from_chars(pid.data(), pid.data() + pid.size(), program.pid);
     count_programs_here();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "internal.hpp"
+#include "machines.hpp"
 #include "peers.hpp"
 
 namespace saphira::bus::internal {
@@ -21,8 +22,13 @@ namespace saphira::bus::internal {
 class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// most_here: programs of this machine that others can find [0: any number].
-  Discovery(std::shared_ptr<Wake> wake, const Peers& peers, std::size_t most_here)
-      : wake_(std::move(wake)), peers_(peers), most_here_(most_here) {}
+  /// machines: are told what each program hears, where there are any.
+  Discovery(std::shared_ptr<Wake> wake, const Peers& peers, std::shared_ptr<Machines> machines,
+            std::size_t most_here)
+      : wake_(std::move(wake)),
+        peers_(peers),
+        machines_(std::move(machines)),
+        most_here_(most_here) {}
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
@@ -78,6 +84,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
 
   const std::shared_ptr<Wake> wake_;
   const Peers& peers_;
+  const std::shared_ptr<Machines> machines_;
   const std::size_t most_here_;
   std::atomic<bool> watched_{false};
   mutable std::mutex mutex_;

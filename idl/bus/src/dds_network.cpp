@@ -99,12 +99,28 @@ void set_up_library() {
   static_cast<void>(once);
 }
 
+fdds::UserDataQosPolicy user_data(const std::string& heard) {
+  const std::string text = "host=" + host_name() + ";pid=" + std::to_string(getpid()) + ";" +
+                           (heard.empty() ? "" : "hears=" + heard + ";");
+  fdds::UserDataQosPolicy data;
+  data.setValue(std::vector<rtps::octet>(text.begin(), text.end()));
+  return data;
+}
+
+std::set<std::string> peer_addresses(const NodeOptions& options) {
+  std::set<std::string> addresses;
+  if (options.profile == Profile::wan)
+    for (const auto& peer : options.peers)
+      addresses.insert(rtps::IPLocator::toIPv4string(locator(peer)));
+  return addresses;
+}
+
 fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
-                                           std::shared_ptr<const std::atomic<bool>> mute) {
+                                           std::shared_ptr<const std::atomic<bool>> mute,
+                                           std::shared_ptr<Machines> machines) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
-  const std::string who = "host=" + host_name() + ";pid=" + std::to_string(getpid()) + ";";
-  qos.user_data().setValue(std::vector<rtps::octet>(who.begin(), who.end()));
+  qos.user_data() = user_data("");
 
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   auto& builtin = qos.wire_protocol().builtin;
@@ -124,7 +140,10 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
       }
       break;
   }
+  std::vector<std::uint32_t> ports;
   if (options.profile == Profile::wan) {
+    for (std::uint32_t i = 0; i < kProgramsPerPeer; ++i)
+      ports.push_back(qos.wire_protocol().port.getUnicastPort(options.domain, i));
     builtin.avoid_builtin_multicast = true;
     builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kPeerAnnouncement);
     // A unicast place for discovery, and so no multicast one.
@@ -138,8 +157,8 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
       builtin.initialPeersList.push_back(locator(peer));
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(
-      std::make_shared<SieveDescriptor>(udp, std::move(mute)));
+  qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(
+      udp, std::move(mute), std::move(machines), std::move(ports)));
   return qos;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "machines.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bus::internal {
@@ -29,8 +30,16 @@ std::set<std::string> own_addresses();
 void set_up_library();
 
 /// How a program finds others and by which addresses. std::runtime_error where a peer or the
-/// interface is not to be had. While `mute` is set it sends nothing.
+/// interface is not to be had. While `mute` is set it sends nothing. `machines`: see
+/// SieveDescriptor.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(
-    const NodeOptions& options, std::shared_ptr<const std::atomic<bool>> mute);
+    const NodeOptions& options, std::shared_ptr<const std::atomic<bool>> mute,
+    std::shared_ptr<Machines> machines = nullptr);
+
+/// What a participant tells the others beside its name: where it runs, and which machines it hears.
+eprosima::fastdds::dds::UserDataQosPolicy user_data(const std::string& heard);
+
+/// The addresses of the peers that the options name; std::runtime_error as above.
+std::set<std::string> peer_addresses(const NodeOptions& options);
 
 }  // namespace saphira::bus::internal

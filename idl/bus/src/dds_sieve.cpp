@@ -2,12 +2,16 @@
 
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <fastrtps/utils/IPLocator.h>
 
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <fastdds/rtps/common/LocatorList.hpp>
 #include <mutex>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "log.hpp"
 #include "sieve.hpp"
@@ -17,6 +21,9 @@ namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
 namespace transport = eprosima::fastdds::rtps;
+
+// Between two announcements of a program.
+constexpr std::chrono::milliseconds kOnce{50};
 
 class Sieve : public transport::ChainingTransport {
  public:
@@ -28,7 +35,12 @@ class Sieve : public transport::ChainingTransport {
   bool send(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return *descriptor_.mute || low->send(buffer, size, begin, end, timeout);
+    if (*descriptor_.mute)
+      return true;
+    const bool sent = low->send(buffer, size, begin, end, timeout);
+    if (descriptor_.machines && is_announcement(buffer, size))
+      announce(low, buffer, size, timeout);
+    return sent;
   }
 
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* buffer,
@@ -37,6 +49,9 @@ class Sieve : public transport::ChainingTransport {
     const auto sound = static_cast<std::uint32_t>(sound_length(buffer, size));
     if (sound == 0 || !plausible(buffer, sound))
       return;
+    if (descriptor_.machines && remote.kind == LOCATOR_KIND_UDPv4 && is_announcement(buffer, sound))
+      descriptor_.machines->hear(rtps::IPLocator::toIPv4string(remote),
+                                 BootClock::now().time_since_epoch());
     try {
       next->OnDataReceived(buffer, sound, local, remote);
     } catch (const std::exception& error) {
@@ -45,13 +60,43 @@ class Sieve : public transport::ChainingTransport {
   }
 
  private:
+  /// To the machines that nobody named. Fast DDS sends each announcement several times at once.
+  void announce(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
+                const std::chrono::steady_clock::time_point& timeout) {
+    const auto now = BootClock::now();
+    {
+      const std::scoped_lock lock(mutex_);
+      if (now - announced_ < kOnce)
+        return;
+      announced_ = now;
+    }
+    rtps::LocatorList_t places;
+    for (const std::string& address : descriptor_.machines->others(now.time_since_epoch()))
+      for (const std::uint32_t port : descriptor_.ports) {
+        rtps::Locator_t place;
+        rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, address, port, place);
+        // An assertion of Fast DDS's statistics wants each place to have been opened.
+        if (opened_.emplace(address, port).second)
+          low_level_transport_->OpenOutputChannel(openers_, place);
+        places.push_back(place);
+      }
+    if (places.empty())
+      return;
+    rtps::Locators begin(places.begin());
+    rtps::Locators end(places.end());
+    low->send(buffer, size, &begin, &end, timeout);
+  }
+
   bool plausible(const rtps::octet* buffer, std::uint32_t size) {
     const std::scoped_lock lock(mutex_);
-    return sequences_.plausible(buffer, size);
+    return sequences_.plausible(buffer, size, BootClock::now());
   }
 
   SieveDescriptor descriptor_;
   std::mutex mutex_;  // each port has a thread
+  BootClock::time_point announced_;
+  std::set<std::pair<std::string, std::uint32_t>> opened_;
+  transport::SendResourceList openers_;
   Sequences sequences_;
 };
 

@@ -4,8 +4,12 @@
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
+
+#include "machines.hpp"
 
 namespace saphira::bus::internal {
 
@@ -14,13 +18,20 @@ namespace saphira::bus::internal {
 struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   using Mute = std::shared_ptr<const std::atomic<bool>>;
 
-  /// While `mute` is set nothing is sent.
+  /// While `mute` is set nothing is sent. Where there are `machines`, they hear from where
+  /// announcements come, and the program announces itself to them, at each of these ports.
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
-                  Mute the_mute)
-      : ChainingTransportDescriptor(std::move(low)), mute(std::move(the_mute)) {}
+                  Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
+                  std::vector<std::uint32_t> the_ports = {})
+      : ChainingTransportDescriptor(std::move(low)),
+        mute(std::move(the_mute)),
+        machines(std::move(the_machines)),
+        ports(std::move(the_ports)) {}
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   Mute mute;
+  std::shared_ptr<Machines> machines;
+  std::vector<std::uint32_t> ports;
 };
 
 }  // namespace saphira::bus::internal

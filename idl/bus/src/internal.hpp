@@ -78,6 +78,8 @@ class Transport {
   virtual Malformed take_malformed() { return {}; }
   /// Whether a change of endpoints() wakes the node.
   virtual void watch_endpoints(bool watch) = 0;
+  /// As Node has them.
+  virtual std::vector<std::string> silent_peers() const { return {}; }
   /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
   virtual void renew() {}
 };

@@ -218,6 +218,10 @@ void Node::begin_anew() {
   impl_->transport->renew();
 }
 
+std::vector<std::string> Node::silent_peers() const {
+  return impl_->transport->silent_peers();
+}
+
 const NodeOptions& Node::options() const {
   return impl_->options;
 }

@@ -23,11 +23,12 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
   static const std::map<std::string, Profile> profiles{
       {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
   app.add_option("--profile", options.profile,
-                 "Network: host (this machine alone), lan (multicast), wan (the listed peers)")
+                 "Network: host (this machine alone), lan (multicast), wan (--peer)")
       ->envname("SAPHIRA_PROFILE")
       ->transform(CLI::CheckedTransformer(profiles))
       ->default_str("host");
-  app.add_option("--peer", options.peers, "wan: addresses of the other machines")
+  app.add_option("--peer", options.peers,
+                 "wan: addresses of other machines; one that all of them name is enough")
       ->envname("SAPHIRA_PEERS")
       ->delimiter(',');
   app.add_option("--interface", options.interface, "lan, wan: address of the one interface to use")

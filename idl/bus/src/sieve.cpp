@@ -70,7 +70,22 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size) {
   return size;
 }
 
-bool Sequences::plausible(const std::uint8_t* message, std::size_t size) {
+bool is_announcement(const std::uint8_t* message, std::size_t size) {
+  static constexpr std::uint8_t kParticipantWriter[] = {0x00, 0x01, 0x00, 0xc2};
+  std::size_t next = 0;
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (part.id == kData && part.size >= 20 &&
+        std::memcmp(part.data + 8, kParticipantWriter, 4) == 0)
+      return true;
+  }
+  return false;
+}
+
+bool Sequences::plausible(const std::uint8_t* message, std::size_t size, Time now) {
+  if (now - last_ > kSleep)
+    awake_since_ = now;
+  last_ = now;
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);
@@ -89,27 +104,42 @@ bool Sequences::plausible(const std::uint8_t* message, std::size_t size) {
     if (part.id == kAcknack)
       std::memcpy(key.data() + 16, part.data, 4);
     if ((part.id == kHeartbeat && part.number(8) > part.number(16) + 1) ||
-        !follows(key, part.number(number)) || (part.id == kGap && !follows(key, part.number(16))))
+        !follows(key, part.number(number), now) ||
+        (part.id == kGap && !follows(key, part.number(16), now)))
       return false;
   }
   return true;
 }
 
-bool Sequences::follows(const Key& key, std::uint64_t number) {
+std::uint64_t Sequences::longest_leap(const Known& known, Time now) const {
+  if (now - awake_since_ < kWaking)
+    return kLongestLeap;
+  const double silence = std::chrono::duration<double>(now - known.heard).count();
+  const double leap = static_cast<double>(kLeap) + static_cast<double>(kLeapPerSecond) * silence;
+  return leap < static_cast<double>(kLongestLeap) ? static_cast<std::uint64_t>(leap) : kLongestLeap;
+}
+
+bool Sequences::follows(const Key& key, std::uint64_t number, Time now) {
   if (known_.size() >= kMost)
     known_.clear();
   const auto [found, is_new] = known_.try_emplace(key);
   Known& known = found->second;
-  if (number <= known.newest + (is_new ? kBeginning : kLeap)) {
+  if (number <= known.newest + (is_new ? kBeginning : longest_leap(known, now))) {
+    if (number > known.newest)
+      known.times = 0;
     known.newest = std::max(known.newest, number);
+    known.heard = now;
     return true;
   }
-  const bool again = number + kLeap >= known.doubtful && number <= known.doubtful + kLeap;
+  const bool again =
+      number + kLongestLeap >= known.doubtful && number <= known.doubtful + kLongestLeap;
   known.times = again ? known.times + 1 : 1;
   known.doubtful = number;
   if (known.times < 3)
     return false;
+  known.times = 0;
   known.newest = number;
+  known.heard = now;
   return true;
 }
 

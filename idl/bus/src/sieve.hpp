@@ -1,9 +1,12 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+
+#include "saphira/base/boot_clock.hpp"
 
 namespace saphira::bus::internal {
 
@@ -14,15 +17,31 @@ namespace saphira::bus::internal {
 /// (an assertion) where they are not quite as it writes them, and nobody here reads them.
 std::size_t sound_length(const std::uint8_t* packet, std::size_t size);
 
+/// Whether a sound message says that a participant is there.
+bool is_announcement(const std::uint8_t* message, std::size_t size);
+
 /// The numbers that writers give their samples, and readers acknowledge. Fast DDS believes each:
-/// one that is far too high makes it count up to it for minutes, or deaf to a writer for good.
+/// one that is far too high makes it count up to it for minutes, and a reader deaf to that writer
+/// until the writer has counted so far.
 class Sequences {
  public:
-  /// Whether the numbers in a sound message follow what was said before. One that leaps by more
-  /// than kLeap is believed when it is said three times: somebody may have been away for long.
-  bool plausible(const std::uint8_t* message, std::size_t size);
+  using Time = BootClock::time_point;
 
-  static constexpr std::uint64_t kLeap = 1024;
+  /// Whether the numbers in a sound message follow what was said before. A leap may be as long as
+  /// the silence before it explains. A longer one is believed when it is said three times, and
+  /// nothing that follows in between.
+  bool plausible(const std::uint8_t* message, std::size_t size, Time now);
+
+  /// The leap that needs no silence, and what each second of silence adds: a wrong number costs a
+  /// reader of ten samples a second less than 4 s.
+  static constexpr std::uint64_t kLeap = 16;
+  static constexpr std::uint64_t kLeapPerSecond = 100;
+  /// No silence explains more.
+  static constexpr std::uint64_t kLongestLeap = 1024;
+  /// So long a silence of all is a sleep of this program. What it finds first when it wakes was
+  /// sent when it fell asleep, so for a moment each leap up to the longest is believed.
+  static constexpr std::chrono::milliseconds kSleep{500};
+  static constexpr std::chrono::seconds kWaking{2};
   /// Up to here a writer's first number is believed at once: Fast DDS counts so far in no time.
   static constexpr std::uint64_t kBeginning = 1U << 20U;
 
@@ -31,14 +50,18 @@ class Sequences {
   using Key = std::array<std::uint8_t, 20>;
   struct Known {
     std::uint64_t newest = 0;
+    Time heard;
     std::uint64_t doubtful = 0;
     int times = 0;
   };
 
-  bool follows(const Key& key, std::uint64_t number);
+  bool follows(const Key& key, std::uint64_t number, Time now);
+  std::uint64_t longest_leap(const Known& known, Time now) const;
 
   static constexpr std::size_t kMost = 20000;
   std::map<Key, Known> known_;
+  Time last_;  ///< message of anybody
+  Time awake_since_;
 };
 
 }  // namespace saphira::bus::internal

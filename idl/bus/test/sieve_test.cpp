@@ -73,6 +73,17 @@ TEST(Sieve, WhatDoesNotHoldTogetherIsDropped) {
   EXPECT_EQ(sound(other), 0U);
 }
 
+TEST(Sieve, AnnouncementIsTold) {
+  Bytes bytes = header();
+  add(bytes, 0x09, 8);
+  EXPECT_FALSE(is_announcement(bytes.data(), bytes.size()));
+  add(bytes, 0x15, 40);
+  EXPECT_FALSE(is_announcement(bytes.data(), bytes.size()));
+  bytes[bytes.size() - 40 + 9] = 0x01;
+  bytes[bytes.size() - 40 + 11] = 0xc2;
+  EXPECT_TRUE(is_announcement(bytes.data(), bytes.size()));
+}
+
 /// A heartbeat of the writer 1 of a participant, up to that sample.
 Bytes heartbeat(std::uint8_t participant, std::uint32_t high, std::uint32_t low) {
   Bytes bytes = header();
@@ -86,11 +97,23 @@ Bytes heartbeat(std::uint8_t participant, std::uint32_t high, std::uint32_t low)
   return bytes;
 }
 
+// Some time at which a program has been awake for long.
+const Sequences::Time kAwake = Sequences::Time{} + std::chrono::hours(1);
+
+/// What a program hears until then, so that it is known to be awake.
+void wake(Sequences& sequences) {
+  const Bytes bytes = heartbeat(99, 0, 1);
+  for (auto time = kAwake - std::chrono::seconds(3); time < kAwake;
+       time += std::chrono::milliseconds(100))
+    sequences.plausible(bytes.data(), bytes.size(), time);
+}
+
 TEST(Sequences, LeapIsBelievedWhenItIsSaidThreeTimes) {
   Sequences sequences;
   const auto ask = [&](const Bytes& bytes) {
-    return sequences.plausible(bytes.data(), bytes.size());
+    return sequences.plausible(bytes.data(), bytes.size(), kAwake);
   };
+  wake(sequences);
   EXPECT_TRUE(ask(heartbeat(1, 0, 5000)));  // whoever comes late begins anywhere
   EXPECT_TRUE(ask(heartbeat(1, 0, 5001)));
   EXPECT_TRUE(ask(heartbeat(1, 0, 10)));  // what is sent again is behind
@@ -107,13 +130,48 @@ TEST(Sequences, LeapIsBelievedWhenItIsSaidThreeTimes) {
   EXPECT_TRUE(ask(heartbeat(1, 0, 90003)));
 }
 
+TEST(Sequences, LeapMayBeAsLongAsTheSilenceExplains) {
+  using std::chrono::milliseconds;
+  Sequences sequences;
+  wake(sequences);
+  const auto ask = [&](std::uint8_t participant, std::uint32_t number, milliseconds time) {
+    const Bytes bytes = heartbeat(participant, 0, number);
+    return sequences.plausible(bytes.data(), bytes.size(), kAwake + time);
+  };
+  EXPECT_TRUE(ask(1, 5000, milliseconds(0)));
+  EXPECT_FALSE(ask(1, 5100, milliseconds(100)));
+  EXPECT_FALSE(ask(1, 5900, milliseconds(100)));
+  EXPECT_TRUE(ask(1, 5010, milliseconds(200)));
+  // The writer was not heard for some seconds, while others were.
+  for (auto time = milliseconds(200); time < milliseconds(4000); time += milliseconds(100))
+    EXPECT_TRUE(ask(2, 1, time));
+  EXPECT_FALSE(ask(1, 5910, milliseconds(4000)));
+  EXPECT_TRUE(ask(1, 5050, milliseconds(4000)));
+}
+
+TEST(Sequences, ProgramThatSleptBelievesTheLeapsOfAll) {
+  using std::chrono::milliseconds;
+  Sequences sequences;
+  wake(sequences);
+  const auto ask = [&](std::uint32_t number, milliseconds time) {
+    const Bytes bytes = heartbeat(1, 0, number);
+    return sequences.plausible(bytes.data(), bytes.size(), kAwake + time);
+  };
+  EXPECT_TRUE(ask(5000, milliseconds(0)));
+  // What was sent before the sockets were full comes first, and at once behind it what is sent now.
+  EXPECT_TRUE(ask(5001, milliseconds(30000)));
+  EXPECT_TRUE(ask(5002, milliseconds(30000)));
+  EXPECT_TRUE(ask(5300, milliseconds(30001)));
+  EXPECT_FALSE(ask(6500, milliseconds(30002)));
+}
+
 TEST(Sequences, HeartbeatThatBeginsBehindItsEndIsRefused) {
   Sequences sequences;
   Bytes bytes = heartbeat(1, 0, 20);
   bytes[24 + 12] = 21;
-  EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size()));  // nothing is left
+  EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size(), kAwake));  // nothing is left
   bytes[24 + 12] = 22;
-  EXPECT_FALSE(sequences.plausible(bytes.data(), bytes.size()));
+  EXPECT_FALSE(sequences.plausible(bytes.data(), bytes.size(), kAwake));
 }
 
 TEST(Sequences, EveryKindOfSubmessageIsRead) {
@@ -121,10 +179,10 @@ TEST(Sequences, EveryKindOfSubmessageIsRead) {
     Sequences sequences;
     Bytes bytes = header();
     add(bytes, static_cast<std::uint8_t>(id), 40);
-    EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size()));
+    EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size(), kAwake));
     const std::size_t number = id == 0x07 ? 16 : id >= 0x15 ? 12 : 8;
     bytes[24 + number] = 1;  // 2^32
-    EXPECT_FALSE(sequences.plausible(bytes.data(), bytes.size())) << id;
+    EXPECT_FALSE(sequences.plausible(bytes.data(), bytes.size(), kAwake)) << id;
   }
 }
 
@@ -134,7 +192,7 @@ TEST(Sequences, ShortSubmessagesAreNotReadBeyondTheirEnd) {
       Sequences sequences;
       Bytes bytes = header();
       add(bytes, static_cast<std::uint8_t>(id), length);
-      EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size()));
+      EXPECT_TRUE(sequences.plausible(bytes.data(), bytes.size(), kAwake));
     }
 }
 

@@ -16,7 +16,7 @@ namespace saphira::bus {
 enum class Profile {
   host,  ///< this machine alone: loopback only
   lan,   ///< multicast discovery on every interface, or the one that is named
-  wan,   ///< no multicast: the listed peers only (one side having the other is enough)
+  wan,   ///< no multicast: the listed peers, and the machines that they hear
 };
 
 struct NodeOptions {
@@ -24,9 +24,10 @@ struct NodeOptions {
   std::string robot = "pioneer";  ///< the partition; "*" to read every robot
   std::uint32_t domain = 0;       ///< DDS domain [0, 232]
   Profile profile = Profile::host;
-  std::vector<std::string> peers;  ///< wan: addresses of the other machines
-  std::string interface;           ///< lan, wan: address of the one interface to use; empty: all
-  bool lockstep = false;           ///< cyclic topics lose nothing and steps wait for their inputs
+  std::vector<std::string>
+      peers;              ///< wan: addresses of other machines; one that all name is enough
+  std::string interface;  ///< lan, wan: address of the one interface to use; empty: all
+  bool lockstep = false;  ///< cyclic topics lose nothing and steps wait for their inputs
 };
 
 class Node;
@@ -87,6 +88,9 @@ class Node {
   /// For a program that others do not hear, or that does not hear them: a new participant and all
   /// endpoints again, soon. Readers and writers stay what they are to the program (README.md).
   void begin_anew();
+
+  /// wan: addresses of named peers from which no program was heard in the last minute.
+  std::vector<std::string> silent_peers() const;
 
   const NodeOptions& options() const;
   /// Random, one a process start: ServiceStatus.instance, and the writer part of goal ids.
