@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "robot_log.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -49,9 +50,13 @@ int log(std::uint64_t count, const bus::NodeOptions& options, const bus::Stop& s
 
 void add_log(CLI::App& app, Chosen& chosen) {
   auto count = std::make_shared<std::uint64_t>(0);
-  CLI::App* command = app.add_subcommand("log", "What the programs have to say");
+  CLI::App* command =
+      app.add_subcommand("log", "What the programs have to say; and tools for logs of robots");
   command->add_option("-n", *count, "end after so many lines");
-  command->callback([count, &chosen] {
+  add_robot_log(*command, chosen);
+  command->callback([count, command, &chosen] {
+    if (!command->get_subcommands().empty())
+      return;
     chosen.run = [count](const bus::NodeOptions& node, const bus::Stop& stop) {
       return log(*count, node, stop);
     };

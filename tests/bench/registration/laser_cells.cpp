@@ -6,6 +6,8 @@
 
 namespace saphira::bench {
 
+using namespace logs;
+
 namespace {
 
 constexpr double kReach = 8.0;        // [m] farther away a beam is wider than a cell
@@ -30,8 +32,7 @@ void count(std::uint16_t& value) {
 
 }  // namespace
 
-LaserCells::LaserCells(const std::vector<registration::Scan>& scans,
-                       const std::vector<Pose>& poses) {
+LaserCells::LaserCells(const std::vector<logs::Scan>& scans, const std::vector<Pose>& poses) {
   if (poses.empty())
     return;
   Vec2 high = low_ = poses.front().position();

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "saphira/logs/scan_matching.hpp"
 #include "saphira/maps/drawing.hpp"
-#include "saphira/registration/scan_matching.hpp"
 
 namespace saphira::bench {
 
@@ -17,7 +17,7 @@ class LaserCells {
 
   /// Scans with known poses. A scan does not say where on the robot its laser is: the beams are
   /// taken to begin at the robot's middle.
-  LaserCells(const std::vector<registration::Scan>& scans, const std::vector<Pose>& poses);
+  LaserCells(const std::vector<logs::Scan>& scans, const std::vector<Pose>& poses);
 
   bool occupied(const Vec2& at) const;
   /// Seen through, and nothing within 0.15 m.

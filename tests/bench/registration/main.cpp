@@ -7,18 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "corridor.hpp"
-#include "data_set.hpp"
-#include "laser_map.hpp"
 #include "percept_report.hpp"
 #include "report.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/logs/data_set.hpp"
+#include "saphira/logs/laser_map.hpp"
+#include "saphira/logs/scan_mapping.hpp"
 #include "saphira/maps/drawing.hpp"
-#include "saphira/registration/scan_mapping.hpp"
+#include "simulated.hpp"
 #include "support/quantile.hpp"
 #include "synthetic.hpp"
 
 using namespace saphira;
 using namespace saphira::bench;
+using namespace saphira::logs;
 using saphira::test::quantile;
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -161,7 +163,7 @@ json measure(const DataSet& set, const std::string& log_folder, Report& report,
     out["corrected_file"] =
         evaluate(set, densify(*set.reference, set.odometry), "the corrected file's scans", report);
 
-  registration::ScanMapper mapper;
+  logs::ScanMapper mapper;
   std::vector<double> step_ms;
   std::vector<StampedPose> live;
   const double start = cpu_seconds();

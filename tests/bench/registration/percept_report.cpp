@@ -8,6 +8,8 @@
 
 namespace saphira::bench {
 
+using namespace logs;
+
 namespace {
 
 using lps::PointType;
@@ -152,17 +154,6 @@ void draw(const PerceptRun& run, const std::optional<maps::Map>& reference, cons
 }
 
 }  // namespace
-
-SonarDrive virtual_drive(const DataSet& set, std::vector<lps::SonarMount> mounts) {
-  SonarDrive drive;
-  drive.ring.mounts = std::move(mounts);
-  drive.times = set.times;
-  drive.poses_in_odom = set.poses_in_odom;
-  drive.at_once = true;
-  for (const registration::Scan& scan : set.scans)
-    drive.readings.push_back(hear(scan, drive.ring));
-  return drive;
-}
 
 PerceptReport report_percepts(const DataSet& set, const std::string& log_folder,
                               const std::vector<StampedPose>& full,

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "data_set.hpp"
 #include "report.hpp"
+#include "saphira/logs/data_set.hpp"
 #include "saphira/maps/drawing.hpp"
 
 namespace saphira::bench {
@@ -19,11 +19,8 @@ struct PerceptReport {
 /// What interpretation makes of virtual sonars, with dead reckoning as it is and `calibrated`,
 /// against the reference for a log of that folder and against the laser; and the two models of a
 /// grid. `full`: where the robot was at the scans.
-PerceptReport report_percepts(const DataSet& set, const std::string& log_folder,
-                              const std::vector<StampedPose>& full,
+PerceptReport report_percepts(const logs::DataSet& set, const std::string& log_folder,
+                              const std::vector<logs::StampedPose>& full,
                               const std::vector<Pose>& calibrated_in_odom, Report& report);
-
-/// What the sonars of a ring would have heard on that drive.
-SonarDrive virtual_drive(const DataSet& set, std::vector<lps::SonarMount> mounts);
 
 }  // namespace saphira::bench

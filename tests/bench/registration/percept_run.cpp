@@ -6,6 +6,8 @@
 
 namespace saphira::bench {
 
+using namespace logs;
+
 namespace {
 
 using lps::PointType;

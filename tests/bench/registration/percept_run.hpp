@@ -7,8 +7,8 @@
 
 #include "laser_cells.hpp"
 #include "perception/score.hpp"
+#include "saphira/logs/sonar_run.hpp"
 #include "saphira/maps/map.hpp"
-#include "sonar_run.hpp"
 
 namespace saphira::bench {
 
@@ -33,12 +33,12 @@ struct PerceptRun {
 };
 
 /// `poses_in_map`: where the robot was at the drive's stamps.
-PerceptRun run_percepts(const SonarDrive& drive, const std::vector<Pose>& poses_in_map,
+PerceptRun run_percepts(const logs::SonarDrive& drive, const std::vector<Pose>& poses_in_map,
                         const std::optional<maps::Map>& reference, const LaserCells& cells);
 
 /// MURIEL's grid and the cone model's, from the same readings at these poses, against the laser's
 /// cells.
-std::array<test::GridScore, 2> run_grids(const SonarDrive& drive,
+std::array<test::GridScore, 2> run_grids(const logs::SonarDrive& drive,
                                          const std::vector<Pose>& poses_in_map,
                                          const std::optional<maps::Map>& reference,
                                          const LaserCells& cells);

@@ -6,21 +6,23 @@
 #include <cmath>
 
 namespace saphira::bench {
+
+using namespace logs;
 namespace {
 
 // A corridor along x with walls at y = 1 and -1; the left one is open from 4.0 to 4.9.
-std::vector<registration::Scan> along_a_corridor(const std::vector<Pose>& poses) {
-  std::vector<registration::Scan> scans;
+std::vector<logs::Scan> along_a_corridor(const std::vector<Pose>& poses) {
+  std::vector<logs::Scan> scans;
   for (const Pose& pose : poses) {
     std::vector<double> ranges;
-    registration::Beams beams;
+    logs::Beams beams;
     for (int i = 0; i <= 180; ++i) {
       const double at = beams.first_angle + i * beams.step;
       const double range = 1.0 / std::max(1e-3, std::abs(std::sin(at)));
       const double x = pose.x + range * std::cos(at);
       ranges.push_back(at > 0.0 && x > 4.0 && x < 4.9 ? 2.5 * range : range);
     }
-    scans.push_back(registration::make_scan(ranges, beams));
+    scans.push_back(logs::make_scan(ranges, beams));
   }
   return scans;
 }

@@ -11,6 +11,8 @@
 
 namespace saphira::bench {
 
+using namespace logs;
+
 namespace {
 
 // Rooms are cut out of the solid, with sides along the axes.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "data_set.hpp"
+#include "saphira/logs/data_set.hpp"
 #include "saphira/sim/world.hpp"
 
 /// Drives whose truth is exact, on floors, with lasers and wheels unlike those of the logs at hand.
@@ -45,10 +45,10 @@ struct Wheels {
 };
 
 /// What a robot logs that drives along the route at 0.5 m/s among `people` who walk about it.
-DataSet drive_synthetic(const std::string& name, const Floor& floor, const LaserKind& laser,
-                        const Wheels& wheels, int people, std::uint64_t seed);
+logs::DataSet drive_synthetic(const std::string& name, const Floor& floor, const LaserKind& laser,
+                              const Wheels& wheels, int people, std::uint64_t seed);
 
 std::vector<std::string> synthetic_names();
-DataSet synthetic_data_set(const std::string& name, std::uint64_t seed);
+logs::DataSet synthetic_data_set(const std::string& name, std::uint64_t seed);
 
 }  // namespace saphira::bench

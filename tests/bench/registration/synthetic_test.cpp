@@ -2,14 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "metrics.hpp"
-#include "saphira/registration/scan_mapping.hpp"
+#include "saphira/logs/metrics.hpp"
+#include "saphira/logs/scan_mapping.hpp"
 
 namespace saphira::bench {
+
+using namespace logs;
 namespace {
 
 double error_of(const DataSet& set) {
-  registration::ScanMapper mapper;
+  logs::ScanMapper mapper;
   for (std::size_t i = 0; i < set.scans.size(); ++i)
     mapper.add(set.poses_in_odom[i], set.scans[i]);
   mapper.refine(2);

@@ -1,0 +1,176 @@
+#include "robot_log.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+
+#include "saphira/base/durable.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/cli/map_words.hpp"
+#include "saphira/logs/log_map.hpp"
+#include "saphira/logs/virtual_sonar.hpp"
+#include "saphira/maps/drawing.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+struct RobotLogOptions {
+  logs::LogFiles files;
+  std::string map;      ///< map: to be written; evaluate: to be localized on
+  std::string drawing;  ///< a picture to be written; empty: none
+  std::vector<double> start;
+  std::string sonars = "pioneer";
+  bool json = false;
+};
+
+logs::DataSet read(const RobotLogOptions& options) {
+  const std::string name = std::filesystem::path(options.files.raw).filename().string();
+  logs::DataSet log = logs::load_data_set(name, options.files);
+  std::fprintf(stderr, "%s: %zu scans, %.0f m by dead reckoning\n", name.c_str(), log.scans.size(),
+               log.odometry.length());
+  for (const std::string& note : log.notes)
+    std::fprintf(stderr, "  %s\n", note.c_str());
+  constexpr std::size_t kShown = 3;
+  for (std::size_t i = 0; i < std::min(log.damaged.size(), kShown); ++i)
+    std::fprintf(stderr, "  %s\n", log.damaged[i].c_str());
+  if (log.damaged.size() > kShown)
+    std::fprintf(stderr, "  and %zu more damaged lines\n", log.damaged.size() - kShown);
+  return log;
+}
+
+logs::LogMap map_log(const logs::DataSet& log, const bus::Stop& stop) {
+  logs::LogMap mapped = logs::map_log(log, [&] { return !stop.requested(); });
+  std::fprintf(stderr, "mapped: %zu walls, %zu loops closed, %zu of %zu scans unmatched\n",
+               mapped.walls.features.size(), mapped.report.loops, mapped.report.unmatched,
+               mapped.report.scans);
+  return mapped;
+}
+
+void write(const std::string& path, const std::string& text) {
+  if (!replace_file(path, text, true))
+    throw std::runtime_error(path + ": cannot be written");
+  std::printf("written to %s\n", path.c_str());
+}
+
+std::vector<Vec2> points(const std::vector<logs::StampedPose>& poses) {
+  constexpr double kSpacing = 0.15;  // [m]
+  std::vector<Vec2> result;
+  for (const logs::StampedPose& at : poses)
+    if (result.empty() || (at.pose.position() - result.back()).norm() > kSpacing)
+      result.push_back(at.pose.position());
+  return result;
+}
+
+int map(const RobotLogOptions& options, const bus::Stop& stop) {
+  const logs::DataSet log = read(options);
+  const logs::LogMap mapped = map_log(log, stop);
+  write(options.map, maps::to_text(mapped.walls));
+  if (options.drawing.empty())
+    return bus::kExitOk;
+  maps::Drawing drawing;
+  drawing.title = log.name;
+  drawing.map = mapped.walls;
+  drawing.trajectories.push_back({"by the laser", points(mapped.poses)});
+  write(options.drawing, maps::to_svg(drawing));
+  return bus::kExitOk;
+}
+
+void tell(const char* what, const logs::Accuracy& accuracy) {
+  if (accuracy.compared < 2)
+    std::printf("%-16s no pose to compare\n", what);
+  else
+    std::printf("%-16s %.3f m off (rms), %.3f m and %.2f degrees per 10 m\n", what, accuracy.ate,
+                accuracy.drift, degrees(accuracy.drift_heading));
+}
+
+int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
+  const logs::DataSet log = read(options);
+  const std::optional<maps::Map> map =
+      options.map.empty() ? std::nullopt : std::optional(maps::load_map(options.map));
+  const logs::LogMap mapped = map_log(log, stop);
+  std::optional<Pose> start;
+  if (!options.start.empty())
+    start = Pose{options.start[0], options.start[1], options.start[2]};
+  else if (!map)
+    start = mapped.poses.front().pose;
+  const logs::LogEvaluation result = logs::evaluate_log(
+      log, mapped, options.sonars == "b21" ? logs::front_of_b21() : logs::pioneer_sonars(),
+      map ? *map : mapped.walls, start);
+  const logs::SonarRun& run = result.run;
+  const auto share = [&](std::size_t steps) {
+    return static_cast<double>(steps) / static_cast<double>(std::max<std::size_t>(1, run.steps));
+  };
+  if (options.json) {
+    std::printf(
+        "{\"scans\": %zu, \"way_m\": %.1f, \"walls\": %zu, \"reckoned_ate_m\": %.4f, \"ate_m\": "
+        "%.4f, \"per_10m_m\": %.4f, \"per_10m_deg\": %.3f, \"tracking\": %.4f, \"lost\": %.4f, "
+        "\"unplaced\": %.4f, \"matches\": %zu}\n",
+        log.scans.size(), log.odometry.length(), mapped.walls.features.size(),
+        result.dead_reckoning.ate, result.localized.ate, result.localized.drift,
+        degrees(result.localized.drift_heading), share(run.tracking), share(run.lost),
+        share(run.unplaced), run.accepted);
+    return bus::kExitOk;
+  }
+  std::printf("against where the laser says that the robot was:\n");
+  tell("dead reckoning", result.dead_reckoning);
+  tell("by sonars", result.localized);
+  std::printf("%-16s %.1f %% of the steps, lost %.1f %%, without a pose %.1f %%; %zu matches\n",
+              "tracking", 100.0 * share(run.tracking), 100.0 * share(run.lost),
+              100.0 * share(run.unplaced), run.accepted);
+  return bus::kExitOk;
+}
+
+using Command = int (*)(const RobotLogOptions&, const bus::Stop&);
+
+CLI::App* add(CLI::App& log, Chosen& chosen, const char* name, const char* what, Command run,
+              const std::shared_ptr<RobotLogOptions>& options) {
+  CLI::App* command = log.add_subcommand(name, what);
+  command->fallthrough();
+  command->add_option("log", options->files.raw, "the log in CARMEN's format, packed (.gz) or not")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->callback([options, run, &chosen] {
+    chosen.run = [options, run](const bus::NodeOptions&, const bus::Stop& stop) -> int {
+      try {
+        return run(*options, stop);
+      } catch (const std::runtime_error& error) {
+        std::cerr << "saphira: " << error.what() << '\n';
+        return bus::kExitUsage;
+      }
+    };
+  });
+  return command;
+}
+
+}  // namespace
+
+void add_robot_log(CLI::App& log, Chosen& chosen) {
+  auto options = std::make_shared<RobotLogOptions>();
+  CLI::App* command =
+      add(log, chosen, "map", "Draws a map from the laser scans of a robot's log", map, options);
+  command->add_option("map", options->map, "the map file to write")->required();
+  command->add_option("--drawing", options->drawing, "draws the map and the way into this file")
+      ->type_name("FILE.svg");
+
+  options = std::make_shared<RobotLogOptions>();
+  command = add(log, chosen, "evaluate",
+                "Localizes the robot of a log by what its sonars would have heard, and compares "
+                "that with its laser",
+                evaluate, options);
+  command->add_option("--map", options->map, "on this map; else on the one that the log gives")
+      ->check(CLI::ExistingFile);
+  command
+      ->add_option("--start", options->start,
+                   "where the robot is at first: x y th [m, rad] on the map; without it the robot "
+                   "finds its place on a map that was given")
+      ->expected(3);
+  command->add_option("--sonars", options->sonars, "whose sonars")
+      ->check(CLI::IsMember({"pioneer", "b21"}))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "one JSON object");
+}
+
+}  // namespace saphira::cli

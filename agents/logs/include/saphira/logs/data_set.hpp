@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/logs/metrics.hpp"
+#include "saphira/logs/scan_matching.hpp"
+#include "saphira/logs/sonar_run.hpp"
+#include "saphira/logs/stamps.hpp"
+#include "saphira/maps/map.hpp"
+
+namespace saphira::logs {
+
+/// A drive with what is known of where the robot was.
+struct DataSet {
+  std::string name;
+  std::vector<double> times;  ///< of the scans [s]
+  std::vector<Pose> poses_in_odom;
+  std::vector<Scan> scans;
+  Trajectory odometry{{}};  ///< denser than the scans where the log is
+  std::optional<Trajectory> reference;
+  std::vector<Relation> relations;
+  std::vector<Relation> exact_relations;  ///< those whose stamps are both stamps of scans here
+  std::size_t mended = 0;                 ///< scans whose stamps were interpolated in the log
+  std::vector<std::string> damaged;       ///< lines of the log that could not be read
+  std::vector<std::string> notes;         ///< how the log was read, where it did not say it all
+
+  bool ranges_only = false;  ///< of a drive without sonars, and none are to be made of its ranges
+
+  // Of simulated drives only.
+  std::optional<SonarDrive> sonars;
+  std::optional<maps::Map> map;
+};
+
+struct LogFiles {
+  std::string name;
+  std::string raw;
+  std::string corrected;  ///< empty: none
+  std::string relations;  ///< empty: none
+};
+
+/// The logs in a folder of data sets and in each folder in it: raw logs, and beside each a
+/// corrected one and relations, known by their names. A log is named after its folder where it is
+/// alone there.
+std::vector<LogFiles> find_logs(const std::string& folder);
+
+/// What a log says by one of its clocks, scans in the log's order.
+DataSet data_set_of(const std::string& name, const CarmenLog& log, Clock clock);
+
+DataSet load_data_set(const std::string& name, const LogFiles& files);
+
+/// What the sonars of a ring would have heard on that drive.
+SonarDrive virtual_drive(const DataSet& set, std::vector<lps::SonarMount> mounts);
+
+}  // namespace saphira::logs

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "saphira/logs/scan_matching.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+
+namespace saphira::logs {
+
+/// What sonars would have heard where a laser scanned: the nearest surface in a sonar's cone that
+/// does not mirror the sound away.
+struct SonarRing {
+  std::vector<lps::SonarMount> mounts;
+  double half_cone = radians(12.5);
+  double incidence =
+      radians(25.0);       ///< surfaces that are hit farther off their normal are not heard
+  double max_range = 5.0;  ///< [m]
+};
+
+/// Those of config/robots/pioneer.p.
+std::vector<lps::SonarMount> pioneer_sonars();
+
+/// Those of a B21's 24 whose cones a scan of 180 degrees covers: 13, from the left to the right.
+std::vector<lps::SonarMount> front_of_b21();
+
+std::vector<lps::SonarReading> hear(const Scan& scan, const SonarRing& ring);
+
+}  // namespace saphira::logs

@@ -1,0 +1,519 @@
+#include "saphira/logs/carmen.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::logs {
+
+namespace {
+
+struct Row {
+  std::string_view text;
+  int number = 1;
+};
+
+std::vector<Row> rows_of(std::string_view text) {
+  std::vector<Row> rows;
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    std::string_view row = text.substr(0, end);
+    text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+    if (!row.empty() && row.back() == '\r')
+      row.remove_suffix(1);
+    rows.push_back({row, number});
+  }
+  return rows;
+}
+
+class Words {
+ public:
+  Words(const Row& row, const std::string& file) : row_(row), file_(file) {}
+
+  std::string_view word(const char* expected) {
+    const std::size_t from = row_.text.find_first_not_of(" \t", at_);
+    if (from == std::string_view::npos) {
+      begin_ = row_.text.size();
+      fail(expected);
+    }
+    begin_ = from;
+    at_ = std::min(row_.text.find_first_of(" \t", from), row_.text.size());
+    return row_.text.substr(from, at_ - from);
+  }
+  bool at_end() const { return row_.text.find_first_not_of(" \t", at_) == std::string_view::npos; }
+  double number(const char* expected) {
+    const std::string_view text = word(expected);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+      fail(expected);
+    return value;
+  }
+  // A range may be written nan or inf where there was no return.
+  double range() {
+    const std::string_view text = word("a range");
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc::result_out_of_range)
+      return 1e9;
+    if (error != std::errc{} || end != text.data() + text.size())
+      fail("a range");
+    return std::isfinite(value) ? value : 1e9;
+  }
+  std::size_t count(const char* expected) {
+    const double value = number(expected);
+    if (!(value >= 0.0 && value <= 10000.0 && value == std::floor(value)))
+      fail(expected);
+    return static_cast<std::size_t>(value);
+  }
+  // A stamp where one stands; logs of before CARMEN 0.5 have none.
+  double stamp(double otherwise) { return at_end() ? otherwise : number("a stamp"); }
+  Pose pose() {
+    const double x = number("x of a pose");
+    const double y = number("y of a pose");
+    return {x, y, norm2_angle(number("the heading of a pose"))};
+  }
+  [[noreturn]] void fail(const std::string& expected) const {
+    std::string text = "expected " + expected;
+    if (begin_ < row_.text.size())
+      text += ", found \"" + std::string(row_.text.substr(begin_, 20)) + "\"";
+    // A scan's line is too long to be shown.
+    throw FileError(file_, row_.number, static_cast<int>(begin_) + 1, text,
+                    row_.text.size() < 120 ? row_.text : std::string_view{});
+  }
+
+ private:
+  const Row& row_;
+  const std::string& file_;
+  std::size_t at_ = 0;
+  std::size_t begin_ = 0;
+};
+
+// How the beams of a laser lie that has so many, where the log does not say it: as CARMEN and
+// others configure a SICK LMS, a SICK LMS 1xx or Hokuyo UTM, a Hokuyo URG. An even number is the
+// odd one without the last beam. Any other number is taken to span 180 degrees.
+void lay_beams(LaserScan& scan, double resolution) {
+  const std::size_t n = scan.ranges.size();
+  const auto spans = [&](double first, double step) {
+    scan.first_angle = radians(first);
+    scan.step = radians(step);
+  };
+  const auto beams = static_cast<double>(n);
+  const double all = resolution * (beams - static_cast<double>(n % 2));
+  if (resolution > 0.0 && n > 1 && all > 30.0 && all <= 360.0)
+    spans(-0.5 * all, resolution);
+  else if (n == 401)
+    spans(-50.0, 0.25);
+  else if (n == 90 || n == 91)
+    spans(-90.0, 2.0);
+  else if (n == 180 || n == 181)
+    spans(-90.0, 1.0);
+  else if (n == 360 || n == 361)
+    spans(-90.0, 0.5);
+  else if (n == 720 || n == 721)
+    spans(-90.0, 0.25);
+  else if (n == 270 || n == 271)
+    spans(-135.0, 1.0);
+  else if (n == 540 || n == 541)
+    spans(-135.0, 0.5);
+  else if (n == 1080 || n == 1081)
+    spans(-135.0, 0.25);
+  else if (n == 512 || n == 682 || n == 683 || n == 726 || n == 769)
+    spans(-0.5 * 360.0 / 1024.0 * (beams - 1.0), 360.0 / 1024.0);
+  else if (n > 1)
+    spans(-90.0, 180.0 / (beams - 1.0));
+}
+
+// Stamp, host, and the logger's stamp, as far as they stand there.
+Stamps stamps(Words& words, std::string* host = nullptr) {
+  Stamps time;
+  time.ipc = time.logger = words.stamp(std::nan(""));
+  if (words.at_end())
+    return time;
+  const std::string_view name = words.word("a host");
+  if (host != nullptr)
+    *host = name;
+  time.logger = words.stamp(time.ipc);
+  return time;
+}
+
+struct Parameters {
+  double resolution = 0.0;  // [degrees]
+  std::optional<Pose> front;
+  double longest = 0.0;
+};
+
+void ranges_of(Words& words, LaserScan& scan) {
+  scan.ranges.resize(words.count("the number of beams"));
+  for (double& range : scan.ranges)
+    range = words.range();
+}
+
+// The laser's pose is written as its place until all are known.
+LaserScan old_laser(Words& words, Laser laser, const Parameters& parameters) {
+  LaserScan scan;
+  scan.laser = laser;
+  ranges_of(words, scan);
+  lay_beams(scan, laser == Laser::flaser ? parameters.resolution : 0.0);
+  const Pose in_log = words.pose();
+  scan.pose = words.pose();
+  scan.laser_in_robot = relative(scan.pose, in_log);
+  scan.no_return = 0.0;
+  scan.time = stamps(words, &scan.host);
+  return scan;
+}
+
+LaserScan new_laser(Words& words, Laser laser, bool with_robot) {
+  LaserScan scan;
+  scan.laser = laser;
+  words.number("the laser's type");
+  scan.first_angle = words.number("the first angle");
+  const double field = words.number("the field of view");
+  scan.step = words.number("the angular resolution");
+  const double longest = words.number("the longest range");
+  scan.no_return = longest > 1.0 ? longest - 0.01 : 0.0;
+  words.number("the accuracy");
+  words.number("the remission mode");
+  ranges_of(words, scan);
+  if (scan.step == 0.0 && scan.ranges.size() > 1)
+    scan.step = field / static_cast<double>(scan.ranges.size() - 1);
+  const std::size_t remissions = words.count("the number of remissions");
+  for (std::size_t i = 0; i < remissions; ++i)
+    words.word("a remission");
+  if (with_robot) {
+    const Pose in_log = words.pose();
+    scan.pose = words.pose();
+    scan.laser_in_robot = relative(scan.pose, in_log);
+    for (int i = 0; i < 5; ++i)  // velocities, safety distances, the turn's axis
+      words.number("a number");
+  }
+  scan.time = stamps(words, &scan.host);
+  return scan;
+}
+
+struct Message {
+  const char* name;
+  Laser laser;
+};
+// The first that is in a log is read: by place, and for one place the message that has poses.
+constexpr Message kLasers[] = {
+    {"FLASER", Laser::flaser},  {"ROBOTLASER1", Laser::robot1}, {"RAWLASER1", Laser::raw1},
+    {"RLASER", Laser::rlaser},  {"ROBOTLASER2", Laser::robot2}, {"RAWLASER2", Laser::raw2},
+    {"LASER3", Laser::laser3},  {"LASER4", Laser::laser4},      {"RAWLASER3", Laser::raw3},
+    {"RAWLASER4", Laser::raw4},
+};
+
+bool has_no_pose(Laser laser) {
+  return laser == Laser::raw1 || laser == Laser::raw2 || laser == Laser::raw3 ||
+         laser == Laser::raw4;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// One place for all scans. In some corrected logs one of the two poses is corrected, the other not:
+// then they say nothing of the laser.
+void mount(CarmenLog& log, const Parameters& parameters) {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> th;
+  for (const LaserScan& scan : log.scans) {
+    x.push_back(scan.laser_in_robot.x);
+    y.push_back(scan.laser_in_robot.y);
+    th.push_back(norm2_angle(scan.laser_in_robot.th - log.scans.front().laser_in_robot.th));
+  }
+  Pose place{median_of(x), median_of(y),
+             norm2_angle(median_of(th) + log.scans.front().laser_in_robot.th)};
+  std::size_t same = 0;
+  for (const LaserScan& scan : log.scans) {
+    const Pose off = relative(place, scan.laser_in_robot);
+    same += std::hypot(off.x, off.y) < 0.02 && std::abs(off.th) < 0.02 ? 1U : 0U;
+  }
+  const bool said = same > log.scans.size() * 9 / 10 && std::hypot(place.x, place.y) < 1.5;
+  const bool moved = std::hypot(place.x, place.y) > 1e-3 || std::abs(place.th) > 1e-3;
+  if (!said || !moved) {
+    const Laser laser = log.scans.front().laser;
+    const bool front = laser == Laser::flaser || laser == Laser::robot1 || laser == Laser::raw1;
+    const bool rear = laser == Laser::rlaser || laser == Laser::robot2 || laser == Laser::raw2;
+    place = front && parameters.front ? *parameters.front : Pose{0.0, 0.0, rear ? kPi : 0.0};
+  }
+  for (LaserScan& scan : log.scans)
+    scan.laser_in_robot = place;
+}
+
+// Leaves out the scans that are not to be kept; dead reckoning still knows what stands before it.
+void keep_scans(CarmenLog& log, const std::vector<char>& kept) {
+  std::vector<std::size_t> kept_before{0};
+  std::vector<LaserScan> scans;
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    if (kept[i] != 0)
+      scans.push_back(std::move(log.scans[i]));
+    kept_before.push_back(scans.size());
+  }
+  for (OdomRecord& record : log.odometry)
+    record.scans_before = kept_before.at(record.scans_before);
+  log.scans = std::move(scans);
+}
+
+// Scans without a pose get that of dead reckoning at their stamp.
+void place_raw(CarmenLog& log) {
+  std::vector<OdomRecord> records = log.odometry;
+  std::stable_sort(records.begin(), records.end(), [](const OdomRecord& a, const OdomRecord& b) {
+    return a.time.ipc < b.time.ipc;
+  });
+  std::vector<char> placed(log.scans.size(), 0);
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    LaserScan& scan = log.scans[i];
+    const auto after =
+        std::lower_bound(records.begin(), records.end(), scan.time.ipc,
+                         [](const OdomRecord& r, double time) { return r.time.ipc < time; });
+    if (after == records.end() || after == records.begin())
+      continue;
+    const auto before = after - 1;
+    const double gap = after->time.ipc - before->time.ipc;
+    if (!(gap < 2.0))
+      continue;
+    const double share = (scan.time.ipc - before->time.ipc) / gap;
+    const Pose step = relative(before->pose, after->pose);
+    scan.pose = compose(before->pose, {share * step.x, share * step.y, share * step.th});
+    placed[i] = 1;
+  }
+  if (const auto lost = std::count(placed.begin(), placed.end(), 0); lost > 0)
+    log.notes.push_back(std::to_string(lost) + " scans have no dead reckoning at their time");
+  keep_scans(log, placed);
+}
+
+// Every message a stamp, which the order in the file gives where the log has none. Where only some
+// have none, as the last line of a log that was cut off, they are left out.
+void stamp_all(CarmenLog& log) {
+  const auto unstamped = [](const auto& m) {
+    return !std::isfinite(m.time.ipc) || !std::isfinite(m.time.logger);
+  };
+  std::erase_if(log.truth, unstamped);
+  const auto without = std::count_if(log.scans.begin(), log.scans.end(), unstamped);
+  if (without < std::ssize(log.scans)) {
+    std::vector<char> kept;
+    for (const LaserScan& scan : log.scans)
+      kept.push_back(unstamped(scan) ? 0 : 1);
+    keep_scans(log, kept);
+    const auto erased = std::erase_if(log.odometry, unstamped);
+    if (without > 0 || erased > 0)
+      log.notes.push_back(std::to_string(without) + " scans and " + std::to_string(erased) +
+                          " lines ODOM without a stamp are left out");
+    return;
+  }
+  log.notes.emplace_back("no stamps: by their order, a scan every 0.1 s");
+  for (std::size_t i = 0; i < log.scans.size(); ++i)
+    log.scans[i].time.ipc = log.scans[i].time.logger = 0.1 * static_cast<double>(i);
+  std::size_t same = 0;
+  for (std::size_t k = 0; k < log.odometry.size(); ++k) {
+    OdomRecord& record = log.odometry[k];
+    same = k > 0 && log.odometry[k - 1].scans_before == record.scans_before ? same + 1 : 0;
+    record.time.ipc = record.time.logger = 0.1 * (static_cast<double>(record.scans_before) - 1.0) +
+                                           0.1 * (1.0 - 1.0 / static_cast<double>(same + 2));
+  }
+}
+
+}  // namespace
+
+std::optional<double> find_no_return(const std::vector<LaserScan>& scans) {
+  constexpr double kBin = 0.02;  // [m]
+  constexpr std::size_t kBins = 10000;
+  constexpr std::size_t kSectors = 32;
+  struct Bin {
+    double count = 0.0;
+    std::uint32_t sectors = 0;  // of the field of view, a bit each
+  };
+  std::vector<Bin> bins(kBins);
+  double all = 0.0;
+  for (const LaserScan& scan : scans)
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+      if (scan.ranges[i] > 0.0) {
+        Bin& bin = bins[std::min(kBins - 1,
+                                 static_cast<std::size_t>(std::min(scan.ranges[i], 1e6) / kBin))];
+        bin.count += 1.0;
+        bin.sectors |= 1U << (i * kSectors / scan.ranges.size());
+        all += 1.0;
+      }
+  // From the longest down. Beyond what means nothing there is nothing real but for a few; there are
+  // many times as many as in a bin of the metre before; and it is in all directions, which a wall
+  // that a standing robot sees is not.
+  constexpr double kBeyond = 0.002;
+  constexpr double kPile = 0.001;
+  constexpr double kTimes = 20.0;
+  constexpr std::size_t kBefore = 50;
+  constexpr int kDirections = 6;
+  constexpr double kCodes = 0.3;  // [m] lasers have some codes beside each other
+  std::optional<double> found;
+  double beyond = 0.0;
+  for (std::size_t bin = kBins; bin-- > 1 && beyond <= kBeyond * all;) {
+    const double range = kBin * static_cast<double>(bin) - 0.01;
+    if (found && range < *found - kCodes)
+      break;
+    double before = 0.0;
+    const std::size_t near = bin > 10 ? bin - 10 : 0;
+    for (std::size_t k = near > kBefore ? near - kBefore : 0; k < near; ++k)
+      before += bins[k].count / static_cast<double>(kBefore);
+    if (bins[bin].count > std::max(4.0, kPile * all) && bins[bin].count > kTimes * before &&
+        std::popcount(bins[bin].sectors) >= kDirections)
+      found = range;
+    else
+      beyond += bins[bin].count;
+  }
+  return found;
+}
+
+CarmenLog parse_carmen(std::string_view text, const std::string& file) {
+  CarmenLog log;
+  log.file = file;
+  Parameters parameters;
+  std::map<Laser, std::vector<LaserScan>> scans;
+  std::map<Laser, std::vector<std::size_t>> before;  // odometry records before each scan
+  for (const Row& row : rows_of(text)) {
+    try {
+      Words words(row, file);
+      if (words.at_end() || row.text.front() == '#')
+        continue;
+      const std::string_view name = words.word("a message");
+      const auto* const laser = std::find_if(std::begin(kLasers), std::end(kLasers),
+                                             [&](const Message& m) { return name == m.name; });
+      if (laser != std::end(kLasers)) {
+        const bool old =
+            name.starts_with("FLASER") || name.starts_with("RLASER") || name.starts_with("LASER");
+        LaserScan scan = old ? old_laser(words, laser->laser, parameters)
+                             : new_laser(words, laser->laser, name.starts_with("ROBOT"));
+        scans[laser->laser].push_back(std::move(scan));
+        before[laser->laser].push_back(log.odometry.size());
+      } else if (name == "ODOM" || name == "TRUEPOS") {
+        OdomRecord record;
+        record.pose = words.pose();
+        for (int i = 0; i < 3; ++i)  // velocities and acceleration; dead reckoning
+          words.number("a velocity");
+        record.time = stamps(words);
+        (name == "ODOM" ? log.odometry : log.truth).push_back(record);
+      } else if (name == "PARAM") {
+        const std::string_view what = words.word("a parameter's name");
+        if (what == "laser_front_laser_resolution") {
+          parameters.resolution = words.number("degrees");
+        } else if (what.starts_with("robot_frontlaser_")) {
+          Pose front = parameters.front.value_or(Pose{});
+          if (what == "robot_frontlaser_offset")
+            front.x = words.number("metres");
+          else if (what == "robot_frontlaser_side_offset")
+            front.y = words.number("metres");
+          else if (what == "robot_frontlaser_angular_offset")
+            front.th = words.number("radians");
+          parameters.front = front;
+        } else if (what == "robot_front_laser_max") {
+          parameters.longest = words.number("metres");
+        }
+      }
+    } catch (const FileError& error) {
+      log.damaged.emplace_back(error.what());
+    }
+  }
+  for (const Message& message : kLasers) {
+    const auto found = scans.find(message.laser);
+    if (found == scans.end())
+      continue;
+    if (has_no_pose(message.laser) && log.odometry.empty())
+      continue;
+    // What stands before what in the file, for the laser that is kept.
+    const std::vector<std::size_t>& odometry_before = before[message.laser];
+    for (std::size_t k = 0, scan = 0; k < log.odometry.size(); ++k) {
+      while (scan < odometry_before.size() && odometry_before[scan] <= k)
+        ++scan;
+      log.odometry[k].scans_before = scan;
+    }
+    log.scans = std::move(found->second);
+    scans.erase(found);
+    for (const auto& [other, left_out] : scans)
+      for (const Message& m : kLasers)
+        if (m.laser == other)
+          log.notes.push_back(std::string(message.name) + " is read, " +
+                              std::to_string(left_out.size()) + " " + m.name + " are not");
+    stamp_all(log);
+    if (has_no_pose(message.laser))
+      place_raw(log);
+    break;
+  }
+  if (log.scans.empty()) {
+    if (!log.damaged.empty())
+      throw std::runtime_error(log.damaged.front());
+    throw FileError(file, 1, 1,
+                    scans.empty() ? "expected a line FLASER, ROBOTLASER1 or RAWLASER1"
+                                  : "expected lines ODOM: scans without a pose need them");
+  }
+  mount(log, parameters);
+  const std::optional<double> no_return = find_no_return(log.scans);
+  for (LaserScan& scan : log.scans) {
+    // What the log says may be what the laser could do, not what it was set to.
+    if (no_return)
+      scan.no_return = scan.no_return > 0.0 ? std::min(scan.no_return, *no_return) : *no_return;
+    else if (scan.no_return == 0.0)
+      scan.no_return = parameters.longest > 1.0 ? parameters.longest - 0.01 : 1e8;
+  }
+  return log;
+}
+
+std::vector<Relation> parse_relations(std::string_view text, const std::string& file) {
+  std::vector<Relation> out;
+  for (const Row& row : rows_of(text)) {
+    Words words(row, file);
+    if (row.text.starts_with("#") || words.at_end())
+      continue;
+    Relation relation;
+    relation.from = words.number("a stamp");
+    relation.to = words.number("a stamp");
+    relation.to_in_from.x = words.number("dx");
+    relation.to_in_from.y = words.number("dy");
+    for (const char* ignored : {"dz", "roll", "pitch"})
+      words.number(ignored);
+    relation.to_in_from.th = norm2_angle(words.number("yaw"));
+    out.push_back(relation);
+  }
+  return out;
+}
+
+std::string read_log(const std::string& path, std::string* trouble) {
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  if (!file)
+    throw std::runtime_error(path + ": cannot be opened");
+  std::string out;
+  std::array<char, 1 << 16> part{};
+  for (;;) {
+    const int got = gzread(file.get(), part.data(), part.size());
+    if (got > 0) {
+      out.append(part.data(), static_cast<std::size_t>(got));
+      continue;
+    }
+    // A file that ends too early is told only when it is asked for.
+    int error = Z_OK;
+    const std::string why = gzerror(file.get(), &error);
+    if (error == Z_OK || error == Z_STREAM_END)
+      return out;
+    if (out.empty())
+      throw std::runtime_error(path + ": cannot be unpacked");
+    if (trouble != nullptr)
+      *trouble = path + ": damaged or cut off after " + std::to_string(out.size()) + " bytes";
+    // Not half a line.
+    out.resize(out.rfind('\n') == std::string::npos ? 0 : out.rfind('\n') + 1);
+    return out;
+  }
+}
+
+}  // namespace saphira::logs

@@ -1,0 +1,105 @@
+#include "saphira/logs/log_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "saphira/base/random.hpp"
+#include "saphira/logs/virtual_sonar.hpp"
+
+namespace saphira::logs {
+namespace {
+
+/// [m] To the nearest wall of a room of 8 by 6 m with a wall that stands into it.
+double range_from(const Pose& sensor) {
+  const struct {
+    Vec2 from, to;
+  } walls[] = {
+      {{0, 0}, {8, 0}}, {{8, 0}, {8, 6}}, {{8, 6}, {0, 6}}, {{0, 6}, {0, 0}}, {{4, 0}, {4, 2.5}}};
+  double nearest = 30.0;
+  const Vec2 ray = sensor.direction();
+  for (const auto& wall : walls) {
+    const Vec2 way = wall.to - wall.from;
+    const double cross = ray.x() * way.y() - ray.y() * way.x();
+    if (std::abs(cross) < 1e-9)
+      continue;
+    const Vec2 off = wall.from - sensor.position();
+    const double range = (off.x() * way.y() - off.y() * way.x()) / cross;
+    const double along = (off.x() * ray.y() - off.y() * ray.x()) / cross;
+    if (range > 0.0 && along >= 0.0 && along <= 1.0)
+      nearest = std::min(nearest, range);
+  }
+  return nearest;
+}
+
+/// Twice round the room, with dead reckoning that turns too much.
+DataSet drive_round() {
+  DataSet log;
+  log.name = "room";
+  Random random(1);
+  Pose truth{2.0, 3.5, 0.0};
+  Pose odom;
+  std::vector<StampedPose> odometry;
+  std::vector<StampedPose> reference;
+  Beams beams;
+  for (int i = 0; i < 500; ++i) {
+    const Pose step{0.05, 0.0, 0.05 / 1.6};
+    truth = compose(truth, step);
+    odom = compose(odom, {step.x * random.normal(1.0, 0.02), 0.0, step.th + radians(0.1)});
+    const double time = 0.2 * i;
+    odometry.push_back({time, odom});
+    reference.push_back({time, truth});
+    std::vector<double> ranges;
+    for (int beam = 0; beam <= 180; ++beam)
+      ranges.push_back(
+          range_from({truth.x, truth.y, truth.th + beams.first_angle + beam * beams.step}) +
+          random.normal(0.0, 0.005));
+    log.times.push_back(time);
+    log.poses_in_odom.push_back(odom);
+    log.scans.push_back(make_scan(ranges, beams));
+  }
+  log.odometry = Trajectory(odometry);
+  log.reference.emplace(reference);
+  return log;
+}
+
+TEST(LogMap, WallsAndPosesComeFromTheScans) {
+  const DataSet log = drive_round();
+  const LogMap mapped = map_log(log);
+  ASSERT_EQ(mapped.poses.size(), log.scans.size());
+  const Accuracy reckoned = accuracy(log.odometry.poses(), *log.reference);
+  const Accuracy by_laser = accuracy(mapped.poses, *log.reference);
+  EXPECT_GT(reckoned.ate, 0.2);
+  EXPECT_LT(by_laser.ate, 0.03);
+  EXPECT_EQ(by_laser.compared, log.scans.size());
+  double longest = 0.0;
+  for (const maps::Feature& wall : mapped.walls.features) {
+    EXPECT_EQ(wall.type, lps::PointType::wall);
+    longest = std::max(longest, wall.length);
+  }
+  EXPECT_GE(mapped.walls.features.size(), 5U);
+  EXPECT_NEAR(longest, 8.0, 0.5);
+}
+
+TEST(LogMap, SonarsHoldThePoseOnTheMapOfTheLog) {
+  const DataSet log = drive_round();
+  const LogMap mapped = map_log(log);
+  const LogEvaluation result =
+      evaluate_log(log, mapped, front_of_b21(), mapped.walls, mapped.poses.front().pose);
+  EXPECT_EQ(result.run.unplaced, 0U);
+  EXPECT_GT(result.run.tracking, result.run.steps * 9 / 10);
+  EXPECT_LT(result.localized.ate, 0.5 * result.dead_reckoning.ate);
+}
+
+TEST(LogMap, WhatHasNoScanOrIsInterruptedIsSaid) {
+  DataSet log;
+  log.name = "nothing";
+  EXPECT_THROW(map_log(log), std::runtime_error);
+  int asked = 0;
+  EXPECT_THROW(map_log(drive_round(), [&] { return ++asked < 3; }), std::runtime_error);
+  EXPECT_EQ(asked, 3);
+}
+
+}  // namespace
+}  // namespace saphira::logs
