@@ -12,11 +12,14 @@ namespace saphira::bridge {
 
 namespace {
 
-constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{{{
-    {protocol::Motors::kStopped, v1::MOTORS_STOPPED},
-    {protocol::Motors::kMoving, v1::MOTORS_MOVING},
-    {protocol::Motors::kNoPower, v1::MOTORS_NO_POWER},
-}}};
+constexpr EnumPairs<protocol::Motors, v1::MotorStatus, 3> kMotors{
+    {{
+        {protocol::Motors::kStopped, v1::MOTORS_STOPPED},
+        {protocol::Motors::kMoving, v1::MOTORS_MOVING},
+        {protocol::Motors::kNoPower, v1::MOTORS_NO_POWER},
+    }},
+    {},
+    {v1::MOTORS_NOT_CONNECTED}};
 constexpr EnumPairs<authority::Role, v1::Role, 5> kRoles{{{
     {authority::Role::none, v1::ROLE_NONE},
     {authority::Role::estop, v1::ROLE_ESTOP},

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <type_traits>
+
 namespace saphira {
 namespace {
 
@@ -13,6 +16,32 @@ constexpr EnumPairs<Weather, Umbrella, 3> kTable{{{
     {Weather::damp, Umbrella::none},
     {Weather::wet, Umbrella::open},
 }}};
+
+enum class Sky { clear, grey = 5, black };
+enum class Lamp : unsigned char { off, on, broken };
+
+static_assert(kEnumerators<Weather>.size() == 3);
+static_assert(kEnumerators<Sky> == std::array{Sky::clear, Sky::grey, Sky::black});
+static_assert(kEnumerators<Lamp>.back() == Lamp::broken);
+
+/// Whether a table compiles that has a pair for each of these.
+template <Sky... with>
+concept Compiles = requires {
+  typename std::bool_constant<(
+      EnumPairs<Sky, Lamp, sizeof...(with)>({{{with, Lamp::off}...}}, {}, {Lamp::on, Lamp::broken}),
+      true)>;
+};
+static_assert(Compiles<Sky::clear, Sky::grey, Sky::black>);
+static_assert(!Compiles<Sky::clear, Sky::black>);
+
+TEST(EnumPairs, WhatIsLeftOutIsNamed) {
+  constexpr EnumPairs<Sky, Lamp, 3> kLamps{
+      {{{Sky::clear, Lamp::off}, {Sky::grey, Lamp::off}, {Sky::black, Lamp::on}}},
+      {},
+      {Lamp::broken}};
+  EXPECT_EQ(kLamps.theirs(Sky::black), Lamp::on);
+  EXPECT_EQ(kLamps.ours(Lamp::broken, Sky::grey), Sky::grey);
+}
 
 TEST(EnumPairs, BothWaysAreOneTable) {
   EXPECT_EQ(kTable.theirs(Weather::wet), Umbrella::open);

@@ -15,11 +15,14 @@ constexpr EnumPairs<ArgumentKind, v1::ArgumentKind, 3> kKinds{{{
     {ArgumentKind::kText, v1::ARGUMENT_TEXT},
     {ArgumentKind::kPoint, v1::ARGUMENT_POINT},
 }}};
-constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{{{
-    {ArgumentKind::kNumber, v1::PARAMETER_NUMBER},
-    {ArgumentKind::kText, v1::PARAMETER_TEXT},
-    {ArgumentKind::kPoint, v1::PARAMETER_POINT},
-}}};
+constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{
+    {{
+        {ArgumentKind::kNumber, v1::PARAMETER_NUMBER},
+        {ArgumentKind::kText, v1::PARAMETER_TEXT},
+        {ArgumentKind::kPoint, v1::PARAMETER_POINT},
+    }},
+    {},
+    {v1::PARAMETER_ANY}};
 constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
     {Frame::kRobot, v1::FRAME_ROBOT},
     {Frame::kOdom, v1::FRAME_ODOM},
@@ -60,24 +63,28 @@ constexpr EnumPairs<Trend, v1::GoalTrend, 3> kTrends{{{
     {Trend::kRising, v1::TREND_RISING},
     {Trend::kFalling, v1::TREND_FALLING},
 }}};
-constexpr EnumPairs<Localization, v1::RegistrationState, 4> kLocalizations{{{
-    {Localization::kOff, v1::REGISTRATION_OFF},
-    {Localization::kUnplaced, v1::REGISTRATION_UNPLACED},
-    {Localization::kLost, v1::REGISTRATION_LOST},
-    {Localization::kTracking, v1::REGISTRATION_TRACKING},
-}}};
+constexpr EnumPairs<Localization, v1::RegistrationState, 4> kLocalizations{
+    {{
+        {Localization::kOff, v1::REGISTRATION_OFF},
+        {Localization::kUnplaced, v1::REGISTRATION_UNPLACED},
+        {Localization::kLost, v1::REGISTRATION_LOST},
+        {Localization::kTracking, v1::REGISTRATION_TRACKING},
+    }},
+    {Localization::kNone}};
 // The bus does not tell the first step after a suspension from the ones that follow; what is
 // removed does not get there.
-constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{{{
-    {IntentionState::kInit, v1::INTENTION_INIT},
-    {IntentionState::kRunning, v1::INTENTION_RUNNING},
-    {IntentionState::kResumed, v1::INTENTION_RUNNING},
-    {IntentionState::kSuspended, v1::INTENTION_SUSPENDED},
-    {IntentionState::kInterrupted, v1::INTENTION_INTERRUPTED},
-    {IntentionState::kSuccess, v1::INTENTION_SUCCESS},
-    {IntentionState::kFailure, v1::INTENTION_FAILURE},
-    {IntentionState::kTimeout, v1::INTENTION_TIMEOUT},
-}}};
+constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
+    {{
+        {IntentionState::kInit, v1::INTENTION_INIT},
+        {IntentionState::kRunning, v1::INTENTION_RUNNING},
+        {IntentionState::kResumed, v1::INTENTION_RUNNING},
+        {IntentionState::kSuspended, v1::INTENTION_SUSPENDED},
+        {IntentionState::kInterrupted, v1::INTENTION_INTERRUPTED},
+        {IntentionState::kSuccess, v1::INTENTION_SUCCESS},
+        {IntentionState::kFailure, v1::INTENTION_FAILURE},
+        {IntentionState::kTimeout, v1::INTENTION_TIMEOUT},
+    }},
+    {IntentionState::kRemoved}};
 
 Arguments from_bus(const std::vector<v1::Argument>& arguments) {
   Arguments result;

@@ -1,32 +1,60 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <utility>
+
+#include "saphira/base/enumerators.hpp"
 
 namespace saphira {
 
 /// Two enumerations that say the same, such as a library's and the bus's, in pairs: both ways are
-/// one table. Where several of one side are the same to the other, the first pair counts.
+/// one table. Where several of one side are the same to the other, the first pair counts. A table
+/// that lacks an enumerator of either side does not compile, unless it names that as left out.
 template <class Ours, class Theirs, std::size_t size>
-struct EnumPairs {
-  std::array<std::pair<Ours, Theirs>, size> pairs;
+class EnumPairs {
+ public:
+  consteval EnumPairs(const std::array<std::pair<Ours, Theirs>, size>& pairs,
+                      std::initializer_list<Ours> ours_left_out = {},
+                      std::initializer_list<Theirs> theirs_left_out = {})
+      : pairs_(pairs) {
+    for (const Ours value : kEnumerators<Ours>)
+      if (!contains(ours_left_out, value) &&
+          std::none_of(pairs.begin(), pairs.end(),
+                       [&](const auto& pair) { return pair.first == value; }))
+        throw "an enumerator of ours has no pair";
+    for (const Theirs value : kEnumerators<Theirs>)
+      if (!contains(theirs_left_out, value) &&
+          std::none_of(pairs.begin(), pairs.end(),
+                       [&](const auto& pair) { return pair.second == value; }))
+        throw "an enumerator of theirs has no pair";
+  }
 
-  /// The first pair's for a value that has no pair.
+  /// The first pair's for a value that is left out.
   constexpr Theirs theirs(Ours value) const {
-    for (const auto& [ours, theirs] : pairs)
+    for (const auto& [ours, theirs] : pairs_)
       if (ours == value)
         return theirs;
-    return pairs.front().second;
+    return pairs_.front().second;
   }
 
   /// Others may send what is none of the enumerators.
   constexpr Ours ours(Theirs value, Ours otherwise) const {
-    for (const auto& [ours, theirs] : pairs)
+    for (const auto& [ours, theirs] : pairs_)
       if (theirs == value)
         return ours;
     return otherwise;
   }
+
+ private:
+  template <class Value>
+  static consteval bool contains(std::initializer_list<Value> values, Value value) {
+    return std::find(values.begin(), values.end(), value) != values.end();
+  }
+
+  std::array<std::pair<Ours, Theirs>, size> pairs_;
 };
 
 }  // namespace saphira

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+namespace saphira {
+namespace detail {
+
+/// Whether the value has a name: the compiler writes others as a number.
+template <class E, E value>
+consteval bool is_enumerator() {
+  const std::string_view text = __PRETTY_FUNCTION__;
+  const std::size_t at = text.rfind("value = ") + 8;
+  return text[at] != '(' && text[at] != '-' && (text[at] < '0' || text[at] > '9');
+}
+
+template <class E, std::size_t... i>
+consteval auto enumerators(std::index_sequence<i...> /*all*/) {
+  constexpr std::size_t kCount =
+      (static_cast<std::size_t>(is_enumerator<E, static_cast<E>(i)>()) + ...);
+  std::array<E, kCount> result{};
+  std::size_t next = 0;
+  ((is_enumerator<E, static_cast<E>(i)>() ? void(result[next++] = static_cast<E>(i)) : void()),
+   ...);
+  return result;
+}
+
+}  // namespace detail
+
+/// All enumerators of an enumeration with a fixed underlying type (as every enum class has) whose
+/// values are from 0 to 63, in the order of their values.
+template <class E>
+inline constexpr auto kEnumerators = detail::enumerators<E>(std::make_index_sequence<64>());
+
+}  // namespace saphira
