@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string_view>
 
 #include "saphira/base/numbers.hpp"
@@ -170,15 +171,14 @@ void Picture::gate(const Feature& feature) {
 }
 
 void Picture::features() {
-  for (const Feature& f : drawing_.map.features)
-    if (f.type == PointType::office)
-      rectangle(f, R"(fill="#fdf3dc" fill-opacity="0.6" stroke="#d8c9a0" stroke-width="0.04")");
-  for (const Feature& f : drawing_.map.features)
-    if (f.type == PointType::corridor || f.type == PointType::lane)
-      rectangle(f, R"(fill="#56b4e9" fill-opacity="0.25" stroke="#0072b2" stroke-width="0.05")");
-  for (const Feature& f : drawing_.map.features)
-    if (f.type == PointType::junction)
-      rectangle(f, R"(fill="#f0e442" fill-opacity="0.5" stroke="#a89c00" stroke-width="0.04")");
+  std::set<int> layers;
+  for (const ArtifactTraits& each : kArtifactTraits)
+    layers.insert(each.layer);
+  for (const int layer : layers)
+    for (const Feature& f : drawing_.map.features)
+      if (const ArtifactTraits& of_type = traits(f.type);
+          of_type.layer == layer && !of_type.area.empty())
+        rectangle(f, of_type.area);
   for (const Feature& f : drawing_.map.features) {
     const Vec2 middle = f.pose_in_map.position();
     switch (f.type) {

@@ -5,23 +5,16 @@
 #include <stdexcept>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::maps {
 
-namespace {
-
 using lps::PointType;
-
-bool along_a_line(PointType type) {
-  return type == PointType::wall || type == PointType::corridor || type == PointType::lane;
-}
-
-}  // namespace
 
 std::optional<std::string> problem(const Feature& feature) {
   // A wall has no id in a file; here it may have one.
   Feature written = feature;
-  written.id = feature.type == PointType::wall ? 0 : std::max(1U, feature.id);
+  written.id = traits(feature.type).id ? std::max(1U, feature.id) : 0;
   try {
     to_text({{written}});
   } catch (const std::invalid_argument& error) {
@@ -41,13 +34,13 @@ bool same(const Feature& a, const Feature& b, const Sameness& sameness) {
   if (a.type != b.type)
     return false;
   const Pose between = relative(a.pose_in_map, b.pose_in_map);
-  if (along_a_line(a.type)) {
+  if (traits(a.type).straight) {
     // A line has no direction.
     const double angle = std::abs(norm3_angle(between.th));
     return angle < sameness.angle && std::abs(between.y) < sameness.distance &&
            std::abs(between.x) < (a.length + b.length) / 2;
   }
-  const bool directed = a.type == PointType::door || a.type == PointType::breach;
+  const bool directed = traits(a.type).gate;
   return std::hypot(between.x, between.y) < sameness.distance &&
          (!directed || std::abs(between.th) < sameness.angle);
 }

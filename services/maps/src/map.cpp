@@ -1,7 +1,6 @@
 #include "saphira/maps/map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -9,6 +8,7 @@
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::maps {
 
@@ -20,27 +20,6 @@ constexpr double kMillimetre = 0.001;
 constexpr double kMax = 1e7;        // [mm] 10 km: more is a slip of the pen
 constexpr double kMaxAngle = 3600;  // [deg]
 constexpr double kMaxId = 2147483647;
-
-// What stands on a line of each type. CORRIDOR, DOOR and WALL are the manual's; the others have the
-// names of its point types (6.6.3.1) and are written in the same way.
-struct Form {
-  std::string_view word;
-  PointType type;
-  bool id;
-  bool length;
-  bool width;
-};
-constexpr std::array<Form, 9> kForms{{
-    {"CORRIDOR", PointType::corridor, true, true, true},
-    {"DOOR", PointType::door, true, false, true},
-    {"WALL", PointType::wall, false, true, false},
-    {"LANE", PointType::lane, true, true, true},
-    {"JUNCTION", PointType::junction, true, true, true},
-    {"OFFICE", PointType::office, true, true, true},
-    {"BREAK", PointType::breach, true, false, true},
-    {"OBJECT", PointType::object, true, true, true},
-    {"POS", PointType::position, true, false, false},
-}};
 
 bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
@@ -139,31 +118,40 @@ class Scanner {
   std::size_t began_ = 0;
 };
 
-const Form* form_of(std::string_view word) {
+/// Nothing where no artifact has this word.
+const ArtifactTraits* traits_of(std::string_view word) {
   std::string upper(word);
   for (char& c : upper)
     c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  const auto* form =
-      std::find_if(kForms.begin(), kForms.end(), [&](const Form& f) { return f.word == upper; });
-  return form == kForms.end() ? nullptr : form;
+  const auto* found = std::find_if(kArtifactTraits.begin(), kArtifactTraits.end(),
+                                   [&](const ArtifactTraits& each) { return each.word == upper; });
+  return upper.empty() || found == kArtifactTraits.end() ? nullptr : found;
 }
 
-const Form& form_of(PointType type) {
-  for (const Form& form : kForms)
-    if (form.type == type)
-      return form;
-  throw std::invalid_argument("a map does not hold artifacts of this type");
+/// "CORRIDOR, DOOR or WALL".
+std::string all_words() {
+  std::vector<std::string_view> words;
+  for (const ArtifactTraits& each : kArtifactTraits)
+    if (!each.word.empty())
+      words.push_back(each.word);
+  std::string text;
+  for (const std::string_view word : words)
+    text.append(text.empty() ? "" : word == words.back() ? " or " : ", ").append(word);
+  return text;
+}
+
+const ArtifactTraits& traits_on_map(PointType type) {
+  const ArtifactTraits& result = traits(type);
+  if (result.word.empty())
+    throw std::invalid_argument("a map does not hold artifacts of this type");
+  return result;
 }
 
 Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int number) {
   const std::string_view word = in.word();
-  const Form* form = form_of(word);
-  if (form == nullptr) {
-    std::string words;
-    for (const Form& f : kForms)
-      words.append(words.empty() ? "" : &f == &kForms.back() ? " or " : ", ").append(f.word);
-    in.fail("expected " + words + ", found \"" + std::string(word) + "\"");
-  }
+  const ArtifactTraits* form = traits_of(word);
+  if (form == nullptr)
+    in.fail("expected " + all_words() + ", found \"" + std::string(word) + "\"");
   Feature feature;
   feature.type = form->type;
   if (in.take('(')) {
@@ -219,7 +207,7 @@ std::string millimetres(double metres, double low) {
 }
 
 std::string line_of(const Feature& feature) {
-  const Form& form = form_of(feature.type);
+  const ArtifactTraits& form = traits_on_map(feature.type);
   if ((form.id && feature.id == 0) || feature.id > kMaxId)
     throw std::invalid_argument("a feature without an id");
   if (!std::isfinite(feature.pose_in_map.th))
@@ -278,7 +266,7 @@ std::string to_text(const Map& map) {
 }
 
 std::string describe(const Feature& feature) {
-  std::string text(form_of(feature.type).word);
+  std::string text(traits_on_map(feature.type).word);
   for (char& c : text)
     c = static_cast<char>(c - 'A' + 'a');
   text += " " + std::to_string(feature.id);

@@ -150,27 +150,13 @@ double distance_to(const Feature& feature, const Vec2& position) {
 Topology::Topology(const Map& map) {
   std::vector<Feature> gates;
   for (const Feature& feature : map.features) {
-    switch (feature.type) {
-      case PointType::corridor:
-      case PointType::lane:
-        regions_.push_back({RegionKind::corridor, feature, {}});
-        break;
-      case PointType::junction:
-        regions_.push_back({RegionKind::junction, feature, {}});
-        break;
-      case PointType::office:
-        regions_.push_back({RegionKind::room, feature, {}});
-        break;
-      case PointType::door:
-      case PointType::breach:
-        gates.push_back(feature);
-        break;
-      case PointType::position:
-        positions_.push_back(feature);
-        break;
-      default:
-        break;
-    }
+    const ArtifactTraits& of_type = traits(feature.type);
+    if (of_type.region)
+      regions_.push_back({*of_type.region, feature, {}});
+    else if (of_type.gate)
+      gates.push_back(feature);
+    else if (feature.type == PointType::position)
+      positions_.push_back(feature);
   }
   const std::size_t of_map = regions_.size();
   for (std::size_t a = 0; a < of_map; ++a)

@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "broken_text.hpp"
 #include "saphira/base/random.hpp"
+#include "saphira/maps/drawing.hpp"
+#include "saphira/maps/topology.hpp"
 
 namespace saphira::maps {
 namespace {
@@ -179,6 +182,38 @@ TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
     EXPECT_NE(std::string(error.what()).find("cut off"), std::string::npos);
   }
   std::remove(path.c_str());
+}
+
+// What README.md says of another type: with its traits it is read, written, drawn and driven
+// through.
+TEST(ArtifactTraits, AreAllThatMapsAskOfAType) {
+  std::set<std::string_view> words;
+  for (const ArtifactTraits& each : kArtifactTraits) {
+    Feature feature;
+    feature.type = each.type;
+    feature.id = each.id ? 7 : 0;
+    feature.pose_in_map = {1.0, 2.0, 0.5};
+    feature.length = each.length ? 3.0 : 0.0;
+    feature.width = each.width ? 2.0 : 0.0;
+    if (each.word.empty()) {
+      EXPECT_EQ(each.type, PointType::invalid);
+      EXPECT_THROW(to_text({{feature}}), std::invalid_argument);
+      continue;
+    }
+    EXPECT_TRUE(words.insert(each.word).second) << each.word;
+    const std::string text = to_text({{feature}});
+    EXPECT_TRUE(text.starts_with(each.word)) << text;
+    const Map read = parse_map(text, "test");
+    ASSERT_EQ(read.features.size(), 1U);
+    EXPECT_EQ(read.features[0].type, each.type);
+    EXPECT_EQ(to_text(read), text);
+    EXPECT_EQ(Topology(read).regions().size(), each.region ? 1U : 0U) << each.word;
+    Drawing drawing;
+    drawing.map = read;
+    const std::string svg = to_svg(drawing);
+    EXPECT_TRUE(each.area.empty() || svg.find(each.area) != std::string::npos) << each.word;
+  }
+  EXPECT_EQ(words.size(), kArtifactTraits.size() - 1);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "saphira/base/numbers.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -27,13 +28,11 @@ struct Interval {
 };
 
 bool is_region(const Feature& feature) {
-  return feature.type == PointType::corridor || feature.type == PointType::lane ||
-         feature.type == PointType::office || feature.type == PointType::junction;
+  return maps::traits(feature.type).region.has_value();
 }
 
 bool is_way(const Feature& feature) {
-  return feature.type == PointType::corridor || feature.type == PointType::lane ||
-         feature.type == PointType::junction;
+  return is_region(feature) && maps::traits(feature.type).region != maps::RegionKind::room;
 }
 
 /// Whether one walks from the one into the other where they touch.
@@ -153,7 +152,7 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
     // Doors and breaks first, so that a corridor behind one is not another opening.
     for (std::size_t i = 0; i < map.features.size(); ++i) {
       const Feature& door = map.features[i];
-      if (door.type != PointType::door && door.type != PointType::breach)
+      if (!maps::traits(door.type).gate)
         continue;
       const Vec2 off = door.pose_in_map.position() - side.start;
       const double at = off.dot(side.way);

@@ -88,15 +88,9 @@ bool ObjectFinder::is_explained(const maps::Map& map, const Field& field, const 
   }
   const Vec2 end = look.end();
   return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& feature) {
-    switch (feature.type) {
-      case PointType::door:
-      case PointType::breach:
-        return maps::distance_to(feature, end) < settings_.off;
-      case PointType::object:
-        return feature.id != own && maps::distance_to(feature, end) < settings_.off;
-      default:
-        return false;
-    }
+    const bool counts =
+        feature.type == PointType::object ? feature.id != own : maps::traits(feature.type).gate;
+    return counts && maps::distance_to(feature, end) < settings_.off;
   });
 }
 

@@ -21,18 +21,12 @@ enum class Kind { none, thing, door };
 Kind kind_of(const Feature& feature) {
   if (feature.id == 0)
     return Kind::none;
-  switch (feature.type) {
-    case PointType::object:
-      return Kind::thing;
-    case PointType::wall:
-      return feature.learned ? Kind::thing : Kind::none;
-    case PointType::door:
-      return Kind::door;
-    case PointType::breach:
-      return feature.learned ? Kind::door : Kind::none;
-    default:
-      return Kind::none;
-  }
+  const maps::ArtifactTraits& of_type = maps::traits(feature.type);
+  using Missing = maps::ArtifactTraits::Missing;
+  if (of_type.missing == Missing::stays ||
+      (of_type.missing == Missing::learned && !feature.learned))
+    return Kind::none;
+  return of_type.gate ? Kind::door : Kind::thing;
 }
 
 /// Where a line goes in and out of something [m].

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/maps/artifact_traits.hpp"
 #include "saphira/registration/state.hpp"
 
 namespace saphira::registration {
@@ -16,37 +17,6 @@ constexpr double kNear = 1.0;                // [m] another place within this an
 constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther off it was lost
 constexpr std::size_t kTurns = 600;          // cycles
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
-
-/// Hypotheses before features, paper 3.2: what constrains most comes first.
-int order(PointType type) {
-  switch (type) {
-    case PointType::corridor:
-      return 0;
-    case PointType::wall:
-      return 1;
-    case PointType::junction:
-      return 2;
-    case PointType::door:
-      return 3;
-    default:
-      return 4;
-  }
-}
-
-int rank(PointType type) {
-  switch (type) {
-    case PointType::junction:
-      return 3;
-    case PointType::corridor:
-      return 2;
-    case PointType::lane:
-      return 1;
-    case PointType::office:
-      return 0;
-    default:
-      return -1;
-  }
-}
 
 Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -306,7 +276,7 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
     result.push_back(&percept);
   }
   std::stable_sort(result.begin(), result.end(), [](const Percept* a, const Percept* b) {
-    return order(a->type) < order(b->type);
+    return maps::traits(a->type).match_order < maps::traits(b->type).match_order;
   });
   return result;
 }
@@ -330,8 +300,7 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
     const Match result =
         match(*percept, now_.pose_in_odom, map_, lines_, settings_.match, *now_.filter);
     // Walls are drawn through what dead reckoning put together; the cloud has their readings.
-    if (result.accepted && !now_.cloud.empty() &&
-        order(percept->type) >= order(PointType::junction))
+    if (result.accepted && !now_.cloud.empty() && !maps::traits(percept->type).straight)
       now_.cloud.learn(before, covariance_before, now_.filter->pose(),
                        now_.filter->pose_covariance());
     if (result.accepted)
@@ -544,8 +513,9 @@ void Registration::Self::find_environment() {
   int best = -1;
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& feature = map_.features[i];
-    const int r = rank(feature.type);
-    if (r < best || !maps::contains(feature, now_.filter->pose().position()))
+    const maps::ArtifactTraits& of_type = maps::traits(feature.type);
+    const int r = of_type.environment;
+    if (!of_type.region || r < best || !maps::contains(feature, now_.filter->pose().position()))
       continue;
     // Where two of a kind cross, it stays in the one that it is in.
     if (r > best || (before && *before == i)) {

@@ -7,11 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/map.hpp"
 
 namespace saphira::maps {
-
-enum class RegionKind { corridor, junction, room };
 
 /// A rectangle of the floor that one can be in: of a corridor or lane, a junction, or a room. A
 /// room of several rectangles is several regions of one name.

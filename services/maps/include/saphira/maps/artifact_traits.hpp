@@ -1,0 +1,130 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "saphira/base/enumerators.hpp"
+#include "saphira/lps/artifact.hpp"
+
+namespace saphira::maps {
+
+enum class RegionKind { corridor, junction, room };
+
+/// What distinguishes the types of artifacts, as far as a map and registration ask: the one place
+/// to say so. Maps, their files, pictures and routes, and what registration makes of them, follow.
+struct ArtifactTraits {
+  lps::PointType type;
+  std::string_view word;  ///< on a line of a map file; empty: no map holds it
+
+  // What stands on its line.
+  bool id = false;
+  bool length = false;
+  bool width = false;
+
+  std::optional<RegionKind> region = {};  ///< of the floor, that one can be in
+  /// Where the robot is in several, it is in the one with the largest number (manual 8.1.2).
+  int environment = 0;
+  bool gate = false;      ///< an opening in a wall, a way from one region into another
+  bool straight = false;  ///< goes on along its heading, and is the same from either end
+
+  /// What becomes of one that is seen to be missing (paper 3.2.2).
+  enum class Missing {
+    stays,    ///< it is never looked for
+    learned,  ///< one that the robot has put down itself is looked for; what a person wrote stays
+    watched   ///< it is looked for; a gate may be closed, anything else is gone
+  };
+  Missing missing = Missing::stays;
+
+  /// Percepts are matched in this order: what constrains the pose most comes first (paper 3.2).
+  int match_order = 4;
+
+  // As an area of a picture; empty: it is none, or drawn in its own way.
+  std::string_view area = {};
+  int layer = 0;  ///< areas of larger ones are drawn later
+};
+
+// CORRIDOR, DOOR and WALL are the manual's lines of a map file (6.9.1); the others have the names
+// of its point types (6.6.3.1), in the same form.
+inline constexpr std::array<ArtifactTraits, 10> kArtifactTraits{{
+    {.type = lps::PointType::corridor,
+     .word = "CORRIDOR",
+     .id = true,
+     .length = true,
+     .width = true,
+     .region = RegionKind::corridor,
+     .environment = 2,
+     .straight = true,
+     .match_order = 0,
+     .area = R"(fill="#56b4e9" fill-opacity="0.25" stroke="#0072b2" stroke-width="0.05")",
+     .layer = 1},
+    {.type = lps::PointType::door,
+     .word = "DOOR",
+     .id = true,
+     .width = true,
+     .gate = true,
+     .missing = ArtifactTraits::Missing::watched,
+     .match_order = 3},
+    {.type = lps::PointType::wall,
+     .word = "WALL",
+     .length = true,
+     .straight = true,
+     .missing = ArtifactTraits::Missing::learned,
+     .match_order = 1},
+    {.type = lps::PointType::lane,
+     .word = "LANE",
+     .id = true,
+     .length = true,
+     .width = true,
+     .region = RegionKind::corridor,
+     .environment = 1,
+     .straight = true,
+     .area = R"(fill="#56b4e9" fill-opacity="0.25" stroke="#0072b2" stroke-width="0.05")",
+     .layer = 1},
+    {.type = lps::PointType::junction,
+     .word = "JUNCTION",
+     .id = true,
+     .length = true,
+     .width = true,
+     .region = RegionKind::junction,
+     .environment = 3,
+     .match_order = 2,
+     .area = R"(fill="#f0e442" fill-opacity="0.5" stroke="#a89c00" stroke-width="0.04")",
+     .layer = 2},
+    {.type = lps::PointType::office,
+     .word = "OFFICE",
+     .id = true,
+     .length = true,
+     .width = true,
+     .region = RegionKind::room,
+     .area = R"(fill="#fdf3dc" fill-opacity="0.6" stroke="#d8c9a0" stroke-width="0.04")"},
+    {.type = lps::PointType::breach,
+     .word = "BREAK",
+     .id = true,
+     .width = true,
+     .gate = true,
+     .missing = ArtifactTraits::Missing::learned},
+    {.type = lps::PointType::object,
+     .word = "OBJECT",
+     .id = true,
+     .length = true,
+     .width = true,
+     .missing = ArtifactTraits::Missing::watched},
+    {.type = lps::PointType::position, .word = "POS", .id = true},
+    {.type = lps::PointType::invalid, .word = ""},
+}};
+
+constexpr const ArtifactTraits& traits(lps::PointType type) {
+  for (const ArtifactTraits& each : kArtifactTraits)
+    if (each.type == type)
+      return each;
+  return kArtifactTraits.back();
+}
+
+static_assert(std::all_of(kEnumerators<lps::PointType>.begin(), kEnumerators<lps::PointType>.end(),
+                          [](lps::PointType type) { return traits(type).type == type; }),
+              "a type of artifacts has no traits");
+
+}  // namespace saphira::maps
