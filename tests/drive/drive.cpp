@@ -54,10 +54,14 @@ const Seen& Drive::advance() {
   seen_.velocity = robot_->velocity();
   seen_.rotation_velocity = robot_->rotation_velocity();
   seen_.true_pose_in_world = robot_->pose_in_world();
+  seen_.left_stalled = robot_->left_stalled();
+  seen_.right_stalled = robot_->right_stalled();
+  robot_->clear_stalls();
 
   intent_ = {seen_.cycle - 1, !by_hand_ && control_, intended_};
   const behaviors::Inputs inputs{seen_.cycle,
-                                 {seen_.pose_in_odom, seen_.velocity, seen_.rotation_velocity},
+                                 {seen_.pose_in_odom, seen_.velocity, seen_.rotation_velocity, 0.0,
+                                  seen_.left_stalled, seen_.right_stalled},
                                  seen_.readings,
                                  &intent_};
   output_ = executive_.step(inputs);

@@ -38,6 +38,8 @@ struct Seen {
   double rotation_velocity = 0.0;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
   Pose true_pose_in_world;
+  bool left_stalled = false;
+  bool right_stalled = false;
 };
 
 /// A robot in a world that drives towards points with AvoidCollision, KeepOff and GoToPos, as the

@@ -151,9 +151,8 @@ void Whole::advance() {
   if (registered.state == registration::State::tracking ||
       registered.state == registration::State::off)
     inputs.robot.odom_in_map = compose(registered.pose_in_map, relative(was_in_odom, Pose{}));
-  inputs.robot.left_stalled = drive_.robot().left_stalled();
-  inputs.robot.right_stalled = drive_.robot().right_stalled();
-  drive_.robot().clear_stalls();
+  inputs.robot.left_stalled = seen.left_stalled;
+  inputs.robot.right_stalled = seen.right_stalled;
   inputs.around.lps = &drive_.executive().lps();
   inputs.around.percepts = &seen_before;
   if (sees_)

@@ -9,16 +9,18 @@ namespace {
 constexpr double kTowards = radians(60.0);
 constexpr std::uint64_t kTurnCycles = 10;
 
-/// A robot may take ten seconds past a person whom it does not hear any more.
-lps::MemorySettings long_memory() {
+/// A robot may take ten seconds past a person whom it does not hear any more. Where nothing was,
+/// somebody may step in: space that was heard to be free makes no echo less believable.
+lps::MemorySettings cautious_memory() {
   lps::MemorySettings settings;
+  settings.least = 0.0;
   settings.fading = 0.985;
   return settings;
 }
 
 }  // namespace
 
-EchoMap::EchoMap(double range) : range_(range), memory_(long_memory()) {}
+EchoMap::EchoMap(double range) : range_(range), memory_(cautious_memory()) {}
 
 void EchoMap::clear() {
   memory_.clear();

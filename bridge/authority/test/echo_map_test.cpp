@@ -116,5 +116,14 @@ TEST(Robot, ReactsAfterHalfARoundOfItsSonars) {
   EXPECT_NEAR(body_of(parameters).reaction, 0.36, 1e-9);
 }
 
+// A person who steps in is believed at his first echo, however long nobody was there.
+TEST(EchoMap, BelievesTheFirstEchoInSpaceThatWasFree) {
+  EchoMap map;
+  for (std::uint64_t cycle = 0; cycle < 100; ++cycle)
+    map.update(cycle, {}, {echo(kAhead, 2.4)});
+  map.update(100, {}, {echo(kAhead, 0.8)});
+  EXPECT_TRUE(any_near(map.spots(), {0.96, 0.0}));
+}
+
 }  // namespace
 }  // namespace saphira::authority

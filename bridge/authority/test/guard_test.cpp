@@ -31,7 +31,7 @@ TEST(Guard, StopsBeforeWhatIsAhead) {
 }
 
 TEST(Guard, SlowsOnTheApproach) {
-  const Guarded out = guard({}, kPioneer, {{0.56, 0.05}}, 0.4, 0.0);
+  const Guarded out = guard({}, kPioneer, {{0.7, 0.05}}, 0.4, 0.0);
   EXPECT_EQ(out.action, GuardAction::slow);
   EXPECT_GT(out.velocity, 0.05);
   EXPECT_LT(out.velocity, 0.4);
@@ -85,7 +85,8 @@ TEST(Guard, ApproachesSlowlyWhereAPersonMayReachIntoThePath) {
   const Vec2 shin(0.15, 0.32);
   const Guarded out = guard({}, kPioneer, {shin}, 0.4, 0.0);
   EXPECT_EQ(out.action, GuardAction::slow);
-  EXPECT_NEAR(out.velocity * shin.x() / shin.norm(), 0.05, 1e-9) << "towards it";
+  EXPECT_NEAR(out.velocity * shin.x() / shin.norm(), GuardSettings{}.touch_velocity, 1e-9)
+      << "towards it";
   EXPECT_NE(out.reason.find("beside the path"), std::string::npos) << out.reason;
   EXPECT_EQ(guard({}, kPioneer, {{0.15, 0.66}}, 0.4, 0.0).action, GuardAction::none);
   EXPECT_EQ(guard({}, kPioneer, {{-0.05, 0.34}}, 0.4, 0.0).action, GuardAction::none) << "passed";

@@ -44,8 +44,8 @@ RobotModel from_bus(const v1::RobotDescription& description) {
 }
 
 RobotNow from_bus(const v1::RobotState& state) {
-  return {lps::from_bus(state.pose_in_odom()), state.velocity(), state.rotation_velocity(),
-          state.target_heading_in_odom()};
+  return {lps::from_bus(state.pose_in_odom()), state.velocity(),     state.rotation_velocity(),
+          state.target_heading_in_odom(),      state.left_stalled(), state.right_stalled()};
 }
 
 Argument from_bus(const v1::Argument& argument) {

@@ -24,6 +24,8 @@ constexpr double kCycle = 0.1;           // [s]
 constexpr double kFarEnough = 3.0;       // [m] of free way that is looked at
 constexpr double kMargin = 0.05;         // [m] by which what the sonars see may be nearer,
 constexpr double kMarginOfRange = 0.03;  // and that per metre
+// Where a hull touches that stalls one wheel.
+constexpr double kTouchBearing = radians(60.0);
 constexpr const char* kSlow = "the network, or a computer, is slow: ";
 
 std::string number(const char* format, double value) {
@@ -82,6 +84,7 @@ void Executive::reset() {
   reconciled_.clear();
   reconcile_trouble_.clear();
   missing_.clear();
+  backwards_ = false;
   newest_intent_ = 0;
   intent_came_ = 0;
   intent_age_ = {};
@@ -93,8 +96,23 @@ void Executive::reset(RobotModel model) {
   reset();
 }
 
+// A stall says on which side, and the way that the robot was told to go says the rest.
+void Executive::feel(const RobotNow& robot) {
+  if (!robot.left_stalled && !robot.right_stalled)
+    return;
+  double bearing = 0.0;
+  if (!robot.right_stalled)
+    bearing = kTouchBearing;
+  else if (!robot.left_stalled)
+    bearing = -kTouchBearing;
+  if (backwards_)
+    bearing = kPi - bearing;
+  lps_.touch(model_.radius * Vec2(std::cos(bearing), std::sin(bearing)));
+}
+
 Output Executive::step(const Inputs& inputs) {
   lps_.update(inputs.robot.pose_in_odom, inputs.sonars, inputs.cycle);
+  feel(inputs.robot);
   Output output;
   if (inputs.intent != nullptr) {
     if (newest_intent_ != inputs.intent->cycle || intent_came_ == 0) {
@@ -155,6 +173,7 @@ Output Executive::step(const Inputs& inputs) {
     output.speed_limit = 0.0;
   else
     limit_speed(inputs, output);
+  backwards_ = output.speed < 0.0;
   return output;
 }
 

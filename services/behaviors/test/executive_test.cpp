@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -230,6 +231,21 @@ TEST_F(ExecutiveTest, ABehaviorThatThrowsOrIsNotANumberDoesNotDriveAndIsTold) {
     EXPECT_EQ(counts_.updates, throws > 0.0 ? 2 : 1);
     EXPECT_EQ(output.heading_in_odom, 0.0);
   }
+}
+
+// Sonars do not hear what touches the hull between two beams: a stall tells it.
+TEST_F(ExecutiveTest, ItTurnsAwayFromWhatItHasRunInto) {
+  const auto drive = [&] {
+    return step({{"avoid", "AvoidCollision", 0, true, {}},
+                 {"on", "ConstantVelocity", 1, true, {number("speed", 0.2)}}});
+  };
+  EXPECT_GT(drive().speed, 0.1);
+  robot_.left_stalled = true;
+  const Output left = drive();
+  EXPECT_LT(left.speed, 0.02);
+  EXPECT_LT(left.heading_in_odom, 0.0);
+  EXPECT_TRUE(std::any_of(executive_.lps().obstacles().begin(), executive_.lps().obstacles().end(),
+                          [](const Vec2& at) { return at.y() > 0.1 && at.x() > 0.0; }));
 }
 
 TEST_F(ExecutiveTest, ResetBeginsAnew) {

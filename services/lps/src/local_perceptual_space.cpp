@@ -80,6 +80,11 @@ void LocalPerceptualSpace::update(const Pose& robot_in_odom,
   register_artifacts();
 }
 
+void LocalPerceptualSpace::touch(const Vec2& at_in_robot) {
+  memory_.touch(transform(robot_in_odom_, at_in_robot));
+  register_readings();
+}
+
 LocalPerceptualSpace LocalPerceptualSpace::seen_from(const Pose& robot_in_odom) const {
   LocalPerceptualSpace seen = *this;
   seen.robot_in_global_ = compose(robot_in_global_, relative(robot_in_odom_, robot_in_odom));

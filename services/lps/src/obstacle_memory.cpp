@@ -8,6 +8,8 @@ namespace {
 
 /// [m] The grid follows when the robot is so far from its middle.
 constexpr double kFollow = 0.5;
+/// [m] Whatever the robot has run into is no smaller, to each side.
+constexpr double kTouched = 0.1;
 
 std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
@@ -95,7 +97,7 @@ void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt)
   const double soft = 1.0 - std::tan(settings_.sure) / std::tan(settings_.beam);
   for_cone(sonar_in_odom, range, [&](double& belief, double /*distance*/, double off) {
     const double sure = std::min((1.0 - off) / soft, 1.0);
-    belief = std::max(belief - doubt * sure, -settings_.most);
+    belief = std::max(belief - doubt * sure, settings_.least);
   });
 }
 
@@ -122,6 +124,18 @@ void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
 
 void ObstacleMemory::silence(const Pose& sonar_in_odom) {
   pass(sonar_in_odom, settings_.silent_range, settings_.silent);
+}
+
+void ObstacleMemory::touch(const Vec2& at_in_odom) {
+  const double cell = settings_.cell;
+  const long n = settings_.cells;
+  for (long row = 0; row < n; ++row)
+    for (long column = 0; column < n; ++column) {
+      const Vec2 middle((static_cast<double>(column + column0_) + 0.5) * cell,
+                        (static_cast<double>(row + row0_) + 0.5) * cell);
+      if ((middle - at_in_odom).norm() <= kTouched)
+        beliefs_[static_cast<std::size_t>(row * n + column)] = settings_.most;
+    }
 }
 
 void ObstacleMemory::collect(const Pose& robot_in_odom) {

@@ -131,5 +131,19 @@ TEST(ObstacleMemory, NeighboursNarrowTheArc) {
   EXPECT_GT(nearest(memory, {std::cos(radians(-11)), std::sin(radians(-11))}), 0.06);
 }
 
+TEST(ObstacleMemory, WhatWasTouchedIsAnObstacleUntilBeamsFindItsPlaceEmpty) {
+  ObstacleMemory memory;
+  memory.move_to({});
+  memory.touch({0.3, 0.0});
+  memory.collect({});
+  ASSERT_FALSE(memory.points().empty());
+  for (const Vec2& point : memory.points())
+    EXPECT_LT((point - Vec2(0.3, 0.0)).norm(), 0.1 + 1e-9);
+  for (int i = 0; i < 12; ++i)
+    memory.echo(kOrigin, 2.0);
+  memory.collect({});
+  EXPECT_GT(nearest(memory, {0.35, 0.0}), 0.06) << "the beam passes here";
+}
+
 }  // namespace
 }  // namespace saphira::lps

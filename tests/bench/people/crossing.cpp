@@ -12,8 +12,6 @@
 
 namespace saphira::test {
 
-namespace {
-
 constexpr double kCell = 0.1;     // [m]
 constexpr double kRoom = 0.15;    // [m] beside the hull
 constexpr double kComfort = 0.7;  // [m] more room than this is no better
@@ -48,7 +46,8 @@ class Ways {
   std::optional<int> nearest(const Vec2& at) const {
     std::optional<int> best;
     for (int i = 0; i < columns_ * rows_; ++i)
-      if (room(i) >= needed_ && (!best || (centre(i) - at).norm() < (centre(*best) - at).norm()))
+      if (room(i) >= needed_ && (length_.empty() || length(i) < kNever) &&
+          (!best || (centre(i) - at).norm() < (centre(*best) - at).norm()))
         best = i;
     return best;
   }
@@ -107,6 +106,14 @@ class Ways {
     std::reverse(way.begin(), way.end());
     return way;
   }
+  /// A point so many cells along the way to where the ways begin.
+  Vec2 back_from(const Vec2& at, int cells) const {
+    const auto here = cell_at(at);
+    int cell = here && length(*here) < kNever ? *here : *nearest(at);
+    for (int i = 0; i < cells && before_[static_cast<std::size_t>(cell)] >= 0; ++i)
+      cell = before_[static_cast<std::size_t>(cell)];
+    return centre(cell);
+  }
   std::optional<int> cell_at(const Vec2& at) const {
     const int column = static_cast<int>(at.x() / kCell);
     const int row = static_cast<int>(at.y() / kCell);
@@ -124,6 +131,8 @@ class Ways {
   std::vector<double> length_;
   std::vector<int> before_;
 };
+
+namespace {
 
 sim::PersonPlan person_at(const Vec2& at, const std::string& name) {
   sim::PersonPlan person;
@@ -250,6 +259,8 @@ std::optional<Crossing> plan_crossing(const CrossingOptions& options,
   ways.spread(*start);
   crossing.way = ways.way_to(ways.farthest(options.most));
   crossing.length = static_cast<double>(crossing.way.size()) * kCell;
+  ways.spread(*ways.nearest(crossing.way.back()));
+  crossing.ways = std::make_shared<const Ways>(ways);
   if (crossing.length < kShortest)
     return std::nullopt;
   const Vec2 ahead = along(crossing.way, 3);
@@ -283,20 +294,14 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   const double slow = std::min(1.0, drive.parameters().sonar_max_range / 1.0);
   const double limit = 120.0 + 20.0 * crossing.length / std::max(0.2, slow);
   const double near = std::max(0.15, 0.5 * radius);
-  std::size_t at = 0;
   while (result.seconds < limit) {
     const Pose pose = drive.seen().true_pose_in_world;
-    for (std::size_t i = at; i < std::min(crossing.way.size(), at + 30); ++i)
-      if ((crossing.way[i] - pose.position()).norm() < (crossing.way[at] - pose.position()).norm())
-        at = i;
-    const std::size_t ahead =
-        std::min(crossing.way.size() - 1, at + static_cast<std::size_t>(kCarrot / kCell));
+    const Vec2 ahead = crossing.ways->back_from(pose.position(), static_cast<int>(kCarrot / kCell));
     if ((crossing.way.back() - pose.position()).norm() < near) {
       result.arrived = true;
       break;
     }
-    drive.go_to(transform(drive.seen().pose_in_odom, to_frame(pose, crossing.way[ahead])), 0.4,
-                near);
+    drive.go_to(transform(drive.seen().pose_in_odom, to_frame(pose, ahead)), 0.4, near);
     drive.advance();
     result.seconds += 0.1;
     if (trace)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,12 +10,15 @@
 
 namespace saphira::test {
 
+class Ways;
+
 /// A drive across a world in which people stand and walk.
 struct Crossing {
   sim::World world;  ///< with the people in it
   Pose start_in_world;
   std::vector<Vec2> way;  ///< [m] in the world, a point each 0.1 m; the last one is the goal
   double length = 0.0;    ///< [m]
+  std::shared_ptr<const Ways> ways;  ///< to the goal, from wherever the robot is
 };
 
 struct CrossingOptions {

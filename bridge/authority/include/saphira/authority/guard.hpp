@@ -35,10 +35,10 @@ struct GuardSettings {
   /// [m] A person may reach so far beyond the shin that was heard: nearer than this to anything
   /// the hull does not approach it faster than...
   double person = 0.15;
-  double touch_velocity = 0.05;  ///< [m/s] ...this
+  double touch_velocity = 0.035;  ///< [m/s] ...this
   /// [m/s] What stands ahead may come towards the robot meanwhile, so that it is slow in time...
   double closing_velocity = 0.4;
-  double careful_velocity = 0.1;  ///< [m/s] ...down to this
+  double careful_velocity = 0.05;  ///< [m/s] ...down to this
   /// [m] What stands this near beside the path may step into it: it is not passed faster than...
   double beside = 0.4;
   double beside_velocity = 0.15;       ///< [m/s] ...this

@@ -30,6 +30,8 @@ struct RobotNow {
   double velocity = 0.0;                ///< [m/s]
   double rotation_velocity = 0.0;       ///< [rad/s]
   double target_heading_in_odom = 0.0;  ///< [rad] that the robot turns to
+  bool left_stalled = false;            ///< a wheel pushes against something
+  bool right_stalled = false;
 };
 
 enum class Side { none, left, right };

@@ -127,6 +127,7 @@ class Executive {
   /// Takes note of how old everything is, and cuts the speed to what that allows.
   void limit_speed(const Inputs& inputs, Output& output);
   /// Makes the instances what is intended; returns what was wrong.
+  void feel(const RobotNow& robot);
   std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
   /// `same` is the instance of that name and schema; nullptr where there is none.
   std::string adopt(const Intended& intended, const Pose& robot_in_odom, Instance* same,
@@ -144,6 +145,7 @@ class Executive {
   std::vector<Missing> missing_;
   std::uint64_t newest_intent_ = 0;  ///< its cycle
   std::uint64_t intent_came_ = 0;    ///< the cycle in which it was there first
+  bool backwards_ = false;           ///< the robot was told so in the cycle before
   PeakAge intent_age_;               ///< beyond the ordinary
 };
 

@@ -59,6 +59,8 @@ class LocalPerceptualSpace {
   /// the robot turns by ten in a cycle, half a sonar's cone.
   void update(const Pose& robot_in_odom, const std::vector<SonarReading>& readings,
               std::uint64_t cycle);
+  /// The robot has run into something, here from its middle: as much an obstacle as what is heard.
+  void touch(const Vec2& at_in_robot);
   /// The same as it will look when the robot is at `robot_in_odom`.
   LocalPerceptualSpace seen_from(const Pose& robot_in_odom) const;
   /// Forgets everything but the settings.

@@ -18,7 +18,8 @@ struct MemorySettings {
   double passed = 0.6;          ///< taken away where a beam with an echo has passed
   double silent = 0.4;          ///< taken away where a beam without an echo has passed
   double silent_range = 1.0;    ///< [m] up to which silence means something
-  double most = 4.0;            ///< a belief stays within this of 0
+  double most = 4.0;            ///< no belief grows above this...
+  double least = -4.0;          ///< ...or below this
   double obstacle = 0.8;        ///< belief from which on there is one
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
@@ -42,6 +43,8 @@ class ObstacleMemory {
   void echo(const Pose& sonar_in_odom, double range);
   /// A beam met nothing.
   void silence(const Pose& sonar_in_odom);
+  /// The robot has run into something here.
+  void touch(const Vec2& at_in_odom);
   /// A cycle has passed, and the robot is here: before the beams of the cycle.
   void move_to(const Pose& robot_in_odom);
   /// Registers the obstacles with the robot: after the beams of the cycle.
