@@ -3,99 +3,33 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <csignal>
-#include <fstream>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "node_options.hpp"
-#include "process.hpp"
+#include "lockstep.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/bus/goal_client.hpp"
-#include "saphira/bus/node.hpp"
-#include "saphira/sim/trace.hpp"
 
 namespace saphira::test {
 namespace {
 
-bus::NodeOptions in_lockstep(const std::string& robot) {
-  bus::NodeOptions options = node_options("test", robot);
-  options.lockstep = true;
-  return options;
-}
-
 // Ann waits, walks away before the robot, and turns around a corner.
-class Walker {
+class Walker : public LockstepSystem {
  public:
-  Walker() {
-    const std::string world = folder.path("walker.wld");
-    std::ofstream(world) << read_file(source("config/worlds/office-floor.wld"))
-                         << "\nperson ann 17500 10500 color red\n"
-                            "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
-    run({"saphira-sim", "--step", "--world", world, "--robot-file",
-         source("config/robots/pioneer.p"), "--socket", folder.path("robot"), "--stereo-socket",
-         folder.path("eyes"), "--trace", folder.path("trace.csv"), "--seed", "1"});
-    on_bus({"saphira-bridge", "--link", "unix:" + folder.path("robot"), "--robots",
-            source("config/robots"), "--vision"});
-    on_bus({"saphira-vision", "--stereo-socket", folder.path("eyes")});
-    on_bus({"saphira-behaviors"});
-    on_bus({"saphira-intentions", "--vision"});
-    on_bus({"saphira-interpretation"});
-    on_bus({"saphira-registration", "--map", source("config/maps/office-floor.map")});
-  }
+  Walker()
+      : LockstepSystem({.world = read_file(source("config/worlds/office-floor.wld")) +
+                                 "\nperson ann 17500 10500 color red\n"
+                                 "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n",
+                        .robot = "pioneer",
+                        .map = "office-floor",
+                        .vision = true}) {}
 
-  /// Asks for the goal, and waits until it is there: before the first cycle.
   v1::GoalId follow() {
     v1::Goal goal;
     goal.functor("follow-person");
     goal.arguments({bus::number("seconds", 40.0)});
-    const v1::GoalId id = goals.ask(goal);
-    EXPECT_TRUE(wait_until([&] {
-      node.wait(std::chrono::milliseconds(50));
-      goals.poll();
-      return goals.status(id).has_value();
-    })) << output();
-    return id;
-  }
-  /// Lets the robot make its steps up to that cycle.
-  void permit(std::uint64_t until) {
-    v1::StepPermit sample;
-    sample.until_cycle(until);
-    permits.write(sample);
-  }
-  /// Ends the simulator, which completes its trace, and gives that.
-  std::string end() {
-    processes.front()->signal(SIGTERM);
-    processes.front()->wait();
-    return read_file(folder.path("trace.csv"));
-  }
-  std::string output() const {
-    std::string all;
-    for (const auto& process : processes)
-      all += process->output() + "\n";
-    return all;
+    return ask(goal);
   }
 
-  TempDir folder;
-  std::string robot = unique_robot();
-  bus::Node node{in_lockstep(robot)};
-  bus::GoalClient goals{node, "test"};
-  bus::Writer<v1::StepPermit> permits = node.writer(bus::topics::kStepPermit);
   bus::Reader<v1::Vision> visions = node.reader(bus::topics::kVision);
-  std::vector<std::unique_ptr<Process>> processes;
-
- private:
-  void on_bus(std::vector<std::string> argv) {
-    for (const std::string& word : {std::string("--robot"), robot, std::string("--domain"),
-                                    domain(), std::string("--lockstep")})
-      argv.push_back(word);
-    run(std::move(argv));
-  }
-  void run(std::vector<std::string> argv) {
-    const std::string log = folder.path(argv.front() + ".log");
-    processes.push_back(std::make_unique<Process>(std::move(argv), log));
-  }
 };
 
 TEST(SeeingAcceptance, AWalkerIsFollowed) {

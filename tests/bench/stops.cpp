@@ -43,8 +43,9 @@ constexpr std::array kLosses{Loss::driver, Loss::bridge, Loss::line, Loss::estop
 constexpr std::array kNames{"driver", "bridge", "line", "estop"};
 
 struct Roll {
-  double time = 0.0;  ///< [s]
-  double way = 0.0;   ///< [m]
+  double velocity = 0.0;  ///< [m/s] before
+  double time = 0.0;      ///< [s]
+  double way = 0.0;       ///< [m]
 };
 
 /// A robot, its line, a bridge and a driver.
@@ -63,7 +64,8 @@ class Ride {
 
   Roll lose(Loss loss) {
     drive_ = true;
-    need(until([&] { return newest().velocity >= 0.97 * velocity_; }), "it does not drive");
+    need(until([&] { return permitted() && newest().velocity >= 0.97 * *permitted(); }),
+         "it does not drive");
     const std::vector<sim::TraceRow> before = rows();
     if (loss == Loss::driver)
       drive_ = false;
@@ -81,9 +83,10 @@ class Ride {
     while (still + 1 < all.size() && std::abs(all[still].velocity) > kStill)
       ++still;
     const Roll roll{
-        static_cast<double>(still - lost) * kCycle,
+        before.back().velocity, static_cast<double>(still - lost) * kCycle,
         (all[still].pose_in_world.position() - all[lost].pose_in_world.position()).norm()};
     // As before.
+    grant_.reset();
     drive_ = false;
     pressed_ = false;
     line_->cut(false);
@@ -109,6 +112,13 @@ class Ride {
         "serial:" + folder_.path("tty") + "@38400"});
   }
 
+  /// [m/s] What the bridge lets the driver have: the guard slows a robot that hears nobody in time.
+  std::optional<double> permitted() const {
+    return grant_ && grant_->role() == v1::ROLE_DIRECT && grant_->velocity() > 0.0
+               ? std::optional(grant_->velocity())
+               : std::nullopt;
+  }
+
   std::vector<sim::TraceRow> rows() const {
     if (!std::filesystem::exists(folder_.path("trace.csv")))
       return {};
@@ -125,6 +135,8 @@ class Ride {
       node_.wait(milliseconds(25));
       if (const auto state = states_.take_newest())
         state_ = *state;
+      if (auto grant = grants_.take_newest())
+        grant_ = std::move(grant);
       if (drive_)
         write(driver_, true);
       if (pressed_)
@@ -159,10 +171,12 @@ class Ride {
   bus::Writer<v1::MotorCommand> driver_ = node_.writer(bus::topics::kDriveDirect);
   bus::Writer<v1::MotorCommand> button_ = node_.writer(bus::topics::kDriveEstop);
   bus::Reader<v1::RobotState> states_ = node_.reader(bus::topics::kRobotState);
+  bus::Reader<v1::Grant> grants_ = node_.reader(bus::topics::kGrant);
   std::unique_ptr<bench::Child> simulator_;
   std::unique_ptr<test::SerialLine> line_;
   std::unique_ptr<bench::Child> bridge_;
   v1::RobotState state_;
+  std::optional<v1::Grant> grant_;
   bool drive_ = false;
   bool pressed_ = false;
   std::uint64_t number_ = 0;
@@ -172,11 +186,14 @@ nlohmann::json measure(const std::string& file, double wanted) {
   const protocol::RobotParameters robot = protocol::load_parameters(file);
   const double velocity = std::min(wanted, robot.max_velocity);
   Ride ride(file, velocity);
-  nlohmann::json out{{"robot", std::filesystem::path(file).stem().string()},
-                     {"velocity_m_s", velocity}};
-  std::printf("%-14s %4.2f m/s", out["robot"].get<std::string>().c_str(), velocity);
+  nlohmann::json out{{"robot", std::filesystem::path(file).stem().string()}};
+  std::printf("%-14s", out["robot"].get<std::string>().c_str());
   for (const Loss loss : kLosses) {
     const Roll roll = ride.lose(loss);
+    if (!out.contains("velocity_m_s")) {
+      out["velocity_m_s"] = roll.velocity;
+      std::printf(" %4.2f m/s", roll.velocity);
+    }
     const char* const name = kNames.at(static_cast<std::size_t>(loss));
     out[name] = {{"s", roll.time}, {"m", roll.way}};
     std::printf("   %s %.1f s %.2f m", name, roll.time, roll.way);

@@ -1,0 +1,93 @@
+#include "lockstep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <utility>
+
+#include "node_options.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::test {
+
+namespace {
+
+bus::NodeOptions in_lockstep(const std::string& robot) {
+  bus::NodeOptions options = node_options("test", robot);
+  options.lockstep = true;
+  return options;
+}
+
+}  // namespace
+
+LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
+  const std::string world = folder.path("world.wld");
+  std::ofstream(world) << scene.world;
+  std::vector<std::string> simulator{"saphira-sim",  "--step",
+                                     "--world",      world,
+                                     "--robot-file", source("config/robots/" + scene.robot + ".p"),
+                                     "--socket",     folder.path("robot"),
+                                     "--trace",      folder.path("trace.csv"),
+                                     "--seed",       std::to_string(scene.seed)};
+  std::vector<std::string> bridge{"saphira-bridge", "--link", "unix:" + folder.path("robot"),
+                                  "--robots", source("config/robots")};
+  std::vector<std::string> intentions{"saphira-intentions"};
+  if (scene.vision) {
+    simulator.insert(simulator.end(), {"--stereo-socket", folder.path("eyes")});
+    bridge.emplace_back("--vision");
+    intentions.emplace_back("--vision");
+  }
+  run(simulator);
+  on_bus(bridge);
+  if (scene.vision)
+    on_bus({"saphira-vision", "--stereo-socket", folder.path("eyes")});
+  on_bus({"saphira-behaviors"});
+  on_bus(intentions);
+  on_bus({"saphira-interpretation"});
+  on_bus({"saphira-registration", "--map",
+          scene.map.empty() ? "none" : source("config/maps/" + scene.map + ".map")});
+}
+
+v1::GoalId LockstepSystem::ask(const v1::Goal& goal) {
+  const v1::GoalId id = goals.ask(goal);
+  EXPECT_TRUE(wait_until([&] {
+    node.wait(std::chrono::milliseconds(50));
+    goals.poll();
+    return goals.status(id).has_value();
+  })) << output();
+  return id;
+}
+
+void LockstepSystem::permit(std::uint64_t until) {
+  v1::StepPermit sample;
+  sample.until_cycle(until);
+  permits_.write(sample);
+}
+
+std::string LockstepSystem::end() {
+  processes_.front()->signal(SIGTERM);
+  processes_.front()->wait();
+  return read_file(folder.path("trace.csv"));
+}
+
+std::string LockstepSystem::output() const {
+  std::string all;
+  for (const auto& process : processes_)
+    all += process->output() + "\n";
+  return all;
+}
+
+void LockstepSystem::on_bus(std::vector<std::string> argv) {
+  for (const std::string& word : {std::string("--robot"), robot, std::string("--domain"), domain(),
+                                  std::string("--lockstep")})
+    argv.push_back(word);
+  run(std::move(argv));
+}
+
+void LockstepSystem::run(std::vector<std::string> argv) {
+  const std::string log = folder.path(argv.front() + ".log");
+  processes_.push_back(std::make_unique<Process>(std::move(argv), log));
+}
+
+}  // namespace saphira::test

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "process.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/sim/trace.hpp"
+
+namespace saphira::test {
+
+/// A robot in a world of the test's own with its services as separate processes, in lockstep, and a
+/// node of the test beside them.
+class LockstepSystem {
+ public:
+  struct Scene {
+    std::string world;    ///< text of a world file
+    std::string robot;    ///< a file of config/robots, without its ending
+    std::string map{};    ///< a file of config/maps [none: an empty map]
+    unsigned seed = 1;    ///< of the simulator's noise
+    bool vision = false;  ///< with stereo cameras and the service that looks
+  };
+
+  explicit LockstepSystem(const Scene& scene);
+
+  /// Asks for a goal, and waits until it is there: before the first cycle.
+  v1::GoalId ask(const v1::Goal& goal);
+  /// Lets the robot make its steps up to that cycle.
+  void permit(std::uint64_t until);
+  /// Ends the simulator, which completes its trace, and gives that.
+  std::string end();
+  /// Everything that the processes have printed.
+  std::string output() const;
+
+  TempDir folder;
+  std::string robot = unique_robot();
+  bus::Node node;
+  bus::GoalClient goals{node, "test"};
+
+ private:
+  void on_bus(std::vector<std::string> argv);
+  void run(std::vector<std::string> argv);
+
+  bus::Writer<v1::StepPermit> permits_ = node.writer(bus::topics::kStepPermit);
+  std::vector<std::unique_ptr<Process>> processes_;
+};
+
+}  // namespace saphira::test
