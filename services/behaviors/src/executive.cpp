@@ -79,21 +79,11 @@ Executive::Executive(Registry registry, RobotModel model, ExecutiveSettings sett
       lps_(model_.lps) {}
 
 void Executive::reset() {
-  lps_.reset();
-  instances_.clear();
-  reconciled_.clear();
-  reconcile_trouble_.clear();
-  missing_.clear();
-  backwards_ = false;
-  newest_intent_ = 0;
-  intent_came_ = 0;
-  intent_age_ = {};
+  reset(std::move(model_));
 }
 
 void Executive::reset(RobotModel model) {
-  model_ = std::move(model);
-  lps_ = lps::LocalPerceptualSpace(model_.lps);
-  reset();
+  *this = Executive(std::move(registry_), std::move(model), settings_);
 }
 
 // A stall says on which side, and the way that the robot was told to go says the rest.

@@ -36,26 +36,27 @@ Feeds feeds(const Pose& sonar_in_robot) {
 }
 
 LocalPerceptualSpace::LocalPerceptualSpace(LpsSettings settings)
-    : settings_(std::move(settings)), memory_(settings_.memory) {
-  reset();
-}
+    : settings_(std::move(settings)),
+      front_(settings_.front_buffer),
+      left_(settings_.side_buffer),
+      right_(settings_.side_buffer),
+      memory_(settings_.memory),
+      artifacts_(1, origin()),
+      last_id_(kOriginId) {}
 
 void LocalPerceptualSpace::reset() {
-  placed_ = false;
-  robot_in_odom_ = {};
-  robot_in_global_ = {};
-  cycle_ = 0;
-  front_ = SonarBuffer(settings_.front_buffer);
-  left_ = SonarBuffer(settings_.side_buffer);
-  right_ = SonarBuffer(settings_.side_buffer);
-  memory_.clear();
-  artifacts_.assign(1, origin());
-  last_id_ = kOriginId;
+  *this = LocalPerceptualSpace(settings_);
+}
+
+void LocalPerceptualSpace::set_front_buffer(std::size_t limit) {
+  front_.set_limit(limit);
+  settings_.front_buffer = front_.limit();
 }
 
 void LocalPerceptualSpace::set_side_buffer(std::size_t limit) {
   left_.set_limit(limit);
   right_.set_limit(limit);
+  settings_.side_buffer = left_.limit();
 }
 
 void LocalPerceptualSpace::update(const Pose& robot_in_odom,

@@ -75,7 +75,7 @@ class LocalPerceptualSpace {
   const SonarBuffer& front() const { return front_; }
   const SonarBuffer& left() const { return left_; }
   const SonarBuffer& right() const { return right_; }
-  void set_front_buffer(std::size_t limit) { front_.set_limit(limit); }
+  void set_front_buffer(std::size_t limit);
   void set_side_buffer(std::size_t limit);
   void set_front_max_range(double range) { settings_.front_max_range = range; }
 
