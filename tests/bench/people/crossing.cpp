@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <queue>
 
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
+#include "saphira/base/shortest_ways.hpp"
 #include "saphira/sim/contacts.hpp"
 
 namespace saphira::test {
@@ -54,19 +54,12 @@ class Ways {
 
   /// From here to everywhere: cost, length [m] and the cell before.
   void spread(int from) {
-    cost_.assign(room_.size(), kNever);
+    ways_ = ShortestWays(room_.size());
+    ways_.reach(static_cast<std::size_t>(from), 0.0);
     length_.assign(room_.size(), kNever);
-    before_.assign(room_.size(), -1);
-    using Entry = std::pair<double, int>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    cost_[static_cast<std::size_t>(from)] = 0.0;
     length_[static_cast<std::size_t>(from)] = 0.0;
-    open.emplace(0.0, from);
-    while (!open.empty()) {
-      const auto [cost, cell] = open.top();
-      open.pop();
-      if (cost > cost_[static_cast<std::size_t>(cell)])
-        continue;
+    while (const auto here = ways_.next()) {
+      const int cell = static_cast<int>(*here);
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
           const int column = cell % columns_ + dx;
@@ -79,13 +72,8 @@ class Ways {
             continue;
           const double step = kCell * std::hypot(dx, dy);
           const double tight = std::max(0.0, kComfort - room(next));
-          const double sum = cost + step * (1.0 + 4.0 * tight);
-          if (sum >= cost_[n])
-            continue;
-          cost_[n] = sum;
-          length_[n] = length_[static_cast<std::size_t>(cell)] + step;
-          before_[n] = cell;
-          open.emplace(sum, next);
+          if (ways_.reach(n, ways_.cost(*here) + step * (1.0 + 4.0 * tight), here))
+            length_[n] = length_[*here] + step;
         }
     }
   }
@@ -101,18 +89,16 @@ class Ways {
   double length(int cell) const { return length_[static_cast<std::size_t>(cell)]; }
   std::vector<Vec2> way_to(int cell) const {
     std::vector<Vec2> way;
-    for (; cell >= 0; cell = before_[static_cast<std::size_t>(cell)])
-      way.push_back(centre(cell));
-    std::reverse(way.begin(), way.end());
+    if (cell >= 0)
+      for (const std::size_t at : ways_.way_to(static_cast<std::size_t>(cell)))
+        way.push_back(centre(static_cast<int>(at)));
     return way;
   }
   /// A point so many cells along the way to where the ways begin.
   Vec2 back_from(const Vec2& at, int cells) const {
     const auto here = cell_at(at);
-    int cell = here && length(*here) < kNever ? *here : *nearest(at);
-    for (int i = 0; i < cells && before_[static_cast<std::size_t>(cell)] >= 0; ++i)
-      cell = before_[static_cast<std::size_t>(cell)];
-    return centre(cell);
+    const std::vector<Vec2> way = way_to(here && length(*here) < kNever ? *here : *nearest(at));
+    return way[way.size() - 1 - std::min(way.size() - 1, static_cast<std::size_t>(cells))];
   }
   std::optional<int> cell_at(const Vec2& at) const {
     const int column = static_cast<int>(at.x() / kCell);
@@ -127,9 +113,8 @@ class Ways {
   int columns_;
   int rows_;
   std::vector<double> room_;
-  std::vector<double> cost_;
   std::vector<double> length_;
-  std::vector<int> before_;
+  ShortestWays ways_{0};
 };
 
 namespace {
