@@ -12,6 +12,7 @@
 #include "saphira/behaviors/fuzzy.hpp"
 #include "saphira/behaviors/parameter.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
 
 namespace saphira::behaviors {
 
@@ -34,7 +35,7 @@ struct RobotNow {
   bool right_stalled = false;
 };
 
-enum class Side { none, left, right };
+using lps::Side;
 
 /// What behaviors tell each other within a cycle: lower priorities are updated first, so that those
 /// which avoid know what those below them want. Empty again every cycle.
