@@ -31,7 +31,8 @@ using saphira::bench::Child;
 struct Options {
   unsigned domain = 199;
   unsigned goals = 10000;
-  unsigned pause = 65;  // [s] a goal that has ended is told for a minute
+  // [s] A goal that has ended is told for a minute, then memory is given back, every 30 s.
+  unsigned pause = 100;
   bool json = false;
 };
 

@@ -1,5 +1,9 @@
 #include "dds_bus.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <cstdlib>
 #include <fastdds/dds/core/status/StatusMask.hpp>
@@ -29,6 +33,9 @@ constexpr std::chrono::seconds kLongSleep{kLease - std::chrono::seconds(15)};
 constexpr std::chrono::seconds kSleep{1};
 // How long a machine that wakes may take until its network is as it was.
 constexpr std::chrono::seconds kNetworkReturns{10};
+
+// Free memory goes back to the system so often: a few ms of this thread.
+constexpr std::chrono::seconds kGiveBack{30};
 
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.");
@@ -153,6 +160,7 @@ void Bus::run() {
     if (machines_)
       session_->tell_heard(machines_->heard(BootClock::now().time_since_epoch()));
     note_sleep();
+    give_back();
     if (renewal_due_)
       renew();
     lock.lock();
@@ -169,6 +177,17 @@ void Bus::note_sleep() {
     renewal_due_ = true;
     due_since_ = now;
   }
+}
+
+// What a burst of samples or goals leaves behind is free, and lies between what is still in use:
+// malloc alone keeps it for ever.
+void Bus::give_back() {
+#ifdef __GLIBC__
+  if (last_turn_ - gave_back_ < kGiveBack)
+    return;
+  gave_back_ = last_turn_;
+  ::malloc_trim(0);
+#endif
 }
 
 void Bus::renew() {

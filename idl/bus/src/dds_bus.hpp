@@ -99,6 +99,7 @@ class Bus {
  private:
   void run();
   void note_sleep();
+  void give_back();
   void renew();
 
   const NodeOptions options_;
@@ -116,6 +117,7 @@ class Bus {
   std::atomic<bool> renewal_due_{false};
   BootClock::time_point due_since_;
   BootClock::time_point last_turn_ = BootClock::now();
+  BootClock::time_point gave_back_ = last_turn_;
   std::thread thread_;
 };
 
