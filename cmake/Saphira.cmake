@@ -70,6 +70,9 @@ function(saphira_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# Tests of whole programs take minutes: `./saphira test --quick` leaves those labelled `slow` out.
+set(SAPHIRA_SLOW_TESTS "/tests/(acceptance|clients|fuzz|integration|network)")
+
 # saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [ALONE] [TIMEOUT s])
 # ALONE: no other test runs beside it: for what is measured in real time, which starves otherwise.
 # DDS: the test talks on the bus; it gets a domain of its own, on loopback.
@@ -95,9 +98,13 @@ function(saphira_test name)
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}."
     TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE})
+  set(label quick)
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "${SAPHIRA_SLOW_TESTS}")
+    set(label slow)
+  endif()
   # Apart, since gtest_discover_tests takes a property that is a list to pieces.
   set(setter "${CMAKE_CURRENT_BINARY_DIR}/${name}_environment.cmake")
   file(WRITE "${setter}" "if(${name}_tests)
-  set_tests_properties(\${${name}_tests} PROPERTIES ENVIRONMENT \"${environment}\")\nendif()\n")
+  set_tests_properties(\${${name}_tests} PROPERTIES LABELS ${label} ENVIRONMENT \"${environment}\")\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${setter}")
 endfunction()

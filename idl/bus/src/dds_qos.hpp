@@ -22,9 +22,7 @@ void set_common_qos(Q& qos, const Policies& policies, int depth) {
   qos.resource_limits().max_samples = 0;
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = 0;
-  qos.endpoint().history_memory_policy =
-      policies.gives_back ? eprosima::fastrtps::rtps::DYNAMIC_RESERVE_MEMORY_MODE
-                          : eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   // AUTO would leave files in /dev/shm after a kill, even with UDP as the only transport.
   qos.data_sharing().off();
   if (policies.lifespan_ms > 0)

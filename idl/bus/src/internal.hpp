@@ -24,9 +24,6 @@ struct Policies {
   /// A node that begins anew on the bus writes again what this writer holds: a state is told again,
   /// an event or a wish is not.
   bool kept_by_session = false;
-  /// The memory of a sample is given back when it is forgotten. Memory that is used again costs
-  /// less time, and stays as large as the largest sample that it ever held.
-  bool gives_back = false;
 };
 
 Policies policies(Qos qos, bool lockstep);

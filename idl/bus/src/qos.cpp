@@ -52,14 +52,12 @@ Policies policies(Qos qos, bool lockstep) {
     case Qos::presence:
       return {.reader_depth = 1};
     case Qos::recall:
-      // Without a reader a sample costs no more than being kept. A minute of large ones must not
-      // be paid for ever.
+      // Without a reader a sample costs no more than being kept.
       return {.reliable = true,
               .transient_local = true,
               .writer_depth = 600,
               .reader_depth = 600,
-              .heartbeat_ms = 200,
-              .gives_back = true};
+              .heartbeat_ms = 200};
   }
   return {};
 }
