@@ -8,8 +8,8 @@
 
 namespace saphira::bridge {
 
-/// Decides from the status of the services whether they hear what the bridge writes. Pure: time is
-/// given to it, in seconds.
+/// Decides from the status of the services whether they receive the samples of the bridge. Pure:
+/// time is given to it, in seconds.
 class Audience {
  public:
   /// [s] Services that do not hear the robot begin anew on the bus themselves after 10 s; a bridge

@@ -34,7 +34,8 @@ constexpr std::chrono::seconds kSleep{1};
 // How long a machine that wakes may take until its network is as it was.
 constexpr std::chrono::seconds kNetworkReturns{10};
 
-// Free memory goes back to the system so often: a few ms of this thread.
+// The period of returning free memory to the system. It takes some ms, for which other threads may
+// wait when they allocate.
 constexpr std::chrono::seconds kGiveBack{30};
 
 bool is_loopback(const std::string& address) {
@@ -179,8 +180,8 @@ void Bus::note_sleep() {
   }
 }
 
-// What a burst of samples or goals leaves behind is free, and lies between what is still in use:
-// malloc alone keeps it for ever.
+// A burst of samples or goals leaves free memory between blocks that are in use. malloc alone never
+// returns it to the system.
 void Bus::give_back() {
 #ifdef __GLIBC__
   if (last_turn_ - gave_back_ < kGiveBack)

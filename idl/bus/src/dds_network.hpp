@@ -36,7 +36,7 @@ eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const NodeOptions& options, std::shared_ptr<const std::atomic<bool>> mute,
     std::shared_ptr<Machines> machines = nullptr);
 
-/// What a participant tells the others beside its name: where it runs, and which machines it hears.
+/// The user data of a participant: its host, its process, and the machines that it hears.
 eprosima::fastdds::dds::UserDataQosPolicy user_data(const std::string& heard);
 
 /// The addresses of the peers that the options name; std::runtime_error as above.

@@ -63,14 +63,22 @@ class Sieve : public transport::ChainingTransport {
   /// To the machines that nobody named. Fast DDS sends each announcement several times at once.
   void announce(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
                 const std::chrono::steady_clock::time_point& timeout) {
-    const auto now = BootClock::now();
-    {
-      const std::scoped_lock lock(mutex_);
-      if (now - announced_ < kOnce)
-        return;
-      announced_ = now;
-    }
+    rtps::LocatorList_t places = due_places();
+    if (places.empty())
+      return;
+    rtps::Locators begin(places.begin());
+    rtps::Locators end(places.end());
+    low->send(buffer, size, &begin, &end, timeout);
+  }
+
+  /// Empty where the program has just announced itself.
+  rtps::LocatorList_t due_places() {
     rtps::LocatorList_t places;
+    const auto now = BootClock::now();
+    const std::scoped_lock lock(mutex_);
+    if (now - announced_ < kOnce)
+      return places;
+    announced_ = now;
     for (const std::string& address : descriptor_.machines->others(now.time_since_epoch()))
       for (const std::uint32_t port : descriptor_.ports) {
         rtps::Locator_t place;
@@ -80,11 +88,7 @@ class Sieve : public transport::ChainingTransport {
           low_level_transport_->OpenOutputChannel(openers_, place);
         places.push_back(place);
       }
-    if (places.empty())
-      return;
-    rtps::Locators begin(places.begin());
-    rtps::Locators end(places.end());
-    low->send(buffer, size, &begin, &end, timeout);
+    return places;
   }
 
   bool plausible(const rtps::octet* buffer, std::uint32_t size) {
@@ -93,7 +97,7 @@ class Sieve : public transport::ChainingTransport {
   }
 
   SieveDescriptor descriptor_;
-  std::mutex mutex_;  // each port has a thread
+  std::mutex mutex_;  // each port has a thread, and several threads send
   BootClock::time_point announced_;
   std::set<std::pair<std::string, std::uint32_t>> opened_;
   transport::SendResourceList openers_;

@@ -50,7 +50,7 @@ DataSet data_set_of(const std::string& name, const CarmenLog& log, Clock clock);
 
 DataSet load_data_set(const std::string& name, const LogFiles& files);
 
-/// What the sonars of a ring would have heard on that drive.
+/// The readings of a ring of sonars on that drive, derived from the laser scans.
 SonarDrive virtual_drive(const DataSet& set, std::vector<lps::SonarMount> mounts);
 
 }  // namespace saphira::logs

@@ -9,7 +9,7 @@
 
 namespace saphira::logs {
 
-/// What the laser of a log says of a floor, and of where the robot was on it.
+/// The walls of a floor and the poses of the robot, from the laser scans of a log.
 struct LogMap {
   maps::Map walls;                 ///< WALL lines; the first pose of the log is about the origin
   std::vector<StampedPose> poses;  ///< of the robot in the map, one for each scan

@@ -126,8 +126,9 @@ class Executive {
   std::string why_inactive(const Inputs& inputs, bool running) const;
   /// Takes note of how old everything is, and cuts the speed to what that allows.
   void limit_speed(const Inputs& inputs, Output& output);
-  /// Makes the instances what is intended; returns what was wrong.
+  /// Puts what a stalled wheel touches into the LPS.
   void feel(const RobotNow& robot);
+  /// Makes the instances what is intended; returns what was wrong.
   std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
   /// `same` is the instance of that name and schema; nullptr where there is none.
   std::string adopt(const Intended& intended, const Pose& robot_in_odom, Instance* same,
