@@ -24,7 +24,7 @@ function(saphira_component name)
           DESTINATION ${saphira_package_dir})
 endfunction()
 
-foreach(folder services/base services/geometry services/lps services/behaviors)
+foreach(folder services/common/base services/common/geometry services/common/lps services/behaviors)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
 saphira_component(base base)

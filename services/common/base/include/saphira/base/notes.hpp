@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace saphira {
+
+/// One line of a program's log, as a core writes it: the shell gives it time and name.
+struct Note {
+  enum class Level { info, warning, error };
+  Level level = Level::info;
+  std::string text;
+
+  friend bool operator==(const Note&, const Note&) = default;
+};
+
+/// What a core has to say of one step, in order.
+class Notes {
+ public:
+  void info(std::string text) { lines_.push_back({Note::Level::info, std::move(text)}); }
+  void warn(std::string text) { lines_.push_back({Note::Level::warning, std::move(text)}); }
+  void error(std::string text) { lines_.push_back({Note::Level::error, std::move(text)}); }
+
+  const std::vector<Note>& lines() const { return lines_; }
+  bool empty() const { return lines_.empty(); }
+  /// What has been said since the last call.
+  std::vector<Note> take() { return std::exchange(lines_, {}); }
+
+ private:
+  std::vector<Note> lines_;
+};
+
+}  // namespace saphira
