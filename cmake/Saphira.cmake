@@ -96,7 +96,7 @@ function(saphira_test name)
     set_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN ${next})
     list(APPEND environment "SAPHIRA_DOMAIN=${domain}")
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}."
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}." NO_PRETTY_VALUES
     TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE})
   set(label quick)
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "${SAPHIRA_SLOW_TESTS}")

@@ -1,26 +1,26 @@
-// saphira-all: a simulated robot and every service, each in a thread of one process. They meet on
-// the bus as separate processes do, so that anybody else can watch and join.
+// saphira-all: a simulated robot and every service in one process. Live, each has a thread, and
+// they meet on the bus as separate processes do. In lockstep they take turns in one thread, and a
+// gateway lets other programs watch and ask.
 
 #include <poll.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "behaviors/shell/shell.hpp"
 #include "bridge/shell/shell.hpp"
-#include "intentions/shell/shell.hpp"
-#include "interpretation/shell/shell.hpp"
-#include "registration/shell/shell.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/sim/host.hpp"
+#include "system/system.hpp"
 
 namespace {
 
@@ -28,7 +28,7 @@ using namespace saphira;
 
 /// Threads that end together: when one ends, the others are stopped; what failed first is thrown
 /// on.
-class Crew {
+class Threads {
  public:
   void add(std::function<void(const bus::Stop&)> work) {
     threads_.emplace_back([this, work = std::move(work)] {
@@ -60,30 +60,51 @@ class Crew {
   std::vector<std::jthread> threads_;
 };
 
+/// What runs.
+struct Programs {
+  sim::HostOptions robot;
+  bridge::BridgeOptions link;
+  std::vector<runtime::Component> services;
+};
+
 /// The same options under the name of one service.
-bus::NodeOptions named(bus::NodeOptions options, const char* name) {
+bus::NodeOptions named(bus::NodeOptions options, const std::string& name) {
   options.name = name;
   return options;
+}
+
+void run_in_threads(const Programs& programs, const bus::NodeOptions& options,
+                    const bus::Stop& stop) {
+  Threads threads;
+  threads.add([&](const bus::Stop& end) { sim::run(programs.robot, end.fd()); });
+  threads.add([&](const bus::Stop& end) {
+    bridge::Shell(named(options, "bridge"), programs.link).run(end);
+  });
+  for (const runtime::Component& service : programs.services)
+    threads.add([&](const bus::Stop& end) {
+      bus::Node node(named(options, service.name));
+      runtime::Shell(node, service.make).run(end);
+    });
+  threads.run(stop);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string config = config_folder();
-  sim::HostOptions robot;
-  robot.world = "office";
-  robot.robot = "pioneer";
-  bridge::BridgeOptions link;
-  link.robots_folder = config + "/robots";
+  Programs programs;
+  programs.robot.world = "office";
+  programs.robot.robot = "pioneer";
+  programs.link.robots_folder = config + "/robots";
   // Here the simulated robot dies with whoever drives it.
-  link.keeper = false;
-  behaviors::ShellOptions moves;
-  intentions::ShellOptions goals;
-  registration::ShellOptions place;
+  programs.link.keeper = false;
+  programs.services = system::services();
   std::string socket = sim::default_socket();
+  bool sees = false;
   return bus::run_program(
       argc, argv, "all", "A simulated robot and all services in one process",
       [&](CLI::App& app) {
+        sim::HostOptions& robot = programs.robot;
         app.add_option("--world", robot.world,
                        "world file of the simulator, or the name of one that is shipped")
             ->capture_default_str();
@@ -97,53 +118,27 @@ int main(int argc, char** argv) {
         app.add_option("--socket,--link", socket, "local socket between simulator and bridge")
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
             ->capture_default_str();
-        app.add_option("--robots", link.robots_folder, "folder of robot parameter files")
+        app.add_option("--robots", programs.link.robots_folder, "folder of robot parameter files")
             ->capture_default_str();
-        app.add_option("--state", link.state_file,
+        app.add_option("--state", programs.link.state_file,
                        "file that keeps the robot's position over a restart");
-        app.add_flag("--free-step", link.free_step, "lockstep: step without a permit");
-        app.add_option("--memory", goals.memory_file,
-                       "file that remembers ended goals over a restart");
-        app.add_option("--behaviors", moves.folder, "folder of behavior files");
-        app.add_option("--plugin", moves.plugins, "shared library with behaviors in C++");
-        app.add_option("--activities", goals.folder, "folder of activity files");
-        app.add_option("--map", place.map_file,
-                       "map file, or the name of one that is shipped; none: an empty map");
-        app.add_option("--start", place.start, "where the robot is on the map at first")
-            ->capture_default_str();
-        app.add_option("--map-memory", place.memory_file,
-                       "file that keeps pose and map over a restart");
+        app.add_flag("--free-step", programs.link.free_step, "lockstep: step without a permit");
+        for (const runtime::Component& service : programs.services)
+          service.add_options(app);
+        app.get_option("--vision")->description("vision runs as well");
+        app.parse_complete_callback([&] { sees = app.count("--vision") > 0; });
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
-        robot.world = find_file(config + "/worlds", robot.world, ".wld");
-        robot.robot = find_file(config + "/robots", robot.robot, ".p");
-        place.map_file = registration::find_map(place.map_file);
-        robot.socket = socket;
-        link.robot_port = "unix:" + socket;
-        robot.log = [](const std::string& line) {
+        programs.robot.world = find_file(config + "/worlds", programs.robot.world, ".wld");
+        programs.robot.robot = find_file(config + "/robots", programs.robot.robot, ".p");
+        programs.robot.socket = socket;
+        programs.link.robot_port = "unix:" + socket;
+        programs.robot.log = [](const std::string& line) {
           std::fprintf(stderr, "sim: %s\n", line.c_str());
         };
-        Crew crew;
-        crew.add([&](const bus::Stop& end) { sim::run(robot, end.fd()); });
-        crew.add(
-            [&](const bus::Stop& end) { bridge::Shell(named(options, "bridge"), link).run(end); });
-        crew.add([&](const bus::Stop& end) {
-          bus::Node node(named(options, "behaviors"));
-          behaviors::Shell(node, moves).run(end);
-        });
-        crew.add([&](const bus::Stop& end) {
-          bus::Node node(named(options, "intentions"));
-          intentions::Shell(node, goals).run(end);
-        });
-        crew.add([&](const bus::Stop& end) {
-          bus::Node node(named(options, "interpretation"));
-          interpretation::Shell(node).run(end);
-        });
-        crew.add([&](const bus::Stop& end) {
-          bus::Node node(named(options, "registration"));
-          registration::Shell(node, place).run(end);
-        });
-        crew.run(stop);
+        if (!sees)
+          std::erase_if(programs.services, [](const auto& one) { return one.name == "vision"; });
+        run_in_threads(programs, options, stop);
         return bus::kExitOk;
       });
 }

@@ -346,40 +346,46 @@ class Station {
   Clock::time_point heard_ = Clock::now();
 };
 
-class Host {
+class Serving {
  public:
-  Host(const HostOptions& options, Simulation& simulation)
+  Serving(const HostOptions& options, Simulation& simulation)
       : simulation_(simulation), unpaced_(options.rate == kMaxRate), pace_(options.rate) {
     for (RobotNumber i = 0; i < simulation.size(); ++i)
       stations_.push_back(std::make_unique<Station>(options, simulation, i));
   }
 
-  void run(int stop_fd) {
-    std::vector<pollfd> fds;
-    while (true) {
-      int timeout = schedule();
-      for (const auto& station : stations_) {
-        station->look_at_terminal();
-        if (station->waits_for_terminal())
-          timeout = timeout < 0 ? kLook : std::min(timeout, kLook);
-      }
-      // In that order: stop, timer, then each robot's client and listener, then who looks on.
-      fds.clear();
-      fds.push_back({stop_fd, POLLIN, 0});
-      fds.push_back({timer_.fd(), POLLIN, 0});
-      for (const auto& station : stations_)
-        station->add_to(fds);
-      for (const auto& station : stations_)
-        station->add_viewers_to(fds);
-      if (::poll(fds.data(), fds.size(), timeout) < 0) {
-        if (errno == EINTR)
-          continue;
-        fail("poll");
-      }
-      if (fds[0].revents != 0)
-        break;
-      step(fds);
+  bool serve(int stop_fd, int most_ms) {
+    int timeout = schedule();
+    const auto at_most = [&](int limit) {
+      timeout = timeout < 0 ? limit : std::min(timeout, limit);
+    };
+    for (const auto& station : stations_) {
+      station->look_at_terminal();
+      if (station->waits_for_terminal())
+        at_most(kLook);
     }
+    if (most_ms >= 0)
+      at_most(most_ms);
+    // In that order: stop, timer, then each robot's client and listener, then who looks on.
+    fds_.clear();
+    fds_.push_back({stop_fd, POLLIN, 0});
+    fds_.push_back({timer_.fd(), POLLIN, 0});
+    for (const auto& station : stations_)
+      station->add_to(fds_);
+    for (const auto& station : stations_)
+      station->add_viewers_to(fds_);
+    if (::poll(fds_.data(), fds_.size(), timeout) < 0) {
+      if (errno == EINTR)
+        return true;
+      fail("poll");
+    }
+    if (fds_[0].revents != 0)
+      return false;
+    step(fds_);
+    return true;
+  }
+
+  void end() {
     for (const auto& station : stations_)
       station->end();
   }
@@ -466,6 +472,7 @@ class Host {
   Pace pace_;
   Timer timer_;
   std::vector<std::unique_ptr<Station>> stations_;
+  std::vector<pollfd> fds_;
   bool running_ = false;
   bool waits_ = false;  // for a client to take what is sent
   bool timed_ = false;
@@ -494,12 +501,22 @@ std::string numbered(const std::string& path, std::size_t number) {
   return path.substr(0, dot) + text + path.substr(dot);
 }
 
-void run(const HostOptions& options, int stop_fd) {
+struct Host::Parts {
+  explicit Parts(const HostOptions& options) : world(load_world(options.world)) {
+    add_robots(options);
+    serving.emplace(options, simulation);
+  }
+  void add_robots(const HostOptions& options);
+
+  World world;
+  Simulation simulation{world};
+  std::optional<Serving> serving;
+};
+
+void Host::Parts::add_robots(const HostOptions& options) {
   if (!((options.rate > 0.0 && options.rate <= 1000.0) || options.rate == kMaxRate))
     throw std::runtime_error(
         "rate: expected more than 0 and at most 1000 times real time, or \"max\"");
-  const World world = load_world(options.world);
-  Simulation simulation(world);
   const auto add = [&](const std::string& file, const std::optional<Pose>& start,
                        const std::optional<Place>& place, std::size_t number) {
     const protocol::RobotParameters parameters = protocol::load_parameters(file);
@@ -537,7 +554,24 @@ void run(const HostOptions& options, int stop_fd) {
     }
     add(robot.robot.empty() ? options.robot : robot.robot, start, place, i + 1);
   }
-  Host(options, simulation).run(stop_fd);
+}
+
+Host::Host(const HostOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+Host::~Host() = default;
+
+bool Host::serve(int stop_fd, int most_ms) {
+  return parts_->serving->serve(stop_fd, most_ms);
+}
+
+void Host::end() {
+  parts_->serving->end();
+}
+
+void run(const HostOptions& options, int stop_fd) {
+  Host host(options);
+  while (host.serve(stop_fd)) {
+  }
+  host.end();
 }
 
 }  // namespace saphira::sim

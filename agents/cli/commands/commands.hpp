@@ -31,6 +31,7 @@ void add_device(CLI::App& app, Chosen& chosen);
 void add_map(CLI::App& app, Chosen& chosen);
 void add_drive(CLI::App& app, Chosen& chosen);
 void add_estop(CLI::App& app, Chosen& chosen);
+void add_wiring(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
 
 }  // namespace saphira::cli

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
         cli::add_list(app, chosen);
         cli::add_echo(app, chosen);
         cli::add_log(app, chosen);
+        cli::add_wiring(app, chosen);
         cli::add_bench(app, chosen);
         app.add_subcommand("help", "This text");
         // --robot and the like may stand behind the subcommand as well.

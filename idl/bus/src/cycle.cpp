@@ -18,7 +18,7 @@ using internal::Peers;
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(500);
-// No more often than this does a node that has nothing to step look around.
+// Between two looks. Samples come one by one: a look after each would take most of the time.
 constexpr auto kSpin = std::chrono::microseconds(200);
 constexpr auto kLook = std::chrono::milliseconds(5);
 // Seconds without a step before the status says what is waited for.
@@ -38,6 +38,8 @@ constexpr double kDeaf = 10.0;
 constexpr double kDeafAgain = 60.0;
 // Refusals that are told. Whoever makes more of them makes them up.
 constexpr std::size_t kMostTold = 1000;
+// Descriptions that are kept: of this bridge's last epochs, and of other bridges of this robot.
+constexpr std::size_t kDescriptions = 64;
 constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
 
 double since(Clock::time_point time) {
@@ -131,8 +133,12 @@ struct Cycle::Impl {
     for (const WriterId& gone : robot.take_lost())
       epochs.lose(Peers::program_of(gone));
     descriptions.visit([&](const v1::RobotDescription& description, const SampleInfo& info) {
-      if (!info.disposed && description.stamp().epoch() != 0)
-        epochs.describe(Peers::program_of(info.writer), description.stamp().epoch());
+      if (info.disposed || description.stamp().epoch() == 0)
+        return;
+      epochs.describe(Peers::program_of(info.writer), description.stamp().epoch());
+      described.push_back(description);
+      if (described.size() > kDescriptions)
+        described.pop_front();
     });
     robot.visit([&](const v1::RobotState& state, const SampleInfo& info) {
       if (info.disposed)
@@ -158,6 +164,15 @@ struct Cycle::Impl {
       });
   }
 
+  // An epoch is adopted only after its description has come. Where so many others came meanwhile
+  // that it is forgotten, those who write them use a robot's name that is not theirs.
+  v1::RobotDescription description_of(std::uint64_t epoch) const {
+    for (auto one = described.rbegin(); one != described.rend(); ++one)
+      if (one->stamp().epoch() == epoch)
+        return *one;
+    return robot_now;
+  }
+
   struct Arrived {
     v1::RobotState state;
     WriterId writer;
@@ -169,6 +184,7 @@ struct Cycle::Impl {
     switch (epochs.judge(Peers::program_of(one.writer), one.state.stamp().epoch())) {
       case Epochs::Verdict::adopt:
         adopt(before);
+        robot_now = description_of(epochs.epoch());
         [[fallthrough]];
       case Epochs::Verdict::take:
         take(one.state);
@@ -276,10 +292,8 @@ struct Cycle::Impl {
       const Inputs ready = inputs_for(cycle);
       if (ready == Inputs::missing)
         return {};
-      Step step;
-      step.robot = std::move(pending.front());
-      pending.pop_front();
       if (ready == Inputs::gone) {
+        pending.pop_front();
         // Only who comes late into a running lockstep may pass a cycle over.
         if (!joining) {
           ++status.late_cycles();
@@ -289,11 +303,18 @@ struct Cycle::Impl {
         }
         continue;
       }
+      Step step;
       for (auto& slot : inputs) {
         const bool there = cycle > 1 && slot->newest(epochs.epoch(), cycle - 1) == cycle - 1;
         slot->select(epochs.epoch(), there ? cycle - 1 : 0);
         step.stale |= cycle > 1 && !there;
       }
+      missing.clear();
+      for (const Gate& gate : gates)
+        if (missing = gate(pending.front()); !missing.empty())
+          return {};
+      step.robot = std::move(pending.front());
+      pending.pop_front();
       if (step.stale)
         node.warn("lockstep: begins at cycle " + std::to_string(cycle) +
                   " without the inputs of the cycle before, which nobody has");
@@ -317,7 +338,7 @@ struct Cycle::Impl {
       if (slot->newest(epochs.epoch(), cycle - 1) + 1 != cycle)
         return std::string("waits for ") + slot->name() + " of cycle " + std::to_string(cycle - 1) +
                nobody(slot->matched());
-    return "waits";
+    return "waits" + (missing.empty() ? "" : " for " + missing);
   }
 
   void note_waiting() {
@@ -360,11 +381,16 @@ struct Cycle::Impl {
   Epochs epochs;
   std::deque<Arrived> arrived;  // and not known yet whose they are
   std::vector<std::unique_ptr<detail::InputSlot>> inputs;
+  std::deque<v1::RobotDescription> described;
+  v1::RobotDescription robot_now;  // of this epoch
+  std::vector<Gate> gates;
+  std::string missing;                 // what a gate waits for
   std::deque<v1::RobotState> pending;  // of this epoch, not yet stepped, in order
   std::uint64_t last = 0;              // cycle of this epoch that was stepped last
   bool joining = true;                 // no step of this epoch yet
   bool fresh = true;                   // the next step is the first of its epoch
   bool quiet = false;                  // nothing was due for so long that it should be said
+  bool yielding = false;               // to another program of this name
   int behind = 0;                      // states in a row that were behind the newest one
   std::uint64_t behind_cycle = 0;
   std::set<std::string> told;
@@ -388,45 +414,60 @@ void Cycle::add(std::unique_ptr<detail::InputSlot> slot) {
   impl_->inputs.push_back(std::move(slot));
 }
 
+void Cycle::gate(Gate missing) {
+  impl_->gates.push_back(std::move(missing));
+}
+
+std::optional<Step> Cycle::poll() {
+  Impl& self = *impl_;
+  if (self.lockstep)
+    self.node.rouse();
+  self.drain_statuses();
+  self.drain();
+  self.yielding = self.yields();
+  if (self.yielding)
+    return {};
+  auto step = self.lockstep ? self.due_lockstep() : self.due_live();
+  if (!step)
+    return {};
+  step->description = &self.robot_now;
+  step->new_epoch = std::exchange(self.fresh, false);
+  self.joining = false;
+  self.last = step->robot.stamp().cycle();
+  self.note_step(*step);
+  self.began = Clock::now();
+  return step;
+}
+
+bool Cycle::look(const std::function<void()>& idle) {
+  Impl& self = *impl_;
+  if (Clock::now() - self.looked < kLook)
+    return false;
+  if (!self.yielding) {
+    self.note_waiting();
+    self.note_deafness();
+  }
+  self.publish_status();
+  if (idle)
+    idle();
+  self.looked = Clock::now();
+  return true;
+}
+
 std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& idle) {
   Impl& self = *impl_;
   self.waiting_since = Clock::now();
   self.quiet = false;
   while (!stop.requested()) {
-    if (self.lockstep)
-      self.node.rouse();
-    self.drain_statuses();
-    self.drain();
-    const bool yields = self.yields();
-    auto step = yields ? std::nullopt : self.lockstep ? self.due_lockstep() : self.due_live();
-    if (step) {
-      step->new_epoch = std::exchange(self.fresh, false);
-      self.joining = false;
-      self.last = step->robot.stamp().cycle();
-      self.note_step(*step);
-      self.began = Clock::now();
+    if (auto step = poll())
       return step;
-    }
-    if (self.lockstep && !yields && self.node.spin(kSpin)) {
+    if (self.lockstep && !self.yielding && self.node.spin(kSpin))
       self.node.clear_wake();
-      continue;
-    }
-    // Samples come one by one: who looks around after each of them does little else in lockstep.
-    const auto rest =
-        std::chrono::ceil<std::chrono::milliseconds>(self.looked + kLook - Clock::now());
-    if (rest.count() > 0) {
-      self.node.wait(rest, &stop);
-      continue;
-    }
-    if (!yields) {
-      self.note_waiting();
-      self.note_deafness();
-    }
-    self.publish_status();
-    if (idle)
-      idle();
-    self.looked = Clock::now();
-    self.node.wait(kIdle, &stop);
+    else if (look(idle))
+      self.node.wait(kIdle, &stop);
+    else
+      self.node.wait(
+          std::chrono::ceil<std::chrono::milliseconds>(self.looked + kLook - Clock::now()), &stop);
   }
   return {};
 }
@@ -436,6 +477,8 @@ void Cycle::done() {
   ++impl_->timed;
   impl_->total_ms += ms;
   impl_->max_ms = std::max(impl_->max_ms, ms);
+  impl_->waiting_since = Clock::now();
+  impl_->quiet = false;
   // After the step, not before it: what it costs must not delay the robot.
   impl_->publish_status();
   impl_->looked = Clock::now();

@@ -336,6 +336,11 @@ class DdsTransport : public Transport {
   void watch_endpoints(bool watch) override { bus_->watch(watch); }
   std::vector<std::string> silent_peers() const override { return bus_->silent_peers(); }
   void renew() override { bus_->renew_soon(); }
+  bool is_own(const WriterId& writer) const override {
+    const auto session = bus_->hold();
+    const WriterId self = to_id(bus_->session().participant->guid());
+    return std::equal(writer.begin(), writer.begin() + 12, self.begin());
+  }
 
  private:
   std::shared_ptr<Bus> bus_;

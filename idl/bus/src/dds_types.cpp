@@ -59,36 +59,22 @@ class Guarded : public Generated {
   std::mutex mutex_;
 };
 
-template <class... Generated>
-std::vector<eprosima::fastdds::dds::TypeSupport> make() {
-  std::vector<eprosima::fastdds::dds::TypeSupport> types;
-  (types.emplace_back(new Guarded<Generated>), ...);
-  for (auto& type : types) {
-    // With a TypeObject attached, a participant that is discovered meanwhile can crash Fast DDS.
-    type->auto_fill_type_object(false);
-    type->auto_fill_type_information(false);
-  }
-  return types;
+template <class Generated>
+eprosima::fastdds::dds::TypeSupport make() {
+  eprosima::fastdds::dds::TypeSupport type(new Guarded<Generated>);
+  // With a TypeObject attached, a participant that is discovered meanwhile can crash Fast DDS.
+  type->auto_fill_type_object(false);
+  type->auto_fill_type_information(false);
+  return type;
 }
 
 }  // namespace
 
 std::vector<eprosima::fastdds::dds::TypeSupport> all_types() {
-  return make<v1::RobotStatePubSubType, v1::RobotDescriptionPubSubType, v1::DevicesPubSubType,
-              v1::SerialDataPubSubType, v1::ServoCommandPubSubType, v1::GripperCommandPubSubType,
-              v1::DigitalOutputCommandPubSubType, v1::AnalogCommandPubSubType,
-              v1::TimerCommandPubSubType, v1::SonarCommandPubSubType, v1::SoundCommandPubSubType,
-              v1::ServerCommandPubSubType, v1::SerialCommandPubSubType, v1::MotorCommandPubSubType,
-              v1::EstopResetPubSubType, v1::GrantPubSubType, v1::StepPermitPubSubType,
-              v1::PerceptionPubSubType, v1::GridTilePubSubType, v1::VisionChannelsPubSubType,
-              v1::VisionPubSubType, v1::MapPubSubType, v1::RegistrationPubSubType,
-              v1::RegistrationRequestPubSubType, v1::RegistrationAnswerPubSubType,
-              v1::BehaviorsPubSubType, v1::IntentionsPubSubType, v1::GoalPubSubType,
-              v1::GoalStatusPubSubType, v1::BehaviorSchemasPubSubType,
-              v1::ActivitySchemasPubSubType, v1::BeliefsPubSubType, v1::BeliefClaimPubSubType,
-              v1::ProcessesPubSubType, v1::ProcessRequestPubSubType, v1::ProcessAnswerPubSubType,
-              v1::MessagePubSubType, v1::ServiceStatusPubSubType, v1::PresencePubSubType,
-              v1::LogRecordPubSubType>();
+  return {
+#define SAPHIRA_TYPE(type) make<v1::type##PubSubType>(),
+#include "saphira/bus/topics.def"
+  };
 }
 
 bool take_malformed() {

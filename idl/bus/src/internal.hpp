@@ -82,6 +82,8 @@ class Transport {
   virtual std::vector<std::string> silent_peers() const { return {}; }
   /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
   virtual void renew() {}
+  /// Whether a writer is one of this node's.
+  virtual bool is_own(const WriterId& writer) const = 0;
 };
 
 /// instance: as in ServiceStatus.
@@ -111,5 +113,6 @@ std::atomic<bool>& has_worked();
 
 /// A node's transport, for tests that need a QoS that no name has.
 Transport& transport_of(Node& node);
+Wake& wake_of(Node& node);
 
 }  // namespace saphira::bus::internal

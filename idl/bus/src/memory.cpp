@@ -264,6 +264,12 @@ class MemoryTransport : public Transport {
     return std::exchange(*troubles_, {});
   }
   void watch_endpoints(bool /*watch*/) override {}
+  bool is_own(const WriterId& writer) const override {
+    std::uint64_t node = 0;
+    for (unsigned i = 0; i < 8; ++i)
+      node |= static_cast<std::uint64_t>(writer[i]) << (8U * i);
+    return node == node_;
+  }
 
  private:
   Common common(const char* topic, const Policies& policies, const TypeInfo& type,

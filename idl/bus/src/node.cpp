@@ -171,6 +171,9 @@ std::unique_ptr<RawReader> Node::make_reader(const char* topic, Qos qos, const T
 int Node::wake_fd() const {
   return impl_->wake->fd();
 }
+void Node::wake() {
+  impl_->wake->signal();
+}
 void Node::clear_wake() {
   impl_->wake->clear();
 }
@@ -272,6 +275,9 @@ namespace internal {
 
 Transport& transport_of(Node& node) {
   return node.transport();
+}
+Wake& wake_of(Node& node) {
+  return *node.impl_->wake;
 }
 
 std::atomic<bool>& has_worked() {

@@ -1,5 +1,3 @@
-#include "behaviors/shell/shell.hpp"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -7,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "behaviors/shell/service.hpp"
 #include "node_options.hpp"
 #include "saphira/bus/goal_client.hpp"
 
@@ -22,6 +21,10 @@ v1::IntendedBehavior behavior(const char* schema, int priority,
   b.running(true);
   b.parameters(std::move(parameters));
   return b;
+}
+
+runtime::Shell::Make with(const Options& options) {
+  return [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, options); };
 }
 
 /// The service between a scripted bridge and scripted intentions, on a bus within the process.
@@ -82,7 +85,7 @@ class ShellTest : public testing::TestWithParam<bool> {
   bus::Writer<v1::Intentions> intentions{bridge.writer(bus::topics::kIntentions)};
   bus::Reader<v1::MotorCommand> commands{bridge.reader(bus::topics::kDriveBehaviors)};
   bus::Reader<v1::Behaviors> behaviors{bridge.reader(bus::topics::kBehaviors)};
-  Shell shell{service};
+  runtime::Shell shell{service, with({})};
 
   std::uint64_t epoch = 77;
   std::uint64_t cycle = 0;
@@ -253,7 +256,7 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   auto intentions = bridge.writer(bus::topics::kIntentions);
   auto behaviors = bridge.reader(bus::topics::kBehaviors);
   auto schemas = bridge.reader(bus::topics::kBehaviorSchemas);
-  Shell shell(service, {folder.string(), {SAPHIRA_EXAMPLE_PLUGIN}});
+  runtime::Shell shell(service, with({folder.string(), {SAPHIRA_EXAMPLE_PLUGIN}}));
   const auto find = [](const v1::BehaviorSchemas& all, const std::string& name) {
     for (const v1::BehaviorSchema& schema : all.schemas())
       if (schema.name() == name)
@@ -313,7 +316,7 @@ TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
 TEST(ShellFiles, APluginThatIsNoneEndsItAtItsStart) {
   const auto memory = bus::make_memory_bus();
   bus::Node service(test::memory_options("behaviors"), memory);
-  EXPECT_THROW(Shell(service, {"", {"/nowhere.so"}}), std::runtime_error);
+  EXPECT_THROW(runtime::Shell(service, with({"", {"/nowhere.so"}})), std::runtime_error);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <thread>
 
-#include "intentions/shell/shell.hpp"
 #include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"

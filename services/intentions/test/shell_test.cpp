@@ -1,5 +1,3 @@
-#include "intentions/shell/shell.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "intentions/shell/service.hpp"
 #include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -20,12 +19,14 @@ class ShellTest : public testing::Test {
  protected:
   void start(const std::string& memory_file = {}) {
     service.emplace(test::memory_options("intentions", true), bus);
-    ShellOptions options;
+    Options options;
     options.memory_file = memory_file;
     options.registration = false;
     options.interpretation = false;
     options.folder = folder;
-    shell.emplace(*service, options);
+    shell.emplace(*service, [options](runtime::Ports& ports) {
+      return std::make_unique<Service>(ports, options);
+    });
   }
   void kill() {
     shell.reset();
@@ -51,7 +52,7 @@ class ShellTest : public testing::Test {
   ScriptedBus robot{robot_node};
   bus::GoalClient goals{requester, "a test"};
   std::optional<bus::Node> service;
-  std::optional<Shell> shell;
+  std::optional<runtime::Shell> shell;
   std::string folder;  ///< of activities
 };
 

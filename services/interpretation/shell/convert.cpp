@@ -21,10 +21,15 @@ v1::Perception to_bus(const Output& output) {
   return sample;
 }
 
-v1::GridTile to_bus(const Grid& grid, const TileKey& key) {
+v1::GridTile to_bus(const TileKey& key) {
   v1::GridTile tile;
   tile.column(static_cast<std::int32_t>(key.column));
   tile.row(static_cast<std::int32_t>(key.row));
+  return tile;
+}
+
+v1::GridTile to_bus(const Grid& grid, const TileKey& key) {
+  v1::GridTile tile = to_bus(key);
   tile.resolution(grid.settings().resolution);
   tile.side(static_cast<std::uint32_t>(Grid::kTile));
   tile.cells(grid.cells(key));

@@ -9,7 +9,9 @@ namespace saphira::interpretation {
 
 /// The perception sample; its stamp and odom are the caller's.
 v1::Perception to_bus(const Output& output);
-/// A tile of the grid; its stamp and odom are the caller's.
+/// A tile of the grid by its key alone; its stamp and odom are the caller's.
+v1::GridTile to_bus(const TileKey& key);
+/// The same with what it shows.
 v1::GridTile to_bus(const Grid& grid, const TileKey& key);
 
 }  // namespace saphira::interpretation

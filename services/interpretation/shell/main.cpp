@@ -1,16 +1,5 @@
-#include <CLI/CLI.hpp>
-
-#include "interpretation/shell/shell.hpp"
-#include "saphira/bus/program.hpp"
+#include "interpretation/shell/service.hpp"
 
 int main(int argc, char** argv) {
-  using namespace saphira;
-  return bus::run_program(
-      argc, argv, "interpretation", "Finds walls, doors and corridors in the sonars' readings",
-      [](CLI::App&) {},
-      [](const bus::NodeOptions& node_options, const bus::Stop& stop) {
-        bus::Node node(node_options);
-        interpretation::Shell(node).run(stop);
-        return bus::kExitOk;
-      });
+  return saphira::runtime::run_component(argc, argv, saphira::interpretation::component());
 }

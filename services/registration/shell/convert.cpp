@@ -1,8 +1,7 @@
 #include "registration/shell/convert.hpp"
 
-#include <cmath>
-
 #include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -23,41 +22,75 @@ v1::RegistrationState to_bus(State state) {
   return v1::REGISTRATION_TRACKING;
 }
 
-v1::Match to_bus(const Match& match, const maps::Map& map) {
+Core::Request::Action action_of(v1::RegistrationAction action) {
+  using Action = Core::Request::Action;
+  switch (action) {
+    case v1::REGISTRATION_LOAD:
+      return Action::kLoad;
+    case v1::REGISTRATION_DELETE:
+      return Action::kDelete;
+    case v1::REGISTRATION_PUT:
+      return Action::kPut;
+    case v1::REGISTRATION_REMOVE:
+      return Action::kRemove;
+    case v1::REGISTRATION_PLACE:
+      return Action::kPlace;
+    case v1::REGISTRATION_FIND:
+      return Action::kFind;
+    case v1::REGISTRATION_SWITCH:
+      return Action::kSwitch;
+    case v1::REGISTRATION_ADD_FEATURES:
+      return Action::kAddFeatures;
+    case v1::REGISTRATION_SNAP:
+      return Action::kSnap;
+  }
+  return static_cast<Action>(action);
+}
+
+v1::Match to_bus(const Core::Matched& match) {
   v1::Match result;
   result.percept(match.percept);
   result.artifact(match.artifact);
   result.accepted(match.accepted);
-  const double th = match.feature ? map.features[*match.feature].pose_in_map.th : 0.0;
-  result.along(std::cos(th) * match.offset.x() + std::sin(th) * match.offset.y());
-  result.across(-std::sin(th) * match.offset.x() + std::cos(th) * match.offset.y());
+  result.along(match.off.x());
+  result.across(match.off.y());
   result.heading(match.turned);
-  result.reason(match.accepted ? "" : std::string(match.reason));
+  result.reason(match.reason);
   return result;
 }
 
 }  // namespace
 
-v1::Registration to_bus(const Output& output, const maps::Map& map, const Pose& pose_in_odom) {
+v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) {
   v1::Registration sample;
-  sample.state(to_bus(output.state));
-  sample.reason(std::string(output.reason));
-  sample.pose_in_map(lps::to_bus(output.pose_in_map));
-  sample.odom_in_map(lps::to_bus(compose(output.pose_in_map, relative(pose_in_odom, Pose{}))));
-  sample.covariance().xx(output.covariance(0, 0));
-  sample.covariance().xy(output.covariance(0, 1));
-  sample.covariance().yy(output.covariance(1, 1));
-  sample.covariance().xth(output.covariance(0, 2));
-  sample.covariance().yth(output.covariance(1, 2));
-  sample.covariance().thth(output.covariance(2, 2));
-  sample.confidence(output.confidence);
-  sample.environment(output.environment ? map.features[*output.environment].id : 0);
-  for (const Match& match : output.matches) {
+  sample.state(to_bus(outputs.state));
+  sample.reason(outputs.reason);
+  sample.pose_in_map(lps::to_bus(outputs.pose_in_map));
+  sample.odom_in_map(lps::to_bus(compose(outputs.pose_in_map, relative(pose_in_odom, Pose{}))));
+  sample.covariance().xx(outputs.covariance(0, 0));
+  sample.covariance().xy(outputs.covariance(0, 1));
+  sample.covariance().yy(outputs.covariance(1, 1));
+  sample.covariance().xth(outputs.covariance(0, 2));
+  sample.covariance().yth(outputs.covariance(1, 2));
+  sample.covariance().thth(outputs.covariance(2, 2));
+  sample.confidence(outputs.confidence);
+  sample.environment(outputs.environment);
+  sample.closed_doors(outputs.closed_doors);
+  for (const Core::Matched& match : outputs.matches) {
     if (sample.matches().size() == kMostMatches)
       break;
-    sample.matches().push_back(to_bus(match, map));
+    sample.matches().push_back(to_bus(match));
   }
   return sample;
+}
+
+Core::Request from_bus(const v1::RegistrationRequest& request) {
+  return {action_of(request.action()),
+          request.name(),
+          request.text(),
+          maps::from_bus(request.artifact()),
+          lps::from_bus(request.pose_in_map()),
+          request.on()};
 }
 
 }  // namespace saphira::registration

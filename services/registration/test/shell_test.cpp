@@ -1,7 +1,5 @@
 // Interpretation and registration as services, with a simulated robot that tours an office: on a
 // bus within the process, step by step.
-#include "registration/shell/shell.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -13,9 +11,10 @@
 #include <limits>
 
 #include "drive/drive.hpp"
-#include "interpretation/shell/shell.hpp"
+#include "interpretation/shell/service.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
+#include "registration/shell/service.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -93,9 +92,11 @@ class RegistrationShell : public testing::Test {
     descriptions.write(description);
   }
 
-  void start(const ShellOptions& options) {
+  void start(const Options& options) {
     service.emplace(named("registration"), memory);
-    shell.emplace(*service, options);
+    shell.emplace(*service, [options](runtime::Ports& ports) {
+      return std::make_unique<Service>(ports, options);
+    });
   }
 
   /// One cycle of robot and services.
@@ -134,7 +135,7 @@ class RegistrationShell : public testing::Test {
   }
 
   /// The service ends when all that was until now is in the memory, and another one begins.
-  void restart(const ShellOptions& options) {
+  void restart(const Options& options) {
     const std::string file = options.memory_file;
     // The first one may have been under way before.
     for (int saves = 0; saves < 2; ++saves) {
@@ -221,9 +222,9 @@ class RegistrationShell : public testing::Test {
   bus::Reader<v1::RegistrationAnswer> answers{bridge.reader(bus::topics::kRegistrationAnswer)};
   bus::Reader<v1::Map> maps{bridge.reader(bus::topics::kMap)};
   bus::Node eyes{named("interpretation"), memory};
-  interpretation::Shell eyes_shell{eyes};
+  runtime::Shell eyes_shell{eyes, interpretation::component().make};
   std::optional<bus::Node> service;
-  std::optional<Shell> shell;
+  std::optional<runtime::Shell> shell;
   v1::Registration registration;
   maps::Map newest_map;
   std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
@@ -267,7 +268,7 @@ TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
 
 TEST_F(RegistrationShell, AThingComesOntoTheMapAndGoesWhereFeaturesAreAdded) {
   ASSERT_TRUE(drive.scene().set_box("crate", {5.0, 7.7, 0.0}));
-  ShellOptions options{map_path("office"), "start", folder.path("memory")};
+  Options options{map_path("office"), "start", folder.path("memory")};
   options.add_features = true;
   start(options);
   ASSERT_TRUE(tour_until([&] { return crate() != nullptr; }, 1200));
@@ -307,7 +308,7 @@ TEST_F(RegistrationShell, AThingThatIsNotThereIsTakenFromTheMapOfAPerson) {
 }
 
 TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
-  const ShellOptions options{map_path("office"), "start", folder.path("memory")};
+  const Options options{map_path("office"), "start", folder.path("memory")};
   start(options);
   ASSERT_TRUE(drive.scene().set_door("n2", false));
   ASSERT_TRUE(tour_until([&] { return !registration.closed_doors().empty(); }, 1200));
@@ -356,7 +357,7 @@ TEST_F(RegistrationShell, ASuspendedProcessSaysNothingUntilItIsResumed) {
 }
 
 TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
-  const ShellOptions options{map_path("office"), "start", folder.path("memory")};
+  const Options options{map_path("office"), "start", folder.path("memory")};
   start(options);
   cycle();
   test::Tour there({{8.0, 7.0}}, false);
@@ -469,7 +470,7 @@ TEST_F(RegistrationShell, AMapThatIsTooLargeChangesNothing) {
 }
 
 TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
-  const ShellOptions given{map_path("office"), "start", folder.path("memory")};
+  const Options given{map_path("office"), "start", folder.path("memory")};
   start(given);
   cycle();
   v1::RegistrationRequest request;
@@ -489,7 +490,7 @@ TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
   EXPECT_EQ(map->artifacts().size(), 2U);
   EXPECT_NEAR(registration.pose_in_map().x(), -3.0, 0.1);
   // What was asked for on the command line counts again when it is another.
-  ShellOptions other = given;
+  Options other = given;
   other.map_file = map_path("loop");
   restart(given);
   shell.reset();
@@ -501,7 +502,7 @@ TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
 }
 
 TEST_F(RegistrationShell, ARestartKnowsThatTheMapWasDeleted) {
-  const ShellOptions given{map_path("office"), "start", folder.path("memory")};
+  const Options given{map_path("office"), "start", folder.path("memory")};
   start(given);
   cycle();
   v1::RegistrationRequest request;

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <utility>
 
@@ -41,8 +40,10 @@ int connect_to(const std::string& path) {
 
 }  // namespace
 
-Pictures::Pictures(std::string path)
-    : path_(std::move(path)), stop_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+Pictures::Pictures(std::string path, std::function<void()> came)
+    : path_(std::move(path)),
+      came_(std::move(came)),
+      stop_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (path_.empty()) {
     trouble_ = "no stereo socket was given";
     return;
@@ -59,12 +60,13 @@ Pictures::~Pictures() {
   ::close(stop_);
 }
 
-std::optional<StereoPicture> Pictures::take(std::uint64_t cycle, std::chrono::milliseconds wait) {
-  std::unique_lock lock(mutex_);
-  if (wait.count() > 0)
-    changed_.wait_for(lock, wait, [&] {
-      return !connected_ || (!pictures_.empty() && pictures_.back().cycle >= cycle);
-    });
+bool Pictures::has(std::uint64_t cycle) const {
+  const std::lock_guard lock(mutex_);
+  return !pictures_.empty() && pictures_.back().cycle >= cycle;
+}
+
+std::optional<StereoPicture> Pictures::take(std::uint64_t cycle) {
+  const std::lock_guard lock(mutex_);
   std::optional<StereoPicture> newest;
   while (!pictures_.empty() && pictures_.front().cycle <= cycle) {
     newest = std::move(pictures_.front());
@@ -84,14 +86,11 @@ std::string Pictures::trouble() const {
 }
 
 void Pictures::say(bool connected, std::string trouble) {
-  {
-    const std::lock_guard lock(mutex_);
-    connected_ = connected;
-    trouble_ = std::move(trouble);
-    if (!connected)
-      pictures_.clear();
-  }
-  changed_.notify_all();
+  const std::lock_guard lock(mutex_);
+  connected_ = connected;
+  trouble_ = std::move(trouble);
+  if (!connected)
+    pictures_.clear();
 }
 
 bool Pictures::pause(int milliseconds) const {
@@ -138,7 +137,8 @@ void Pictures::read(int fd) {
           if (pictures_.size() > kKept)
             pictures_.pop_front();
         }
-        changed_.notify_all();
+        if (came_)
+          came_();
       }
     } catch (const FileError& error) {
       return say(false, path_ + ": " + error.what());

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,15 +16,16 @@ namespace saphira::vision {
 /// connects anew by itself.
 class Pictures {
  public:
-  /// An empty path: there are none.
-  explicit Pictures(std::string path);
+  /// An empty path: there are none. `came` is called, in the thread that reads, for every picture.
+  explicit Pictures(std::string path, std::function<void()> came = {});
   ~Pictures();
   Pictures(const Pictures&) = delete;
   Pictures& operator=(const Pictures&) = delete;
 
-  /// The newest one of no later cycle, and drops those before it; waits so long for that of the
-  /// cycle itself, where the socket is connected.
-  std::optional<StereoPicture> take(std::uint64_t cycle, std::chrono::milliseconds wait = {});
+  /// The newest one of no later cycle, and drops those before it.
+  std::optional<StereoPicture> take(std::uint64_t cycle);
+  /// Whether that of this cycle, or of a later one, has come.
+  bool has(std::uint64_t cycle) const;
   bool connected() const;
   /// Why there are no pictures, in words; empty: they come.
   std::string trouble() const;
@@ -37,9 +37,9 @@ class Pictures {
   bool pause(int milliseconds) const;  ///< true where the end was asked for
 
   std::string path_;
+  std::function<void()> came_;
   int stop_ = -1;  ///< an eventfd
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
   std::deque<StereoPicture> pictures_;
   bool connected_ = false;
   std::string trouble_;

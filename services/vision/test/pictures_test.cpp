@@ -5,14 +5,13 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 
 #include "process.hpp"
 
 namespace saphira::vision {
 namespace {
-
-using std::chrono::milliseconds;
 
 // A camera's end of the line.
 class Camera {
@@ -74,7 +73,8 @@ TEST(Pictures, ACameraThatComesLateOrAgainIsFound) {
     EXPECT_TRUE(test::wait_until([&] { return pictures.connected(); }));
     EXPECT_EQ(pictures.trouble(), "");
     camera.show(5);
-    EXPECT_EQ(cycle_of(pictures.take(5, milliseconds(30'000))), 5U);
+    EXPECT_TRUE(test::wait_until([&] { return pictures.has(5); }));
+    EXPECT_EQ(cycle_of(pictures.take(5)), 5U);
     EXPECT_FALSE(pictures.take(5));
     camera.hang_up();
     EXPECT_TRUE(test::wait_until([&] { return !pictures.connected(); }));
@@ -86,15 +86,18 @@ TEST(Pictures, TheNewestOfTheCyclesThatHaveBeen) {
   const test::TempDir folder;
   const std::string path = folder.path("eyes");
   Camera camera(path);
-  Pictures pictures(path);
+  std::atomic<int> came = 0;
+  Pictures pictures(path, [&] { ++came; });
   camera.accept();
   ASSERT_TRUE(test::wait_until([&] { return pictures.connected(); }));
   camera.show(1);
   camera.show(2);
   camera.show(4);
   // That of cycle 4 is the first of a cycle from 3 on: then all are here.
-  EXPECT_EQ(cycle_of(pictures.take(3, milliseconds(30'000))), 2U);
+  EXPECT_TRUE(test::wait_until([&] { return pictures.has(3); }));
+  EXPECT_EQ(cycle_of(pictures.take(3)), 2U);
   EXPECT_EQ(cycle_of(pictures.take(4)), 4U);
+  EXPECT_TRUE(test::wait_until([&] { return came == 3; }));
 }
 
 TEST(Pictures, WhatIsNoPictureIsSaidAndTriedAgain) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,12 +66,29 @@ std::string default_terminal();
 /// The name of a file or socket for robot `number`, which counts from 1: "run.csv", "run-2.csv".
 std::string numbered(const std::string& path, std::size_t number);
 
-/// Serves simulated robots until stop_fd is readable (it is not read). One client each at a time: a
-/// second one's connection is closed at once, and logged. May run in a thread beside others: no
-/// signals, no globals but the files named.
-///
-/// FileError or std::runtime_error where the options or their files are wrong, or the socket or the
-/// trace cannot be had.
+/// Serves simulated robots. One client each at a time: a second one's connection is closed at once,
+/// and logged. May run in a thread beside others: no signals, no globals but the files named.
+class Host {
+ public:
+  /// FileError or std::runtime_error where the options or their files are wrong, or the socket or
+  /// the trace cannot be had.
+  explicit Host(const HostOptions& options);
+  ~Host();
+  Host(const Host&) = delete;
+  Host& operator=(const Host&) = delete;
+
+  /// Serves what has come by now, or comes within so many milliseconds; below zero: without end.
+  /// False where stop_fd is readable (it is not read).
+  bool serve(int stop_fd, int most_ms = -1);
+  /// Says goodbye to the clients and ends the traces.
+  void end();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Serves until stop_fd is readable.
 void run(const HostOptions& options, int stop_fd);
 
 }  // namespace saphira::sim

@@ -23,7 +23,9 @@ class Input {
 
 /// What a step is for.
 struct Step {
-  v1::RobotState robot;    ///< of cycle N, from the bridge
+  v1::RobotState robot;  ///< of cycle N, from the bridge
+  /// The robot of this epoch, as its bridge describes it. Good until the next call of the Cycle.
+  const v1::RobotDescription* description = nullptr;
   bool new_epoch = false;  ///< the first step of a connection: forget what belongs to the last one
   bool stale = false;      ///< live: some input of N-1 had not come, an older one stands in for it
 };
@@ -123,9 +125,18 @@ class Cycle {
     return result;
   }
 
-  /// Waits for the next step; nothing when stop was requested. Publishes the node's status while it
-  /// waits, and sets its state, reason and counters. `idle` is called whenever the node woke
-  /// without a step being due (within 5 ms), and at least twice a second.
+  /// What a step needs beside the inputs, and what lockstep waits for: empty where it is here, or
+  /// what is missing, in words. Asked when the inputs of that state are there and can be read.
+  using Gate = std::function<std::string(const v1::RobotState& state)>;
+  void gate(Gate missing);
+
+  /// The step that is due now, or nothing. Never waits.
+  std::optional<Step> poll();
+  /// Where no step is due: publishes the node's status (what is waited for, counters) and calls
+  /// `idle`; no more often than every 5 ms. False where it was too early to do so.
+  bool look(const std::function<void()>& idle = {});
+  /// Waits for the next step; nothing when stop was requested. Looks meanwhile: whenever the node
+  /// woke without a step being due, and at least twice a second.
   std::optional<Step> next(const Stop& stop, const std::function<void()>& idle = {});
   /// Ends the step that next() began: counts its time.
   void done();

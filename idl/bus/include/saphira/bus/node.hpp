@@ -36,9 +36,12 @@ class Node;
 /// threads; delivery is immediate and in order. For tests.
 class MemoryBus;
 class Echo;
+class Gateway;
 namespace internal {
 class Transport;
+class Wake;
 Transport& transport_of(Node& node);
+Wake& wake_of(Node& node);
 }  // namespace internal
 std::shared_ptr<MemoryBus> make_memory_bus();
 
@@ -74,6 +77,8 @@ class Node {
   int wake_fd() const;
   /// Makes wake_fd unreadable again. Call before taking from the readers.
   void clear_wake();
+  /// Makes wake_fd readable: from any thread, for what comes another way than over the bus.
+  void wake();
   /// Waits for wake_fd, stop or the timeout; clears the wake. False when the time ran out.
   bool wait(std::chrono::milliseconds timeout, const Stop* stop = nullptr);
 
@@ -113,7 +118,9 @@ class Node {
 
  private:
   friend class Echo;
+  friend class Gateway;
   friend internal::Transport& internal::transport_of(Node& node);
+  friend internal::Wake& internal::wake_of(Node& node);
 
   internal::Transport& transport();
   std::unique_ptr<RawWriter> make_writer(const char* topic, Qos qos, const TypeInfo& type);

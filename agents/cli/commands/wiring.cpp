@@ -1,0 +1,81 @@
+// Which program writes what, and which reads it: the table that the system is made from.
+#include <algorithm>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "saphira/base/durable.hpp"
+#include "system/system.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The status comes once a second.
+constexpr milliseconds kListen{1300};
+
+struct Options {
+  bool table = false;
+  std::string drawing;
+};
+
+/// What is wrong now with each of them.
+void find_trouble(std::vector<runtime::Unit>& units, const std::vector<SeenProcess>& seen) {
+  for (runtime::Unit& unit : units) {
+    const auto found = std::find_if(seen.begin(), seen.end(), [&](const SeenProcess& process) {
+      return process.status.name() == unit.name;
+    });
+    unit.trouble = found == seen.end() ? "not on the bus" : found->status.reason();
+  }
+}
+
+int wiring(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  std::vector<runtime::Unit> units = system::units();
+  if (options.table) {
+    std::fputs(runtime::wiring_table(units).c_str(), stdout);
+    return bus::kExitOk;
+  }
+  bus::Node node(node_options);
+  Processes processes(node);
+  for (const auto end = Clock::now() + kListen; !stop.requested() && Clock::now() < end;
+       processes.poll())
+    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+  const std::vector<SeenProcess> seen = processes.all();
+  // Where nothing runs, the table is what was asked for.
+  if (!seen.empty())
+    find_trouble(units, seen);
+  if (!options.drawing.empty()) {
+    if (!replace_file(options.drawing, runtime::wiring_drawing(units))) {
+      std::fprintf(stderr, "saphira wiring: %s cannot be written\n", options.drawing.c_str());
+      return bus::kExitFailed;
+    }
+    std::printf("drew %s\n", options.drawing.c_str());
+    return bus::kExitOk;
+  }
+  std::fputs(runtime::wiring_text(units).c_str(), stdout);
+  if (seen.empty())
+    std::printf("\nOn the bus of robot %s is no program now.\n", node_options.robot.c_str());
+  for (const runtime::Unit& unit : units)
+    if (!unit.trouble.empty())
+      std::printf("%s: %s\n", unit.name.c_str(), unit.trouble.c_str());
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+void add_wiring(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("wiring", "Which program writes which topic and which reads it");
+  command->add_option("--draw", options->drawing, "as a drawing (SVG) into this file");
+  command->add_flag("--table", options->table, "as a table in Markdown, of the system at rest");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return wiring(*options, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

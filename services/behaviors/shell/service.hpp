@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/behaviors/core.hpp"
+#include "saphira/behaviors/folder.hpp"
+#include "saphira/runtime/component.hpp"
+
+namespace saphira::behaviors {
+
+struct Options {
+  /// Behaviors that cover shipped ones of the same name; empty: none.
+  std::string folder;
+  std::vector<std::string> plugins;  ///< files, see plugin.hpp
+};
+
+runtime::Component component();
+
+/// The behaviors service on the bus.
+class Service final : public runtime::Service {
+ public:
+  /// std::runtime_error where a plug-in, or the shipped behaviors, cannot be had at all.
+  Service(runtime::Ports& ports, const Options& options);
+
+  ProcessTable& processes() override { return core_.processes(); }
+  void step(const runtime::Turn& turn) override;
+  void look() override;
+
+ private:
+  std::optional<double> command_age(const runtime::Turn& turn);
+
+  runtime::Ports& ports_;
+  bus::Input<v1::Intentions>& intentions_;
+  std::optional<bus::Reader<v1::Grant>> grants_;  ///< none in lockstep: there is no delay
+  runtime::Output<v1::MotorCommand> commands_;
+  runtime::Output<v1::Behaviors> behaviors_;
+  runtime::Output<v1::Behaviors> recall_;
+  runtime::Output<v1::BehaviorSchemas> schemas_;
+  Core core_;
+  Sources sources_;
+  bool looked_ = false;
+};
+
+}  // namespace saphira::behaviors

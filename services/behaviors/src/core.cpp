@@ -1,0 +1,64 @@
+#include "saphira/behaviors/core.hpp"
+
+#include <algorithm>
+
+namespace saphira::behaviors {
+namespace {
+
+/// [s] A command is replaced a cycle after the one that it answers, where nothing is slow.
+constexpr double kOrdinaryAge = 0.1;
+
+}  // namespace
+
+Core::Outputs Core::step(const Inputs& inputs) {
+  begin(inputs);
+  behaviors::Inputs now;
+  now.cycle = inputs.cycle;
+  now.robot = inputs.robot;
+  now.sonars = inputs.sonars;
+  now.delay = std::max(delay_.hear(inputs.command_age.value_or(kOrdinaryAge) - kOrdinaryAge), 0.0);
+  // The points that were intended before are elsewhere in another frame.
+  if (inputs.intent && inputs.intent->cycle >= frame_since_)
+    now.intent = &*inputs.intent;
+  Intent nothing;
+  nothing.cycle = inputs.cycle;
+  if (!execution_.works())
+    now.intent = &nothing;
+  Outputs outputs;
+  outputs.output = executive_.step(now);
+  if (!execution_.works())
+    outputs.output.inactive_reason = execution_.name() + " is suspended";
+  outputs.number = ++number_;
+  tell(outputs.output, outputs);
+  return outputs;
+}
+
+void Core::begin(const Inputs& inputs) {
+  if (inputs.new_robot != nullptr) {
+    executive_.reset(*inputs.new_robot);
+    delay_ = {};
+    frame_since_ = 0;
+  } else if (inputs.new_frame) {
+    executive_.reset();
+    frame_since_ = inputs.cycle;
+  }
+}
+
+void Core::tell(const Output& output, Outputs& outputs) {
+  if (output.trouble != trouble_ && !output.trouble.empty())
+    outputs.notes.warn("behaviors that cannot be had: " + output.trouble);
+  trouble_ = output.trouble;
+  const bool slow = !output.slow.empty();
+  if (slow)
+    outputs.degraded = output.slow + ": the robot drives more slowly";
+  if (slow && !slow_)
+    outputs.notes.warn(outputs.degraded);
+  if (!slow && slow_)
+    outputs.notes.info("the network is fast enough again");
+  slow_ = slow;
+  if (output.active != active_)
+    outputs.notes.info(output.active ? "drives" : "does not drive: " + output.inactive_reason);
+  active_ = output.active;
+}
+
+}  // namespace saphira::behaviors

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/base/notes.hpp"
+#include "saphira/base/process.hpp"
+#include "saphira/base/stamp.hpp"
+#include "saphira/intentions/executor.hpp"
+#include "saphira/lps/local_perceptual_space.hpp"
+#include "saphira/lps/percept.hpp"
+#include "saphira/lps/seen_thing.hpp"
+
+namespace saphira::intentions {
+
+/// The intentions service without the bus: what came since the last cycle in, what is intended now
+/// out, with all that is told of it. Files, waiting and writing are the shell's.
+class Core {
+ public:
+  /// A writer on the bus, unique for ever.
+  using Writer = std::array<std::uint8_t, 16>;
+
+  struct Settings {
+    Registry registry;  ///< what can be intended, before any file is read
+    Memory memory;      ///< what was remembered over a restart
+    bool remembers_work = false;
+    bool lockstep = false;
+    std::shared_ptr<const Functions> functions;
+  };
+  explicit Core(Settings settings);
+
+  /// What has come in a cycle or between two. Writers that are lost count before what has come:
+  /// what they have written earlier is among it.
+  struct Heard {
+    struct Goal {
+      GoalEvent event;
+      Writer writer{};
+    };
+    struct Claim {
+      ClaimEvent event;
+      Writer writer{};
+      bool ends_with_writer = false;
+    };
+    struct Estop {
+      bool pressed = false;
+      std::string source;
+    };
+    std::vector<Writer> lost_requesters;
+    std::vector<Goal> goals;
+    std::vector<Writer> lost_claimants;
+    std::vector<Claim> claims;
+    /// As the bridge's grants have it. For steps alone: all since the last one together.
+    std::vector<Estop> estops;
+  };
+
+  /// A map of the registration service.
+  struct MapNews {
+    std::uint64_t revision = 0;
+    std::shared_ptr<const maps::Map> map;
+  };
+  /// What a vision service saw.
+  struct Vision {
+    Stamp stamp;
+    std::uint64_t odom = 0;
+    bool sees = false;  ///< there is a camera that shows something
+    std::vector<lps::SeenThing> things;
+  };
+
+  struct Inputs {
+    Stamp stamp;
+    const lps::LpsSettings* new_robot = nullptr;  ///< the first step of an epoch
+    bool new_frame = false;                       ///< the odom frame has another origin
+    Robot robot;                              ///< with its place on the map, where that is known
+    std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+    // Of the cycle before.
+    std::vector<BehaviorLevel> behaviors;
+    std::vector<BehaviorTrouble> troubles;
+    std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
+    std::uint64_t intent_age = 1;       ///< [cycles] of what they were computed from
+    Registered registered;
+    std::optional<std::uint64_t> map_revision;  ///< that registration had; none: it was not heard
+    std::optional<std::vector<lps::Percept>> percepts;  ///< none: no interpretation
+    std::optional<Vision> vision;
+    Heard heard;
+  };
+  struct Outputs {
+    intentions::Outputs intended;
+    /// All of them, where they have changed.
+    std::optional<std::vector<Belief>> beliefs;
+    Notes notes;
+  };
+  Outputs step(Inputs inputs);
+
+  /// What is told between cycles.
+  struct Told {
+    News news;
+    Notes notes;
+  };
+  /// Takes what does not wait for a cycle; `silence` [s] since the newest one.
+  Told between(const Heard& heard, double silence);
+
+  /// Takes a map. In lockstep it counts from the step on for which registration had it.
+  void know_map(MapNews news) { newer_maps_.push_back(std::move(news)); }
+  /// Whether the map that registration had is known.
+  bool knows_map(std::uint64_t revision) const;
+  /// What the behaviors service can evaluate.
+  Notes know_behaviors(const std::vector<BehaviorSignature>& behaviors);
+
+  Executor& executor() { return executor_; }
+  ProcessTable& processes() { return processes_; }
+  /// An intention by its instance, its number or I and its number (manual 6.5, 2.3.8): empty where
+  /// it was done, the reason where not; nothing where there is none.
+  std::optional<std::string> ask(const std::string& name, ProcessAction action,
+                                 std::uint32_t cycles);
+
+ private:
+  std::vector<GoalEvent> events_of(const Heard& heard);
+  std::vector<ClaimEvent> claims_of(const Heard& heard);
+  void note_estops(const std::vector<Heard::Estop>& estops);
+  void look_around(const Inputs& inputs, Surroundings& around);
+  void take_maps(std::optional<std::uint64_t> revision);
+  void tell(const News& news, Notes& notes);
+
+  bool lockstep_;
+  Executor executor_;
+  ProcessTable processes_;
+  /// Suspended it lets nothing be intended: the goals are suspended, and the robot is released.
+  Process& execution_ =
+      processes_.add("execute-intentions", "pursues the goals: begins and steps intentions");
+  std::string estop_;  ///< which program pressed the emergency stop that is latched
+  std::optional<lps::LocalPerceptualSpace> lps_;
+  std::optional<std::vector<lps::Percept>> percepts_;
+  std::vector<lps::SeenThing> things_;
+  std::vector<lps::SonarReading> readings_;
+  std::shared_ptr<const maps::Map> map_;
+  std::shared_ptr<const maps::Topology> topology_;
+  std::uint64_t map_revision_ = 0;
+  std::uint64_t places_revision_ = 0;  ///< of the map when its topology changed last
+  std::deque<MapNews> newer_maps_;     ///< lockstep: than the cycle that is stepped
+  std::map<GoalId, Writer> requesters_;
+  std::map<GoalId, Writer> claimants_;  ///< of claims that end with their writer
+  std::map<GoalId, GoalState> logged_;
+  std::vector<IntentionNode> nodes_;  ///< of the newest step
+  std::uint64_t beliefs_revision_ = 0;
+  bool robot_here_ = false;
+};
+
+}  // namespace saphira::intentions

@@ -1,0 +1,328 @@
+#include "intentions/shell/service.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <utility>
+
+#include "intentions/shell/convert.hpp"
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/navigation.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
+constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
+
+std::vector<std::string> folders(const Options& options) {
+  std::vector<std::string> paths{activities_folder()};
+  if (!options.folder.empty())
+    paths.push_back(options.folder);
+  return paths;
+}
+
+Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
+                        std::shared_ptr<const Functions> functions) {
+  return {built_in(), memory.memory(), memory.keeps(), ports.lockstep(), std::move(functions)};
+}
+
+}  // namespace
+
+Service::Service(runtime::Ports& ports, const Options& options)
+    : ports_(ports),
+      behaviors_(ports.cycle(bus::topics::kBehaviors)),
+      registration_(options.registration ? &ports.cycle(bus::topics::kRegistration) : nullptr),
+      perception_(options.interpretation ? &ports.cycle(bus::topics::kPerception) : nullptr),
+      vision_(options.vision ? &ports.cycle(bus::topics::kVision) : nullptr),
+      maps_(ports.events(bus::topics::kMap)),
+      behavior_schemas_(ports.newest(bus::topics::kBehaviorSchemas)),
+      claims_(ports.events(bus::topics::kBeliefClaims)),
+      goals_(ports.events(bus::topics::kGoals)),
+      grants_(ports.events(bus::topics::kGrant)),
+      intentions_(ports.each_cycle(bus::topics::kIntentions)),
+      recall_(ports.recall(bus::topics::kRecallIntentions)),
+      statuses_(ports.changes(bus::topics::kGoalStatus)),
+      schemas_(ports.changes(bus::topics::kActivitySchemas)),
+      beliefs_(ports.changes(bus::topics::kBeliefs)),
+      messages_(ports.changes(bus::topics::kMessages)),
+      map_requests_(ports.changes(bus::topics::kRegistrationRequest)),
+      next_request_(ports.instance()),
+      memory_(options.memory_file),
+      functions_(all_functions()),
+      folders_(folders(options), functions_, built_in()),
+      core_(settings(ports, memory_, functions_)) {
+  Notes notes;
+  for (const std::string& trouble : memory_.troubles())
+    notes.warn(trouble);
+  ports_.say(notes.lines());
+  if (!options.vision && !ports.lockstep())
+    unasked_vision_.emplace(ports.newest(bus::topics::kVision));
+  ports.gate([this](const v1::RobotState&) { return missing(); });
+  look();
+}
+
+/// In lockstep it is known from the first cycle on in every run what can be intended, and which map
+/// registration had.
+std::string Service::missing() {
+  if (!knows_behaviors_)
+    take_behavior_schemas();
+  if (!knows_behaviors_)
+    return bus::topics::kBehaviorSchemas.name;
+  take_maps();
+  const v1::Registration* const registration =
+      registration_ == nullptr ? nullptr : registration_->value();
+  if (registration == nullptr || core_.knows_map(registration->map_revision()))
+    return {};
+  return std::string(bus::topics::kMap.name) + " of revision " +
+         std::to_string(registration->map_revision());
+}
+
+void Service::step(const runtime::Turn& turn) {
+  const Core::Outputs outputs = core_.step(inputs_of(turn));
+  remember(outputs.intended.news);
+  publish(outputs.intended);
+  publish(outputs.intended.news);
+  if (outputs.beliefs)
+    publish(*outputs.beliefs);
+  ports_.say(outputs.notes.lines());
+}
+
+void Service::between(double silence) {
+  Core::Heard heard;
+  take_goals(heard);
+  const Core::Told told = core_.between(heard, silence);
+  remember(told.news);
+  publish(told.news);
+  ports_.say(told.notes.lines());
+}
+
+Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
+  Core::Inputs inputs;
+  inputs.stamp = turn.stamp;
+  if (turn.new_robot) {
+    robot_ = lps::settings_from_bus(turn.description);
+    inputs.new_robot = &robot_;
+  }
+  inputs.new_frame = turn.new_frame;
+  inputs.robot = from_bus(turn.robot);
+  inputs.readings = lps::sonars_from_bus(turn.robot);
+  const std::uint64_t cycle = turn.stamp.cycle;
+  if (const v1::Behaviors* const behaviors = behaviors_.value()) {
+    inputs.behaviors = from_bus(*behaviors);
+    inputs.troubles = troubles_from_bus(*behaviors);
+    inputs.behaviors_cycle = behaviors->stamp().cycle();
+    inputs.intent_age = intent_age_from_bus(*behaviors);
+  }
+  if (const v1::Registration* const registration =
+          registration_ == nullptr ? nullptr : registration_->value()) {
+    inputs.robot.odom_in_map = odom_in_map_from_bus(*registration, cycle, inputs.robot.odom);
+    inputs.registered = registered_from_bus(*registration, cycle);
+    inputs.map_revision = registration->map_revision();
+  }
+  if (const v1::Perception* const perception =
+          perception_ == nullptr ? nullptr : perception_->value())
+    inputs.percepts = percepts_from_bus(*perception, cycle, inputs.robot.odom);
+  inputs.vision = vision();
+  take_maps();
+  take_goals(inputs.heard);
+  take_claims(inputs.heard);
+  take_estops(inputs.heard);
+  return inputs;
+}
+
+std::optional<Core::Vision> Service::vision() {
+  if (unasked_vision_)
+    if (auto sample = unasked_vision_->take_newest())
+      newest_vision_ = std::move(sample);
+  const v1::Vision* const sample = vision_ != nullptr ? vision_->value()
+                                   : newest_vision_   ? &*newest_vision_
+                                                      : nullptr;
+  if (sample == nullptr)
+    return std::nullopt;
+  Core::Vision vision{{sample->stamp().epoch(), sample->stamp().cycle()},
+                      sample->odom(),
+                      sample->sees_people() || sample->sees_colors(),
+                      {}};
+  for (const v1::SeenThing& thing : sample->things())
+    vision.things.push_back(lps::from_bus(thing));
+  return vision;
+}
+
+void Service::take_maps() {
+  for (const auto& sample : maps_.take())
+    if (!sample.info.disposed)
+      core_.know_map(
+          {sample.data.revision(), std::make_shared<const maps::Map>(maps::from_bus(sample.data))});
+}
+
+void Service::take_behavior_schemas() {
+  const auto sample = behavior_schemas_.take_newest();
+  if (!sample)
+    return;
+  knows_behaviors_ = true;
+  if (sample->schemas().empty())
+    return;  // nobody who evaluates behaviors has none
+  const std::vector<BehaviorSignature> behaviors = from_bus(*sample);
+  folders_.know_behaviors(behaviors);
+  ports_.say(core_.know_behaviors(behaviors).lines());
+}
+
+void Service::take_goals(Core::Heard& heard) {
+  heard.lost_requesters = goals_.take_lost();
+  for (const auto& sample : goals_.take()) {
+    Core::Heard::Goal goal;
+    goal.event.goal = from_bus(sample.data);
+    goal.event.kind = sample.info.disposed ? GoalEvent::Kind::kDisposed : GoalEvent::Kind::kWritten;
+    goal.writer = sample.info.writer;
+    heard.goals.push_back(std::move(goal));
+  }
+}
+
+void Service::take_claims(Core::Heard& heard) {
+  heard.lost_claimants = claims_.take_lost();
+  Notes notes;
+  for (const auto& sample : claims_.take()) {
+    try {
+      heard.claims.push_back(
+          {from_bus(sample.data,
+                    sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
+           sample.info.writer, sample.data.writer_lost() == v1::WRITER_LOST_CANCEL});
+    } catch (const FileError& error) {
+      notes.warn("a claim of " + intentions::quoted(sample.data.source()) + ": " + error.what());
+    }
+  }
+  ports_.say(notes.lines());
+}
+
+void Service::take_estops(Core::Heard& heard) {
+  for (const auto& sample : grants_.take())
+    if (!sample.info.disposed)
+      heard.estops.push_back({sample.data.estopped(), sample.data.estop_source()});
+}
+
+void Service::look() {
+  const bool first = !std::exchange(looked_, true);
+  if (knows_behaviors_ || !ports_.lockstep())
+    take_behavior_schemas();
+  const ActivityFolders::News news = folders_.look();
+  Notes notes;
+  for (const std::string& error : news.errors)
+    notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
+  // At the start the behaviors are not known yet, and the shipped files are as everybody has them.
+  if (!first)
+    for (const std::string& warning : news.warnings)
+      notes.warn(warning);
+  for (const std::string& name : news.removed)
+    core_.executor().remove(name);
+  for (const Schema& schema : news.taken) {
+    core_.executor().add(schema);
+    if (!first)
+      notes.info("took " + schema.name + " of " + schema.source);
+  }
+  ports_.say(notes.lines());
+  if (!news.changed)
+    return;
+  v1::ActivitySchemas sample;
+  for (const Schema* const schema : core_.executor().registry().all())
+    sample.schemas().push_back(to_bus(*schema));
+  sample.trouble(folders_.trouble());
+  schemas_.write(std::move(sample));
+}
+
+void Service::remember(const News& news) {
+  std::string lines;
+  for (const Placement& placement : news.placed)
+    lines += write_line(placement);
+  for (const Ending& ending : news.endings)
+    lines += write_line(ending);
+  Notes notes;
+  if (!lines.empty() && !memory_.append(lines))
+    notes.warn("the memory file cannot be written: a restart may do a finished goal again");
+  if (news.work && !memory_.keep(*news.work))
+    notes.warn("the memory file cannot be written: a restart may do again what has been done");
+  ports_.say(notes.lines());
+}
+
+void Service::publish(const News& news) {
+  Notes notes;
+  for (const GoalStatus& status : news.changed)
+    if (!statuses_.write(to_bus(status, ports_.stamp())))
+      notes.warn("the status of goal " + describe(status.id) + " did not get onto the bus");
+  for (const GoalId& id : news.withdrawn) {
+    GoalStatus status;
+    status.id = id;
+    statuses_.dispose(to_bus(status, ports_.stamp()));
+  }
+  ports_.say(notes.lines());
+}
+
+void Service::publish(const intentions::Outputs& outputs) {
+  v1::Intentions sample;
+  sample.behavior_control(outputs.behavior_control);
+  for (const IntendedBehavior& behavior : outputs.behaviors)
+    sample.behaviors().push_back(to_bus(behavior));
+  for (const IntentionNode& node : outputs.nodes)
+    if (sample.nodes().size() < kMostNodes)
+      sample.nodes().push_back(to_bus(node));
+  intentions_.write(sample);
+  recall_.write(std::move(sample));
+  for (const Said& one : outputs.said) {
+    v1::Message message;
+    message.source(ports_.name() + ": " + one.schema);
+    message.text(one.text);
+    messages_.write(std::move(message));
+  }
+  for (const MapRequest one : outputs.map_requests) {
+    v1::RegistrationRequest request;
+    request.source(ports_.name());
+    request.request(next_request_++);
+    request.action(one == MapRequest::kForget ? v1::REGISTRATION_DELETE
+                                              : v1::REGISTRATION_ADD_FEATURES);
+    request.on(one == MapRequest::kAddFeatures);
+    map_requests_.write(std::move(request));
+  }
+}
+
+void Service::publish(const std::vector<Belief>& beliefs) {
+  v1::Beliefs sample;
+  for (const Belief& belief : beliefs)
+    if (sample.beliefs().size() < kMostBeliefs)
+      sample.beliefs().push_back(to_bus(belief));
+  beliefs_.write(std::move(sample));
+}
+
+namespace {
+
+std::string in_a_folder(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  return std::filesystem::is_directory(folder)
+             ? ""
+             : path + ": expected a file in a folder that exists, and there is no " +
+                   folder.string();
+}
+
+}  // namespace
+
+runtime::Component component() {
+  const auto options = std::make_shared<Options>();
+  return {
+      "intentions", "Takes goals from anybody on the bus and intends what they need",
+      [options](CLI::App& app) {
+        app.add_option("--memory", options->memory_file,
+                       "file that remembers ended goals over a restart, so that none is done twice")
+            ->check(in_a_folder);
+        app.add_flag("!--no-registration", options->registration,
+                     "there is no registration service: do not wait for it in lockstep");
+        app.add_flag("!--no-interpretation", options->interpretation, "the same of interpretation");
+        app.add_flag("--vision", options->vision,
+                     "there is a vision service: wait for it in lockstep");
+        app.add_option("--activities", options->folder,
+                       "folder of activity files; they cover shipped ones of the same name");
+      },
+      [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, *options); }};
+}
+
+}  // namespace saphira::intentions

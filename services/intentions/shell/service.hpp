@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "intentions/shell/memory_file.hpp"
+#include "saphira/intentions/activity_folders.hpp"
+#include "saphira/intentions/core.hpp"
+#include "saphira/runtime/component.hpp"
+
+namespace saphira::intentions {
+
+struct Options {
+  std::string memory_file;  ///< what outlives the service; empty: nothing does
+  /// Whether there is a registration service: in lockstep its samples are waited for. Without it,
+  /// what is on a map cannot be found.
+  bool registration = true;
+  /// The same of interpretation. Without it, activities see no doors and corridors but those of the
+  /// map.
+  bool interpretation = true;
+  /// Whether there is a vision service whose samples are waited for in lockstep. Live it is heard
+  /// without being asked for, as soon as there is one.
+  bool vision = false;
+  /// Activities that cover shipped ones of the same name; empty: none.
+  std::string folder;
+};
+
+runtime::Component component();
+
+/// The intentions service on the bus.
+class Service final : public runtime::Service {
+ public:
+  /// std::runtime_error where the memory file cannot be written.
+  Service(runtime::Ports& ports, const Options& options);
+
+  ProcessTable& processes() override { return core_.processes(); }
+  std::optional<std::string> ask(const std::string& name, ProcessAction action,
+                                 std::uint32_t cycles) override {
+    return core_.ask(name, action, cycles);
+  }
+  void step(const runtime::Turn& turn) override;
+  void between(double silence) override;
+  void look() override;
+
+ private:
+  std::string missing();
+  void take_behavior_schemas();
+  void take_maps();
+  void take_goals(Core::Heard& heard);
+  void take_claims(Core::Heard& heard);
+  void take_estops(Core::Heard& heard);
+  Core::Inputs inputs_of(const runtime::Turn& turn);
+  std::optional<Core::Vision> vision();
+  /// Onto the disk, before anybody hears of it: nothing that has been said or done is done again.
+  void remember(const News& news);
+  void publish(const News& news);
+  void publish(const intentions::Outputs& outputs);
+  void publish(const std::vector<Belief>& beliefs);
+
+  runtime::Ports& ports_;
+  bus::Input<v1::Behaviors>& behaviors_;
+  bus::Input<v1::Registration>* registration_;  ///< null where there is no such service
+  bus::Input<v1::Perception>* perception_;
+  bus::Input<v1::Vision>* vision_;
+  std::optional<bus::Reader<v1::Vision>> unasked_vision_;
+  std::optional<v1::Vision> newest_vision_;
+  bus::Reader<v1::Map> maps_;
+  bus::Reader<v1::BehaviorSchemas> behavior_schemas_;
+  bus::Reader<v1::BeliefClaim> claims_;
+  bus::Reader<v1::Goal> goals_;
+  bus::Reader<v1::Grant> grants_;
+  runtime::Output<v1::Intentions> intentions_;
+  runtime::Output<v1::Intentions> recall_;
+  runtime::Output<v1::GoalStatus> statuses_;
+  runtime::Output<v1::ActivitySchemas> schemas_;
+  runtime::Output<v1::Beliefs> beliefs_;
+  runtime::Output<v1::Message> messages_;
+  runtime::Output<v1::RegistrationRequest> map_requests_;
+  std::uint64_t next_request_;  ///< random at first
+  MemoryFile memory_;
+  std::shared_ptr<const Functions> functions_;
+  ActivityFolders folders_;
+  Core core_;
+  bool knows_behaviors_ = false;
+  bool looked_ = false;
+  lps::LpsSettings robot_;  ///< of this epoch
+};
+
+}  // namespace saphira::intentions

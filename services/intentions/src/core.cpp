@@ -1,0 +1,232 @@
+#include "saphira/intentions/core.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "saphira/base/text.hpp"
+#include "saphira/intentions/language.hpp"
+#include "saphira/maps/edit.hpp"
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+/// [s] Without a cycle for this long there is no robot, live.
+constexpr double kSilence = 1.0;
+constexpr std::uint64_t kVisionLease = 10;  // [cycles] what was seen before is no news
+
+}  // namespace
+
+Core::Core(Settings settings)
+    : lockstep_(settings.lockstep),
+      executor_(
+          std::move(settings.registry), settings.memory,
+          {.remembers_work = settings.remembers_work, .functions = std::move(settings.functions)}) {
+}
+
+Core::Outputs Core::step(Inputs inputs) {
+  robot_here_ = true;
+  intentions::Inputs now;
+  now.epoch = inputs.stamp.epoch;
+  now.cycle = inputs.stamp.cycle;
+  now.robot = inputs.robot;
+  look_around(inputs, now.around);
+  now.behaviors = std::move(inputs.behaviors);
+  now.troubles = std::move(inputs.troubles);
+  now.behaviors_cycle = inputs.behaviors_cycle;
+  now.intent_age = inputs.intent_age;
+  now.events = events_of(inputs.heard);
+  now.claims = claims_of(inputs.heard);
+  note_estops(inputs.heard.estops);
+  now.estop = estop_;
+  if (!execution_.works())
+    now.hold = execution_.name() + " is suspended";
+
+  Outputs outputs;
+  outputs.intended = executor_.step(now);
+  nodes_ = outputs.intended.nodes;
+  tell(outputs.intended.news, outputs.notes);
+  for (const Said& said : outputs.intended.said)
+    outputs.notes.info("says: " + said.text);
+  if (const std::uint64_t revision = executor_.beliefs().revision();
+      revision != beliefs_revision_) {
+    beliefs_revision_ = revision;
+    outputs.beliefs = executor_.beliefs().all();
+  }
+  return outputs;
+}
+
+Core::Told Core::between(const Heard& heard, double silence) {
+  Told told;
+  told.news = executor_.hear(events_of(heard));
+  // A simulator that is being single-stepped may stand still for as long as it likes.
+  if (robot_here_ && !lockstep_ && silence > kSilence) {
+    robot_here_ = false;
+    News gone = executor_.robot_gone();
+    const auto append = [](auto& to, auto& from) {
+      to.insert(to.end(), std::make_move_iterator(from.begin()),
+                std::make_move_iterator(from.end()));
+    };
+    append(told.news.changed, gone.changed);
+    append(told.news.withdrawn, gone.withdrawn);
+    append(told.news.placed, gone.placed);
+    append(told.news.endings, gone.endings);
+    if (gone.work)
+      told.news.work = std::move(gone.work);
+  }
+  tell(told.news, told.notes);
+  return told;
+}
+
+/// What is known beside the robot, from what came for the cycle before.
+void Core::look_around(const Inputs& inputs, Surroundings& around) {
+  if (inputs.new_robot != nullptr)
+    lps_.emplace(*inputs.new_robot);
+  else if (inputs.new_frame && lps_)
+    lps_->reset();
+  if (lps_) {
+    readings_ = inputs.readings;
+    lps_->update(inputs.robot.pose_in_odom, readings_, inputs.stamp.cycle);
+    around.readings = &readings_;
+    around.lps = &*lps_;
+  }
+  percepts_ = inputs.percepts;
+  if (percepts_)
+    around.percepts = &*percepts_;
+  around.cycle = inputs.stamp.cycle;
+  const std::optional<Vision>& vision = inputs.vision;
+  if (vision && vision->sees && vision->stamp.epoch == inputs.stamp.epoch &&
+      vision->stamp.cycle + kVisionLease >= inputs.stamp.cycle) {
+    things_.clear();
+    if (vision->odom == inputs.robot.odom)
+      things_ = vision->things;
+    around.things = &things_;
+  }
+  around.registration = inputs.registered;
+  take_maps(inputs.map_revision);
+  around.topology = topology_;
+  around.map = map_;
+  around.map_revision = places_revision_;
+}
+
+/// The map goes another way than what is cyclic. In lockstep it is the one that registration had in
+/// the cycle before: one that is newer waits.
+void Core::take_maps(std::optional<std::uint64_t> revision) {
+  const bool exact = lockstep_ && revision;
+  while (!newer_maps_.empty() &&
+         (!exact || newer_maps_.front().revision <= *revision || topology_ == nullptr)) {
+    MapNews& news = newer_maps_.front();
+    // A thing that was put there or carried off leaves what is planned as it is.
+    if (topology_ == nullptr || !maps::same_places(*map_, *news.map)) {
+      topology_ = std::make_shared<const maps::Topology>(*news.map);
+      places_revision_ = news.revision;
+    }
+    map_ = std::move(news.map);
+    map_revision_ = news.revision;
+    newer_maps_.pop_front();
+  }
+}
+
+bool Core::knows_map(std::uint64_t revision) const {
+  return (map_ != nullptr && map_revision_ >= revision) ||
+         (!newer_maps_.empty() && newer_maps_.back().revision >= revision);
+}
+
+Notes Core::know_behaviors(const std::vector<BehaviorSignature>& behaviors) {
+  executor_.know_behaviors(behaviors);
+  Notes notes;
+  for (const Diagnostic& trouble : check_references(executor_.registry()))
+    notes.warn(trouble.text());
+  return notes;
+}
+
+std::optional<std::string> Core::ask(const std::string& name, ProcessAction action,
+                                     std::uint32_t cycles) {
+  const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
+    return one.name == name || std::to_string(one.id) == name ||
+           "I" + std::to_string(one.id) == name;
+  });
+  if (node == nodes_.end())
+    return std::nullopt;
+  if (cycles > 0)
+    return "an intention is interrupted until it is resumed, not for some cycles";
+  if (action == ProcessAction::resume)
+    return executor_.resume(node->id) ? "" : name + " was not interrupted";
+  return executor_.interrupt(node->id) ? "" : name + " is not an intention any more";
+}
+
+std::vector<GoalEvent> Core::events_of(const Heard& heard) {
+  std::vector<GoalEvent> events;
+  for (const Heard::Goal& goal : heard.goals) {
+    if (goal.event.kind == GoalEvent::Kind::kWritten)
+      requesters_[goal.event.goal.id] = goal.writer;
+    events.push_back(goal.event);
+  }
+  for (const Writer& lost : heard.lost_requesters) {
+    for (const auto& [id, writer] : requesters_) {
+      if (writer != lost)
+        continue;
+      GoalEvent event;
+      event.kind = GoalEvent::Kind::kWriterLost;
+      event.goal.id = id;
+      events.push_back(std::move(event));
+    }
+  }
+  return events;
+}
+
+std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
+  std::vector<ClaimEvent> events;
+  for (const Heard::Claim& claim : heard.claims) {
+    events.push_back(claim.event);
+    if (claim.event.kind == ClaimEvent::Kind::kSaid && claim.ends_with_writer)
+      claimants_[claim.event.id] = claim.writer;
+    else
+      claimants_.erase(claim.event.id);
+  }
+  for (const Writer& lost : heard.lost_claimants) {
+    for (auto claim = claimants_.begin(); claim != claimants_.end();) {
+      if (claim->second != lost) {
+        ++claim;
+        continue;
+      }
+      ClaimEvent event;
+      event.kind = ClaimEvent::Kind::kWithdrawn;
+      event.id = claim->first;
+      events.push_back(std::move(event));
+      claim = claimants_.erase(claim);
+    }
+  }
+  return events;
+}
+
+/// Of any grant since the last time: one that was pressed and reset meanwhile counts as well. The
+/// grant says nothing else here, so it matters to nobody when it comes.
+void Core::note_estops(const std::vector<Heard::Estop>& estops) {
+  bool pressed = false;
+  for (const Heard::Estop& estop : estops) {
+    if (estop.pressed)
+      estop_ = estop.source.empty() ? "a program without a name" : estop.source;
+    else if (!pressed)
+      estop_.clear();
+    pressed = pressed || estop.pressed;
+  }
+}
+
+void Core::tell(const News& news, Notes& notes) {
+  for (const GoalStatus& status : news.changed) {
+    const auto logged = logged_.find(status.id);
+    if (logged != logged_.end() && logged->second == status.state)
+      continue;
+    logged_[status.id] = status.state;
+    notes.info("goal " + describe(status.id) + ", " + quoted(status.functor) + " of " +
+               quoted(status.requester) + ": " + name_of(status.state) +
+               (status.reason.empty() ? "" : ": " + status.reason));
+  }
+  for (const GoalId& id : news.withdrawn) {
+    requesters_.erase(id);
+    logged_.erase(id);
+  }
+}
+
+}  // namespace saphira::intentions

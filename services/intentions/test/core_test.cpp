@@ -1,0 +1,210 @@
+#include "saphira/intentions/core.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "saphira/intentions/functors.hpp"
+#include "saphira/intentions/navigation.hpp"
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+constexpr Core::Writer kKaren{1};
+constexpr Core::Writer kJohn{2};
+
+class CoreTest : public testing::Test {
+ protected:
+  explicit CoreTest(bool lockstep = false) : core_(settings(lockstep)) {
+    inputs_.stamp.epoch = 7;
+    inputs_.robot.connected = true;
+    inputs_.robot.odom = 1;
+  }
+  static Core::Settings settings(bool lockstep) {
+    Core::Settings settings;
+    settings.registry = built_in();
+    settings.lockstep = lockstep;
+    settings.functions = all_functions();
+    return settings;
+  }
+
+  static Core::Heard::Goal written(std::uint64_t number, const Core::Writer& writer) {
+    Core::Heard::Goal heard;
+    heard.writer = writer;
+    heard.event.goal.id = {5, number};
+    heard.event.goal.functor = "go_to";
+    heard.event.goal.requester = "a test";
+    Argument place;
+    place.name = "position";
+    place.kind = ArgumentKind::kPoint;
+    place.point = {5.0, 0.0, 0.0};
+    place.frame = Frame::kOdom;
+    heard.event.goal.arguments = {place};
+    return heard;
+  }
+
+  Core::Outputs step() {
+    ++inputs_.stamp.cycle;
+    inputs_.behaviors_cycle = inputs_.stamp.cycle - 1;
+    const lps::LpsSettings robot;
+    inputs_.new_robot = inputs_.stamp.cycle == 1 ? &robot : nullptr;
+    core_.processes().step(inputs_.stamp.cycle);
+    Core::Outputs outputs = core_.step(inputs_);
+    inputs_.heard = {};
+    inputs_.new_frame = false;
+    note(outputs.intended.news);
+    return outputs;
+  }
+  void note(const News& news) {
+    for (const GoalStatus& status : news.changed)
+      statuses_[status.id] = status;
+  }
+  GoalState state(std::uint64_t number) { return statuses_.at({5, number}).state; }
+  static bool says(const Notes& notes, const std::string& part) {
+    return std::any_of(notes.lines().begin(), notes.lines().end(),
+                       [&](const Note& note) { return note.text.find(part) != std::string::npos; });
+  }
+
+  Core core_;
+  Core::Inputs inputs_;
+  std::map<GoalId, GoalStatus> statuses_;
+};
+
+TEST_F(CoreTest, PursuesAGoalAndTellsEachChangeOnce) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  const Core::Outputs first = step();
+  EXPECT_FALSE(first.intended.behaviors.empty());
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_TRUE(says(first.notes, "\"go_to\" of \"a test\": underway"));
+  EXPECT_TRUE(step().notes.empty());
+}
+
+TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
+  inputs_.heard.goals = {written(1, kKaren), written(2, kJohn)};
+  step();
+  inputs_.heard.lost_requesters = {kKaren};
+  step();
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_FALSE(ended(state(2)));
+  // Somebody else has written it anew: it is his from then on.
+  inputs_.heard.goals = {written(2, kKaren)};
+  step();
+  inputs_.heard.lost_requesters = {kJohn};
+  step();
+  EXPECT_FALSE(ended(state(2)));
+}
+
+TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {
+  step();
+  Core::Heard heard;
+  heard.goals = {written(1, kKaren)};
+  heard.goals[0].event.goal.functor = "fly";
+  const Core::Told told = core_.between(heard, 0.01);
+  note(told.news);
+  EXPECT_EQ(state(1), GoalState::kRefused);
+  EXPECT_TRUE(says(told.notes, "refused"));
+}
+
+TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  EXPECT_TRUE(core_.between({}, 0.9).news.changed.empty());
+  note(core_.between({}, 1.1).news);
+  EXPECT_EQ(statuses_.at({5, 1}).code, GoalCode::kNoRobot);
+  EXPECT_TRUE(core_.between({}, 5.0).news.changed.empty()) << "it is told once";
+  step();
+  step();
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+}
+
+TEST_F(CoreTest, AnEmergencyStopThatWasResetMeanwhileEndsGoalsAsWell) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  inputs_.heard.estops = {{true, "button"}, {false, ""}};
+  step();
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+  inputs_.heard.estops = {{false, ""}};
+  inputs_.heard.goals = {written(2, kKaren)};
+  step();
+  EXPECT_EQ(state(2), GoalState::kUnderway);
+}
+
+TEST_F(CoreTest, ASuspendedExecutionReleasesTheRobot) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  core_.processes().find("execute-intentions")->suspend();
+  EXPECT_TRUE(step().intended.behaviors.empty());
+  EXPECT_EQ(state(1), GoalState::kSuspended);
+  EXPECT_EQ(statuses_.at({5, 1}).reason, "execute-intentions is suspended");
+  core_.processes().find("execute-intentions")->resume();
+  step();
+  EXPECT_FALSE(step().intended.behaviors.empty());
+}
+
+TEST_F(CoreTest, AnIntentionIsInterruptedByNameOrNumber) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  const IntentionNode node = step().intended.nodes.at(0);
+  EXPECT_EQ(core_.ask(node.name, ProcessAction::interrupt, 0), "");
+  EXPECT_TRUE(step().intended.behaviors.empty());
+  EXPECT_EQ(core_.ask("I" + std::to_string(node.id), ProcessAction::resume, 0), "");
+  EXPECT_FALSE(step().intended.behaviors.empty());
+  EXPECT_EQ(core_.ask(node.name, ProcessAction::resume, 0), node.name + " was not interrupted");
+  EXPECT_NE(core_.ask(node.name, ProcessAction::interrupt, 5).value_or("").find("until"),
+            std::string::npos);
+  EXPECT_EQ(core_.ask("nothing", ProcessAction::interrupt, 0), std::nullopt);
+}
+
+TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
+  const auto claim = [](std::uint64_t number, const char* name, bool ends) {
+    Core::Heard::Claim heard;
+    heard.event.id = {9, number};
+    heard.event.source = "a person";
+    heard.event.name = name;
+    heard.event.value = Value(1.0);
+    heard.writer = kJohn;
+    heard.ends_with_writer = ends;
+    return heard;
+  };
+  const auto believes = [](const Core::Outputs& outputs, const std::string& name) {
+    return outputs.beliefs &&
+           std::any_of(outputs.beliefs->begin(), outputs.beliefs->end(),
+                       [&](const Belief& belief) { return belief.name == name; });
+  };
+  inputs_.heard.claims = {claim(1, "stays", false), claim(2, "goes", true)};
+  Core::Outputs outputs = step();
+  EXPECT_TRUE(believes(outputs, "stays"));
+  EXPECT_TRUE(believes(outputs, "goes"));
+  inputs_.heard.lost_claimants = {kJohn};
+  outputs = step();
+  EXPECT_TRUE(believes(outputs, "stays"));
+  EXPECT_FALSE(believes(outputs, "goes"));
+}
+
+class InLockstep : public CoreTest {
+ protected:
+  InLockstep() : CoreTest(true) {}
+};
+
+// What is planned must not depend on when the map came.
+TEST_F(InLockstep, AMapCountsFromTheStepOnForWhichRegistrationHadIt) {
+  const auto map = std::make_shared<const maps::Map>();
+  core_.know_map({1, map});
+  core_.know_map({2, map});
+  EXPECT_TRUE(core_.knows_map(1));
+  EXPECT_TRUE(core_.knows_map(2));
+  EXPECT_FALSE(core_.knows_map(3));
+  inputs_.map_revision = 1;
+  step();
+  core_.know_map({4, map});
+  EXPECT_TRUE(core_.knows_map(3)) << "revision 3 will not come any more";
+}
+
+TEST_F(InLockstep, ASimulatorMayStandStillForAsLongAsItLikes) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  EXPECT_TRUE(core_.between({}, 100.0).news.changed.empty());
+}
+
+}  // namespace
+}  // namespace saphira::intentions

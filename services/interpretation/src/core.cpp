@@ -1,0 +1,51 @@
+#include "saphira/interpretation/core.hpp"
+
+#include <utility>
+
+namespace saphira::interpretation {
+namespace {
+
+/// [cycles] A tile that changes is told once a second.
+constexpr std::uint64_t kGridCycles = 10;
+
+}  // namespace
+
+Core::Outputs Core::step(const Inputs& inputs) {
+  Outputs outputs;
+  if (inputs.new_robot != nullptr)
+    begin(*inputs.new_robot, outputs.gone);
+  else if (inputs.new_frame)
+    interpretation_->reset();  // what was seen is elsewhere
+  outputs.output = &interpretation_->step({inputs.cycle, inputs.pose_in_odom, inputs.readings, {}});
+  note_tiles(*outputs.output, inputs.cycle, outputs);
+  return outputs;
+}
+
+void Core::begin(const std::vector<lps::SonarMount>& sonars, std::vector<TileKey>& gone) {
+  gone.assign(told_.begin(), told_.end());
+  told_.clear();
+  changed_.clear();
+  Settings settings;
+  settings.sonars = sonars;
+  // The same robot again: ids go on, so that none stands for two things.
+  if (interpretation_ && interpretation_->settings().sonars == settings.sonars)
+    interpretation_->reset();
+  else
+    interpretation_.emplace(std::move(settings), &tasks_);
+}
+
+void Core::note_tiles(const Output& output, std::uint64_t cycle, Outputs& outputs) {
+  changed_.insert(output.changed_tiles.begin(), output.changed_tiles.end());
+  for (const TileKey& key : output.dropped_tiles) {
+    changed_.erase(key);
+    if (told_.erase(key) > 0)
+      outputs.gone.push_back(key);
+  }
+  if (cycle % kGridCycles != 0)
+    return;
+  outputs.tiles.assign(changed_.begin(), changed_.end());
+  told_.insert(changed_.begin(), changed_.end());
+  changed_.clear();
+}
+
+}  // namespace saphira::interpretation

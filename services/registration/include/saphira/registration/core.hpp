@@ -1,0 +1,152 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saphira/base/notes.hpp"
+#include "saphira/base/process.hpp"
+#include "saphira/maps/edit.hpp"
+#include "saphira/registration/map_builder.hpp"
+#include "saphira/registration/registration.hpp"
+#include "saphira/registration/remembered.hpp"
+
+namespace saphira::registration {
+
+/// Where `start` is on the map: the name of a POS of it, "x,y,th" [m, rad], or "unknown"; nothing
+/// for "unknown", and for "start" where the map has none. std::invalid_argument that says what was
+/// expected.
+std::optional<Pose> start_pose(const std::string& start, const maps::Map& map);
+
+/// The registration service without the bus: keeps the robot's place on the map true, and the map
+/// as it changes: by what is seen, by requests, by building it from nothing. Files are the shell's.
+class Core {
+ public:
+  struct Settings {
+    maps::Map map;
+    std::string source;         ///< where the map came from; empty: nowhere
+    std::optional<Pose> start;  ///< of the robot in the map; none: it has to find itself
+    /// add_new_features (manual 6.9.2): what is seen and matches nothing is added to the map. Where
+    /// nothing is said, only a map that is empty at the start grows.
+    std::optional<bool> add_features;
+    bool snap = true;  ///< snap_to_right_angle_grid (manual 6.9.2)
+  };
+  /// `remembered`: of a service before this one. It counts where that one was started with the same
+  /// map, settings.source. std::invalid_argument where no robot can be registered on a map.
+  explicit Core(Settings settings, std::optional<Remembered> remembered = {});
+
+  struct Inputs {
+    std::uint64_t cycle = 0;
+    /// The first step of an epoch: where the robot's sonars are.
+    const std::vector<lps::SonarMount>* new_robot = nullptr;
+    std::uint64_t odom = 0;
+    Pose pose_in_odom;
+    std::vector<lps::Percept> percepts;       ///< of the cycle before, in this odom frame
+    std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+  };
+  /// What became of a percept.
+  struct Matched {
+    std::uint32_t percept = 0;
+    std::uint32_t artifact = 0;  ///< 0: none
+    bool accepted = false;
+    std::string reason;   ///< why it was not
+    Vec2 off{0.0, 0.0};   ///< [m] seen less expected, along the artifact and across it
+    double turned = 0.0;  ///< [rad]
+  };
+  struct Outputs {
+    State state = State::unplaced;
+    std::string reason;
+    Pose pose_in_map;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
+    double confidence = 0.0;
+    std::uint32_t environment = 0;  ///< id of what the robot is in; 0: nothing that is known
+    std::vector<Matched> matches;
+    std::vector<std::uint32_t> closed_doors;
+    Notes notes;
+  };
+  /// The first step has to bring a robot.
+  Outputs step(const Inputs& inputs);
+
+  struct Request {
+    enum class Action {
+      kLoad,         ///< text: a map file of that name, instead of the map
+      kDelete,       ///< an empty map
+      kPut,          ///< the artifact, changed by its id or new
+      kRemove,       ///< the artifact of that id
+      kPlace,        ///< the robot is at pose_in_map
+      kFind,         ///< the robot is to find itself
+      kSwitch,       ///< matching on or off
+      kAddFeatures,  ///< on or off
+      kSnap          ///< on or off
+    };
+    Action action = Action::kFind;
+    std::string name;
+    std::string text;
+    maps::Feature artifact;
+    Pose pose_in_map;
+    bool on = false;
+  };
+  struct Answer {
+    std::string refusal;         ///< why it was not done; empty: it was
+    std::uint32_t artifact = 0;  ///< id of the one that was put or removed
+  };
+  /// In a cycle or between two. What is refused has changed nothing.
+  Answer act(const Request& request);
+
+  const maps::Map& map() const { return editor_.map(); }
+  /// Goes up with every change of the map.
+  std::uint64_t map_revision() const { return editor_.revision(); }
+  /// Where the map came from, and whether it has changed since.
+  const std::string& map_source() const { return source_; }
+  bool map_changed() const { return changed_; }
+  bool adds_features() const { return adds_features_; }
+  bool snaps() const { return snaps_; }
+  /// What a restart takes over; none before the first robot.
+  std::optional<Remembered> remembered() const;
+
+  ProcessTable& processes() { return processes_; }
+
+ private:
+  void begin(const std::vector<lps::SonarMount>& sonars);
+  void take_up(Remembered remembered);
+  void set_builder();
+  void end_building();
+  Outputs registered(const Inputs& inputs);
+  Outputs built(const Inputs& inputs);
+  bool amend(const Presence::News& news, const std::vector<maps::Feature>& objects, Notes& notes);
+  bool grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& notes);
+  std::uint32_t obey(const Request& request);
+  Registration& placed();
+  void use(maps::Editor editor);
+  void begin_anew(const std::string& source);
+
+  ProcessTable processes_;
+  // sfInitRegistrationProcs.
+  Process& match_ = processes_.add(
+      "test-match", "matches what is seen with the map (not while the map is being built)");
+  Process& environment_ = processes_.add("test-environment", "says where on the map the robot is");
+
+  std::string option_;  ///< the map that the service was started with
+  maps::Editor editor_;
+  std::string source_;
+  bool changed_ = false;                  ///< the map, since it came from there
+  std::optional<Pose> start_;             ///< on the map that the service was started with
+  std::optional<Remembered> remembered_;  ///< until it is used
+  std::vector<lps::SonarMount> sonars_;
+  std::optional<Registration> registration_;
+  bool on_ = true;  ///< somebody may have switched it off
+  bool adds_features_;
+  bool snaps_;
+  std::optional<MapBuilder> builder_;
+  /// The map began empty: the builder finds the pose together with the map.
+  bool building_ = false;
+  bool too_large_ = false;  ///< the map would be, if it grew further
+  std::uint64_t odom_ = 0;  ///< of the newest step
+  Pose pose_in_odom_;
+  Pose pose_in_map_;  ///< as it was told in the newest step; before that, the start
+  State told_ = State::unplaced;
+};
+
+}  // namespace saphira::registration

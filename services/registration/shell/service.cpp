@@ -1,0 +1,157 @@
+#include "registration/shell/service.hpp"
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "registration/shell/convert.hpp"
+#include "saphira/base/durable.hpp"
+#include "saphira/base/places.hpp"
+
+namespace saphira::registration {
+namespace {
+
+/// The path of what a person means by `name`: a map file, or one that is shipped; empty for "none"
+/// and for nothing. std::invalid_argument that lists what there is where it is neither.
+std::string find_map(const std::string& name) {
+  if (name.empty() || name == "none")
+    return "";
+  return find_file(config_folder() + "/maps", name, ".map");
+}
+
+Core::Settings settings_of(const Options& options) {
+  Core::Settings settings;
+  settings.source = find_map(options.map_file);
+  if (!settings.source.empty())
+    settings.map = maps::load_map(settings.source);
+  settings.start = start_pose(options.start, settings.map);
+  settings.add_features = options.add_features;
+  settings.snap = options.snap;
+  return settings;
+}
+
+}  // namespace
+
+Service::Service(runtime::Ports& ports, Options options)
+    : ports_(ports),
+      options_(std::move(options)),
+      perception_(ports.cycle(bus::topics::kPerception)),
+      requests_(ports.events(bus::topics::kRegistrationRequest)),
+      registrations_(ports.each_cycle(bus::topics::kRegistration)),
+      maps_(ports.changes(bus::topics::kMap)),
+      answers_(ports.changes(bus::topics::kRegistrationAnswer)),
+      saver_(options_.memory_file) {
+  const Core::Settings settings = settings_of(options_);
+  try {
+    core_.emplace(settings);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(settings.source + ": " + error.what());
+  }
+  std::optional<Remembered> remembered;
+  if (!options_.memory_file.empty()) {
+    const std::string trouble =
+        read_or_set_aside(options_.memory_file, [&](const std::string& content) {
+          Remembered found = parse_remembered(content, options_.memory_file);
+          Core(settings, found);  // throws where nothing can be made of it
+          remembered = std::move(found);
+        });
+    if (!trouble.empty())
+      ports_.say({{Note::Level::warning, trouble}});
+  }
+  if (remembered)
+    core_.emplace(settings, std::move(remembered));
+  publish_map();
+}
+
+void Service::step(const runtime::Turn& turn) {
+  Core::Inputs inputs;
+  inputs.cycle = turn.stamp.cycle;
+  std::vector<lps::SonarMount> sonars;
+  if (turn.new_robot) {
+    sonars = lps::mounts_from_bus(turn.description);
+    inputs.new_robot = &sonars;
+  }
+  inputs.odom = turn.robot.odom();
+  inputs.pose_in_odom = lps::from_bus(turn.robot.pose_in_odom());
+  inputs.readings = lps::sonars_from_bus(turn.robot);
+  const v1::Perception* const seen = perception_.value();
+  if (seen != nullptr && seen->odom() == inputs.odom)
+    for (const v1::Percept& percept : seen->percepts())
+      inputs.percepts.push_back(lps::from_bus(percept));
+  take_requests();
+
+  const Core::Outputs outputs = core_->step(inputs);
+  v1::Registration sample = to_bus(outputs, inputs.pose_in_odom);
+  sample.odom(inputs.odom);
+  sample.map_revision(core_->map_revision());
+  sample.adds_features(core_->adds_features());
+  sample.snaps(core_->snaps());
+  registrations_.write(std::move(sample));
+  publish_map();
+  ports_.say(outputs.notes.lines());
+  remember();
+}
+
+void Service::between(double /*silence*/) {
+  take_requests();
+  publish_map();
+}
+
+void Service::take_requests() {
+  for (const auto& sample : requests_.take()) {
+    if (sample.info.disposed)
+      continue;
+    const v1::RegistrationRequest& request = sample.data;
+    const Core::Answer done = core_->act(from_bus(request));
+    v1::RegistrationAnswer answer;
+    answer.request(request.request());
+    answer.artifact(done.artifact);
+    answer.done(done.refusal.empty());
+    answer.reason(done.refusal);
+    if (!done.refusal.empty())
+      ports_.say(
+          {{Note::Level::warning, "a request of " + request.source() + ": " + done.refusal}});
+    answers_.write(std::move(answer));
+  }
+}
+
+void Service::publish_map() {
+  if (published_ == core_->map_revision())
+    return;
+  published_ = core_->map_revision();
+  v1::Map sample = maps::to_bus(core_->map());
+  sample.revision(core_->map_revision());
+  sample.source(core_->map_source());
+  sample.changed(core_->map_changed());
+  maps_.write(std::move(sample));
+}
+
+void Service::remember() {
+  const std::string trouble = saver_.offer([this] { return to_text(*core_->remembered()); });
+  if (!trouble.empty())
+    ports_.say({{Note::Level::warning, trouble + ": a restart will not know where the robot is"}});
+}
+
+runtime::Component component() {
+  const auto options = std::make_shared<Options>();
+  return {"registration", "Keeps the robot's place on the map true",
+          [options](CLI::App& app) {
+            app.add_option("--map", options->map_file,
+                           "map file, or the name of one that is shipped; none: an empty map");
+            app.add_option("--start", options->start,
+                           "where the robot is at first: x,y,th [m, rad], the name of a POS of the "
+                           "map, or unknown")
+                ->capture_default_str();
+            app.add_option("--map-memory", options->memory_file,
+                           "file that keeps pose and map over a restart");
+            app.add_option("--add-features", options->add_features,
+                           "whether what is seen and not on the map is added to it; where it is "
+                           "not said: only to an empty map");
+            app.add_flag("!--no-snap", options->snap, "what is added is not put on right angles");
+          },
+          [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, *options); }};
+}
+
+}  // namespace saphira::registration

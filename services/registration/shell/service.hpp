@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "saphira/registration/core.hpp"
+#include "saphira/runtime/component.hpp"
+#include "saphira/runtime/saver.hpp"
+
+namespace saphira::registration {
+
+struct Options {
+  std::string map_file;  ///< a map file, or the name of one that is shipped; "none", empty: no map
+  /// Where the robot is at the start: as start_pose has it.
+  std::string start = "start";
+  std::string memory_file;  ///< what outlives the service; empty: nothing does
+  std::optional<bool> add_features = std::nullopt;  ///< as Core::Settings has it
+  bool snap = true;                                 ///< the same
+};
+
+runtime::Component component();
+
+/// The registration service on the bus.
+class Service final : public runtime::Service {
+ public:
+  /// Throws FileError, std::runtime_error or std::invalid_argument for what the options name.
+  Service(runtime::Ports& ports, Options options);
+
+  ProcessTable& processes() override { return core_->processes(); }
+  void step(const runtime::Turn& turn) override;
+  void between(double silence) override;
+
+ private:
+  void take_requests();
+  void publish_map();
+  void remember();
+
+  runtime::Ports& ports_;
+  Options options_;
+  bus::Input<v1::Perception>& perception_;
+  bus::Reader<v1::RegistrationRequest> requests_;
+  runtime::Output<v1::Registration> registrations_;
+  runtime::Output<v1::Map> maps_;
+  runtime::Output<v1::RegistrationAnswer> answers_;
+  std::optional<Core> core_;
+  runtime::Saver saver_;
+  std::optional<std::uint64_t> published_;  ///< revision of the map
+};
+
+}  // namespace saphira::registration

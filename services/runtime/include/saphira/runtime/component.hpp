@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "saphira/runtime/shell.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace saphira::runtime {
+
+/// A service as a part of the system: what is needed to offer it, to start it and to list it.
+struct Component {
+  std::string name;    ///< on the bus; its program is saphira-NAME
+  std::string effect;  ///< what it is for, in one line
+  /// Adds its options to a command line; `make` sees what was given there.
+  std::function<void(CLI::App&)> add_options;
+  Shell::Make make;
+};
+
+/// What a component reads and writes, found by making it on a bus of its own, without starting it.
+std::vector<Port> ports_of(const Component& component);
+
+/// The main() of a component's program (bus::run_program).
+int run_component(int argc, char** argv, const Component& component);
+
+}  // namespace saphira::runtime

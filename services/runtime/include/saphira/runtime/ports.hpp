@@ -1,0 +1,141 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/base/notes.hpp"
+#include "saphira/bus/cycle.hpp"
+
+namespace saphira::runtime {
+
+/// One line of the system's table: a topic, as a service uses it.
+struct Port {
+  enum class Use {
+    kState,    ///< in: robot/state of cycle N, and the robot's description of its epoch
+    kCycle,    ///< in: of cycle N-1; lockstep waits for it
+    kNewest,   ///< in: the newest sample there is
+    kEvents,   ///< in: every sample, in a cycle or between two
+    kEach,     ///< out: one sample a cycle
+    kChanges,  ///< out: when there is something new
+    kRecall    ///< out: kEach again, kept for a minute for those who ask afterwards
+  };
+  std::string topic;
+  Use use = Use::kEach;
+
+  bool is_input() const { return use <= Use::kEvents; }
+  friend bool operator==(const Port&, const Port&) = default;
+};
+
+/// How a topic is used, in a word or two, for people.
+const char* word(Port::Use use);
+
+/// What a sample is stamped with: the newest step of its service.
+class Stamper {
+ public:
+  explicit Stamper(const bus::Cycle& cycle) : cycle_(&cycle) {}
+  template <class T>
+  void stamp(T& sample) const {
+    if constexpr (requires { sample.stamp(cycle_->stamp()); })
+      sample.stamp(cycle_->stamp());
+  }
+
+ private:
+  const bus::Cycle* cycle_;
+};
+
+/// A topic that a service writes. It stamps what is written.
+template <class T>
+class Output {
+ public:
+  Output(bus::Writer<T> writer, Stamper stamper) : writer_(std::move(writer)), stamper_(stamper) {}
+
+  /// False where the bus did not take it.
+  bool write(T sample) {
+    stamper_.stamp(sample);
+    return writer_.write(sample);
+  }
+  /// Withdraws the instance that has the sample's key.
+  bool dispose(T sample) {
+    stamper_.stamp(sample);
+    return writer_.dispose(sample);
+  }
+
+ private:
+  bus::Writer<T> writer_;
+  Stamper stamper_;
+};
+
+/// The declaration of a service: what it reads from the bus and writes to it. A service takes its
+/// inputs and outputs from here when it is made; the shell knows them all from then on.
+class Ports {
+ public:
+  /// For a shell. All of them outlive this.
+  Ports(bus::Node& node, bus::Cycle& cycle);
+
+  /// A cyclic topic of another service, of cycle N-1.
+  template <class T>
+  bus::Input<T>& cycle(const bus::Topic<T>& topic) {
+    declare(topic.name, Port::Use::kCycle);
+    return cycle_.input(topic);
+  }
+  /// A topic whose newest sample is asked for at any time.
+  template <class T>
+  bus::Reader<T> newest(const bus::Topic<T>& topic) {
+    declare(topic.name, Port::Use::kNewest);
+    return node_.reader(topic);
+  }
+  /// A topic of which nothing may be missed.
+  template <class T>
+  bus::Reader<T> events(const bus::Topic<T>& topic) {
+    declare(topic.name, Port::Use::kEvents);
+    return node_.reader(topic);
+  }
+  template <class T>
+  Output<T> each_cycle(const bus::Topic<T>& topic) {
+    return output(topic, Port::Use::kEach);
+  }
+  template <class T>
+  Output<T> changes(const bus::Topic<T>& topic) {
+    return output(topic, Port::Use::kChanges);
+  }
+  template <class T>
+  Output<T> recall(const bus::Topic<T>& topic) {
+    return output(topic, Port::Use::kRecall);
+  }
+  /// What else a step needs, and lockstep waits for (bus::Cycle::gate).
+  void gate(bus::Cycle::Gate missing) { cycle_.gate(std::move(missing)); }
+
+  /// Lets the shell look at the gates again: from any thread, when what they wait for may be here.
+  void wake() { node_.wake(); }
+
+  /// The service's name on the bus.
+  const std::string& name() const { return node_.options().name; }
+  bool lockstep() const { return node_.options().lockstep; }
+  /// Random, one a process start.
+  std::uint64_t instance() const { return node_.instance(); }
+  /// Of the newest step.
+  const v1::Stamp& stamp() const { return cycle_.stamp(); }
+
+  /// Into the program's log.
+  void say(const std::vector<Note>& notes);
+  /// The status says it, until the next step: the service works, but not as it should.
+  void degrade(const std::string& reason);
+
+  const std::vector<Port>& table() const { return table_; }
+
+ private:
+  void declare(const char* topic, Port::Use use) { table_.push_back({topic, use}); }
+  template <class T>
+  Output<T> output(const bus::Topic<T>& topic, Port::Use use) {
+    declare(topic.name, use);
+    return {node_.writer(topic), Stamper(cycle_)};
+  }
+
+  bus::Node& node_;
+  bus::Cycle& cycle_;
+  std::vector<Port> table_;
+};
+
+}  // namespace saphira::runtime

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "saphira/base/process.hpp"
+#include "saphira/base/stamp.hpp"
+#include "saphira/runtime/ports.hpp"
+
+namespace saphira::runtime {
+
+/// The step that is due, as every service wants to know it.
+struct Turn {
+  Stamp stamp;
+  const v1::RobotState& robot;
+  const v1::RobotDescription& description;
+  bool new_robot = false;  ///< the first step of an epoch: another connection, maybe another robot
+  bool new_frame = false;  ///< the odom frame has another origin than in the step before
+};
+
+/// A service on the bus: a core behind its ports. It converts, and decides nothing; what it reads
+/// and writes it takes from Ports in its constructor. The shell does everything else.
+class Service {
+ public:
+  virtual ~Service() = default;
+
+  /// The core's micro-tasks.
+  virtual ProcessTable& processes() = 0;
+  /// What may be interrupted or resumed by a name that is no process's: empty where it was done,
+  /// the reason where not; nothing where there is no such thing either.
+  virtual std::optional<std::string> ask(const std::string& /*name*/, ProcessAction /*action*/,
+                                         std::uint32_t /*cycles*/) {
+    return std::nullopt;
+  }
+
+  /// One cycle: inputs, the core's step, outputs. What moves the robot is written first.
+  virtual void step(const Turn& turn) = 0;
+  /// Takes what need not wait for a cycle, such as requests; `silence` [s] since the newest step.
+  virtual void between(double /*silence*/) {}
+  /// Looks at the files that people edit while the robot drives. Called once a second, behind a
+  /// step; in lockstep, where cycles are short, every hundred.
+  virtual void look() {}
+};
+
+}  // namespace saphira::runtime

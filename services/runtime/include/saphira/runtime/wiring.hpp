@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saphira/runtime/ports.hpp"
+
+namespace saphira::runtime {
+
+/// A program of the system in the table: what it is called, what it is for, what it reads and
+/// writes.
+struct Unit {
+  std::string name;
+  std::string effect;
+  std::vector<Port> ports;
+  /// Of a running system: what is wrong with it now, such as "not on the bus"; empty: nothing.
+  std::string trouble{};
+};
+
+/// A topic in the table: which programs write it and read it, by their place among the units.
+struct Line {
+  struct End {
+    std::size_t unit = 0;
+    Port::Use use = Port::Use::kEach;
+  };
+  std::string topic;
+  std::vector<End> writers;
+  std::vector<End> readers;
+};
+
+/// The topics that the units name, in the order in which they are named first as an output; then
+/// those that no unit writes.
+std::vector<Line> lines_of(const std::vector<Unit>& units);
+
+/// The table in Markdown: a row for each topic, with its writers and readers.
+std::string wiring_table(const std::vector<Unit>& units);
+/// The same for a terminal.
+std::string wiring_text(const std::vector<Unit>& units);
+/// The same as a drawing (SVG): a column for each unit, a row for each topic. Units with trouble
+/// are red.
+std::string wiring_drawing(const std::vector<Unit>& units);
+
+}  // namespace saphira::runtime

@@ -1,0 +1,73 @@
+#include "saphira/runtime/shell.hpp"
+
+namespace saphira::runtime {
+namespace {
+
+/// Between two looks at files: in cycles, and where there are none.
+constexpr std::uint64_t kLook = 10;
+constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
+constexpr std::chrono::seconds kIdleLook{1};
+
+}  // namespace
+
+Shell::Shell(bus::Node& node, const Make& make)
+    : node_(node),
+      cycle_(node),
+      ports_(node, cycle_),
+      service_(make(ports_)),
+      processes_(node, service_->processes(),
+                 [this](const std::string& name, ProcessAction action, std::uint32_t cycles) {
+                   return service_->ask(name, action, cycles);
+                 }) {}
+
+bool Shell::step(const bus::Stop& stop) {
+  const auto step = cycle_.next(stop, [this] { between(); });
+  if (!step)
+    return false;
+  step_now(*step);
+  return true;
+}
+
+bool Shell::advance() {
+  const auto step = cycle_.poll();
+  if (!step)
+    return false;
+  step_now(*step);
+  return true;
+}
+
+void Shell::idle() {
+  cycle_.look([this] { between(); });
+}
+
+void Shell::step_now(const bus::Step& step) {
+  stepped_ = Clock::now();
+  processes_.step(cycle_.stamp());
+  if (step.new_epoch)
+    odom_.reset();
+  const std::uint64_t odom = step.robot.odom();
+  service_->step({{cycle_.stamp().epoch(), cycle_.stamp().cycle()},
+                  step.robot,
+                  *step.description,
+                  step.new_epoch,
+                  odom_.has_value() && *odom_ != odom});
+  odom_ = odom;
+  // Only now, when the robot has its command.
+  if (++steps_ % (node_.options().lockstep ? kLookInLockstep : kLook) == 0)
+    look();
+  cycle_.done();
+}
+
+void Shell::between() {
+  processes_.idle();
+  service_->between(std::chrono::duration<double>(Clock::now() - stepped_).count());
+  if (Clock::now() - looked_ >= kIdleLook)
+    look();
+}
+
+void Shell::look() {
+  looked_ = Clock::now();
+  service_->look();
+}
+
+}  // namespace saphira::runtime

@@ -1,0 +1,46 @@
+#include "system/system.hpp"
+
+#include "behaviors/shell/service.hpp"
+#include "intentions/shell/service.hpp"
+#include "interpretation/shell/service.hpp"
+#include "registration/shell/service.hpp"
+#include "vision/shell/service.hpp"
+
+namespace saphira::system {
+namespace {
+
+using Use = runtime::Port::Use;
+
+// The bridge is no cyclic service: it is where the cycles come from. That this list is true, a test
+// says.
+const runtime::Unit kBridge{
+    "bridge",
+    "Exposes a robot server on the bus, and decides which program drives",
+    {{"robot/state", Use::kEach},        {"robot/description", Use::kChanges},
+     {"robot/devices", Use::kChanges},   {"robot/serial", Use::kChanges},
+     {"vision/channels", Use::kChanges}, {"drive/grant", Use::kEach},
+     {"recall/robot", Use::kRecall},     {"recall/grant", Use::kRecall},
+     {"drive/estop", Use::kEvents},      {"drive/estop/reset", Use::kEvents},
+     {"drive/teleop", Use::kEvents},     {"drive/direct", Use::kEvents},
+     {"drive/behaviors", Use::kEvents},  {"lockstep/permit", Use::kNewest},
+     {"device/servo", Use::kEvents},     {"device/gripper", Use::kEvents},
+     {"device/output", Use::kEvents},    {"device/analog", Use::kEvents},
+     {"device/timer", Use::kEvents},     {"device/sonar", Use::kEvents},
+     {"device/sound", Use::kEvents},     {"device/server", Use::kEvents},
+     {"device/serial", Use::kEvents}}};
+
+}  // namespace
+
+std::vector<runtime::Component> services() {
+  return {interpretation::component(), registration::component(), vision::component(),
+          behaviors::component(), intentions::component()};
+}
+
+std::vector<runtime::Unit> units() {
+  std::vector<runtime::Unit> units{kBridge};
+  for (const runtime::Component& service : services())
+    units.push_back({service.name, service.effect, runtime::ports_of(service)});
+  return units;
+}
+
+}  // namespace saphira::system

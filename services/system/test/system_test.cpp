@@ -1,0 +1,90 @@
+#include "system/system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <set>
+
+#include "bridge/shell/shell.hpp"
+#include "node_options.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/bus/introspect.hpp"
+
+namespace saphira::system {
+namespace {
+
+using runtime::Line;
+using runtime::Unit;
+
+std::string names(const std::vector<Line::End>& ends, const std::vector<Unit>& units) {
+  std::string text;
+  for (const Line::End& end : ends)
+    text += units[end.unit].name + " ";
+  return text;
+}
+
+// What people and other programs outside the robot write.
+const std::set<std::string> kFromOutside{
+    "drive/estop",   "drive/estop/reset", "drive/teleop", "drive/direct",   "lockstep/permit",
+    "goals",         "beliefs/said",      "device/servo", "device/gripper", "device/output",
+    "device/analog", "device/timer",      "device/sonar", "device/sound",   "device/server",
+    "device/serial"};
+
+TEST(System, EveryTopicThatIsReadIsWrittenByOne) {
+  const std::vector<Unit> all = units();
+  for (const Line& line : runtime::lines_of(all)) {
+    if (kFromOutside.contains(line.topic))
+      EXPECT_TRUE(line.writers.empty()) << line.topic;
+    else
+      EXPECT_EQ(line.writers.size(), 1U) << line.topic << ": " << names(line.writers, all);
+  }
+}
+
+// Design: no service reads another's output for the cycle that it computes.
+TEST(System, TheBridgeAloneIsReadInTheSameCycle) {
+  const std::vector<Unit> all = units();
+  for (const Line& line : runtime::lines_of(all))
+    for (const Line::End& end : line.readers)
+      EXPECT_EQ(end.use == runtime::Port::Use::kState, line.topic.starts_with("robot/"))
+          << line.topic << " of " << all[end.unit].name;
+}
+
+// docs/architecture.md shows it. `saphira wiring --draw docs/wiring.svg` makes it anew.
+TEST(System, TheDrawingInTheDocumentsIsOfToday) {
+  EXPECT_EQ(read_file(std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/docs/wiring.svg"),
+            runtime::wiring_drawing(units()));
+}
+
+// Programs that run several services offer them together.
+TEST(System, NoTwoServicesHaveAnOptionOfTheSameName) {
+  CLI::App app;
+  for (const runtime::Component& service : services())
+    EXPECT_NO_THROW(service.add_options(app)) << service.name;
+}
+
+TEST(System, TheTableOfTheBridgeIsTrue) {
+  const auto memory = bus::make_memory_bus();
+  bridge::BridgeOptions options;
+  options.robot_port = "unix:/nowhere";
+  options.robots_folder = config_folder() + "/robots";
+  options.keeper = false;
+  options.vision = {"a"};
+  const bridge::Shell shell(test::memory_options("bridge"), options, memory);
+  bus::Node watcher(test::memory_options("watcher"), memory);
+  bus::Census census(watcher);
+  std::set<std::string> live;
+  for (const bus::EndpointEntry& entry : census.endpoints())
+    if (entry.program == "bridge" && !entry.topic.starts_with("system/"))
+      live.insert((entry.writer ? "writes " : "reads ") + entry.topic);
+  std::set<std::string> table;
+  for (const Unit& unit : units())
+    if (unit.name == "bridge")
+      for (const runtime::Port& port : unit.ports)
+        table.insert((port.is_input() ? "reads " : "writes ") + port.topic);
+  EXPECT_EQ(live, table);
+}
+
+}  // namespace
+}  // namespace saphira::system

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saphira/runtime/component.hpp"
+#include "saphira/vision/core.hpp"
+#include "vision/shell/pictures.hpp"
+
+namespace saphira::vision {
+
+struct Options {
+  std::string stereo_socket;  ///< where stereo pictures come from; empty: nowhere
+  ColorCamera camera;         ///< of the channels
+};
+
+runtime::Component component();
+
+/// The vision service on the bus.
+class Service final : public runtime::Service {
+ public:
+  Service(runtime::Ports& ports, const Options& options);
+
+  ProcessTable& processes() override { return core_.processes(); }
+  void step(const runtime::Turn& turn) override;
+
+ private:
+  void take_channels(std::uint64_t epoch);
+  std::string missing(const v1::RobotState& state);
+
+  runtime::Ports& ports_;
+  bool stereo_;  ///< there is a socket for pictures
+  bus::Reader<v1::VisionChannels> channels_;
+  runtime::Output<v1::Vision> output_;
+  Pictures pictures_;
+  Core core_;
+  std::uint64_t epoch_ = 0;       ///< of the newest step
+  std::vector<Core::Seen> seen_;  ///< since then
+};
+
+}  // namespace saphira::vision

@@ -1,0 +1,106 @@
+#include "saphira/vision/core.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::vision {
+namespace {
+
+/// A robot that stands, with a camera whose channel A shows a thing each cycle.
+class CoreTest : public testing::Test {
+ protected:
+  CoreTest() { inputs_.odom = 1; }
+
+  static Core::Seen seen(std::uint64_t cycle, std::uint64_t odom = 1) {
+    Core::Seen one;
+    one.cycle = cycle;
+    one.odom = odom;
+    one.channels[0] = {80, 60, 400, 20, 20};
+    return one;
+  }
+  Core::Outputs step() {
+    ++inputs_.cycle;
+    inputs_.new_robot = inputs_.cycle == 1;
+    core_.processes().step(inputs_.cycle);
+    Core::Outputs outputs = core_.step(inputs_);
+    inputs_.new_frame = false;
+    inputs_.seen.clear();
+    return outputs;
+  }
+  void drive(int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      if (inputs_.cycle > 0)
+        inputs_.seen = {seen(inputs_.cycle)};
+      step();
+    }
+  }
+
+  Core core_;
+  Core::Inputs inputs_;
+};
+
+TEST_F(CoreTest, SeesColorsWhileChannelsCome) {
+  EXPECT_FALSE(step().sees_colors);
+  drive(5);
+  EXPECT_TRUE(step().sees_colors);
+  EXPECT_FALSE(step().things.empty());
+  for (int i = 0; i < 30; ++i)
+    step();
+  EXPECT_FALSE(step().sees_colors);
+}
+
+// A step sees what was before it, whenever it came.
+TEST_F(CoreTest, ChannelsOfTheCycleAreLeftToTheNextStep) {
+  step();
+  inputs_.seen = {seen(2)};
+  EXPECT_FALSE(step().sees_colors);
+  EXPECT_TRUE(step().sees_colors);
+}
+
+TEST_F(CoreTest, ChannelsOfAnotherFrameAreNotPlaced) {
+  step();
+  inputs_.seen = {seen(1, 7)};
+  EXPECT_FALSE(step().sees_colors);
+}
+
+TEST_F(CoreTest, ASuspendedTaskSeesNothing) {
+  step();
+  core_.processes().find("find-colors")->interrupt();
+  drive(3);
+  EXPECT_FALSE(step().sees_colors);
+}
+
+// The robot's state says how many came in the second before: lockstep waits for as many.
+TEST_F(CoreTest, KnowsWhetherAllChannelsOfASecondHaveCome) {
+  EXPECT_TRUE(core_.has_channels(1, 0, {}));
+  step();
+  EXPECT_FALSE(core_.has_channels(2, 1, {}));
+  EXPECT_TRUE(core_.has_channels(2, 1, {seen(1)}));
+  EXPECT_FALSE(core_.has_channels(2, 2, {seen(1), seen(2)})) << "one is of the cycle itself";
+  EXPECT_TRUE(core_.has_channels(2, 2, {seen(1), seen(1)})) << "a camera that is twice as fast";
+  drive(20);
+  EXPECT_FALSE(core_.has_channels(22, 10, {}));
+  EXPECT_TRUE(core_.has_channels(22, 9, {})) << "it was silent for a cycle";
+  EXPECT_TRUE(core_.has_channels(22, 10, {seen(21)}));
+}
+
+TEST_F(CoreTest, WhoJoinsLateWaitsForNothingThatItCannotCount) {
+  inputs_.cycle = 50;
+  inputs_.new_robot = true;
+  core_.processes().step(50);
+  core_.step(inputs_);
+  inputs_.cycle = 50;
+  EXPECT_TRUE(core_.has_channels(51, 10, {}));
+}
+
+TEST_F(CoreTest, SaysWhyNoPicturesCome) {
+  inputs_.no_pictures = "/tmp/eyes: not connected yet";
+  const Core::Outputs outputs = step();
+  ASSERT_EQ(outputs.notes.lines().size(), 1U);
+  EXPECT_EQ(outputs.notes.lines()[0].text, "no stereo pictures: /tmp/eyes: not connected yet");
+  EXPECT_TRUE(step().notes.empty());
+  inputs_.no_pictures.clear();
+  EXPECT_EQ(step().notes.lines()[0].text, "stereo pictures come");
+}
+
+}  // namespace
+}  // namespace saphira::vision
