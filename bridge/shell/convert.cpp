@@ -44,6 +44,14 @@ constexpr EnumPairs<reflector::Rotation, v1::RotationMode, 4> kRotations{{{
     {reflector::Rotation::heading, v1::ROTATION_HEADING},
     {reflector::Rotation::relative_heading, v1::ROTATION_RELATIVE_HEADING},
 }}};
+constexpr EnumPairs<Health, v1::ServiceState, 3> kHealths{
+    {{
+        {Health::running, v1::SERVICE_RUNNING},
+        {Health::degraded, v1::SERVICE_DEGRADED},
+        {Health::waiting, v1::SERVICE_WAITING},
+    }},
+    {},
+    {v1::SERVICE_STARTING, v1::SERVICE_STOPPING}};
 constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionModes{{{
     {protocol::VisionChannel::Mode::kBlob, v1::VISION_BLOB},
     {protocol::VisionChannel::Mode::kBlobWithBox, v1::VISION_BLOB_BOX},
@@ -62,6 +70,17 @@ std::vector<T> first(std::vector<T> values, std::size_t count) {
 }
 
 }  // namespace
+
+v1::Stamp to_bus(const Stamp& stamp) {
+  v1::Stamp out;
+  out.epoch(stamp.epoch);
+  out.cycle(stamp.cycle);
+  return out;
+}
+
+v1::ServiceState to_bus(Health health) {
+  return kHealths.theirs(health);
+}
 
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets) {
@@ -180,19 +199,8 @@ v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarde
 }
 
 std::string trouble(const v1::MotorCommand& command) {
-  const struct {
-    const char* name;
-    double value;
-  } numbers[] = {{"velocity", command.velocity()},
-                 {"distance", command.distance()},
-                 {"rotation_velocity", command.rotation_velocity()},
-                 {"heading", command.heading()},
-                 {"contact_speed", command.contact_speed()}};
-  for (const auto& number : numbers) {
-    // Beyond any robot and any angle that means something; also keeps the packet's integers whole.
-    if (!std::isfinite(number.value) || std::abs(number.value) > 1e4)
-      return std::string(number.name) + " is no usable number";
-  }
+  if (std::string wrong = trouble(to_motion(command), command.contact_speed()); !wrong.empty())
+    return wrong;
   if (command.translation() > v1::TRANSLATION_POSITION)
     return "unknown translation mode";
   if (command.rotation() > v1::ROTATION_RELATIVE_HEADING)
@@ -225,6 +233,12 @@ authority::Command to_command(const v1::MotorCommand& command, authority::Role r
   out.hand_back = command.hand_back();
   out.received = received;
   return out;
+}
+
+DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
+                      const authority::WriterId& writer) {
+  return {to_command(command, role, writer, 0.0), to_motion(command), command.contact_speed(),
+          trouble(command)};
 }
 
 reflector::Wish to_wish(const v1::ServoCommand& command) {

@@ -9,16 +9,20 @@
 #include "robot.h"
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/authority/guard.hpp"
+#include "saphira/bridge/events.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
+#include "system.h"
 #include "vision.h"
 
 namespace saphira::bridge {
 
 // Between the contract's types and the libraries'. Pure functions.
 
+v1::Stamp to_bus(const Stamp& stamp);
+v1::ServiceState to_bus(Health health);
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets);
 v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
@@ -37,6 +41,9 @@ std::string trouble(const v1::MotorCommand& command);
 reflector::Motion to_motion(const v1::MotorCommand& command);
 authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
                               const authority::WriterId& writer, double received);
+/// The whole of one, with what is wrong with it.
+DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
+                      const authority::WriterId& writer);
 
 /// What a writer says of itself: anybody may write anything, so no more than the contract's text.
 template <class Sample>

@@ -58,7 +58,7 @@ void Channels::brake(bool on) {
   } else if (!brake_) {
     // What was sent before means nothing after it: when the brake ends, setpoints go out anew.
     connect();
-    brake_.emplace().want = {kEstop, 0};
+    brake_ = Channel{{kEstop, 0}, {}, 0.0, false, false};
   }
 }
 

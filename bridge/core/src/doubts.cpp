@@ -1,4 +1,4 @@
-#include "doubts.hpp"
+#include "saphira/bridge/doubts.hpp"
 
 #include <utility>
 

@@ -1,0 +1,214 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/authority/arbiter.hpp"
+#include "saphira/authority/echo_map.hpp"
+#include "saphira/authority/guard.hpp"
+#include "saphira/bridge/doubts.hpp"
+#include "saphira/bridge/events.hpp"
+#include "saphira/protocol/packet.hpp"
+#include "saphira/reflector/connection.hpp"
+#include "saphira/reflector/reflector.hpp"
+
+namespace saphira::bridge {
+
+struct CoreSettings {
+  bool lockstep = false;   ///< the robot is a simulator in single step
+  bool free_step = false;  ///< lockstep: step without a permit
+  double lease = 0.3;      ///< [s] in lockstep cycles x 0.1
+  double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
+  bool guard = true;
+  double contact_speed = 0.15;  ///< [m/s] at the most where a driver means contact; 0: never
+  bool keeps_latches = false;   ///< what is latched outlives a restart
+};
+
+/// Every decision of the bridge: the session with the robot, the ages of link, commands and of the
+/// bridge's own loop, who drives, what the robot is sent, what the status says. It is told what
+/// happens, with the time in seconds of a steady clock, and says what is to be done. It knows no
+/// bus, clock, file or socket.
+///
+/// After each call the caller does what take() returns, in that order, and then calls work() in the
+/// same way until there is no more. A cycle is two such pieces: first its state, for the services
+/// to begin with; then what follows from it.
+class Core {
+ public:
+  explicit Core(const CoreSettings& settings);
+
+  /// What is to be done, in order.
+  std::vector<Output> take() { return std::exchange(out_, {}); }
+
+  // ---- Before the start.
+
+  /// What was latched before.
+  void restore(const authority::Latches& latches);
+  /// Where the robot was before.
+  void remember(const reflector::OdometryMemory& memory);
+  /// The robot is not asked before this time [s].
+  void hold_off(double until) { hold_off_ = until; }
+
+  // ---- The robot's side.
+
+  /// Whether the link may be opened.
+  bool may_connect(double now) const { return now >= hold_off_; }
+  /// The link is not open (any more).
+  void link_closed(const std::string& why, double now);
+  /// Bytes came. work() says what they mean.
+  void received(protocol::ByteView bytes, double now);
+  /// What the line takes now of what is asked of the devices [bytes].
+  void room(std::size_t bytes) { room_ = bytes; }
+  /// Does the next piece of work that is waiting: the rest of a cycle, or the next packet. False
+  /// where there is none.
+  bool work(double now);
+  /// The parameters of the robot that Identified named. `epoch`: the least number of the session.
+  void open(const protocol::RobotParameters& parameters, std::uint64_t epoch, double now);
+  /// The robot that Identified named cannot be served.
+  void refuse_robot(const std::string& why, double now);
+  /// When the packets before the last Answered had been sent.
+  void answered(double now);
+
+  // ---- The bus's side.
+
+  void command(const DriveCommand& command, double now);
+  /// A writer of motor commands is gone.
+  void writer_lost(authority::Role role, const authority::WriterId& writer, double now);
+  /// Somebody releases the emergency stop.
+  void reset_estop(const std::string& source, double now);
+  /// Lockstep: the simulator may step while its cycle is less than this.
+  void permit(std::uint64_t until_cycle) { permit_ = until_cycle; }
+  /// All of the above that had come was told: decides, and answers.
+  void answer(double now);
+  /// Lockstep: answers the cycle when the behaviors did, and lets the simulator step when it may.
+  void step(double now);
+
+  // ---- Time.
+
+  /// The loop of the caller came round. Where it did not for too long, all that waited meanwhile is
+  /// old.
+  void loop(double now);
+  /// Looks at everything that depends on time.
+  void tick(double now, const Surroundings& around);
+  /// When to call tick again, at the latest [s].
+  double due(double now) const;
+  /// Ends: the robot is stopped, and let go.
+  void end(double now);
+
+  // ---- What holds now.
+
+  /// Epoch 0: no session.
+  const Stamp& stamp() const { return session_.stamp; }
+  bool in_session() const { return session_.stamp.epoch != 0; }
+  /// The driver's answer to the newest packet is awaited: it is a fraction of a millisecond away.
+  bool awaits_answer() const { return flush_at_ > 0.0; }
+  const authority::Grant& grant() const { return grant_; }
+  const authority::Latches& latches() const { return arbiter_.latches(); }
+  const protocol::RobotParameters& parameters() const { return reflector_.parameters(); }
+  /// For the devices' requests, which the caller hands over.
+  reflector::Reflector& reflector() { return reflector_; }
+
+ private:
+  /// What is known of one session with the robot, and forgotten with it.
+  struct Session {
+    Stamp stamp;
+    authority::Body body;
+    authority::EchoMap echoes;
+    Doubts doubts;
+    std::uint64_t bad_before = 0;  ///< of the parser, when it began
+    double last_packet = 0.0;      ///< [s]
+    double last_heard = 0.0;       ///< [s] an information packet, though it could not be true
+    bool silent = false;           ///< the link: nobody drives what nobody sees
+    std::optional<std::uint64_t> odom_before;  ///< a cycle has begun, and is to be gone on with
+    bool reacted = true;                       ///< the newest packet was answered
+    bool answered = false;                     ///< lockstep: the behaviors answered this cycle
+    bool stepping = false;                     ///< lockstep: a STEP is under way
+    bool stepped = false;                      ///< lockstep: this cycle was decided and sent
+  };
+  /// The newest accepted command of a role.
+  struct Driver {
+    reflector::Motion motion;
+    bool follows_cycles = false;  ///< answers each packet
+    double contact_speed = 0.0;   ///< [m/s] contact is meant
+  };
+  Driver& driver(authority::Role role) { return drivers_[static_cast<std::size_t>(role)]; }
+
+  double time(double now) const;
+  void put(Output output) { out_.push_back(std::move(output)); }
+  void info(std::string text) { put(Note{Note::Level::info, std::move(text)}); }
+  void warn(std::string text) { put(Note{Note::Level::warning, std::move(text)}); }
+  void send(protocol::Bytes bytes) { put(Send{std::move(bytes)}); }
+
+  void tend_session(double now, const Surroundings& around);
+  void mind_silence(double now);
+  void packet(const protocol::Bytes& body, double now);
+  void begin_cycle(const protocol::InformationPacket& packet, double now);
+  void finish_cycle(double now);
+  void other(protocol::ServerPacket any, std::uint8_t type, double now);
+  void heed(const protocol::ConfigPacket& set);
+  void lost(const std::string& why, double now, Note::Level level = Note::Level::warning);
+
+  void decide(double now);
+  void guard(reflector::Setpoints& wanted);
+  void flush(double now);
+  void publish_grant();
+  void keep_latches(double now);
+
+  void mind_keeper(double now, const Surroundings& around);
+  bool motors_off() const;
+  Condition condition(double now, const Surroundings& around) const;
+  Condition robot_condition(double now) const;
+  void report(double now, const Surroundings& around);
+
+  CoreSettings settings_;
+  std::vector<Output> out_;
+  std::vector<std::string> words_;  ///< to be logged when the packets are out
+
+  protocol::PacketParser parser_;
+  reflector::Connection connection_;
+  reflector::Reflector reflector_;
+  authority::Arbiter arbiter_;
+  std::array<Driver, 5> drivers_;                   ///< by role
+  std::array<authority::GuardSettings, 5> guards_;  ///< by role
+  Session session_;
+
+  // What outlives a session.
+  std::uint64_t last_epoch_ = 0;
+  std::uint64_t last_odom_ = 0;
+  std::optional<reflector::OdometryMemory> memory_;
+  reflector::Slack slack_;
+  std::string robot_trouble_;  ///< why a connected robot is not served
+  std::uint64_t permit_ = 0;   ///< lockstep
+  authority::Latches kept_;    ///< as they were told last
+
+  // The decision of now.
+  authority::Grant grant_;
+  authority::Guarded guarded_;
+  bool grant_changed_ = false;
+  bool driver_spoke_ = false;  ///< the one who drives, since the last answer
+  double expires_at_ = 0.0;    ///< [s] the lease of the one who drives
+  double flush_at_ = 0.0;      ///< [s] what is due is sent then without the driver's answer; 0: no
+
+  std::size_t room_ = SIZE_MAX;
+  std::optional<double> last_loop_;  ///< [s]
+  double last_bytes_ = 0.0;          ///< [s]
+  double hold_off_ = 0.0;            ///< [s] the robot is not asked before
+
+  // The status.
+  bool keeper_alive_ = true;
+  int keeper_restarts_ = 0;
+  double keeper_new_until_ = 0.0;  ///< [s] the status tells that the keeper was replaced
+  double reported_at_ = 0.0;       ///< [s]
+  double reaction_at_ = 0.0;       ///< [s]
+  double reaction_sum_ = 0.0;      ///< [s]
+  double reaction_max_ = 0.0;      ///< [s]
+  int reactions_ = 0;
+  std::uint64_t late_ = 0;
+  std::uint64_t steps_ = 0;
+};
+
+}  // namespace saphira::bridge

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "saphira/authority/arbiter.hpp"
+#include "saphira/authority/guard.hpp"
+#include "saphira/base/notes.hpp"
+#include "saphira/base/stamp.hpp"
+#include "saphira/protocol/packet.hpp"
+#include "saphira/protocol/server_packet.hpp"
+#include "saphira/reflector/reflector.hpp"
+
+namespace saphira::bridge {
+
+// ---- What the core is told.
+
+/// A motor command, as it came from the bus.
+struct DriveCommand {
+  authority::Command command;  ///< without the time: the core sets it
+  reflector::Motion motion;    ///< without the driver: the core sets it
+  double contact_speed = 0.0;  ///< [m/s] contact is meant; 0: it is not
+  std::string wrong;           ///< what could not be converted; empty: nothing
+};
+
+/// What is wrong with the numbers of a motor command; empty where nothing is. Any program may write
+/// one.
+std::string trouble(const reflector::Motion& motion, double contact_speed);
+
+/// A robot in words, by what it says of itself.
+std::string name_of(const protocol::RobotIdentity& robot);
+
+/// What the shell sees around it.
+struct Surroundings {
+  bool link_open = false;
+  std::string link_trouble;  ///< why it is not open
+  std::string address;       ///< of the robot, for people
+  bool serial = false;       ///< the line is the same after it was lost, and so is the session
+  /// Another bridge that has a robot of this name, in words; empty: there is none.
+  std::string namesake;
+  bool has_keeper = false;
+  bool keeper_alive = false;
+  int keeper_restarts = 0;
+};
+
+// ---- What the core wants done. The order counts.
+
+/// Bytes to the robot: one or more whole packets.
+struct Send {
+  protocol::Bytes bytes;
+};
+/// The newest packet was answered by what was sent just now: Core::answered is to be told the time.
+struct Answered {};
+/// A robot says what it is: Core::open or Core::refuse_robot is to be called.
+struct Identified {
+  protocol::RobotIdentity robot;
+};
+/// A session begins: the robot is to be described to the bus.
+struct SessionBegan {
+  Stamp stamp;
+  protocol::RobotIdentity robot;
+};
+/// A cycle begins.
+struct CycleBegan {
+  Stamp stamp;
+  reflector::State state;
+  std::uint64_t bad_packets = 0;  ///< of this session
+};
+/// Any packet but an information packet, for devices and cameras.
+struct OtherPacket {
+  protocol::ServerPacket packet;
+  std::uint8_t type = 0;
+  Stamp stamp;
+};
+/// The devices may have something new to tell.
+struct DevicesChanged {
+  Stamp stamp;
+};
+struct GrantDecided {
+  authority::Grant grant;
+  authority::Guarded guarded;
+  std::vector<authority::Refusal> refused;
+  Stamp stamp;
+};
+/// The keeper is to send these bytes when the bridge falls silent.
+struct WatchLink {
+  protocol::Bytes stop;
+};
+/// The session is over, and the link to be closed; the keeper has nothing to watch.
+struct CloseLink {
+  std::string why;
+};
+/// To be kept over a restart.
+struct KeepLatches {
+  authority::Latches latches;
+};
+/// To be kept over a restart.
+struct KeepOdometry {
+  reflector::OdometryMemory memory;
+};
+
+/// What the status of the service says.
+enum class Health { running, degraded, waiting };
+struct Condition {
+  Health health = Health::running;
+  std::string reason;
+};
+struct StatusReport {
+  Condition condition;
+  Stamp stamp;
+  std::uint64_t steps = 0;
+  std::uint64_t late = 0;     ///< cycles whose answer did not come in time
+  std::uint64_t refused = 0;  ///< motor commands
+  /// Once a second: from a packet to the commands that answer it.
+  struct Reaction {
+    double mean = 0.0;  ///< [s]
+    double max = 0.0;   ///< [s]
+  };
+  std::optional<Reaction> reaction;
+};
+
+using Output =
+    std::variant<Send, Answered, Identified, SessionBegan, CycleBegan, OtherPacket, DevicesChanged,
+                 GrantDecided, WatchLink, CloseLink, KeepLatches, KeepOdometry, StatusReport, Note>;
+
+}  // namespace saphira::bridge

@@ -1,0 +1,206 @@
+// Who drives, and what the robot is sent.
+
+#include <cmath>
+
+#include "limits.hpp"
+#include "saphira/authority/age.hpp"
+#include "saphira/base/fnv1a.hpp"
+#include "saphira/bridge/core.hpp"
+
+namespace saphira::bridge {
+
+namespace {
+
+using authority::Role;
+
+std::uint64_t driver_of(const authority::WriterId& writer) {
+  Fnv1a hash;
+  for (const std::uint8_t byte : writer)
+    hash.add(byte);
+  return hash.value();
+}
+
+bool drives(Role role) {
+  return role != Role::none && role != Role::estop;
+}
+
+}  // namespace
+
+std::string trouble(const reflector::Motion& motion, double contact_speed) {
+  const struct {
+    const char* name;
+    double value;
+  } numbers[] = {{"velocity", motion.velocity},
+                 {"distance", motion.distance},
+                 {"rotation_velocity", motion.rotation_velocity},
+                 {"heading", motion.heading},
+                 {"contact_speed", contact_speed}};
+  for (const auto& number : numbers) {
+    // Beyond any robot and any angle that means something; also keeps the packet's integers whole.
+    if (!std::isfinite(number.value) || std::abs(number.value) > 1e4)
+      return std::string(number.name) + " is no usable number";
+  }
+  return {};
+}
+
+void Core::command(const DriveCommand& in, double now) {
+  authority::Command command = in.command;
+  command.received = time(now);
+  // Whatever else it says: a lockstep that waited for a better answer would wait for ever.
+  if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
+      command.cycle == session_.stamp.cycle)
+    session_.answered = true;
+  // A release and an emergency stop mean stop, whatever else they say.
+  if (command.active && command.role != Role::estop) {
+    const std::string wrong = in.wrong.empty() ? trouble(in.motion, in.contact_speed) : in.wrong;
+    if (!wrong.empty())
+      return arbiter_.refuse(command.role, command.source, wrong);
+  }
+  if (!arbiter_.offer(command, session_.stamp.cycle))
+    return;
+  driver_spoke_ = driver_spoke_ || (command.role == grant_.role && command.writer == grant_.writer);
+  if (!command.active || !drives(command.role))
+    return;
+  driver(command.role) = {in.motion, command.cycle != 0, in.contact_speed};
+  driver(command.role).motion.driver = driver_of(command.writer);
+}
+
+void Core::writer_lost(Role role, const authority::WriterId& writer, double now) {
+  arbiter_.lost(role, writer, time(now));
+}
+
+void Core::reset_estop(const std::string& source, double now) {
+  if (!arbiter_.latches().estopped)
+    return;
+  const std::string why = arbiter_.reset(source, time(now));
+  info(why.empty() ? "emergency stop reset by " + source
+                   : "emergency stop not reset by " + source + ": " + why);
+}
+
+void Core::answer(double now) {
+  const bool spoke = std::exchange(driver_spoke_, false);
+  if (in_session() && !settings_.lockstep) {
+    const authority::Grant before = grant_;
+    decide(now);
+    if (spoke || !grant_.same_driver(before))
+      flush(now);
+  }
+  keep_latches(now);
+}
+
+/// What is latched, to be kept and to everybody, when it has changed. Neither waits for a cycle of
+/// the robot: there may be none.
+void Core::keep_latches(double now) {
+  const authority::Latches& latches = arbiter_.latches();
+  if (latches == kept_)
+    return;
+  if (latches.estopped && !kept_.estopped)
+    warn("emergency stop, pressed by " + latches.estop_source +
+         ": the robot stands until saphira estop reset" +
+         (settings_.keeps_latches ? "" : " (without --state a restart forgets it)"));
+  const bool estop = latches.estopped != kept_.estopped;
+  kept_ = latches;
+  put(KeepLatches{latches});
+  if (!estop || (in_session() && !settings_.lockstep))
+    return;
+  grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
+  guarded_ = {};
+  publish_grant();
+}
+
+void Core::decide(double now) {
+  const double t = time(now);
+  authority::Grant grant = arbiter_.decide(t, session_.stamp.cycle);
+  const bool changed = !grant.same_driver(grant_);
+  grant_ = std::move(grant);
+  // Loss, release and change of hands are a stop: nothing of one driver's wishes is left to the
+  // next.
+  if (changed || !drives(grant_.role))
+    reflector_.stop();
+  if (drives(grant_.role))
+    reflector_.set(driver(grant_.role).motion);
+  reflector::Setpoints wanted = reflector_.motion().setpoints();
+  guard(wanted);
+  // Who presses an emergency stop, and a robot that is not heard any more, want the hardest stop.
+  if (grant_.role == Role::estop || session_.silent)
+    reflector_.emergency_stop();
+  else
+    reflector_.hold(wanted);
+  // What is latched does not expire.
+  expires_at_ = grant_.role == Role::estop ? kForEver : t + grant_.expires_in + 1e-4;
+  if (changed && grant_.role != Role::estop) {
+    words_.push_back(grant_.role == Role::none
+                         ? "nobody drives: " + grant_.reason
+                         : grant_.source + " drives (" + authority::name(grant_.role) + ")");
+  }
+  grant_changed_ = grant_changed_ || changed;
+}
+
+/// Cuts what is wanted to what is safe.
+void Core::guard(reflector::Setpoints& wanted) {
+  const authority::GuardAction before = guarded_.action;
+  guarded_ = {wanted.velocity, wanted.rotation_velocity, authority::GuardAction::none, {}};
+  if (drives(grant_.role)) {
+    guarded_ = authority::guard(guards_[static_cast<std::size_t>(grant_.role)], session_.body,
+                                session_.echoes.spots(), wanted.velocity, wanted.rotation_velocity,
+                                reflector_.state().information.rotation_velocity,
+                                driver(grant_.role).contact_speed);
+    guarded_ = authority::slow_for_age(std::move(guarded_), grant_.command_age, kCycle);
+  }
+  wanted.velocity = guarded_.velocity;
+  wanted.rotation_velocity = guarded_.rotation_velocity;
+  if (guarded_.action == authority::GuardAction::stop && guarded_.action != before)
+    words_.push_back("guard: " + guarded_.reason);
+}
+
+void Core::flush(double now) {
+  flush_at_ = 0.0;
+  protocol::Bytes bytes;
+  for (const protocol::Command& command : reflector_.due(time(now), room_)) {
+    const protocol::Bytes packet = protocol::encode(command, reflector_.parameters());
+    bytes.insert(bytes.end(), packet.begin(), packet.end());
+  }
+  if (!bytes.empty()) {
+    send(std::move(bytes));
+    if (!std::exchange(session_.reacted, true))
+      put(Answered{});
+  }
+  // After the packets: nobody waits for these words.
+  for (std::string& text : std::exchange(words_, {}))
+    info(std::move(text));
+  if (grant_changed_ && !settings_.lockstep)
+    publish_grant();
+}
+
+void Core::answered(double now) {
+  const double reaction = now - session_.last_packet;
+  reaction_sum_ += reaction;
+  reaction_max_ = std::max(reaction_max_, reaction);
+  ++reactions_;
+}
+
+void Core::step(double now) {
+  const std::uint64_t cycle = session_.stamp.cycle;
+  if (!settings_.lockstep || !in_session() || session_.stepping)
+    return;
+  if (cycle > 0 && !session_.stepped) {
+    if (!session_.answered)
+      return;
+    session_.stepped = true;
+    decide(now);
+    flush(now);
+    publish_grant();
+  }
+  if (!settings_.free_step && permit_ <= cycle)
+    return;
+  session_.stepping = true;
+  session_.last_packet = now;
+  send(protocol::encode(protocol::Step{}));
+}
+
+void Core::publish_grant() {
+  grant_changed_ = false;
+  put(GrantDecided{grant_, guarded_, arbiter_.take_refused(), session_.stamp});
+}
+
+}  // namespace saphira::bridge

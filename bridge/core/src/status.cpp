@@ -1,0 +1,98 @@
+// What the status of the service says.
+
+#include "limits.hpp"
+#include "saphira/bridge/core.hpp"
+
+namespace saphira::bridge {
+
+void Core::mind_keeper(double now, const Surroundings& around) {
+  if (!around.has_keeper)
+    return;
+  if (keeper_alive_ && !around.keeper_alive)
+    warn("the keeper died or hangs: another one is started");
+  keeper_alive_ = around.keeper_alive;
+  if (around.keeper_restarts > keeper_restarts_)
+    keeper_new_until_ = now + kTellKeeper;
+  keeper_restarts_ = around.keeper_restarts;
+}
+
+bool Core::motors_off() const {
+  const reflector::State& state = reflector_.state();
+  const protocol::Information& in = state.information;
+  return state.cycle > kMotorsCycles &&
+         !in.motors_on.value_or(in.motors != protocol::Motors::kNoPower);
+}
+
+Condition Core::condition(double now, const Surroundings& around) const {
+  if (!robot_trouble_.empty())
+    return {Health::waiting, robot_trouble_};
+  if (!around.namesake.empty())
+    return {in_session() ? Health::degraded : Health::waiting,
+            "another bridge, " + around.namesake + ", has a robot of this name"};
+  if (!around.link_open)
+    return {Health::waiting, "robot link: " + around.link_trouble};
+  if (!connection_.open())
+    return {Health::waiting, "waits for " + connection_.waiting_for()};
+  if (Condition robot = robot_condition(now); robot.health != Health::running)
+    return robot;
+  if (around.has_keeper && !around.keeper_alive)
+    return {Health::degraded, "the keeper is gone: nobody stops the robot when the bridge hangs"};
+  if (around.has_keeper && now < keeper_new_until_)
+    return {Health::degraded, "the keeper died or hung; another one was started (" +
+                                  std::to_string(keeper_restarts_) + " so far)"};
+  return {};
+}
+
+/// Of a robot that is connected.
+Condition Core::robot_condition(double now) const {
+  const std::uint64_t cycle = session_.stamp.cycle;
+  const std::string doubt = session_.doubts.newest(now);
+  if (session_.silent && !doubt.empty())
+    return {Health::waiting, doubt};
+  if (session_.silent)
+    return {Health::waiting, cycle > 0 ? "robot link silent"
+                                       : "robot link silent: no packet has come (a simulator in "
+                                         "single step needs --lockstep here)"};
+  if (settings_.lockstep && !session_.stepping)
+    return {Health::waiting,
+            session_.stepped || cycle == 0
+                ? "waits for a permit to step"
+                : "waits for the behaviors' command for cycle " + std::to_string(cycle)};
+  if (arbiter_.latches().estopped)
+    return {Health::degraded, "emergency stop, pressed by " + arbiter_.latches().estop_source +
+                                  ": saphira estop reset releases it"};
+  if (!in_session())
+    return {};
+  if (!doubt.empty())
+    return {Health::degraded, doubt};
+  if (reflector_.state().information.emergency_stop.value_or(false))
+    return {Health::degraded, "the robot's own emergency stop is pressed"};
+  if (motors_off())
+    return {Health::degraded,
+            "the robot's motors are off (its own button, or: saphira device motors on)"};
+  return {};
+}
+
+void Core::report(double now, const Surroundings& around) {
+  if (now - reported_at_ < kCycle)
+    return;
+  reported_at_ = now;
+  if (!in_session()) {
+    // Without a robot there are no cycles; what is latched is told all the same.
+    grant_ = arbiter_.decide(time(now), 0);
+    publish_grant();
+  }
+  StatusReport status{
+      condition(now, around), session_.stamp, steps_, late_, arbiter_.refused_count(), {}};
+  // A step of the bridge is its reaction.
+  if (now - reaction_at_ >= 1.0) {
+    status.reaction = {reactions_ > 0 ? reaction_sum_ / reactions_ : 0.0, reaction_max_};
+    reaction_sum_ = 0.0;
+    reaction_max_ = 0.0;
+    reactions_ = 0;
+    reaction_at_ = now;
+  }
+  put(std::move(status));
+}
+
+}  // namespace saphira::bridge

@@ -1,0 +1,40 @@
+// Random plays: what happens, in any order, at any time. The rules are in play.hpp.
+#include <gtest/gtest.h>
+
+#include "play.hpp"
+#include "saphira/base/random.hpp"
+
+namespace saphira::bridge::test {
+namespace {
+
+TEST(Plays, KeepEveryRule) {
+  Played all;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    Random random(seed);
+    protocol::Bytes bytes(2000);
+    for (std::uint8_t& byte : bytes)
+      byte = static_cast<std::uint8_t>(random.next());
+    const Played played = play(bytes);
+    ASSERT_EQ(played.wrong, "") << "seed " << seed;
+    all.sessions += played.sessions;
+    all.cycles += played.cycles;
+    all.motions += played.motions;
+    all.stops += played.stops;
+    all.resets += played.resets;
+    all.steps += played.steps;
+    all.silences += played.silences;
+    all.gaps += played.gaps;
+  }
+  // Otherwise the rules were not tried.
+  EXPECT_GT(all.sessions, 1000);
+  EXPECT_GT(all.cycles, 10000);
+  EXPECT_GT(all.motions, 2000);
+  EXPECT_GT(all.stops, 1000);
+  EXPECT_GT(all.resets, 300);
+  EXPECT_GT(all.steps, 500);
+  EXPECT_GT(all.silences, 300);
+  EXPECT_GT(all.gaps, 300);
+}
+
+}  // namespace
+}  // namespace saphira::bridge::test

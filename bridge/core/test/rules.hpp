@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "play.hpp"
+#include "saphira/authority/arbiter.hpp"
+#include "saphira/bridge/core.hpp"
+#include "saphira/protocol/command.hpp"
+
+namespace saphira::bridge::test {
+
+/// The rules of play.hpp. Told of each event before the core, and of each output after it.
+class Rules {
+ public:
+  Rules(const CoreSettings& settings, Played& played) : settings_(settings), played_(played) {}
+
+  // ---- Events.
+  void at(double now) { now_ = now; }
+  void command(const DriveCommand& command);
+  void writer_lost(authority::Role role, const authority::WriterId& writer);
+  void released(bool latched_now);
+  void permit(std::uint64_t until) { permit_ = until; }
+  void gap();
+  /// The core is about to look at the time.
+  void tick();
+
+  // ---- Outputs.
+  void output(const Output& output);
+  /// The outputs of one event, or piece of work, are out.
+  void settled(const Core& core);
+  /// All that an event led to is out.
+  void answered(const Core& core);
+
+ private:
+  /// An active command.
+  struct Wish {
+    double received = 0.0;
+    std::uint64_t epoch = 0;
+    std::uint64_t cycle = 0;
+  };
+  using Writer = std::pair<authority::Role, authority::WriterId>;
+
+  double time() const;
+  void wrong(const std::string& what);
+  void packets(const protocol::Bytes& bytes);
+  void command_sent(const protocol::Command& command);
+  void moves(const std::string& what);
+  bool somebody_drives() const;
+  void begins(const Stamp& stamp);
+
+  CoreSettings settings_;
+  Played& played_;
+  double now_ = 0.0;
+
+  Stamp stamp_;  ///< epoch 0: no session
+  std::uint64_t last_epoch_ = 0;
+  double last_packet_ = 0.0;
+  double good_after_ = 0.0;  ///< [s] what was received before is old
+  bool silent_ = false;
+  bool must_stop_ = false;  ///< zero setpoints are due in the outputs of this event
+
+  std::map<Writer, std::vector<Wish>> wishes_;  ///< of this session, since they were let go
+  std::map<Writer, std::uint64_t> numbers_;     ///< the newest
+  bool latched_ = false;
+  std::map<authority::WriterId, double> pressed_;
+  std::uint64_t permit_ = 0;
+  bool answered_ = false;  ///< this cycle, by the behaviors
+  bool stepping_ = false;
+
+  // What the robot was told.
+  bool zero_velocity_ = false;  ///< since zero setpoints were due first
+  bool zero_turn_ = false;
+  bool velocity_is_zero_ = true;
+  bool turn_is_zero_ = true;
+};
+
+}  // namespace saphira::bridge::test

@@ -1,0 +1,273 @@
+#include <gtest/gtest.h>
+
+#include "scene.hpp"
+
+namespace saphira::bridge::test {
+namespace {
+
+using authority::Role;
+
+template <class What>
+std::size_t first(const std::vector<Output>& said) {
+  for (std::size_t i = 0; i < said.size(); ++i)
+    if (std::holds_alternative<What>(said[i]))
+      return i;
+  return said.size();
+}
+
+/// A speed that the robot does not have.
+protocol::Bytes impossible() {
+  protocol::InformationPacket packet;
+  packet.motors = protocol::Motors::kMoving;
+  packet.left_velocity = packet.right_velocity = 30000;
+  return protocol::encode(packet);
+}
+
+TEST(Session, BeginsWithZeroSetpointsAndADescription) {
+  Scene scene;
+  scene.connect();
+  ASSERT_TRUE(scene.core.in_session());
+  EXPECT_TRUE(scene.was_stopped());
+  EXPECT_FALSE(scene.was_moved());
+  EXPECT_TRUE(scene.noted("connected to robot \"r\" (Pioneer, p3dx), p3dx.p"));
+  scene.cycle();
+  EXPECT_LT(first<SessionBegan>(scene.said), first<CycleBegan>(scene.said));
+  const std::vector<CycleBegan> cycles = scene.all<CycleBegan>();
+  ASSERT_EQ(cycles.size(), 1U);
+  EXPECT_EQ(cycles[0].stamp, (Stamp{1000, 1}));
+}
+
+TEST(Session, OnASerialLineZeroSetpointsComeBeforeTheFirstSync) {
+  Scene scene;
+  scene.around.serial = true;
+  scene.mute = true;
+  scene.connect();
+  ASSERT_GE(scene.sent.size(), 3U);
+  EXPECT_EQ(scene.sent[0], protocol::Command(protocol::Velocity{0.0}));
+  EXPECT_EQ(scene.sent[1], protocol::Command(protocol::RotationVelocity{0.0}));
+}
+
+TEST(Session, EveryOneNeedsANewGrantAndHasANewEpoch) {
+  Driven scene;
+  const DriveCommand old = scene.wish(Role::behaviors, 0.1);
+  const std::uint64_t epoch = scene.core.stamp().epoch;
+  scene.core.link_closed("cut", scene.now);
+  scene.deliver();
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+  scene.forget();
+  scene.connect();
+  EXPECT_GT(scene.core.stamp().epoch, epoch);
+  EXPECT_TRUE(scene.was_stopped());
+  scene.cycle();
+  scene.tell(old);
+  EXPECT_FALSE(scene.was_moved()) << "what was meant for the session before";
+  scene.cycles(2, Role::behaviors);
+  EXPECT_TRUE(scene.was_moved());
+  EXPECT_TRUE(scene.noted("goes on in the odom frame of before"));
+}
+
+TEST(Session, ALostLinkIsToldWithARobotThatStands) {
+  Driven scene;
+  scene.core.link_closed("closed by the robot", scene.now);
+  scene.deliver();
+  EXPECT_TRUE(scene.was_stopped());
+  EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
+  EXPECT_TRUE(scene.noted("connection to the robot ended: closed by the robot"));
+  const std::vector<GrantDecided> grants = scene.all<GrantDecided>();
+  ASSERT_FALSE(grants.empty());
+  EXPECT_EQ(grants.back().grant.role, Role::none);
+  EXPECT_TRUE(scene.has<CloseLink>());
+  EXPECT_FALSE(scene.core.in_session());
+}
+
+TEST(Session, TheKeeperIsGivenWhatStopsThisRobot) {
+  for (const auto kind : {protocol::Protocol::kPsos, protocol::Protocol::kArcos}) {
+    Scene scene;
+    scene.robot.protocol = kind;
+    scene.connect();
+    const std::vector<WatchLink> watched = scene.all<WatchLink>();
+    ASSERT_EQ(watched.size(), 1U);
+    scene.forget();
+    scene.hear(watched[0].stop);
+    EXPECT_TRUE(scene.was_stopped());
+    EXPECT_EQ(scene.sent.size(), kind == protocol::Protocol::kPsos ? 2U : 3U);
+  }
+}
+
+TEST(Session, ASilentLinkIsAStop) {
+  Driven scene;
+  scene.pass_slowly(0.3);
+  EXPECT_FALSE(scene.noted("robot link silent"));
+  scene.forget();
+  scene.pass_slowly(0.3);
+  EXPECT_TRUE(scene.noted("robot link silent for 0.5 s: the robot is told to stop"));
+  EXPECT_TRUE(scene.was_stopped());
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+  const DriveCommand waited = scene.wish(Role::teleop, 0.1);
+  scene.tell(waited);
+  EXPECT_EQ(scene.core.grant().role, Role::none) << "nobody drives what nobody sees";
+  scene.forget();
+  scene.cycle();
+  EXPECT_EQ(scene.core.grant().role, Role::none) << "a new command is needed";
+  EXPECT_FALSE(scene.was_moved());
+  scene.drive(Role::teleop);
+  EXPECT_EQ(scene.core.grant().role, Role::teleop);
+}
+
+TEST(Session, ASilentLinkIsGivenUpAfterTwoSeconds) {
+  Driven scene;
+  scene.pass_slowly(1.85);
+  EXPECT_TRUE(scene.core.in_session());
+  scene.forget();
+  scene.pass_slowly(0.2);
+  EXPECT_FALSE(scene.core.in_session());
+  EXPECT_TRUE(scene.was_stopped());
+  EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
+}
+
+TEST(Session, WhatCannotBeTrueStopsTheRobotAndKeepsTheSession) {
+  Driven scene;
+  for (int i = 0; i < 30; ++i) {
+    scene.say(impossible());
+    scene.pass(0.1);
+  }
+  EXPECT_TRUE(scene.core.in_session());
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+  EXPECT_TRUE(scene.noted("no packet for 0.5 s that can be true: the robot is told to stop"));
+  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_FALSE(scene.has<CycleBegan>());
+  scene.cycle();
+  ASSERT_TRUE(scene.has<CycleBegan>());
+  EXPECT_EQ(scene.all<CycleBegan>()[0].bad_packets, 30U);
+}
+
+TEST(Session, AGapOfTheLoopIsAStop) {
+  Driven scene;
+  const DriveCommand waited = scene.wish(Role::teleop, 0.1);
+  scene.pass(0.3);
+  EXPECT_TRUE(scene.noted("the bridge stood still for 0.30 s"));
+  EXPECT_TRUE(scene.was_stopped());
+  scene.tell(waited);
+  EXPECT_EQ(scene.core.grant().role, Role::none) << "it waited in some queue";
+  scene.cycle();
+  scene.drive(Role::teleop);
+  EXPECT_EQ(scene.core.grant().role, Role::teleop);
+}
+
+TEST(Session, AGapDoesNotEndTheSilenceOfTheLink) {
+  Driven scene;
+  scene.pass_slowly(0.6);
+  scene.pass(0.3);
+  scene.pass(0.2);
+  DriveCommand without_cycles = scene.wish(Role::teleop, 0.1);
+  without_cycles.command.epoch = without_cycles.command.cycle = 0;
+  scene.tell(without_cycles);
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+  EXPECT_FALSE(scene.was_moved());
+}
+
+TEST(Session, ShorterPausesOfTheLoopAreNone) {
+  Driven scene;
+  scene.pass(0.24);
+  EXPECT_FALSE(scene.noted("stood still"));
+}
+
+TEST(Session, AJumpOfThePositionNeedsANewGrant) {
+  Driven scene;
+  scene.shown.x = 16000;
+  scene.cycle();
+  EXPECT_TRUE(scene.noted("the robot's position jumped: a new odom frame begins"));
+  EXPECT_EQ(scene.core.grant().role, Role::none);
+  EXPECT_TRUE(scene.was_stopped());
+  scene.drive(Role::behaviors);
+  EXPECT_EQ(scene.core.grant().role, Role::behaviors);
+}
+
+TEST(Session, AControllerThatResetsItselfIsConnectedAnew) {
+  Driven scene;
+  scene.say(protocol::frame(protocol::Bytes{0xFE}));
+  scene.pass(0.1);
+  EXPECT_TRUE(scene.noted("the robot's controller was reset"));
+  EXPECT_FALSE(scene.core.in_session());
+}
+
+TEST(Session, ARobotWithoutParametersIsTriedAgainLater) {
+  Scene scene;
+  scene.has_parameters = false;
+  scene.connect();
+  EXPECT_FALSE(scene.core.in_session());
+  EXPECT_FALSE(scene.core.may_connect(scene.now + 1.8));
+  EXPECT_TRUE(scene.core.may_connect(scene.now + 2.0));
+  scene.pass_slowly(0.2);
+  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().reason, "no parameter file for it");
+  scene.pass_slowly(2.0);
+  scene.has_parameters = true;
+  scene.forget();
+  scene.connect();
+  EXPECT_TRUE(scene.core.in_session());
+  EXPECT_FALSE(scene.noted("no parameter file"));
+}
+
+TEST(Session, ASocketWithoutAnAnswerIsConnectedAnewALineIsNot) {
+  for (const bool serial : {false, true}) {
+    Scene scene;
+    scene.mute = true;
+    scene.around.serial = serial;
+    scene.around.address = "tcp:robot:8101";
+    scene.connect();
+    scene.pass_slowly(5.2);
+    EXPECT_EQ(scene.has<CloseLink>(), !serial);
+  }
+}
+
+TEST(Session, ARobotOfAnotherBridgeIsNotAsked) {
+  Scene scene;
+  scene.around.namesake = "process 7";
+  scene.connect();
+  EXPECT_TRUE(scene.sent.empty());
+  EXPECT_EQ(scene.condition().health, Health::waiting);
+  scene.around.namesake.clear();
+  scene.connect();
+  EXPECT_TRUE(scene.core.in_session());
+}
+
+TEST(Session, AnEndInGoodOrderIsNoWarning) {
+  Driven scene;
+  scene.core.end(scene.now);
+  scene.deliver();
+  EXPECT_TRUE(scene.was_stopped());
+  EXPECT_EQ(scene.times_sent<protocol::Close>(), 1);
+  for (const Note& note : scene.all<Note>())
+    EXPECT_EQ(note.level, Note::Level::info) << note.text;
+}
+
+TEST(Session, ARobotThatBrakesLessIsToldOnce) {
+  Driven scene;
+  protocol::ConfigPacket set;
+  set.deceleration = 300;
+  for (int i = 0; i < 2; ++i) {
+    scene.say(protocol::encode(set));
+    scene.pass(0.05);
+  }
+  EXPECT_EQ(scene.all<OtherPacket>().size(), 2U);
+  const std::vector<Note> notes = scene.all<Note>();
+  EXPECT_EQ(std::count_if(notes.begin(), notes.end(),
+                          [](const Note& note) {
+                            return note.text.find("brakes with 0.30 m/s2") != std::string::npos;
+                          }),
+            1);
+}
+
+TEST(Session, HalfAPacketDoesNotHoldBackTheNext) {
+  Driven scene;
+  scene.say({protocol::kHeader0, protocol::kHeader1, 150});
+  scene.say(protocol::encode(scene.shown));
+  scene.pass(0.01);
+  EXPECT_FALSE(scene.has<CycleBegan>());
+  scene.pass(0.06);
+  EXPECT_TRUE(scene.has<CycleBegan>());
+}
+
+}  // namespace
+}  // namespace saphira::bridge::test

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include "scene.hpp"
+
+namespace saphira::bridge::test {
+namespace {
+
+using authority::Role;
+
+/// A driven robot of ARCOS, whose packets say more.
+struct Later : Scene {
+  Later() {
+    robot.protocol = protocol::Protocol::kArcos;
+    shown.ptu = protocol::kFlagMotors;
+    connect();
+    cycles(12, Role::behaviors);
+  }
+};
+
+TEST(Status, ARobotThatIsServedIsRunning) {
+  Driven scene;
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::running);
+  EXPECT_EQ(scene.condition().reason, "");
+  EXPECT_EQ(scene.all<StatusReport>().back().steps, 14U);
+}
+
+TEST(Status, SaysWhatIsWaitedFor) {
+  Scene scene;
+  scene.around.link_trouble = "no such file";
+  scene.pass(0.1);
+  EXPECT_EQ(scene.condition().reason, "robot link: no such file");
+  scene.mute = true;
+  scene.connect();
+  scene.pass(0.1);
+  EXPECT_EQ(scene.condition().health, Health::waiting);
+  EXPECT_EQ(scene.condition().reason,
+            "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)");
+}
+
+TEST(Status, SaysThatASimulatorMayWaitForSteps) {
+  Scene scene;
+  scene.connect();
+  scene.pass_slowly(0.7);
+  EXPECT_EQ(scene.condition().reason,
+            "robot link silent: no packet has come (a simulator in single step needs --lockstep "
+            "here)");
+}
+
+TEST(Status, ThePressedButtonOfTheRobotIsTold) {
+  Later scene;
+  EXPECT_EQ(scene.condition().health, Health::running);
+  scene.shown.ptu = protocol::kFlagMotors | protocol::kFlagEmergencyStop;
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().reason, "the robot's own emergency stop is pressed");
+}
+
+TEST(Status, MotorsThatAreOffAreTold) {
+  Later scene;
+  scene.shown.ptu = 0;
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_NE(scene.condition().reason.find("the robot's motors are off"), std::string::npos);
+}
+
+TEST(Status, MotorsHaveASecondToBeSwitchedOn) {
+  Scene scene;
+  scene.shown.motors = protocol::Motors::kNoPower;
+  scene.connect();
+  scene.cycles(9, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::running);
+  scene.cycles(3, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::degraded);
+}
+
+TEST(Status, TheKeeperIsWatched) {
+  Driven scene;
+  scene.around.has_keeper = true;
+  scene.around.keeper_alive = true;
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::running);
+  scene.around.keeper_alive = false;
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().reason,
+            "the keeper is gone: nobody stops the robot when the bridge hangs");
+  EXPECT_TRUE(scene.noted("the keeper died or hangs: another one is started"));
+  scene.around.keeper_alive = true;
+  scene.around.keeper_restarts = 1;
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().reason,
+            "the keeper died or hung; another one was started (1 so far)");
+  scene.cycles(102, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::running);
+}
+
+TEST(Status, AFieldThatCannotBeTrueIsTold) {
+  Driven scene;
+  scene.shown.sonars = {{40, 1000}};
+  scene.cycles(2, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_NE(scene.condition().reason.find("sonar number 40"), std::string::npos);
+  EXPECT_TRUE(scene.noted("sonar number 40"));
+  EXPECT_EQ(scene.core.grant().role, Role::behaviors) << "the rest of the packet holds";
+}
+
+TEST(Status, ReactionsAreToldOnceASecond) {
+  Driven scene;
+  for (int i = 0; i < 25; ++i) {
+    scene.cycle();
+    scene.core.command(scene.wish(Role::behaviors, 0.01 * i), scene.now);
+    scene.core.answer(scene.now);
+    for (const Output& output : scene.core.take())
+      if (std::holds_alternative<Answered>(output))
+        scene.core.answered(scene.now + 0.004);
+  }
+  std::vector<StatusReport::Reaction> told;
+  for (const StatusReport& report : scene.all<StatusReport>())
+    if (report.reaction)
+      told.push_back(*report.reaction);
+  ASSERT_GE(told.size(), 2U);
+  EXPECT_LE(told.size(), 3U);
+  EXPECT_NEAR(told.back().mean, 0.004, 1e-9);
+  EXPECT_NEAR(told.back().max, 0.004, 1e-9);
+}
+
+}  // namespace
+}  // namespace saphira::bridge::test
