@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -18,6 +19,7 @@
 
 #include "bridge/shell/shell.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/bus/gateway.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/sim/host.hpp"
 #include "system/system.hpp"
@@ -88,6 +90,48 @@ void run_in_threads(const Programs& programs, const bus::NodeOptions& options,
   threads.run(stop);
 }
 
+/// Everything in this thread: each does what is due, in turn, and where nothing is, the world waits
+/// for somebody outside.
+void run_in_turn(const Programs& programs, const bus::NodeOptions& options, const bus::Stop& stop) {
+  using std::chrono::milliseconds;
+  constexpr milliseconds kMostRest{20};
+  struct Part {
+    std::unique_ptr<bus::Node> node;
+    std::unique_ptr<runtime::Shell> shell;
+  };
+  const auto memory = bus::make_memory_bus();
+  sim::Host robot(programs.robot);
+  bridge::Shell bridge(named(options, "bridge"), programs.link, memory);
+  std::vector<Part> parts;
+  for (const runtime::Component& service : programs.services) {
+    auto node = std::make_unique<bus::Node>(named(options, service.name), memory);
+    auto shell = std::make_unique<runtime::Shell>(*node, service.make);
+    parts.push_back({std::move(node), std::move(shell)});
+  }
+  bus::Node outside(options);
+  bus::Gateway gateway(outside, memory);
+
+  milliseconds rest{1};
+  while (robot.serve(stop.fd(), 0)) {
+    bridge.advance({true, true});
+    bool stepped = false;
+    for (const Part& part : parts)
+      stepped = part.shell->advance() || stepped;
+    gateway.carry();
+    if (stepped) {
+      bridge.advance({false, true});
+      rest = milliseconds(1);
+      continue;
+    }
+    for (const Part& part : parts)
+      part.shell->idle();
+    gateway.wait(rest, stop);
+    rest = std::min(2 * rest, kMostRest);
+  }
+  bridge.end();
+  robot.end();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -138,7 +182,10 @@ int main(int argc, char** argv) {
         };
         if (!sees)
           std::erase_if(programs.services, [](const auto& one) { return one.name == "vision"; });
-        run_in_threads(programs, options, stop);
+        if (options.lockstep)
+          run_in_turn(programs, options, stop);
+        else
+          run_in_threads(programs, options, stop);
         return bus::kExitOk;
       });
 }
