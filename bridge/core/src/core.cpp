@@ -318,7 +318,8 @@ void Core::loop(double now) {
   std::snprintf(text, sizeof text,
                 "the bridge stood still for %.2f s: the robot is stopped, a new grant is needed",
                 gap);
-  arbiter_.forget(session_.stamp.cycle, now + kSettle);
+  // A link that was silent before is silent still.
+  arbiter_.forget(session_.stamp.cycle, session_.silent ? kForEver : now + kSettle);
   session_.last_packet = now;  // it was the bridge that was silent, not the link
   reflector_.zero_first();
   decide(now);

@@ -204,6 +204,7 @@ TEST(Estop, IsKeptAndToldOnceAndHoldsOverSessions) {
   EXPECT_TRUE(scene.all<KeepLatches>()[0].latches.estopped);
   EXPECT_TRUE(scene.noted("(without --state a restart forgets it)"));
   scene.core.link_closed("cut", scene.now);
+  scene.deliver();
   scene.forget();
   scene.connect();
   scene.cycles(3, Role::behaviors);

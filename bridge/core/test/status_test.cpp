@@ -20,6 +20,7 @@ struct Later : Scene {
 TEST(Status, ARobotThatIsServedIsRunning) {
   Driven scene;
   scene.cycles(2, Role::behaviors);
+  scene.pass(0.11);
   EXPECT_EQ(scene.condition().health, Health::running);
   EXPECT_EQ(scene.condition().reason, "");
   EXPECT_EQ(scene.all<StatusReport>().back().steps, 14U);
