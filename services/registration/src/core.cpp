@@ -27,6 +27,12 @@ bool needs_a_map(Core::Request::Action action) {
          action == Action::kFind || action == Action::kSwitch;
 }
 
+registration::Settings settings_for(const std::vector<lps::SonarMount>& sonars) {
+  registration::Settings settings;
+  settings.sonars = sonars;
+  return settings;
+}
+
 Core::Matched matched(const Match& match, const maps::Map& map) {
   Core::Matched told{match.percept, match.artifact, match.accepted, "", {0.0, 0.0}, match.turned};
   if (!match.accepted)
@@ -65,90 +71,89 @@ std::optional<Pose> start_pose(const std::string& start, const maps::Map& map) {
                               "map, or unknown");
 }
 
-Core::Core(Settings settings, std::optional<Remembered> remembered)
-    : option_(settings.source),
-      source_(std::move(settings.source)),
-      start_(settings.start),
-      snaps_(settings.snap),
-      pose_in_map_(settings.start.value_or(Pose{})) {
+Core::Core(Settings settings, std::optional<Remembered> remembered) {
   check(settings.map);
-  editor_.replace(std::move(settings.map));
+  now_.option = settings.source;
+  now_.source = std::move(settings.source);
+  now_.start = settings.start;
+  now_.snaps = settings.snap;
+  now_.pose_in_map = settings.start.value_or(Pose{});
+  now_.editor.replace(std::move(settings.map));
   // Somebody wants another map than when it was written: the memory is of another place.
-  if (remembered && remembered->option == option_)
+  if (remembered && remembered->option == now_.option)
     take_up(std::move(*remembered));
-  adds_features_ = settings.add_features.value_or(editor_.map().features.empty());
+  now_.adds_features = settings.add_features.value_or(map().features.empty());
 }
 
 void Core::take_up(Remembered remembered) {
   check(remembered.map);
-  if (remembered.source != source_)
-    start_.reset();
-  editor_.replace(remembered.map);
-  source_ = remembered.source;
-  changed_ = remembered.changed;
-  remembered_ = std::move(remembered);
+  if (remembered.source != now_.source)
+    now_.start.reset();
+  now_.editor.replace(remembered.map);
+  now_.source = remembered.source;
+  now_.changed = remembered.changed;
+  now_.remembered = std::move(remembered);
 }
 
 void Core::begin(const std::vector<lps::SonarMount>& sonars) {
-  sonars_ = sonars;
-  registration::Settings settings;
-  settings.sonars = sonars_;
+  now_.sonars = sonars;
+  const registration::Settings settings = settings_for(now_.sonars);
   std::optional<Memory> memory;
   std::set<std::uint32_t> closed;
   const bool first = !registration_;
   if (registration_) {
     memory = registration_->save();
     closed = registration_->closed_doors();
-  } else if (remembered_) {
-    memory = remembered_->memory;
-    closed = remembered_->closed_doors;
+  } else if (now_.remembered) {
+    memory = now_.remembered->memory;
+    closed = now_.remembered->closed_doors;
   }
-  remembered_.reset();
+  now_.remembered.reset();
   // Later it may be anywhere.
-  registration_.emplace(settings, editor_.map(), first ? start_ : std::nullopt);
+  registration_.emplace(settings, now_.editor.map(), first ? now_.start : std::nullopt);
   if (memory && memory->placed)
     registration_->restore(*memory);
   registration_->recall_closed(std::move(closed));
-  if (!builder_)
+  if (!now_.builder)
     set_builder();
 }
 
-/// Begins to add to the map as it is now, or ends that, as adds_features_ says.
+/// Begins to add to the map as it is now, or ends that, as adds_features says.
 void Core::set_builder() {
-  if (building_)
+  if (now_.building)
     end_building();
-  builder_.reset();
-  if (!adds_features_ || !registration_)
+  now_.builder.reset();
+  if (!now_.adds_features || !registration_)
     return;
   MapBuilderSettings settings;
-  settings.sonars = sonars_;
-  settings.snap_to_right_angle_grid = snaps_;
-  building_ = LineMap(editor_.map()).empty();
-  builder_.emplace(settings, editor_.map(), pose_in_map_);
-  builder_->take_ids(editor_);
+  settings.sonars = now_.sonars;
+  settings.snap_to_right_angle_grid = now_.snaps;
+  now_.building = LineMap(now_.editor.map()).empty();
+  now_.builder.emplace(settings, now_.editor.map(), now_.pose_in_map);
+  now_.builder->take_ids(now_.editor);
 }
 
 /// From now on the pose is registered on the map that was built.
 void Core::end_building() {
-  building_ = false;
-  registration_->set_map(editor_.map());
-  registration_->set_pose(builder_->pose_in_map());
-  const std::vector<std::uint32_t> closed = builder_->closed();
+  now_.building = false;
+  registration_->set_map(now_.editor.map());
+  registration_->set_pose(now_.builder->pose_in_map());
+  const std::vector<std::uint32_t> closed = now_.builder->closed();
   registration_->recall_closed({closed.begin(), closed.end()});
   // It has not been stepped meanwhile: the robot has driven, but not since this pose.
   Memory here = registration_->save();
-  here.odom = odom_;
-  here.pose_in_odom = pose_in_odom_;
+  here.odom = now_.odom;
+  here.pose_in_odom = now_.pose_in_odom;
   registration_->restore(here);
 }
 
 Core::Outputs Core::step(const Inputs& inputs) {
   if (inputs.new_robot != nullptr)
     begin(*inputs.new_robot);
-  odom_ = inputs.odom;
-  pose_in_odom_ = inputs.pose_in_odom;
-  Outputs outputs = building_ ? built(inputs) : registered(inputs);
-  pose_in_map_ = outputs.pose_in_map;
+  now_.odom = inputs.odom;
+  now_.pose_in_odom = inputs.pose_in_odom;
+  Outputs outputs = now_.building ? built(inputs) : registered(inputs);
+  now_.pose_in_map = outputs.pose_in_map;
   if (!environment_.works())
     outputs.environment = 0;
   return outputs;
@@ -156,32 +161,32 @@ Core::Outputs Core::step(const Inputs& inputs) {
 
 /// The pose on a map that is known; what is new is put down from there.
 Core::Outputs Core::registered(const Inputs& inputs) {
-  registration_->switch_on(on_ && match_.works());
+  registration_->switch_on(now_.on && match_.works());
   const Output output = registration_->step({inputs.cycle, inputs.odom, inputs.pose_in_odom,
-                                             inputs.percepts, inputs.readings, adds_features_});
+                                             inputs.percepts, inputs.readings, now_.adds_features});
   Outputs outputs;
   outputs.state = output.state;
   outputs.reason = output.reason;
-  if (output.state != told_)
+  if (output.state != now_.told)
     outputs.notes.info(std::string(word(output.state)) +
                        (outputs.reason.empty() ? "" : ": " + outputs.reason));
-  told_ = output.state;
-  if (on_ && !match_.works())
+  now_.told = output.state;
+  if (now_.on && !match_.works())
     outputs.reason = match_.name() + " is suspended: the pose goes on by dead reckoning";
   outputs.pose_in_map = output.pose_in_map;
   outputs.covariance = output.covariance;
   outputs.confidence = output.confidence;
   if (output.environment)
-    outputs.environment = editor_.map().features[*output.environment].id;
+    outputs.environment = now_.editor.map().features[*output.environment].id;
   for (const Match& match : output.matches)
-    outputs.matches.push_back(matched(match, editor_.map()));
+    outputs.matches.push_back(matched(match, now_.editor.map()));
   const std::set<std::uint32_t>& closed = registration_->closed_doors();
   outputs.closed_doors.assign(closed.begin(), closed.end());
   bool news = amend(output.presence, output.objects, outputs.notes);
   if (output.state == State::tracking)
     news = grow(inputs, output.pose_in_map, outputs.notes) || news;
   if (news)
-    registration_->set_map(editor_.map());
+    registration_->set_map(now_.editor.map());
   return outputs;
 }
 
@@ -191,10 +196,10 @@ Core::Outputs Core::built(const Inputs& inputs) {
   grow(inputs, std::nullopt, outputs.notes);
   outputs.state = State::tracking;
   outputs.reason = "builds the map";
-  outputs.pose_in_map = builder_->pose_in_map();
-  outputs.covariance = builder_->covariance();
+  outputs.pose_in_map = now_.builder->pose_in_map();
+  outputs.covariance = now_.builder->covariance();
   outputs.confidence = 1.0;  // pose and map are one: there is no other place to be
-  outputs.closed_doors = builder_->closed();
+  outputs.closed_doors = now_.builder->closed();
   return outputs;
 }
 
@@ -203,7 +208,7 @@ Core::Outputs Core::built(const Inputs& inputs) {
 bool Core::amend(const Presence::News& news, const std::vector<maps::Feature>& objects,
                  Notes& notes) {
   const auto say = [&](std::uint32_t id, const char* what) {
-    if (const maps::Feature* const feature = maps::find(editor_.map(), id))
+    if (const maps::Feature* const feature = maps::find(now_.editor.map(), id))
       notes.info(describe(*feature) + what);
   };
   for (const std::uint32_t id : news.closed)
@@ -212,39 +217,39 @@ bool Core::amend(const Presence::News& news, const std::vector<maps::Feature>& o
     say(id, " is open again");
   for (const std::uint32_t id : news.gone) {
     say(id, " is taken from the map: what is behind it is heard through it");
-    if (builder_)
-      builder_->remove(id);
-    editor_.remove(id);
+    if (now_.builder)
+      now_.builder->remove(id);
+    now_.editor.remove(id);
   }
   for (maps::Feature object : objects) {
     const bool is_new = object.id == 0;
-    if (builder_)
-      object.id = builder_->put(object);
-    say(editor_.put(object),
+    if (now_.builder)
+      object.id = now_.builder->put(object);
+    say(now_.editor.put(object),
         is_new ? " is put on the map: echoes from several places come from where it has nothing"
                : " is seen more clearly");
   }
   if (news.gone.empty() && objects.empty())
     return false;
-  if (builder_)
-    editor_.replace(builder_->map());
-  changed_ = true;
+  if (now_.builder)
+    now_.editor.replace(now_.builder->map());
+  now_.changed = true;
   return true;
 }
 
 /// True where the map has become another.
 bool Core::grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& notes) {
-  if (!builder_ || !builder_->step({inputs.cycle, inputs.odom, inputs.pose_in_odom, inputs.percepts,
-                                    inputs.readings, pose_in_map}))
+  if (!now_.builder || !now_.builder->step({inputs.cycle, inputs.odom, inputs.pose_in_odom,
+                                            inputs.percepts, inputs.readings, pose_in_map}))
     return false;
-  if (const auto why = problem(LineMap(builder_->map()))) {
-    if (!std::exchange(too_large_, true))
+  if (const auto why = problem(LineMap(now_.builder->map()))) {
+    if (!std::exchange(now_.too_large, true))
       notes.warn("what is seen is not added to the map any more: " + *why);
     return false;
   }
-  too_large_ = false;
-  editor_.replace(builder_->map());
-  changed_ = true;
+  now_.too_large = false;
+  now_.editor.replace(now_.builder->map());
+  now_.changed = true;
   return true;
 }
 
@@ -265,9 +270,9 @@ Registration& Core::placed() {
 /// Does it, or throws what is told to the one who asked.
 std::uint32_t Core::obey(const Request& request) {
   using Action = Request::Action;
-  if (building_ && needs_a_map(request.action))
+  if (now_.building && needs_a_map(request.action))
     throw std::runtime_error(kBuilding);
-  maps::Editor editor = editor_;
+  maps::Editor editor = now_.editor;
   switch (request.action) {
     case Action::kLoad:
       editor.replace(maps::parse_map(request.text, request.name));
@@ -282,7 +287,7 @@ std::uint32_t Core::obey(const Request& request) {
     case Action::kPut: {
       const std::uint32_t id = editor.put(request.artifact);
       use(std::move(editor));
-      changed_ = true;
+      now_.changed = true;
       return id;
     }
     case Action::kRemove:
@@ -290,7 +295,7 @@ std::uint32_t Core::obey(const Request& request) {
         throw std::invalid_argument("no artifact (" + std::to_string(request.artifact.id) +
                                     ") in the map");
       use(std::move(editor));
-      changed_ = true;
+      now_.changed = true;
       return request.artifact.id;
     case Action::kPlace:
       if (const auto why = maps::problem(request.pose_in_map))
@@ -304,16 +309,16 @@ std::uint32_t Core::obey(const Request& request) {
       return 0;
     case Action::kSwitch:
       placed();
-      on_ = request.on;
+      now_.on = request.on;
       return 0;
     case Action::kAddFeatures:
       placed();
-      adds_features_ = request.on;
+      now_.adds_features = request.on;
       set_builder();
       return 0;
     case Action::kSnap:
       placed();
-      snaps_ = request.on;
+      now_.snaps = request.on;
       set_builder();
       return 0;
   }
@@ -327,19 +332,19 @@ void Core::use(maps::Editor editor) {
   check(editor.map());
   if (registration_)
     registration_->set_map(editor.map());
-  editor_ = std::move(editor);
-  too_large_ = false;
+  now_.editor = std::move(editor);
+  now_.too_large = false;
   if (!registration_)
     return;
-  building_ = false;
+  now_.building = false;
   set_builder();
 }
 
 /// Nothing that was known of the map before holds on this one.
 void Core::begin_anew(const std::string& source) {
-  source_ = source;
-  changed_ = false;
-  start_.reset();
+  now_.source = source;
+  now_.changed = false;
+  now_.start.reset();
   if (registration_)
     registration_->recall_closed({});
 }
@@ -347,17 +352,34 @@ void Core::begin_anew(const std::string& source) {
 std::optional<Remembered> Core::remembered() const {
   if (!registration_)
     return std::nullopt;
-  Remembered now{registration_->save(),        option_, source_, changed_, editor_.map(),
-                 registration_->closed_doors()};
-  if (building_) {
-    const std::vector<std::uint32_t> closed = builder_->closed();
+  Remembered now{registration_->save(), now_.option,       now_.source,
+                 now_.changed,          now_.editor.map(), registration_->closed_doors()};
+  if (now_.building) {
+    const std::vector<std::uint32_t> closed = now_.builder->closed();
     now.closed_doors = {closed.begin(), closed.end()};
     now.memory.placed = true;
-    now.memory.odom = odom_;
-    now.memory.pose_in_map = pose_in_map_;
-    now.memory.pose_in_odom = pose_in_odom_;
+    now.memory.odom = now_.odom;
+    now.memory.pose_in_map = now_.pose_in_map;
+    now.memory.pose_in_odom = now_.pose_in_odom;
   }
   return now;
+}
+
+CoreState Core::save() const {
+  CoreState saved{now_, std::nullopt, processes_.save()};
+  if (registration_)
+    saved.placed.emplace(CoreState::Placed{registration_->map(), registration_->state()});
+  return saved;
+}
+
+void Core::restore(CoreState saved) {
+  processes_.restore(saved.processes);
+  now_ = std::move(saved.own);
+  registration_.reset();
+  if (!saved.placed)
+    return;
+  registration_.emplace(settings_for(now_.sonars), std::move(saved.placed->map));
+  registration_->set_state(std::move(saved.placed->state));
 }
 
 }  // namespace saphira::registration

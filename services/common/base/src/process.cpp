@@ -14,9 +14,9 @@ void Process::set_state(int state) {
   if (state > kInterrupt && state < kFirstOwnState)
     throw std::invalid_argument("process " + name_ + ": state " + std::to_string(state) +
                                 " is reserved; its own are 10 and more");
-  if (state != state_ && !(state < 0 && state_ < 0))
-    since_ = cycle_;
-  state_ = state;
+  if (state != now_.state && !(state < 0 && now_.state < 0))
+    now_.since = now_.cycle;
+  now_.state = state;
 }
 
 void Process::suspend(std::uint32_t cycles) {
@@ -25,27 +25,27 @@ void Process::suspend(std::uint32_t cycles) {
 }
 
 void Process::step(std::uint64_t cycle) {
-  cycle_ = cycle;
-  turn_ = Turn::none;
-  resumed_ = false;
-  if (state_ == kSuspend)
+  now_.cycle = cycle;
+  now_.turn = Turn::none;
+  now_.resumed = false;
+  if (now_.state == kSuspend)
     return;
-  if (state_ < 0) {
+  if (now_.state < 0) {
     // -n: the next n cycles are slept through, this one being the first.
-    if (state_ == -1)
+    if (now_.state == -1)
       set_state(kResume);
     else
-      ++state_;
+      ++now_.state;
     return;
   }
-  turn_ = state_ == kInterrupt ? Turn::interrupted : Turn::work;
-  resumed_ = state_ == kResume;
+  now_.turn = now_.state == kInterrupt ? Turn::interrupted : Turn::work;
+  now_.resumed = now_.state == kResume;
   if (function_)
     function_(*this);
-  else if (state_ == kInit || state_ == kResume)
+  else if (now_.state == kInit || now_.state == kResume)
     set_state(kFirstOwnState);
   // Manual 6.5.1: interrupted is to save what is needed and then to wait for a resume.
-  if (turn_ == Turn::interrupted && state_ == kInterrupt)
+  if (now_.turn == Turn::interrupted && now_.state == kInterrupt)
     set_state(kSuspend);
 }
 
@@ -118,7 +118,7 @@ bool ProcessTable::take_changed() {
   const bool all = changed;
   told_.resize(processes_.size(), kInit);
   for (std::size_t i = 0; i < processes_.size(); ++i) {
-    const int state = processes_[i]->state_;
+    const int state = processes_[i]->now_.state;
     // Who sleeps and wakes by itself is the same all the time.
     if (!all && (state < 0 || state == kResume))
       continue;
@@ -135,6 +135,22 @@ std::vector<const Process*> ProcessTable::processes() const {
   for (const auto& process : processes_)
     all.push_back(process.get());
   return all;
+}
+
+std::vector<Process::Progress> ProcessTable::save() const {
+  std::vector<Process::Progress> saved;
+  saved.reserve(processes_.size());
+  for (const auto& process : processes_)
+    saved.push_back(process->now_);
+  return saved;
+}
+
+void ProcessTable::restore(const std::vector<Process::Progress>& saved) {
+  if (saved.size() != processes_.size())
+    throw std::invalid_argument("there are " + std::to_string(processes_.size()) +
+                                " processes, and " + std::to_string(saved.size()) + " were saved");
+  for (std::size_t i = 0; i < saved.size(); ++i)
+    processes_[i]->now_ = saved[i];
 }
 
 }  // namespace saphira

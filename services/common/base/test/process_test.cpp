@@ -172,5 +172,26 @@ TEST(ProcessTable, TellsOfChangesButNotOfNaps) {
   EXPECT_TRUE(table.take_changed());
 }
 
+TEST(ProcessTable, GoesOnFromWhatWasSaved) {
+  ProcessTable a;
+  ProcessTable b;
+  for (ProcessTable* const table : {&a, &b})
+    for (const char* const name : {"one", "two"})
+      table->add(name, "");
+  a.step(1);
+  a.request("one", ProcessAction::suspend, 3);
+  a.request("two", ProcessAction::interrupt);
+  for (std::uint64_t cycle = 2; cycle < 8; ++cycle) {
+    b.restore(a.save());
+    a.step(cycle);
+    b.step(cycle);
+    EXPECT_EQ(a.save(), b.save()) << cycle;
+  }
+  EXPECT_TRUE(b.find("one")->works());
+  EXPECT_FALSE(b.find("two")->works());
+  ProcessTable none;
+  EXPECT_THROW(none.restore(a.save()), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace saphira

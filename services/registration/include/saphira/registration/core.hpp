@@ -12,6 +12,7 @@
 #include "saphira/registration/map_builder.hpp"
 #include "saphira/registration/registration.hpp"
 #include "saphira/registration/remembered.hpp"
+#include "saphira/registration/state.hpp"
 
 namespace saphira::registration {
 
@@ -19,6 +20,42 @@ namespace saphira::registration {
 /// for "unknown", and for "start" where the map has none. std::invalid_argument that says what was
 /// expected.
 std::optional<Pose> start_pose(const std::string& start, const maps::Map& map);
+
+/// All that a Core has learnt, been told and decided, as one value, apart from what follows from
+/// it: a copy that is put into another Core goes on to the last bit as the first one would have.
+/// What a step leaves for a later one belongs here.
+struct CoreState {
+  /// What the core has by itself.
+  struct Own {
+    std::string option;  ///< the map that the service was started with
+    maps::Editor editor;
+    std::string source;                    ///< where the map came from
+    bool changed = false;                  ///< the map, since it came from there
+    std::optional<Pose> start;             ///< on the map that the service was started with
+    std::optional<Remembered> remembered;  ///< until it is used
+    std::vector<lps::SonarMount> sonars;
+    bool on = true;  ///< a request may have switched it off
+    bool adds_features = false;
+    bool snaps = true;
+    std::optional<MapBuilder> builder;
+    /// The map began empty: the builder finds the pose together with the map.
+    bool building = false;
+    bool too_large = false;  ///< the map would be, if it grew further
+    std::uint64_t odom = 0;  ///< of the newest step
+    Pose pose_in_odom;
+    Pose pose_in_map;  ///< as it was told in the newest step; before that, the start
+    State told = State::unplaced;
+  };
+  /// Of the Registration.
+  struct Placed {
+    maps::Map map;  ///< while the map is being built, still the one before
+    RegistrationState state;
+  };
+
+  Own own;
+  std::optional<Placed> placed;  ///< none before the first robot
+  std::vector<Process::Progress> processes;
+};
 
 /// The registration service without the bus: keeps the robot's place on the map true, and the map
 /// as it changes: by what is seen, by requests, by building it from nothing. Files are the shell's.
@@ -95,18 +132,22 @@ class Core {
   /// In a cycle or between two. What is refused has changed nothing.
   Answer act(const Request& request);
 
-  const maps::Map& map() const { return editor_.map(); }
+  const maps::Map& map() const { return now_.editor.map(); }
   /// Goes up with every change of the map.
-  std::uint64_t map_revision() const { return editor_.revision(); }
+  std::uint64_t map_revision() const { return now_.editor.revision(); }
   /// Where the map came from, and whether it has changed since.
-  const std::string& map_source() const { return source_; }
-  bool map_changed() const { return changed_; }
-  bool adds_features() const { return adds_features_; }
-  bool snaps() const { return snaps_; }
+  const std::string& map_source() const { return now_.source; }
+  bool map_changed() const { return now_.changed; }
+  bool adds_features() const { return now_.adds_features; }
+  bool snaps() const { return now_.snaps; }
   /// What a restart takes over; none before the first robot.
   std::optional<Remembered> remembered() const;
 
+  /// Its micro-tasks. They are stepped before the core, for the same cycle.
   ProcessTable& processes() { return processes_; }
+
+  CoreState save() const;
+  void restore(CoreState saved);
 
  private:
   void begin(const std::vector<lps::SonarMount>& sonars);
@@ -128,25 +169,8 @@ class Core {
       "test-match", "matches what is seen with the map (not while the map is being built)");
   Process& environment_ = processes_.add("test-environment", "says where on the map the robot is");
 
-  std::string option_;  ///< the map that the service was started with
-  maps::Editor editor_;
-  std::string source_;
-  bool changed_ = false;                  ///< the map, since it came from there
-  std::optional<Pose> start_;             ///< on the map that the service was started with
-  std::optional<Remembered> remembered_;  ///< until it is used
-  std::vector<lps::SonarMount> sonars_;
+  CoreState::Own now_;
   std::optional<Registration> registration_;
-  bool on_ = true;  ///< somebody may have switched it off
-  bool adds_features_;
-  bool snaps_;
-  std::optional<MapBuilder> builder_;
-  /// The map began empty: the builder finds the pose together with the map.
-  bool building_ = false;
-  bool too_large_ = false;  ///< the map would be, if it grew further
-  std::uint64_t odom_ = 0;  ///< of the newest step
-  Pose pose_in_odom_;
-  Pose pose_in_map_;  ///< as it was told in the newest step; before that, the start
-  State told_ = State::unplaced;
 };
 
 }  // namespace saphira::registration

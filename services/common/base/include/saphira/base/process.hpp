@@ -23,6 +23,17 @@ inline constexpr int kFirstOwnState = 10;
 class Process {
  public:
   using Function = std::function<void(Process&)>;
+  enum class Turn { none, work, interrupted };
+  /// All that changes of it.
+  struct Progress {
+    int state = kInit;
+    std::uint64_t cycle = 0;
+    std::uint64_t since = 0;
+    Turn turn = Turn::none;
+    bool resumed = false;
+
+    friend bool operator==(const Progress&, const Progress&) = default;
+  };
 
   Process(std::string name, std::string effect, Function function);
   Process(const Process&) = delete;
@@ -31,9 +42,9 @@ class Process {
   const std::string& name() const { return name_; }
   /// What it does, for people.
   const std::string& effect() const { return effect_; }
-  int state() const { return state_; }
+  int state() const { return now_.state; }
   /// Cycle in which it came to its state; sleeping does not count anew in each.
-  std::uint64_t since() const { return since_; }
+  std::uint64_t since() const { return now_.since; }
 
   /// sfSetProcessState. std::invalid_argument for one that is neither reserved nor its own.
   void set_state(int state);
@@ -44,27 +55,22 @@ class Process {
   /// sfResumeProcess.
   void resume() { set_state(kResume); }
 
-  bool suspended() const { return state_ == kSuspend || state_ < 0; }
+  bool suspended() const { return now_.state == kSuspend || now_.state < 0; }
   /// In this cycle it was its turn, and not for being interrupted.
-  bool works() const { return turn_ == Turn::work; }
+  bool works() const { return now_.turn == Turn::work; }
   /// In this cycle it is told to put its things away.
-  bool interrupted() const { return turn_ == Turn::interrupted; }
+  bool interrupted() const { return now_.turn == Turn::interrupted; }
   /// In this cycle it works again for the first time after a suspension.
-  bool resumed() const { return resumed_; }
+  bool resumed() const { return now_.resumed; }
 
  private:
   friend class ProcessTable;
-  enum class Turn { none, work, interrupted };
   void step(std::uint64_t cycle);
 
   std::string name_;
   std::string effect_;
   Function function_;
-  int state_ = kInit;
-  std::uint64_t cycle_ = 0;
-  std::uint64_t since_ = 0;
-  Turn turn_ = Turn::none;
-  bool resumed_ = false;
+  Progress now_;
 };
 
 /// What somebody can ask for from outside.
@@ -94,6 +100,12 @@ class ProcessTable {
   bool take_changed();
 
   std::vector<const Process*> processes() const;
+
+  /// How far each is, in the order in which they were added. What a process's own function keeps is
+  /// its owner's.
+  std::vector<Process::Progress> save() const;
+  /// Of a table with the same processes; std::invalid_argument where their number differs.
+  void restore(const std::vector<Process::Progress>& saved);
 
  private:
   std::vector<std::unique_ptr<Process>> processes_;

@@ -1,0 +1,534 @@
+// The registration service without a bus: what it answers, decides, remembers and says.
+#include "saphira/registration/core.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "saphira/base/random.hpp"
+
+namespace saphira::registration {
+namespace {
+
+using Action = Core::Request::Action;
+
+constexpr int kSonars = 16;
+constexpr const char* kHall =
+    "CORRIDOR (1) 10000, 0, 0, 20000, 2000 \"hall\"\n"
+    "DOOR (2) 3000, 1000, -90, 900\n"
+    "DOOR (3) 6000, 1000, -90, 900\n"
+    "POS (6) 3500, 0, 0 \"start\"\n";
+
+std::vector<lps::SonarMount> mounts() {
+  std::vector<lps::SonarMount> result;
+  for (int i = 0; i < kSonars; ++i)
+    result.push_back({i, {0.0, 0.0, norm2_angle(2.0 * kPi * i / kSonars)}});
+  return result;
+}
+
+/// A corridor of 2 m, whose walls the robot hears as it drives to and fro. What it is asked for and
+/// what is lost comes with a step.
+class Robot {
+ public:
+  explicit Robot(std::uint64_t seed = 1) : random_(seed) {}
+
+  Core::Outputs step(Core& core) {
+    ++cycle_;
+    if (std::exchange(drives_, true)) {
+      truth_ = compose(truth_, {0.03, 0.0, 0.0});
+      odom_ = compose(odom_, {0.03 * random_.normal(1.0, 0.03), 0.0, random_.normal(0.0, 0.001)});
+    }
+    Core::Inputs inputs;
+    inputs.cycle = cycle_;
+    if (std::exchange(is_new_, false))
+      inputs.new_robot = &mounts_;
+    inputs.odom = frame_;
+    inputs.pose_in_odom = odom_;
+    for (int sonar = 0; sonar < kSonars; ++sonar)
+      inputs.readings.push_back(hear(sonar));
+    if (cycle_ % 5 == 0)
+      for (const double side : {1.0, -1.0})
+        inputs.percepts.push_back(wall(side));
+    core.processes().step(cycle_);
+    return core.step(inputs);
+  }
+  /// A step without a way.
+  Core::Outputs stand(Core& core) {
+    drives_ = false;
+    return step(core);
+  }
+  /// The link was lost and is there again.
+  void reconnect() {
+    is_new_ = true;
+    cycle_ = 0;
+  }
+  /// Dead reckoning begins anew.
+  void new_frame() {
+    ++frame_;
+    odom_ = {};
+  }
+  const Pose& truth() const { return truth_; }
+  std::uint64_t frame() const { return frame_; }
+  const Pose& pose_in_odom() const { return odom_; }
+
+ private:
+  lps::SonarReading hear(int sonar) {
+    const double across = std::sin(truth_.th + 2.0 * kPi * sonar / kSonars);
+    lps::SonarReading reading;
+    reading.sonar = sonar;
+    reading.echo = std::abs(across) > 0.95;
+    reading.range = reading.echo ? random_.normal(1.0, 0.01) / std::abs(across) : 5.0;
+    return reading;
+  }
+  lps::Percept wall(double side) {
+    lps::Percept seen;
+    seen.id = ++last_id_;
+    seen.type = lps::PointType::wall;
+    seen.pose_in_odom = compose(odom_, {0.0, side, side > 0.0 ? kPi : 0.0});
+    seen.length = 1.5;
+    seen.sigma_along = 0.03;
+    seen.sigma_across = 0.03;
+    seen.sigma_heading = radians(1.0);
+    seen.confidence = 1.0;
+    seen.seen = cycle_;
+    seen.readings = {{cycle_, side > 0.0 ? 4 : 12}};
+    return seen;
+  }
+
+  Random random_;
+  const std::vector<lps::SonarMount> mounts_ = mounts();
+  bool is_new_ = true;
+  bool drives_ = true;
+  std::uint64_t cycle_ = 0;
+  std::uint64_t frame_ = 1;
+  std::uint32_t last_id_ = 0;
+  Pose truth_{3.5, 0.0, 0.0};
+  Pose odom_;
+};
+
+Core::Settings settings(const std::string& text = kHall) {
+  Core::Settings made;
+  made.map = maps::parse_map(text, "hall.map");
+  made.source = text.empty() ? "" : "hall.map";
+  made.start = start_pose("start", made.map);
+  return made;
+}
+
+Core::Request request(Action action) {
+  Core::Request made;
+  made.action = action;
+  return made;
+}
+
+Core::Request request(Action action, bool on) {
+  Core::Request made = request(action);
+  made.on = on;
+  return made;
+}
+
+Core::Request load(const std::string& text, const std::string& name = "other.map") {
+  Core::Request made = request(Action::kLoad);
+  made.text = text;
+  made.name = name;
+  return made;
+}
+
+Core::Request place(const Pose& pose_in_map) {
+  Core::Request made = request(Action::kPlace);
+  made.pose_in_map = pose_in_map;
+  return made;
+}
+
+Core::Request put(lps::PointType type, const Pose& pose_in_map) {
+  Core::Request made = request(Action::kPut);
+  made.artifact.type = type;
+  made.artifact.pose_in_map = pose_in_map;
+  made.artifact.length = 1.0;
+  made.artifact.width = 1.0;
+  return made;
+}
+
+bool says(const Notes& notes, const std::string& part) {
+  return std::any_of(notes.lines().begin(), notes.lines().end(),
+                     [&](const Note& note) { return note.text.find(part) != std::string::npos; });
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+void expect_same(const Core::Outputs& a, const Core::Outputs& b, int cycle) {
+  ASSERT_EQ(a.state, b.state) << cycle;
+  ASSERT_EQ(a.reason, b.reason) << cycle;
+  ASSERT_EQ(a.pose_in_map, b.pose_in_map) << cycle;
+  ASSERT_EQ(a.covariance, b.covariance) << cycle;
+  ASSERT_EQ(a.confidence, b.confidence) << cycle;
+  ASSERT_EQ(a.environment, b.environment) << cycle;
+  ASSERT_EQ(a.closed_doors, b.closed_doors) << cycle;
+  ASSERT_EQ(a.notes.lines(), b.notes.lines()) << cycle;
+  ASSERT_EQ(a.matches.size(), b.matches.size()) << cycle;
+  for (std::size_t i = 0; i < a.matches.size(); ++i) {
+    ASSERT_EQ(a.matches[i].percept, b.matches[i].percept) << cycle;
+    ASSERT_EQ(a.matches[i].accepted, b.matches[i].accepted) << cycle;
+    ASSERT_EQ(a.matches[i].off, b.matches[i].off) << cycle;
+  }
+}
+
+TEST(RegistrationCore, RegistersFromTheStartOfTheMapAndSaysItOnce) {
+  Core core(settings());
+  Robot robot;
+  const Core::Outputs first = robot.stand(core);
+  EXPECT_EQ(first.state, State::tracking);
+  EXPECT_TRUE(says(first.notes, "tracking"));
+  EXPECT_EQ(first.environment, 1U);
+  EXPECT_NEAR(first.pose_in_map.x, 3.5, 0.1);
+  EXPECT_TRUE(robot.stand(core).notes.empty());
+}
+
+TEST(RegistrationCore, WithoutAStartTheRobotHasToBeFound) {
+  Core::Settings unplaced = settings();
+  unplaced.start.reset();
+  Core core(unplaced);
+  Robot robot;
+  EXPECT_EQ(robot.stand(core).state, State::unplaced);
+}
+
+TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {
+  EXPECT_THROW(Core(settings("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")), std::invalid_argument);
+}
+
+// Requests.
+
+TEST(RegistrationCore, WhatNeedsARobotIsRefusedBeforeThereIsOne) {
+  Core core(settings());
+  for (const Core::Request& one :
+       {place({5.0, 0.0, 0.0}), request(Action::kFind), request(Action::kSwitch),
+        request(Action::kAddFeatures), request(Action::kSnap)})
+    EXPECT_EQ(core.act(one).refusal, "there is no robot yet");
+  EXPECT_EQ(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})).refusal, "");
+  EXPECT_EQ(core.act(load(kHall)).refusal, "");
+  EXPECT_EQ(core.act(request(Action::kDelete)).refusal, "");
+}
+
+TEST(RegistrationCore, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  const std::uint64_t revision = core.map_revision();
+  EXPECT_TRUE(
+      contains(core.act(load("CORRIDOR (1) 0, 0, 0, 10000\n", "bad.map")).refusal, "bad.map:1:"));
+  EXPECT_TRUE(
+      contains(core.act(load("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).refusal, "at most 25 ha"));
+  EXPECT_EQ(core.map_revision(), revision);
+  EXPECT_EQ(core.map_source(), "hall.map");
+  EXPECT_EQ(robot.stand(core).state, State::tracking);
+
+  EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).refusal, "");
+  EXPECT_GT(core.map_revision(), revision);
+  EXPECT_EQ(core.map_source(), "other.map");
+  EXPECT_FALSE(core.map_changed());
+  EXPECT_EQ(robot.stand(core).environment, 7U);
+}
+
+TEST(RegistrationCore, DeletesTheMap) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  EXPECT_EQ(core.act(request(Action::kDelete)).refusal, "");
+  EXPECT_TRUE(core.map().features.empty());
+  EXPECT_EQ(core.map_source(), "");
+  EXPECT_FALSE(core.adds_features()) << "that is asked for, or of an empty map at the start";
+}
+
+TEST(RegistrationCore, PutsAndRemovesArtifacts) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  const Core::Answer made = core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
+  EXPECT_EQ(made.refusal, "");
+  ASSERT_NE(maps::find(core.map(), made.artifact), nullptr);
+  EXPECT_TRUE(core.map_changed());
+  Core::Request moved = put(lps::PointType::position, {6.0, 0.0, 0.0});
+  moved.artifact.id = made.artifact;
+  EXPECT_EQ(core.act(moved).artifact, made.artifact);
+  EXPECT_EQ(maps::find(core.map(), made.artifact)->pose_in_map.x, 6.0);
+
+  const std::uint64_t revision = core.map_revision();
+  EXPECT_TRUE(contains(core.act(put(lps::PointType::object, {9000.0, 9000.0, 0.0})).refusal,
+                       "at most 25 ha"));
+  Core::Request remove = request(Action::kRemove);
+  remove.artifact.id = 4711;
+  EXPECT_EQ(core.act(remove).refusal, "no artifact (4711) in the map");
+  EXPECT_EQ(core.map_revision(), revision);
+  remove.artifact.id = 2;
+  EXPECT_EQ(core.act(remove).artifact, 2U);
+  EXPECT_EQ(maps::find(core.map(), 2), nullptr);
+}
+
+TEST(RegistrationCore, PlacesTheRobotWhereItCanBe) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Pose& wrong : {Pose{nan, 0.0, 0.0}, Pose{5.0, 1e13, 0.0}, Pose{5.0, 0.0, nan}})
+    EXPECT_TRUE(contains(core.act(place(wrong)).refusal, "within 10 km"));
+  EXPECT_NE(core.act(place({5.0, 40.0, 0.0})).refusal, "");
+  EXPECT_NEAR(robot.stand(core).pose_in_map.x, 3.5, 0.1);
+  EXPECT_EQ(core.act(place({8.0, 0.0, 0.0})).refusal, "");
+  EXPECT_NEAR(robot.stand(core).pose_in_map.x, 8.0, 0.1);
+}
+
+TEST(RegistrationCore, FindsAndSwitches) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  EXPECT_EQ(core.act(request(Action::kSwitch, false)).refusal, "");
+  EXPECT_EQ(robot.stand(core).state, State::off);
+  EXPECT_EQ(core.act(request(Action::kSwitch, true)).refusal, "");
+  EXPECT_EQ(robot.stand(core).state, State::tracking);
+  EXPECT_EQ(core.act(request(Action::kFind)).refusal, "");
+  EXPECT_EQ(robot.stand(core).state, State::unplaced);
+}
+
+TEST(RegistrationCore, AddsFeaturesAndSnapsAsItIsAsked) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  EXPECT_FALSE(core.adds_features());
+  EXPECT_TRUE(core.snaps());
+  EXPECT_EQ(core.act(request(Action::kAddFeatures, true)).refusal, "");
+  EXPECT_EQ(core.act(request(Action::kSnap, false)).refusal, "");
+  EXPECT_TRUE(core.adds_features());
+  EXPECT_FALSE(core.snaps());
+  EXPECT_EQ(robot.stand(core).state, State::tracking) << "on a map that is known it is registered";
+}
+
+TEST(RegistrationCore, AnActionOfNoNameIsRefused) {
+  Core core(settings());
+  EXPECT_NE(core.act(request(static_cast<Action>(77))).refusal, "");
+}
+
+// A map from nothing.
+
+TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
+  Core core(settings(""));
+  Robot robot;
+  EXPECT_EQ(robot.step(core).reason, "builds the map");
+  EXPECT_TRUE(core.adds_features());
+  for (const Action action :
+       {Action::kPut, Action::kRemove, Action::kPlace, Action::kFind, Action::kSwitch})
+    EXPECT_EQ(core.act(request(action)).refusal,
+              "the map is being built: switch that off first (features off)");
+  for (int i = 0; i < 300; ++i)
+    robot.step(core);
+  ASSERT_FALSE(core.map().features.empty());
+  EXPECT_TRUE(core.map_changed());
+  // The robot is registered on what was built, where it was.
+  const Pose before = robot.stand(core).pose_in_map;
+  EXPECT_EQ(core.act(request(Action::kAddFeatures, false)).refusal, "");
+  const Core::Outputs after = robot.stand(core);
+  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_NE(after.reason, "builds the map");
+  EXPECT_NEAR(after.pose_in_map.x, before.x, 0.1);
+  EXPECT_NEAR(after.pose_in_map.y, before.y, 0.1);
+}
+
+TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {
+  Core core(settings(""));
+  Robot robot;
+  for (int i = 0; i < 300; ++i)
+    robot.step(core);
+  EXPECT_EQ(core.act(load(kHall)).refusal, "");
+  EXPECT_NE(robot.stand(core).reason, "builds the map");
+  EXPECT_EQ(core.map_source(), "other.map");
+  EXPECT_NE(maps::find(core.map(), 2), nullptr);
+}
+
+// Links, frames and micro-tasks.
+
+TEST(RegistrationCore, WhatWasAskedForOutlastsTheLink) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  core.act(request(Action::kSwitch, false));
+  EXPECT_EQ(robot.stand(core).state, State::off);
+  robot.reconnect();
+  EXPECT_EQ(robot.stand(core).state, State::off);
+  core.act(request(Action::kSwitch, true));
+  core.act(request(Action::kFind));
+  EXPECT_EQ(robot.stand(core).state, State::unplaced);
+  robot.reconnect();
+  EXPECT_EQ(robot.stand(core).state, State::unplaced) << "it may be far from the start";
+}
+
+TEST(RegistrationCore, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
+  Core core(settings());
+  Robot robot;
+  for (int i = 0; i < 100; ++i)
+    robot.step(core);
+  const Pose before = robot.stand(core).pose_in_map;
+  EXPECT_GT(before.x, 5.5);
+  robot.reconnect();
+  const Core::Outputs after = robot.stand(core);
+  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
+}
+
+TEST(RegistrationCore, AnotherOdometryFrameMakesThePoseLessSureAndDoesNotMoveIt) {
+  Core core(settings());
+  Robot robot;
+  for (int i = 0; i < 100; ++i)
+    robot.step(core);
+  const Core::Outputs before = robot.stand(core);
+  robot.new_frame();
+  const Core::Outputs after = robot.stand(core);
+  EXPECT_NEAR(after.pose_in_map.x, before.pose_in_map.x, 0.1);
+  EXPECT_GT(after.covariance(0, 0), before.covariance(0, 0));
+}
+
+TEST(RegistrationCore, ASuspendedProcessDoesNothingUntilItIsResumed) {
+  Core core(settings());
+  Robot robot;
+  const auto ask = [&](const char* process, ProcessAction action) {
+    EXPECT_EQ(core.processes().request(process, action), "");
+    return robot.stand(core);
+  };
+  EXPECT_EQ(robot.stand(core).environment, 1U);
+  EXPECT_EQ(ask("test-environment", ProcessAction::suspend).environment, 0U);
+  EXPECT_EQ(ask("test-environment", ProcessAction::resume).environment, 1U);
+  const Core::Outputs suspended = ask("test-match", ProcessAction::suspend);
+  EXPECT_EQ(suspended.state, State::off);
+  EXPECT_EQ(suspended.reason, "test-match is suspended: the pose goes on by dead reckoning");
+  EXPECT_EQ(ask("test-match", ProcessAction::resume).state, State::tracking);
+}
+
+// What outlives the core.
+
+TEST(RegistrationCore, ARestartGoesOnFromWhatWasRemembered) {
+  Core core(settings());
+  EXPECT_FALSE(core.remembered()) << "before the first robot there is nothing";
+  Robot robot;
+  for (int i = 0; i < 100; ++i)
+    robot.step(core);
+  const std::uint32_t id = core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})).artifact;
+  const Pose before = robot.stand(core).pose_in_map;
+  Core next(settings(), parse_remembered(to_text(*core.remembered()), "memory"));
+  EXPECT_NE(maps::find(next.map(), id), nullptr);
+  EXPECT_TRUE(next.map_changed());
+  robot.reconnect();
+  const Core::Outputs after = robot.stand(next);
+  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
+}
+
+TEST(RegistrationCore, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  core.act(load("CORRIDOR (5) 0, 0, 0, 30000, 2000\n", "a;b  c.map"));
+  core.act(request(Action::kFind));
+  robot.stand(core);
+  Core next(settings(), core.remembered());
+  EXPECT_EQ(next.map_source(), "a;b  c.map");
+  EXPECT_FALSE(next.map_changed());
+  robot.reconnect();
+  EXPECT_EQ(robot.stand(next).state, State::unplaced);
+}
+
+TEST(RegistrationCore, WhatWasRememberedOfAnotherMapDoesNotCount) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
+  Core::Settings other = settings();
+  other.source = "another.map";
+  EXPECT_EQ(Core(other, core.remembered()).map(), Core(other).map());
+}
+
+TEST(RegistrationCore, WhileAMapIsBuiltTheBuildersPoseIsRemembered) {
+  Core core(settings(""));
+  Robot robot;
+  Core::Outputs newest;
+  for (int i = 0; i < 200; ++i)
+    newest = robot.step(core);
+  const std::optional<Remembered> remembered = core.remembered();
+  ASSERT_TRUE(remembered);
+  EXPECT_TRUE(remembered->memory.placed);
+  EXPECT_EQ(remembered->memory.pose_in_map, newest.pose_in_map);
+  EXPECT_EQ(remembered->memory.odom, robot.frame());
+  EXPECT_EQ(remembered->memory.pose_in_odom, robot.pose_in_odom());
+  EXPECT_EQ(remembered->map, core.map());
+}
+
+/// What happens to a core on its way, by cycle.
+void happen(int cycle, Core& core, Robot& robot) {
+  switch (cycle) {
+    case 40:
+      core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
+      break;
+    case 80:
+      robot.new_frame();
+      break;
+    case 120:
+      core.processes().request("test-match", ProcessAction::suspend, 15);
+      break;
+    case 160:
+      core.act(request(Action::kAddFeatures, true));
+      break;
+    case 200:
+      robot.reconnect();
+      break;
+    case 240:
+      core.act(request(Action::kAddFeatures, false));
+      break;
+    case 280:
+      core.act(request(Action::kFind));
+      break;
+    default:
+      break;
+  }
+}
+
+/// Two cores get the same; of one, `exchange` makes another between any two steps.
+void expect_no_difference(const std::string& map, const std::function<void(Core&)>& exchange) {
+  Core a(settings(map));
+  Core b(settings(map));
+  Robot robot_a(3);
+  Robot robot_b(3);
+  for (int i = 0; i < 320; ++i) {
+    happen(i, a, robot_a);
+    happen(i, b, robot_b);
+    ASSERT_NO_FATAL_FAILURE(expect_same(robot_a.step(a), robot_b.step(b), i));
+    ASSERT_EQ(a.map(), b.map()) << i;
+    ASSERT_EQ(a.map_revision(), b.map_revision()) << i;
+    ASSERT_EQ(to_text(*a.remembered()), to_text(*b.remembered())) << i;
+    exchange(b);
+  }
+}
+
+TEST(RegistrationCore, TheSameInputsGiveTheSameOutputs) {
+  for (const char* map : {kHall, ""})
+    expect_no_difference(map, [](Core&) {});
+}
+
+TEST(RegistrationCore, AStateThatWasSavedAndRestoredGoesOnToTheLastBit) {
+  for (const char* map : {kHall, ""}) {
+    std::optional<Core> another;
+    expect_no_difference(map, [&](Core& core) {
+      const CoreState saved = core.save();
+      // One with another past.
+      another.emplace(settings("CORRIDOR (9) 0, 0, 0, 5000, 3000\n"));
+      Robot robot;
+      robot.step(*another);
+      another->restore(saved);
+      core.restore(another->save());
+    });
+  }
+}
+
+}  // namespace
+}  // namespace saphira::registration
