@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/navigation.hpp"
@@ -44,13 +45,22 @@ class CoreTest : public testing::Test {
     return heard;
   }
 
-  Core::Outputs step() {
+  static Core::Settings remembering(Memory memory) {
+    Core::Settings made = settings(false);
+    made.memory = std::move(memory);
+    made.remembers_work = true;
+    return made;
+  }
+
+  Core::Outputs step() { return step(core_); }
+  Core::Outputs step(Core& core) {
     ++inputs_.stamp.cycle;
     inputs_.behaviors_cycle = inputs_.stamp.cycle - 1;
     const lps::LpsSettings robot;
-    inputs_.new_robot = inputs_.stamp.cycle == 1 ? &robot : nullptr;
-    core_.processes().step(inputs_.stamp.cycle);
-    Core::Outputs outputs = core_.step(inputs_);
+    inputs_.new_robot = inputs_.stamp.cycle == 1 || is_new_ ? &robot : nullptr;
+    is_new_ = false;
+    core.processes().step(inputs_.stamp.cycle);
+    Core::Outputs outputs = core.step(inputs_);
     inputs_.heard = {};
     inputs_.new_frame = false;
     note(outputs.intended.news);
@@ -68,6 +78,7 @@ class CoreTest : public testing::Test {
 
   Core core_;
   Core::Inputs inputs_;
+  bool is_new_ = false;  ///< the core has not seen the robot
   std::map<GoalId, GoalStatus> statuses_;
 };
 
@@ -179,6 +190,83 @@ TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
   outputs = step();
   EXPECT_TRUE(believes(outputs, "stays"));
   EXPECT_FALSE(believes(outputs, "goes"));
+}
+
+TEST_F(CoreTest, AnEmergencyStopSaysWhichProgramPressedIt) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  inputs_.heard.estops = {{true, "button"}};
+  step();
+  EXPECT_NE(statuses_.at({5, 1}).reason.find("button"), std::string::npos);
+  inputs_.heard.estops = {{false, ""}};
+  inputs_.heard.goals = {written(2, kKaren)};
+  step();
+  inputs_.heard.estops = {{true, ""}};
+  step();
+  EXPECT_NE(statuses_.at({5, 2}).reason.find("a program without a name"), std::string::npos);
+}
+
+TEST_F(CoreTest, AStepFromRememberedGoalsGoesOnAsTheCoreBeforeIt) {
+  Memory memory;
+  const auto remember = [&](const News& news) {
+    memory.placements.insert(memory.placements.end(), news.placed.begin(), news.placed.end());
+    memory.endings.insert(memory.endings.end(), news.endings.begin(), news.endings.end());
+    if (news.work)
+      memory.work = *news.work;
+  };
+  Core before(remembering({}));
+  inputs_.heard.goals = {written(1, kKaren), written(2, kKaren)};
+  remember(step(before).intended.news);
+  inputs_.heard.goals = {written(1, kKaren)};
+  inputs_.heard.goals[0].event.kind = GoalEvent::Kind::kDisposed;
+  remember(step(before).intended.news);
+  ASSERT_TRUE(ended(state(1)));
+  for (int i = 0; i < 3; ++i)
+    remember(step(before).intended.news);
+  const Core::Outputs newest = step(before);
+  remember(newest.intended.news);
+  ASSERT_FALSE(newest.intended.behaviors.empty());
+
+  // The requesters' goals are latched: both come again. The link goes on as well.
+  Core next(remembering(memory));
+  statuses_.clear();
+  is_new_ = true;
+  inputs_.heard.goals = {written(1, kKaren), written(2, kKaren)};
+  Core::Outputs outputs = step(next);
+  for (int i = 0; i < 3 && outputs.intended.behaviors.empty(); ++i)
+    outputs = step(next);
+  EXPECT_TRUE(ended(state(1))) << "it is not done twice";
+  EXPECT_EQ(state(2), GoalState::kUnderway);
+  ASSERT_EQ(outputs.intended.behaviors.size(), newest.intended.behaviors.size());
+  for (std::size_t i = 0; i < outputs.intended.behaviors.size(); ++i)
+    EXPECT_EQ(outputs.intended.behaviors[i].parameters, newest.intended.behaviors[i].parameters);
+}
+
+TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
+  Core other(settings(false));
+  for (int i = 1; i < 60; ++i) {
+    inputs_.robot.pose_in_odom.x = 0.03 * i;
+    if (i % 7 == 1)
+      inputs_.heard.goals = {written(static_cast<std::uint64_t>(i), i % 2 == 0 ? kKaren : kJohn)};
+    if (i == 20)
+      inputs_.heard.lost_requesters = {kKaren};
+    if (i == 30)
+      inputs_.heard.estops = {{true, "button"}, {false, ""}};
+    if (i == 40) {
+      ++inputs_.robot.odom;
+      inputs_.new_frame = true;
+    }
+    const Core::Inputs same = inputs_;
+    const Core::Outputs a = step();
+    inputs_ = same;
+    const Core::Outputs b = step(other);
+    EXPECT_EQ(a.intended.behaviors, b.intended.behaviors) << i;
+    EXPECT_EQ(a.intended.news.changed, b.intended.news.changed) << i;
+    EXPECT_EQ(a.intended.news.placed, b.intended.news.placed) << i;
+    EXPECT_EQ(a.intended.news.endings, b.intended.news.endings) << i;
+    EXPECT_EQ(a.notes.lines(), b.notes.lines()) << i;
+  }
+  EXPECT_FALSE(statuses_.empty());
 }
 
 class InLockstep : public CoreTest {
