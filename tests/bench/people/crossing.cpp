@@ -19,6 +19,10 @@ constexpr double kPersonRadius = 0.25;
 constexpr double kPersonRoom = 0.15;  // [m] more than beside a wall
 constexpr double kShortest = 2.0;     // [m] of a way worth driving
 constexpr double kNever = std::numeric_limits<double>::infinity();
+// A way on which the robot comes no nearer for so long is blocked, as in the robot's navigation.
+constexpr double kPatience = 20.0;  // [s]
+constexpr double kNearer = 0.05;    // [m]
+constexpr double kBefore = 0.25;    // [m] the robot stands so far from what blocks it
 
 /// Room round each cell of a world, and the cheapest ways from one of them.
 class Ways {
@@ -44,12 +48,14 @@ class Ways {
 
   /// The cell with enough room that is nearest to a place.
   std::optional<int> nearest(const Vec2& at) const {
-    std::optional<int> best;
+    return nearest_of(at, [this](int cell) { return length_.empty() || length(cell) < kNever; });
+  }
+
+  /// A person stands here. Ways lead past him as they lead past walls.
+  void block(const Vec2& at) {
     for (int i = 0; i < columns_ * rows_; ++i)
-      if (room(i) >= needed_ && (length_.empty() || length(i) < kNever) &&
-          (!best || (centre(i) - at).norm() < (centre(*best) - at).norm()))
-        best = i;
-    return best;
+      room_[static_cast<std::size_t>(i)] =
+          std::min(room(i), (centre(i) - at).norm() - kPersonRadius);
   }
 
   /// From here to everywhere: cost, length [m] and the cell before.
@@ -100,6 +106,13 @@ class Ways {
     const std::vector<Vec2> way = way_to(here && length(*here) < kNever ? *here : *nearest(at));
     return way[way.size() - 1 - std::min(way.size() - 1, static_cast<std::size_t>(cells))];
   }
+  /// [m] from here to where the ways begin; infinite where none leads there.
+  double left(const Vec2& at) const {
+    auto here = cell_at(at);
+    if (!here || room(*here) < needed_)
+      here = nearest_of(at, [](int) { return true; });
+    return here ? length(*here) : kNever;
+  }
   std::optional<int> cell_at(const Vec2& at) const {
     const int column = static_cast<int>(at.x() / kCell);
     const int row = static_cast<int>(at.y() / kCell);
@@ -109,6 +122,16 @@ class Ways {
   }
 
  private:
+  template <class Fits>
+  std::optional<int> nearest_of(const Vec2& at, Fits fits) const {
+    std::optional<int> best;
+    for (int i = 0; i < columns_ * rows_; ++i)
+      if (room(i) >= needed_ && fits(i) &&
+          (!best || (centre(i) - at).norm() < (centre(*best) - at).norm()))
+        best = i;
+    return best;
+  }
+
   double needed_;
   int columns_;
   int rows_;
@@ -213,6 +236,47 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
   }
 }
 
+/// The way to the goal as the robot knows it. When the robot comes no nearer, somebody stands in
+/// the way, and another way is taken. When none is left, those who stood there may have gone.
+class Navigator {
+ public:
+  Navigator(const Crossing& crossing, double radius)
+      : at_first_(*crossing.ways), ways_(at_first_), goal_(crossing.way.back()), radius_(radius) {}
+
+  /// Where to drive now.
+  Vec2 carrot(const Vec2& robot, double seconds) {
+    const double left = ways_.left(robot);
+    if (left < nearest_ - kNearer) {
+      nearest_ = left;
+      since_ = seconds;
+    } else if (seconds - since_ > kPatience) {
+      close(robot);
+      since_ = seconds;
+      nearest_ = ways_.left(robot);
+    }
+    return ways_.back_from(robot, kAhead);
+  }
+
+ private:
+  static constexpr int kAhead = 12;  // cells
+
+  void close(const Vec2& robot) {
+    const Vec2 way = ways_.back_from(robot, kAhead) - robot;
+    ways_.block(robot + way.normalized() * (radius_ + kBefore + kPersonRadius));
+    const int goal = *ways_.nearest(goal_);
+    ways_.spread(goal);
+    if (ways_.centre(goal) != goal_ || ways_.left(robot) == kNever)
+      ways_ = at_first_;
+  }
+
+  const Ways& at_first_;
+  Ways ways_;
+  Vec2 goal_;
+  double radius_;
+  double nearest_ = kNever;  // [m] left, the least so far
+  double since_ = 0.0;       // [s] of that
+};
+
 /// A line for each new contact, with what the robot thought of it.
 void tell(const sim::ContactWatch& watch, std::size_t& told, const Drive& drive, double seconds) {
   constexpr const char* kBlames[] = {"caused", "walked into", "unseen"};
@@ -261,7 +325,6 @@ std::optional<Crossing> plan_crossing(const CrossingOptions& options,
 
 CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& options,
                               const sim::SonarModel& sonar, bool trace) {
-  constexpr double kCarrot = 1.2;  // [m] ahead on the way
   DriveOptions drive_options;
   drive_options.made_world = std::make_shared<const sim::World>(crossing.world);
   drive_options.robot = options.robot;
@@ -273,6 +336,7 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   const double radius = drive.parameters().radius;
   sim::ContactWatch watch(drive.scene(), drive.robot().number(), drive.parameters());
   drive.scene().set_watch([&watch] { watch.tick(); });
+  Navigator navigator(crossing, radius);
   std::size_t told = 0;
   CrossingResult result;
   // A Khepera creeps, since it hears so little.
@@ -281,7 +345,7 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   const double near = std::max(0.15, 0.5 * radius);
   while (result.seconds < limit) {
     const Pose pose = drive.seen().true_pose_in_world;
-    const Vec2 ahead = crossing.ways->back_from(pose.position(), static_cast<int>(kCarrot / kCell));
+    const Vec2 ahead = navigator.carrot(pose.position(), result.seconds);
     if ((crossing.way.back() - pose.position()).norm() < near) {
       result.arrived = true;
       break;
