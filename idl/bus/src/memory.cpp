@@ -46,6 +46,8 @@ struct Item {
 
 // KEEP_LAST: of each key the newest `depth`.
 void keep_last(std::deque<Item>& items, const InstanceKey& key, int depth) {
+  if (static_cast<int>(items.size()) <= depth)
+    return;
   const auto same = [&](const Item& item) { return item.key == key; };
   if (std::count_if(items.begin(), items.end(), same) > depth)
     items.erase(std::find_if(items.begin(), items.end(), same));
@@ -163,6 +165,9 @@ MemoryWriter::~MemoryWriter() {
 }
 
 bool MemoryWriter::put(const void* sample, bool disposed) {
+  // Most topics have no reader within the process.
+  if (!disposed && !common.policies.transient_local && matched() == 0)
+    return true;
   std::shared_ptr<void> copy(common.type->create(), common.type->destroy);
   common.type->copy(sample, copy.get());
   const Item item{std::move(copy), common.type->key(sample), id, disposed};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/geometry/cone.hpp"
+
 namespace saphira::interpretation {
 namespace {
 
@@ -152,17 +154,25 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
   const double c = std::cos(sonar.th);
   const double s = std::sin(sonar.th);
   const double edge = std::tan(settings_.beam);
+  const ConeRows rows(sonar, edge, range);
   for (long tile_row = tile_at(first_row); tile_row <= tile_at(last_row); ++tile_row)
     for (long tile_column = tile_at(first_column); tile_column <= tile_at(last_column);
          ++tile_column) {
       const long row0 = tile_row * kTile;
       const long column0 = tile_column * kTile;
       Tile* tile = nullptr;
-      for (long row = std::max(row0, first_row); row <= std::min(row0 + kTile - 1, last_row); ++row)
-        for (long column = std::max(column0, first_column);
-             column <= std::min(column0 + kTile - 1, last_column); ++column) {
+      for (long row = std::max(row0, first_row); row <= std::min(row0 + kTile - 1, last_row);
+           ++row) {
+        const double dy = (static_cast<double>(row) + 0.5) * size - sonar.y;
+        const auto [low, high] = rows.span(dy);
+        if (high < low - size)
+          continue;
+        // A cell more at each end, for what rounding may leave out.
+        const long begin = std::max({column0, first_column, cell_of(sonar.x + low - size)});
+        const long end =
+            std::min({column0 + kTile - 1, last_column, cell_of(sonar.x + high + size)});
+        for (long column = begin; column <= end; ++column) {
           const double dx = (static_cast<double>(column) + 0.5) * size - sonar.x;
-          const double dy = (static_cast<double>(row) + 0.5) * size - sonar.y;
           const double along = c * dx + s * dy;
           const double across = -s * dx + c * dy;
           if (along <= 0.0 || std::abs(across) > edge * along)
@@ -175,6 +185,7 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
           f(*tile, static_cast<std::size_t>((row - row0) * kTile + column - column0), distance,
             across / along);
         }
+      }
     }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/geometry/cone.hpp"
+
 namespace saphira::lps {
 namespace {
 
@@ -78,10 +80,15 @@ void ObstacleMemory::for_cone(const Pose& sonar, double range, F&& f) {
   const double c = std::cos(sonar.th);
   const double s = std::sin(sonar.th);
   const double edge = std::tan(settings_.beam);
-  for (long row = row_begin; row < row_end; ++row)
-    for (long column = column_begin; column < column_end; ++column) {
+  const ConeRows rows(sonar, edge, range);
+  for (long row = row_begin; row < row_end; ++row) {
+    const double dy = (static_cast<double>(row + row0_) + 0.5) * cell - sonar.y;
+    const auto [low, high] = rows.span(dy);
+    const double offset = sonar.x / cell - static_cast<double>(column0_);
+    const long begin = std::max(column_begin, clamped(low / cell + offset - 1.5));
+    const long end = std::min(column_end, clamped(high / cell + offset + 1.5));
+    for (long column = begin; column < end; ++column) {
       const double dx = (static_cast<double>(column + column0_) + 0.5) * cell - sonar.x;
-      const double dy = (static_cast<double>(row + row0_) + 0.5) * cell - sonar.y;
       const double along = c * dx + s * dy;
       const double across = -s * dx + c * dy;
       if (along <= 0.0 || std::abs(across) > edge * along)
@@ -91,6 +98,7 @@ void ObstacleMemory::for_cone(const Pose& sonar, double range, F&& f) {
         f(beliefs_[static_cast<std::size_t>(row * n + column)], distance,
           std::abs(across) / (edge * along));
     }
+  }
 }
 
 void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira {
+
+/// Which part of a row of cells a sonar's cone can cover: grids visit these alone, which are a
+/// third of the box around the cone. It tells no cell from another: what it leaves out is outside.
+class ConeRows {
+ public:
+  /// From the tip along its heading; `edge` is the tangent of half the opening angle.
+  ConeRows(const Pose& tip, double edge, double range)
+      : c_(std::cos(tip.th)), s_(std::sin(tip.th)), edge_(edge), range_(range) {}
+
+  /// From where to where, along x from the tip [m], in the row that is dy beside it; the second is
+  /// smaller where the row has no part of the cone.
+  std::pair<double, double> span(double dy) const {
+    const double left = range_ * range_ - dy * dy;
+    if (left < 0.0)
+      return {1.0, -1.0};
+    double high = std::sqrt(left);
+    double low = -high;
+    // To the right of the left edge, and to the left of the right one.
+    for (const double side : {1.0, -1.0}) {
+      const double slope = -side * s_ - edge_ * c_;
+      const double most = (edge_ * s_ - side * c_) * dy;
+      if (slope > kFlat)
+        high = std::min(high, most / slope);
+      else if (slope < -kFlat)
+        low = std::max(low, most / slope);
+    }
+    return {low, high};
+  }
+
+ private:
+  static constexpr double kFlat = 1e-9;  // an edge along the row bounds nothing
+
+  double c_;
+  double s_;
+  double edge_;
+  double range_;
+};
+
+}  // namespace saphira
