@@ -237,7 +237,8 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
 }
 
 /// The way to the goal as the robot knows it. When the robot comes no nearer, somebody stands in
-/// the way, and another way is taken. When none is left, those who stood there may have gone.
+/// the way, and another way is taken. People move on: only the newest such place counts, and none
+/// where no way leads around it.
 class Navigator {
  public:
   Navigator(const Crossing& crossing, double radius)
@@ -262,6 +263,7 @@ class Navigator {
 
   void close(const Vec2& robot) {
     const Vec2 way = ways_.back_from(robot, kAhead) - robot;
+    ways_ = at_first_;
     ways_.block(robot + way.normalized() * (radius_ + kBefore + kPersonRadius));
     const int goal = *ways_.nearest(goal_);
     ways_.spread(goal);
