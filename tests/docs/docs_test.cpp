@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <stdexcept>
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
@@ -18,7 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path source() {
-  return std::getenv("SAPHIRA_SOURCE_DIR");
+  const char* const folder = std::getenv("SAPHIRA_SOURCE_DIR");
+  if (folder == nullptr)
+    throw std::runtime_error("SAPHIRA_SOURCE_DIR: expected the folder of the sources");
+  return folder;
 }
 
 std::vector<fs::path> documents() {

@@ -53,8 +53,9 @@ TEST(System, TheBridgeAloneIsReadInTheSameCycle) {
 
 // docs/architecture.md shows it. `saphira wiring --draw docs/wiring.svg` makes it anew.
 TEST(System, TheDrawingInTheDocumentsIsOfToday) {
-  EXPECT_EQ(read_file(std::string(std::getenv("SAPHIRA_SOURCE_DIR")) + "/docs/wiring.svg"),
-            runtime::wiring_drawing(units()));
+  const char* const source = std::getenv("SAPHIRA_SOURCE_DIR");
+  ASSERT_NE(source, nullptr) << "SAPHIRA_SOURCE_DIR: expected the folder of the sources";
+  EXPECT_EQ(read_file(std::string(source) + "/docs/wiring.svg"), runtime::wiring_drawing(units()));
 }
 
 // Programs that run several services offer them together.
