@@ -90,8 +90,8 @@ void run_in_threads(const Programs& programs, const bus::NodeOptions& options,
   threads.run(stop);
 }
 
-/// Everything in this thread: each does what is due, in turn, and where nothing is, the world waits
-/// for somebody outside.
+/// Runs everything in this thread. In a round every part does what is due. After a round in which
+/// no service stepped, the thread rests until a program outside writes something, 20 ms at most.
 void run_in_turn(const Programs& programs, const bus::NodeOptions& options, const bus::Stop& stop) {
   using std::chrono::milliseconds;
   constexpr milliseconds kMostRest{20};

@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/notes.hpp"
 #include "saphira/bus/program.hpp"
 
 namespace saphira::bridge {
@@ -371,14 +372,7 @@ void Shell::perform(const StatusReport& report, double) {
 }
 
 void Shell::perform(const Note& note, double) {
-  switch (note.level) {
-    case Note::Level::info:
-      return node_.info(note.text);
-    case Note::Level::warning:
-      return node_.warn(note.text);
-    case Note::Level::error:
-      return node_.error(note.text);
-  }
+  bus::log(node_, note);
 }
 
 }  // namespace saphira::bridge

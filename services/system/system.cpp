@@ -11,8 +11,8 @@ namespace {
 
 using Use = runtime::Port::Use;
 
-// The bridge is no cyclic service: it is where the cycles come from. That this list is true, a test
-// says.
+// The bridge is no cyclic service: the cycles come from it. A test compares this list with its
+// endpoints.
 const runtime::Unit kBridge{
     "bridge",
     "Exposes a robot server on the bus, and decides which program drives",

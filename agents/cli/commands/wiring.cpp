@@ -21,7 +21,7 @@ struct Options {
   std::string drawing;
 };
 
-/// What is wrong now with each of them.
+/// Sets the trouble of each unit, from the status that its program publishes.
 void find_trouble(std::vector<runtime::Unit>& units, const std::vector<SeenProcess>& seen) {
   for (runtime::Unit& unit : units) {
     const auto found = std::find_if(seen.begin(), seen.end(), [&](const SeenProcess& process) {
@@ -43,7 +43,7 @@ int wiring(const Options& options, const bus::NodeOptions& node_options, const b
        processes.poll())
     node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
   const std::vector<SeenProcess> seen = processes.all();
-  // Where nothing runs, the table is what was asked for.
+  // Without a running system the table alone is printed.
   if (!seen.empty())
     find_trouble(units, seen);
   if (!options.drawing.empty()) {

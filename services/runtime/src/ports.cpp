@@ -1,22 +1,8 @@
 #include "saphira/runtime/ports.hpp"
 
+#include "saphira/bus/notes.hpp"
+
 namespace saphira::runtime {
-namespace {
-
-v1::LogLevel to_bus(Note::Level level) {
-  switch (level) {
-    case Note::Level::info:
-      return v1::LOG_INFO;
-    case Note::Level::warning:
-      return v1::LOG_WARNING;
-    case Note::Level::error:
-      break;
-  }
-  return v1::LOG_ERROR;
-}
-
-}  // namespace
-
 const char* word(Port::Use use) {
   switch (use) {
     case Port::Use::kState:
@@ -44,7 +30,7 @@ Ports::Ports(bus::Node& node, bus::Cycle& cycle) : node_(node), cycle_(cycle) {
 
 void Ports::say(const std::vector<Note>& notes) {
   for (const Note& note : notes)
-    node_.log(to_bus(note.level), note.text);
+    bus::log(node_, note);
 }
 
 void Ports::degrade(const std::string& reason) {

@@ -29,26 +29,26 @@ struct CoreSettings {
   bool keeps_latches = false;   ///< what is latched outlives a restart
 };
 
-/// Every decision of the bridge: the session with the robot, the ages of link, commands and of the
-/// bridge's own loop, who drives, what the robot is sent, what the status says. It is told what
-/// happens, with the time in seconds of a steady clock, and says what is to be done. It knows no
-/// bus, clock, file or socket.
+/// The bridge without bus, clock, files and sockets. It decides on the session with the robot, the
+/// ages of the link, of commands and of the bridge's own loop, which program drives, what the robot
+/// is sent and what the status reports. The caller tells it each event together with the time, in
+/// seconds of a steady clock, and carries out its outputs.
 ///
-/// After each call the caller does what take() returns, in that order, and then calls work() in the
-/// same way until there is no more. A cycle is two such pieces: first its state, for the services
-/// to begin with; then what follows from it.
+/// After each call the caller carries out what take() returns, in that order, and then calls work()
+/// in the same way until it returns false. A cycle is two such pieces: first its state, so that the
+/// services can begin; then everything else.
 class Core {
  public:
   explicit Core(const CoreSettings& settings);
 
-  /// What is to be done, in order.
+  /// The outputs since the last call, in the order in which they are to be carried out.
   std::vector<Output> take() { return std::exchange(out_, {}); }
 
   // ---- Before the start.
 
-  /// What was latched before.
+  /// The latches of an earlier run.
   void restore(const authority::Latches& latches);
-  /// Where the robot was before.
+  /// The odometry of an earlier run.
   void remember(const reflector::OdometryMemory& memory);
   /// The robot is not asked before this time [s].
   void hold_off(double until) { hold_off_ = until; }

@@ -24,8 +24,6 @@ class Notes {
 
   const std::vector<Note>& lines() const { return lines_; }
   bool empty() const { return lines_.empty(); }
-  /// What has been said since the last call.
-  std::vector<Note> take() { return std::exchange(lines_, {}); }
 
  private:
   std::vector<Note> lines_;
