@@ -87,7 +87,7 @@ TEST_F(LookingTest, SaysWhyFromTheWheelsToTheGoal) {
   EXPECT_TRUE(has(never.text, "cycle 999999 is not known; recalled are ")) << never.text;
 
   system.goals().cancel(goal);
-  ASSERT_TRUE(system.wait_still(std::chrono::seconds(5))) << system.output();
+  ASSERT_TRUE(system.wait_still()) << system.output();
   const Outcome stands = run({"why"});
   EXPECT_EQ(stands.code, 0) << stands.text;
   EXPECT_TRUE(stands.text.starts_with("The robot stands because nobody drives it")) << stands.text;
@@ -108,11 +108,11 @@ TEST_F(LookingTest, ListsInterruptsAndResumesProcesses) {
     const Outcome asked = run({"processes", "interrupt", service, process});
     EXPECT_EQ(asked.code, 0) << asked.text;
     EXPECT_TRUE(has(asked.text, "SUSP")) << asked.text;
-    EXPECT_TRUE(system.wait_still(std::chrono::seconds(3))) << system.output();
+    EXPECT_TRUE(system.wait_still()) << system.output();
     const Outcome why = run({"why"});
     EXPECT_TRUE(why.text.starts_with("The robot stands because nobody drives it")) << why.text;
     EXPECT_EQ(run({"processes", "resume", service, process}).code, 0);
-    EXPECT_TRUE(system.wait_moving(std::chrono::seconds(5))) << system.output();
+    EXPECT_TRUE(system.wait_moving()) << system.output();
   }
   const Outcome wrong = run({"processes", "suspend", "behaviors", "sleep"});
   EXPECT_EQ(wrong.code, 1);

@@ -56,7 +56,7 @@ class System {
   std::optional<long> stood_still(long cycle) const;
   /// Waits for the trace to say so.
   bool wait_moving(std::chrono::milliseconds limit = std::chrono::seconds(30));
-  bool wait_still(std::chrono::milliseconds limit);
+  bool wait_still(std::chrono::milliseconds limit = std::chrono::seconds(30));
   /// Everything that the processes have printed.
   std::string output() const;
 
