@@ -70,19 +70,25 @@ function(saphira_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# Tests of whole programs take minutes: `./saphira test --quick` leaves those labelled `slow` out.
-set(SAPHIRA_SLOW_TESTS "/tests/(acceptance|clients|fuzz|integration|network)")
+# Tests of whole programs, and of long drives, take minutes: `./saphira test --quick` leaves those
+# labelled `slow` out.
+set(SAPHIRA_SLOW_TESTS "/tests/(acceptance|bench|clients|drive|fuzz|integration|network)|/explore$")
 
-# saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [ALONE] [TIMEOUT s])
-# ALONE: no other test runs beside it: for what is measured in real time, which starves otherwise.
+# How much of `ctest -j N` a test takes. N is SAPHIRA_TEST_SHARES for each core (see ./saphira test):
+# a test that computes takes a core, one that mostly waits a third of it.
+set(SAPHIRA_TEST_SHARES 3)
+
+# saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [WAITS] [ALONE] [TIMEOUT s])
 # DDS: the test talks on the bus; it gets a domain of its own, on loopback.
+# WAITS: the test mostly waits, for time to pass or for processes in real time; more of them run at once.
+# ALONE: no test that computes runs beside it: for what is measured in real time.
 define_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN BRIEF_DOCS "next free DDS domain of a test")
 set_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN 20)
 function(saphira_test name)
   if(NOT SAPHIRA_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "DDS;ALONE" "TIMEOUT" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(arg "DDS;WAITS;ALONE" "TIMEOUT" "SOURCES;LINK" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -101,8 +107,14 @@ function(saphira_test name)
     set_property(GLOBAL PROPERTY SAPHIRA_NEXT_DOMAIN ${next})
     list(APPEND environment "SAPHIRA_DOMAIN=${domain}")
   endif()
+  set(shares ${SAPHIRA_TEST_SHARES})
+  if(arg_WAITS)
+    set(shares 1)
+  elseif(arg_ALONE)
+    math(EXPR shares "${SAPHIRA_TEST_SHARES} * 2 - 2")
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}." NO_PRETTY_VALUES
-    TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE})
+    TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT} PROCESSORS ${shares})
   set(label quick)
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "${SAPHIRA_SLOW_TESTS}")
     set(label slow)

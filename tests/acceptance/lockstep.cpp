@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <utility>
@@ -63,6 +64,21 @@ void LockstepSystem::permit(std::uint64_t until) {
   v1::StepPermit sample;
   sample.until_cycle(until);
   permits_.write(sample);
+}
+
+std::optional<v1::GoalStatus> LockstepSystem::wait_end(const v1::GoalId& goal,
+                                                       const std::function<void()>& meanwhile) {
+  std::optional<v1::GoalStatus> status;
+  wait_until(
+      [&] {
+        node.wait(std::chrono::milliseconds(50));
+        goals.poll();
+        meanwhile();
+        status = goals.status(goal);
+        return status && bus::ended(status->state());
+      },
+      std::chrono::minutes(4));
+  return status;
 }
 
 std::string LockstepSystem::end() {

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ class LockstepSystem {
   v1::GoalId ask(const v1::Goal& goal);
   /// Lets the robot make its steps up to that cycle.
   void permit(std::uint64_t until);
+  /// Waits for the goal's end, and calls `meanwhile` until then; the goal's newest status, which is
+  /// none of an end where the goal does not end.
+  std::optional<v1::GoalStatus> wait_end(
+      const v1::GoalId& goal, const std::function<void()>& meanwhile = [] {});
   /// Ends the simulator, which completes its trace, and gives that.
   std::string end();
   /// Everything that the processes have printed.

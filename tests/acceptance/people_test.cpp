@@ -36,14 +36,7 @@ Drive drive(const std::string& world, unsigned seed) {
   const v1::GoalId id = system.ask(goal);
   system.permit(1500);
   Drive result;
-  wait_until(
-      [&] {
-        system.node.wait(std::chrono::milliseconds(50));
-        system.goals.poll();
-        result.status = system.goals.status(id);
-        return result.status && bus::ended(result.status->state());
-      },
-      std::chrono::minutes(4));
+  result.status = system.wait_end(id);
   result.output = system.output();
   result.rows = sim::parse_trace(system.end(), "trace.csv");
   return result;

@@ -39,24 +39,16 @@ TEST(SeeingAcceptance, AWalkerIsFollowed) {
   std::uint64_t people = 0;
   std::uint64_t colors = 0;
   std::uint64_t skipped = 0;
-  std::optional<v1::GoalStatus> status;
-  EXPECT_TRUE(wait_until(
-      [&] {
-        system.node.wait(std::chrono::milliseconds(50));
-        system.goals.poll();
-        for (const auto& sample : system.visions.take()) {
-          // In lockstep every picture is looked at.
-          skipped += sample.data.picture() != sample.data.stamp().cycle();
-          for (const v1::SeenThing& thing : sample.data.things()) {
-            people += thing.kind() == v1::SEEN_PERSON;
-            colors += thing.kind() == v1::SEEN_BLOB && thing.channel() == 0;
-          }
-        }
-        status = system.goals.status(id);
-        return status && bus::ended(status->state());
-      },
-      std::chrono::minutes(4)))
-      << system.output();
+  const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
+    for (const auto& sample : system.visions.take()) {
+      // In lockstep every picture is looked at.
+      skipped += sample.data.picture() != sample.data.stamp().cycle();
+      for (const v1::SeenThing& thing : sample.data.things()) {
+        people += thing.kind() == v1::SEEN_PERSON;
+        colors += thing.kind() == v1::SEEN_BLOB && thing.channel() == 0;
+      }
+    }
+  });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << "\n" << system.output();
   EXPECT_GT(people, 200U);

@@ -17,8 +17,6 @@ constexpr std::uint64_t kCycles = 300;
 /// Drives a figure by the cycle's number alone; the trace of the run.
 std::string run(std::uint64_t cycles, double* seconds) {
   Scene scene(true);
-  scene.use(bus::topics::kDriveBehaviors);
-  bus::Writer<v1::StepPermit> permits = scene.node.writer(bus::topics::kStepPermit);
   scene.start_simulator();
   scene.start_bridge();
   EXPECT_TRUE(scene.until([&] { return scene.description.has_value(); }));
@@ -26,25 +24,17 @@ std::string run(std::uint64_t cycles, double* seconds) {
   scene.watch(std::chrono::milliseconds(300));
   EXPECT_EQ(scene.state.stamp().cycle(), 0U) << "no permit, no step";
 
-  v1::StepPermit permit;
-  permit.source("test");
-  permit.until_cycle(cycles);
   const auto begin = std::chrono::steady_clock::now();
-  permits.write(permit);
-  std::uint64_t answered = 0;
+  scene.permit(cycles);
   const bool done = scene.until(
       [&] {
         const std::uint64_t cycle = scene.state.stamp().cycle();
-        if (cycle != answered) {
-          answered = cycle;
-          const double phase = 0.05 * static_cast<double>(cycle);
-          scene.command.active(cycle % 50 < 45);
-          scene.command.translation(v1::TRANSLATION_VELOCITY);
-          scene.command.velocity(0.2 + 0.1 * std::sin(phase));
-          scene.command.rotation(v1::ROTATION_HEADING);
-          scene.command.heading(std::sin(0.3 * phase));
-          scene.publish();
-        }
+        const double phase = 0.05 * static_cast<double>(cycle);
+        scene.command.active(cycle % 50 < 45);
+        scene.command.translation(v1::TRANSLATION_VELOCITY);
+        scene.command.velocity(0.2 + 0.1 * std::sin(phase));
+        scene.command.rotation(v1::ROTATION_HEADING);
+        scene.command.heading(std::sin(0.3 * phase));
         return cycle == cycles;
       },
       std::chrono::seconds(60));

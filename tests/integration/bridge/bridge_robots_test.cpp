@@ -12,49 +12,53 @@ namespace {
 
 class BridgeRobots : public ::testing::TestWithParam<const char*> {};
 
+// In lockstep: a command to drive a distance is said once, and a machine that stands still for a
+// moment would end it.
 TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
-  Scene scene;
+  Scene scene(true);
   scene.robot_file = std::string(GetParam()) + ".p";
   scene.world =
       "width 20000 height 20000\nposition 10000 10000 0\n8000 8500 12000 8500\n"
       "8000 11500 12000 11500\n";
   scene.start_simulator();
   scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected() && scene.description; }))
-      << scene.bridge_log();
+  ASSERT_TRUE(scene.until([&] { return scene.description.has_value(); })) << scene.bridge_log();
   EXPECT_TRUE(scene.description->parameter_file().ends_with("/" + scene.robot_file))
       << scene.description->parameter_file();
 
   // A third of a metre and a quarter turn, by the robot's own count and in truth. Slowly: the
   // smallest of them does 0.1 m/s.
   const double speed = std::min(0.25, 0.8 * scene.description->max_velocity());
-  std::set<int> heard;
   scene.command.translation(v1::TRANSLATION_POSITION);
   scene.command.distance(0.33);
   scene.command.velocity(speed);
   scene.command.move(1);
-  scene.drives = true;
-  ASSERT_TRUE(scene.until([&] {
-    for (const v1::SonarReading& reading : scene.state.sonars())
-      heard.insert(reading.sonar());
-    return scene.state.pose_in_odom().x() > 0.3 && scene.rests();
-  })) << scene.bridge_log();
+  scene.permit(1000);
+  ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.3 && scene.rests(); }))
+      << scene.bridge_log();
   EXPECT_NEAR(scene.state.pose_in_odom().x(), 0.33, 0.03);
-  EXPECT_NEAR(scene.trace().back().pose_in_world.x - 10.0, 0.33, 0.05);
+  const std::uint64_t driven = scene.state.stamp().cycle();
   scene.command.translation(v1::TRANSLATION_NONE);
   scene.command.rotation(v1::ROTATION_HEADING);
   scene.command.heading(kPi / 2);
   ASSERT_TRUE(scene.until([&] {
-    for (const v1::SonarReading& reading : scene.state.sonars())
-      heard.insert(reading.sonar());
     return std::abs(scene.state.pose_in_odom().th() - kPi / 2) < radians(3.0) && scene.rests();
   })) << scene.state.pose_in_odom().th();
-  EXPECT_NEAR(scene.trace().back().pose_in_world.th, kPi / 2, radians(6.0));
+  const std::uint64_t turned = scene.state.stamp().cycle();
+  std::set<int> heard;
+  for (const v1::RobotState& state : scene.states)
+    for (const v1::SonarReading& reading : state.sonars())
+      heard.insert(reading.sonar());
   EXPECT_EQ(heard.size(), scene.description->sonars().size()) << "every sonar fires";
   EXPECT_EQ(scene.state.bad_packets(), 0U);
   EXPECT_GT(scene.state.battery(), 4.0);
   EXPECT_TRUE(scene.devices.unread_packets().empty());
-  EXPECT_EQ(scene.status.state(), v1::SERVICE_RUNNING) << scene.status.reason();
+  EXPECT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }))
+      << scene.status.reason();
+  const std::vector<sim::TraceRow> rows = scene.end();
+  ASSERT_GE(rows.size(), turned);
+  EXPECT_NEAR(rows[driven - 1].pose_in_world.x - 10.0, 0.33, 0.05) << rows[driven - 1].cycle;
+  EXPECT_NEAR(rows[turned - 1].pose_in_world.th, kPi / 2, radians(6.0)) << rows[turned - 1].cycle;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BridgeRobots,

@@ -1,6 +1,7 @@
 #include "scene.hpp"
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 
 #include "node_options.hpp"
@@ -27,9 +28,10 @@ Scene::Scene(bool lockstep)
       descriptions_(node.reader(bus::topics::kRobotDescription)),
       grants_(node.reader(bus::topics::kGrant)),
       statuses_(node.reader(bus::topics::kStatus)),
-      devices_(node.reader(bus::topics::kDevices)) {
+      devices_(node.reader(bus::topics::kDevices)),
+      permits_(node.writer(bus::topics::kStepPermit)) {
   robot_port = folder.path("robot");
-  use(bus::topics::kDriveDirect);
+  use(lockstep ? bus::topics::kDriveBehaviors : bus::topics::kDriveDirect);
   command.source("test");
   command.active(true);
 }
@@ -76,6 +78,13 @@ void Scene::publish() {
   published_ = std::chrono::steady_clock::now();
 }
 
+void Scene::permit(std::uint64_t until) {
+  v1::StepPermit sample;
+  sample.source("test");
+  sample.until_cycle(until);
+  permits_.write(sample);
+}
+
 void Scene::take() {
   for (const auto& sample : states_.take()) {
     state = sample.data;
@@ -106,7 +115,8 @@ bool Scene::until(const std::function<bool()>& condition, milliseconds limit) {
     const auto now = std::chrono::steady_clock::now();
     if (now >= end)
       return false;
-    if (drives && now - published_ >= milliseconds(50))
+    if (lockstep_ ? state.stamp().cycle() != command.stamp().cycle()
+                  : drives && now - published_ >= milliseconds(50))
       publish();
     node.wait(milliseconds(10));
   }
@@ -133,6 +143,12 @@ std::vector<sim::TraceRow> Scene::trace() const {
   }
   rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(begin));
   return rows;
+}
+
+std::vector<sim::TraceRow> Scene::end() {
+  simulator->signal(SIGTERM);
+  simulator->wait();
+  return trace();
 }
 
 void forward(v1::MotorCommand& command, double velocity, double rotation) {

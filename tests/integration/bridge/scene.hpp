@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,7 +12,8 @@
 
 namespace saphira::test {
 
-/// A simulator, a bridge, and a driver on the bus, each of which a test may hinder.
+/// A simulator, a bridge, and a driver on the bus, each of which a test may hinder. In lockstep the
+/// robot steps as far as it is permitted to, as fast as the machine allows.
 class Scene {
  public:
   explicit Scene(bool lockstep = false);
@@ -34,6 +36,8 @@ class Scene {
   bool drives = false;
   bool follows_cycles = true;  ///< stamps its commands with the newest robot state
   void publish();
+  /// In lockstep: lets the robot make its steps up to that cycle.
+  void permit(std::uint64_t until);
 
   /// Watches and drives until the condition holds; false when the time is up.
   bool until(const std::function<bool()>& condition,
@@ -54,6 +58,8 @@ class Scene {
   /// What was true, from the simulator's trace; of the newest connection alone.
   std::vector<sim::TraceRow> trace() const;
   std::vector<sim::TraceRow> whole_trace() const;
+  /// In lockstep: ends the simulator, which completes its trace, and gives that.
+  std::vector<sim::TraceRow> end();
   std::string bridge_log() const { return bridge->output(); }
 
   TempDir folder;
@@ -72,6 +78,7 @@ class Scene {
   bus::Reader<v1::Grant> grants_;
   bus::Reader<v1::ServiceStatus> statuses_;
   bus::Reader<v1::Devices> devices_;
+  bus::Writer<v1::StepPermit> permits_;
   std::optional<bus::Writer<v1::MotorCommand>> driver_;
   std::chrono::steady_clock::time_point published_;
 };
