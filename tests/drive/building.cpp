@@ -1,11 +1,9 @@
 #include "drive/building.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <iostream>
 
 #include "saphira/lps/point.hpp"
 #include "saphira/maps/drawing.hpp"
@@ -13,80 +11,70 @@
 
 namespace saphira::test {
 
-Building::Building(const DriveOptions& options, registration::MapBuilderSettings building)
-    : drive(options),
-      interpretation(with_sonars<interpretation::Settings>(drive)),
-      builder(with_sonars(drive, std::move(building)), {}, drive.seen().true_pose_in_world),
-      explorer(with_sonars<explore::Settings>(drive)) {}
+namespace {
 
-void Building::perceive() {
-  const Seen& seen = drive.advance();
-  const auto& output = interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings});
-  builder.step({seen.cycle, 1, seen.pose_in_odom, output.percepts, seen.readings, std::nullopt});
-  true_way.push_back(seen.true_pose_in_world.position());
-  if (true_nodes_.size() < builder.graph().nodes.size())
-    true_nodes_.push_back(true_way.back());
-  worst = std::max(worst, (true_way.back() - builder.pose_in_map().position()).norm());
+constexpr std::uint64_t kLook = 50;  // [cycles] between two looks at the graph
+
+WholeOptions from_nothing(const DriveOptions& drive, bool snap) {
+  WholeOptions options;
+  options.drive = drive;
+  options.map = "none";
+  options.snap = snap;
+  return options;
 }
 
-bool Building::advance() {
-  perceive();
-  const Seen& seen = drive.seen();
-  const Pose& believed = builder.pose_in_map();
-  const std::string before = explorer.output().reason;
-  const std::vector<Vec2> way = builder.way();
-  const explore::Output& order =
-      explorer.step({seen.cycle, believed, builder.map(), way, seen.readings});
-  if (order.point_in_map)
-    drive.go_to(transform(seen.pose_in_odom, to_frame(believed, *order.point_in_map)), order.speed);
-  else if (order.look_at)
-    drive.turn_to(seen.pose_in_odom.th + lps::phi({to_frame(believed, *order.look_at).x(),
-                                                   to_frame(believed, *order.look_at).y(), 0.0}));
-  else
-    drive.stop();
-  if (std::getenv("SAPHIRA_TALK") != nullptr && order.reason != before)
-    std::cout << seen.cycle << " at " << true_way.back().transpose() << ", believed "
-              << believed.position().transpose() << ": " << order.reason << std::endl;
-  return !order.done;
-}
+}  // namespace
 
-void Building::run(std::uint64_t limit, const std::function<void(Building&)>& each) {
-  const std::uint64_t end = drive.seen().cycle + limit;
-  while (drive.seen().cycle < end && advance())
-    if (each)
-      each(*this);
-}
+Building::Building(const DriveOptions& options, bool snap_to_right_angle_grid)
+    : whole(from_nothing(options, snap_to_right_angle_grid)), goal_(whole.ask("build-map")) {}
 
-bool Building::drive_to(const Vec2& point_in_map, std::uint64_t limit) {
-  for (std::uint64_t i = 0; i < limit; ++i) {
-    perceive();
-    const Pose& believed = builder.pose_in_map();
-    if ((point_in_map - believed.position()).norm() < 0.35)
-      return true;
-    drive.go_to(transform(drive.seen().pose_in_odom, to_frame(believed, point_in_map)));
+void Building::run(std::uint64_t limit) {
+  for (std::uint64_t i = 0; i < limit && !whole.ended(goal_); ++i) {
+    whole.advance();
+    note();
   }
-  return false;
+}
+
+void Building::note() {
+  odom_and_truth_.emplace_back(whole.drive().seen().pose_in_odom, whole.truth().position());
+  const registration::MapBuilder* const builder = whole.drive().cores().registration().builder();
+  if (builder == nullptr)
+    return;
+  worst = std::max(worst, (whole.truth().position() - whole.believed().position()).norm());
+  closures = builder->closures();
+  if (whole.cycle() % kLook != 0)
+    return;
+  way_ = {};
+  auto at = odom_and_truth_.begin();
+  for (const registration::GraphNode& node : builder->graph().nodes) {
+    const auto same = std::find_if(at, odom_and_truth_.end(),
+                                   [&](const auto& one) { return one.first == node.in_odom; });
+    if (same == odom_and_truth_.end())
+      continue;
+    at = same;
+    way_.believed.push_back(node.in_map.position());
+    way_.truth.push_back(same->second);
+  }
 }
 
 maps::Map Building::aligned_map() const {
-  const std::vector<registration::GraphNode>& nodes = builder.graph().nodes;
-  const auto count = static_cast<double>(true_nodes_.size());
+  const auto count = static_cast<double>(way_.truth.size());
   Vec2 believed{0.0, 0.0};
   Vec2 truth{0.0, 0.0};
-  for (std::size_t i = 0; i < true_nodes_.size(); ++i) {
-    believed += nodes[i].in_map.position() / count;
-    truth += true_nodes_[i] / count;
+  for (std::size_t i = 0; i < way_.truth.size(); ++i) {
+    believed += way_.believed[i] / count;
+    truth += way_.truth[i] / count;
   }
   Vec2 turn{0.0, 0.0};
-  for (std::size_t i = 0; i < true_nodes_.size(); ++i) {
-    const Vec2 from = nodes[i].in_map.position() - believed;
-    const Vec2 to = true_nodes_[i] - truth;
+  for (std::size_t i = 0; i < way_.truth.size(); ++i) {
+    const Vec2 from = way_.believed[i] - believed;
+    const Vec2 to = way_.truth[i] - truth;
     turn += Vec2(from.dot(to), from.x() * to.y() - from.y() * to.x());
   }
   const Pose turned{0.0, 0.0, std::atan2(turn.y(), turn.x())};
   const Vec2 moved = truth - transform(turned, believed);
   const Pose map_in_world{moved.x(), moved.y(), turned.th};
-  maps::Map map = builder.map();
+  maps::Map map = whole.map();
   for (maps::Feature& feature : map.features)
     feature.pose_in_map = compose(map_in_world, feature.pose_in_map);
   return map;
@@ -97,16 +85,16 @@ void Building::draw(const std::string& name) const {
   if (folder == nullptr)
     return;
   maps::Drawing drawing;
-  drawing.map = builder.map();
+  drawing.map = whole.map();
   drawing.title = name + ", built by driving";
-  for (const sim::Segment& wall : drive.world().segments) {
+  for (const sim::Segment& wall : whole.drive().world().segments) {
     drawing.lines.push_back(wall.from);
     drawing.lines.push_back(wall.to);
   }
-  drawing.trajectories = {{"true", true_way}, {"believed", builder.way()}};
+  drawing.trajectories = {{"true", way_.truth}, {"believed", way_.believed}};
   const std::string file = std::string(folder) + "/" + name;
   std::ofstream(file + ".svg") << maps::to_svg(drawing);
-  std::ofstream(file + ".map") << maps::to_text(builder.map());
+  std::ofstream(file + ".map") << maps::to_text(whole.map());
 }
 
 MapScore score(const maps::Map& built, const maps::Map& reference) {

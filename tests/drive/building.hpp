@@ -1,47 +1,46 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "drive/drive.hpp"
-#include "saphira/explore/explorer.hpp"
-#include "saphira/interpretation/interpretation.hpp"
+#include "drive/whole.hpp"
 #include "saphira/maps/map.hpp"
-#include "saphira/registration/map_builder.hpp"
 
 namespace saphira::test {
 
-/// A simulated robot that explores: what it sees, the map that it builds, and where it goes next.
+/// A simulated robot that builds the map of its floor from nothing (the activity build-map).
 class Building {
  public:
-  Building(const DriveOptions& options, registration::MapBuilderSettings building = {});
+  explicit Building(const DriveOptions& options, bool snap_to_right_angle_grid = true);
 
-  /// One cycle. False when the explorer has done.
-  bool advance();
-  /// Until it has done, or for so many cycles.
-  void run(std::uint64_t limit, const std::function<void(Building&)>& each = {});
-  /// Drives to a point of the built map, without exploring. False when it is not there in time.
-  bool drive_to(const Vec2& point_in_map, std::uint64_t limit);
+  /// Until the map is built, or for so many cycles.
+  void run(std::uint64_t limit);
+  bool done() const { return whole.status(goal_).state == intentions::GoalState::kSucceeded; }
+  std::string reason() const { return whole.status(goal_).reason; }
   /// The map as built, moved and turned as a whole so that the way lies best on the true one: where
   /// it begins and which way it is turned are the builder's choice.
   maps::Map aligned_map() const;
   /// A picture and the map, into the folder of the environment variable SAPHIRA_DRAW_TO.
   void draw(const std::string& name) const;
 
-  Drive drive;
-  interpretation::Interpretation interpretation;
-  registration::MapBuilder builder;
-  explore::Explorer explorer;
+  Whole whole;
   double worst = 0.0;  ///< [m] the believed pose against the true one
-  std::vector<Vec2> true_way;
+  int closures = 0;    ///< loops that were closed
 
  private:
-  void perceive();
+  void note();
 
-  std::vector<Vec2> true_nodes_;  ///< where the robot was at each node of the builder's way
+  /// Of the graph when it was looked at last: where the robot believed to have been, and was.
+  struct Way {
+    std::vector<Vec2> believed;
+    std::vector<Vec2> truth;
+  };
+
+  intentions::GoalId goal_;
+  std::vector<std::pair<Pose, Vec2>> odom_and_truth_;  ///< of each cycle
+  Way way_;
 };
 
 /// A built map against the one that was drawn by hand.

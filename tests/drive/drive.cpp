@@ -22,7 +22,31 @@ protocol::RobotParameters parameters_of(const DriveOptions& options) {
   return parameters;
 }
 
+system::Cores::Settings services_of(const DriveOptions& options,
+                                    const protocol::RobotParameters& parameters,
+                                    const Pose& start) {
+  system::Cores::Settings settings;
+  settings.robot = behaviors::model_of(parameters);
+  settings.behaviors = options.behaviors.value_or(behaviors::predefined());
+  settings.interpretation = options.interpretation;
+  settings.registration = options.registration;
+  if (settings.registration && options.knows_pose)
+    settings.registration->start = start;
+  settings.intentions = options.intentions;
+  settings.clock = options.clock;
+  return settings;
+}
+
 }  // namespace
+
+DriveOptions registered_on(maps::Map map, DriveOptions options, bool knows_pose) {
+  options.interpretation = true;
+  options.registration.emplace();
+  options.registration->map = std::move(map);
+  options.registration->add_features = false;
+  options.knows_pose = knows_pose;
+  return options;
+}
 
 Drive::Drive(const DriveOptions& options)
     : parameters_(parameters_of(options)),
@@ -34,12 +58,14 @@ Drive::Drive(const DriveOptions& options)
                                options.start_in_world.value_or(world_.start.value_or(Pose{})),
                                options.seed)),
       sonars_(scene_, robot_->number(), parameters_, options.sonar, options.seed),
-      executive_(options.behaviors.value_or(behaviors::predefined()),
-                 behaviors::model_of(parameters_)),
+      start_(robot_->pose_in_world()),
+      cores_(services_of(options, parameters_, start_)),
+      bend_(options.bend),
+      robot_in_odom_(robot_->pose_in_odom()),
       has_guard_(options.guard),
       body_(authority::body_of(parameters_)) {
-  seen_.pose_in_odom = robot_->pose_in_odom();
-  seen_.true_pose_in_world = robot_->pose_in_world();
+  seen_.pose_in_odom = robot_in_odom_;
+  seen_.true_pose_in_world = start_;
 }
 
 const Seen& Drive::advance() {
@@ -50,7 +76,7 @@ const Seen& Drive::advance() {
     if (const auto echo = sonars_.tick(robot_->pose_in_world()))
       seen_.readings.push_back({echo->number, echo->range.value_or(5.0), echo->range.has_value()});
   }
-  seen_.pose_in_odom = robot_->pose_in_odom();
+  reckon();
   seen_.velocity = robot_->velocity();
   seen_.rotation_velocity = robot_->rotation_velocity();
   seen_.true_pose_in_world = robot_->pose_in_world();
@@ -58,21 +84,34 @@ const Seen& Drive::advance() {
   seen_.right_stalled = robot_->right_stalled();
   robot_->clear_stalls();
 
-  intent_ = {seen_.cycle - 1, !by_hand_ && control_, intended_};
-  const behaviors::Inputs inputs{seen_.cycle,
-                                 {seen_.pose_in_odom, seen_.velocity, seen_.rotation_velocity, 0.0,
-                                  seen_.left_stalled, seen_.right_stalled},
-                                 seen_.readings,
-                                 &intent_};
-  output_ = executive_.step(inputs);
-  const double speed = by_hand_ ? speed_ : output_.active ? output_.speed : 0.0;
-  const double heading = by_hand_         ? heading_
-                         : output_.active ? output_.heading_in_odom
-                                          : seen_.pose_in_odom.th;
+  system::RobotCycle now;
+  now.cycle = seen_.cycle;
+  now.pose_in_odom = seen_.pose_in_odom;
+  now.velocity = seen_.velocity;
+  now.rotation_velocity = seen_.rotation_velocity;
+  now.left_stalled = seen_.left_stalled;
+  now.right_stalled = seen_.right_stalled;
+  now.readings = seen_.readings;
+  obey(cores_.step(now).behaviors.output);
+  return seen_;
+}
+
+void Drive::reckon() {
+  Pose moved = relative(robot_in_odom_, robot_->pose_in_odom());
+  robot_in_odom_ = robot_->pose_in_odom();
+  moved.th += bend_ * moved.x;
+  seen_.pose_in_odom = bend_ == 0.0 ? robot_in_odom_ : compose(seen_.pose_in_odom, moved);
+}
+
+void Drive::obey(const behaviors::Output& output) {
+  const double speed = by_hand_ ? speed_ : output.active ? output.speed : 0.0;
+  const double heading = by_hand_        ? heading_
+                         : output.active ? output.heading_in_odom
+                                         : seen_.pose_in_odom.th;
   // Whole millimetres and degrees, as the robot's commands have them.
   robot_->set_velocity(std::round(guard(speed) * 1000.0) / 1000.0);
-  robot_->set_heading(radians(std::round(degrees(heading))));
-  return seen_;
+  const double bent = norm2_angle(seen_.pose_in_odom.th - robot_in_odom_.th);
+  robot_->set_heading(radians(std::round(degrees(norm2_angle(heading - bent)))));
 }
 
 double Drive::guard(double speed) {
@@ -85,30 +124,22 @@ double Drive::guard(double speed) {
   authority::GuardSettings settings;
   settings.enabled = has_guard_;
   guarded_ = authority::guard(settings, body_, echoes_.spots(), speed, 0.0, seen_.rotation_velocity,
-                              by_hand_ ? 0.0 : output_.contact_speed);
+                              by_hand_ ? 0.0 : output().contact_speed);
   return guarded_.velocity;
 }
 
 void Drive::intend(std::vector<behaviors::Intended> intended, bool control) {
   by_hand_ = false;
-  control_ = control;
-  intended_ = std::move(intended);
+  cores_.intend(std::move(intended), control);
 }
 
 void Drive::go_to(const Vec2& goal_in_odom, double speed, double radius) {
-  by_hand_ = false;
-  control_ = true;
-  intended_ = {{"avoid", "AvoidCollision", 0, true, {}},
-               {"keep off", "KeepOff", 1, true, {}},
-               {"go",
-                "GoToPos",
-                2,
-                true,
-                {{"goal", behaviors::PlacedPoint{{goal_in_odom.x(), goal_in_odom.y(), 0.0},
-                                                 behaviors::Frame::odom}},
-                 {"speed", speed},
-                 {"radius", radius}}},
-               {"stop", "Stop", 3, true, {}}};
+  const behaviors::PlacedPoint goal{{goal_in_odom.x(), goal_in_odom.y(), 0.0},
+                                    behaviors::Frame::odom};
+  intend({{"avoid", "AvoidCollision", 0, true, {}},
+          {"keep off", "KeepOff", 1, true, {}},
+          {"go", "GoToPos", 2, true, {{"goal", goal}, {"speed", speed}, {"radius", radius}}},
+          {"stop", "Stop", 3, true, {}}});
 }
 
 void Drive::turn_to(double heading_in_odom) {
@@ -116,19 +147,14 @@ void Drive::turn_to(double heading_in_odom) {
 }
 
 void Drive::stop() {
-  by_hand_ = false;
-  control_ = true;
-  intended_ = {{"stop", "Stop", 0, true, {}}};
+  intend({{"stop", "Stop", 0, true, {}}});
 }
 
 void Drive::drive(double speed, double heading_in_odom) {
   by_hand_ = true;
+  cores_.set_control(false);
   speed_ = speed;
   heading_ = heading_in_odom;
-}
-
-std::vector<lps::SonarMount> Drive::mounts() const {
-  return executive_.model().lps.sonars;
 }
 
 int Drive::contacts() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,12 +9,12 @@
 
 #include "saphira/authority/echo_map.hpp"
 #include "saphira/authority/guard.hpp"
-#include "saphira/behaviors/executive.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"
 #include "saphira/sim/world.hpp"
+#include "system/cores.hpp"
 
 namespace saphira::test {
 
@@ -26,9 +27,19 @@ struct DriveOptions {
   std::optional<Pose> start_in_world;  ///< else the world's own
   sim::SonarModel sonar;
   bool guard = false;  ///< beside the robot, as in the bridge: it makes drives slower
-  /// Else the predefined ones.
-  std::optional<behaviors::Registry> behaviors;
+  double bend = 0.0;   ///< [rad/m] dead reckoning turns by so much more than the robot does
+
+  // The services beside behaviors.
+  std::optional<behaviors::Registry> behaviors;  ///< else the predefined ones
+  bool interpretation = false;
+  std::optional<registration::Core::Settings> registration;
+  bool knows_pose = false;  ///< registration is told where the robot starts
+  std::optional<intentions::Core::Settings> intentions;
+  std::function<double()> clock;  ///< [s] measures what the services take
 };
+
+/// With interpretation and with registration on that map. `knows_pose`: as in DriveOptions.
+DriveOptions registered_on(maps::Map map, DriveOptions options = {}, bool knows_pose = true);
 
 /// What one cycle brings, and the truth beside it.
 struct Seen {
@@ -42,8 +53,9 @@ struct Seen {
   bool right_stalled = false;
 };
 
-/// A robot in a world that drives towards points with AvoidCollision, KeepOff and GoToPos, as the
-/// functor go_to does; cycle by cycle, repeatable to the last bit.
+/// A simulated robot and the services' cores, without packets and without the bus; cycle by cycle,
+/// repeatable to the last bit. Without intentions it drives towards points with AvoidCollision,
+/// KeepOff and GoToPos, as the functor go_to does.
 class Drive {
  public:
   explicit Drive(const DriveOptions& options);
@@ -63,13 +75,20 @@ class Drive {
   void intend(std::vector<behaviors::Intended> intended, bool control = true);
 
   /// What the behaviors made of it in the newest cycle.
-  const behaviors::Output& output() const { return output_; }
-  behaviors::Executive& executive() { return executive_; }
+  const behaviors::Output& output() const { return cores_.said().behaviors.output; }
+  system::Cores& cores() { return cores_; }
+  const system::Cores& cores() const { return cores_; }
+  /// What registration says in the newest cycle.
+  const registration::Core::Outputs& registered() const { return cores_.said().registration; }
+  Pose believed() const { return registered().pose_in_map; }
+  Pose truth() const { return seen_.true_pose_in_world; }
+  /// By dead reckoning alone, from the true start.
+  Pose reckoned() const { return compose(start_, seen_.pose_in_odom); }
 
   const Seen& seen() const { return seen_; }
   const sim::World& world() const { return world_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
-  std::vector<lps::SonarMount> mounts() const;
+  const std::vector<lps::SonarMount>& mounts() const { return cores_.robot().lps.sonars; }
   /// What the guard made of it in the newest cycle.
   const authority::Guarded& guarded() const { return guarded_; }
   sim::Scene& scene() { return scene_; }
@@ -77,6 +96,8 @@ class Drive {
   int contacts() const;
 
  private:
+  void reckon();
+  void obey(const behaviors::Output& output);
   double guard(double speed);
 
   protocol::RobotParameters parameters_;
@@ -84,27 +105,19 @@ class Drive {
   sim::Scene scene_;
   sim::Robot* robot_;
   sim::Sonars sonars_;
-  behaviors::Executive executive_;
-  behaviors::Intent intent_;
-  behaviors::Output output_;
-  std::vector<behaviors::Intended> intended_;
+  Pose start_;
+  system::Cores cores_;
+  double bend_;
+  Pose robot_in_odom_;  ///< as the robot counts it, without the bend
   bool has_guard_;
   authority::Body body_;
   authority::EchoMap echoes_;
   authority::Guarded guarded_;
-  bool control_ = true;
   bool by_hand_ = false;
   double speed_ = 0.0;
   double heading_ = 0.0;
   Seen seen_;
 };
-
-/// Settings of a service that listens to the robot's sonars.
-template <class Settings>
-Settings with_sonars(const Drive& drive, Settings settings = {}) {
-  settings.sonars = drive.mounts();
-  return settings;
-}
 
 /// Drives through points one after the other, over and over where `loop` is set: go_to each, the
 /// next one when it is nearer than `radius`. The points are in the map; the caller says each cycle

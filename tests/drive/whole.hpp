@@ -10,20 +10,17 @@
 #include <vector>
 
 #include "drive/drive.hpp"
-#include "saphira/intentions/executor.hpp"
-#include "saphira/interpretation/interpretation.hpp"
 #include "saphira/lps/seen_thing.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/topology.hpp"
-#include "saphira/registration/map_builder.hpp"
-#include "saphira/registration/registration.hpp"
 
 namespace saphira::test {
 
 struct WholeOptions {
   DriveOptions drive;
-  std::string map;            ///< a name of config/maps; empty: that of the world
+  std::string map;            ///< a name of config/maps; empty: that of the world; none: no map
   bool knows_pose = true;     ///< registration is told where the robot starts
+  bool snap = true;           ///< what is put onto the map is on right angles
   bool adds_objects = false;  ///< what stands where the map has nothing is put onto it
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
@@ -35,9 +32,8 @@ struct WholeOptions {
 /// with a file.
 intentions::Registry shipped_schemas(const behaviors::Registry& behaviors);
 
-/// The whole robot in one loop, without the bus: simulated robot, interpretation, registration,
-/// behaviors and intentions, each of which reads what the others said in the cycle before, as the
-/// services do. Repeatable to the last bit, and thousands of times as fast as the robot.
+/// The whole robot in one loop, without the bus: simulated robot and all services. Repeatable to
+/// the last bit, and thousands of times as fast as the robot.
 class Whole {
  public:
   explicit Whole(const WholeOptions& options);
@@ -60,45 +56,32 @@ class Whole {
   intentions::GoalStatus achieve(std::string functor, intentions::Arguments arguments, int cycles);
 
   Drive& drive() { return drive_; }
-  intentions::Executor& executor() { return executor_; }
-  registration::Registration& registration() { return registration_; }
-  const maps::Map& map() const { return map_; }
-  const std::shared_ptr<const maps::Topology>& topology() const { return topology_; }
-  const std::vector<lps::Percept>& percepts() const { return percepts_; }
-  const intentions::Outputs& intentions() const { return intentions_; }
-  Pose truth() const { return drive_.seen().true_pose_in_world; }
+  const Drive& drive() const { return drive_; }
+  const registration::Core::Outputs& registered() const { return drive_.registered(); }
+  Pose believed() const { return drive_.believed(); }
+  const maps::Map& map() const { return drive_.cores().registration().map(); }
+  /// Of the map as it is now.
+  maps::Topology topology() const { return maps::Topology(map()); }
+  const intentions::Outputs& intentions() const {
+    return drive_.cores().said().intentions.intended;
+  }
+  Pose truth() const { return drive_.truth(); }
   std::uint64_t cycle() const { return drive_.seen().cycle; }
   bool at_rest() const;
 
-  /// Everything that changed in the intentions since the start, a line each: "12 go_to (1:1)
-  /// BEGIN".
   /// The newest behavior that could not be made, and why; empty: none.
   const std::string& trouble() const { return trouble_; }
   /// All that was said to people.
   const std::vector<std::string>& said() const { return said_; }
+  /// Everything that changed in the intentions since the start, a line each: "12 go_to (1:1)
+  /// BEGIN".
   const std::vector<std::string>& transitions() const { return transitions_; }
 
  private:
   void note_transitions();
-  void obey(intentions::MapRequest request);
-  void set_map(maps::Map map);
-  void amend(const registration::Output& output);
 
   Drive drive_;
-  maps::Map map_;
-  std::shared_ptr<const maps::Topology> topology_;
-  std::uint64_t map_revision_ = 1;
-  std::optional<registration::MapBuilder> builder_;  ///< while the map is built from nothing
-  interpretation::Interpretation interpretation_;
-  registration::Registration registration_;
-  bool adds_objects_;
-  intentions::Executor executor_;
-  std::vector<lps::Percept> percepts_;
   std::function<std::vector<lps::SeenThing>(Drive&)> sees_;
-  std::vector<lps::SeenThing> things_;
-  intentions::Outputs intentions_;
-  std::vector<intentions::GoalEvent> events_;
-  std::vector<intentions::ClaimEvent> claims_;
   std::vector<std::string> said_;
   std::string trouble_;
   std::map<intentions::GoalId, intentions::GoalStatus> statuses_;

@@ -11,6 +11,7 @@ inline RobotModel model_of(const protocol::RobotParameters& parameters) {
   model.radius = parameters.radius;
   model.max_velocity = parameters.max_velocity;
   model.max_rotation_velocity = parameters.max_rotation_velocity;
+  model.deceleration = parameters.deceleration;
   model.lps.front_buffer = static_cast<std::size_t>(parameters.front_buffer);
   model.lps.side_buffer = static_cast<std::size_t>(parameters.side_buffer);
   model.lps.front_max_range = parameters.front_max_range;

@@ -48,15 +48,16 @@ struct Found {
 };
 
 /// Toured by the truth, since who does not know where he is cannot drive to a place.
-Found find(test::Localizer& robot, std::vector<Vec2> points, int cycles) {
+Found find(test::Drive& robot, std::vector<Vec2> points, int cycles) {
   Found found;
   test::Tour tour(std::move(points), true);
   Vec2 last = robot.truth().position();
   double way = 0.0;
   bool searched = false;
   for (int i = 0; i < cycles && found.way < 0.0; ++i) {
-    tour.act(robot.drive(), robot.truth());
-    const registration::Output& output = robot.advance();
+    tour.act(robot, robot.truth());
+    robot.advance();
+    const registration::Core::Outputs& output = robot.registered();
     way += (robot.truth().position() - last).norm();
     last = robot.truth().position();
     if (output.state != State::tracking && !searched) {
@@ -80,9 +81,9 @@ int run(const Options& options) {
   double way = 0.0;
   int not_tracking = 0;
   for (int seed = 1; seed <= options.seeds; ++seed) {
-    const test::DriveOptions drive = drive_of(options, seed);
-    test::Localizer robot(drive, map, test::Drive(drive).seen().true_pose_in_world);
-    robot.set_clock(seconds);
+    test::DriveOptions drive = drive_of(options, seed);
+    drive.clock = seconds;
+    test::Drive robot(test::registered_on(map, std::move(drive)));
     const test::PatrolResult result = test::patrol(robot, test::office_tour(!options.corridors),
                                                    static_cast<int>(options.hours * 36000.0));
     way += result.way;
@@ -122,7 +123,7 @@ int run(const Options& options) {
     const Vec2 ahead = points[1] - points[0];
     drive.start_in_world = Pose{points[0].x(), points[0].y(), std::atan2(ahead.y(), ahead.x())};
     std::rotate(points.begin(), points.begin() + 1, points.end());
-    test::Localizer robot(drive, map, std::nullopt);
+    test::Drive robot(test::registered_on(map, drive, false));
     const Found result = find(robot, points, 3000);
     if (result.way >= 0.0) {
       ++(result.off < 0.5 ? found : wrong);
@@ -131,10 +132,10 @@ int run(const Options& options) {
     // The same robot goes on for a while, and is carried to the east corridor.
     test::Tour tour(points, true);
     for (int i = 0; i < 600; ++i) {
-      tour.act(robot.drive(), robot.truth());
+      tour.act(robot, robot.truth());
       robot.advance();
     }
-    if (!robot.drive().robot().place({25.6, 12.0 + 0.7 * (seed % 5), kPi / 2}))
+    if (!robot.robot().place({25.6, 12.0 + 0.7 * (seed % 5), kPi / 2}))
       continue;
     // From here on it counts when it says that it is lost, and where it is again.
     Found after;
@@ -150,8 +151,9 @@ int run(const Options& options) {
       Vec2 last = robot.truth().position();
       double gone = 0.0;
       for (int i = 0; i < 3000; ++i) {
-        there.act(robot.drive(), robot.truth());
-        const registration::Output& output = robot.advance();
+        there.act(robot, robot.truth());
+        robot.advance();
+        const registration::Core::Outputs& output = robot.registered();
         gone += (robot.truth().position() - last).norm();
         last = robot.truth().position();
         const double off = (output.pose_in_map.position() - last).norm();

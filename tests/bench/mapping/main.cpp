@@ -40,31 +40,29 @@ int main(int argc, char** argv) {
         options.world = world;
         options.seed = static_cast<std::uint64_t>(seed);
         options.errors = errors;
-        registration::MapBuilderSettings building;
-        building.snap_to_right_angle_grid = !no_grid;
-        test::Building built(options, building);
+        test::Building built(options, !no_grid);
         built.run(static_cast<std::uint64_t>(minutes * 600.0));
         built.draw(world + "-" + std::to_string(seed));
         const test::MapScore score = test::score(built.aligned_map(), reference);
-        const bool complete =
-            built.explorer.output().done && score.corridors_found == score.corridors &&
-            score.corridors_false == 0 && score.doors_false == 0 &&
-            10 * score.doors_found >= 9 * score.doors && built.drive.contacts() == 0;
+        const bool complete = built.done() && score.corridors_found == score.corridors &&
+                              score.corridors_false == 0 && score.doors_false == 0 &&
+                              10 * score.doors_found >= 9 * score.doors &&
+                              built.whole.drive().contacts() == 0;
         whole += complete ? 1 : 0;
-        const double took = static_cast<double>(built.drive.seen().cycle) / 600.0;
+        const double took = static_cast<double>(built.whole.drive().seen().cycle) / 600.0;
         std::printf(
             "%s %s, seed %d: %.0f min%s, corridors %d/%d and %d false, lengths to %.1f %%, doors "
             "%d/%d and %d false, %d closures, pose to %.2f m, %d contacts;%s\n",
             complete ? "whole" : "NOT  ", world.c_str(), seed, took,
-            built.explorer.output().done ? "" : " (not done)", score.corridors_found,
-            score.corridors, score.corridors_false, 100.0 * score.worst_length, score.doors_found,
-            score.doors, score.doors_false, built.builder.closures(), built.worst,
-            built.drive.contacts(), score.text.c_str());
+            built.done() ? "" : " (not done)", score.corridors_found, score.corridors,
+            score.corridors_false, 100.0 * score.worst_length, score.doors_found, score.doors,
+            score.doors_false, built.closures, built.worst, built.whole.drive().contacts(),
+            score.text.c_str());
         std::fflush(stdout);
         runs.push_back({{"world", world},
                         {"seed", seed},
                         {"whole", complete},
-                        {"done", built.explorer.output().done},
+                        {"done", built.done()},
                         {"minutes", took},
                         {"corridors", score.corridors},
                         {"corridors_found", score.corridors_found},
@@ -74,7 +72,7 @@ int main(int argc, char** argv) {
                         {"doors_found", score.doors_found},
                         {"doors_false", score.doors_false},
                         {"pose_worst_m", built.worst},
-                        {"contacts", built.drive.contacts()}});
+                        {"contacts", built.whole.drive().contacts()}});
       }
     }
   } catch (const std::exception& error) {

@@ -71,10 +71,10 @@ bool parse(const std::vector<std::string>& words, Options& options) {
 }
 
 // Of this thread: what else runs on the machine does not count.
-double cpu_ms() {
+double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) / 1e6;
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) / 1e9;
 }
 
 constexpr std::array<std::pair<lps::PointType, const char*>, 5> kKinds{
@@ -109,18 +109,17 @@ DriveOptions drive_options(const Options& options, int seed, double errors) {
 }
 
 void percepts(const Options& options, int seed, Result& result) {
-  Drive drive(drive_options(options, seed, options.errors));
-  interpretation::Interpretation interpretation(with_sonars<interpretation::Settings>(drive));
+  DriveOptions with_interpretation = drive_options(options, seed, options.errors);
+  with_interpretation.interpretation = true;
+  with_interpretation.clock = cpu_seconds;
+  Drive drive(with_interpretation);
   Score score(drive, map_of(options.world));
   Tour tour(patrol(options.world), true);
   while (static_cast<double>(drive.seen().cycle) < options.seconds * 10.0) {
     tour.act(drive, drive.seen().true_pose_in_world);
-    const Seen& seen = drive.advance();
-    const interpretation::Inputs inputs{seen.cycle, seen.pose_in_odom, seen.readings, {}};
-    const double before = cpu_ms();
-    const auto& output = interpretation.step(inputs);
-    result.ms.push_back(cpu_ms() - before);
-    score.look(drive, output);
+    drive.advance();
+    result.ms.push_back(1e3 * drive.cores().interpretation_took());
+    score.look(drive);
   }
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
     const Count count = score.count(kKinds[i].first);
@@ -130,7 +129,7 @@ void percepts(const Options& options, int seed, Result& result) {
   result.passed += score.doors_passed();
   result.found += score.doors_found();
   result.contacts += drive.contacts();
-  result.cells += interpretation.grid().updates();
+  result.cells += drive.cores().interpretation().grid().updates();
   append(result.wall_offset, score.wall_offset);
   append(result.wall_heading, score.wall_heading);
   append(result.wall_offset_sigmas, score.wall_offset_sigmas);

@@ -33,12 +33,11 @@ using Act = std::function<void(Drive&)>;
 /// Steps `cycles` and adds up what was seen.
 void run(Drive& drive, const std::string& world, std::uint64_t cycles, const Act& act,
          Total& total) {
-  interpretation::Interpretation interpretation(with_sonars<interpretation::Settings>(drive));
   Score score(drive, map_of(world));
   while (drive.seen().cycle < cycles) {
     act(drive);
-    const Seen& seen = drive.advance();
-    score.look(drive, interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings, {}}));
+    drive.advance();
+    score.look(drive);
   }
   total.add(score);
 }
@@ -86,6 +85,7 @@ Total tours(const std::string& world, int seeds, std::uint64_t cycles) {
   Total total;
   for (int seed = 1; seed <= seeds; ++seed) {
     DriveOptions options;
+    options.interpretation = true;
     options.world = world;
     options.seed = static_cast<std::uint64_t>(seed);
     options.errors = 2.0;
@@ -150,6 +150,7 @@ TEST(Perception, DrivingObliquelyIsNoHindrance) {
   Total total;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     DriveOptions options;
+    options.interpretation = true;
     options.seed = seed;
     options.errors = 2.0;
     options.start_in_world = Pose{13.0, 7.0, 0.0};
@@ -178,22 +179,22 @@ TEST(Perception, DrivingObliquelyIsNoHindrance) {
 TEST(Perception, IsTheSameEachTimeToTheLastBit) {
   const auto once = [] {
     DriveOptions options;
+    options.interpretation = true;
     options.seed = 7;
     Drive drive(options);
-    interpretation::Interpretation interpretation(with_sonars<interpretation::Settings>(drive));
     Tour tour(patrol("office-floor"), true);
     std::vector<double> values;
     while (drive.seen().cycle < 1500) {
       tour.act(drive, drive.seen().true_pose_in_world);
-      const Seen& seen = drive.advance();
-      for (const lps::Percept& p :
-           interpretation.step({seen.cycle, seen.pose_in_odom, seen.readings, {}}).percepts)
+      drive.advance();
+      for (const lps::Percept& p : drive.cores().said().percepts)
         for (const double value : {p.pose_in_odom.x, p.pose_in_odom.y, p.pose_in_odom.th,
                                    p.sigma_across, p.confidence, static_cast<double>(p.id)})
           values.push_back(value);
     }
-    for (const interpretation::TileKey& key : interpretation.grid().tiles())
-      for (const std::uint8_t cell : interpretation.grid().cells(key))
+    const interpretation::Grid& grid = drive.cores().interpretation().grid();
+    for (const interpretation::TileKey& key : grid.tiles())
+      for (const std::uint8_t cell : grid.cells(key))
         values.push_back(cell);
     return values;
   };

@@ -153,15 +153,16 @@ bool Score::is_real(const lps::Percept& percept, const Pose& at) {
   }
 }
 
-void Score::look(const Drive& drive, const interpretation::Output& output) {
+void Score::look(const Drive& drive) {
   const Seen& seen = drive.seen();
-  look({seen.cycle, seen.pose_in_odom, seen.true_pose_in_world, seen.velocity}, output);
+  look({seen.cycle, seen.pose_in_odom, seen.true_pose_in_world, seen.velocity},
+       drive.cores().said().percepts);
 }
 
-void Score::look(const Moment& moment, const interpretation::Output& output) {
+void Score::look(const Moment& moment, const std::vector<lps::Percept>& percepts) {
   odom_in_world_[moment.cycle] =
       compose(moment.true_pose_in_world, relative(moment.pose_in_odom, Pose{}));
-  for (const lps::Percept& percept : output.percepts) {
+  for (const lps::Percept& percept : percepts) {
     const auto known = judged_.find(percept.id);
     if (known != judged_.end() && percept.seen != moment.cycle)
       continue;
@@ -177,10 +178,10 @@ void Score::look(const Moment& moment, const interpretation::Output& output) {
       judged.real = false;
     }
   }
-  pass(moment, output);
+  pass(moment, percepts);
 }
 
-void Score::pass(const Moment& seen, const interpretation::Output& output) {
+void Score::pass(const Moment& seen, const std::vector<lps::Percept>& percepts) {
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& door = map_.features[i];
     if (door.type != PointType::door || (covered_ && !covered_(door.pose_in_map.position())))
@@ -202,7 +203,7 @@ void Score::pass(const Moment& seen, const interpretation::Output& output) {
       }
     }
     if ((passing.under_way || passing.waits) && !passing.found)
-      for (const lps::Percept& percept : output.percepts)
+      for (const lps::Percept& percept : percepts)
         if (percept.type == PointType::door && door_at(in_world(percept), percept.width) == &door &&
             seen.cycle - percept.seen < 60)
           passing.found = true;
@@ -353,7 +354,8 @@ maps::Map map_of(const std::string& world) {
 
 std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles) {
   Drive drive(options);
-  auto settings = with_sonars<interpretation::Settings>(drive);
+  interpretation::Settings settings;
+  settings.sonars = drive.mounts();
   settings.grid.window = 100.0;
   interpretation::Interpretation muriel(settings);
   settings.grid.model = interpretation::GridModel::cone;

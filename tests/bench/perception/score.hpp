@@ -68,8 +68,9 @@ class Score {
   /// In a simulated world. The drive outlives the score.
   Score(Drive& drive, maps::Map map);
 
-  void look(const Moment& moment, const interpretation::Output& output);
-  void look(const Drive& drive, const interpretation::Output& output);
+  void look(const Moment& moment, const std::vector<lps::Percept>& percepts);
+  /// At what interpretation has just said.
+  void look(const Drive& drive);
 
   Count walls() const { return count(lps::PointType::wall); }
   Count doors() const { return count(lps::PointType::door); }
@@ -99,7 +100,7 @@ class Score {
   bool is_real(const lps::Percept& percept, const Pose& in_world);
   bool is_surface(const sim::Things& things, const Pose& middle, const lps::Percept& wall) const;
   const maps::Feature* door_at(const Pose& in_world, double width) const;
-  void pass(const Moment& moment, const interpretation::Output& output);
+  void pass(const Moment& moment, const std::vector<lps::Percept>& percepts);
 
   maps::Map map_;
   Surfaces surfaces_;

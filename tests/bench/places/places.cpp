@@ -138,13 +138,11 @@ Arrival travel(const Journey& journey, std::uint64_t seed, int cycles, const std
         passages.look(whole, seen.velocity, arrival);
         if (talk && seen.cycle % 10 == 0) {
           char text[160];
-          std::snprintf(
-              text, sizeof text, "%5d (%.2f, %.2f, %.0f) off %.2f, %.2f m/s %s",
-              static_cast<int>(seen.cycle), whole.truth().x, whole.truth().y,
-              degrees(whole.truth().th),
-              (whole.registration().output().pose_in_map.position() - whole.truth().position())
-                  .norm(),
-              seen.velocity, whole.status(goal).step.c_str());
+          std::snprintf(text, sizeof text, "%5d (%.2f, %.2f, %.0f) off %.2f, %.2f m/s %s",
+                        static_cast<int>(seen.cycle), whole.truth().x, whole.truth().y,
+                        degrees(whole.truth().th),
+                        (whole.believed().position() - whole.truth().position()).norm(),
+                        seen.velocity, whole.status(goal).step.c_str());
           arrival.talk.emplace_back(text);
         }
         return whole.ended(goal);
@@ -160,10 +158,11 @@ Arrival travel(const Journey& journey, std::uint64_t seed, int cycles, const std
   arrival.contacts = whole.drive().contacts();
   arrival.cycles = whole.cycle();
   arrival.trouble = whole.trouble();
-  const auto place = whole.topology()->place(journey.to);
+  const maps::Topology topology = whole.topology();
+  const auto place = topology.place(journey.to);
   for (const std::size_t region : place->regions)
-    arrival.there = arrival.there || maps::contains(whole.topology()->regions()[region].area,
-                                                    whole.truth().position());
+    arrival.there =
+        arrival.there || maps::contains(topology.regions()[region].area, whole.truth().position());
   return arrival;
 }
 

@@ -135,9 +135,9 @@ PerceptRun run_percepts(const SonarDrive& drive, const std::vector<Pose>& poses_
     const test::Moment moment{
         seen.cycle, drive.poses_in_odom[i], poses_in_map[i],
         (poses_in_map[i].position() - poses_in_map[before].position()).norm() / seconds};
-    out.by_laser.look(moment, *seen.output);
+    out.by_laser.look(moment, seen.output->percepts);
     if (out.by_hand)
-      out.by_hand->look(moment, *seen.output);
+      out.by_hand->look(moment, seen.output->percepts);
   });
   return out;
 }

@@ -8,7 +8,6 @@
 #include "drive/building.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
-#include "saphira/maps/route.hpp"
 #include "saphira/maps/topology.hpp"
 
 namespace saphira::explore {
@@ -31,27 +30,25 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
   options.world = GetParam().world;
   options.seed = GetParam().seed;
   options.errors = GetParam().errors;
-  registration::MapBuilderSettings building;
-  building.snap_to_right_angle_grid = GetParam().snap;
-  Building built(options, building);
+  Building built(options, GetParam().snap);
   built.run(20000);
   const std::string name = options.world + "-" + std::to_string(options.seed);
   built.draw(name);
   const maps::Map reference = maps::load_map(config_folder() + "/maps/" + options.world + ".map");
   const test::MapScore score = test::score(built.aligned_map(), reference);
-  std::cout << name << ": " << built.drive.seen().cycle << " cycles, corridors "
+  std::cout << name << ": " << built.whole.drive().seen().cycle << " cycles, corridors "
             << score.corridors_found << "/" << score.corridors << ", lengths to "
             << 100.0 * score.worst_length << " %, doors " << score.doors_found << "/" << score.doors
             << ", false " << score.corridors_false << "+" << score.doors_false << ", contacts "
-            << built.drive.contacts() << ", closures " << built.builder.closures() << ", pose to "
+            << built.whole.drive().contacts() << ", closures " << built.closures << ", pose to "
             << built.worst << " m;" << score.text << "\n";
-  EXPECT_TRUE(built.explorer.output().done) << built.explorer.output().reason;
+  EXPECT_TRUE(built.done()) << built.reason();
   EXPECT_EQ(score.corridors_found, score.corridors) << score.text;
   EXPECT_EQ(score.corridors_false, 0) << score.text;
   EXPECT_GE(score.doors_found, 0.9 * score.doors) << score.text;
   EXPECT_EQ(score.doors_false, 0) << score.text;
-  EXPECT_GT(built.builder.closures(), 0) << "the loop was not closed";
-  EXPECT_EQ(built.drive.contacts(), 0);
+  EXPECT_GT(built.closures, 0) << "the loop was not closed";
+  EXPECT_EQ(built.whole.drive().contacts(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Explore,
@@ -69,15 +66,15 @@ TEST(Explore, AClosedWayIsADeadEndFromBothSides) {
   Building built(options);
   built.run(20000);
   built.draw("closed-loop");
-  EXPECT_TRUE(built.explorer.output().done) << built.explorer.output().reason;
+  EXPECT_TRUE(built.done()) << built.reason();
   std::vector<maps::Feature> east;
-  for (const maps::Feature& f : built.builder.map().features)
+  for (const maps::Feature& f : built.whole.map().features)
     if (f.type == lps::PointType::corridor && std::abs(f.pose_in_map.x - 24.0) < 0.3)
       east.push_back(f);
-  ASSERT_EQ(east.size(), 2U) << maps::to_text(built.builder.map());
+  ASSERT_EQ(east.size(), 2U) << maps::to_text(built.whole.map());
   for (const maps::Feature& f : east)
     EXPECT_NEAR(f.length, 8.0, 0.25);
-  EXPECT_EQ(built.drive.contacts(), 0);
+  EXPECT_EQ(built.whole.drive().contacts(), 0);
 }
 
 // The robot finds its way by what it has built: from wherever it is to a door at the other end.
@@ -86,18 +83,16 @@ TEST(Explore, TheRobotNavigatesByTheMapThatItBuilt) {
   options.world = "loop";
   Building built(options);
   built.run(20000);
-  const maps::Topology topology(built.builder.map());
-  const auto door = std::find_if(
-      topology.links().begin(), topology.links().end(),
-      [](const auto& l) { return (l.pose_in_map.position() - Vec2(11.95, 15.0)).norm() < 0.5; });
-  ASSERT_NE(door, topology.links().end()) << "L7's";
-  const auto [route, reason] =
-      maps::find_route(topology, built.builder.pose_in_map().position(), std::to_string(door->id));
-  ASSERT_TRUE(route) << reason;
-  for (const Vec2& point : route->points())
-    ASSERT_TRUE(built.drive_to(point, 1500)) << point.transpose();
-  EXPECT_LT((built.true_way.back() - Vec2(11.95, 15.6)).norm(), 0.7);
-  EXPECT_EQ(built.drive.contacts(), 0);
+  const std::vector<maps::Link> doors = built.whole.topology().links();
+  const auto door = std::find_if(doors.begin(), doors.end(), [](const auto& l) {
+    return (l.pose_in_map.position() - Vec2(11.95, 15.0)).norm() < 0.5;
+  });
+  ASSERT_NE(door, doors.end()) << "L7's";
+  const auto status = built.whole.achieve(
+      "go-to-place", {intentions::text("place", std::to_string(door->id))}, 3000);
+  EXPECT_EQ(status.state, intentions::GoalState::kSucceeded) << status.reason;
+  EXPECT_LT((built.whole.truth().position() - Vec2(11.95, 15.6)).norm(), 1.2);
+  EXPECT_EQ(built.whole.drive().contacts(), 0);
 }
 
 }  // namespace

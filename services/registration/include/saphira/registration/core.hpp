@@ -140,6 +140,8 @@ class Core {
   bool map_changed() const { return now_.changed; }
   bool adds_features() const { return now_.adds_features; }
   bool snaps() const { return now_.snaps; }
+  /// While what is seen is added to the map; nullptr otherwise.
+  const MapBuilder* builder() const { return now_.builder ? &*now_.builder : nullptr; }
   /// What a restart takes over; none before the first robot.
   std::optional<Remembered> remembered() const;
 

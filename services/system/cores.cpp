@@ -1,0 +1,242 @@
+#include "system/cores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "saphira/base/enum_pairs.hpp"
+
+namespace saphira::system {
+namespace {
+
+constexpr std::uint64_t kEpoch = 1;
+
+constexpr EnumPairs<behaviors::Frame, intentions::Frame, 3> kFrames{{{
+    {behaviors::Frame::robot, intentions::Frame::kRobot},
+    {behaviors::Frame::odom, intentions::Frame::kOdom},
+    {behaviors::Frame::map, intentions::Frame::kMap},
+}}};
+constexpr EnumPairs<behaviors::Kind, intentions::ArgumentKind, 3> kKinds{{{
+    {behaviors::Kind::number, intentions::ArgumentKind::kNumber},
+    {behaviors::Kind::text, intentions::ArgumentKind::kText},
+    {behaviors::Kind::point, intentions::ArgumentKind::kPoint},
+}}};
+constexpr EnumPairs<registration::State, intentions::Localization, 4> kLocalizations{
+    {{
+        {registration::State::off, intentions::Localization::kOff},
+        {registration::State::unplaced, intentions::Localization::kUnplaced},
+        {registration::State::lost, intentions::Localization::kLost},
+        {registration::State::tracking, intentions::Localization::kTracking},
+    }},
+    {},
+    {intentions::Localization::kNone}};
+
+behaviors::Argument argument_of(const intentions::Argument& argument) {
+  switch (argument.kind) {
+    case intentions::ArgumentKind::kNumber:
+      return {argument.name, argument.number};
+    case intentions::ArgumentKind::kText:
+      return {argument.name, argument.text};
+    case intentions::ArgumentKind::kPoint:
+      break;
+  }
+  return {argument.name, behaviors::PlacedPoint{
+                             argument.point, kFrames.ours(argument.frame, behaviors::Frame::odom)}};
+}
+
+behaviors::Intent intent_of(const intentions::Outputs& wanted, std::uint64_t cycle) {
+  behaviors::Intent intent{cycle, wanted.behavior_control, {}};
+  for (const intentions::IntendedBehavior& behavior : wanted.behaviors) {
+    behaviors::Intended& intended = intent.behaviors.emplace_back();
+    intended.name = behavior.name;
+    intended.schema = behavior.schema;
+    intended.priority = behavior.priority;
+    intended.running = behavior.running;
+    for (const intentions::Argument& parameter : behavior.parameters)
+      intended.parameters.push_back(argument_of(parameter));
+  }
+  return intent;
+}
+
+registration::Core::Request request_of(intentions::MapRequest asked) {
+  using Action = registration::Core::Request::Action;
+  registration::Core::Request request;
+  request.action =
+      asked == intentions::MapRequest::kForget ? Action::kDelete : Action::kAddFeatures;
+  request.on = asked == intentions::MapRequest::kAddFeatures;
+  return request;
+}
+
+void tell_behaviors(const behaviors::Output& output, intentions::Core::Inputs& inputs) {
+  for (const behaviors::BehaviorState& state : output.behaviors) {
+    const behaviors::Activity& activity = state.blended.evaluation.activity;
+    inputs.behaviors.push_back({state.name, activity.goal, activity.progress});
+  }
+  for (const behaviors::Missing& missing : output.missing)
+    inputs.troubles.push_back({missing.name, missing.reason});
+  inputs.intent_age =
+      static_cast<std::uint64_t>(std::max(1LL, std::llround(output.input_age / intentions::kTick)));
+}
+
+}  // namespace
+
+std::vector<intentions::BehaviorSignature> signatures_of(const behaviors::Registry& behaviors) {
+  std::vector<intentions::BehaviorSignature> signatures;
+  for (const std::string& name : behaviors.names()) {
+    signatures.push_back({name, {}});
+    for (const behaviors::ParameterSpec& spec : behaviors.find(name)->parameters) {
+      intentions::Parameter& parameter = signatures.back().parameters.emplace_back();
+      parameter.name = spec.name;
+      parameter.kind = kKinds.theirs(spec.kind);
+      parameter.low = spec.low;
+      parameter.high = spec.high;
+      parameter.required = spec.required;
+    }
+  }
+  return signatures;
+}
+
+Cores::Cores(Settings settings) : settings_(std::move(settings)) {
+  behaviors_.registry() = settings_.behaviors;
+  if (settings_.interpretation)
+    interpretation_.emplace();
+  if (settings_.registration)
+    registration_.emplace(*settings_.registration);
+  if (!settings_.intentions)
+    return;
+  settings_.intentions->lockstep = true;
+  intentions_.emplace(*settings_.intentions);
+  intentions_->know_behaviors(signatures_of(settings_.behaviors));
+  know_map();
+}
+
+/// Latched: intentions has every map before the step that uses it.
+void Cores::know_map() {
+  if (!intentions_ || !registration_ || known_map_ == registration_->map_revision())
+    return;
+  known_map_ = registration_->map_revision();
+  intentions_->know_map({known_map_, std::make_shared<const maps::Map>(registration_->map())});
+}
+
+const Cores::Said& Cores::step(const RobotCycle& robot) {
+  behaviors_.processes().step(robot.cycle);
+  if (interpretation_)
+    interpretation_->processes().step(robot.cycle);
+  if (registration_)
+    registration_->processes().step(robot.cycle);
+  if (intentions_)
+    intentions_->processes().step(robot.cycle);
+  Said now;
+  now.cycle = robot.cycle;
+  now.pose_in_odom = robot.pose_in_odom;
+  now.behaviors = step_behaviors(robot);
+  if (intentions_)
+    now.intentions = step_intentions(robot);
+  if (registration_)
+    step_registration(robot, now);
+  if (interpretation_)
+    step_interpretation(robot, now);
+  said_ = std::move(now);
+  know_map();
+  return said_;
+}
+
+behaviors::Core::Outputs Cores::step_behaviors(const RobotCycle& robot) {
+  behaviors::Core::Inputs inputs;
+  inputs.cycle = robot.cycle;
+  inputs.new_robot = said_.cycle == 0 ? &settings_.robot : nullptr;
+  inputs.robot = {robot.pose_in_odom,           robot.velocity,     robot.rotation_velocity,
+                  robot.target_heading_in_odom, robot.left_stalled, robot.right_stalled};
+  inputs.sonars = robot.readings;
+  if (!intentions_)
+    inputs.intent = intent_;
+  else if (said_.cycle > 0)
+    inputs.intent = intent_of(said_.intentions.intended, said_.cycle);
+  if (inputs.intent)
+    inputs.intent->cycle = robot.cycle - 1;
+  return behaviors_.step(inputs);
+}
+
+void Cores::step_interpretation(const RobotCycle& robot, Said& now) {
+  interpretation::Core::Inputs inputs;
+  inputs.cycle = robot.cycle;
+  inputs.new_robot = said_.cycle == 0 ? &settings_.robot.lps.sonars : nullptr;
+  inputs.pose_in_odom = robot.pose_in_odom;
+  inputs.readings = robot.readings;
+  const double before = time();
+  now.percepts = interpretation_->step(inputs).output->percepts;
+  interpretation_took_ = time() - before;
+}
+
+void Cores::step_registration(const RobotCycle& robot, Said& now) {
+  registration::Core::Inputs inputs;
+  inputs.cycle = robot.cycle;
+  inputs.new_robot = said_.cycle == 0 ? &settings_.robot.lps.sonars : nullptr;
+  inputs.odom = robot.odom;
+  inputs.pose_in_odom = robot.pose_in_odom;
+  inputs.percepts = said_.percepts;
+  inputs.readings = robot.readings;
+  const double before = time();
+  for (const intentions::MapRequest asked : said_.intentions.intended.map_requests)
+    registration_->act(request_of(asked));
+  now.registration = registration_->step(inputs);
+  registration_took_ = time() - before;
+  now.map_revision = registration_->map_revision();
+  now.adds_features = registration_->adds_features();
+}
+
+intentions::Core::Outputs Cores::step_intentions(const RobotCycle& robot) {
+  intentions::Core::Inputs inputs;
+  inputs.stamp = {kEpoch, robot.cycle};
+  inputs.new_robot = said_.cycle == 0 ? &settings_.robot.lps : nullptr;
+  inputs.robot.connected = true;
+  inputs.robot.odom = robot.odom;
+  inputs.robot.pose_in_odom = robot.pose_in_odom;
+  inputs.robot.velocity = robot.velocity;
+  inputs.robot.rotation_velocity = robot.rotation_velocity;
+  inputs.robot.left_stalled = robot.left_stalled;
+  inputs.robot.right_stalled = robot.right_stalled;
+  inputs.readings = robot.readings;
+  inputs.heard = std::exchange(heard_, {});
+  if (said_.cycle > 0) {
+    tell_behaviors(said_.behaviors.output, inputs);
+    inputs.behaviors_cycle = said_.cycle;
+    if (interpretation_)
+      inputs.percepts = said_.percepts;
+    if (said_.things)
+      inputs.vision = {{kEpoch, said_.cycle}, robot.odom, true, *said_.things};
+  }
+  if (said_.cycle > 0 && registration_) {
+    const registration::Core::Outputs& told = said_.registration;
+    if (told.state == registration::State::tracking || told.state == registration::State::off)
+      inputs.robot.odom_in_map = compose(told.pose_in_map, relative(said_.pose_in_odom, Pose{}));
+    inputs.registered.state = kLocalizations.theirs(told.state);
+    inputs.registered.pose_in_map = told.pose_in_map;
+    inputs.registered.confidence = told.confidence;
+    inputs.registered.environment = told.environment;
+    inputs.registered.adds_features = said_.adds_features;
+    inputs.registered.closed_doors.insert(told.closed_doors.begin(), told.closed_doors.end());
+    inputs.map_revision = said_.map_revision;
+  }
+  return intentions_->step(std::move(inputs));
+}
+
+void Cores::intend(std::vector<behaviors::Intended> behaviors, bool control) {
+  intent_ = {0, control, std::move(behaviors)};
+}
+
+void Cores::set_control(bool control) {
+  if (intent_)
+    intent_->control = control;
+}
+
+void Cores::hear(intentions::GoalEvent goal) {
+  heard_.goals.push_back({std::move(goal), {}});
+}
+
+void Cores::hear(intentions::ClaimEvent claim) {
+  heard_.claims.push_back({std::move(claim), {}, false});
+}
+
+}  // namespace saphira::system

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "saphira/behaviors/core.hpp"
+#include "saphira/intentions/core.hpp"
+#include "saphira/interpretation/core.hpp"
+#include "saphira/registration/core.hpp"
+
+namespace saphira::system {
+
+/// What the robot's server says in a cycle, as the bridge publishes it.
+struct RobotCycle {
+  std::uint64_t cycle = 0;
+  std::uint64_t odom = 1;  ///< which odom frame
+  Pose pose_in_odom;
+  double velocity = 0.0;           ///< [m/s]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  double target_heading_in_odom = 0.0;
+  bool left_stalled = false;
+  bool right_stalled = false;
+  std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
+};
+
+/// The cores of the services in one loop, without the bus: each sees in the step for cycle N what
+/// the others said in N-1, as on the bus. Values are handed over as they are: the bus rounds some
+/// to float, so a robot on the bus goes another way in the last digits.
+class Cores {
+ public:
+  struct Settings {
+    behaviors::RobotModel robot;
+    behaviors::Registry behaviors;
+    bool interpretation = false;
+    std::optional<registration::Core::Settings> registration;
+    /// Without it, intend() says what is intended.
+    std::optional<intentions::Core::Settings> intentions;
+    /// [s] Measures what the services take. None: nothing is measured.
+    std::function<double()> clock;
+  };
+  /// What the services said for a cycle. Of those that are not there: nothing.
+  struct Said {
+    behaviors::Core::Outputs behaviors;
+    std::vector<lps::Percept> percepts;
+    registration::Core::Outputs registration;
+    std::uint64_t map_revision = 0;
+    bool adds_features = false;  ///< registration puts what is seen on the map
+    intentions::Core::Outputs intentions;
+    /// Of a vision service; none: there is no camera.
+    std::optional<std::vector<lps::SeenThing>> things;
+    std::uint64_t cycle = 0;  ///< 0: nothing was said yet
+    Pose pose_in_odom;        ///< of the robot, in that cycle
+  };
+
+  explicit Cores(Settings settings);
+
+  const Said& step(const RobotCycle& robot);
+  const Said& said() const { return said_; }
+
+  /// What is intended from now on, where no intentions service is there.
+  void intend(std::vector<behaviors::Intended> behaviors, bool control);
+  /// The same behaviors, and whether they drive (sfBehaviorControl, manual 7.4).
+  void set_control(bool control);
+  /// A vision service says this for the newest cycle.
+  void see(std::vector<lps::SeenThing> things) { said_.things = std::move(things); }
+  /// A goal, a claim: heard in the next step.
+  void hear(intentions::GoalEvent goal);
+  void hear(intentions::ClaimEvent claim);
+
+  const behaviors::RobotModel& robot() const { return settings_.robot; }
+  interpretation::Core& interpretation() { return interpretation_.value(); }
+  registration::Core& registration() { return registration_.value(); }
+  const registration::Core& registration() const { return registration_.value(); }
+  intentions::Core& intentions() { return intentions_.value(); }
+  /// [s] What interpretation and registration took in the newest step.
+  double interpretation_took() const { return interpretation_took_; }
+  double registration_took() const { return registration_took_; }
+
+ private:
+  behaviors::Core::Outputs step_behaviors(const RobotCycle& robot);
+  void step_interpretation(const RobotCycle& robot, Said& now);
+  void step_registration(const RobotCycle& robot, Said& now);
+  intentions::Core::Outputs step_intentions(const RobotCycle& robot);
+  void know_map();
+  double time() const { return settings_.clock ? settings_.clock() : 0.0; }
+
+  Settings settings_;
+  behaviors::Core behaviors_;
+  std::optional<interpretation::Core> interpretation_;
+  std::optional<registration::Core> registration_;
+  std::optional<intentions::Core> intentions_;
+  std::optional<behaviors::Intent> intent_;
+  intentions::Core::Heard heard_;
+  std::uint64_t known_map_ = 0;  ///< revision that intentions has
+  Said said_;
+  double interpretation_took_ = 0.0;
+  double registration_took_ = 0.0;
+};
+
+/// What the behaviors service announces.
+std::vector<intentions::BehaviorSignature> signatures_of(const behaviors::Registry& behaviors);
+
+}  // namespace saphira::system
