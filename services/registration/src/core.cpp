@@ -112,7 +112,7 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars) {
   // Later it may be anywhere.
   registration_.emplace(settings, now_.editor.map(), first ? now_.start : std::nullopt);
   if (memory && memory->placed)
-    registration_->restore(*memory);
+    registration_->restore(*memory, first ? now_.start : std::nullopt);
   registration_->recall_closed(std::move(closed));
   if (!now_.builder)
     set_builder();

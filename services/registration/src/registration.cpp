@@ -17,6 +17,8 @@ constexpr double kNear = 1.0;                // [m] another place within this an
 constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther off it was lost
 constexpr std::size_t kTurns = 600;          // cycles
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
+constexpr double kUnconfirmed = 0.5;         // the most that a pose is trusted which was only told
+constexpr std::uint64_t kNoFrame = 0;        // no frame of a robot has this number
 
 Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -63,13 +65,15 @@ class Registration::Self {
 
   void place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
              double drift_variance, double confidence);
+  void doubt();
+  bool holds_again() const;
   void forget();
   void switch_on(bool on);
   const RegistrationState& state() const { return now_; }
   void set_state(RegistrationState state) { now_ = std::move(state); }
   void follow_edit(const maps::Map& old);
   Memory save() const;
-  void restore(const Memory& memory);
+  void restore(const Memory& memory, const std::optional<Pose>& start);
   const std::set<std::uint32_t>& closed_doors() const { return now_.presence.closed(); }
   void recall_closed(std::set<std::uint32_t> doors) {
     now_.presence.recall(std::move(doors));
@@ -117,16 +121,34 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
                                double drift_variance, double confidence) {
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
-  now_.search.own_score = confidence * settings_.sure;
+  now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
   now_.state = State::tracking;
+  now_.confirmed = confidence > kUnconfirmed;
+  now_.doubted = false;
   now_.done.clear();
   now_.cloud.clear();
   now_.leads = false;
   forget_looks();
 }
 
+/// Nothing that is heard in this odometry frame has been held against the pose yet.
+void Registration::Self::doubt() {
+  if (!now_.filter)
+    return;
+  now_.filter->widen(0.3, radians(10.0));
+  now_.state = State::lost;
+  now_.confirmed = false;
+  now_.doubted = true;
+  const Pose& pose = now_.filter->pose();
+  if (now_.start && ((now_.start->position() - pose.position()).norm() > kNear ||
+                     std::abs(norm2_angle(now_.start->th - pose.th)) > kNearTurn))
+    search_.suspect(PoseFilter(*now_.start, covariance_of({}), 0.0,
+                               settings_.drift_error * settings_.drift_error, settings_.reckoning));
+}
+
 void Registration::Self::forget() {
   now_.cloud.clear();
+  now_.doubted = false;
   now_.filter.reset();
   search_.clear();
   now_.state = State::unplaced;
@@ -164,9 +186,9 @@ void Registration::Self::follow_edit(const maps::Map& old) {
 
 Memory Registration::Self::save() const {
   Memory memory;
-  memory.odom = now_.odom.value_or(0);
+  memory.odom = now_.doubted ? kNoFrame : now_.odom.value_or(kNoFrame);
   memory.pose_in_odom = now_.pose_in_odom;
-  memory.placed = now_.filter.has_value() && now_.state != State::lost;
+  memory.placed = now_.filter.has_value() && (now_.state != State::lost || now_.doubted);
   if (now_.filter) {
     memory.pose_in_map = now_.filter->pose();
     memory.covariance = now_.filter->covariance();
@@ -176,7 +198,8 @@ Memory Registration::Self::save() const {
   return memory;
 }
 
-void Registration::Self::restore(const Memory& memory) {
+void Registration::Self::restore(const Memory& memory, const std::optional<Pose>& start) {
+  now_.start = start;
   if (!memory.placed)
     return;
   place(memory.pose_in_map, memory.covariance.topLeftCorner<3, 3>(), memory.drift,
@@ -192,12 +215,11 @@ void Registration::Self::move(const Inputs& inputs) {
   if (now_.odom && *now_.odom == inputs.odom) {
     now_.moved = relative(now_.pose_in_odom, inputs.pose_in_odom);
   } else if (now_.odom) {
-    // Dead reckoning begins anew: the robot has been switched off, and may have been moved a bit.
+    // Dead reckoning begins anew: the robot has been switched off, and may have been moved.
     now_.done.clear();
     now_.used.clear();
     search_.clear();
-    if (now_.filter)
-      now_.filter->widen(0.3, radians(10.0));
+    doubt();
     now_.cloud.clear();
   }
   now_.odom = inputs.odom;
@@ -434,6 +456,12 @@ std::vector<PlacedReading> Registration::Self::fresh_ones(
 void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readings,
                                         const std::vector<const Percept*>& percepts) {
   search_.step(now_.pose_in_odom, readings, percepts, now_.filter ? &*now_.filter : nullptr);
+  if (now_.doubted)
+    if (const Search::Hypothesis* const told = search_.told_leads()) {
+      const PoseFilter found = told->filter;
+      place(found.pose(), found.pose_covariance(), found.drift(), found.covariance()(3, 3), 1.0);
+      return;
+    }
   const auto best = search_.best(now_.state == State::tracking);
   if (!best)
     return;
@@ -480,6 +508,12 @@ void Registration::Self::look_for_news(const Inputs& inputs,
     now_.output.objects = now_.objects.step(map_, field_, now_.cycle, looks);
 }
 
+bool Registration::Self::holds_again() const {
+  if (now_.doubted)
+    return search_.own_leads();
+  return now_.search.own_score > settings_.again_sure && search_.own_is_best();
+}
+
 const Output& Registration::Self::step(const Inputs& inputs) {
   now_.output.matches.clear();
   now_.output.presence = {};
@@ -494,9 +528,11 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     look_elsewhere(readings, percepts);
     if (now_.state == State::tracking && now_.search.own_score < settings_.lost)
       now_.state = State::lost;
-    else if (now_.state == State::lost && now_.search.own_score > settings_.again_sure &&
-             search_.own_is_best())
+    else if (now_.state == State::lost && holds_again())
       now_.state = State::tracking;
+    if (now_.state == State::tracking)
+      now_.doubted = false;
+    now_.confirmed = now_.confirmed || now_.search.own_score >= settings_.sure;
     look_for_news(inputs, readings);
   }
   report();
@@ -545,11 +581,16 @@ void Registration::Self::report() {
                              ? "looking for where it is: no opening seen yet"
                              : "looking for where it is: several places would do";
   } else if (now_.state == State::lost) {
-    now_.output.reason = "the readings do not fit the map at this pose";
+    now_.output.reason = now_.doubted ? "dead reckoning has begun anew: what is heard has not "
+                                        "confirmed yet that the robot is where it was"
+                                      : "the readings do not fit the map at this pose";
   } else {
     now_.output.confidence = std::clamp(
         (now_.search.own_score - settings_.lost) / (settings_.sure - settings_.lost), 0.0, 1.0);
-    now_.output.reason = now_.output.confidence < 0.5 ? "the readings hardly fit the map"
+    if (!now_.confirmed)
+      now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
+    now_.output.reason = !now_.confirmed ? "as it was told: too little was heard yet to confirm it"
+                         : now_.output.confidence < 0.5 ? "the readings hardly fit the map"
                          : now_.filter->sigma_position() > 0.5
                              ? "nothing matched for long: by dead reckoning"
                              : "matched with the map";
@@ -587,7 +628,7 @@ const maps::Map& Registration::map() const {
 
 void Registration::set_pose(const Pose& pose_in_map, const Sigmas& sigmas) {
   const double drift = self_->settings().drift_error;
-  self_->place(pose_in_map, covariance_of(sigmas), 0.0, drift * drift, 0.8);
+  self_->place(pose_in_map, covariance_of(sigmas), 0.0, drift * drift, kUnconfirmed);
 }
 
 void Registration::forget_pose() {
@@ -622,8 +663,8 @@ Memory Registration::save() const {
   return self_->save();
 }
 
-void Registration::restore(const Memory& memory) {
-  self_->restore(memory);
+void Registration::restore(const Memory& memory, const std::optional<Pose>& start) {
+  self_->restore(memory, start);
 }
 
 }  // namespace saphira::registration

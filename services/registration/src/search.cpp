@@ -14,6 +14,10 @@ bool same_place(const Pose& a, const Pose& b, double way, double turn) {
   return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
 }
 
+bool elsewhere(const Pose& a, const Pose& b) {
+  return !same_place(a, b, 0.5, radians(15.0));
+}
+
 /// Whether the map has a wall there.
 bool is_wall(const LineMap& lines, const Vec2& position) {
   constexpr double kNear = 0.3;  // [m]
@@ -144,7 +148,7 @@ void Search::propose(const lps::Percept& percept) {
     if (there)
       continue;
     Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
-                     0.0, 0.0, 1};
+                     0.0, 0.0, 1, false};
     // The newest first: most places need no more than a few.
     for (auto reading = now_.history.rbegin();
          reading != now_.history.rend() && fresh.score > -kPoor; ++reading)
@@ -167,13 +171,19 @@ void Search::thin_out() {
     // A young one has not had the time to be as good.
     if (h.score < (h.way < settings_.way ? -kPoor : least))
       continue;
-    const bool twice = std::any_of(left.begin(), left.end(), [&](const Hypothesis& other) {
+    const auto twice = std::find_if(left.begin(), left.end(), [&](const Hypothesis& other) {
       return same_place(h.filter.pose(), other.filter.pose(), 0.2, radians(5.0));
     });
-    if (!twice)
+    if (twice == left.end())
       left.push_back(h);
+    else
+      twice->told = twice->told || h.told;
   }
   now_.hypotheses = std::move(left);
+}
+
+void Search::suspect(const PoseFilter& filter) {
+  now_.hypotheses.push_back({filter, 0.0, 0.0, 0, true});
 }
 
 bool Search::own_is_best() const {
@@ -181,11 +191,30 @@ bool Search::own_is_best() const {
   return !other || other->hypothesis->score < now_.own_score;
 }
 
+bool Search::leads(const Pose& pose, double score) const {
+  return score >= settings_.evidence &&
+         std::none_of(now_.hypotheses.begin(), now_.hypotheses.end(), [&](const Hypothesis& h) {
+           // Anywhere in the map is less likely than where it was or was to be.
+           const double ahead = h.told ? settings_.margin : -settings_.margin;
+           return elsewhere(h.filter.pose(), pose) && score < h.score + ahead;
+         });
+}
+
+bool Search::own_leads() const {
+  return now_.own && leads(*now_.own, now_.own_score);
+}
+
+const Search::Hypothesis* Search::told_leads() const {
+  const auto told = std::find_if(now_.hypotheses.begin(), now_.hypotheses.end(),
+                                 [](const Hypothesis& h) { return h.told; });
+  if (told == now_.hypotheses.end() || told->score < now_.own_score + settings_.margin ||
+      told->way < settings_.way || !leads(told->filter.pose(), told->score))
+    return nullptr;
+  return &*told;
+}
+
 std::optional<Search::Best> Search::best(bool beside_own) const {
   const bool own = beside_own && now_.own;
-  const auto elsewhere = [](const Pose& a, const Pose& b) {
-    return !same_place(a, b, 0.5, radians(15.0));
-  };
   const auto first = std::find_if(
       now_.hypotheses.begin(), now_.hypotheses.end(),
       [&](const Hypothesis& h) { return !own || elsewhere(h.filter.pose(), *now_.own); });

@@ -378,7 +378,7 @@ TEST(RegistrationCore, ALinkThatIsThereAgainLeavesTheRobotWhereItWas) {
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
 }
 
-TEST(RegistrationCore, AnotherOdometryFrameMakesThePoseLessSureAndDoesNotMoveIt) {
+TEST(RegistrationCore, InAnotherOdometryFrameThePoseIsAGuessUntilTheReadingsFitIt) {
   Core core(settings());
   Robot robot;
   for (int i = 0; i < 100; ++i)
@@ -388,6 +388,27 @@ TEST(RegistrationCore, AnotherOdometryFrameMakesThePoseLessSureAndDoesNotMoveIt)
   const Core::Outputs after = robot.stand(core);
   EXPECT_NEAR(after.pose_in_map.x, before.pose_in_map.x, 0.1);
   EXPECT_GT(after.covariance(0, 0), before.covariance(0, 0));
+  EXPECT_EQ(after.state, State::lost);
+  EXPECT_NE(after.reason.find("dead reckoning has begun anew"), std::string::npos) << after.reason;
+  EXPECT_TRUE(core.remembered()->memory.placed) << "a restart now has the same guess";
+  EXPECT_NE(core.remembered()->memory.odom, robot.frame());
+  Core::Outputs later = after;
+  for (int i = 0; i < 100 && later.state != State::tracking; ++i)
+    later = robot.step(core);
+  EXPECT_EQ(later.state, State::tracking);
+}
+
+TEST(RegistrationCore, APoseThatWasOnlyToldIsHalfTrusted) {
+  Core core(settings());
+  Robot robot;
+  const Core::Outputs told = robot.stand(core);
+  EXPECT_EQ(told.state, State::tracking);
+  EXPECT_LE(told.confidence, 0.5);
+  EXPECT_NE(told.reason.find("as it was told"), std::string::npos) << told.reason;
+  Core::Outputs later = told;
+  for (int i = 0; i < 100; ++i)
+    later = robot.step(core);
+  EXPECT_GT(later.confidence, 0.9);
 }
 
 TEST(RegistrationCore, ASuspendedProcessDoesNothingUntilItIsResumed) {

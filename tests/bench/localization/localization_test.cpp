@@ -255,6 +255,49 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
 }
 
+/// A registration that remembers one drive, beside a robot that begins another. Whether it has
+/// found where it is, and never said that it was tracking elsewhere.
+bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
+                  const std::vector<Vec2>& way, std::uint64_t cycles) {
+  DriveOptions options = doubled(2);
+  options.interpretation = true;
+  options.start_in_world = truth;
+  Drive robot(options);
+  Core core({office(), "", kStart, false, true}, remembered);
+  Tour tour(way, false);
+  Output told;
+  while (robot.seen().cycle < cycles) {
+    tour.act(robot, robot.truth());
+    const std::vector<lps::Percept> before = robot.cores().said().percepts;
+    const Seen& seen = robot.advance();
+    core.processes().step(seen.cycle);
+    told = core.step({seen.cycle, seen.cycle == 1 ? &robot.mounts() : nullptr, 2, seen.pose_in_odom,
+                      before, seen.readings});
+    EXPECT_TRUE(seen.cycle > 1 || told.state == State::lost) << "nothing was heard yet";
+    const double off = (told.pose_in_map.position() - robot.truth().position()).norm();
+    if (told.state == State::tracking && off > 0.6) {
+      ADD_FAILURE() << "tracks " << off << " m off in cycle " << seen.cycle;
+      return false;
+    }
+  }
+  return told.state == State::tracking;
+}
+
+TEST(Localization, WhereDeadReckoningHasBegunAnewWhatIsRememberedIsAGuess) {
+  Drive robot(on_office(doubled(1)));
+  patrol(robot, office_tour(), 900);
+  const auto remembered = robot.cores().registration().remembered();
+  ASSERT_TRUE(remembered);
+  ASSERT_GT((robot.truth().position() - kStart.position()).norm(), 5.0);
+  EXPECT_TRUE(finds_itself(*remembered, kStart, {{17.5, 8.0}}, 400))
+      << "at the start of the deployment";
+  EXPECT_TRUE(finds_itself(*remembered, robot.truth(), {{25.6, 7.0}}, 400)) << "where it was";
+  EXPECT_TRUE(finds_itself(*remembered, {21.0, 25.0, kPi},
+                           {{17.5, 25.0}, {17.5, 9.0}, {19.0, 7.0}, {25.6, 7.0}, {25.6, 20.0}},
+                           1800))
+      << "at neither";
+}
+
 TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
   Drive robot(on_office(doubled(1)));
   patrol(robot, office_tour(), 300);

@@ -158,7 +158,9 @@ class Registration {
 
   /// What the service remembers over a restart: much less.
   Memory save() const;
-  void restore(const Memory& memory);
+  /// Goes on from there in the same odometry frame. In another one the pose is a guess, beside
+  /// `start`: State::lost until the readings fit one of them and not the other.
+  void restore(const Memory& memory, const std::optional<Pose>& start = std::nullopt);
 
  private:
   class Self;

@@ -48,6 +48,7 @@ struct SearchState {
     double score = 0.0;
     double way = 0.0;  ///< [m] followed
     int openings = 0;
+    bool told = false;  ///< not proposed by an opening: somebody says that the robot starts there
 
     bool operator==(const Hypothesis&) const = default;
   };
@@ -83,8 +84,14 @@ class Search {
 
   /// How much better than anywhere a reading fits where its sonar is, as scores count it.
   double worth(const Pose& sensor_in_map, double range, bool echo) const;
+  /// Follows a place that the robot was told, beside the one that `own` of step() is.
+  void suspect(const PoseFilter& filter);
   /// Whether no other place is worth more than the one that is believed.
   bool own_is_best() const;
+  /// Of the place that is believed and the one that was told: whether it explains what is heard,
+  /// better than the other by the margin, and no place in the map does it better by that.
+  bool own_leads() const;
+  const Hypothesis* told_leads() const;
   /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
   /// While a place is believed, `beside_own`: the best one that is not there, and how much better
   /// it is than that place, too.
@@ -97,6 +104,7 @@ class Search {
   std::optional<Best> best(bool beside_own) const;
 
  private:
+  bool leads(const Pose& pose, double score) const;
   void propose(const lps::Percept& percept);
   double weigh(const Pose& pose, const PlacedReading& reading) const;
   double worth(const lps::Percept& percept, const Match& match, const Pose& robot_in_map) const;

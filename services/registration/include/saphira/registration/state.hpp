@@ -44,6 +44,12 @@ struct RegistrationState {
   bool on = true;
   State state = State::unplaced;
   std::optional<PoseFilter> filter;
+  /// The readings have fitted the pose since it was told.
+  bool confirmed = false;
+  /// Dead reckoning has begun anew: the robot may have been carried away, and what was believed
+  /// before is a guess until the readings have fitted it.
+  bool doubted = false;
+  std::optional<Pose> start;  ///< where it may be instead, then
 
   // Dead reckoning.
   std::uint64_t cycle = 0;
