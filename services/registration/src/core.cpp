@@ -144,6 +144,7 @@ void Core::end_building() {
   Memory here = registration_->save();
   here.odom = now_.odom;
   here.pose_in_odom = now_.pose_in_odom;
+  here.confidence = 1.0;
   registration_->restore(here);
 }
 

@@ -136,12 +136,15 @@ void Registration::Self::doubt() {
   if (!now_.filter)
     return;
   now_.filter->widen(0.3, radians(10.0));
-  now_.state = State::lost;
   now_.confirmed = false;
-  now_.doubted = true;
   const Pose& pose = now_.filter->pose();
-  if (now_.start && ((now_.start->position() - pose.position()).norm() > kNear ||
-                     std::abs(norm2_angle(now_.start->th - pose.th)) > kNearTurn))
+  const bool at_start = now_.start && (now_.start->position() - pose.position()).norm() < kNear &&
+                        std::abs(norm2_angle(now_.start->th - pose.th)) < kNearTurn;
+  if (at_start && now_.state == State::tracking)
+    return;
+  now_.state = State::lost;
+  now_.doubted = true;
+  if (now_.start && !at_start)
     search_.suspect(PoseFilter(*now_.start, covariance_of({}), 0.0,
                                settings_.drift_error * settings_.drift_error, settings_.reckoning));
 }

@@ -446,6 +446,18 @@ TEST(RegistrationCore, ARestartGoesOnFromWhatWasRemembered) {
   EXPECT_NEAR(after.pose_in_map.x, before.x, 0.05);
 }
 
+TEST(RegistrationCore, InAnotherFrameAtTheStartOfTheDeploymentNothingIsInDoubt) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  Core next(settings(), core.remembered());
+  robot.reconnect();
+  robot.new_frame();
+  const Core::Outputs after = robot.stand(next);
+  EXPECT_EQ(after.state, State::tracking);
+  EXPECT_LE(after.confidence, 0.5);
+}
+
 TEST(RegistrationCore, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
   Core core(settings());
   Robot robot;
