@@ -51,9 +51,9 @@ std::size_t most_readings(const RobotParameters& p) {
 std::string impossible_motion(const InformationPacket& packet, const RobotParameters& p) {
   const double left = packet.left_velocity * p.velocity_unit;
   const double right = packet.right_velocity * p.velocity_unit;
-  if (const std::string what = wrong_speed((left + right) / 2.0, p); !what.empty())
+  if (std::string what = wrong_speed((left + right) / 2.0, p); !what.empty())
     return what;
-  if (const std::string what = wrong_turn((right - left) / 2.0 * p.rotation_per_difference, p);
+  if (std::string what = wrong_turn((right - left) / 2.0 * p.rotation_per_difference, p);
       !what.empty())
     return what;
   if (std::abs(packet.th * p.angle_unit) > kTurn)
@@ -70,8 +70,8 @@ std::string take_out_readings(InformationPacket& packet, const RobotParameters& 
   const auto first = std::find_if(packet.sonars.begin(), packet.sonars.end(), is_unknown);
   if (first == packet.sonars.end())
     return {};
-  const std::string what = "sonar number " + std::to_string(first->number) + "; its table has " +
-                           std::to_string(p.sonars.size()) + " (" + p.file + ")";
+  std::string what = "sonar number " + std::to_string(first->number) + "; its table has " +
+                     std::to_string(p.sonars.size()) + " (" + p.file + ")";
   std::erase_if(packet.sonars, is_unknown);
   return what;
 }
