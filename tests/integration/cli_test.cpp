@@ -161,6 +161,32 @@ TEST_F(CliTest, WithoutArgumentsItHelps) {
     EXPECT_TRUE(has(outcome.text, name)) << name;
 }
 
+// The script shows this file where nothing is built yet.
+TEST_F(CliTest, HelpIsWhatTheScriptShowsOfAFreshClone) {
+  std::ifstream in(test::source("agents/cli/help.txt"));
+  std::stringstream file;
+  file << in.rdbuf();
+  const Outcome outcome = run({"help"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.text, file.str()) << "write it anew: saphira help > agents/cli/help.txt";
+  EXPECT_TRUE(has(run({"help", "goal"}).text, "Send a goal and follow it to its end"));
+  EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
+}
+
+TEST_F(CliTest, WhatIsMistypedGetsAGuess) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
+      {{"gaol"}, "did you mean goal?"},
+      {{"help", "statsu"}, "did you mean status?"},
+      {{"--versoin"}, "did you mean --version?"},
+      {{"echo", "robot/stat"}, "did you mean robot/state?"},
+      {{"status", "--profile", "wifi"}, "{host,lan,wan}"}};
+  for (const auto& [words, part] : mistakes) {
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.code, 2) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, part)) << outcome.text;
+  }
+}
+
 TEST_F(CliTest, WhatIsWrongIsAUsageError) {
   const std::vector<std::vector<std::string>> wrong{
       {"fly"},        {"demo", "--seed", "x"}, {"demo", "--goal", "1"},       {"up"},

@@ -1,7 +1,9 @@
 // list and echo: the bus as it is.
+#include <algorithm>
 #include <iostream>
 
 #include "commands.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "watch.hpp"
@@ -72,14 +74,19 @@ int list(const bus::NodeOptions& options, const bus::Stop& stop) {
 
 int echo(const std::string& topic, std::uint64_t count, const bus::NodeOptions& options,
          const bus::Stop& stop) {
-  bool known = false;
-  std::string names;
-  for (const bus::TopicEntry& entry : bus::known_topics()) {
-    known = known || entry.name == topic;
-    names += " " + entry.name;
-  }
-  if (!known) {
-    std::cerr << "saphira: no topic \"" << topic << "\": expected one of" << names << '\n';
+  std::vector<std::string> names;
+  for (const bus::TopicEntry& entry : bus::known_topics())
+    names.push_back(entry.name);
+  if (std::find(names.begin(), names.end(), topic) == names.end()) {
+    const std::string meant = guess(topic, names);
+    std::cerr << "saphira: no topic \"" << topic.substr(0, 200) << "\"";
+    if (!meant.empty())
+      std::cerr << ": did you mean " << meant << "? There are";
+    else
+      std::cerr << ": expected one of";
+    for (const std::string& name : names)
+      std::cerr << ' ' << name;
+    std::cerr << '\n';
     return bus::kExitUsage;
   }
   bus::Node node(options);

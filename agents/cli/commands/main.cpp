@@ -1,10 +1,38 @@
+#include <cstdio>
+#include <string>
+#include <vector>
+
 #include "commands.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/cli/printer.hpp"
+
+namespace saphira::cli {
+namespace {
+
+int print_help(const CLI::App& root, const std::string& name) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : root.get_subcommands({})) {
+    names.push_back(command->get_name());
+    if (command->get_name() != name)
+      continue;
+    std::fputs(command->help(root.get_name()).c_str(), stdout);
+    return bus::kExitOk;
+  }
+  const std::string meant = guess(name, names);
+  std::fprintf(
+      stderr, "saphira: no command \"%s\"%s\n", name.c_str(),
+      meant.empty() ? "; `saphira help` lists them" : (": did you mean " + meant + "?").c_str());
+  return bus::kExitUsage;
+}
+
+}  // namespace
+}  // namespace saphira::cli
 
 int main(int argc, char** argv) {
   using namespace saphira;
   cli::Chosen chosen;
   CLI::App* root = nullptr;
+  std::string about;
   return bus::run_program(
       argc, argv, "cli", "Runs, watches and drives a robot on the Saphira bus",
       [&](CLI::App& app) {
@@ -29,7 +57,8 @@ int main(int argc, char** argv) {
         cli::add_log(app, chosen);
         cli::add_wiring(app, chosen);
         cli::add_bench(app, chosen);
-        app.add_subcommand("help", "This text");
+        app.add_subcommand("help", "This text; with a command's name: what that takes")
+            ->add_option("command", about, "name of a command");
         // --robot and the like may stand behind the subcommand as well.
         // (Those of a benchmark are its own.)
         for (CLI::App* command : app.get_subcommands({}))
@@ -41,6 +70,9 @@ int main(int argc, char** argv) {
           cli::flush_output();
           return code;
         }
+        root->clear();  // its help is that of the command that was given, otherwise
+        if (!about.empty())
+          return cli::print_help(*root, about);
         std::fputs(root->help().c_str(), stdout);
         std::fputs("\n./saphira test builds and runs the tests. README.md says how to begin.\n",
                    stdout);

@@ -4,9 +4,12 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "internal.hpp"
 #include "log.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::bus {
@@ -22,10 +25,12 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->capture_default_str();
   static const std::map<std::string, Profile> profiles{
       {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
-  app.add_option("--profile", options.profile,
-                 "Network: host (this machine alone), lan (multicast), wan (--peer)")
+  app.add_option_function<std::string>(
+         "--profile",
+         [&options](const std::string& profile) { options.profile = profiles.at(profile); },
+         "Network: host (this machine alone), lan (multicast), wan (--peer)")
       ->envname("SAPHIRA_PROFILE")
-      ->transform(CLI::CheckedTransformer(profiles))
+      ->check(CLI::IsMember({"host", "lan", "wan"}))
       ->default_str("host");
   app.add_option("--peer", options.peers,
                  "wan: addresses of other machines; one that all of them name is enough")
@@ -42,6 +47,30 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->default_str("info");
 }
 
+namespace {
+
+/// Says what is not understood of the command line, and what may have been meant.
+int not_understood(const CLI::App& app) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty())
+    command = command->get_subcommands().front();
+  std::vector<std::string> known;
+  for (const CLI::App* const each : command->get_subcommands({}))
+    known.push_back(each->get_name());
+  for (const CLI::Option* const each : command->get_options())
+    for (const std::string& name : each->get_lnames())
+      known.push_back("--" + name);
+  const std::vector<std::string> words = app.remaining(true);
+  const std::string word = words.empty() ? "" : words.front();
+  const std::string meant = guess(word, known);
+  std::fprintf(
+      stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
+      meant.empty() ? "; --help tells what is" : (": did you mean " + meant + "?").c_str());
+  return kExitUsage;
+}
+
+}  // namespace
+
 int run_program(int argc, char** argv, const std::string& name, const std::string& description,
                 const std::function<void(CLI::App&)>& add_options,
                 const std::function<int(const NodeOptions&, const Stop&)>& body) {
@@ -49,10 +78,13 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   options.name = name;
   CLI::App app{description, "saphira-" + name};
   add_node_options(app, options);
+  app.set_version_flag("--version", "saphira " SAPHIRA_VERSION);
   if (add_options)
     add_options(app);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    return not_understood(app);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

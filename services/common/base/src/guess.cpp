@@ -1,0 +1,52 @@
+#include "saphira/base/guess.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace saphira {
+namespace {
+
+constexpr std::size_t kLongest = 64;  // letters: longer words are not compared
+
+/// Letters to be left out, added, replaced, or swapped with the next (optimal string alignment).
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> least(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        least[i][j] = i + j;
+        continue;
+      }
+      const std::size_t replaced = least[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      least[i][j] = std::min({least[i - 1][j] + 1, least[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        least[i][j] = std::min(least[i][j], least[i - 2][j - 2] + 1);
+    }
+  return least[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string guess(std::string_view word, const std::vector<std::string>& candidates) {
+  if (word.empty() || word.size() > kLongest)
+    return "";
+  std::string best;
+  std::size_t nearest = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongest)
+      continue;
+    const std::size_t far = distance(word, candidate);
+    if (far < nearest) {
+      nearest = far;
+      best = candidate;
+    }
+  }
+  if (!best.empty() || word.size() < 2)
+    return best;
+  const auto longer =
+      std::find_if(candidates.begin(), candidates.end(),
+                   [&](const std::string& candidate) { return candidate.starts_with(word); });
+  return longer == candidates.end() ? "" : *longer;
+}
+
+}  // namespace saphira

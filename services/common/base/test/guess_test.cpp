@@ -1,0 +1,27 @@
+#include "saphira/base/guess.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira {
+namespace {
+
+const std::vector<std::string> kCommands{"demo", "goal", "estop", "status", "behaviors"};
+
+TEST(Guess, FindsWhatWasMeant) {
+  EXPECT_EQ(guess("gaol", kCommands), "goal") << "two letters swapped";
+  EXPECT_EQ(guess("dmo", kCommands), "demo") << "one left out";
+  EXPECT_EQ(guess("estopp", kCommands), "estop") << "one too many";
+  EXPECT_EQ(guess("behaviours", kCommands), "behaviors");
+  EXPECT_EQ(guess("stat", kCommands), "status") << "the beginning";
+}
+
+TEST(Guess, IsSilentWhereNothingIsNear) {
+  EXPECT_EQ(guess("fly", kCommands), "");
+  EXPECT_EQ(guess("", kCommands), "");
+  EXPECT_EQ(guess("x", kCommands), "");
+  EXPECT_EQ(guess(std::string(100'000, 'g'), kCommands), "");
+  EXPECT_EQ(guess("goal", {}), "");
+}
+
+}  // namespace
+}  // namespace saphira
