@@ -1,5 +1,7 @@
 #include "scene.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -78,10 +80,12 @@ void Scene::publish() {
   published_ = std::chrono::steady_clock::now();
 }
 
-void Scene::permit(std::uint64_t until) {
+void Scene::permit(std::uint64_t last) {
+  // A command that is written before the bridge listens is said to nobody, and each is said once.
+  EXPECT_TRUE(until([this] { return driver_->matched() > 0; }));
   v1::StepPermit sample;
   sample.source("test");
-  sample.until_cycle(until);
+  sample.until_cycle(last);
   permits_.write(sample);
 }
 

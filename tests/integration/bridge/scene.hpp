@@ -37,7 +37,7 @@ class Scene {
   bool follows_cycles = true;  ///< stamps its commands with the newest robot state
   void publish();
   /// In lockstep: lets the robot make its steps up to that cycle.
-  void permit(std::uint64_t until);
+  void permit(std::uint64_t last);
 
   /// Watches and drives until the condition holds; false when the time is up.
   bool until(const std::function<bool()>& condition,
