@@ -12,6 +12,7 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -68,6 +69,7 @@ class StallWatch {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::vector<char*> again(argv, argv + argc + 1);  // GoogleTest takes its own out of argv
   testing::InitGoogleTest(&argc, argv);
   const char* said = std::getenv(kAttempt);
   const int attempt = said == nullptr ? 1 : std::atoi(said);
@@ -87,7 +89,7 @@ int main(int argc, char** argv) {
               kAttempts);
   std::fflush(nullptr);
   setenv(kAttempt, std::to_string(attempt + 1).c_str(), 1);
-  execv("/proc/self/exe", argv);
+  execv("/proc/self/exe", again.data());
   std::perror("cannot run again");
   return result;
 }
