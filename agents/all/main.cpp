@@ -8,20 +8,27 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "agent_interface/shell/dialogue_shell.hpp"
 #include "bridge/shell/shell.hpp"
+#include "saphira/base/fnv1a.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/gateway.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/sim/host.hpp"
+#include "story/shell/story.hpp"
 #include "system/system.hpp"
 
 namespace {
@@ -62,11 +69,19 @@ class Threads {
   std::vector<std::jthread> threads_;
 };
 
+/// People who speak to the robot, and what understands them.
+struct Talk {
+  std::string grammar;  ///< a file; empty: nobody understands
+  std::string people;   ///< a file of config/people; empty: nobody is there
+  double time_limit = 1200.0;
+};
+
 /// What runs.
 struct Programs {
   sim::HostOptions robot;
   bridge::BridgeOptions link;
   std::vector<runtime::Component> services;
+  Talk talk;
 };
 
 /// The same options under the name of one service.
@@ -90,8 +105,52 @@ void run_in_threads(const Programs& programs, const bus::NodeOptions& options,
   threads.run(stop);
 }
 
-/// Runs everything in this thread. In a round every part does what is due. After a round in which
-/// no service stepped, the thread rests until a program outside writes something, 20 ms at most.
+/// Dialogue and people on the in-memory bus. They take a step after each of the services, so that
+/// what is said depends on the robot's cycles alone.
+class Talkers {
+ public:
+  Talkers(const Talk& talk, const bus::NodeOptions& options,
+          const std::shared_ptr<bus::MemoryBus>& memory) {
+    if (talk.grammar.empty())
+      return;
+    listener_.emplace(named(options, "dialogue"), memory);
+    dialogue_.emplace(*listener_, agent_interface::DialogueOptions{talk.grammar, ""});
+    if (talk.people.empty())
+      return;
+    speaker_.emplace(named(options, "people"), memory);
+    story_.emplace(*speaker_, story::Cast(read_file(talk.people), talk.people),
+                   story::StoryOptions{
+                       {}, talk.time_limit, [](double time, const auto& place, const auto& line) {
+                         std::printf("%s\n", story::story_line(time, place, line).c_str());
+                       }});
+  }
+
+  /// True when the story has come to its end.
+  bool step() {
+    if (dialogue_)
+      dialogue_->step();
+    return story_ && story_->step();
+  }
+
+  /// How the story ended, as one line of JSON.
+  void report() const {
+    const nlohmann::json result{{"well", story_->well()},
+                                {"outcome", story_->outcome()},
+                                {"time_s", std::round(10.0 * story_->time()) / 10.0},
+                                {"utterances", story_->utterances()},
+                                {"dialogue_hash", story_->hash()}};
+    std::printf("%s\n", result.dump().c_str());
+  }
+
+ private:
+  std::optional<bus::Node> listener_;
+  std::optional<agent_interface::DialogueShell> dialogue_;
+  std::optional<bus::Node> speaker_;
+  std::optional<story::Story> story_;
+};
+
+/// Runs everything in this thread, in rounds: simulator, bridge, services. After a round without a
+/// service's step, the thread sleeps until a program outside writes a sample, at most 20 ms.
 void run_in_turn(const Programs& programs, const bus::NodeOptions& options, const bus::Stop& stop) {
   using std::chrono::milliseconds;
   constexpr milliseconds kMostRest{20};
@@ -108,6 +167,7 @@ void run_in_turn(const Programs& programs, const bus::NodeOptions& options, cons
     auto shell = std::make_unique<runtime::Shell>(*node, service.make);
     parts.push_back({std::move(node), std::move(shell)});
   }
+  Talkers talkers(programs.talk, options, memory);
   bus::Node outside(options);
   bus::Gateway gateway(outside, memory);
 
@@ -119,6 +179,10 @@ void run_in_turn(const Programs& programs, const bus::NodeOptions& options, cons
       stepped = part.shell->advance() || stepped;
     gateway.carry();
     if (stepped) {
+      if (talkers.step()) {
+        talkers.report();
+        break;
+      }
       bridge.advance({false, true});
       rest = milliseconds(1);
       continue;
@@ -152,6 +216,10 @@ int main(int argc, char** argv) {
         app.add_option("--world", robot.world,
                        "world file of the simulator, or the name of one that is shipped")
             ->capture_default_str();
+        app.add_option("--things", robot.things,
+                       "file of the same form with what stands and walks in that world besides");
+        app.add_option("--view-socket", robot.view_socket,
+                       "local socket of the simulator's own view");
         app.add_option("--robot-file", robot.robot,
                        "parameter file of the simulated robot, or the name of one that is shipped")
             ->capture_default_str();
@@ -167,10 +235,26 @@ int main(int argc, char** argv) {
         app.add_option("--state", programs.link.state_file,
                        "file that keeps the robot's position over a restart");
         app.add_flag("--free-step", programs.link.free_step, "lockstep: step without a permit");
+        app.add_option("--grammar", programs.talk.grammar,
+                       "lockstep: the dialogue runs as well, with what people may say: a name of "
+                       "config/grammars, or a file");
+        app.add_option("--people", programs.talk.people,
+                       "the people of a story, who speak to the robot: a name of config/people, or "
+                       "a file; it ends with the story, and its last line tells how, as JSON")
+            ->needs("--grammar");
+        app.add_option("--time-limit", programs.talk.time_limit, "[s] of robot time, for the story")
+            ->capture_default_str();
         for (const runtime::Component& service : programs.services)
           service.add_options(app);
         app.get_option("--vision")->description("vision runs as well");
-        app.parse_complete_callback([&] { sees = app.count("--vision") > 0; });
+        app.get_option("--stereo-socket")
+            ->description("local socket on which the simulator sends stereo pictures to vision")
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+        app.parse_complete_callback([&] {
+          sees = app.count("--vision") > 0;
+          if (app.count("--stereo-socket") > 0)
+            robot.stereo_socket = app.get_option("--stereo-socket")->as<std::string>();
+        });
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         programs.robot.world = find_file(config + "/worlds", programs.robot.world, ".wld");
@@ -180,6 +264,14 @@ int main(int argc, char** argv) {
         programs.robot.log = [](const std::string& line) {
           std::fprintf(stderr, "sim: %s\n", line.c_str());
         };
+        Talk& talk = programs.talk;
+        if (!talk.grammar.empty()) {
+          if (!options.lockstep)
+            throw std::invalid_argument("--grammar: in one process the dialogue needs --lockstep");
+          talk.grammar = find_file(config + "/grammars", talk.grammar, ".grammar");
+        }
+        if (!talk.people.empty())
+          talk.people = find_file(config + "/people", talk.people, ".people");
         if (!sees)
           std::erase_if(programs.services, [](const auto& one) { return one.name == "vision"; });
         if (options.lockstep)

@@ -1,11 +1,10 @@
 #include "convert.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "geometry/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::bridge {
@@ -58,6 +57,8 @@ constexpr EnumPairs<protocol::VisionChannel::Mode, v1::VisionMode, 3> kVisionMod
     {protocol::VisionChannel::Mode::kLine, v1::VISION_LINE},
 }}};
 
+constexpr std::size_t kMostSonars = 64;  // the bound of the sequences
+
 template <class T>
 T short_of(unsigned value) {
   return static_cast<T>(std::min<unsigned>(value, std::numeric_limits<T>::max()));
@@ -67,6 +68,14 @@ template <class T>
 std::vector<T> first(std::vector<T> values, std::size_t count) {
   values.resize(std::min(values.size(), count));
   return values;
+}
+
+v1::SonarReading to_bus(const protocol::Sonar& sonar) {
+  v1::SonarReading out;
+  out.sonar(sonar.number);
+  out.range(static_cast<float>(sonar.range));
+  out.echo(sonar.echo);
+  return out;
 }
 
 }  // namespace
@@ -106,19 +115,29 @@ v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
   out.analog(in.analog);
   out.digital_input(in.digital_input);
   out.digital_output(in.digital_output);
-  for (const protocol::Sonar& sonar : in.sonars) {
-    if (out.sonars().size() == 64)
-      break;
-    v1::SonarReading reading;
-    reading.sonar(sonar.number);
-    reading.range(static_cast<float>(sonar.range));
-    reading.echo(sonar.echo);
-    out.sonars().push_back(reading);
-  }
+  for (const protocol::Sonar& sonar : first(in.sonars, kMostSonars))
+    out.sonars().push_back(to_bus(sonar));
   out.motor_packets_per_s(short_of<std::uint16_t>(state.motor_packets_per_s));
   out.sonar_readings_per_s(short_of<std::uint16_t>(state.sonar_readings_per_s));
   out.vision_packets_per_s(0);  // Shell counts them
   out.bad_packets(static_cast<std::uint32_t>(bad_packets));
+  return out;
+}
+
+v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint64_t odom,
+                        const v1::Stamp& stamp) {
+  v1::SonarBuckets out;
+  out.stamp(stamp);
+  out.odom(odom);
+  for (const reflector::Bucket& bucket : first(buckets, kMostSonars)) {
+    v1::SonarBucket each;
+    each.reading(to_bus(bucket.reading));
+    each.cycle(bucket.cycle);
+    each.pose_in_odom(saphira::to_bus(bucket.pose_in_odom));
+    each.x(bucket.point.x());
+    each.y(bucket.point.y());
+    out.buckets().push_back(each);
+  }
   return out;
 }
 
@@ -171,7 +190,7 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& p,
   return out;
 }
 
-v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarded,
+v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp) {
   v1::Grant out;
   out.stamp(stamp);
@@ -182,7 +201,14 @@ v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarde
   out.command_age(grant.command_age);
   out.guard(kGuardActions.theirs(guarded.action));
   out.guard_reason(guarded.reason);
+  out.asked_velocity(told.setpoints.velocity);
   out.velocity(guarded.velocity);
+  out.rotation(told.setpoints.turn_to_heading ? v1::ROTATION_HEADING : v1::ROTATION_VELOCITY);
+  out.rotation_velocity(guarded.rotation_velocity);
+  out.heading(told.setpoints.heading_in_odom);
+  out.distance_left(told.distance_left);
+  out.answers(to_bus(grant.answers));
+  out.number(grant.number);
   out.estopped(grant.estopped);
   out.estop_source(grant.estop_source);
   out.waits_for_hand_back(grant.waits_for_hand_back);
@@ -241,99 +267,22 @@ DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
           trouble(command)};
 }
 
-reflector::Wish to_wish(const v1::ServoCommand& command) {
-  return reflector::ServoWish{command.width()};
-}
-
-reflector::Wish to_wish(const v1::GripperCommand& command) {
-  if (command.action() > v1::GRIPPER_NUMBER)
-    throw std::invalid_argument("unknown gripper action");
-  return reflector::GripperWish{static_cast<reflector::GripperAction>(command.action()),
-                                command.value()};
-}
-
-reflector::Wish to_wish(const v1::DigitalOutputCommand& command) {
-  return reflector::OutputWish{command.mask(), command.bits()};
-}
-
-reflector::Wish to_wish(const v1::AnalogCommand& command) {
-  return reflector::AnalogWish{command.port()};
-}
-
-reflector::Wish to_wish(const v1::TimerCommand& command) {
-  return reflector::TimerWish{command.pin()};
-}
-
-reflector::Wish to_wish(const v1::SonarCommand& command) {
-  if (command.polling().size() > 12)
-    throw std::invalid_argument("expected at most 12 sonars in the polling sequence");
-  return reflector::SonarWish{command.on(), command.polling()};
-}
-
-reflector::Wish to_wish(const v1::SoundCommand& command) {
-  reflector::SoundWish out;
-  out.stored = command.stored();
-  if (command.tones().size() > 20)
-    throw std::invalid_argument("expected at most 20 tones");
-  for (const v1::Tone& tone : command.tones()) {
-    const double steps = std::round(tone.duration() / 0.02);
-    if (!(steps >= 1.0 && steps <= 255.0))
-      throw std::invalid_argument("expected a tone of 0.02 to 5.1 s");
-    out.tones.push_back({static_cast<std::uint8_t>(steps), tone.pitch()});
-  }
-  return out;
-}
-
-reflector::Wish to_wish(const v1::ServerCommand& command) {
-  if (command.action() > v1::SERVER_REPORT_GRIPPER)
-    throw std::invalid_argument("unknown server action");
-  const auto action = static_cast<reflector::ServerAction>(command.action());
-  long high = 0;
-  switch (action) {
-    case reflector::ServerAction::set_origin:
-    case reflector::ServerAction::configuration:
-      return reflector::ServerWish{action, 0};
-    case reflector::ServerAction::motors:
-      high = 1;
-      break;
-    case reflector::ServerAction::bump_stall:
-      high = 3;
-      break;
-    case reflector::ServerAction::encoders:
-    case reflector::ServerAction::io:
-    case reflector::ServerAction::gripper:
-      high = 2;
-      break;
-  }
-  if (command.value() < 0 || command.value() > high)
-    throw std::invalid_argument("value " + std::to_string(command.value()) + " is not within 0.." +
-                                std::to_string(high));
-  return reflector::ServerWish{action, command.value()};
-}
-
-reflector::Wish to_wish(const v1::SerialCommand& command) {
-  if (command.port() < 1 || command.port() > 3)
-    throw std::invalid_argument("expected a serial port in 1..3");
-  if (command.data().size() > 180)
-    throw std::invalid_argument("expected at most 180 bytes");
-  return reflector::SerialWish{command.port(), command.data(), command.answer()};
-}
-
-v1::Devices to_bus(const std::vector<reflector::Request>& requests,
+v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
                    const reflector::Devices::Reports& reports,
                    const protocol::Information& information, const v1::Stamp& stamp) {
   v1::Devices out;
   out.stamp(stamp);
-  for (const reflector::Request& request : requests) {
+  for (const reflector::DeviceRequest& request : requests) {
     if (out.requests().size() == 64)
       break;
     v1::DeviceRequest r;
-    r.device(static_cast<v1::Device>(request.device));
     r.source(request.source);
-    r.request(request.number);
-    r.text(request.text);
-    r.state(static_cast<v1::RequestState>(request.state));
-    r.reason(request.reason);
+    r.asked(request.asked);
+    r.answer(saphira::to_bus(request.answer));
+    r.answer().asker(request.asker);
+    r.answer().number(request.number);
+    r.answer().service("bridge");
+    r.answer().stamp(stamp);
     r.sent(request.sent);
     out.requests().push_back(r);
   }

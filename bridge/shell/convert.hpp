@@ -25,13 +25,15 @@ v1::Stamp to_bus(const Stamp& stamp);
 v1::ServiceState to_bus(Health health);
 v1::RobotState to_bus(const reflector::State& state, const v1::Stamp& stamp,
                       std::uint64_t bad_packets);
+v1::SonarBuckets to_bus(const std::vector<reflector::Bucket>& buckets, std::uint64_t odom,
+                        const v1::Stamp& stamp);
 v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
                             const protocol::RobotIdentity& identity, const v1::Stamp& stamp,
                             const std::string& link, bool lockstep);
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet);
 
-/// A grant, what the guard did to it, the velocity that was sent, who was refused.
-v1::Grant to_bus(const authority::Grant& grant, const authority::Guarded& guarded,
+/// A grant, what its driver wants of the wheels, what the guard made of that, who was refused.
+v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp);
 
 /// What is wrong with a motor command; empty where nothing is. Anybody may write one: a number that
@@ -51,18 +53,7 @@ std::string source_of(const Sample& sample) {
   return sample.source().substr(0, 255);
 }
 
-/// What is asked of a device; std::invalid_argument says what was expected.
-reflector::Wish to_wish(const v1::ServoCommand& command);
-reflector::Wish to_wish(const v1::GripperCommand& command);
-reflector::Wish to_wish(const v1::DigitalOutputCommand& command);
-reflector::Wish to_wish(const v1::AnalogCommand& command);
-reflector::Wish to_wish(const v1::TimerCommand& command);
-reflector::Wish to_wish(const v1::SonarCommand& command);
-reflector::Wish to_wish(const v1::SoundCommand& command);
-reflector::Wish to_wish(const v1::ServerCommand& command);
-reflector::Wish to_wish(const v1::SerialCommand& command);
-
-v1::Devices to_bus(const std::vector<reflector::Request>& requests,
+v1::Devices to_bus(const std::vector<reflector::DeviceRequest>& requests,
                    const reflector::Devices::Reports& reports,
                    const protocol::Information& information, const v1::Stamp& stamp);
 

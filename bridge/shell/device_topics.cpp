@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "convert.hpp"
+#include "saphira/base/enumerators.hpp"
 
 namespace saphira::bridge {
 
@@ -14,56 +15,32 @@ DeviceTopics::DeviceTopics(bus::Node& node, reflector::Reflector& reflector)
       reflector_(reflector),
       devices_(node.writer(bus::topics::kDevices)),
       serial_data_(node.writer(bus::topics::kSerialData)),
-      servo_(node.reader(bus::topics::kServo)),
-      gripper_(node.reader(bus::topics::kGripper)),
-      output_(node.reader(bus::topics::kDigitalOutput)),
-      analog_(node.reader(bus::topics::kAnalog)),
-      timer_(node.reader(bus::topics::kTimer)),
-      sonar_(node.reader(bus::topics::kSonar)),
-      sound_(node.reader(bus::topics::kSound)),
-      server_(node.reader(bus::topics::kServer)),
-      serial_(node.reader(bus::topics::kSerial)) {}
+      desk_(node, bus::topics::kRobotAnswers) {
+  // In the order of reflector::Device.
+  const bus::RequestTopic* const topics[] = {
+      &bus::topics::kServo,  &bus::topics::kGripper, &bus::topics::kDigitalOutput,
+      &bus::topics::kAnalog, &bus::topics::kTimer,   &bus::topics::kSonar,
+      &bus::topics::kSound,  &bus::topics::kServer,  &bus::topics::kSerial};
+  for (const reflector::Device device : kEnumerators<reflector::Device>)
+    desk_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device),
+                [this](const Request& request) { return act(request); });
+}
 
-template <class T>
-void DeviceTopics::take(bus::Reader<T>& reader, v1::Device device, bool session) {
-  for (const auto& sample : reader.take()) {
-    if (sample.info.disposed)
-      continue;
-    const std::string who = source_of(sample.data);
-    std::string why = "no robot is connected";
-    if (session) {
-      try {
-        const reflector::Wish wish = to_wish(sample.data);
-        reflector_.request(who, sample.data.request(), wish);
-        node_.info(text(wish) + ", asked for by " + who);
-        continue;
-      } catch (const std::invalid_argument& error) {
-        why = error.what();
-      }
-    }
-    ++refused_;
-    reflector_.devices().refuse(device, who, sample.data.request(), "", why);
+std::optional<Answer> DeviceTopics::act(const Request& request) {
+  if (!session_)
+    return Answer{AnswerCode::nobody, "no robot is connected"};
+  try {
+    reflector_.request(request, reflector::wish_of(request));
+    return std::nullopt;  // what becomes of it: publish()
+  } catch (const std::invalid_argument& error) {
+    return Answer{AnswerCode::bad_argument, error.what()};
   }
 }
 
-void DeviceTopics::take(const v1::Stamp& stamp, bool session) {
-  // Most of the time nobody has anything to ask. The last words of who has just left are heard.
-  const std::size_t asking = servo_.matched() + gripper_.matched() + output_.matched() +
-                             analog_.matched() + timer_.matched() + sonar_.matched() +
-                             sound_.matched() + server_.matched() + serial_.matched();
-  const std::size_t asked = std::exchange(askers_, asking);
-  if (asking == 0 && asked == 0)
-    return;
-  take(servo_, v1::DEVICE_SERVO, session);
-  take(gripper_, v1::DEVICE_GRIPPER, session);
-  take(output_, v1::DEVICE_DIGITAL_OUTPUT, session);
-  take(analog_, v1::DEVICE_ANALOG, session);
-  take(timer_, v1::DEVICE_TIMER, session);
-  take(sonar_, v1::DEVICE_SONAR, session);
-  take(sound_, v1::DEVICE_SOUND, session);
-  take(server_, v1::DEVICE_SERVER, session);
-  take(serial_, v1::DEVICE_SERIAL, session);
-  publish(stamp);
+void DeviceTopics::take(const Stamp& stamp, bool session) {
+  session_ = session;
+  desk_.take(stamp);
+  publish(to_bus(stamp));
 }
 
 void DeviceTopics::packet(const protocol::ServerPacket& packet, std::uint8_t type,
@@ -95,6 +72,8 @@ void DeviceTopics::publish(const v1::Stamp& stamp) {
   const Shown now{in.front_bumpers, in.rear_bumpers, in.motors_on,       in.emergency_stop,
                   in.faults,        in.charge_state, in.state_of_charge, in.compass,
                   in.gripper_bits,  in.temperature};
+  for (const reflector::DeviceRequest& request : reflector_.devices().take_answered())
+    desk_.answer(request.asker, request.number, request.answer);
   const bool changed = reflector_.devices().take_changed();
   if (!changed && now == shown_)
     return;

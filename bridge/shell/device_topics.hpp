@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <tuple>
 
 #include "device.h"
+#include "requests/shell/desk.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/protocol/server_packet.hpp"
 #include "saphira/reflector/reflector.hpp"
@@ -19,35 +19,25 @@ class DeviceTopics {
   DeviceTopics(bus::Node& node, reflector::Reflector& reflector);
 
   /// Takes the requests, and publishes what became of them. Without a session they are refused.
-  void take(const v1::Stamp& stamp, bool session);
+  void take(const Stamp& stamp, bool session);
   /// Any packet but an information packet.
   void packet(const protocol::ServerPacket& packet, std::uint8_t type, const v1::Stamp& stamp);
   /// Where there is something new to tell.
   void publish(const v1::Stamp& stamp);
 
   /// Requests, since the start, that could not be done.
-  std::uint64_t refused() const { return refused_; }
+  std::uint64_t refused() const { return desk_.refused(); }
 
  private:
-  template <class T>
-  void take(bus::Reader<T>& reader, v1::Device device, bool session);
+  std::optional<Answer> act(const Request& request);
   void tell(const protocol::ConfigPacket& robot);
 
   bus::Node& node_;
   reflector::Reflector& reflector_;
   bus::Writer<v1::Devices> devices_;
   bus::Writer<v1::SerialData> serial_data_;
-  bus::Reader<v1::ServoCommand> servo_;
-  bus::Reader<v1::GripperCommand> gripper_;
-  bus::Reader<v1::DigitalOutputCommand> output_;
-  bus::Reader<v1::AnalogCommand> analog_;
-  bus::Reader<v1::TimerCommand> timer_;
-  bus::Reader<v1::SonarCommand> sonar_;
-  bus::Reader<v1::SoundCommand> sound_;
-  bus::Reader<v1::ServerCommand> server_;
-  bus::Reader<v1::SerialCommand> serial_;
-  std::size_t askers_ = 0;  ///< writers that were matched at the last look
-  std::uint64_t refused_ = 0;
+  Desk desk_;
+  bool session_ = false;
   /// Of the information packet, what robot/devices shows; it is written when this changes.
   using Shown =
       std::tuple<std::uint8_t, std::uint8_t, std::optional<bool>, std::optional<bool>,

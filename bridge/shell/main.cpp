@@ -1,9 +1,25 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/transport/address.hpp"
 #include "shell.hpp"
+
+namespace {
+
+/// Reads what would be read when a robot answers.
+int check(const saphira::bridge::BridgeOptions& options) {
+  saphira::transport::parse_address(options.robot_port);
+  for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))
+    if (file.path().extension() == ".p")
+      saphira::protocol::load_parameters(file.path());
+  return saphira::bus::kExitOk;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   saphira::bridge::BridgeOptions options;
@@ -56,6 +72,8 @@ int main(int argc, char** argv) {
           options.vision = {"pioneer_a_mode=2", "pioneer_b_mode=2", "pioneer_c_mode=2"};
           options.vision.insert(options.vision.end(), said.begin(), said.end());
         }
+        if (node.dry_run)
+          return check(options);
         return saphira::bridge::Shell(node, options).run(stop);
       });
 }

@@ -12,6 +12,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/notes.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/bus/sender.hpp"
 
 namespace saphira::bridge {
 
@@ -89,6 +90,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       keeper_(make_keeper(options_.keeper)),
       node_(memory ? bus::Node(node, memory) : bus::Node(node)),
       state_writer_(node_.writer(bus::topics::kRobotState)),
+      buckets_writer_(node_.writer(bus::topics::kSonarBuckets)),
       description_writer_(node_.writer(bus::topics::kRobotDescription)),
       grant_writer_(node_.writer(bus::topics::kGrant)),
       state_recall_(node_.writer(bus::topics::kRecallRobot)),
@@ -97,7 +99,7 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       teleop_(node_.reader(bus::topics::kDriveTeleop)),
       direct_(node_.reader(bus::topics::kDriveDirect)),
       behaviors_(node_.reader(bus::topics::kDriveBehaviors)),
-      resets_(node_.reader(bus::topics::kEstopReset)),
+      resets_(node_, bus::topics::kEstopReset.answers),
       permits_(node_.reader(bus::topics::kStepPermit)),
       other_programs_(node_),
       link_(transport::parse_address(options_.robot_port)),
@@ -105,6 +107,10 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
       devices_(node_, core_.reflector()),
       position_file_(options_.state_file),
       latch_file_(options_.state_file.empty() ? "" : options_.state_file + ".latched") {
+  resets_.serve(bus::topics::kEstopReset, {{"reset", "releases the emergency stop"}},
+                [this](const Request& request) {
+                  return core_.reset_estop(request.source, BootClock::seconds());
+                });
   if (!options_.vision.empty())
     camera_.emplace(node_, options_.vision);
   const double now = BootClock::seconds();
@@ -230,21 +236,19 @@ void Shell::take_all(double now) {
   take_drives(Role::teleop, teleop_, now);
   take_drives(Role::direct, direct_, now);
   take_drives(Role::behaviors, behaviors_, now);
-  for (const auto& sample : resets_.take()) {
-    if (!sample.info.disposed)
-      core_.reset_estop(source_of(sample.data), now);
-  }
+  resets_.take(core_.stamp());
   if (const auto permit = permits_.take_newest())
     core_.permit(permit->until_cycle());
   core_.answer(now);
   deliver(now);
-  devices_.take(to_bus(core_.stamp()), core_.in_session());  // nothing waits for them
+  devices_.take(core_.stamp(), core_.in_session());  // nothing waits for them
   core_.step(now);
   deliver(now);
 }
 
 void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double now) {
-  for (const auto& sample : reader.take()) {
+  for (auto& sample : reader.take()) {
+    sample.data.source() = bus::named(sample.data.source(), sample.info);
     if (!sample.info.disposed)
       core_.command(to_drive(sample.data, role, sample.info.writer), now);
   }
@@ -308,6 +312,8 @@ void Shell::perform(const CycleBegan& cycle, double now) {
     newest_state_.vision_packets_per_s(camera_->packets_per_s());
   }
   state_writer_.write(newest_state_);
+  if (!cycle.state.information.sonars.empty())
+    buckets_writer_.write(to_bus(cycle.state.buckets, cycle.state.odom, to_bus(cycle.stamp)));
   for (const protocol::Bytes& words : to_camera)
     link_.write(words, now);
 }
@@ -322,7 +328,8 @@ void Shell::perform(const OtherPacket& other, double) {
 
 void Shell::perform(const GrantDecided& decided, double) {
   const v1::Stamp stamp = to_bus(decided.stamp);
-  const v1::Grant grant = to_bus(decided.grant, decided.guarded, decided.refused, stamp);
+  const v1::Grant grant =
+      to_bus(decided.grant, decided.told, decided.guarded, decided.refused, stamp);
   grant_writer_.write(grant);
   if (decided.stamp.epoch == 0)
     return;

@@ -99,6 +99,7 @@ class Shell {
   bus::Node node_;
 
   bus::Writer<v1::RobotState> state_writer_;
+  bus::Writer<v1::SonarBuckets> buckets_writer_;
   bus::Writer<v1::RobotDescription> description_writer_;
   bus::Writer<v1::Grant> grant_writer_;
   bus::Writer<v1::RobotState> state_recall_;
@@ -107,7 +108,7 @@ class Shell {
   bus::Reader<v1::MotorCommand> teleop_;
   bus::Reader<v1::MotorCommand> direct_;
   bus::Reader<v1::MotorCommand> behaviors_;
-  bus::Reader<v1::EstopReset> resets_;
+  Desk resets_;
   bus::Reader<v1::StepPermit> permits_;
   OtherPrograms other_programs_;
 

@@ -121,73 +121,20 @@ TEST(Convert, MotorCommands) {
   EXPECT_NE(trouble(in), "");
 }
 
-template <class T>
-std::string refused(const T& command) {
-  try {
-    to_wish(command);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Convert, DeviceCommandsAreChecked) {
-  v1::GripperCommand gripper;
-  for (int i = 0; i <= static_cast<int>(v1::GRIPPER_NUMBER); ++i) {
-    gripper.action(static_cast<v1::GripperAction>(i));
-    EXPECT_EQ(static_cast<int>(std::get<reflector::GripperWish>(to_wish(gripper)).action), i);
-  }
-  gripper.action(static_cast<v1::GripperAction>(99));
-  EXPECT_EQ(refused(gripper), "unknown gripper action");
-
-  v1::SonarCommand sonar;
-  sonar.on(true);
-  sonar.polling({0, 1, 0, 5});
-  EXPECT_EQ(std::get<reflector::SonarWish>(to_wish(sonar)).polling,
-            (std::vector<std::uint8_t>{0, 1, 0, 5}));
-  sonar.polling(std::vector<std::uint8_t>(13));
-  EXPECT_NE(refused(sonar), "");
-
-  v1::SoundCommand sound;
-  sound.tones(std::vector<v1::Tone>(1));
-  sound.tones()[0].duration(0.5);
-  sound.tones()[0].pitch(60);
-  EXPECT_EQ(std::get<reflector::SoundWish>(to_wish(sound)).tones.at(0).duration, 25);
-  for (const double wrong : {0.0, -1.0, 6.0, std::numeric_limits<double>::quiet_NaN()}) {
-    sound.tones()[0].duration(wrong);
-    EXPECT_NE(refused(sound), "") << wrong;
-  }
-
-  v1::ServerCommand server;
-  server.action(v1::SERVER_MOTORS);
-  server.value(1);
-  EXPECT_EQ(std::get<reflector::ServerWish>(to_wish(server)).action,
-            reflector::ServerAction::motors);
-  server.value(2);
-  EXPECT_EQ(refused(server), "value 2 is not within 0..1");
-  server.action(v1::SERVER_REPORT_IO);
-  EXPECT_EQ(refused(server), "");
-  server.action(static_cast<v1::ServerAction>(99));
-  EXPECT_EQ(refused(server), "unknown server action");
-
-  v1::SerialCommand serial;
-  EXPECT_NE(refused(serial), "") << "port 0";
-  serial.port(3);
-  EXPECT_EQ(refused(serial), "");
-}
-
 TEST(Convert, Devices) {
   reflector::Devices::Reports reports;
   protocol::Information information;
-  const std::vector<reflector::Request> requests{
-      {7, "me", 5, "motors 1", reflector::RequestState::given_up, "because", 25}};
+  const std::vector<reflector::DeviceRequest> requests{
+      {7, 5, "me", "motors 1", {AnswerCode::given_up, "because", {}}, 25}};
   v1::Devices out = to_bus(requests, reports, information, stamp(1, 2));
   ASSERT_EQ(out.requests().size(), 1U);
-  EXPECT_EQ(out.requests()[0].device(), v1::DEVICE_SERVER);
-  EXPECT_EQ(out.requests()[0].state(), v1::REQUEST_GIVEN_UP);
-  EXPECT_EQ(out.requests()[0].request(), 5U);
+  EXPECT_EQ(out.requests()[0].source(), "me");
+  EXPECT_EQ(out.requests()[0].asked(), "motors 1");
   EXPECT_EQ(out.requests()[0].sent(), 25U);
-  EXPECT_EQ(out.requests()[0].reason(), "because");
+  EXPECT_EQ(out.requests()[0].answer().code(), v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(out.requests()[0].answer().asker(), 7U);
+  EXPECT_EQ(out.requests()[0].answer().number(), 5U);
+  EXPECT_EQ(out.requests()[0].answer().text(), "because");
   EXPECT_FALSE(out.has_flags() || out.has_io() || out.has_gripper() || out.has_encoders() ||
                out.has_charge() || out.has_temperature() || out.has_configuration());
 
@@ -221,9 +168,14 @@ TEST(Convert, GrantAndGuard) {
   grant.reason = "because";
   grant.expires_in = 0.2;
   grant.command_age = 0.1;
+  grant.answers = {7, 41};
+  grant.number = 12;
+  Told told;
+  told.setpoints = {0.4, true, 1.25, 0.0};
+  told.distance_left = 0.6;
   const std::vector<authority::Refusal> refused(20, {authority::Role::behaviors, "b", "weaker"});
   const v1::Grant out =
-      to_bus(grant, {0.3, 0.0, authority::GuardAction::slow, "near"}, refused, stamp(1, 2));
+      to_bus(grant, told, {0.3, 0.2, authority::GuardAction::slow, "near"}, refused, stamp(1, 2));
   EXPECT_EQ(out.role(), v1::ROLE_TELEOP);
   EXPECT_EQ(out.source(), "joystick");
   EXPECT_EQ(out.reason(), "because");
@@ -231,9 +183,33 @@ TEST(Convert, GrantAndGuard) {
   EXPECT_EQ(out.command_age(), 0.1);
   EXPECT_EQ(out.guard(), v1::GUARD_SLOW);
   EXPECT_EQ(out.guard_reason(), "near");
+  EXPECT_EQ(out.asked_velocity(), 0.4);
   EXPECT_EQ(out.velocity(), 0.3);
+  EXPECT_EQ(out.rotation(), v1::ROTATION_HEADING);
+  EXPECT_EQ(out.heading(), 1.25);
+  EXPECT_EQ(out.rotation_velocity(), 0.2);
+  EXPECT_EQ(out.distance_left(), 0.6);
+  EXPECT_EQ(out.answers(), stamp(7, 41));
+  EXPECT_EQ(out.number(), 12U);
   EXPECT_EQ(out.refused().size(), 16U);
   EXPECT_EQ(out.refused()[0].role(), v1::ROLE_BEHAVIORS);
+}
+
+TEST(Convert, SonarBuckets) {
+  const v1::SonarBuckets out =
+      to_bus(std::vector<reflector::Bucket>{{{3, 1.5, true}, 17, {1.0, 2.0, 0.5}, {1.6, 0.1}}}, 4,
+             stamp(1, 18));
+  EXPECT_EQ(out.stamp(), stamp(1, 18));
+  EXPECT_EQ(out.odom(), 4U);
+  ASSERT_EQ(out.buckets().size(), 1U);
+  const v1::SonarBucket& bucket = out.buckets()[0];
+  EXPECT_EQ(bucket.reading().sonar(), 3);
+  EXPECT_EQ(bucket.reading().range(), 1.5F);
+  EXPECT_TRUE(bucket.reading().echo());
+  EXPECT_EQ(bucket.cycle(), 17U);
+  EXPECT_EQ(bucket.pose_in_odom().y(), 2.0);
+  EXPECT_EQ(bucket.x(), 1.6);
+  EXPECT_EQ(bucket.y(), 0.1);
 }
 
 TEST(Convert, VisionChannels) {

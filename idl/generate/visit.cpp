@@ -170,6 +170,7 @@ class Parser {
     const std::string name = word();
     expect("{");
     std::ostringstream members;
+    std::ostringstream settable;
     std::ostringstream keys;
     std::set<std::string> named;
     while (!take("}")) {
@@ -187,6 +188,7 @@ class Parser {
         members << value;
       }
       members << ");\n";
+      settable << "  visit(\"" << member << "\", " << value << ");\n";
       if (key)
         keys << "  visit(\"" << member << "\", " << value << ");\n";
       expect(";");
@@ -202,6 +204,8 @@ class Parser {
     out_ << "template <class Visit>\nvoid visit_members(const " << name
          << "& sample, Visit&& visit) {\n"
          << members.str() << "}\n";
+    out_ << "template <class Visit>\nvoid visit_members(" << name << "& sample, Visit&& visit) {\n"
+         << settable.str() << "}\n";
     out_ << "template <class Visit>\nvoid visit_keys([[maybe_unused]] const " << name
          << "& sample, [[maybe_unused]] Visit&& visit) {\n"
          << keys.str() << "}\n";

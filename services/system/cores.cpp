@@ -12,16 +12,6 @@ namespace {
 
 constexpr std::uint64_t kEpoch = 1;
 
-constexpr EnumPairs<behaviors::Frame, intentions::Frame, 3> kFrames{{{
-    {behaviors::Frame::robot, intentions::Frame::kRobot},
-    {behaviors::Frame::odom, intentions::Frame::kOdom},
-    {behaviors::Frame::map, intentions::Frame::kMap},
-}}};
-constexpr EnumPairs<behaviors::Kind, intentions::ArgumentKind, 3> kKinds{{{
-    {behaviors::Kind::number, intentions::ArgumentKind::kNumber},
-    {behaviors::Kind::text, intentions::ArgumentKind::kText},
-    {behaviors::Kind::point, intentions::ArgumentKind::kPoint},
-}}};
 constexpr EnumPairs<registration::State, intentions::Localization, 4> kLocalizations{
     {{
         {registration::State::off, intentions::Localization::kOff},
@@ -32,40 +22,17 @@ constexpr EnumPairs<registration::State, intentions::Localization, 4> kLocalizat
     {},
     {intentions::Localization::kNone}};
 
-behaviors::Argument argument_of(const intentions::Argument& argument) {
-  switch (argument.kind) {
-    case intentions::ArgumentKind::kNumber:
-      return {argument.name, argument.number};
-    case intentions::ArgumentKind::kText:
-      return {argument.name, argument.text};
-    case intentions::ArgumentKind::kPoint:
-      break;
-  }
-  return {argument.name, behaviors::PlacedPoint{
-                             argument.point, kFrames.ours(argument.frame, behaviors::Frame::odom)}};
-}
-
-behaviors::Intent intent_of(const intentions::Outputs& wanted, std::uint64_t cycle) {
-  behaviors::Intent intent{cycle, wanted.behavior_control, {}};
+behaviors::Intent intent_of(const intentions::Outputs& wanted) {
+  behaviors::Intent intent{0, wanted.behavior_control, {}};
   for (const intentions::IntendedBehavior& behavior : wanted.behaviors) {
     behaviors::Intended& intended = intent.behaviors.emplace_back();
     intended.name = behavior.name;
     intended.schema = behavior.schema;
     intended.priority = behavior.priority;
     intended.running = behavior.running;
-    for (const intentions::Argument& parameter : behavior.parameters)
-      intended.parameters.push_back(argument_of(parameter));
+    intended.parameters = behavior.parameters;
   }
   return intent;
-}
-
-registration::Core::Request request_of(intentions::MapRequest asked) {
-  using Action = registration::Core::Request::Action;
-  registration::Core::Request request;
-  request.action =
-      asked == intentions::MapRequest::kForget ? Action::kDelete : Action::kAddFeatures;
-  request.on = asked == intentions::MapRequest::kAddFeatures;
-  return request;
 }
 
 void tell_behaviors(const behaviors::Output& output, intentions::Core::Inputs& inputs) {
@@ -88,7 +55,7 @@ std::vector<intentions::BehaviorSignature> signatures_of(const behaviors::Regist
     for (const behaviors::ParameterSpec& spec : behaviors.find(name)->parameters) {
       intentions::Parameter& parameter = signatures.back().parameters.emplace_back();
       parameter.name = spec.name;
-      parameter.kind = kKinds.theirs(spec.kind);
+      parameter.kind = spec.kind;
       parameter.low = spec.low;
       parameter.high = spec.high;
       parameter.required = spec.required;
@@ -145,14 +112,15 @@ const Cores::Said& Cores::step(const RobotCycle& robot) {
 behaviors::Core::Outputs Cores::step_behaviors(const RobotCycle& robot) {
   behaviors::Core::Inputs inputs;
   inputs.cycle = robot.cycle;
-  inputs.new_robot = said_.cycle == 0 ? &settings_.robot : nullptr;
-  inputs.robot = {robot.pose_in_odom,           robot.velocity,     robot.rotation_velocity,
-                  robot.target_heading_in_odom, robot.left_stalled, robot.right_stalled};
+  inputs.new_robot = first() ? &settings_.robot : nullptr;
+  // Commands work at once here: where the robot turns to is not asked for.
+  inputs.robot = {robot.pose_in_odom,    robot.velocity,     robot.rotation_velocity,
+                  robot.pose_in_odom.th, robot.left_stalled, robot.right_stalled};
   inputs.sonars = robot.readings;
   if (!intentions_)
     inputs.intent = intent_;
-  else if (said_.cycle > 0)
-    inputs.intent = intent_of(said_.intentions.intended, said_.cycle);
+  else if (!first())
+    inputs.intent = intent_of(said_.intentions.intended);
   if (inputs.intent)
     inputs.intent->cycle = robot.cycle - 1;
   return behaviors_.step(inputs);
@@ -161,7 +129,7 @@ behaviors::Core::Outputs Cores::step_behaviors(const RobotCycle& robot) {
 void Cores::step_interpretation(const RobotCycle& robot, Said& now) {
   interpretation::Core::Inputs inputs;
   inputs.cycle = robot.cycle;
-  inputs.new_robot = said_.cycle == 0 ? &settings_.robot.lps.sonars : nullptr;
+  inputs.new_robot = first() ? &settings_.robot.lps.sonars : nullptr;
   inputs.pose_in_odom = robot.pose_in_odom;
   inputs.readings = robot.readings;
   const double before = time();
@@ -172,14 +140,16 @@ void Cores::step_interpretation(const RobotCycle& robot, Said& now) {
 void Cores::step_registration(const RobotCycle& robot, Said& now) {
   registration::Core::Inputs inputs;
   inputs.cycle = robot.cycle;
-  inputs.new_robot = said_.cycle == 0 ? &settings_.robot.lps.sonars : nullptr;
+  inputs.new_robot = first() ? &settings_.robot.lps.sonars : nullptr;
   inputs.odom = robot.odom;
   inputs.pose_in_odom = robot.pose_in_odom;
   inputs.percepts = said_.percepts;
   inputs.readings = robot.readings;
   const double before = time();
-  for (const intentions::MapRequest asked : said_.intentions.intended.map_requests)
-    registration_->act(request_of(asked));
+  for (const Request& request : asked_)
+    registration_->act(request);
+  // As in lockstep: what was asked for in the last cycle counts in the next one.
+  asked_ = said_.intentions.intended.requests;
   now.registration = registration_->step(inputs);
   registration_took_ = time() - before;
   now.map_revision = registration_->map_revision();
@@ -189,7 +159,7 @@ void Cores::step_registration(const RobotCycle& robot, Said& now) {
 intentions::Core::Outputs Cores::step_intentions(const RobotCycle& robot) {
   intentions::Core::Inputs inputs;
   inputs.stamp = {kEpoch, robot.cycle};
-  inputs.new_robot = said_.cycle == 0 ? &settings_.robot.lps : nullptr;
+  inputs.new_robot = first() ? &settings_.robot.lps : nullptr;
   inputs.robot.connected = true;
   inputs.robot.odom = robot.odom;
   inputs.robot.pose_in_odom = robot.pose_in_odom;
@@ -199,7 +169,7 @@ intentions::Core::Outputs Cores::step_intentions(const RobotCycle& robot) {
   inputs.robot.right_stalled = robot.right_stalled;
   inputs.readings = robot.readings;
   inputs.heard = std::exchange(heard_, {});
-  if (said_.cycle > 0) {
+  if (!first()) {
     tell_behaviors(said_.behaviors.output, inputs);
     inputs.behaviors_cycle = said_.cycle;
     if (interpretation_)
@@ -207,7 +177,7 @@ intentions::Core::Outputs Cores::step_intentions(const RobotCycle& robot) {
     if (said_.things)
       inputs.vision = {{kEpoch, said_.cycle}, robot.odom, true, *said_.things};
   }
-  if (said_.cycle > 0 && registration_) {
+  if (!first() && registration_) {
     const registration::Core::Outputs& told = said_.registration;
     if (told.state == registration::State::tracking || told.state == registration::State::off)
       inputs.robot.odom_in_map = compose(told.pose_in_map, relative(said_.pose_in_odom, Pose{}));

@@ -19,7 +19,6 @@ struct RobotCycle {
   Pose pose_in_odom;
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
-  double target_heading_in_odom = 0.0;
   bool left_stalled = false;
   bool right_stalled = false;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
@@ -84,6 +83,7 @@ class Cores {
   void step_registration(const RobotCycle& robot, Said& now);
   intentions::Core::Outputs step_intentions(const RobotCycle& robot);
   void know_map();
+  bool first() const { return said_.cycle == 0; }
   double time() const { return settings_.clock ? settings_.clock() : 0.0; }
 
   Settings settings_;
@@ -93,6 +93,7 @@ class Cores {
   std::optional<intentions::Core> intentions_;
   std::optional<behaviors::Intent> intent_;
   intentions::Core::Heard heard_;
+  std::vector<Request> asked_;
   std::uint64_t known_map_ = 0;  ///< revision that intentions has
   Said said_;
   double interpretation_took_ = 0.0;

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -61,8 +62,29 @@ void set_robots(saphira::sim::HostOptions& options, const std::vector<std::strin
   }
 }
 
+/// What is shipped may be loaded by the view.
+void offer(saphira::sim::HostOptions& options, const std::string& config) {
+  const auto names = [](const std::string& folder, const std::string& extension) {
+    std::vector<std::string> found;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+      if (entry.path().extension() == extension)
+        found.push_back(entry.path().stem());
+    std::sort(found.begin(), found.end());
+    return found;
+  };
+  options.worlds = names(config + "/worlds", ".wld");
+  options.robots = names(config + "/robots", ".p");
+  options.world_file = [config](const std::string& name) {
+    return saphira::find_file(config + "/worlds", name, ".wld");
+  };
+  options.robot_file = [config](const std::string& name) {
+    return saphira::find_file(config + "/robots", name, ".p");
+  };
+}
+
 void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions& options) {
-  const auto world = saphira::sim::load_world(options.world);
+  const auto world = saphira::sim::load_world(options.world, options.things);
   const auto robot = saphira::protocol::load_parameters(options.robot);
   const auto trace = saphira::sim::parse_trace(saphira::read_file(files[0]), files[0]);
   std::ofstream out(files[1], std::ios::binary);
@@ -84,6 +106,10 @@ int main(int argc, char** argv) {
   options.world = "office";
   app.add_option("--world", options.world, "World file, or the name of one that is shipped")
       ->capture_default_str();
+  app.add_option("--things", options.things,
+                 "File of the same form with what stands and walks in that world besides: people, "
+                 "doors, boxes, posts")
+      ->check(CLI::ExistingFile);
   app.add_option("--robot,--robot-file", robots,
                  "Robot parameter file, or the name of one that is shipped (default: pioneer); "
                  "again for each further robot, which listens on the next port, or on the socket "
@@ -125,10 +151,15 @@ int main(int argc, char** argv) {
                  "picture beside the right one");
   app.add_option("--stereo-socket", options.stereo_socket,
                  "Local socket that sends the same pictures to whoever connects");
+  app.add_option(
+      "--view-socket", options.view_socket,
+      "Local socket of the simulator's own view: what is true, and what people do to it");
   app.add_option("--position", positions,
                  "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's; again "
                  "for each further robot")
       ->allow_extra_args(false);
+  bool dry_run = false;
+  app.add_flag("--dry-run", dry_run, "Read the files, say what is wrong with them, and end");
   app.add_option("--plot", plot_files, "Draw a trace into a picture (SVG), and end")
       ->expected(2)
       ->type_name("TRACE.csv OUT.svg");
@@ -147,10 +178,17 @@ int main(int argc, char** argv) {
     options.world = saphira::find_file(config + "/worlds", options.world, ".wld");
     if (pty->count() > 0)
       options.terminal = terminal.empty() ? saphira::sim::default_terminal() : terminal;
+    offer(options, config);
     set_robots(options, robots, positions, count);
     options.rate = rate == "max" ? saphira::sim::kMaxRate : std::stod(rate);
     if (!plot_files.empty()) {
       plot(plot_files, options);
+      return 0;
+    }
+    if (dry_run) {
+      saphira::sim::load_world(options.world, options.things);
+      for (const std::string& file : robots)
+        saphira::protocol::load_parameters(file);
       return 0;
     }
     const auto logger = spdlog::stderr_color_mt("sim");

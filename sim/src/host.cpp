@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -23,7 +24,9 @@
 #include "saphira/base/text.hpp"
 #include "saphira/sim/line_check.hpp"
 #include "saphira/sim/simulation.hpp"
+#include "saphira/sim/view.hpp"
 #include "stereo_feed.hpp"
+#include "view_feed.hpp"
 
 namespace saphira::sim {
 
@@ -261,6 +264,9 @@ class Station {
                      server().single_step() ? kPicturesInStep : 1);
   }
 
+  /// Somebody pulls the plug.
+  void drop() { hang_up("disconnected by the view"); }
+
   void end() {
     hang_up("stopped");
     trace_.write(server().take_trace());
@@ -348,10 +354,21 @@ class Station {
 
 class Serving {
  public:
-  Serving(const HostOptions& options, Simulation& simulation)
-      : simulation_(simulation), unpaced_(options.rate == kMaxRate), pace_(options.rate) {
+  /// `view`, which may be none, outlives it.
+  Serving(const HostOptions& options, Simulation& simulation, ViewFeed* view)
+      : simulation_(simulation),
+        view_(view),
+        unpaced_(options.rate == kMaxRate),
+        pacing_{false, unpaced_ ? 1.0 : options.rate},
+        pace_(options.rate) {
     for (RobotNumber i = 0; i < simulation.size(); ++i)
       stations_.push_back(std::make_unique<Station>(options, simulation, i));
+    if (view_ == nullptr)
+      return;
+    world_ = describe_world(
+        simulation.scene().world(),
+        {options.worlds, options.robots, std::filesystem::path(options.world).stem().string()});
+    view_->tell(world_, true);
   }
 
   bool serve(int stop_fd, int most_ms) {
@@ -374,6 +391,8 @@ class Serving {
       station->add_to(fds_);
     for (const auto& station : stations_)
       station->add_viewers_to(fds_);
+    if (view_ != nullptr)
+      view_->add_to(fds_);
     if (::poll(fds_.data(), fds_.size(), timeout) < 0) {
       if (errno == EINTR)
         return true;
@@ -382,8 +401,13 @@ class Serving {
     if (fds_[0].revents != 0)
       return false;
     step(fds_);
+    if (view_ != nullptr)
+      serve_view();
     return true;
   }
+
+  /// What somebody at the view wants to have instead of this world, these robots.
+  std::optional<Load> take_load() { return std::exchange(load_, std::nullopt); }
 
   void end() {
     for (const auto& station : stations_)
@@ -402,7 +426,7 @@ class Serving {
   // poll shall wait [ms], without end below zero.
   int schedule() {
     const bool ran = running_;
-    running_ = simulation_.runs();
+    running_ = simulation_.runs() && !pacing_.paused;
     if (running_ && unpaced_)
       return patience();
     if (running_) {
@@ -467,8 +491,58 @@ class Serving {
         stations_[i]->accept();
   }
 
+  void serve_view() {
+    const bool asked = view_->serve(world_, [this](const std::string& text) { return obey(text); });
+    const std::uint64_t ticks = simulation_.scene().ticks();
+    if (!view_->watched() || (!asked && shown_ && ticks < *shown_ + kTicksPerPacket))
+      return;
+    shown_ = ticks;
+    view_->tell(describe_scene(simulation_, pacing_), false);
+  }
+
+  /// A line from the view; what is answered, as a line.
+  std::string obey(const std::string& text) {
+    std::string trouble;
+    try {
+      trouble = obey(parse_wish(text));
+    } catch (const std::invalid_argument& error) {
+      trouble = error.what();
+    }
+    return trouble.empty() ? "" : complaint(trouble);
+  }
+  std::string obey(const Wish& wish) {
+    if (const auto* pause = std::get_if<Pause>(&wish)) {
+      pacing_.paused = pause->on;
+    } else if (std::holds_alternative<StepOnce>(wish)) {
+      if (!pacing_.paused)
+        return "time is not paused";
+      simulation_.advance(kTicksPerPacket);
+      for (const auto& station : stations_)
+        station->write(true);
+    } else if (const auto* rate = std::get_if<SetRate>(&wish)) {
+      if (unpaced_)
+        return "the simulator runs as fast as it can";
+      pacing_.rate = rate->rate;
+      pace_ = Pace(rate->rate);
+    } else if (const auto* disconnect = std::get_if<Disconnect>(&wish)) {
+      if (disconnect->robot >= stations_.size())
+        return "there is no robot " + std::to_string(disconnect->robot);
+      stations_[disconnect->robot]->drop();
+    } else if (const auto* load = std::get_if<Load>(&wish)) {
+      load_ = *load;
+    } else {
+      return change_scene(simulation_, wish);
+    }
+    return {};
+  }
+
   Simulation& simulation_;
+  ViewFeed* view_;
+  std::string world_;                   // as the view describes it
+  std::optional<std::uint64_t> shown_;  // [ticks] when the view was told last
+  std::optional<Load> load_;
   bool unpaced_;
+  Pacing pacing_;
   Pace pace_;
   Timer timer_;
   std::vector<std::unique_ptr<Station>> stations_;
@@ -502,9 +576,10 @@ std::string numbered(const std::string& path, std::size_t number) {
 }
 
 struct Host::Parts {
-  explicit Parts(const HostOptions& options) : world(load_world(options.world)) {
+  Parts(const HostOptions& options, ViewFeed* view)
+      : world(load_world(options.world, options.things)) {
     add_robots(options);
-    serving.emplace(options, simulation);
+    serving.emplace(options, simulation, view);
   }
   void add_robots(const HostOptions& options);
 
@@ -556,11 +631,47 @@ void Host::Parts::add_robots(const HostOptions& options) {
   }
 }
 
-Host::Host(const HostOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+Host::Host(const HostOptions& options) : options_(options) {
+  if (options_.view_socket)
+    view_ = std::make_unique<ViewFeed>(*options_.view_socket);
+  parts_ = std::make_unique<Parts>(options_, view_.get());
+}
 Host::~Host() = default;
 
 bool Host::serve(int stop_fd, int most_ms) {
-  return parts_->serving->serve(stop_fd, most_ms);
+  if (!parts_->serving->serve(stop_fd, most_ms))
+    return false;
+  if (const auto load = parts_->serving->take_load())
+    change(load->world, load->robot);
+  return true;
+}
+
+void Host::change(const std::string& world, const std::string& robot) {
+  HostOptions next = options_;
+  if (!options_.world_file || !options_.robot_file)
+    return view_->tell(complaint("nothing else can be loaded into this simulator"), true);
+  try {
+    if (!world.empty()) {
+      next.world = options_.world_file(world);
+      next.things.clear();
+      next.position.reset();
+    }
+    if (!robot.empty())
+      next.robot = options_.robot_file(robot);
+    load_world(next.world, next.things);
+    protocol::load_parameters(next.robot);
+  } catch (const std::exception& error) {
+    return view_->tell(complaint(error.what()), true);
+  }
+  parts_->serving->end();
+  parts_.reset();  // its sockets are wanted
+  try {
+    parts_ = std::make_unique<Parts>(next, view_.get());
+    options_ = next;
+  } catch (const std::exception& error) {
+    parts_ = std::make_unique<Parts>(options_, view_.get());
+    view_->tell(complaint(error.what()), true);
+  }
 }
 
 void Host::end() {

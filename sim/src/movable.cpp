@@ -73,11 +73,12 @@ bool MovableReader::read(std::string_view word, LineReader& in, const Pose& fram
     person.at = point(in, "the person", frame_in_world);
     plans_.persons.push_back(person);
     last_ = Last::kPerson;
-  } else if (word == "walk") {
+  } else if (word == "walk" || word == "lead") {
     needs(Last::kPerson, "person");
     PersonPlan::Leg leg;
     leg.to = point(in, "where to", frame_in_world);
     leg.speed = in.number("speed in mm/s", 1.0, kMostSpeed) * kMillimetre;
+    leg.leads = word == "lead";
     plans_.persons.back().script.push_back(leg);
   } else if (word == "wait") {
     needs(Last::kPerson, "person");
@@ -87,7 +88,7 @@ bool MovableReader::read(std::string_view word, LineReader& in, const Pose& fram
   } else if (word == "repeat") {
     needs(Last::kPerson, "person");
     if (plans_.persons.back().script.empty())
-      in.fail("expected walk or wait before this repeat");
+      in.fail("expected walk, lead or wait before this repeat");
     plans_.persons.back().repeats = true;
   } else if (word == "door") {
     DoorPlan door;

@@ -15,6 +15,9 @@ constexpr double kManners = 0.10;  // [m]
 // Somebody who has waited so long for the way to become free goes elsewhere [s].
 constexpr double kPatience = 4.0;
 
+// Somebody who leads a robot waits for it beyond this distance, from middle to middle.
+constexpr double kLeash = 2.5;  // [m]
+
 constexpr double kDoorSpeed = kPi / 2.0;  // [rad/s]
 
 // A robot of the class that we have moves what does not hold faster than its own tyres.
@@ -181,6 +184,27 @@ bool Scene::set_box(std::string_view name, const Pose& pose_in_world) {
   return false;
 }
 
+bool Scene::set_person(std::string_view name, const Vec2& at) {
+  for (std::uint32_t i = 0; i < persons_.size(); ++i) {
+    Person& person = persons_[i];
+    if (person.plan->look.name != name)
+      continue;
+    const double radius = person.plan->radius;
+    const auto near = [&](const Segment& segment) { return distance_to(segment, at) < radius; };
+    if (sim::distance(world_->segments, at) < radius ||
+        std::any_of(segments_.begin(), segments_.end(), near) ||
+        std::any_of(hulls_.begin(), hulls_.end(), [&](const Disc& hull) {
+          return (hull.centre - at).norm() < radius + hull.radius;
+        }))
+      return false;
+    person.at = at;
+    person.waited = 0.0;
+    persons_near_.put(i, at);
+    return true;
+  }
+  return false;
+}
+
 void Scene::walk(Person& person) {
   const std::vector<PersonPlan::Leg>& script = person.plan->script;
   if (person.leg >= script.size()) {
@@ -193,6 +217,8 @@ void Scene::walk(Person& person) {
     person.way = 0.0;
     person.waited += kTick;
     done = person.waited > leg.wait - kTick / 2.0;
+  } else if (leg.leads && !has_robot_within(kLeash, person.at)) {
+    person.way = 0.0;
   } else {
     const Vec2 way = leg.to - person.at;
     const double step = leg.speed * kTick;
@@ -220,6 +246,12 @@ void Scene::next_leg(Person& person) {
   ++person.leg;
   if (person.leg == person.plan->script.size() && person.plan->repeats)
     person.leg = 0;
+}
+
+bool Scene::has_robot_within(double reach, const Vec2& point) const {
+  const auto& near = hulls_near_.near(point, reach);
+  return std::any_of(near.begin(), near.end(),
+                     [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
 }
 
 // Whether nothing is in his way that was not already behind him.

@@ -395,6 +395,7 @@ void Server::close() {
   state_ = State::kSync0;
   watchdog_ = false;
   readings_.clear();
+  newest_.clear();
   robot_.stop();
   set_default_polling();
   devices_.disconnect();
@@ -432,9 +433,20 @@ void Server::end_tick() {
   if (is_open()) {
     if (const auto echo = sonars_.tick(robot_.pose_in_world()))
       readings_.push_back({echo->number, to_range(*echo, parameters_.range_unit)});
+    if (!readings_.empty())
+      newest_[readings_.back().number] = readings_.back().range;
   }
   if (++phase_ == kTicksPerPacket)
     finish_cycle();
+}
+
+std::vector<std::pair<Pose, double>> Server::beams() const {
+  std::vector<std::pair<Pose, double>> beams;
+  for (const protocol::SonarUnit& unit : parameters_.sonars)
+    if (const auto found = newest_.find(unit.number); found != newest_.end())
+      beams.emplace_back(unit.pose_in_robot, std::min(found->second * parameters_.range_unit,
+                                                      parameters_.sonar_max_range));
+  return beams;
 }
 
 void Server::finish_cycle() {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -61,8 +62,10 @@ void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycl
                        std::size_t waiting) {
   if (listener_)
     for (Fd fd = listener_->accept(); fd; fd = listener_->accept())
-      viewers_.push_back({std::move(fd), {}});
-  if (cycle != cycle_ && cycle != 0 && (!folder_.empty() || !viewers_.empty())) {
+      viewers_.push_back(
+          {std::move(fd), std::accumulate(before_.begin(), before_.end(), std::string())});
+  const bool is_kept = listener_ && waiting > 1;
+  if (cycle != cycle_ && cycle != 0 && (!folder_.empty() || !viewers_.empty() || is_kept)) {
     Random random(seed_, cycle);
     const std::string picture = to_pgm(render_stereo(scene, robot, rig_, random), rig_, cycle);
     for (Viewer& viewer : viewers_)
@@ -70,6 +73,10 @@ void StereoFeed::serve(const Scene& scene, RobotNumber robot, std::uint64_t cycl
         viewer.waiting += picture;
     if (!folder_.empty())
       write(picture, cycle);
+    if (is_kept)
+      before_.push_back(picture);
+    if (before_.size() > waiting)
+      before_.pop_front();
   }
   cycle_ = cycle;
   std::erase_if(viewers_, [](Viewer& viewer) { return !send(viewer); });

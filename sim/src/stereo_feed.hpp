@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ class StereoFeed {
 
   void add_to(std::vector<pollfd>& fds) const;
   /// Takes on who has come, sends on what waits, and the picture of `cycle` where it is a new one.
-  /// Who has so many waiting that he has not taken does not get it.
+  /// Who has so many waiting that he has not taken does not get it. Where more than one may wait,
+  /// who comes later gets the pictures before as well.
   void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle, std::size_t waiting);
 
  private:
@@ -40,6 +42,7 @@ class StereoFeed {
   std::uint64_t cycle_ = 0;
   StereoRig rig_;
   std::vector<Viewer> viewers_;
+  std::deque<std::string> before_;
 };
 
 }  // namespace saphira::sim

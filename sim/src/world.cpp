@@ -21,24 +21,28 @@ constexpr double kSlack = 1.0;  // [m]
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::string& file) : lines_(split_lines(text)) {
-    world_.file = file;
-  }
-
-  World parse() {
-    for (const Line& line : lines_) {
-      LineReader in(world_.file, line);
+  /// The text has to outlive the parser.
+  void read(std::string_view text, const std::string& file) {
+    file_ = file;
+    if (world_.file.empty())
+      world_.file = file;
+    int last = 1;
+    for (const Line& line : split_lines(text)) {
+      LineReader in(file, line);
       while (!in.at_end())
         directive(in, line);
+      last = line.number;
     }
     if (!has_width_ || !has_height_)
-      throw FileError(world_.file, lines_.empty() ? 1 : lines_.back().number, 1,
-                      has_width_ ? "expected height" : "expected width");
+      throw FileError(file, last, 1, has_width_ ? "expected height" : "expected width");
+  }
+
+  World finish() {
     world_.corners = find_corners(world_.segments);
     world_.movable = movable_.plans();
     for (const Claim& claim : claims_)
       if (const auto trouble = claim.trouble(world_))
-        throw FileError(world_.file, claim.place.line, claim.place.column, *trouble, claim.line);
+        throw FileError(claim.file, claim.place.line, claim.place.column, *trouble, claim.line);
     return std::move(world_);
   }
 
@@ -46,6 +50,7 @@ class Parser {
   using Trouble = std::function<std::optional<std::string>(const World&)>;
   // What a line says that can be right or wrong only when all walls are known.
   struct Claim {
+    std::string file;
     Place place;
     std::string_view line;
     Trouble trouble;
@@ -79,7 +84,7 @@ class Parser {
         in.fail("expected position once");
       world_.start = pose(in);
       world_.start_place = place;
-      claims_.push_back({place, line.text,
+      claims_.push_back({file_, place, line.text,
                          [](const World& world) { return trouble_of_start(world, *world.start); }});
     } else if (word == "sonar") {
       sonar(in);
@@ -89,13 +94,14 @@ class Parser {
       segment(in);
     } else if (movable_.read(word, in, frames_.back())) {
       if (const Trouble trouble = trouble_of(word))
-        claims_.push_back({place, line.text, trouble});
+        claims_.push_back({file_, place, line.text, trouble});
       if (word == "robot")
         world_.robot_places.push_back(place);
     } else {
       in.fail(
           "expected a segment (x y x y), width, height, push, pop, position, sonar, robot, person, "
-          "walk, wait, repeat, door, open, close, period, box, post, color, tall or cloth, found "
+          "walk, lead, wait, repeat, door, open, close, period, box, post, color, tall or cloth, "
+          "found "
           "\"" +
           std::string(word) + "\"");
     }
@@ -112,7 +118,7 @@ class Parser {
       return [i = plans.persons.size() - 1](const World& world) {
         return trouble_of_person(world, i);
       };
-    if (word == "walk")
+    if (word == "walk" || word == "lead")
       return [i = plans.persons.size() - 1, leg = plans.persons.back().script.size() - 1](
                  const World& world) { return trouble_of_leg(world, i, leg); };
     if (word == "repeat")
@@ -158,7 +164,7 @@ class Parser {
         {transform(frames_.back(), {x1, y1}), transform(frames_.back(), {x2, y2})});
   }
 
-  std::vector<Line> lines_;
+  std::string file_;  // that is being read
   World world_;
   MovableReader movable_;
   std::vector<Claim> claims_;         // in the order of their lines
@@ -170,13 +176,23 @@ class Parser {
 }  // namespace
 
 World parse_world(std::string_view text, const std::string& file) {
-  return Parser(text, file).parse();
+  Parser parser;
+  parser.read(text, file);
+  return parser.finish();
 }
 
-World load_world(const std::string& path) {
+World load_world(const std::string& path, const std::string& things) {
+  Parser parser;
   const std::string text = read_file(path);
   expect_last_line_break(text, path);
-  return parse_world(text, path);
+  parser.read(text, path);
+  std::string more;
+  if (!things.empty()) {
+    more = read_file(things);
+    expect_last_line_break(more, things);
+    parser.read(more, things);
+  }
+  return parser.finish();
 }
 
 Vec2 nearest_point(const Segment& segment, const Vec2& point) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
 #include <string>
 
 #include "broken_text.hpp"
+#include "process.hpp"
 #include "saphira/sim/scene.hpp"
 
 namespace saphira::sim {
@@ -56,6 +59,37 @@ TEST(Movable, IsReadInItsFrame) {
   EXPECT_EQ(it.movable.robots.at(0), (Pose{3.0, 4.0, kPi}));
 }
 
+TEST(Movable, WhoLeadsWaitsForTheRobot) {
+  const World it = world("person ann 2000 5000 lead 8000 5000 500 position 2000 2000 0");
+  Scene scene(it);
+  const Person& ann = scene.persons()[0];
+  run(scene, 5.0);
+  EXPECT_EQ(ann.at, Vec2(2.0, 5.0)) << "no robot is there";
+  scene.add_robot(RobotParameters{}, Pose{3.0, 3.5, 0.0}, 1);
+  run(scene, 20.0);
+  EXPECT_GT(ann.at.x(), 4.9);
+  EXPECT_LT(ann.at.x(), 5.1) << "2.5 m from a robot that stays where it is";
+}
+
+TEST(Movable, OfASecondFileIsPutIntoTheWorldAndItsMistakesNameThatFile) {
+  const test::TempDir folder;
+  const std::string more = folder.path("more.wld");
+  std::ofstream(more) << "; Ann\nperson ann 17500 13000\n";
+  const std::string floor = test::source("config/worlds/office-floor.wld");
+  const World both = load_world(floor, more);
+  EXPECT_EQ(both.file, floor);
+  EXPECT_EQ(both.segments.size(), load_world(floor).segments.size());
+  ASSERT_EQ(both.movable.persons.size(), 1U);
+  std::ofstream(more) << "; in a wall\nperson ann 16500 12000\n";
+  try {
+    load_world(floor, more);
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.line(), 2);
+    EXPECT_NE(std::string(error.what()).find("more.wld"), std::string::npos) << error.what();
+  }
+}
+
 /// A mistake in the line behind the world's size.
 struct BrokenLine {
   const char* text;
@@ -75,7 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenLine{"person", 7, "a name"}, BrokenLine{"person ann x 0", 12, "x of the person"},
         BrokenLine{"walk 0 0 800", 1, "person before this walk"},
         BrokenLine{"person ann 0 0 walk 1 1 0", 25, "speed"},
-        BrokenLine{"person ann 0 0 repeat", 16, "walk or wait"},
+        BrokenLine{"person ann 0 0 repeat", 16, "walk, lead or wait"},
+        BrokenLine{"lead 0 0 800", 1, "person before this lead"},
         BrokenLine{"person ann 0 0 person ann 1 1", 23, "another name"},
         BrokenLine{"door d 0 0 5 0 90", 14, "wider"},
         BrokenLine{"door d 0 0 900 0 200", 18, "swing"},

@@ -72,6 +72,52 @@ TEST(Demo, LiveArrivesUntouched) {
   EXPECT_EQ(live.summary.at("contacts"), 0);
 }
 
+/// A folder of credentials for all that runs in the demo.
+std::string credentials(const TempDir& folder) {
+  const std::string authority = folder.path("authority");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"init", "office"},
+        {"add", "demo", "--role", "bridge,services,robot,operator"}}) {
+    std::vector<std::string> argv{"saphira", "security"};
+    argv.insert(argv.end(), words.begin(), words.end());
+    argv.insert(argv.end(), {"--authority", authority});
+    Process process(argv, folder.path("said"));
+    EXPECT_EQ(process.wait(std::chrono::minutes(1)), 0) << process.output();
+  }
+  return authority + "/members/demo";
+}
+
+// What the bus hides from others changes nothing of what the robot does.
+TEST(SecuredDemo, IsTheSameAsTheOpenOne) {
+  const TempDir folder;
+  const std::string security = credentials(folder);
+  const std::vector<std::string> open{"--lockstep", "--seed", "1"};
+  std::vector<std::string> secured = open;
+  secured.insert(secured.end(), {"--security", security});
+  const Outcome first = demo(secured);
+  ASSERT_EQ(first.code, 0) << first.text;
+  EXPECT_TRUE(first.summary.at("arrived").get<bool>());
+  const std::string hash = demo(open).summary.at("trajectory_hash");
+  EXPECT_EQ(first.summary.at("trajectory_hash"), hash) << first.text;
+  secured.emplace_back("--single-process");
+  EXPECT_EQ(demo(secured).summary.at("trajectory_hash"), hash);
+}
+
+TEST(SecuredDemo, LiveArrivesUntouched) {
+  const TempDir folder;
+  const Outcome live = demo({"--seed", "1", "--goal", "3", "0", "--security", credentials(folder)});
+  ASSERT_EQ(live.code, 0) << live.text;
+  EXPECT_TRUE(live.summary.at("arrived").get<bool>());
+  EXPECT_EQ(live.summary.at("contacts"), 0);
+}
+
+TEST(SecuredDemo, WithoutCredentialsNothingBegins) {
+  const Outcome none = demo({"--security", "/nowhere"});
+  EXPECT_EQ(none.code, 2) << none.text;
+  EXPECT_NE(none.text.find("/nowhere: there is no such folder of credentials"), std::string::npos)
+      << none.text;
+}
+
 TEST(Demo, OutOfTimeIsAFailureThatSaysSo) {
   const Outcome late = demo({"--lockstep", "--time-limit", "3"});
   EXPECT_EQ(late.code, 1) << late.text;

@@ -25,6 +25,14 @@ bus::NodeOptions in_lockstep(const std::string& robot) {
 LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
   const std::string world = folder.path("world.wld");
   std::ofstream(world) << scene.world;
+  const std::string map = scene.map.empty() ? "none" : source("config/maps/" + scene.map + ".map");
+  if (scene.single_process) {
+    on_bus({"saphira-all", "--world", world, "--robot-file",
+            source("config/robots/" + scene.robot + ".p"), "--socket", folder.path("robot"),
+            "--trace", folder.path("trace.csv"), "--seed", std::to_string(scene.seed), "--step",
+            "--robots", source("config/robots"), "--map", map});
+    return;
+  }
   std::vector<std::string> simulator{"saphira-sim",  "--step",
                                      "--world",      world,
                                      "--robot-file", source("config/robots/" + scene.robot + ".p"),
@@ -46,8 +54,7 @@ LockstepSystem::LockstepSystem(const Scene& scene) : node(in_lockstep(robot)) {
   on_bus({"saphira-behaviors"});
   on_bus(intentions);
   on_bus({"saphira-interpretation"});
-  on_bus({"saphira-registration", "--map",
-          scene.map.empty() ? "none" : source("config/maps/" + scene.map + ".map")});
+  on_bus({"saphira-registration", "--map", map});
 }
 
 v1::GoalId LockstepSystem::ask(const v1::Goal& goal) {

@@ -14,16 +14,17 @@
 
 namespace saphira::test {
 
-/// A robot in a world of the test's own with its services as separate processes, in lockstep, and a
-/// node of the test beside them.
+/// A robot in a world of the test's own with its services, in lockstep, and a node of the test
+/// beside them.
 class LockstepSystem {
  public:
   struct Scene {
-    std::string world;    ///< text of a world file
-    std::string robot;    ///< a file of config/robots, without its ending
-    std::string map{};    ///< a file of config/maps [none: an empty map]
-    unsigned seed = 1;    ///< of the simulator's noise
-    bool vision = false;  ///< with stereo cameras and the service that looks
+    std::string world;            ///< text of a world file
+    std::string robot;            ///< a file of config/robots, without its ending
+    std::string map{};            ///< a file of config/maps [none: an empty map]
+    unsigned seed = 1;            ///< of the simulator's noise
+    bool vision = false;          ///< with stereo cameras and the service that looks
+    bool single_process = false;  ///< in one thread, without a bus between the services
   };
 
   explicit LockstepSystem(const Scene& scene);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -14,13 +15,25 @@ namespace {
 TEST(NavigationAcceptance, GoesToARoomByItsName) {
   System system;
   auto intentions = system.node().reader(bus::topics::kIntentions);
+  auto drawings = system.node().reader(bus::topics::kDrawings);
   system.start_all();
   v1::Goal goal;
   goal.functor("go-to-place");
   goal.arguments({bus::text("place", "N2")});
   const v1::GoalId id = system.goals().ask(goal);
   std::set<std::string> schemas;
+  std::vector<v1::DrawnPoint> way;
+  bool erased = false;
+  const auto take_drawings = [&] {
+    for (const auto& sample : drawings.take()) {
+      if (sample.info.disposed)
+        erased = true;
+      else if (way.empty())
+        way = sample.data.points();
+    }
+  };
   const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
+    take_drawings();
     for (const auto& sample : intentions.take())
       for (const v1::IntentionNode& node : sample.data.nodes())
         schemas.insert(node.schema());
@@ -31,6 +44,16 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   for (const char* schema : {"go-to-place", "plan-and-execute", "monitor-planex", "follow-path",
                              "corridor-to-door", "through-door", "FollowCorridor", "FollowDoor"})
     EXPECT_TRUE(schemas.contains(schema)) << schema;
+  // The way is drawn on the map, from the robot through the room's door, until it has been gone.
+  ASSERT_GE(way.size(), 2u);
+  EXPECT_NEAR(way.front().x(), 1.5, 0.3);
+  EXPECT_TRUE(std::any_of(way.begin(), way.end(), [](const v1::DrawnPoint& at) {
+    return std::hypot(at.x() - 6.95, at.y() - 8.0) < 0.3;
+  }));
+  EXPECT_TRUE(wait_until([&] {
+    take_drawings();
+    return erased;
+  }));
   const Truth truth = system.truth();
   EXPECT_EQ(truth.contacts, 0);
   EXPECT_GT(truth.x, 4.5);

@@ -1,11 +1,13 @@
 // A person who walks through a world is seen in the pictures of its cameras and followed, over the
 // bus and in lockstep: simulator, bridge, vision, perception, registration, behaviors, intentions.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <string>
 
 #include "lockstep.hpp"
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::test {
@@ -83,6 +85,21 @@ TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
   };
   const std::string first = run();
   EXPECT_EQ(first, run());
+}
+
+// What the comment of the deployment promises.
+TEST(SeeingDeployment, FindsTheColourThatItsVisionSystemWasTold) {
+  const TempDir folder;
+  const std::string robot = "seeing-" + std::to_string(getpid());
+  const auto saphira = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"saphira", "--robot", robot});
+    return words;
+  };
+  Process up(saphira({"up", "seeing", "--set", "port=0"}), folder.path("up"));
+  Process search(saphira({"goal", "blob-search"}), folder.path("search"));
+  EXPECT_EQ(search.wait(std::chrono::minutes(2)), 0) << search.output() << up.output();
+  EXPECT_NE(search.output().find("at the colour of channel a"), std::string::npos)
+      << search.output();
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ std::vector<Truth> System::trace() const {
     return truths;
   for (const sim::TraceRow& row : sim::parse_trace(read_file(file), file))
     truths.push_back({static_cast<long>(row.cycle), row.pose_in_world.x, row.pose_in_world.y,
-                      row.velocity, row.rotation_velocity, row.contacts});
+                      row.pose_in_world.th, row.velocity, row.rotation_velocity, row.contacts});
   return truths;
 }
 

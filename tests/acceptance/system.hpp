@@ -18,6 +18,7 @@ struct Truth {
   long cycle = 0;
   double x = 0.0;
   double y = 0.0;
+  double th = 0.0;
   double velocity = 0.0;
   double rotation_velocity = 0.0;
   long contacts = 0;

@@ -134,8 +134,7 @@ void Drive::intend(std::vector<behaviors::Intended> intended, bool control) {
 }
 
 void Drive::go_to(const Vec2& goal_in_odom, double speed, double radius) {
-  const behaviors::PlacedPoint goal{{goal_in_odom.x(), goal_in_odom.y(), 0.0},
-                                    behaviors::Frame::odom};
+  const saphira::PlacedPoint goal{{goal_in_odom.x(), goal_in_odom.y(), 0.0}, saphira::Frame::odom};
   intend({{"avoid", "AvoidCollision", 0, true, {}},
           {"keep off", "KeepOff", 1, true, {}},
           {"go", "GoToPos", 2, true, {{"goal", goal}, {"speed", speed}, {"radius", radius}}},

@@ -14,11 +14,11 @@
 namespace saphira::test {
 namespace {
 
-using intentions::Frame;
 using intentions::GoalCode;
 using intentions::GoalState;
 using intentions::GoalStatus;
-using intentions::text;
+using saphira::Frame;
+using saphira::text;
 
 /// The office floor with more in it, as a file.
 std::string office_with(const std::string& name, const std::string& more) {
@@ -146,7 +146,7 @@ TEST(Navigation, OnTheWayThereIsAlwaysABehaviorThatDrives) {
 
 TEST(Navigation, ItSaysHowFarItHasCome) {
   Whole whole(office());
-  const auto goal = whole.ask("go-to-place", {intentions::number("place", 249.0)});
+  const auto goal = whole.ask("go-to-place", {saphira::number("place", 249.0)});
   std::vector<double> levels;
   whole.advance_until(
       [&] {
@@ -175,7 +175,7 @@ const char* const kClosed247 = "door d247 16500 13100 16500 14000 90\n";
 TEST(Navigation, BeforeAClosedDoorItAsksAndSaysWhyNot) {
   Whole whole(office(1, office_with("closed", kClosed247)));
   const GoalStatus status = whole.achieve(
-      "go-to-place", {text("place", "EJ-247"), intentions::number("patience", 10.0)}, 3000);
+      "go-to-place", {text("place", "EJ-247"), saphira::number("patience", 10.0)}, 3000);
   EXPECT_EQ(status.state, GoalState::kFailed);
   EXPECT_NE(status.reason.find("door 1247"), std::string::npos) << status.reason;
   EXPECT_TRUE(said(whole, "Please open the way"));
@@ -207,7 +207,7 @@ TEST(Navigation, AroundAClosedDoorItReplans) {
 }
 
 GoalStatus go_to(Whole& whole, double x, double y) {
-  return whole.achieve("go_to", {intentions::point("position", {x, y, 0.0}, Frame::kMap)}, 1500);
+  return whole.achieve("go_to", {saphira::point("position", {x, y, 0.0}, Frame::map)}, 1500);
 }
 
 TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
@@ -286,7 +286,7 @@ TEST(Navigation, AMoreImportantGoalInterruptsTheJourneyWhichThenGoesOn) {
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
   whole.advance_until([&] { return whole.cycle() >= 100; }, 200);
   const auto other =
-      whole.ask("go_to", {intentions::point("position", {17.5, 12.0, 0.0}, Frame::kMap)}, 5);
+      whole.ask("go_to", {saphira::point("position", {17.5, 12.0, 0.0}, Frame::map)}, 5);
   whole.advance_until([&] { return whole.status(goal).state == GoalState::kSuspended; }, 20);
   EXPECT_EQ(whole.status(goal).state, GoalState::kSuspended);
   EXPECT_NE(whole.status(goal).reason.find("go_to"), std::string::npos);
@@ -330,9 +330,8 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
   People people({{"Please give me the key", "given", "no"},
                  {"Who has the key?", "who-has", "EJ-249"},
                  {"Please give me the key", "given", "yes"}});
-  const auto goal =
-      whole.ask("deliver", {text("object", "the key"), text("from", "EJ-247"), text("to", "EJ-250"),
-                            intentions::number("patience", 5.0)});
+  const auto goal = whole.ask("deliver", {text("object", "the key"), text("from", "EJ-247"),
+                                          text("to", "EJ-250"), saphira::number("patience", 5.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
   EXPECT_EQ(status.state, GoalState::kFailed);
   EXPECT_EQ(status.reason, "nobody at EJ-250 took the key");
@@ -343,7 +342,7 @@ TEST(People, WhoIsNowhereIsNotFoundAndTheReasonSaysWhere) {
   Whole whole(office());
   People people({{"Is bob here?", "answer", "no"}});
   const auto goal = whole.ask("find-person", {text("name", "bob"), text("places", "EJ-247, EJ-249"),
-                                              intentions::number("patience", 3.0)});
+                                              saphira::number("patience", 3.0)});
   const GoalStatus status = among(whole, people, goal, 6000);
   EXPECT_EQ(status.state, GoalState::kFailed);
   EXPECT_EQ(status.reason, "bob is not to be found, neither at EJ-247, EJ-249");
@@ -357,8 +356,8 @@ TEST(People, AQuestionIsAskedAgainAndWhatWasSaidBeforeIsNoAnswer) {
   whole.advance();
   const GoalStatus silent =
       whole.achieve("ask",
-                    {text("question", "Is it late?"), intentions::number("patience", 2.0),
-                     intentions::number("times", 3.0)},
+                    {text("question", "Is it late?"), saphira::number("patience", 2.0),
+                     saphira::number("times", 3.0)},
                     200);
   EXPECT_EQ(silent.state, GoalState::kFailed);
   EXPECT_EQ(silent.reason, "nobody answered the question: Is it late?");
@@ -380,7 +379,7 @@ TEST(Seeing, APersonIsFollowedAroundACorner) {
   WholeOptions options = office(1, office_with("ann", kAnnInTheCorridor));
   options.sees = true_eyes();
   Whole whole(options);
-  const auto goal = whole.ask("follow-person", {intentions::number("seconds", 50.0)});
+  const auto goal = whole.ask("follow-person", {saphira::number("seconds", 50.0)});
   double nearest = 10.0;
   whole.advance_until(
       [&] {
@@ -459,7 +458,7 @@ struct Scenario {
   std::string name;
   WholeOptions options;
   std::string functor;
-  intentions::Arguments arguments;
+  saphira::Arguments arguments;
   int cycles = 3000;
   std::vector<Answer> answers{};
   std::vector<std::pair<std::string, std::string>> claims{};  ///< made before
@@ -477,24 +476,25 @@ std::vector<Scenario> scenarios() {
   all.push_back({"closed-door",
                  office(1, office_with("golden", kClosed247)),
                  "go-to-place",
-                 {text("place", "EJ-247"), intentions::number("patience", 5.0)}});
+                 {text("place", "EJ-247"), saphira::number("patience", 5.0)}});
   Scenario lost{"lost", office(), "go-to-place", {text("place", "EJ-245")}};
   lost.options.knows_pose = false;
   all.push_back(lost);
+  all.push_back({"make-sure", office(), "make-sure", {}});
   all.push_back({"figure-9", office(), "plan-and-execute", {text("dest", "EJ-249")}});
   all.push_back({"find-and-follow", office(), "find-and-follow", {}});
   all.push_back({"patrol", office(), "patrol", {}});
   all.push_back({"patrol-places", office(), "patrol", {text("places", "EJ-249, EJ-250")}});
   all.push_back({"explore", office(), "explore", {}, 6000});
-  Scenario bump{"bump-and-go", office(), "bump-and-go", {intentions::number("bumps", 2)}};
+  Scenario bump{"bump-and-go", office(), "bump-and-go", {saphira::number("bumps", 2)}};
   bump.options.map = "arena";
   bump.options.drive.world = "arena";
   all.push_back(bump);
-  all.push_back({"attend",
-                 office(),
-                 "attend",
-                 {intentions::point("position", {17.5, 10.0, 0.0}, Frame::kMap),
-                  intentions::number("seconds", 1)}});
+  all.push_back(
+      {"attend",
+       office(),
+       "attend",
+       {saphira::point("position", {17.5, 10.0, 0.0}, Frame::map), saphira::number("seconds", 1)}});
   Scenario deliver{
       "deliver", office(),
       "deliver", {text("object", "the report"), text("from", "karen"), text("to", "EJ-250")},
@@ -504,7 +504,7 @@ std::vector<Scenario> scenarios() {
   Scenario follow{"follow-person",
                   office(1, office_with("golden-ann", kAnnInTheCorridor)),
                   "follow-person",
-                  {intentions::number("seconds", 50.0)}};
+                  {saphira::number("seconds", 50.0)}};
   follow.options.sees = true_eyes();
   all.push_back(follow);
   Scenario search{

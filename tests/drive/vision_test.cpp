@@ -137,7 +137,7 @@ TEST(VisionEyes, APersonIsFollowedAroundACorner) {
   options.map = "office-floor";
   options.sees = vision_eyes(Stereo::pictures);
   Whole whole(options);
-  const auto goal = whole.ask("follow-person", {intentions::number("seconds", 40.0)});
+  const auto goal = whole.ask("follow-person", {saphira::number("seconds", 40.0)});
   double nearest = 10.0;
   whole.advance_until(
       [&] {
@@ -162,7 +162,7 @@ TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   options.map = "office-floor";
   options.sees = vision_eyes(Stereo::bands);
   Whole whole(options);
-  const auto status = whole.achieve("blob-search", {intentions::text("channel", "a")}, 1800);
+  const auto status = whole.achieve("blob-search", {saphira::text("channel", "a")}, 1800);
   EXPECT_EQ(status.state, intentions::GoalState::kSucceeded) << status.reason;
   EXPECT_LT((whole.truth().position() - Vec2(17.8, 10.5)).norm(), 1.3);
   EXPECT_EQ(whole.drive().contacts(), 0);

@@ -14,7 +14,9 @@ namespace {
 
 DriveOptions drive_options(const WholeOptions& options) {
   maps::Map map;
-  if (options.map != "none")
+  if (options.made_map)
+    map = *options.made_map;
+  else if (options.map != "none")
     map =
         maps::load_map(find_file(config_folder() + "/maps",
                                  options.map.empty() ? options.drive.world : options.map, ".map"));
@@ -68,7 +70,7 @@ bool Whole::advance_until(const std::function<bool()>& done, int cycles) {
   return done();
 }
 
-intentions::GoalId Whole::ask(std::string functor, intentions::Arguments arguments, int priority,
+intentions::GoalId Whole::ask(std::string functor, saphira::Arguments arguments, int priority,
                               double deadline) {
   intentions::GoalEvent event;
   event.goal.id = {1, next_goal_++};
@@ -100,7 +102,7 @@ bool Whole::ended(const intentions::GoalId& goal) const {
   return intentions::ended(status(goal).state);
 }
 
-intentions::GoalStatus Whole::achieve(std::string functor, intentions::Arguments arguments,
+intentions::GoalStatus Whole::achieve(std::string functor, saphira::Arguments arguments,
                                       int cycles) {
   const intentions::GoalId goal = ask(std::move(functor), std::move(arguments));
   advance_until([&] { return ended(goal); }, cycles);

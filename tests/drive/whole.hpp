@@ -18,9 +18,10 @@ namespace saphira::test {
 
 struct WholeOptions {
   DriveOptions drive;
-  std::string map;            ///< a name of config/maps; empty: that of the world; none: no map
-  bool knows_pose = true;     ///< registration is told where the robot starts
-  bool snap = true;           ///< what is put onto the map is on right angles
+  std::string map;  ///< a name of config/maps; empty: that of the world; none: no map
+  std::shared_ptr<const maps::Map> made_map;  ///< instead of it
+  bool knows_pose = true;                     ///< registration is told where the robot starts
+  bool snap = true;                           ///< what is put onto the map is on right angles
   bool adds_objects = false;  ///< what stands where the map has nothing is put onto it
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
@@ -45,15 +46,15 @@ class Whole {
   bool advance_until(const std::function<bool()>& done, int cycles);
 
   /// Asks for a goal; it is heard in the next cycle.
-  intentions::GoalId ask(std::string functor, intentions::Arguments arguments = {},
-                         int priority = 0, double deadline = 0.0);
+  intentions::GoalId ask(std::string functor, saphira::Arguments arguments = {}, int priority = 0,
+                         double deadline = 0.0);
   /// Somebody claims it; it is heard in the next cycle.
   void claim(std::string name, intentions::Value value);
   /// The newest word on a goal; kWaiting until there is one.
   const intentions::GoalStatus& status(const intentions::GoalId& goal) const;
   bool ended(const intentions::GoalId& goal) const;
   /// Asks, and advances until the goal has ended, or for so many cycles.
-  intentions::GoalStatus achieve(std::string functor, intentions::Arguments arguments, int cycles);
+  intentions::GoalStatus achieve(std::string functor, saphira::Arguments arguments, int cycles);
 
   Drive& drive() { return drive_; }
   const Drive& drive() const { return drive_; }

@@ -8,8 +8,8 @@
 namespace saphira::test {
 namespace {
 
-using intentions::Frame;
 using intentions::GoalState;
+using saphira::Frame;
 
 WholeOptions office(std::uint64_t seed = 1) {
   WholeOptions options;
@@ -21,7 +21,7 @@ TEST(Whole, DrivesToAPointOfTheMapByWhatItBelievesAndTheSameEachTime) {
   const auto run = [](std::uint64_t seed) {
     Whole whole(office(seed));
     const auto status =
-        whole.achieve("go_to", {intentions::point("position", {17.5, 8.0, 0.0}, Frame::kMap)}, 600);
+        whole.achieve("go_to", {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map)}, 600);
     EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
     EXPECT_LT((whole.truth().position() - Vec2(17.5, 8.0)).norm(), 0.4);
     EXPECT_EQ(whole.drive().contacts(), 0);
@@ -35,7 +35,7 @@ TEST(Whole, DrivesToAPointOfTheMapByWhatItBelievesAndTheSameEachTime) {
 
 TEST(Whole, GoesToAPlaceByItsName) {
   Whole whole(office());
-  const auto status = whole.achieve("go-to-place", {intentions::text("place", "EJ-231")}, 3000);
+  const auto status = whole.achieve("go-to-place", {saphira::text("place", "EJ-231")}, 3000);
   EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
   if (std::getenv("SAPHIRA_TALK"))
     for (const std::string& line : whole.transitions())

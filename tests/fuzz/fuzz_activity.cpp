@@ -27,12 +27,13 @@ void run(const Loaded& loaded) {
     event.goal.id = {1, inputs.events.size() + 1};
     event.goal.functor = schema.name;
     for (const Parameter& parameter : schema.parameters) {
-      if (parameter.any || parameter.kind == ArgumentKind::kText)
-        event.goal.arguments.push_back(text(parameter.name, "x"));
-      else if (parameter.kind == ArgumentKind::kNumber)
-        event.goal.arguments.push_back(number(parameter.name, parameter.low));
+      if (parameter.any || parameter.kind == saphira::ArgumentKind::text)
+        event.goal.arguments.push_back(saphira::text(parameter.name, "x"));
+      else if (parameter.kind == saphira::ArgumentKind::number)
+        event.goal.arguments.push_back(saphira::number(parameter.name, parameter.low));
       else
-        event.goal.arguments.push_back(point(parameter.name, {1.0, 2.0, 0.5}, Frame::kRobot));
+        event.goal.arguments.push_back(
+            saphira::point(parameter.name, {1.0, 2.0, 0.5}, saphira::Frame::robot));
     }
     event.goal.priority = static_cast<int>(inputs.events.size());
     inputs.events.push_back(event);

@@ -18,7 +18,8 @@ Intended intended(const Schema& schema) {
   Intended wanted{schema.name, schema.name, 0, true, {}};
   for (const ParameterSpec& spec : schema.parameters)
     if (spec.kind == Kind::point && spec.required)
-      wanted.parameters.push_back({spec.name, PlacedPoint{{1.0, 2.0, 0.5}, Frame::robot}});
+      wanted.parameters.push_back(
+          {spec.name, saphira::PlacedPoint{{1.0, 2.0, 0.5}, saphira::Frame::robot}});
     else if (spec.kind == Kind::number && spec.required)
       wanted.parameters.push_back({spec.name, spec.low / 2.0 + spec.high / 2.0});
   return wanted;

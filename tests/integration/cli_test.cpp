@@ -213,7 +213,7 @@ TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
   EXPECT_TRUE(has(outcome.text, "running")) << outcome.text;
   EXPECT_TRUE(has(outcome.text, std::to_string(getpid()))) << outcome.text;
   EXPECT_TRUE(has(outcome.text, "drive: nobody drives: nobody asked")) << outcome.text;
-  EXPECT_TRUE(has(outcome.text, "not on the bus: behaviors and intentions")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "trouble: behaviors and intentions are not heard")) << outcome.text;
 }
 
 TEST_F(CliTest, WatchShowsWhoIsLost) {
@@ -578,6 +578,24 @@ TEST_F(CliTest, UpEndsWhenAProgramDoesNotTakeItsOptions) {
   const Outcome outcome = run({"up", file});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_TRUE(has(outcome.text, "bridge does not take what")) << outcome.text;
+}
+
+// The files that a deployment gives its programs are read by these, and nothing is started.
+TEST_F(CliTest, CheckSaysWhetherADeploymentWouldStart) {
+  const Outcome good = run({"check", "office"});
+  EXPECT_EQ(good.code, 0) << good.text;
+  EXPECT_TRUE(has(good.text, "office.yaml would start")) << good.text;
+
+  const std::string map = write("wrong.map", "CORRIDOR (1) 0, 0, 0\n");
+  const std::string grammar = write("wrong.grammar", "keyword: robot\ngo(\n");
+  const Outcome bad =
+      run({"check", "office", "--set", "map=" + map, "--set", "grammar=" + grammar});
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_TRUE(has(bad.text, "wrong.map:1:")) << bad.text;
+  EXPECT_TRUE(has(bad.text, "wrong.grammar:2:")) << bad.text;
+  EXPECT_TRUE(has(bad.text, "would not start: 2 of its programs")) << bad.text;
+  EXPECT_EQ(run({"check", "demo", "--set", "world=nowhere"}).code, 2);
+  EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
 }
 
 TEST_F(CliTest, TheDemoSaysWhatIsWrongWithAWorld) {

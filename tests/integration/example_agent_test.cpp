@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <sstream>
+
 #include "installed.hpp"
 #include "node_options.hpp"
+#include "saphira/base/text.hpp"
 #include "scripted_bus.hpp"
 
 namespace saphira::intentions {
@@ -45,6 +49,101 @@ TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
   EXPECT_NE(wrong.output().find("refused: argument \"position\": expected a point"),
             std::string::npos)
       << wrong.output();
+}
+
+TEST(ExampleAgent, CanBeAskedByItsNameOrByWhatItKnows) {
+  const test::Installed installed;
+  const std::string build = installed.build("agents/examples/calendar");
+  if (HasFatalFailure())
+    return;
+
+  const std::map<std::string, std::string> environment = {{"SAPHIRA_ROBOT", test::unique_robot()},
+                                                          {"SAPHIRA_DOMAIN", test::domain()}};
+  test::Process facilitator({installed.program("saphira-facilitator")},
+                            installed.path("facilitator.log"), environment);
+  test::Process agent({build + "/calendar", "karen=library"}, installed.path("calendar.log"),
+                      environment);
+  std::string text;
+  const auto ask = [&](const std::string& person, const std::string& of) {
+    test::Process asker({installed.program("saphira"), "ask", "place_of", "person=" + person,
+                         "place=?", "--of", of},
+                        installed.path("ask.log"), environment);
+    const std::optional<int> code = asker.wait();
+    text = asker.output();
+    return code;
+  };
+  EXPECT_TRUE(test::wait_until([&] { return ask("karen", "") == 0; })) << text << agent.output();
+  EXPECT_NE(text.find("calendar: place=\"library\""), std::string::npos) << text;
+  EXPECT_EQ(ask("bob", "calendar"), 1);
+  EXPECT_NE(text.find("calendar: refused: the calendar has no bob"), std::string::npos) << text;
+}
+
+/// The commands of a document, without their comments, in their order.
+std::vector<std::string> commands_of(const std::string& file) {
+  std::vector<std::string> commands;
+  std::istringstream in(read_file(file));
+  bool shell = false;
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos)
+      continue;
+    line.erase(0, begin);
+    if (line.starts_with("```"))
+      shell = line == "```sh";
+    else if (shell)
+      commands.push_back(line.substr(0, line.find(" #")));
+  }
+  return commands;
+}
+
+TEST(ExampleAgent, TheTenMinutesOfTheDocumentWorkAsTheyAreWritten) {
+  const test::TempDir folder;
+  const std::string build = test::Installed::build_folder();
+  const std::string sanitize = test::Installed::cached("SAPHIRA_SANITIZE");
+  const std::map<std::string, std::string> environment = {
+      {"SAPHIRA_ROBOT", test::unique_robot()},
+      {"SAPHIRA_DOMAIN", test::domain()},
+      {"SAPHIRA_RUN", folder.path("run")},
+      {"CXXFLAGS", sanitize.empty() ? "" : "-fsanitize=" + sanitize}};
+  test::Process up({"saphira", "up", "office", "--set", "port=0"}, folder.path("up.log"),
+                   environment);
+  std::vector<std::unique_ptr<test::Process>> left_running;
+  std::string text;
+  int asked = 0;
+  for (std::string command : commands_of(test::source("docs/write-an-agent.md"))) {
+    for (const auto& [written, here] : std::vector<std::pair<std::string, std::string>>{
+             {"build/release", build},
+             {"./saphira", test::program("saphira")},
+             {"/opt/saphira", folder.path("installed")},
+             {"build/calendar", folder.path("calendar")},
+             {"agents/examples", test::source("agents/examples")}})
+      for (std::size_t at = command.find(written); at != std::string::npos;
+           at = command.find(written, at + here.size()))
+        command.replace(at, written.size(), here);
+    const auto process = [&] {
+      return std::make_unique<test::Process>(
+          std::vector<std::string>{"/bin/sh", "-c", "exec " + command}, folder.path("log"),
+          environment);
+    };
+    if (command.starts_with(folder.path("calendar"))) {
+      left_running.push_back(process());
+      continue;
+    }
+    const bool asks = command.find(" ask ") != std::string::npos;
+    // Before the agent is there, nobody can tell; after that it may not have been heard yet.
+    const int expected = asks && asked++ == 0 ? 1 : 0;
+    EXPECT_TRUE(test::wait_until([&] {
+      const auto one = process();
+      const std::optional<int> code = one->wait(std::chrono::minutes(5));
+      text = one->output();
+      return code == expected;
+    })) << command
+        << "\n"
+        << text;
+  }
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(left_running.size(), 1U);
+  EXPECT_NE(text.find("library"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace saphira::test {
 /// This build, installed to a folder of its own: what somebody else has of the project.
 class Installed {
  public:
-  Installed() { run({"/usr/bin/env", "cmake", "--install", build_folder(), "--prefix", prefix()}); }
+  Installed() { EXPECT_EQ(install_build(prefix()), ""); }
 
   std::string prefix() const { return dir_.path("installed"); }
   std::string program(const std::string& name) const { return prefix() + "/bin/" + name; }
@@ -32,7 +32,6 @@ class Installed {
     return folder;
   }
 
- private:
   static std::string build_folder() {
     const char* const folder = std::getenv("SAPHIRA_BUILD_DIR");
     return folder == nullptr ? "" : folder;
@@ -48,6 +47,7 @@ class Installed {
     return {};
   }
 
+ private:
   void run(const std::vector<std::string>& command) const {
     Process process(command, dir_.path("log"));
     ASSERT_EQ(process.wait(std::chrono::minutes(5)), std::optional<int>(0)) << process.output();

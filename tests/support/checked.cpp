@@ -1,4 +1,5 @@
-// Linked into every test: what a simulator's checker finds is a failure of the test.
+// Linked into every test: what a simulator's checker or a sanitizer finds in a program is a failure
+// of the test.
 #include <gtest/gtest.h>
 
 #include "process.hpp"
@@ -7,9 +8,7 @@ namespace saphira::test {
 namespace {
 
 [[maybe_unused]] const bool kChecked = [] {
-  Process::complain = [](const std::string& violations) {
-    ADD_FAILURE() << "against the robots' protocol:\n" << violations;
-  };
+  Process::complain = [](const std::string& found) { ADD_FAILURE() << found; };
   return true;
 }();
 

@@ -119,8 +119,14 @@ Process::~Process() {
       wait();
     }
   }
+  if (complain == nullptr || output_file_.empty())
+    return;
   if (const std::string found = violations(); !found.empty() && !violations_expected_)
-    complain(found);
+    complain("against the robots' protocol:\n" + found);
+  // A program that was killed has no exit code that tells of it.
+  const std::string said = output();
+  if (const std::size_t at = said.find("Sanitizer:"); at != std::string::npos)
+    complain(said.substr(said.rfind('\n', at) + 1, 4000));
 }
 
 void Process::signal(int number) const {
@@ -178,6 +184,27 @@ std::string domain() {
 std::string unique_robot() {
   static int count = 0;
   return "t" + std::to_string(getpid()) + "n" + std::to_string(++count);
+}
+
+std::string install_build(const std::string& prefix, const std::string& component) {
+  const std::string build = std::getenv("SAPHIRA_BUILD_DIR");
+  std::vector<std::string> command{"/usr/bin/env", "flock",     build + "/install.lock",
+                                   "cmake",        "--install", build,
+                                   "--strip",      "--prefix",  prefix};
+  if (!component.empty())
+    command.insert(command.end(), {"--component", component});
+  const TempDir folder;
+  Process install(command, folder.path("log"));
+  const std::optional<int> code = install.wait(std::chrono::minutes(5));
+  if (code == 0)
+    return {};
+  std::string said = code ? "exit code " + std::to_string(*code) : "not done in five minutes";
+  std::istringstream lines(install.output());
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("-- "))
+      said += "\n" + line;
+  }
+  return said;
 }
 
 }  // namespace saphira::test

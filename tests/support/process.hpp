@@ -59,9 +59,9 @@ class Process {
   /// Somebody hurts the line or what is on it: violations are no failure.
   void expect_violations() { violations_expected_ = true; }
 
-  /// What violations are told to; nobody looks for them where this is not set. Set where a test is
-  /// linked with this.
-  static void (*complain)(const std::string& violations);
+  /// What violations, and findings of a sanitizer, are told to; nobody looks for them where this is
+  /// not set. Set where a test is linked with this.
+  static void (*complain)(const std::string& found);
 
  private:
   pid_t pid_ = -1;
@@ -80,5 +80,9 @@ std::string source(const std::string& path);
 std::string domain();
 /// A robot (partition) of this test alone.
 std::string unique_robot();
+
+/// Installs this build, or one component of it, below `prefix`; what went wrong, or nothing. One at
+/// a time on a machine, since what is not stripped yet takes ten times the room.
+std::string install_build(const std::string& prefix, const std::string& component = {});
 
 }  // namespace saphira::test

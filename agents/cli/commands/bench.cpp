@@ -33,9 +33,10 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
   if (name.empty()) {
     for (const std::string& known : names)
       std::cout << known << '\n';
-    if (names.empty())
-      std::cout << "no benchmarks are built here (./saphira bench builds them)\n";
-    return bus::kExitOk;
+    if (!names.empty())
+      return bus::kExitOk;
+    std::cerr << "saphira: no benchmarks are built here (./saphira bench builds them)\n";
+    return bus::kExitFailed;
   }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     std::cerr << "saphira: no benchmark \"" << name << "\": expected one of";

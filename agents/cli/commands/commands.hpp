@@ -15,8 +15,29 @@ struct Chosen {
   std::function<int(const bus::NodeOptions&, const bus::Stop&)> run;
 };
 
+/// What is asked of a number, in words that say what was expected.
+inline CLI::Validator number_that(const std::string& expected, bool (*good)(double)) {
+  return {[=](std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && good(value)
+                       ? std::string()
+                       : "expected " + expected + ", found " + text.substr(0, 40);
+          },
+          "NUMBER"};
+}
+inline CLI::Validator at_least_zero() {
+  return number_that("0 or more", [](double value) { return value >= 0.0; });
+}
+inline CLI::Validator above_zero() {
+  return number_that("more than 0", [](double value) { return value > 0.0; });
+}
+
 void add_demo(CLI::App& app, Chosen& chosen);
 void add_up(CLI::App& app, Chosen& chosen);
+void add_check(CLI::App& app, Chosen& chosen);
+void add_security(CLI::App& app, Chosen& chosen);
+void add_stop(CLI::App& app, Chosen& chosen);
+void add_renew(CLI::App& app, Chosen& chosen);
 void add_status(CLI::App& app, Chosen& chosen);
 void add_list(CLI::App& app, Chosen& chosen);
 void add_echo(CLI::App& app, Chosen& chosen);
@@ -29,9 +50,18 @@ void add_beliefs(CLI::App& app, Chosen& chosen);
 void add_processes(CLI::App& app, Chosen& chosen);
 void add_device(CLI::App& app, Chosen& chosen);
 void add_map(CLI::App& app, Chosen& chosen);
+void add_scenario(CLI::App& app, Chosen& chosen);
+void add_say(CLI::App& app, Chosen& chosen);
+void add_knows(CLI::App& app, Chosen& chosen);
+void add_ask(CLI::App& app, Chosen& chosen);
+void add_agents(CLI::App& app, Chosen& chosen);
 void add_drive(CLI::App& app, Chosen& chosen);
+void add_direct(CLI::App& app, Chosen& chosen);
 void add_estop(CLI::App& app, Chosen& chosen);
+void add_complete(CLI::App& app, Chosen& chosen);
+void add_write(CLI::App& app, Chosen& chosen);
 void add_wiring(CLI::App& app, Chosen& chosen);
+void add_console(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
 
 }  // namespace saphira::cli

@@ -15,6 +15,7 @@
 #include <random>
 
 #include "commands.hpp"
+#include "environment.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -75,6 +76,11 @@ bus::NodeOptions own_bus(bus::NodeOptions options) {
   return options;
 }
 
+/// The console is for people: what is measured, or has nobody before it, goes without.
+bool has_console(const Options& options) {
+  return !options.headless && !options.json && !options.lockstep && !options.single_process;
+}
+
 std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& node,
                                 const std::string& run, const std::string& trace) {
   Places places = find_places();
@@ -84,6 +90,9 @@ std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& 
   deployment.bus.domain = node.domain;
   deployment.bus.profile = "host";
   deployment.bus.lockstep = options.lockstep;
+  if (!has_console(options))
+    std::erase_if(deployment.programs,
+                  [](const Program& program) { return program.name == "console"; });
   std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
   if (!options.world.empty()) {
     set.push_back("world=" + options.world);
@@ -106,6 +115,8 @@ std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& 
     deployment.programs = {all};
   }
   std::vector<ChildSpec> children = command_lines(deployment, places, set);
+  for (ChildSpec& child : children)
+    child.environment.merge(as_environment(node));
   // The simulator is the first of the deployment; alone, all of it is.
   children.at(0).argv.insert(children.at(0).argv.end(), more.begin(), more.end());
   return children;
@@ -255,7 +266,8 @@ class Screen {
     on_ = false;
   }
 
-  void draw(const Watcher& watcher, const std::optional<v1::GoalStatus>& status) const {
+  void draw(const Watcher& watcher, const std::optional<v1::GoalStatus>& status,
+            const std::string& address) const {
     winsize size{};
     int columns = 80;
     int rows = 24;
@@ -264,6 +276,10 @@ class Screen {
       rows = size.ws_row;
     }
     std::string page = "\x1b[H";
+    if (!address.empty()) {
+      page += "\x1b[K" + address.substr(0, static_cast<std::size_t>(columns)) + "\r\n";
+      --rows;
+    }
     for (const std::string& line : watcher.picture(columns, rows - 2, utf8_))
       page += line + "\r\n";
     const std::string line = watcher.line(status);
@@ -294,6 +310,8 @@ class Demo {
     supervisor_.start();
     drive(stop);
     const bool interrupted = stop.requested();
+    if (screen_.on() && !address_.empty() && !interrupted)
+      stay(stop);
     supervisor_.stop();
     screen_.leave();
     flush_output();
@@ -301,7 +319,21 @@ class Demo {
   }
 
  private:
+  /// The robot waits at the console for whoever looks there.
+  void stay(const bus::Stop& stop) {
+    screen_.leave();
+    print("%s. The robot waits for you: %s\nCtrl-C ends it.\n",
+          status_ ? bus::describe(*status_).c_str() : "the goal got no answer", address_.c_str());
+    while (!stop.requested() && !supervisor_.finished())
+      supervisor_.step(std::chrono::seconds(10), {stop.fd()});
+  }
+
   void keep(std::string_view from, std::string_view line) {
+    if (from == "console" && line.starts_with("open ")) {
+      address_ = line;
+      if (lines())
+        print("%s\n", address_.c_str());
+    }
     kept_.push_back((from.empty() ? "saphira" : std::string(from)) + " | " + std::string(line));
     if (kept_.size() > kKeptLines)
       kept_.pop_front();
@@ -387,7 +419,7 @@ class Demo {
 
   void show(const Watcher& watcher) {
     if (screen_.on())
-      screen_.draw(watcher, status_);
+      screen_.draw(watcher, status_, address_);
     else if (lines())
       print("%s\n", watcher.line(status_).c_str());
   }
@@ -454,6 +486,7 @@ class Demo {
   double wall_ = 0.0;
   std::uint64_t late_cycles_ = 0;
   std::string trouble_;
+  std::string address_;  ///< "open http://...", as the console says it
 };
 
 }  // namespace

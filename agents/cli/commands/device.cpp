@@ -4,6 +4,8 @@
 #include <set>
 
 #include "commands.hpp"
+#include "requests/shell/convert.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/cli/device_words.hpp"
 #include "watch.hpp"
 
@@ -91,24 +93,6 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
   return bus::kExitOk;
 }
 
-template <class Command>
-const bus::Topic<Command>& topic_of();
-#define SAPHIRA_DEVICE(Type, name)                   \
-  template <>                                        \
-  const bus::Topic<v1::Type>& topic_of<v1::Type>() { \
-    return bus::topics::name;                        \
-  }
-SAPHIRA_DEVICE(ServoCommand, kServo)
-SAPHIRA_DEVICE(GripperCommand, kGripper)
-SAPHIRA_DEVICE(DigitalOutputCommand, kDigitalOutput)
-SAPHIRA_DEVICE(AnalogCommand, kAnalog)
-SAPHIRA_DEVICE(TimerCommand, kTimer)
-SAPHIRA_DEVICE(SonarCommand, kSonar)
-SAPHIRA_DEVICE(SoundCommand, kSound)
-SAPHIRA_DEVICE(ServerCommand, kServer)
-SAPHIRA_DEVICE(SerialCommand, kSerial)
-#undef SAPHIRA_DEVICE
-
 void print_serial(const v1::SerialData& data) {
   std::string hex;
   std::string text;
@@ -121,49 +105,37 @@ void print_serial(const v1::SerialData& data) {
   std::printf("port %d  %s |%s|\n", data.port(), hex.c_str(), text.c_str());
 }
 
-/// Writes the command once somebody hears it, and waits for what becomes of it.
-template <class Command>
-int ask(Command command, const bus::NodeOptions& options, const bus::Stop& stop) {
-  Watch watch(options);
-  auto answers = watch.node.reader(bus::topics::kSerialData);
-  auto writer = watch.node.writer(topic_of<Command>());
-  command.source("saphira device");
-  command.request(watch.node.instance());
-  bool written = false;
-  const auto began = Clock::now();
-  while (!stop.requested() && seconds_since(began) < kPatience) {
-    if (!written && writer.matched() > 0 && watch.devices.has_value())
-      written = writer.write(command);
+/// What hangs on a serial port needs a moment.
+void wait_for_serial(Watch& watch, bus::Reader<v1::SerialData>& serial, const Request& asked,
+                     const bus::Stop& stop) {
+  const auto sent = Clock::now();
+  while (!stop.requested() && seconds_since(sent) < kAnswerTime) {
     watch.node.wait(milliseconds(50), &stop);
-    watch.poll();
-    if (!written && seconds_since(began) > 3.0) {
-      if (writer.matched() == 0)
-        return nobody(options, watch);
-      written = writer.write(command);  // a bridge that has never had a robot shows no devices
-    }
-    if (!watch.devices)
-      continue;
-    for (const v1::DeviceRequest& request : watch.devices->requests()) {
-      if (request.request() != command.request() || request.state() == v1::REQUEST_SENDING)
-        continue;
-      std::printf("%s\n", describe(request).c_str());
-      if (request.state() != v1::REQUEST_SHOWN && request.state() != v1::REQUEST_SENT)
-        return bus::kExitFailed;
-      if constexpr (std::is_same_v<Command, v1::SerialCommand>) {
-        const auto sent = Clock::now();
-        while (command.answer() > 0 && !stop.requested() && seconds_since(sent) < kAnswerTime) {
-          watch.node.wait(milliseconds(50), &stop);
-          for (const auto& sample : answers.take())
-            if (sample.data.port() == command.port())
-              print_serial(sample.data);
-        }
-      }
-      return bus::kExitOk;
-    }
+    for (const auto& sample : serial.take())
+      if (sample.data.port() == number_of(asked.arguments, "port"))
+        print_serial(sample.data);
   }
-  std::cerr << "saphira: nothing was heard of the request; "
-            << who_is_there(options, watch.processes) << '\n';
-  return bus::kExitFailed;
+}
+
+int ask(const DeviceCommand& command, const bus::NodeOptions& options, const bus::Stop& stop) {
+  Watch watch(options);
+  auto serial = watch.node.reader(bus::topics::kSerialData);
+  bus::RequestClient bridge(watch.node, *command.topic, "saphira device");
+  const v1::Answer answer =
+      bridge.ask(to_bus(command.request), kPatience, &stop, [&] { watch.poll(); });
+  if (answer.code() == v1::ANSWER_NOBODY && answer.service().empty())
+    return nobody(options, watch);
+  if (answer.code() == v1::ANSWER_TOO_LATE && answer.service().empty()) {
+    std::cerr << "saphira: " << answer.text() << "; " << who_is_there(options, watch.processes)
+              << '\n';
+    return bus::kExitFailed;
+  }
+  std::printf("%s\n", answer.text().c_str());
+  if (!bus::well(answer.code()))
+    return bus::kExitFailed;
+  if (number_of(command.request.arguments, "answer") > 0)
+    wait_for_serial(watch, serial, command.request, stop);
+  return bus::kExitOk;
 }
 
 int device(const std::vector<std::string>& words, const bus::NodeOptions& options,
@@ -173,8 +145,7 @@ int device(const std::vector<std::string>& words, const bus::NodeOptions& option
   if (words == std::vector<std::string>{"follow"})
     return follow(options, stop);
   try {
-    return std::visit([&](const auto& command) { return ask(command, options, stop); },
-                      parse_device(words));
+    return ask(parse_device(words), options, stop);
   } catch (const std::invalid_argument& error) {
     std::cerr << "saphira: " << error.what() << '\n';
     return bus::kExitUsage;

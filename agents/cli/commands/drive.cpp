@@ -27,6 +27,10 @@ constexpr int kReleases = 4;               ///< of the last word: the topic is b
 constexpr double kHandBackLimit = 5.0;     ///< [s]
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
+constexpr const char* kKeys =
+    "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
+    "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n";
+
 constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
 
 /// The terminal as a keyboard: keys come at once and are not echoed. Restored with the object, and
@@ -81,9 +85,8 @@ class Teleop {
 
   int run(const bus::Stop& stop) {
     const RawTerminal terminal;
+    print("%s", kKeys);
     print(
-        "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
-        "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n"
         "Keep a key down: without keys the robot stops. After you have driven, goals wait until "
         "you\n"
         "hand the robot back (h, or later: saphira drive hand-back).\n\n\n\n");
@@ -364,6 +367,7 @@ void add_drive(CLI::App& app, Chosen& chosen) {
   CLI::App* back = command->add_subcommand(
       "hand-back", "After a person has driven: lets goals and behaviors drive again");
   command->require_subcommand(0, 1);
+  command->footer(std::string("Keys:\n") + kKeys);
   command->callback([back, &chosen] {
     chosen.run = drive;
     if (back->parsed())

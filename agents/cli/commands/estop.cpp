@@ -1,7 +1,6 @@
 // The emergency stop, and its reset.
-#include <random>
-
 #include "commands.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/cli/printer.hpp"
 #include "watch.hpp"
 
@@ -22,10 +21,10 @@ class Button {
   explicit Button(const bus::NodeOptions& options)
       : node_(options),
         stops_(node_.writer(bus::topics::kDriveEstop)),
-        resets_(node_.writer(bus::topics::kEstopReset)),
         grants_(node_.reader(bus::topics::kGrant)),
         processes_(node_),
-        source_(person("saphira estop")) {}
+        source_(person("saphira estop")),
+        resets_(node_, bus::topics::kEstopReset, source_) {}
 
   /// Presses until the bridge says that the stop is latched, for as long as that may take.
   int press(const bus::Stop& stop) {
@@ -57,41 +56,29 @@ class Button {
   }
 
   int reset(const bus::Stop& stop) {
-    v1::EstopReset reset;
-    reset.source(source_);
-    std::random_device random;
-    bool asked = false;
-    bool seen = false;
-    double again = 0.0;
-    while (!stop.requested() && seconds_since(began_) < kResetLimit) {
+    v1::Request request;
+    request.functor("reset");
+    const v1::Answer answer = resets_.ask(request, kResetLimit, &stop, [this] { poll(); });
+    if (!bus::well(answer.code())) {
+      complain("saphira: not reset: %s\n", answer.code() == v1::ANSWER_NOBODY
+                                               ? ("no bridge is heard; " + why_nobody()).c_str()
+                                               : answer.text().c_str());
+      return bus::kExitFailed;
+    }
+    if (!answer.text().empty()) {
+      print("%s\n", answer.text().c_str());
+      return bus::kExitOk;
+    }
+    // What drives now, or who waits, is in the grant.
+    while (!stop.requested() && seconds_since(began_) < kResetLimit &&
+           (!grant_ || grant_->estopped())) {
       node_.wait(kAgain, &stop);
       poll();
-      if (!grant_)
-        continue;
-      seen = seen || grant_->estopped();
-      if (!grant_->estopped()) {
-        if (!seen)
-          print("no emergency stop is latched\n");
-        else
-          print("the emergency stop is reset; the robot stands until a new command: %s\n",
-                grant_->waits_for_hand_back() ? latched(*grant_).c_str()
-                                              : "saphira goal ..., or saphira drive");
-        return bus::kExitOk;
-      }
-      if (!refused_.empty()) {
-        complain("saphira: not reset: %s\n", refused_.c_str());
-        return bus::kExitFailed;
-      }
-      if (asked && seconds_since(began_) < again)
-        continue;
-      asked = true;
-      again = seconds_since(began_) + 0.5;
-      reset.number((static_cast<std::uint64_t>(random()) << 32U) | random());
-      resets_.write(reset);
     }
-    complain("saphira: %s\n", asked ? "the bridge has not confirmed the reset"
-                                    : ("not reset: no bridge is heard; " + why_nobody()).c_str());
-    return bus::kExitFailed;
+    print("the emergency stop is reset; the robot stands until a new command: %s\n",
+          grant_ && grant_->waits_for_hand_back() ? latched(*grant_).c_str()
+                                                  : "saphira goal ..., or saphira drive");
+    return bus::kExitOk;
   }
 
  private:
@@ -105,14 +92,8 @@ class Button {
 
   void poll() {
     processes_.poll();
-    for (auto& sample : grants_.take()) {
-      if (sample.info.disposed)
-        continue;
-      grant_ = sample.data;
-      for (const v1::Refusal& refusal : grant_->refused())
-        if (refusal.role() == v1::ROLE_ESTOP && refusal.source() == source_)
-          refused_ = refusal.reason();
-    }
+    if (auto newest = grants_.take_newest())
+      grant_ = std::move(newest);
   }
 
   std::string why_nobody() const { return who_is_there(node_.options(), processes_); }
@@ -120,13 +101,12 @@ class Button {
   Clock::time_point began_ = Clock::now();
   bus::Node node_;
   bus::Writer<v1::MotorCommand> stops_;
-  bus::Writer<v1::EstopReset> resets_;
   bus::Reader<v1::Grant> grants_;
   Processes processes_;
   std::string source_;
+  bus::RequestClient resets_;
   std::uint64_t number_ = 0;
   std::optional<v1::Grant> grant_;
-  std::string refused_;
 };
 
 }  // namespace

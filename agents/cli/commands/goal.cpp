@@ -124,7 +124,8 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
 int cancel(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
   const auto id = options.words.size() == 2 ? bus::parse_goal_id(options.words[1]) : std::nullopt;
   if (!id) {
-    std::cerr << "saphira: expected goal cancel ID, such as 1f3a:2 (saphira goal list)\n";
+    std::cerr << "saphira: expected goal cancel ID, such as 1f3a:2 (saphira goal list)"
+              << (options.words.size() < 2 ? "" : ", found \"" + options.words[1] + "\"") << '\n';
     return bus::kExitUsage;
   }
   bus::Node node(node_options);
@@ -244,11 +245,11 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
   command->add_option("words", options->words,
-                      "go X Y | go PLACE | drive SPEED | turn DEGREES | stop | "
+                      "go X Y [m, in odom] | go PLACE | drive SPEED | turn DEGREES | stop | "
                       "FUNCTOR name=value... | list | cancel ID | schemas [FUNCTOR]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least_zero());
   command->add_option("--level", options->level, "of satisfaction that is enough (0..1)")
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--keep", options->keep, "the goal goes on when this program ends");

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <ctime>
 #include <iostream>
+#include <map>
 
 #include "commands.hpp"
 #include "robot_log.hpp"
@@ -10,6 +11,9 @@
 namespace saphira::cli {
 
 namespace {
+
+constexpr double kPatience = 3.0;  ///< [s] for the first line
+constexpr double kQuiet = 0.7;     ///< [s] after the last one all that was said before has come
 
 std::string clock_time(std::int64_t time_ns) {
   const std::time_t seconds = time_ns / 1'000'000'000;
@@ -22,28 +26,50 @@ std::string clock_time(std::int64_t time_ns) {
   return text.data();
 }
 
-int log(std::uint64_t count, const bus::NodeOptions& options, const bus::Stop& stop) {
+std::string line_of(const v1::LogRecord& record) {
+  return clock_time(record.time_ns()) + "  " + name_of(record.level()) + "  " + record.name() +
+         "  " + record.text() + "\n";
+}
+
+/// The newest lines, of all programs together.
+int newest(std::uint64_t count, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   auto reader = node.reader(bus::topics::kLog);
-  std::uint64_t shown = 0;
-  while (!stop.requested()) {
-    for (const auto& sample : reader.take()) {
-      if (sample.info.disposed)
-        continue;
-      const v1::LogRecord& record = sample.data;
-      std::cout << clock_time(record.time_ns()) << "  " << name_of(record.level()) << "  "
-                << record.name() << "  " << record.text() << '\n';
-      if (++shown == count) {
-        std::cout.flush();
-        return bus::kExitOk;
+  std::multimap<std::int64_t, std::string> lines;  // by time: each program tells its own in order
+  const auto began = Clock::now();
+  auto came = began;
+  while (!stop.requested() && seconds_since(began) < kPatience &&
+         (lines.empty() || seconds_since(came) < kQuiet)) {
+    for (const auto& sample : reader.take())
+      if (!sample.info.disposed) {
+        lines.emplace(sample.data.time_ns(), line_of(sample.data));
+        came = Clock::now();
       }
-    }
+    node.wait(std::chrono::milliseconds(50), &stop);
+  }
+  while (lines.size() > count)
+    lines.erase(lines.begin());
+  for (const auto& [time, line] : lines)
+    std::cout << line;
+  if (lines.empty())
+    std::cerr << "saphira: no program of robot " << options.robot << " has said anything in domain "
+              << options.domain << '\n';
+  return lines.empty() ? bus::kExitFailed : bus::kExitOk;
+}
+
+int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  auto reader = node.reader(bus::topics::kLog);
+  while (!stop.requested()) {
+    for (const auto& sample : reader.take())
+      if (!sample.info.disposed)
+        std::cout << line_of(sample.data);
     std::cout.flush();
     if (!std::cout)
       return bus::kExitOk;
     node.wait(std::chrono::milliseconds(500), &stop);
   }
-  return count == 0 ? bus::kExitOk : bus::kExitFailed;
+  return bus::kExitOk;
 }
 
 }  // namespace
@@ -52,13 +78,13 @@ void add_log(CLI::App& app, Chosen& chosen) {
   auto count = std::make_shared<std::uint64_t>(0);
   CLI::App* command =
       app.add_subcommand("log", "What the programs have to say; and tools for logs of robots");
-  command->add_option("-n", *count, "end after so many lines");
+  command->add_option("-n", *count, "the newest so many lines, and no more")->check(above_zero());
   add_robot_log(*command, chosen);
   command->callback([count, command, &chosen] {
     if (!command->get_subcommands().empty())
       return;
     chosen.run = [count](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return log(*count, node, stop);
+      return *count > 0 ? newest(*count, node, stop) : follow(node, stop);
     };
   });
 }

@@ -3,9 +3,10 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "saphira/base/guess.hpp"
+#include "direct.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/bus/introspect.hpp"
+#include "saphira/cli/printer.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -72,21 +73,10 @@ int list(const bus::NodeOptions& options, const bus::Stop& stop) {
   return mismatches.empty() ? bus::kExitOk : bus::kExitFailed;
 }
 
-int echo(const std::string& topic, std::uint64_t count, const bus::NodeOptions& options,
-         const bus::Stop& stop) {
-  std::vector<std::string> names;
-  for (const bus::TopicEntry& entry : bus::known_topics())
-    names.push_back(entry.name);
-  if (std::find(names.begin(), names.end(), topic) == names.end()) {
-    const std::string meant = guess(topic, names);
-    std::cerr << "saphira: no topic \"" << topic.substr(0, 200) << "\"";
-    if (!meant.empty())
-      std::cerr << ": did you mean " << meant << "? There are";
-    else
-      std::cerr << ": expected one of";
-    for (const std::string& name : names)
-      std::cerr << ' ' << name;
-    std::cerr << '\n';
+int echo(const std::string& topic, std::uint64_t count, double timeout,
+         const bus::NodeOptions& options, const bus::Stop& stop) {
+  if (const auto unknown = unknown_topic(topic)) {
+    std::cerr << "saphira: " << *unknown << '\n';
     return bus::kExitUsage;
   }
   bus::Node node(options);
@@ -110,7 +100,15 @@ int echo(const std::string& topic, std::uint64_t count, const bus::NodeOptions& 
                 << "; waiting\n";
       warned = true;
     }
-    node.wait(milliseconds(500), &stop);
+    if (timeout > 0.0 && seconds_since(began) >= timeout) {
+      if (count > 0)
+        complain("saphira: %llu of %llu samples came on %s in %g s\n",
+                 static_cast<unsigned long long>(shown), static_cast<unsigned long long>(count),
+                 topic.c_str(), timeout);
+      return count > 0 || shown == 0 ? bus::kExitFailed : bus::kExitOk;
+    }
+    // A wait rather too short: how much is left of the time is looked at again.
+    node.wait(milliseconds(timeout > 0.0 ? 50 : 500), &stop);
   }
   return count == 0 ? bus::kExitOk : bus::kExitFailed;
 }
@@ -126,14 +124,21 @@ void add_echo(CLI::App& app, Chosen& chosen) {
   struct Options {
     std::string topic;
     std::uint64_t count = 0;
+    bool once = false;
+    double timeout = 0.0;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("echo", "What is written on a topic, as JSON lines");
   command->add_option("topic", options->topic, "such as robot/state")->required();
-  command->add_option("-n", options->count, "end after so many samples");
+  CLI::Option* const count =
+      command->add_option("-n,--count", options->count, "end after so many samples")
+          ->check(above_zero());
+  command->add_flag("--once", options->once, "end after one")->excludes(count);
+  command->add_option("--timeout", options->timeout, "[s] end then; exit code 1: it came to less")
+      ->check(above_zero());
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return echo(options->topic, options->count, node, stop);
+      return echo(options->topic, options->once ? 1 : options->count, options->timeout, node, stop);
     };
   });
 }

@@ -39,8 +39,15 @@ int main(int argc, char** argv) {
         root = &app;
         app.name("saphira");
         app.require_subcommand(0, 1);
+        app.remove_option(app.get_option("--dry-run"));  // saphira check has that
         cli::add_demo(app, chosen);
+        cli::add_scenario(app, chosen);
         cli::add_up(app, chosen);
+        cli::add_check(app, chosen);
+        cli::add_stop(app, chosen);
+        cli::add_renew(app, chosen);
+        cli::add_console(app, chosen);
+        cli::add_security(app, chosen);
         cli::add_estop(app, chosen);
         cli::add_status(app, chosen);
         cli::add_goal(app, chosen);
@@ -49,20 +56,27 @@ int main(int argc, char** argv) {
         cli::add_why(app, chosen);
         cli::add_beliefs(app, chosen);
         cli::add_processes(app, chosen);
+        cli::add_say(app, chosen);
+        cli::add_knows(app, chosen);
+        cli::add_ask(app, chosen);
+        cli::add_agents(app, chosen);
         cli::add_map(app, chosen);
         cli::add_drive(app, chosen);
+        cli::add_direct(app, chosen);
         cli::add_device(app, chosen);
         cli::add_list(app, chosen);
         cli::add_echo(app, chosen);
+        cli::add_write(app, chosen);
         cli::add_log(app, chosen);
         cli::add_wiring(app, chosen);
         cli::add_bench(app, chosen);
+        cli::add_complete(app, chosen);
         app.add_subcommand("help", "This text; with a command's name: what that takes")
             ->add_option("command", about, "name of a command");
         // --robot and the like may stand behind the subcommand as well.
-        // (Those of a benchmark are its own.)
+        // (Those of a benchmark and of the console are their own.)
         for (CLI::App* command : app.get_subcommands({}))
-          command->fallthrough(command->get_name() != "bench");
+          command->fallthrough(command->get_name() != "bench" && command->get_name() != "console");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
         if (chosen.run) {
@@ -74,8 +88,11 @@ int main(int argc, char** argv) {
         if (!about.empty())
           return cli::print_help(*root, about);
         std::fputs(root->help().c_str(), stdout);
-        std::fputs("\n./saphira test builds and runs the tests. README.md says how to begin.\n",
-                   stdout);
+        std::fputs(
+            "\n./saphira test builds and runs the tests; ./saphira package makes Debian packages. "
+            "README.md says how "
+            "to begin.\n",
+            stdout);
         return bus::kExitOk;
       });
 }

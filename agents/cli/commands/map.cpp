@@ -1,4 +1,6 @@
 // The map and where the robot is on it: looked at, drawn, changed, and driven by.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -7,6 +9,7 @@
 #include "commands.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/map_words.hpp"
@@ -83,16 +86,16 @@ class View {
   bus::Node node;
   Processes processes;
   DeploymentWatch deployments;
-  std::optional<v1::Map> sample;
+  std::optional<v1::FloorMap> sample;
   maps::Map map;
   std::optional<v1::Registration> registration;
-  std::uint64_t next_request = node.instance();  ///< random at first
-  std::string holds;                             ///< what is latched, in words
+  bus::RequestClient registration_client{node, bus::topics::kRegistrationRequest, "saphira map"};
+  std::string holds;  ///< what is latched, in words
 
  private:
   bus::NodeOptions options_;
   bus::Reader<v1::Grant> grants_;
-  bus::Reader<v1::Map> maps_;
+  bus::Reader<v1::FloorMap> maps_;
   bus::Reader<v1::Registration> registrations_;
 };
 
@@ -185,6 +188,57 @@ std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
   return raster;
 }
 
+/// What a program has drawn (manual 6.8), where it is on the map now.
+void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::Drawing& drawing) {
+  const Pose odom = lps::from_bus(registration.odom_in_map());
+  const Pose frame = drawn.frame() == v1::FRAME_ROBOT  ? lps::from_bus(registration.pose_in_map())
+                     : drawn.frame() == v1::FRAME_ODOM ? odom
+                                                       : Pose{};
+  char color[8];
+  std::snprintf(color, sizeof color, "#%02x%02x%02x", static_cast<unsigned>(drawn.red()),
+                static_cast<unsigned>(drawn.green()), static_cast<unsigned>(drawn.blue()));
+  std::vector<Vec2> points;
+  for (const v1::DrawnPoint& point : drawn.points())
+    if (std::isfinite(point.x()) && std::isfinite(point.y()))
+      points.emplace_back(point.x(), point.y());
+  const bool in_legend =
+      std::any_of(drawing.strokes.begin(), drawing.strokes.end(),
+                  [&](const maps::Strokes& one) { return one.name == drawn.source(); });
+  const double width = std::isfinite(drawn.width()) ? std::clamp(drawn.width(), 0.04, 1.0) : 0.04;
+  maps::Strokes strokes{in_legend ? std::string() : drawn.source(), color, width, {}};
+  const auto line = [&](const Vec2& from, const Vec2& to) {
+    strokes.lines.push_back(transform(frame, from));
+    strokes.lines.push_back(transform(frame, to));
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2& a = points[i];
+    if (drawn.shape() == v1::DRAWING_POINTS) {
+      constexpr double kArm = 0.06;  // [m]
+      line(a - Vec2(kArm, 0.0), a + Vec2(kArm, 0.0));
+      line(a - Vec2(0.0, kArm), a + Vec2(0.0, kArm));
+    }
+    if (i + 1 == points.size())
+      break;
+    const Vec2& b = points[i + 1];
+    if (drawn.shape() == v1::DRAWING_LINE) {
+      line(a, b);
+    } else if (drawn.shape() == v1::DRAWING_RECTANGLE && i % 2 == 0) {
+      const std::array<Vec2, 4> corners{a, Vec2(b.x(), a.y()), b, Vec2(a.x(), b.y())};
+      for (std::size_t k = 0; k < corners.size(); ++k)
+        line(corners[k], corners[(k + 1) % corners.size()]);
+    } else if (drawn.shape() == v1::DRAWING_ARROW && i % 2 == 0) {
+      line(a, b);
+      const double th = std::atan2(b.y() - a.y(), b.x() - a.x());
+      for (const double wing : {0.5, -0.5})
+        line(b - 0.2 * Vec2(std::cos(th + wing), std::sin(th + wing)), b);
+    }
+  }
+  if (drawn.shape() == v1::DRAWING_TEXT && !points.empty())
+    drawing.words.push_back({transform(frame, points[0]), drawn.text(), color});
+  else
+    drawing.strokes.push_back(std::move(strokes));
+}
+
 int show(const std::string& path, double seconds, const bus::NodeOptions& options,
          const bus::Stop& stop) {
   View view(options);
@@ -193,6 +247,8 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   auto descriptions = view.node.reader(bus::topics::kRobotDescription);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
+  auto drawings = view.node.reader(bus::topics::kDrawings);
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::Drawing> drawn;
   maps::Drawing drawing;
   maps::Trajectory way{"where the robot believes to be", {}};
   std::map<std::pair<std::int32_t, std::int32_t>, v1::GridTile> tiles;
@@ -205,6 +261,13 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
         tiles.erase(key);
       else
         tiles[key] = tile.data;
+    }
+    for (const auto& sample : drawings.take()) {
+      const std::pair key{sample.data.instance(), sample.data.number()};
+      if (sample.info.disposed)
+        drawn.erase(key);
+      else
+        drawn[key] = sample.data;
     }
     if (const auto seen = perceptions.take_newest())
       for (const v1::Percept& percept : seen->percepts())
@@ -229,6 +292,8 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   all.reserve(tiles.size());
   for (auto& [key, tile] : tiles)
     all.push_back(std::move(tile));
+  for (const auto& [key, one] : drawn)
+    add(one, *view.registration, drawing);
   drawing.map = view.map;
   drawing.closed_doors = view.closed_doors();
   const maps::Feature* const in = maps::find(view.map, view.registration->environment());
@@ -249,44 +314,29 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
 }
 
 /// Asks registration and waits for its answer; says what came, and what did not.
-bool ask(View& view, bus::Reader<v1::RegistrationAnswer>& answers,
-         bus::Writer<v1::RegistrationRequest>& writer, v1::RegistrationRequest asked,
-         const bus::NodeOptions& options, const bus::Stop& stop) {
-  asked.request(view.next_request++);
-  asked.source("saphira map");
-  bool written = false;
-  const auto began = Clock::now();
-  while (!stop.requested() && seconds_since(began) < kPatience) {
-    if (!written && writer.matched() > 0 && answers.matched() > 0)
-      written = writer.write(asked);
-    for (const auto& answer : answers.take()) {
-      if (answer.data.request() != asked.request())
-        continue;
-      if (!answer.data.done())
-        std::cerr << "saphira: " << answer.data.reason() << '\n';
-      else if (answer.data.artifact() != 0)
-        std::printf("artifact %u\n", answer.data.artifact());
-      return answer.data.done();
-    }
-    view.node.wait(milliseconds(50), &stop);
-    view.poll();
+bool ask(View& view, const Request& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
+  const v1::Answer answer =
+      view.registration_client.ask(to_bus(asked), kPatience, &stop, [&] { view.poll(); });
+  if (answer.service().empty()) {
+    std::cerr << "saphira: registration did not answer; " << who_is_there(options, view.processes)
+              << '\n';
+    return false;
   }
-  std::cerr << "saphira: registration did not answer; " << who_is_there(options, view.processes)
-            << '\n';
-  return false;
+  if (!bus::well(answer.code()))
+    std::cerr << "saphira: " << answer.text() << '\n';
+  else if (const double id = number_of(from_bus(answer).results, "id"); id != 0.0)
+    std::printf("artifact %.0f\n", id);
+  return bus::well(answer.code());
 }
 
 int request(const std::vector<std::string>& words, const bus::NodeOptions& options,
             const bus::Stop& stop) {
   View view(options);
-  auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
-  auto writer = view.node.writer(bus::topics::kRegistrationRequest);
   // Names of places are those of the map that is there.
   if (!view.wait_for_map(stop, false))
     return bus::kExitFailed;
-  return ask(view, answers, writer, parse_map_request(words, view.map), options, stop)
-             ? bus::kExitOk
-             : bus::kExitFailed;
+  return ask(view, parse_map_request(words, view.map), options, stop) ? bus::kExitOk
+                                                                      : bus::kExitFailed;
 }
 
 int route(const std::string& place, const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -314,8 +364,6 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
 /// Lets the robot build the map (activity build-map); writes it when nothing is left.
 int build(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
   View view(options);
-  auto answers = view.node.reader(bus::topics::kRegistrationAnswer);
-  auto requests = view.node.writer(bus::topics::kRegistrationRequest);
   if (!view.wait_for_map(stop))
     return bus::kExitFailed;
   bus::GoalClient goals(view.node, "saphira map build");
@@ -363,10 +411,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
   // Also when it was broken off: what there is, is the map.
   if (!whole) {
     const bus::Stop end;
-    v1::RegistrationRequest request;
-    request.action(v1::REGISTRATION_ADD_FEATURES);
-    request.on(false);
-    if (!ask(view, answers, requests, request, options, end))
+    if (!ask(view, {"add_features", {{"on", false}}}, options, end))
       return bus::kExitFailed;
   }
   view.poll();
@@ -381,14 +426,15 @@ int map(const std::vector<std::string>& words, double seconds, const bus::NodeOp
   const std::string verb = words.empty() ? "" : words.front();
   const std::string rest = words.size() == 2 ? words[1] : "";
   try {
+    check_map_words(words);
     if (words.empty() || (verb == "follow" && words.size() == 1))
       return look(options, stop, verb == "follow");
     if (verb == "list" && words.size() == 1)
       return save("-", options, stop);
     if (verb == "save" && !rest.empty())
       return save(rest, options, stop);
-    if (verb == "show" && words.size() <= 2)
-      return show(rest.empty() ? "map.svg" : rest, seconds, options, stop);
+    if (verb == "show" && !rest.empty())
+      return show(rest, seconds, options, stop);
     if (verb == "build" && words.size() <= 2)
       return build(rest.empty() ? "built.map" : rest, options, stop);
     if (verb == "route" && !rest.empty())
@@ -408,10 +454,10 @@ constexpr const char* kMapWords = R"(
   saphira map follow             the same, a line a second
   saphira map list               the map as the text of a map file
   saphira map save FILE          the same into a file
-  saphira map show [FILE.svg]    a picture of map, grid, matches and the way, of --seconds;
+  saphira map show FILE.svg      a picture of map, grid, matches and the way, of --seconds;
                                  closed doors are black, things that the robot put down orange
   saphira map build [FILE]       explores the floor, maps it from nothing, and writes the map
-  saphira map load FILE          this map instead of the one that is there
+  saphira map load FILE          this map instead of the one that is there; or the name of a shipped one
   saphira map delete             no map
   saphira map put "DOOR (3) 3000, 1000, 90, 900"   adds an artifact, or changes the one of this id
   saphira map remove ID          removes it

@@ -6,7 +6,9 @@ namespace saphira::cli {
 
 namespace {
 
-constexpr double kSilence = 1.0;  // [s]
+constexpr double kSilence = 1.0;           // [s]
+constexpr double kSoon = 0.5;              // [s] then all that is latched has come
+constexpr std::uint64_t kSaidLately = 20;  // cycles
 
 template <class T>
 std::optional<T> copy(const T* sample) {
@@ -27,7 +29,8 @@ Mind::Mind(bus::Node& node, bool recalled)
       status_reader_(node.reader(bus::topics::kGoalStatus)),
       schema_reader_(node.reader(bus::topics::kBehaviorSchemas)),
       belief_reader_(node.reader(bus::topics::kBeliefs)),
-      process_reader_(node.reader(bus::topics::kProcesses)) {
+      process_reader_(node.reader(bus::topics::kProcesses)),
+      program_reader_(node.reader(bus::topics::kProgramMinds)) {
   if (recalled)
     recall();
 }
@@ -35,7 +38,8 @@ Mind::Mind(bus::Node& node, bool recalled)
 void Mind::recall() {
   recall_ = std::make_unique<Recall>(Recall{
       node_.reader(bus::topics::kRecallRobot), node_.reader(bus::topics::kRecallGrant),
-      node_.reader(bus::topics::kRecallBehaviors), node_.reader(bus::topics::kRecallIntentions)});
+      node_.reader(bus::topics::kRecallBehaviors), node_.reader(bus::topics::kRecallIntentions),
+      node_.reader(bus::topics::kRecallGoals)});
 }
 
 void Mind::poll() {
@@ -47,8 +51,12 @@ void Mind::poll() {
     grants_.take(recall_->grants);
     behaviors_.take(recall_->behaviors);
     intentions_.take(recall_->intentions);
+    take_past_goals();
   }
+  const std::uint64_t newest_before = robots_.known().newest;
   robots_.take(robot_reader_);
+  if (robots_.known().newest != newest_before)
+    robot_came_ = Clock::now();
   grants_.take(grant_reader_);
   behaviors_.take(behavior_reader_);
   intentions_.take(intention_reader_);
@@ -68,12 +76,40 @@ void Mind::poll() {
     else
       services_[sample.data.instance()] = sample.data;
   }
+  for (const auto& sample : program_reader_.take()) {
+    if (sample.info.disposed)
+      programs_.erase(sample.data.instance());
+    else
+      programs_[sample.data.instance()].note(sample.data);
+  }
   if (auto schemas = schema_reader_.take_newest())
     schemas_ = std::move(schemas);
   if (auto beliefs = belief_reader_.take_newest())
     beliefs_ = std::move(beliefs);
   if (!recall_ && !heard() && seconds_since(began_) > kSilence)
     recall();
+}
+
+std::vector<const v1::ProgramMind*> Mind::programs() const {
+  std::vector<const v1::ProgramMind*> result;
+  for (const auto& [instance, past] : programs_)
+    if (past.newest() != nullptr && past.epoch() == robots_.epoch() &&
+        past.newest()->stamp().cycle() + kSaidLately >= robots_.known().newest)
+      result.push_back(past.newest());
+  return result;
+}
+
+/// Of a program whose behaviors drove in that cycle; else nullptr.
+const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cycle) const {
+  for (const auto& [instance, past] : programs_)
+    if (past.epoch() == robots_.epoch() && past.newest() != nullptr &&
+        past.newest()->source() == source)
+      if (const v1::ProgramMind* const then = past.at(cycle);
+          then != nullptr && then->behaviors().control() &&
+          std::any_of(then->behaviors().behaviors().begin(), then->behaviors().behaviors().end(),
+                      [](const v1::BehaviorState& each) { return each.running(); }))
+        return then;
+  return nullptr;
 }
 
 void Mind::listen(std::chrono::milliseconds time, const bus::Stop& stop) {
@@ -90,6 +126,20 @@ const v1::BehaviorSchema* Mind::schema(const std::string& name) const {
       if (schema.name() == name)
         return &schema;
   return nullptr;
+}
+
+void Mind::take_past_goals() {
+  for (const auto& sample : recall_->goals.take())
+    if (!sample.info.disposed)
+      past_goals_[{sample.data.stamp().epoch(), sample.data.stamp().cycle()}] = sample.data;
+}
+
+/// As intentions told them last before the cycle was over.
+std::vector<v1::GoalStatus> Mind::goals_at(std::uint64_t cycle) const {
+  auto after = past_goals_.upper_bound({robots_.epoch(), cycle});
+  if (after == past_goals_.begin() || std::prev(after)->first.first != robots_.epoch())
+    return {};
+  return std::prev(after)->second.goals();
 }
 
 /// The grant that was told with the next packet is the one that the command of a cycle met; in
@@ -119,9 +169,7 @@ std::uint64_t Mind::newest_cycle() const {
 }
 
 std::pair<std::uint64_t, std::uint64_t> Mind::known() const {
-  if (behaviors_.newest() == nullptr)
-    return {0, 0};
-  return {behaviors_.oldest()->stamp().cycle(), behaviors_.newest()->stamp().cycle()};
+  return {robots_.known().oldest, robots_.known().newest};
 }
 
 bool Mind::knows_goals() const {
@@ -132,41 +180,60 @@ bool Mind::knows_goals() const {
       if (const Key key{node.goal().writer(), node.goal().number()};
           node.parent() == 0 && !(statuses_.contains(key) && goals_.contains(key)))
         return false;
-  return true;
+  // That there is none may only not have come yet.
+  return !statuses_.empty() || seconds_since(began_) > kSoon;
 }
 
-/// Of the services that live.
-std::string Mind::suspended() const {
-  std::string text;
-  for (const SeenProcess& program : processes_.all()) {
-    const auto found = services_.find(program.status.instance());
-    if (found == services_.end() || program.age > kLostAge)
-      continue;
-    for (const v1::Process& process : found->second.processes())
-      if (process.state() == v1::PROCESS_SUSPENDED)
-        text += (text.empty() ? "" : ", ") + process.name() + " of " + found->second.service();
+situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
+  situation::Situation now;
+  now.cycle = cycle;
+  now.past = past;
+  now.now = robots_.known().newest;
+  now.silence = lockstep_ ? 0.0 : seconds_since(robot_came_);
+  now.listened = seconds_since(began_);
+  now.robot = copy(robots_.at(cycle));
+  now.grant = copy(grant_for(cycle));
+  // Where the command of this cycle was late, an earlier one holds: of that cycle are its reasons.
+  std::uint64_t answered = cycle;
+  const auto drives = [&](v1::Role role) { return now.grant && now.grant->role() == role; };
+  if ((drives(v1::ROLE_BEHAVIORS) || drives(v1::ROLE_DIRECT)) && now.grant->answers().cycle() != 0)
+    answered = now.grant->answers().cycle();
+  if (behaviors_.epoch() == robots_.epoch())
+    now.behaviors = copy(behaviors_.at(answered));
+  if (answered > 0 && intentions_.epoch() == robots_.epoch())
+    now.intentions = copy(intentions_.at(answered - 1));
+  now.behaviors_known =
+      behaviors_.epoch() == robots_.epoch() ? behaviors_.known() : situation::Known{};
+  now.intentions_known =
+      intentions_.epoch() == robots_.epoch() ? intentions_.known() : situation::Known{};
+  if (const v1::ProgramMind* const own =
+          drives(v1::ROLE_DIRECT) ? program(now.grant->source(), answered) : nullptr) {
+    now.behaviors = own->behaviors();
+    now.intentions = own->intended();
+    now.own_mind = true;
   }
-  return text;
-}
-
-Scene Mind::scene(std::uint64_t cycle) const {
-  Scene scene;
-  scene.cycle = cycle;
-  scene.robot = copy(robots_.at(cycle));
-  scene.grant = copy(grant_for(cycle));
-  scene.behaviors = copy(behaviors_.at(cycle));
-  if (cycle > 0)
-    scene.intentions = copy(intentions_.at(cycle - 1));
   for (const auto& [key, goal] : goals_)
-    scene.goals.push_back(goal);
-  for (const auto& [key, status] : statuses_)
-    scene.statuses.push_back(status);
+    now.goals.push_back(goal);
+  now.statuses_known = now.intentions_known.newest != 0;
+  if (past) {
+    now.statuses = goals_at(cycle);
+    // It tells them when they change: who was there in that cycle and had told of none had none.
+    now.statuses_known = !now.statuses.empty() || now.intentions.has_value();
+  } else {
+    for (const auto& [key, status] : statuses_)
+      now.statuses.push_back(status);
+  }
   if (schemas_)
-    scene.schemas = schemas_->schemas();
-  if (!scene.grant || !scene.behaviors)
-    scene.missing = missing_services(processes_.all());
-  scene.suspended = suspended();
-  return scene;
+    now.schemas = schemas_->schemas();
+  if (beliefs_ && !past)
+    now.beliefs = beliefs_->beliefs();
+  now.programs = processes_.all();
+  for (const SeenProcess& program : now.programs) {
+    const auto found = services_.find(program.status.instance());
+    if (found != services_.end() && program.age <= kLostAge)
+      now.processes.push_back(found->second);
+  }
+  return now;
 }
 
 }  // namespace saphira::cli

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "saphira/cli/why.hpp"
+#include "saphira/situation/why.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -18,23 +18,30 @@ class Past {
  public:
   void take(bus::Reader<T>& reader) {
     reader.visit([&](const T& sample, const bus::SampleInfo& info) {
-      if (info.disposed || sample.stamp().epoch() < epoch_)
-        return;
-      if (sample.stamp().epoch() > epoch_)
-        samples_.clear();
-      epoch_ = sample.stamp().epoch();
-      // The first one of a cycle stays: a second one is what came of the cycle.
-      samples_.emplace(sample.stamp().cycle(), sample);
-      while (samples_.size() > kMost)
-        samples_.erase(samples_.begin());
+      if (!info.disposed)
+        note(sample);
     });
+  }
+  void note(const T& sample) {
+    if (sample.stamp().epoch() < epoch_)
+      return;
+    if (sample.stamp().epoch() > epoch_)
+      samples_.clear();
+    epoch_ = sample.stamp().epoch();
+    // The first one of a cycle stays: a second one is what came of the cycle.
+    samples_.emplace(sample.stamp().cycle(), sample);
+    while (samples_.size() > kMost)
+      samples_.erase(samples_.begin());
   }
   const T* at(std::uint64_t cycle) const {
     const auto found = samples_.find(cycle);
     return found == samples_.end() ? nullptr : &found->second;
   }
+  situation::Known known() const {
+    return samples_.empty() ? situation::Known{}
+                            : situation::Known{samples_.begin()->first, samples_.rbegin()->first};
+  }
   const T* newest() const { return samples_.empty() ? nullptr : &samples_.rbegin()->second; }
-  const T* oldest() const { return samples_.empty() ? nullptr : &samples_.begin()->second; }
   std::uint64_t epoch() const { return epoch_; }
 
  private:
@@ -54,21 +61,28 @@ class Mind {
   /// Waits and polls, for as long.
   void listen(std::chrono::milliseconds time, const bus::Stop& stop);
 
+  const v1::RobotState* robot() const { return robots_.newest(); }
   const v1::Intentions* intentions() const { return intentions_.newest(); }
-  const v1::Behaviors* behaviors() const { return behaviors_.newest(); }
+  const v1::BehaviorSet* behaviors() const { return behaviors_.newest(); }
+  /// What programs with behaviors of their own think, of those that still say so.
+  std::vector<const v1::ProgramMind*> programs() const;
   const v1::Grant* grant() const { return grants_.newest(); }
   const v1::BehaviorSchema* schema(const std::string& name) const;
-  const v1::Beliefs* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
+  const v1::BeliefSet* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
   bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }
   const Processes& processes() const { return processes_; }
 
-  /// All that is known of a cycle.
-  Scene scene(std::uint64_t cycle) const;
+  /// All that is known of a cycle. `past`: it was asked for, and is not now.
+  situation::Situation situation(std::uint64_t cycle, bool past) const;
   /// Whether there is all that makes a whole of a cycle.
   bool whole(std::uint64_t cycle) const;
   /// The newest cycle that is whole; else the newest of which anything is known; 0: none.
   std::uint64_t newest_cycle() const;
-  /// The oldest and newest cycle of which the behaviors are known.
+  /// Whether it can be said what the robot was told.
+  bool some(std::uint64_t cycle) const {
+    return robots_.at(cycle) != nullptr && grant_for(cycle) != nullptr;
+  }
+  /// The oldest and newest cycle of which the robot is known.
   std::pair<std::uint64_t, std::uint64_t> known() const;
   /// What does not come each cycle has been there, or cannot be waited for.
   bool knows_goals() const;
@@ -77,39 +91,47 @@ class Mind {
   struct Recall {
     bus::Reader<v1::RobotState> robots;
     bus::Reader<v1::Grant> grants;
-    bus::Reader<v1::Behaviors> behaviors;
+    bus::Reader<v1::BehaviorSet> behaviors;
     bus::Reader<v1::Intentions> intentions;
+    bus::Reader<v1::GoalStatusSet> goals;
   };
   void recall();
-  std::string suspended() const;
+  void take_past_goals();
+  std::vector<v1::GoalStatus> goals_at(std::uint64_t cycle) const;
   const v1::Grant* grant_for(std::uint64_t cycle) const;
+  const v1::ProgramMind* program(const std::string& source, std::uint64_t cycle) const;
 
   bus::Node& node_;
   Processes processes_;
   bus::Reader<v1::RobotDescription> description_reader_;
   bus::Reader<v1::RobotState> robot_reader_;
   bus::Reader<v1::Grant> grant_reader_;
-  bus::Reader<v1::Behaviors> behavior_reader_;
+  bus::Reader<v1::BehaviorSet> behavior_reader_;
   bus::Reader<v1::Intentions> intention_reader_;
   bus::Reader<v1::Goal> goal_reader_;
   bus::Reader<v1::GoalStatus> status_reader_;
   bus::Reader<v1::BehaviorSchemas> schema_reader_;
-  bus::Reader<v1::Beliefs> belief_reader_;
-  bus::Reader<v1::Processes> process_reader_;
+  bus::Reader<v1::BeliefSet> belief_reader_;
+  bus::Reader<v1::ProcessSet> process_reader_;
+  bus::Reader<v1::ProgramMind> program_reader_;
   std::unique_ptr<Recall> recall_;
   Clock::time_point began_ = Clock::now();
+  Clock::time_point robot_came_ = Clock::now();
 
   bool lockstep_ = false;
   Past<v1::RobotState> robots_;
   Past<v1::Grant> grants_;
-  Past<v1::Behaviors> behaviors_;
+  Past<v1::BehaviorSet> behaviors_;
   Past<v1::Intentions> intentions_;
   using Key = std::pair<std::uint64_t, std::uint64_t>;
   std::map<Key, v1::Goal> goals_;
   std::map<Key, v1::GoalStatus> statuses_;
+  /// What was told of the goals, by the epoch and cycle in which.
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatusSet> past_goals_;
   std::optional<v1::BehaviorSchemas> schemas_;
-  std::optional<v1::Beliefs> beliefs_;
-  std::map<std::uint64_t, v1::Processes> services_;  ///< by instance
+  std::optional<v1::BeliefSet> beliefs_;
+  std::map<std::uint64_t, v1::ProcessSet> services_;         ///< by instance
+  std::map<std::uint64_t, Past<v1::ProgramMind>> programs_;  ///< likewise
 };
 
 }  // namespace saphira::cli

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "commands.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/cli/displays.hpp"
 #include "watch.hpp"
 
@@ -43,8 +44,8 @@ class Watch {
     }
   }
   /// Of those that live.
-  std::vector<v1::Processes> services() const {
-    std::vector<v1::Processes> all;
+  std::vector<v1::ProcessSet> services() const {
+    std::vector<v1::ProcessSet> all;
     for (const SeenProcess& program : programs_.all())
       if (const auto found = services_.find(program.status.instance());
           found != services_.end() && program.age <= kLostAge)
@@ -56,8 +57,8 @@ class Watch {
  private:
   bus::Node& node_;
   Processes programs_;
-  bus::Reader<v1::Processes> reader_;
-  std::map<std::uint64_t, v1::Processes> services_;
+  bus::Reader<v1::ProcessSet> reader_;
+  std::map<std::uint64_t, v1::ProcessSet> services_;
 };
 
 int list(const bus::NodeOptions& options, const bus::Stop& stop) {
@@ -77,49 +78,30 @@ int list(const bus::NodeOptions& options, const bus::Stop& stop) {
 int ask(const Options& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Watch watch(node);
-  auto writer = node.writer(bus::topics::kProcessRequest);
-  auto answers = node.reader(bus::topics::kProcessAnswer);
-  v1::ProcessRequest request;
-  request.source("saphira processes");
-  request.request(node.instance());
-  request.action(asked.words[0] == "interrupt" ? v1::PROCESS_INTERRUPT
-                 : asked.words[0] == "resume"  ? v1::PROCESS_RESUME
-                                               : v1::PROCESS_SUSPEND);
+  bus::RequestClient services(node, bus::topics::kProcessRequest, "saphira processes");
+  v1::Request request;
   request.service(asked.words[1]);
-  request.process(asked.words[2]);
-  request.cycles(asked.cycles);
-  const auto began = Clock::now();
-  bool written = false;
-  while (!stop.requested() && seconds_since(began) < kPatience) {
-    watch.listen(milliseconds(50), stop);
-    const auto services = watch.services();
-    const bool there = std::any_of(
-        services.begin(), services.end(),
-        [&](const v1::Processes& service) { return service.service() == request.service(); });
-    // Once it is there, so are its ears: as many as there are services.
-    if (!written && there && writer.matched() >= services.size())
-      written = writer.write(request);
-    for (const auto& sample : answers.take()) {
-      const v1::ProcessAnswer& answer = sample.data;
-      if (answer.request() != request.request())
-        continue;
-      if (!answer.done()) {
-        std::cerr << "saphira: " << answer.reason() << '\n';
-        return bus::kExitFailed;
-      }
-      // Its state is told in the cycle after that.
-      watch.listen(milliseconds(300), stop);
-      std::fputs(processes_table(watch.services()).c_str(), stdout);
-      return bus::kExitOk;
-    }
+  request.functor(asked.words[0]);
+  request.arguments({bus::text("process", asked.words[2])});
+  if (asked.words[0] == "suspend")
+    request.arguments().push_back(bus::number("cycles", asked.cycles));
+  const v1::Answer answer = services.ask(request, kPatience, &stop, [&] { watch.poll(); });
+  if (bus::well(answer.code())) {
+    // Its state is told in the cycle after that.
+    watch.listen(milliseconds(300), stop);
+    std::fputs(processes_table(watch.services()).c_str(), stdout);
+    return bus::kExitOk;
   }
   std::string names;
-  for (const v1::Processes& service : watch.services())
+  bool there = !answer.service().empty();  // it may answer before its processes are heard of
+  for (const v1::ProcessSet& service : watch.services()) {
     names += (names.empty() ? "" : ", ") + service.service();
+    there = there || service.service() == request.service();
+  }
   std::cerr << "saphira: "
-            << (written ? "nothing was heard of the request"
-                        : "no service " + request.service() + " with processes; there are " +
-                              (names.empty() ? "none" : names))
+            << (there ? answer.text()
+                      : "no service " + request.service() + " with processes; there are " +
+                            (names.empty() ? "none" : names))
             << '\n';
   return bus::kExitFailed;
 }

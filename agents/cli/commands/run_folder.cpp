@@ -22,8 +22,12 @@ void make_own(const std::string& path) {
     throw std::runtime_error(path + " cannot be made, or is not ours");
 }
 
+/// Of this user, for all deployments: SAPHIRA_RUN, or one in /tmp.
 std::string own_folder() {
-  const std::string ours = "/tmp/saphira-" + std::to_string(getuid());
+  const char* const given = std::getenv("SAPHIRA_RUN");
+  const std::string ours = given != nullptr && *given != '\0'
+                               ? std::string(given)
+                               : "/tmp/saphira-" + std::to_string(getuid());
   make_own(ours);
   return ours;
 }
@@ -51,7 +55,11 @@ RunFolder::RunFolder(const std::string& name) {
   make_own(path_);
   lock_ = lock(path_ + "/lock");
   if (lock_ < 0)
-    throw std::runtime_error("this deployment is running already: " + path_ + "/lock is held");
+    throw std::runtime_error("this deployment is running already: " + path_ +
+                             "/lock is held; saphira stop ends it");
+  const std::string pid = std::to_string(getpid());
+  if (ftruncate(lock_, 0) != 0 || write(lock_, pid.data(), pid.size()) < 0)
+    throw std::runtime_error(path_ + "/lock cannot be written");
 }
 
 RunFolder::~RunFolder() {
@@ -61,6 +69,30 @@ RunFolder::~RunFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
+}
+
+std::vector<Running> running_deployments() {
+  std::vector<Running> all;
+  for (const auto& entry : std::filesystem::directory_iterator(own_folder())) {
+    const std::string path = entry.path() / "lock";
+    if (!std::filesystem::exists(path))
+      continue;
+    // Who can have the lock is the only one: nobody runs it.
+    const int file = lock(path);
+    if (file >= 0) {
+      close(file);
+      continue;
+    }
+    Running running{entry.path().filename(), 0};
+    std::ifstream(path) >> running.pid;
+    if (running.pid > 0)
+      all.push_back(running);
+  }
+  return all;
+}
+
+std::string log_of(const std::string& name) {
+  return own_folder() + "/" + name + ".log";
 }
 
 ProgramLocks::~ProgramLocks() {

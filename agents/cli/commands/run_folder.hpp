@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
 #include <vector>
 
@@ -23,6 +25,15 @@ class RunFolder {
   std::string path_;
   int lock_ = -1;
 };
+
+/// A deployment that runs on this machine, started by this user.
+struct Running {
+  std::string name;  ///< of its folder, such as demo-pioneer-0
+  pid_t pid = 0;     ///< of its saphira up
+};
+std::vector<Running> running_deployments();
+/// What is said by the deployment of that name while it has no terminal.
+std::string log_of(const std::string& name);
 
 /// That a robot has each of its programs once on this machine, by whatever deployments.
 class ProgramLocks {

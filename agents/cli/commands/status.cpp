@@ -16,20 +16,41 @@ using std::chrono::milliseconds;
 
 /// The status comes once a second, so everybody alive has spoken after this.
 constexpr milliseconds kListen{1300};
+// With security: where a message of a handshake is lost, Fast DDS sends it again after a second.
+constexpr milliseconds kListenSecured{2600};
 
+/// What all programs say of themselves, and who drives.
 class StatusView {
  public:
   explicit StatusView(bus::Node& node)
       : node_(node),
         processes_(node),
         grants_(node.reader(bus::topics::kGrant)),
+        robots_(node.reader(bus::topics::kRobotState)),
+        behaviors_(node.reader(bus::topics::kBehaviors)),
+        intentions_(node.reader(bus::topics::kIntentions)),
+        goals_(node.reader(bus::topics::kGoalStatus)),
         log_(node.reader(bus::topics::kLog)) {}
 
   void poll() {
     processes_.poll();
-    if (auto grant = grants_.take_newest()) {
+    if (auto grant = grants_.take_newest())
       grant_ = std::move(grant);
-      grant_came_ = Clock::now();
+    if (const auto robot = robots_.take_newest()) {
+      // A robot in single step may stand still.
+      robot_ = robot->stamp();
+      robot_came_ = Clock::now();
+    }
+    if (const auto behaviors = behaviors_.take_newest())
+      behaved_ = behaviors->stamp();
+    if (const auto intentions = intentions_.take_newest())
+      intended_ = intentions->stamp();
+    for (const auto& sample : goals_.take()) {
+      const std::pair id{sample.data.id().writer(), sample.data.id().number()};
+      if (sample.info.disposed)
+        statuses_.erase(id);
+      else
+        statuses_[id] = sample.data;
     }
     for (const auto& sample : log_.take())
       if (sample.data.text().starts_with(kStartedAgain))
@@ -41,21 +62,32 @@ class StatusView {
     if (all.empty())
       return who_is_there(node_.options(), processes_) + "\n" + silent_peers();
     std::string text = status_table(all);
-    const double age = seconds_since(grant_came_);
-    if (!grant_)
-      text += "drive: nothing is said about the grant\n";
-    else if (age > 1.0)
-      text += "drive: nothing is said about the grant for " +
-              std::to_string(static_cast<int>(age)) + " s\n";
-    else
-      text += "drive: " + describe(*grant_) + "\n";
-    if (const std::string missing = missing_services(all); !missing.empty())
-      text += "not on the bus: " + missing + "\n";
+    const situation::Situation now = situation();
+    text += "drive: " + driver(now) + "\n";
+    if (const std::string trouble = situation::trouble(now); !trouble.empty())
+      text += "trouble: " + trouble + "\n";
     if (const std::string second = second_deployment(all); !second.empty())
       text += second + "\n";
     for (const auto& [instance, words] : started_again_)
       text += words + "\n";
     return text + silent_peers();
+  }
+
+  situation::Situation situation() const {
+    situation::Situation now = processes_.situation();
+    now.now = robot_.cycle();
+    now.cycle = now.now;
+    now.grant = grant_;
+    now.silence = seconds_since(robot_came_);
+    const auto known = [this](const v1::Stamp& stamp) {
+      const std::uint64_t cycle = stamp.epoch() == robot_.epoch() ? stamp.cycle() : 0;
+      return situation::Known{cycle, cycle};
+    };
+    now.behaviors_known = known(behaved_);
+    now.intentions_known = known(intended_);
+    for (const auto& [id, status] : statuses_)
+      now.statuses.push_back(status);
+    return now;
   }
 
   bool anybody() const { return !processes_.all().empty(); }
@@ -73,13 +105,19 @@ class StatusView {
   bus::Node& node_;
   Processes processes_;
   bus::Reader<v1::Grant> grants_;
+  bus::Reader<v1::RobotState> robots_;
+  bus::Reader<v1::BehaviorSet> behaviors_;
+  bus::Reader<v1::Intentions> intentions_;
+  bus::Reader<v1::GoalStatus> goals_;
   bus::Reader<v1::LogRecord> log_;
-  std::map<std::uint64_t, std::string> started_again_;  ///< by the supervisor, and why
   std::optional<v1::Grant> grant_;
-  Clock::time_point grant_came_;
+  v1::Stamp robot_, behaved_, intended_;  ///< the newest
+  Clock::time_point robot_came_ = Clock::now();
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> statuses_;
+  std::map<std::uint64_t, std::string> started_again_;  ///< by the supervisor, and why
 };
 
-int status(bool watch, const bus::NodeOptions& options, const bus::Stop& stop) {
+int status(bool watch, bool json, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   StatusView view(node);
   const auto listen = [&](milliseconds time) {
@@ -89,7 +127,11 @@ int status(bool watch, const bus::NodeOptions& options, const bus::Stop& stop) {
       view.poll();
     }
   };
-  listen(kListen);
+  listen(node.identity() ? kListenSecured : kListen);
+  if (json) {
+    std::printf("%s\n", to_json(view.situation()).c_str());
+    return view.anybody() ? bus::kExitOk : bus::kExitFailed;
+  }
   while (watch && !stop.requested()) {
     const bool terminal = isatty(STDOUT_FILENO) != 0;
     std::printf("%s%s%s", terminal ? "\x1b[H\x1b[2J" : "", view.text().c_str(),
@@ -106,11 +148,14 @@ int status(bool watch, const bus::NodeOptions& options, const bus::Stop& stop) {
 
 void add_status(CLI::App& app, Chosen& chosen) {
   auto watch = std::make_shared<bool>(false);
+  auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("status", "Every process, and who drives and why");
   command->add_flag("--watch,-w", *watch, "again each second, until Ctrl-C");
-  command->callback([watch, &chosen] {
-    chosen.run = [watch](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return status(*watch, node, stop);
+  command->add_flag("--json", *json, "one JSON object: programs, drive, goals, trouble")
+      ->excludes("--watch");
+  command->callback([watch, json, &chosen] {
+    chosen.run = [watch, json](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return status(*watch, *json, node, stop);
     };
   });
 }

@@ -16,7 +16,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kPatience = 3.0;  // [s] for the first word
+constexpr double kPatience = 3.0;     // [s] for the first word
+constexpr milliseconds kOthers{300};  // for programs that are heard after the services
 
 struct WatchOptions {
   bool once = false;
@@ -52,6 +53,8 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
       return nobody(options, mind, what);
   }
   if (!watch.live() && text) {
+    mind.listen(kOthers, stop);
+    text = draw(mind);
     std::fputs(text->c_str(), stdout);
     return bus::kExitOk;
   }
@@ -86,42 +89,79 @@ std::string header(const v1::Stamp& stamp, const Mind& mind) {
   return "cycle " + std::to_string(stamp.cycle()) + (holds.empty() ? "" : "  " + holds) + "\n";
 }
 
+/// Above what a program with behaviors of its own thinks.
+std::string of_program(const v1::ProgramMind& program) {
+  return "\nof the program " + program.source() + ":\n";
+}
+
 int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const bus::Stop& stop) {
   return show(
       options, stop, watch, "intentions", [](const Mind& mind) -> std::optional<std::string> {
         const v1::Intentions* const newest = mind.intentions();
         if (newest == nullptr)
           return std::nullopt;
-        return header(newest->stamp(), mind) + intentions_display(*newest, mind.behaviors());
+        std::string text =
+            header(newest->stamp(), mind) + intentions_display(*newest, mind.behaviors());
+        for (const v1::ProgramMind* const program : mind.programs())
+          text +=
+              of_program(*program) + intentions_display(program->intended(), &program->behaviors());
+        return text;
       });
+}
+
+/// The window of a behavior of that name or schema; nothing: it is not among these, whose names are
+/// added to `names`.
+std::optional<std::string> find_behavior(const std::string& name, const v1::BehaviorSet& behaviors,
+                                         const v1::Intentions* intentions, const Mind& mind,
+                                         std::string& names) {
+  for (const v1::BehaviorState& state : behaviors.behaviors()) {
+    names += (names.empty() ? "" : ", ") + state.name();
+    if (state.name() != name && state.schema() != name)
+      continue;
+    const v1::IntendedBehavior* intended = nullptr;
+    if (intentions != nullptr)
+      for (const v1::IntendedBehavior& one : intentions->behaviors())
+        if (one.name() == state.name())
+          intended = &one;
+    return behavior_display(state, intended, mind.schema(state.schema()));
+  }
+  return std::nullopt;
+}
+
+/// Nothing: nobody has said anything yet.
+std::optional<std::string> behaviors_text(const std::string& name, const Mind& mind) {
+  const v1::BehaviorSet* const newest = mind.behaviors();
+  const std::vector<const v1::ProgramMind*> programs = mind.programs();
+  if (newest == nullptr && programs.empty())
+    return std::nullopt;
+  std::string text = header(newest != nullptr ? newest->stamp() : programs.front()->stamp(), mind);
+  if (name.empty()) {
+    text += newest != nullptr ? behaviors_display(*newest) : "";
+    for (const v1::ProgramMind* const program : programs)
+      text += of_program(*program) + behaviors_display(program->behaviors());
+    return text;
+  }
+  std::string names;
+  if (newest != nullptr)
+    if (const auto found = find_behavior(name, *newest, mind.intentions(), mind, names))
+      return text + *found;
+  for (const v1::ProgramMind* const program : programs)
+    if (const auto found =
+            find_behavior(name, program->behaviors(), &program->intended(), mind, names))
+      return text + *found;
+  return text + "no behavior " + name + "; there are " + (names.empty() ? "none now" : names) +
+         "\n";
 }
 
 int behaviors(const std::string& name, const WatchOptions& watch, const bus::NodeOptions& options,
               const bus::Stop& stop) {
   return show(options, stop, watch, "behaviors",
-              [&](const Mind& mind) -> std::optional<std::string> {
-                const v1::Behaviors* const newest = mind.behaviors();
-                if (newest == nullptr)
-                  return std::nullopt;
-                if (name.empty())
-                  return header(newest->stamp(), mind) + behaviors_display(*newest);
-                std::string names;
-                for (const v1::BehaviorState& state : newest->behaviors()) {
-                  names += (names.empty() ? "" : ", ") + state.name();
-                  if (state.name() != name && state.schema() != name)
-                    continue;
-                  const v1::IntendedBehavior* intended = nullptr;
-                  if (mind.intentions() != nullptr)
-                    for (const v1::IntendedBehavior& one : mind.intentions()->behaviors())
-                      if (one.name() == state.name())
-                        intended = &one;
-                  return header(newest->stamp(), mind) +
-                         behavior_display(state, intended, mind.schema(state.schema()));
-                }
-                return header(newest->stamp(), mind) + "no behavior " + name + "; there are " +
-                       (names.empty() ? "none now" : names) + "\n";
-              });
+              [&](const Mind& mind) { return behaviors_text(name, mind); });
 }
+
+using situation::Explanation;
+using situation::parse_wish;
+using situation::Wish;
 
 struct WhyOptions {
   std::vector<std::string> words;
@@ -177,7 +217,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
   }
   if (stop.requested())
     return bus::kExitFailed;
-  if (past && !mind.whole(cycle)) {
+  if (past && !mind.some(cycle)) {
     const auto known = mind.known();
     if (known.second == 0)
       return nobody(options, mind, "what has been");
@@ -189,8 +229,8 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
   }
   if (!mind.heard())
     return nobody(options, mind, "the robot");
-  const Scene scene = mind.scene(cycle);
-  const Explanation explanation = wish ? why_not(scene, *wish) : cli::why(scene);
+  const situation::Situation known = mind.situation(cycle, past);
+  const Explanation explanation = wish ? why_not(known, *wish) : situation::why(known);
   std::fputs((why_options.json ? to_json(explanation) + "\n" : to_text(explanation)).c_str(),
              stdout);
   return bus::kExitOk;

@@ -1,16 +1,26 @@
+#include <fcntl.h>
+#include <poll.h>
 #include <sys/ioctl.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include "commands.hpp"
+#include "environment.hpp"
 #include "run_folder.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/cli/deployment.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/cli/service_manager.hpp"
 #include "saphira/cli/supervisor.hpp"
 #include "watch.hpp"
 
@@ -18,17 +28,11 @@ namespace saphira::cli {
 
 namespace {
 
-/// The bus options that were given to us, for children whose deployment does not state them.
-std::map<std::string, std::string> as_environment(const bus::NodeOptions& options) {
-  std::string peers;
-  for (const std::string& peer : options.peers)
-    peers += (peers.empty() ? "" : ",") + peer;
-  return {{"SAPHIRA_ROBOT", options.robot},
-          {"SAPHIRA_DOMAIN", std::to_string(options.domain)},
-          {"SAPHIRA_PROFILE", name_of(options.profile)},
-          {"SAPHIRA_PEERS", peers},
-          {"SAPHIRA_INTERFACE", options.interface}};
-}
+using std::chrono::milliseconds;
+
+constexpr const char* kAreStarted = " started; Ctrl-C stops them";
+constexpr double kStarted = 20.0;  ///< [s]
+constexpr double kStopped = 20.0;  ///< [s]
 
 /// Prints with the child's name before each line, in a color of its own on a terminal.
 Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
@@ -57,14 +61,65 @@ Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
   };
 }
 
+/// Two robots by one file are two deployments.
+std::string name_of(const Deployment& deployment, const bus::NodeOptions& options) {
+  return std::filesystem::path(deployment.file).stem().string() + "-" +
+         deployment.bus.robot.value_or(options.robot) + "-" +
+         std::to_string(deployment.bus.domain.value_or(options.domain));
+}
+
+/// `saphira renew` asks for new versions by SIGUSR1.
+class RenewSignal {
+ public:
+  RenewSignal() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGUSR1);
+    sigprocmask(SIG_BLOCK, &signals, nullptr);
+    fd_ = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
+  }
+  ~RenewSignal() { close(fd_); }
+  RenewSignal(const RenewSignal&) = delete;
+  RenewSignal& operator=(const RenewSignal&) = delete;
+  int fd() const { return fd_; }
+  bool came() const {
+    signalfd_siginfo info;
+    bool any = false;
+    while (read(fd_, &info, sizeof info) == sizeof info)
+      any = true;
+    return any;
+  }
+
+ private:
+  int fd_ = -1;
+};
+
+/// Why a program cannot be taken in beside those that run; empty: it can.
+std::string other_contract(const std::string& program) {
+  std::string said;
+  if (FILE* const output = popen(("'" + program + "' --version 2>&1").c_str(), "r")) {
+    char line[200];
+    while (fgets(line, sizeof line, output) != nullptr)
+      said += line;
+    pclose(output);
+  }
+  const auto contract = [](const std::string& text) {
+    const std::size_t at = text.find("contract ");
+    return at == std::string::npos ? std::string() : text.substr(at + 9, 8);
+  };
+  const std::string ours = contract(bus::version());
+  const std::string theirs = contract(said);
+  if (theirs == ours)
+    return {};
+  return "the new one has " + (theirs.empty() ? "no contract" : "the contract " + theirs) +
+         ", and what runs has " + ours + ": saphira stop, and up again, takes in all of it";
+}
+
 int up(const std::string& name, const std::vector<std::string>& set,
        const bus::NodeOptions& options, const bus::Stop& stop) {
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
-  // Two robots by one file are two deployments.
-  const std::string robot = deployment.bus.robot.value_or(options.robot);
-  const RunFolder folder(std::filesystem::path(deployment.file).stem().string() + "-" + robot +
-                         "-" + std::to_string(deployment.bus.domain.value_or(options.domain)));
+  const RunFolder folder(name_of(deployment, options));
   places.run = folder.path();
   places.robot = options.robot;
   std::vector<ChildSpec> children = command_lines(deployment, places, set);
@@ -76,13 +131,23 @@ int up(const std::string& name, const std::vector<std::string>& set,
                  deployment.file + " (process " + std::to_string(getpid()) + ")");
   }
 
+  const ServiceManager manager;
+  const RenewSignal renew;
   const Supervisor::Print print = prefixed(children);
   Supervisor supervisor(std::move(children), print);
   supervisor.start();
-  print({}, std::to_string(supervisor.children().size()) + " programs of " + deployment.file +
-                " started; Ctrl-C stops them");
-  while (!stop.requested() && !supervisor.finished() && !supervisor.misused())
-    supervisor.step(std::chrono::seconds(10), {stop.fd()});
+  const std::string started =
+      std::to_string(supervisor.children().size()) + " programs of " + deployment.file;
+  print({}, started + kAreStarted);
+  manager.ready(started);
+  const auto period = std::min(milliseconds(10000), manager.period().value_or(milliseconds(10000)));
+  while (!stop.requested() && !supervisor.finished() && !supervisor.misused()) {
+    supervisor.step(period, {stop.fd(), renew.fd()});
+    if (renew.came())
+      supervisor.renew(other_contract);
+    manager.alive();
+  }
+  manager.stopping();
   const auto misused = supervisor.misused();
   supervisor.stop();
   if (misused) {
@@ -93,12 +158,154 @@ int up(const std::string& name, const std::vector<std::string>& set,
   return bus::kExitOk;
 }
 
+/// This program again, without a terminal: its output goes to the log.
+pid_t start_again(const std::string& name, const std::vector<std::string>& set,
+                  const bus::NodeOptions& options, const std::string& log) {
+  std::vector<std::string> words{"saphira", "up", name};
+  for (const std::string& one : set)
+    words.insert(words.end(), {"--set", one});
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const auto environment = as_environment(options);
+  const pid_t child = fork();
+  if (child != 0)
+    return child;
+  for (const auto& [variable, value] : environment)
+    setenv(variable.c_str(), value.c_str(), 1);
+  setsid();
+  const int nothing = open("/dev/null", O_RDONLY);
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0600);
+  if (nothing < 0 || file < 0 || dup2(nothing, 0) < 0 || dup2(file, 1) < 0 || dup2(file, 2) < 0)
+    _exit(bus::kExitBroken);
+  execv("/proc/self/exe", argv.data());
+  _exit(bus::kExitBroken);
+}
+
+/// Starts it in the background, and says what became of the start.
+int detach(const std::string& name, const std::vector<std::string>& set,
+           const bus::NodeOptions& options, const bus::Stop& stop) {
+  // What is wrong with the file or the settings is said here, not in a log.
+  Places places = find_places();
+  const Deployment deployment = load_deployment(find_deployment(name, places));
+  places.run = "/tmp";
+  command_lines(deployment, places, set);
+  const std::string running = name_of(deployment, options);
+  const std::string log = log_of(running);
+  const pid_t child = start_again(std::filesystem::absolute(deployment.file), set, options, log);
+  const auto began = Clock::now();
+  int status = 0;
+  while (!stop.requested() && seconds_since(began) < kStarted) {
+    if (waitpid(child, &status, WNOHANG) == child) {
+      std::cerr << read_file(log) << "saphira: it has ended; all that it said is in " << log
+                << '\n';
+      return WIFEXITED(status) ? WEXITSTATUS(status) : bus::kExitBroken;
+    }
+    for (const Running& one : running_deployments())
+      if (one.name == running && read_file(log).find(kAreStarted) != std::string::npos) {
+        std::cout << running << " runs (process " << child << "); its output: " << log
+                  << "; saphira stop ends it\n";
+        return bus::kExitOk;
+      }
+    poll(nullptr, 0, 20);
+  }
+  std::cerr << "saphira: it has not begun within " << kStarted << " s; see " << log << '\n';
+  return bus::kExitFailed;
+}
+
+/// The one deployment that runs and is meant; nothing, and the reason on stderr, where it is not
+/// clear. `code` is how the program then ends.
+std::optional<Running> running_one(const std::string& name, int& code) {
+  std::vector<Running> meant;
+  std::string names;
+  for (const Running& one : running_deployments()) {
+    names += (names.empty() ? "" : ", ") + one.name;
+    if (name.empty() || one.name == name || one.name.starts_with(name + "-"))
+      meant.push_back(one);
+  }
+  if (meant.size() != 1) {
+    std::cerr << "saphira: "
+              << (names.empty()   ? "no deployment of yours runs on this machine"
+                  : meant.empty() ? "no deployment " + name + " runs; there are " + names
+                                  : "several deployments run: say which one, " + names)
+              << '\n';
+    code = names.empty() || meant.empty() ? bus::kExitFailed : bus::kExitUsage;
+    return std::nullopt;
+  }
+  return meant[0];
+}
+
+bool send(const Running& running, int signal) {
+  if (kill(running.pid, signal) == 0)
+    return true;
+  std::cerr << "saphira: process " << running.pid
+            << " cannot be reached: " << std::generic_category().message(errno) << '\n';
+  return false;
+}
+
+int renew_running(const std::string& name) {
+  int code = bus::kExitOk;
+  const std::optional<Running> running = running_one(name, code);
+  if (!running)
+    return code;
+  if (!send(*running, SIGUSR1))
+    return bus::kExitFailed;
+  std::cout << running->name << " takes in new versions of its programs, and says so where its "
+            << "output goes\n";
+  return bus::kExitOk;
+}
+
+int stop_running(const std::string& name, const bus::Stop& stop) {
+  int code = bus::kExitOk;
+  const std::optional<Running> running = running_one(name, code);
+  if (!running)
+    return code;
+  if (!send(*running, SIGTERM))
+    return bus::kExitFailed;
+  const auto began = Clock::now();
+  while (!stop.requested() && seconds_since(began) < kStopped) {
+    const auto left = running_deployments();
+    if (std::none_of(left.begin(), left.end(),
+                     [&](const Running& one) { return one.name == running->name; })) {
+      std::cout << running->name << " has stopped\n";
+      return bus::kExitOk;
+    }
+    poll(nullptr, 0, 50);
+  }
+  std::cerr << "saphira: " << running->name << " (process " << running->pid
+            << ") has not stopped within " << kStopped << " s\n";
+  return bus::kExitFailed;
+}
+
 }  // namespace
+
+void add_stop(CLI::App& app, Chosen& chosen) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("stop", "Stop a deployment that saphira up has started");
+  command->add_option("deployment", *name, "such as demo; needed where several run");
+  command->callback([name, &chosen] {
+    chosen.run = [name](const bus::NodeOptions&, const bus::Stop& stop) {
+      return stop_running(*name, stop);
+    };
+  });
+}
+
+void add_renew(CLI::App& app, Chosen& chosen) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "renew", "Let a deployment take in new versions of its programs, one after the other");
+  command->add_option("deployment", *name, "such as demo; needed where several run");
+  command->callback([name, &chosen] {
+    chosen.run = [name](const bus::NodeOptions&, const bus::Stop&) { return renew_running(*name); };
+  });
+}
 
 void add_up(CLI::App& app, Chosen& chosen) {
   struct Options {
     std::string deployment;
     std::vector<std::string> set;
+    bool detached = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("up", "Start and supervise what a deployment file lists");
@@ -107,9 +314,12 @@ void add_up(CLI::App& app, Chosen& chosen) {
   command->add_option("--set", options->set, "name=value: a setting of the deployment")
       ->take_all()
       ->type_size(1);
+  command->add_flag("--detach,-d", options->detached, "in the background; saphira stop ends it");
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
       try {
+        if (options->detached)
+          return detach(options->deployment, options->set, node, stop);
         return up(options->deployment, options->set, node, stop);
       } catch (const std::invalid_argument& error) {
         std::cerr << "saphira: " << error.what() << '\n';

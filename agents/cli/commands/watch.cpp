@@ -27,6 +27,13 @@ std::vector<SeenProcess> Processes::all() const {
   return processes;
 }
 
+situation::Situation Processes::situation() const {
+  situation::Situation now;
+  now.programs = all();
+  now.listened = seconds_since(began_);
+  return now;
+}
+
 std::uint64_t Processes::late_cycles() const {
   std::uint64_t sum = 0;
   for (const auto& [instance, entry] : entries_)
@@ -75,11 +82,13 @@ std::string who_is_there(const bus::NodeOptions& options, const Processes& proce
            "): is it up (saphira up demo), and are these the same on both sides?";
   const std::string missing = missing_services(all);
   if (!missing.empty())
-    return "not on the bus (" + where + "): " + missing + "; saphira status shows what is";
+    return "not heard (" + where + "): " + missing + "; saphira status shows what is";
   for (const SeenProcess& process : all)
     if (process.status.state() != v1::SERVICE_RUNNING && !process.status.reason().empty())
       return process.status.name() + " is " + name_of(process.status.state()) + ": " +
              process.status.reason();
+  if (const std::string trouble = situation::trouble(processes.situation()); !trouble.empty())
+    return trouble + " (" + where + ")";
   return "all services are on the bus (" + where + ")";
 }
 

@@ -25,6 +25,8 @@ class Processes {
 
   void poll();
   std::vector<SeenProcess> all() const;
+  /// What they make of the robot's situation, without what each of them says in each cycle.
+  situation::Situation situation() const;
   /// Of all processes that were seen, also those that ended.
   std::uint64_t late_cycles() const;
 
@@ -36,6 +38,7 @@ class Processes {
   };
   bus::Reader<v1::ServiceStatus> reader_;
   std::map<std::uint64_t, Entry> entries_;
+  Clock::time_point began_ = Clock::now();
 };
 
 /// Complains once when two deployments have this robot, whatever else a command shows.

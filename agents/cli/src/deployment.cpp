@@ -61,6 +61,7 @@ class Parser {
                  [this](const auto& n) {
                    deployment_.bus.interface = word(n, "the address of an interface");
                  }},
+                {"security", [this](const auto& n) { deployment_.bus.security = security(n); }},
                 {"lockstep",
                  [this](const auto& n) { deployment_.bus.lockstep = boolean(n, "lockstep"); }},
                 {"settings", [this](const auto& n) { settings(n); }},
@@ -136,6 +137,13 @@ class Parser {
     if (!node.IsScalar() || !YAML::convert<unsigned>::decode(node, value) || value > 232)
       fail(node.Mark(), "expected a DDS domain between 0 and 232, found " + kind(node));
     return value;
+  }
+
+  // As with every path in a file: from where the file is.
+  std::string security(const YAML::Node& node) const {
+    const std::string folder = word(node, "a folder of credentials, or none");
+    return folder == "none" ? folder
+                            : (fs::absolute(deployment_.file).parent_path() / folder).string();
   }
 
   std::string profile(const YAML::Node& node) const {
@@ -282,10 +290,18 @@ Deployment load_deployment(const std::string& file) {
 }
 
 Places find_places() {
-  return {program_folder(), config_folder(), {}};
+  Places places{program_folder(), config_folder(), {}};
+  if (places.config.starts_with("/usr/"))
+    places.own = "/etc/saphira";
+  return places;
 }
 
 std::string find_deployment(const std::string& name, const Places& places) {
+  // What an administrator wrote comes before what is shipped.
+  const std::string own = places.own + "/" + name + ".yaml";
+  std::error_code none;
+  if (!places.own.empty() && std::filesystem::is_regular_file(own, none))
+    return own;
   return find_file(places.config + "/deployments", name, ".yaml");
 }
 
@@ -339,6 +355,8 @@ std::vector<ChildSpec> command_lines(const Deployment& deployment, const Places&
         add("--peer", peer);
       if (bus.interface)
         add("--interface", *bus.interface);
+      if (bus.security)
+        add("--security", *bus.security);
       if (bus.lockstep)
         child.argv.emplace_back("--lockstep");
     }

@@ -29,8 +29,19 @@ const char* const kDeviceWords =
 
 namespace {
 
-constexpr std::array kGripperWords{"open",  "close",  "stop", "up",       "down", "lift-stop",
-                                   "store", "deploy", "halt", "pressure", "carry"};
+/// As people type it, and as the bridge has it.
+constexpr std::array<std::pair<const char*, const char*>, 11> kGripperWords{
+    {{"open", "open"},
+     {"close", "close"},
+     {"stop", "stop"},
+     {"up", "lift up"},
+     {"down", "lift down"},
+     {"lift-stop", "lift stop"},
+     {"store", "store"},
+     {"deploy", "deploy"},
+     {"halt", "halt"},
+     {"pressure", "pressure"},
+     {"carry", "carry"}}};
 
 [[noreturn]] void fail(const std::string& expected, const std::string& found) {
   throw std::invalid_argument("expected " + expected +
@@ -50,6 +61,12 @@ long whole(const std::string& word, long low, long high, const std::string& what
 
 std::uint8_t byte(const std::string& word, const std::string& what, long high = 255) {
   return static_cast<std::uint8_t>(whole(word, 0, high, what));
+}
+
+std::string hex(std::uint8_t value) {
+  std::array<char, 4> digits{};
+  std::snprintf(digits.data(), digits.size(), "%02x", value);
+  return digits.data();
 }
 
 bool on_off(const std::string& word) {
@@ -78,156 +95,135 @@ class Words {
   std::size_t at_ = 1;
 };
 
-v1::GripperCommand gripper(Words& words) {
-  v1::GripperCommand out;
-  const std::string word = words.next("what the gripper is to do");
-  for (std::size_t i = 0; i < kGripperWords.size(); ++i) {
-    if (word != kGripperWords.at(i))
-      continue;
-    out.action(static_cast<v1::GripperAction>(i));
-    if (out.action() >= v1::GRIPPER_PRESSURE)
-      out.value(static_cast<std::uint16_t>(whole(words.next("a value"), 0, 0xFFFF, "a value")));
-    return out;
-  }
-  out.action(v1::GRIPPER_NUMBER);
-  out.value(static_cast<std::uint16_t>(
-      whole(word, 0, 0xFFFF,
-            "open, close, stop, up, down, lift-stop, store, deploy, halt, "
-            "pressure, carry, or a number")));
-  return out;
+/// An argument that is a whole number, as it is typed.
+Argument whole_of(const char* name, const std::string& word, long high, const std::string& what) {
+  return {name, static_cast<double>(whole(word, 0, high, what))};
 }
 
-v1::SoundCommand sound(Words& words) {
-  v1::SoundCommand out;
-  const std::string first = words.next("the number of a sound, or tones as SECONDS:PITCH");
-  if (first.find(':') == std::string::npos) {
-    out.stored(byte(first, "the number of a sound"));
+Request gripper(Words& words) {
+  const std::string word = words.next("what the gripper is to do");
+  for (std::size_t i = 0; i < kGripperWords.size(); ++i) {
+    if (word != kGripperWords.at(i).first)
+      continue;
+    const std::string action = kGripperWords.at(i).second;
+    Request out{"gripper", {{"action", action}}};
+    if (action == "pressure" || action == "carry")
+      out.arguments.push_back(whole_of("value", words.next("a value"), 0xFFFF, "a value"));
     return out;
   }
+  return {"gripper",
+          {{"action", std::string("number")},
+           whole_of("value", word, 0xFFFF,
+                    "open, close, stop, up, down, lift-stop, store, deploy, halt, "
+                    "pressure, carry, or a number")}};
+}
+
+Request sound(Words& words) {
+  const std::string first = words.next("the number of a sound, or tones as SECONDS:PITCH");
+  if (first.find(':') == std::string::npos)
+    return {"sound", {whole_of("stored", first, 255, "the number of a sound")}};
+  Request out{"tones"};
   for (std::string word = first;; word = words.next("a tone")) {
     const std::size_t colon = word.find(':');
-    v1::Tone tone;
     double seconds = 0.0;
     const auto [at, error] =
         std::from_chars(word.data(), word.data() + std::min(colon, word.size()), seconds);
     if (colon == std::string::npos || error != std::errc{} || at != word.data() + colon ||
         !(seconds >= 0.02 && seconds <= 5.1))
       fail("a tone as SECONDS:PITCH, such as 0.5:60, of 0.02 to 5.1 s", word);
-    tone.duration(seconds);
-    tone.pitch(byte(word.substr(colon + 1), "a pitch"));
-    out.tones().push_back(tone);
+    out.arguments.emplace_back("duration", seconds);
+    out.arguments.push_back(whole_of("pitch", word.substr(colon + 1), 255, "a pitch"));
     if (!words.more())
       break;
   }
-  if (out.tones().size() > 20)
-    fail("at most 20 tones", std::to_string(out.tones().size()));
+  if (out.arguments.size() > 40)
+    fail("at most 20 tones", std::to_string(out.arguments.size() / 2));
   return out;
 }
 
-v1::ServerCommand report(Words& words) {
-  v1::ServerCommand out;
+Request report(Words& words) {
   const std::string what = words.next("configuration, encoders, io or gripper");
-  if (what == "configuration") {
-    out.action(v1::SERVER_REPORT_CONFIGURATION);
-    return out;
-  }
-  if (what == "encoders")
-    out.action(v1::SERVER_REPORT_ENCODERS);
-  else if (what == "io")
-    out.action(v1::SERVER_REPORT_IO);
-  else if (what == "gripper")
-    out.action(v1::SERVER_REPORT_GRIPPER);
-  else
+  if (what != "configuration" && what != "encoders" && what != "io" && what != "gripper")
     fail("configuration, encoders, io or gripper", what);
-  const std::string often = words.more() ? words.next("") : "once";
+  const std::string often = what != "configuration" && words.more() ? words.next("") : "once";
   if (often != "off" && often != "once" && often != "always")
     fail("off, once or always", often);
-  out.value(often == "off"    ? v1::REPORT_OFF
-            : often == "once" ? v1::REPORT_ONCE
-                              : v1::REPORT_ALWAYS);
-  return out;
+  return {"report", {{"packet", what}, {"often", often}}};
 }
 
-v1::SerialCommand serial(Words& words) {
-  v1::SerialCommand out;
-  out.port(static_cast<std::uint8_t>(whole(words.next("a port"), 1, 3, "a port")));
+Request serial(Words& words) {
+  const long port = whole(words.next("a port"), 1, 3, "a port");
+  std::string data;
+  long answer = 0;
   while (words.more()) {
     const std::string word = words.next("");
     if (word == "--answer") {
-      out.answer(byte(words.next("a number of bytes"), "a number of bytes"));
+      answer = byte(words.next("a number of bytes"), "a number of bytes");
     } else if (word.starts_with("0x")) {
       if (word.size() % 2 != 0)
         fail("two digits a byte", word);
       for (std::size_t i = 2; i < word.size(); i += 2)
-        out.data().push_back(byte("0x" + word.substr(i, 2), "a byte"));
+        data += hex(byte("0x" + word.substr(i, 2), "a byte"));
     } else {
       for (const char c : word)
-        out.data().push_back(static_cast<std::uint8_t>(c));
+        data += hex(static_cast<std::uint8_t>(c));
     }
   }
-  if (out.data().size() > 180)
-    fail("at most 180 bytes", std::to_string(out.data().size()));
-  if (out.data().empty() && out.answer() == 0)
+  if (data.size() > 360)
+    fail("at most 180 bytes", std::to_string(data.size() / 2));
+  if (data.empty() && answer == 0)
     fail("what is to be sent", "");
+  return {"serial",
+          {{"port", static_cast<double>(port)},
+           {"data", data},
+           {"answer", static_cast<double>(answer)}}};
+}
+
+Request sonar(Words& words) {
+  Request out{"sonar", {{"on", on_off(words.next("on or off"))}}};
+  while (truth_of(out.arguments, "on") && words.more())
+    out.arguments.push_back(whole_of("sonar", words.next(""), 63, "a sonar"));
+  if (out.arguments.size() > 13)
+    fail("at most 12 sonars", std::to_string(out.arguments.size() - 1));
   return out;
 }
 
 DeviceCommand parse(const std::string& device, Words& words) {
-  if (device == "servo") {
-    v1::ServoCommand out;
-    out.width(static_cast<std::uint16_t>(
-        whole(words.next("a pulse width [us]"), 0, 0xFFFF, "a pulse width [us]")));
-    return out;
-  }
+  using namespace bus::topics;
+  if (device == "servo")
+    return {&kServo,
+            {"servo",
+             {whole_of("width", words.next("a pulse width [us]"), 0xFFFF, "a pulse width [us]")}}};
   if (device == "gripper")
-    return gripper(words);
+    return {&kGripper, gripper(words)};
   if (device == "output") {
-    v1::DigitalOutputCommand out;
-    out.bits(byte(words.next("bits"), "bits"));
-    out.mask(words.more() ? byte(words.next(""), "a mask") : std::uint8_t{0xFF});
-    return out;
+    Request out{"output", {whole_of("bits", words.next("bits"), 255, "bits")}};
+    if (words.more())
+      out.arguments.push_back(whole_of("mask", words.next(""), 255, "a mask"));
+    return {&kDigitalOutput, out};
   }
-  if (device == "analog") {
-    v1::AnalogCommand out;
-    out.port(byte(words.next("a port"), "a port"));
-    return out;
-  }
-  if (device == "timer") {
-    v1::TimerCommand out;
-    out.pin(byte(words.next("a pin"), "a pin", 7));
-    return out;
-  }
-  if (device == "sonar") {
-    v1::SonarCommand out;
-    out.on(on_off(words.next("on or off")));
-    while (out.on() && words.more())
-      out.polling().push_back(byte(words.next(""), "a sonar", 63));
-    if (out.polling().size() > 12)
-      fail("at most 12 sonars", std::to_string(out.polling().size()));
-    return out;
-  }
+  if (device == "analog")
+    return {&kAnalog, {"analog", {whole_of("port", words.next("a port"), 255, "a port")}}};
+  if (device == "timer")
+    return {&kTimer, {"timer", {whole_of("pin", words.next("a pin"), 7, "a pin")}}};
+  if (device == "sonar")
+    return {&kSonar, sonar(words)};
   if (device == "sound")
-    return sound(words);
+    return {&kSound, sound(words)};
   if (device == "report")
-    return report(words);
+    return {&kServer, report(words)};
   if (device == "serial")
-    return serial(words);
-  v1::ServerCommand out;
-  if (device == "motors") {
-    out.action(v1::SERVER_MOTORS);
-    out.value(on_off(words.next("on or off")) ? 1 : 0);
-  } else if (device == "origin") {
-    out.action(v1::SERVER_SET_ORIGIN);
-  } else if (device == "bumpers") {
-    out.action(v1::SERVER_BUMP_STALL);
-    out.value(byte(words.next("0..3"), "which bumpers", 3));
-  } else {
-    fail(
-        "a device (servo, gripper, output, analog, timer, sonar, sound, motors, origin, bumpers, "
-        "report, serial)",
-        device);
-  }
-  return out;
+    return {&kSerial, serial(words)};
+  if (device == "motors")
+    return {&kServer, {"motors", {{"on", on_off(words.next("on or off"))}}}};
+  if (device == "origin")
+    return {&kServer, {"set_origin"}};
+  if (device == "bumpers")
+    return {&kServer, {"bump_stall", {whole_of("value", words.next("0..3"), 3, "which bumpers")}}};
+  fail(
+      "a device (servo, gripper, output, analog, timer, sonar, sound, motors, origin, bumpers, "
+      "report, serial)",
+      device);
 }
 
 std::string text(const char* format, double value) {
@@ -275,31 +271,6 @@ DeviceCommand parse_device(const std::vector<std::string>& words) {
   Words rest(words);
   DeviceCommand out = parse(words[0], rest);
   rest.end();
-  return out;
-}
-
-std::string describe(const v1::DeviceRequest& request) {
-  std::string out = request.text().empty() ? "the command" : request.text();
-  switch (request.state()) {
-    case v1::REQUEST_SENDING:
-      out += ": sent " + std::to_string(request.sent()) + " times, not shown yet";
-      break;
-    case v1::REQUEST_SHOWN:
-      out += ": the robot shows it";
-      break;
-    case v1::REQUEST_SENT:
-      out += ": sent; no packet of this robot would show it";
-      break;
-    case v1::REQUEST_GIVEN_UP:
-      out += ": given up after " + std::to_string(request.sent()) + " times; " + request.reason();
-      break;
-    case v1::REQUEST_REFUSED:
-      out += ": refused; " + request.reason();
-      break;
-    case v1::REQUEST_LOST:
-      out += ": " + request.reason();
-      break;
-  }
   return out;
 }
 
@@ -359,7 +330,7 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
     add("unread packets", std::string(type.data()) + ": " + std::to_string(packets.count()));
   }
   for (const v1::DeviceRequest& request : d->requests())
-    add("request", describe(request) + " (" + request.source() + ")");
+    add("request", request.answer().text() + " (" + request.source() + ")");
   return rows;
 }
 

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
+#include "saphira/situation/format.hpp"
 
 namespace saphira::cli {
+
+using situation::format;
+using situation::is_behavior;
 
 namespace {
 
@@ -84,7 +87,7 @@ struct TreeLine {
   std::string right;
 };
 
-const v1::BehaviorState* find_state(const v1::Behaviors* behaviors, const std::string& name) {
+const v1::BehaviorState* find_state(const v1::BehaviorSet* behaviors, const std::string& name) {
   if (behaviors != nullptr)
     for (const v1::BehaviorState& state : behaviors->behaviors())
       if (state.name() == name)
@@ -93,7 +96,7 @@ const v1::BehaviorState* find_state(const v1::Behaviors* behaviors, const std::s
 }
 
 TreeLine behavior_line(const std::string& indent, bool blocking, const std::string& schema,
-                       const std::string& name, const v1::Behaviors* behaviors) {
+                       const std::string& name, const v1::BehaviorSet* behaviors) {
   TreeLine line{indent + (blocking ? "* " : "o ") + schema + " (" + name + ") B", ""};
   if (const v1::BehaviorState* const state = find_state(behaviors, name))
     line.right = format("activity %.2f, goal %.2f",
@@ -131,7 +134,7 @@ TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node
   return line;
 }
 
-void add_tree(const v1::Intentions& all, const v1::Behaviors* behaviors, std::uint32_t parent,
+void add_tree(const v1::Intentions& all, const v1::BehaviorSet* behaviors, std::uint32_t parent,
               std::size_t depth, std::vector<TreeLine>& lines) {
   const std::string indent(2 * depth, ' ');
   if (depth > all.nodes().size())
@@ -159,21 +162,16 @@ void add_tree(const v1::Intentions& all, const v1::Behaviors* behaviors, std::ui
 
 }  // namespace
 
-bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {
-  return node.label() == "B" ||
-         std::any_of(intentions.behaviors().begin(), intentions.behaviors().end(),
-                     [&](const v1::IntendedBehavior& behavior) {
-                       return behavior.intention() == node.id() && behavior.name() == node.name() &&
-                              behavior.schema() == node.schema();
-                     });
-}
-
 std::string value_text(const v1::Argument& argument) {
   switch (argument.kind()) {
     case v1::ARGUMENT_NUMBER:
       return format("%.4g", argument.number());
     case v1::ARGUMENT_TEXT:
       return "\"" + argument.text() + "\"";
+    case v1::ARGUMENT_TRUTH:
+      return argument.number() != 0.0 ? "yes" : "no";
+    case v1::ARGUMENT_UNBOUND:
+      return "?";
     case v1::ARGUMENT_POINT:
       break;
   }
@@ -184,7 +182,7 @@ std::string value_text(const v1::Argument& argument) {
   return format("(%.2f, %.2f, %.0f deg) in %s", point.x(), point.y(), degrees(point.th()), frame);
 }
 
-std::string intentions_display(const v1::Intentions& intentions, const v1::Behaviors* behaviors) {
+std::string intentions_display(const v1::Intentions& intentions, const v1::BehaviorSet* behaviors) {
   if (intentions.nodes().empty())
     return "nothing is intended\n";
   std::vector<TreeLine> lines;
@@ -200,7 +198,7 @@ std::string intentions_display(const v1::Intentions& intentions, const v1::Behav
   return text;
 }
 
-std::string behaviors_display(const v1::Behaviors& behaviors) {
+std::string behaviors_display(const v1::BehaviorSet& behaviors) {
   if (behaviors.behaviors().empty() && behaviors.trouble().empty())
     return "no behavior is intended\n";
   std::size_t width = 9;
@@ -313,7 +311,7 @@ std::string behavior_display(const v1::BehaviorState& behavior,
   return text;
 }
 
-std::string beliefs_table(const v1::Beliefs& beliefs, const std::string& part) {
+std::string beliefs_table(const v1::BeliefSet& beliefs, const std::string& part) {
   std::vector<std::vector<std::string>> rows{{"NAME", "VALUE", "SINCE", "SAID BY"}};
   for (const v1::Belief& belief : beliefs.beliefs())
     if (belief.name().find(part) != std::string::npos)
@@ -340,13 +338,13 @@ std::string state_text(const v1::Process& process) {
   return "?";
 }
 
-std::string processes_table(std::vector<v1::Processes> services) {
+std::string processes_table(std::vector<v1::ProcessSet> services) {
   std::stable_sort(
       services.begin(), services.end(),
-      [](const v1::Processes& a, const v1::Processes& b) { return a.service() < b.service(); });
+      [](const v1::ProcessSet& a, const v1::ProcessSet& b) { return a.service() < b.service(); });
   std::vector<std::vector<std::string>> rows{
       {"SERVICE", "PROCESS", "STATE", "SINCE CYCLE", "DOES"}};
-  for (const v1::Processes& service : services)
+  for (const v1::ProcessSet& service : services)
     for (const v1::Process& process : service.processes())
       rows.push_back({service.service(), process.name(), state_text(process),
                       std::to_string(process.since()), process.effect()});

@@ -1,5 +1,6 @@
 #include "saphira/cli/goal_words.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -40,18 +41,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
       return parts;
     text.remove_prefix(end + 1);
   }
-}
-
-const char* name_of(v1::Frame frame) {
-  switch (frame) {
-    case v1::FRAME_ROBOT:
-      return "robot";
-    case v1::FRAME_ODOM:
-      return "odom";
-    case v1::FRAME_MAP:
-      return "map";
-  }
-  return "?";
 }
 
 /// Whether the text means to be a point, and so has to be a right one.
@@ -159,10 +148,13 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
   if (words[0] == "go" && bare == 1 && !parse_number(rest[0]))
     return parse_goal("go-to-place", with("place=" + rest[0]));
   if (words[0] == "go") {
-    expect(2, "go X Y [m] or go PLACE");
+    expect(2, "go X Y [m, in odom] or go PLACE");
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
   }
-  if (words[0] == "drive" && bare > 0) {
+  // Of the functor drive in its long form a speed is required as well.
+  if (words[0] == "drive" && std::none_of(rest.begin(), rest.end(), [](const std::string& word) {
+        return word.starts_with("speed=");
+      })) {
     expect(1, "drive SPEED [m/s]");
     return parse_goal("drive", with("speed=" + rest[0]));
   }
@@ -172,28 +164,6 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
                       with("heading=" + rest[0] + (rest[0].ends_with("deg") ? "" : "deg")));
   }
   return parse_goal(words[0], rest);
-}
-
-std::string describe(const v1::Goal& goal) {
-  std::string text = goal.functor() + "(";
-  const char* separator = "";
-  for (const v1::Argument& argument : goal.arguments()) {
-    text += separator + argument.name() + "=";
-    separator = ", ";
-    switch (argument.kind()) {
-      case v1::ARGUMENT_NUMBER:
-        text += plain(argument.number());
-        break;
-      case v1::ARGUMENT_TEXT:
-        text += "\"" + argument.text() + "\"";
-        break;
-      case v1::ARGUMENT_POINT:
-        text += "(" + plain(argument.point().x()) + ", " + plain(argument.point().y()) + ") in " +
-                name_of(argument.frame());
-        break;
-    }
-  }
-  return text + ")";
 }
 
 }  // namespace saphira::cli

@@ -7,8 +7,9 @@
 #include <string_view>
 
 #include "lps/shell/convert.hpp"
-#include "maps/shell/convert.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::cli {
 namespace {
@@ -25,9 +26,9 @@ constexpr std::array<Form, 16> kForms{
     {{"follow", ""},
      {"list", ""},
      {"save", " FILE"},
-     {"show", " [FILE.svg]"},
+     {"show", " FILE.svg"},
      {"build", " [FILE]"},
-     {"load", " FILE"},
+     {"load", " FILE or the name of a shipped map"},
      {"delete", ""},
      {"put", " \"LINE OF A MAP FILE\""},
      {"remove", " ID"},
@@ -71,6 +72,20 @@ bool on_or_off(const std::string& word) {
   return word == "on";
 }
 
+/// What a line of a map file says of an artifact.
+Arguments artifact(const std::string& line) {
+  const maps::Map map = maps::parse_map(line, "the line");
+  if (map.features.size() != 1)
+    throw std::invalid_argument("expected one artifact, such as \"DOOR (3) 3000, 1000, 90, 900\"");
+  const maps::Feature& one = map.features.front();
+  return {{"id", static_cast<double>(one.id)},
+          {"type", std::string(maps::traits(one.type).word)},
+          {"position", PlacedPoint{one.pose_in_map, Frame::map}},
+          {"length", one.length},
+          {"width", one.width},
+          {"name", one.name}};
+}
+
 Pose place_of(const std::vector<std::string>& words, const maps::Map& map) {
   if (words.size() == 4)
     return {number(words[1], "x [m]"), number(words[2], "y [m]"),
@@ -79,55 +94,61 @@ Pose place_of(const std::vector<std::string>& words, const maps::Map& map) {
     complain(words);
   const auto places = maps::named(map, lps::PointType::position, words[1]);
   if (places.empty())
-    throw std::invalid_argument("the map has no POS \"" + words[1] + "\"");
+    throw std::invalid_argument(
+        "expected place X Y TH [m, rad] or the name of a POS; the map has no "
+        "POS \"" +
+        words[1] + "\"");
   return places.front()->pose_in_map;
 }
 
 }  // namespace
 
-v1::RegistrationRequest parse_map_request(const std::vector<std::string>& words,
-                                          const maps::Map& map) {
-  v1::RegistrationRequest request;
+Request parse_map_request(const std::vector<std::string>& words, const maps::Map& map) {
   const std::string& verb = words.empty() ? "" : words.front();
   const std::size_t count = words.size();
   if (verb == "load" && count == 2) {
-    request.action(v1::REGISTRATION_LOAD);
-    request.name(words[1]);
-    request.text(read_file(words[1]));
-    maps::parse_map(request.text(), words[1]);
-  } else if (verb == "delete" && count == 1) {
-    request.action(v1::REGISTRATION_DELETE);
-  } else if (verb == "put" && count == 2) {
-    request.action(v1::REGISTRATION_PUT);
-    const maps::Map line = maps::parse_map(words[1], "the line");
-    if (line.features.size() != 1)
-      throw std::invalid_argument(
-          "expected one artifact, such as \"DOOR (3) 3000, 1000, 90, 900\"");
-    request.artifact(maps::to_bus(line.features.front()));
-  } else if (verb == "remove" && count == 2) {
-    request.action(v1::REGISTRATION_REMOVE);
+    const std::string file = find_file(config_folder() + "/maps", words[1], ".map");
+    const std::string text = read_file(file);
+    maps::parse_map(text, file);
+    return {"load", {{"name", file}, {"text", text}}};
+  }
+  if (verb == "put" && count == 2)
+    return {"put", artifact(words[1])};
+  if (verb == "remove" && count == 2) {
     const double id = number(words[1], "the id of an artifact");
     if (id < 1.0 || id != std::floor(id) || id > 4294967295.0)
       throw std::invalid_argument("expected the id of an artifact, found \"" + words[1] + "\"");
-    request.artifact().id(static_cast<std::uint32_t>(id));
-  } else if (verb == "place") {
-    request.action(v1::REGISTRATION_PLACE);
-    request.pose_in_map(lps::to_bus(place_of(words, map)));
-  } else if (verb == "find" && count == 1) {
-    request.action(v1::REGISTRATION_FIND);
-  } else if ((verb == "on" || verb == "off") && count == 1) {
-    request.action(v1::REGISTRATION_SWITCH);
-    request.on(verb == "on");
-  } else if (verb == "features" && count == 2) {
-    request.action(v1::REGISTRATION_ADD_FEATURES);
-    request.on(on_or_off(words[1]));
-  } else if (verb == "snap" && count == 2) {
-    request.action(v1::REGISTRATION_SNAP);
-    request.on(on_or_off(words[1]));
-  } else {
-    complain(words);
+    return {"remove", {{"id", id}}};
   }
-  return request;
+  if (verb == "place")
+    return {"place", {{"position", PlacedPoint{place_of(words, map), Frame::map}}}};
+  if ((verb == "delete" || verb == "find") && count == 1)
+    return {verb};
+  if ((verb == "on" || verb == "off") && count == 1)
+    return {"switch", {{"on", verb == "on"}}};
+  if (verb == "features" && count == 2)
+    return {"add_features", {{"on", on_or_off(words[1])}}};
+  if (verb == "snap" && count == 2)
+    return {"snap", {{"on", on_or_off(words[1])}}};
+  complain(words);
+}
+
+void check_map_words(const std::vector<std::string>& words) {
+  for (const Form& form : kForms) {
+    if (words.empty() || form.verb != words.front())
+      continue;
+    // The name of a place is known to the map alone; what is with the robot, to the robot.
+    const bool named = words.front() == "place" && words.size() == 2;
+    const bool looks = form.verb == "follow" || form.verb == "list" || form.verb == "save" ||
+                       form.verb == "show" || form.verb == "build" || form.verb == "route";
+    if (looks && words.size() != (form.rest.empty() ? 1U : 2U) && form.rest != " [FILE]")
+      complain(words);
+    if (!looks && !named)
+      parse_map_request(words, {});
+    return;
+  }
+  if (!words.empty())
+    complain(words);
 }
 
 const char* name_of(v1::RegistrationState state) {

@@ -23,6 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds kTakenIn{2000};  // a new version has run for so long
 constexpr milliseconds kFirstBackoff{100};
 constexpr milliseconds kLastBackoff{5000};
 /// How often it looks whether somebody hangs.
@@ -105,6 +106,15 @@ class Pipe {
   int ends_[2] = {-1, -1};
 };
 
+/// Names a file so that its successor under the same path is told from it.
+std::string file_of(const std::string& path) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0)
+    return {};
+  return std::to_string(info.st_dev) + ":" + std::to_string(info.st_ino) + ":" +
+         std::to_string(info.st_mtim.tv_sec) + "." + std::to_string(info.st_mtim.tv_nsec);
+}
+
 }  // namespace
 
 Supervisor::Supervisor(std::vector<ChildSpec> children, Print print, milliseconds proven)
@@ -182,6 +192,7 @@ void Supervisor::launch(std::size_t index) {
   slot.pid = pid;
   slot.pid_fd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   slot.started = Clock::now();
+  slot.file = file_of(slot.spec.argv[0]);
   slot.due.reset();
   if (++slot.starts > 1)
     say(slot.spec.name + " started again (pid " + std::to_string(pid) + ")");
@@ -198,6 +209,48 @@ void Supervisor::step(milliseconds timeout, std::initializer_list<int> wake_fds)
   for (std::size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].due && Clock::now() >= *slots_[i].due)
       launch_again(i);
+  renew_next();
+}
+
+void Supervisor::renew(const std::function<std::string(const std::string& program)>& objection) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const Slot& slot = slots_[i];
+    const std::string& program = slot.spec.argv[0];
+    if (slot.pid == 0 || file_of(program) == slot.file ||
+        std::find(to_renew_.begin(), to_renew_.end(), i) != to_renew_.end())
+      continue;
+    const std::string why_not =
+        slot.spec.robot.empty() ? "it is not on the bus" : objection(program);
+    if (why_not.empty())
+      to_renew_.push_back(i);
+    else
+      say(slot.spec.name + " stays as it is: " + why_not);
+  }
+  say(to_renew_.empty() ? "no program has a new version to take in"
+                        : "new versions of " + std::to_string(to_renew_.size()) +
+                              " programs are taken in, one after the other");
+}
+
+void Supervisor::renew_next() {
+  if (renewing_) {
+    const Slot& slot = slots_[*renewing_];
+    if (slot.pid == 0 || slot.due || Clock::now() - slot.started < kTakenIn)
+      return;
+    renewing_.reset();
+    if (to_renew_.empty())
+      say("all new versions are taken in");
+  }
+  if (to_renew_.empty())
+    return;
+  const std::size_t next = to_renew_.front();
+  to_renew_.erase(to_renew_.begin());
+  if (slots_[next].pid == 0)
+    return;
+  renewing_ = next;
+  slots_[next].started = Clock::now();  // that it ends now says nothing of it
+  say(slots_[next].spec.name + ": a new version is taken in");
+  kill(slots_[next].pid, SIGTERM);
+  kill(slots_[next].pid, SIGCONT);
 }
 
 void Supervisor::read_beats(std::size_t index) {

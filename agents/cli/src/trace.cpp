@@ -37,12 +37,6 @@ Row parse_row(std::string_view line, int number, const std::string& file) {
   return row;
 }
 
-std::string hex(std::uint64_t value) {
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value));
-  return text.data();
-}
-
 }  // namespace
 
 Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std::string& file) {
@@ -90,7 +84,7 @@ Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std:
     hash.add(line);
     hash.add("\n");
   }
-  track.hash = hex(hash.value());
+  track.hash = hash.text();
   return track;
 }
 

@@ -17,6 +17,7 @@ domain: 7
 profile: wan
 peers: [192.168.1.20, robot.local]
 interface: 192.168.1.4
+security: /etc/saphira/credentials
 lockstep: true
 settings:
   world: "${config}/office.wld"
@@ -61,7 +62,8 @@ TEST_F(DeploymentTest, BecomesCommandLines) {
   EXPECT_EQ(children[1].argv,
             (std::vector<std::string>{folder_ + "/one", "beta", "--robot", "beta", "--domain", "7",
                                       "--profile", "wan", "--peer", "192.168.1.20", "--peer",
-                                      "robot.local", "--interface", "192.168.1.4", "--lockstep"}));
+                                      "robot.local", "--interface", "192.168.1.4", "--security",
+                                      "/etc/saphira/credentials", "--lockstep"}));
 }
 
 TEST_F(DeploymentTest, WhatIsNotStatedIsLeftToThePrograms) {

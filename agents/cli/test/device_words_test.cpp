@@ -7,43 +7,36 @@
 namespace saphira::cli {
 namespace {
 
-template <class T>
-T parsed(const std::vector<std::string>& words) {
-  return std::get<T>(parse_device(words));
+/// The topic and the request: "device/servo: servo width=1500".
+std::string parsed(const std::vector<std::string>& words) {
+  const DeviceCommand command = parse_device(words);
+  return std::string(command.topic->name) + ": " + describe(command.request);
 }
 
-TEST(DeviceWords, AreCommands) {
-  EXPECT_EQ(parsed<v1::ServoCommand>({"servo", "1500"}).width(), 1500);
-  EXPECT_EQ(parsed<v1::GripperCommand>({"gripper", "down"}).action(), v1::GRIPPER_LIFT_DOWN);
-  EXPECT_EQ(parsed<v1::GripperCommand>({"gripper", "carry", "50"}).value(), 50);
-  const auto number = parsed<v1::GripperCommand>({"gripper", "5"});
-  EXPECT_EQ(number.action(), v1::GRIPPER_NUMBER);
-  EXPECT_EQ(number.value(), 5);
-  const auto output = parsed<v1::DigitalOutputCommand>({"output", "0x5A"});
-  EXPECT_EQ(output.bits(), 0x5A);
-  EXPECT_EQ(output.mask(), 0xFF);
-  EXPECT_EQ(parsed<v1::DigitalOutputCommand>({"output", "1", "0x01"}).mask(), 1);
-  EXPECT_EQ(parsed<v1::AnalogCommand>({"analog", "3"}).port(), 3);
-  EXPECT_EQ(parsed<v1::TimerCommand>({"timer", "7"}).pin(), 7);
-  const auto sonar = parsed<v1::SonarCommand>({"sonar", "on", "3", "2", "3"});
-  EXPECT_TRUE(sonar.on());
-  EXPECT_EQ(sonar.polling(), (std::vector<std::uint8_t>{3, 2, 3}));
-  EXPECT_FALSE(parsed<v1::SonarCommand>({"sonar", "off"}).on());
-  EXPECT_EQ(parsed<v1::SoundCommand>({"sound", "4"}).stored(), 4);
-  const auto tones = parsed<v1::SoundCommand>({"sound", "0.5:60", "0.1:0"});
-  ASSERT_EQ(tones.tones().size(), 2U);
-  EXPECT_EQ(tones.tones()[0].duration(), 0.5);
-  EXPECT_EQ(tones.tones()[0].pitch(), 60);
-  EXPECT_EQ(parsed<v1::ServerCommand>({"motors", "on"}).value(), 1);
-  EXPECT_EQ(parsed<v1::ServerCommand>({"origin"}).action(), v1::SERVER_SET_ORIGIN);
-  EXPECT_EQ(parsed<v1::ServerCommand>({"bumpers", "3"}).value(), 3);
-  EXPECT_EQ(parsed<v1::ServerCommand>({"report", "io"}).value(), static_cast<int>(v1::REPORT_ONCE));
-  EXPECT_EQ(parsed<v1::ServerCommand>({"report", "encoders", "always"}).value(),
-            static_cast<int>(v1::REPORT_ALWAYS));
-  const auto serial = parsed<v1::SerialCommand>({"serial", "2", "0x8130", "hi", "--answer", "9"});
-  EXPECT_EQ(serial.port(), 2);
-  EXPECT_EQ(serial.data(), (std::vector<std::uint8_t>{0x81, 0x30, 'h', 'i'}));
-  EXPECT_EQ(serial.answer(), 9);
+TEST(DeviceWords, AreRequests) {
+  EXPECT_EQ(parsed({"servo", "1500"}), "device/servo: servo width=1500");
+  EXPECT_EQ(parsed({"gripper", "down"}), "device/gripper: gripper action=\"lift down\"");
+  EXPECT_EQ(parsed({"gripper", "carry", "50"}),
+            "device/gripper: gripper action=\"carry\" value=50");
+  EXPECT_EQ(parsed({"gripper", "5"}), "device/gripper: gripper action=\"number\" value=5");
+  EXPECT_EQ(parsed({"output", "0x5A"}), "device/output: output bits=90");
+  EXPECT_EQ(parsed({"output", "1", "0x01"}), "device/output: output bits=1 mask=1");
+  EXPECT_EQ(parsed({"analog", "3"}), "device/analog: analog port=3");
+  EXPECT_EQ(parsed({"timer", "7"}), "device/timer: timer pin=7");
+  EXPECT_EQ(parsed({"sonar", "on", "3", "2", "3"}),
+            "device/sonar: sonar on=yes sonar=3 sonar=2 sonar=3");
+  EXPECT_EQ(parsed({"sonar", "off"}), "device/sonar: sonar on=no");
+  EXPECT_EQ(parsed({"sound", "4"}), "device/sound: sound stored=4");
+  EXPECT_EQ(parsed({"sound", "0.5:60", "0.1:0"}),
+            "device/sound: tones duration=0.5 pitch=60 duration=0.1 pitch=0");
+  EXPECT_EQ(parsed({"motors", "on"}), "device/server: motors on=yes");
+  EXPECT_EQ(parsed({"origin"}), "device/server: set_origin");
+  EXPECT_EQ(parsed({"bumpers", "3"}), "device/server: bump_stall value=3");
+  EXPECT_EQ(parsed({"report", "io"}), "device/server: report packet=\"io\" often=\"once\"");
+  EXPECT_EQ(parsed({"report", "encoders", "always"}),
+            "device/server: report packet=\"encoders\" often=\"always\"");
+  EXPECT_EQ(parsed({"serial", "2", "0x8130", "hi", "--answer", "9"}),
+            "device/serial: serial port=2 data=\"81306869\" answer=9");
 }
 
 TEST(DeviceWords, SayWhatWasExpected) {
@@ -113,15 +106,14 @@ TEST(DeviceWords, RowsShowWhatTheRobotHas) {
   devices.has_gripper(true);
   devices.gripper_state(0x12);
   devices.requests(std::vector<v1::DeviceRequest>(1));
-  devices.requests()[0].text("servo 1500 us");
-  devices.requests()[0].state(v1::REQUEST_REFUSED);
-  devices.requests()[0].reason("why not");
+  devices.requests()[0].source("me");
+  devices.requests()[0].answer().text("servo 1500 us: refused; why not");
   rows = device_rows(robot, devices);
   EXPECT_EQ(find(rows, "battery"), "12.3 V, 50 % charged");
   EXPECT_EQ(find(rows, "motors"), "off, EMERGENCY STOP PRESSED");
   EXPECT_EQ(find(rows, "encoders"), "-3 0 ticks");
   EXPECT_EQ(find(rows, "gripper"), "0b00010010 (closed, lift up)");
-  EXPECT_EQ(find(rows, "request"), "servo 1500 us: refused; why not ()");
+  EXPECT_EQ(find(rows, "request"), "servo 1500 us: refused; why not (me)");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(IntentionsDisplay, SaysBehindItWhatIsBeingDone) {
              node(2, 1, false, "watch", "w", "MONITOR", "waits for *failed*")});
   all.nodes()[1].state(v1::INTENTION_SUSPENDED);
   all.behaviors({behavior(1, true, "GoToPos", "GoToPos")});
-  v1::Behaviors behaviors;
+  v1::BehaviorSet behaviors;
   v1::BehaviorState state;
   state.name("GoToPos");
   state.turn_activity(0.5);
@@ -140,7 +140,7 @@ v1::BehaviorState keep_off() {
 }
 
 TEST(BehaviorsDisplay, HasActivityAsABarAndRecommendationsToTheSides) {
-  v1::Behaviors all;
+  v1::BehaviorSet all;
   all.control(true);
   v1::BehaviorState stop;
   stop.name("end");
@@ -207,7 +207,7 @@ Fuzzy variables
 }
 
 TEST(BeliefsTable, SaysWhoSaidSoAndHowLongAgo) {
-  v1::Beliefs all;
+  v1::BeliefSet all;
   all.stamp().cycle(100);
   v1::Belief belief;
   belief.name("*failed-execution*");
@@ -231,7 +231,7 @@ in-corridor  t      0.0 s  perception
 }
 
 TEST(ProcessesTable, IsFigure27ForAllServices) {
-  v1::Processes interpretation;
+  v1::ProcessSet interpretation;
   interpretation.service("interpretation");
   v1::Process process;
   process.name("grid");
@@ -246,7 +246,7 @@ TEST(ProcessesTable, IsFigure27ForAllServices) {
   process.since(12);
   process.effect("finds doors");
   interpretation.processes().push_back(process);
-  v1::Processes behaviors;
+  v1::ProcessSet behaviors;
   behaviors.service("behaviors");
   process.name("executive");
   process.state(v1::PROCESS_INIT);

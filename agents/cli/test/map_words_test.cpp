@@ -17,8 +17,12 @@ maps::Map a_map() {
       "a.map");
 }
 
-v1::RegistrationRequest parse(const std::vector<std::string>& words) {
+Request parse(const std::vector<std::string>& words) {
   return parse_map_request(words, a_map());
+}
+
+std::string parsed(const std::vector<std::string>& words) {
+  return describe(parse(words));
 }
 
 std::string complaint(const std::vector<std::string>& words) {
@@ -33,24 +37,22 @@ std::string complaint(const std::vector<std::string>& words) {
 }
 
 TEST(MapWords, AreRequests) {
-  EXPECT_EQ(parse({"delete"}).action(), v1::REGISTRATION_DELETE);
-  EXPECT_EQ(parse({"find"}).action(), v1::REGISTRATION_FIND);
-  EXPECT_TRUE(parse({"on"}).on());
-  EXPECT_FALSE(parse({"off"}).on());
-  EXPECT_EQ(parse({"features", "on"}).action(), v1::REGISTRATION_ADD_FEATURES);
-  EXPECT_EQ(parse({"snap", "off"}).action(), v1::REGISTRATION_SNAP);
-  EXPECT_EQ(parse({"remove", "12"}).artifact().id(), 12U);
-  const auto placed = parse({"place", "1.5", "-2", "0.5"});
-  EXPECT_EQ(placed.action(), v1::REGISTRATION_PLACE);
-  EXPECT_EQ(placed.pose_in_map().y(), -2.0);
-  const auto named = parse({"place", "start"});
-  EXPECT_EQ(named.pose_in_map().x(), 1.0);
-  EXPECT_NEAR(named.pose_in_map().th(), std::numbers::pi / 2, 1e-12);
-  const auto put = parse({"put", "DOOR (3) 3000, 1000, 90, 900 \"EJ-231\""});
-  EXPECT_EQ(put.action(), v1::REGISTRATION_PUT);
-  EXPECT_EQ(put.artifact().id(), 3U);
-  EXPECT_EQ(put.artifact().type(), v1::ARTIFACT_DOOR);
-  EXPECT_EQ(put.artifact().name(), "EJ-231");
+  EXPECT_EQ(parsed({"delete"}), "delete");
+  EXPECT_EQ(parsed({"find"}), "find");
+  EXPECT_EQ(parsed({"on"}), "switch on=yes");
+  EXPECT_EQ(parsed({"off"}), "switch on=no");
+  EXPECT_EQ(parsed({"features", "on"}), "add_features on=yes");
+  EXPECT_EQ(parsed({"snap", "off"}), "snap on=no");
+  EXPECT_EQ(parsed({"remove", "12"}), "remove id=12");
+  EXPECT_EQ(parsed({"place", "1.5", "-2", "0.5"}), "place position=(1.5, -2, 0.5)");
+  const Pose named = point_of(parse({"place", "start"}).arguments, "position");
+  EXPECT_EQ(named.x, 1.0);
+  EXPECT_NEAR(named.th, std::numbers::pi / 2, 1e-12);
+  const Request put = parse({"put", "DOOR (3) 3000, 1000, 90, 900 \"EJ-231\""});
+  EXPECT_EQ(put.functor, "put");
+  EXPECT_EQ(number_of(put.arguments, "id"), 3.0);
+  EXPECT_EQ(text_of(put.arguments, "type"), "DOOR");
+  EXPECT_EQ(text_of(put.arguments, "name"), "EJ-231");
 }
 
 TEST(MapWords, SayWhatWasExpected) {
@@ -61,7 +63,8 @@ TEST(MapWords, SayWhatWasExpected) {
   EXPECT_EQ(complaint({"route", "EJ", "265"}), "expected route PLACE, found 2 words after it");
   EXPECT_EQ(complaint({"list", "it"}), "expected list, found 1 word after it");
   EXPECT_EQ(complaint({"remove", "-1"}), "expected the id of an artifact, found \"-1\"");
-  EXPECT_EQ(complaint({"place", "nowhere"}), "the map has no POS \"nowhere\"");
+  EXPECT_EQ(complaint({"place", "nowhere"}),
+            "expected place X Y TH [m, rad] or the name of a POS; the map has no POS \"nowhere\"");
   EXPECT_EQ(complaint({"place", "1", "x", "0"}), "expected y [m], found \"x\"");
   EXPECT_EQ(complaint({"features", "maybe"}), "expected on or off, found \"maybe\"");
   EXPECT_NE(complaint({"put", "DOR (3) 1, 2, 3, 4"}).find("the line:1:1"), std::string::npos);

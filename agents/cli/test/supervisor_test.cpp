@@ -6,7 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+
+#include "process.hpp"
 
 namespace saphira::cli {
 namespace {
@@ -107,6 +110,50 @@ TEST_F(SupervisorTest, AnotherChildGoesOnMeanwhile) {
   kill(supervisor.children().at(0).pid, SIGKILL);
   EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
   EXPECT_EQ(supervisor.children().at(1).pid, other);
+}
+
+TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
+  const test::TempDir folder;
+  const auto write = [&](const std::string& name, const std::string& version) {
+    const std::string path = folder.path(name);
+    std::filesystem::remove(path);
+    std::ofstream(path) << "#!/bin/sh\necho \"" << version << "\"\nexec sleep 1000\n";
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
+  };
+  std::vector<ChildSpec> children;
+  for (const char* name : {"a", "b", "odd", "same"}) {
+    children.push_back({name, {write(name, "old")}, {}, true});
+    children.back().robot = "pioneer";
+  }
+  children.push_back({"sim", {write("sim", "old")}, {}, true});
+  Supervisor supervisor(children, keep());
+  supervisor.start();
+  const auto pid = [&](std::size_t i) { return supervisor.children()[i].pid; };
+  // All of them, since a shell reads its script only after it is started.
+  EXPECT_TRUE(run_until(supervisor, [&] {
+    return said("a|old") && said("b|old") && said("odd|old") && said("same|old") && said("sim|old");
+  })) << all();
+  const pid_t same = pid(3);
+  const pid_t sim = pid(4);
+  for (const char* name : {"a", "b", "odd", "sim"})
+    write(name, "new");
+  supervisor.renew([&](const std::string& program) {
+    return program == folder.path("odd") ? std::string("it speaks otherwise") : std::string();
+  });
+  EXPECT_TRUE(said("|odd stays as it is: it speaks otherwise")) << all();
+  EXPECT_TRUE(said("|sim stays as it is: it is not on the bus")) << all();
+  const pid_t b = pid(1);
+  EXPECT_TRUE(run_until(supervisor, [&] { return said("a|new"); })) << all();
+  EXPECT_EQ(pid(1), b) << "one after the other";
+  EXPECT_TRUE(run_until(supervisor, [&] { return said("|all new versions are taken in"); }))
+      << all();
+  EXPECT_TRUE(said("b|new"));
+  EXPECT_FALSE(said("odd|new"));
+  EXPECT_EQ(pid(3), same);
+  EXPECT_EQ(pid(4), sim);
+  supervisor.renew([](const std::string&) { return std::string("no"); });
+  EXPECT_EQ(supervisor.children()[0].starts, 2);
 }
 
 TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {

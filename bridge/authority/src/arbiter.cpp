@@ -239,8 +239,6 @@ bool Arbiter::live(const Player& p, double now, std::uint64_t cycle) const {
 
 std::string Arbiter::why_not(const Player& p, double now, std::uint64_t cycle) const {
   const std::string who = p.newest.source + " (" + name(p.newest.role) + ")";
-  if (!p.newest.active)
-    return who + " does not want to drive";
   if (now - p.newest.received > settings_.lease + kTick)
     return "the lease of " + who + " ran out: its newest command is " +
            seconds(now - p.newest.received) + " old";
@@ -321,13 +319,14 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   if (role == Role::none) {
     for (const Role each : kDriving) {
       const Player& p = player(each);
-      if (p.held && (grant.reason.empty() || p.newest.active))
+      // Who has let go is no reason: a person who drove minutes ago least of all.
+      if (p.held && p.newest.active)
         grant.reason = why_not(p, now, cycle);
     }
     if (epoch_ == 0)
       grant.reason = "no robot is connected";
     else if (grant.reason.empty())
-      grant.reason = "nobody asked to drive";
+      grant.reason = "nobody asks to drive";
     return grant;
   }
 
@@ -335,6 +334,9 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   grant.role = role;
   grant.writer = p.newest.writer;
   grant.source = p.newest.source;
+  if (p.newest.cycle != 0)
+    grant.answers = {p.newest.epoch, p.newest.cycle};
+  grant.number = p.newest.number;
   grant.command_age = p.newest.cycle == 0 ? now - p.newest.received : age_of(p.newest, cycle);
   grant.expires_in = settings_.lease - (now - p.moved_on);
   grant.reason = std::string(name(role)) + " is the strongest role with a live command";

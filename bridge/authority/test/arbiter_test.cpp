@@ -14,7 +14,7 @@ TEST(Arbiter, NobodyAskedNobodyDrives) {
   Scene s;
   const Grant grant = s.arbiter.decide(s.now, s.cycle);
   EXPECT_EQ(grant.role, Role::none);
-  EXPECT_EQ(grant.reason, "nobody asked to drive");
+  EXPECT_EQ(grant.reason, "nobody asks to drive");
 }
 
 // Every set of roles that want to drive: the strongest does, the others hear why not.
@@ -51,6 +51,18 @@ TEST(Arbiter, ALeaseEnds) {
   grant = s.arbiter.decide(s.now, s.cycle);
   EXPECT_EQ(grant.role, Role::none);
   EXPECT_NE(grant.reason.find("lease of direct1 (direct) ran out"), std::string::npos);
+}
+
+// A person who drove is not why the robot stands afterwards.
+TEST(Arbiter, WhoHasLetGoIsNoReason) {
+  Scene s;
+  s.offer(Role::teleop, 1);
+  ASSERT_EQ(s.driver(), Role::teleop);
+  s.offer(Role::teleop, 1, false);
+  EXPECT_EQ(s.grant().reason, "nobody asks to drive");
+  s.wait(1000);
+  s.offer(Role::behaviors, 2, false);
+  EXPECT_EQ(s.grant().reason, "nobody asks to drive");
 }
 
 TEST(Arbiter, ThreeCyclesAreWithinALeaseOfThreeCycles) {

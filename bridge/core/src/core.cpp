@@ -135,6 +135,7 @@ void Core::open(const protocol::RobotParameters& parameters, std::uint64_t epoch
   reflector_.open(time(now), memory_, std::max(last_epoch_, last_odom_ + 1), slack_);
   arbiter_.connect(last_epoch_);
   grant_ = {};
+  told_ = {};
   guarded_ = {};
   if (arbiter_.latches().estopped)
     reflector_.emergency_stop();
@@ -173,6 +174,7 @@ void Core::lost(const std::string& why, double now, Note::Level level) {
   connection_.end();
   arbiter_.connect(0);
   grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
+  told_ = {};
   guarded_ = {};
   if (in_session())
     publish_grant();

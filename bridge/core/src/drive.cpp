@@ -69,12 +69,13 @@ void Core::writer_lost(Role role, const authority::WriterId& writer, double now)
   arbiter_.lost(role, writer, time(now));
 }
 
-void Core::reset_estop(const std::string& source, double now) {
+Answer Core::reset_estop(const std::string& source, double now) {
   if (!arbiter_.latches().estopped)
-    return;
+    return {AnswerCode::done, "no emergency stop is latched"};
   const std::string why = arbiter_.reset(source, time(now));
   info(why.empty() ? "emergency stop reset by " + source
                    : "emergency stop not reset by " + source + ": " + why);
+  return why.empty() ? Answer{} : Answer{AnswerCode::refused, why};
 }
 
 void Core::answer(double now) {
@@ -104,6 +105,7 @@ void Core::keep_latches(double now) {
   if (!estop || (in_session() && !settings_.lockstep))
     return;
   grant_ = arbiter_.decide(time(now), session_.stamp.cycle);
+  told_ = {};
   guarded_ = {};
   publish_grant();
 }
@@ -120,6 +122,7 @@ void Core::decide(double now) {
   if (drives(grant_.role))
     reflector_.set(driver(grant_.role).motion);
   reflector::Setpoints wanted = reflector_.motion().setpoints();
+  told_ = {wanted, reflector_.motion().distance_left()};
   guard(wanted);
   // Who presses an emergency stop, and a robot that is not heard any more, want the hardest stop.
   if (grant_.role == Role::estop || session_.silent)
@@ -200,7 +203,7 @@ void Core::step(double now) {
 
 void Core::publish_grant() {
   grant_changed_ = false;
-  put(GrantDecided{grant_, guarded_, arbiter_.take_refused(), session_.stamp});
+  put(GrantDecided{grant_, told_, guarded_, arbiter_.take_refused(), session_.stamp});
 }
 
 }  // namespace saphira::bridge

@@ -15,6 +15,7 @@ inline constexpr double kWaitForDriver = 0.05;
 inline constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long within itself
 inline constexpr double kHoldOff = 2.0;       // [s] until a robot that is not served is tried again
 inline constexpr double kTellKeeper = 10.0;   // [s] that the status tells of a new keeper
+inline constexpr double kTellWait = 3.0;      // [s] that it waits for its robot in silence
 inline constexpr unsigned kMotorsCycles = 10;  // then the motors should be on
 
 }  // namespace saphira::bridge

@@ -73,6 +73,17 @@ Condition Core::robot_condition(double now) const {
   return {};
 }
 
+/// What keeps it from its robot for a while is told in the log, once.
+void Core::tell_wait(const Condition& now_is, double now) {
+  const bool waits = now_is.health == Health::waiting && !settings_.lockstep;
+  if (!waits || wait_.reason != now_is.reason)
+    wait_ = {waits ? now_is.reason : "", now, false};
+  if (!waits || wait_.told || now - wait_.since < kTellWait)
+    return;
+  wait_.told = true;
+  warn("there is no robot yet: " + now_is.reason);
+}
+
 void Core::report(double now, const Surroundings& around) {
   if (now - reported_at_ < kCycle)
     return;
@@ -84,6 +95,7 @@ void Core::report(double now, const Surroundings& around) {
   }
   StatusReport status{
       condition(now, around), session_.stamp, steps_, late_, arbiter_.refused_count(), {}};
+  tell_wait(status.condition, now);
   // A step of the bridge is its reaction.
   if (now - reaction_at_ >= 1.0) {
     status.reaction = {reactions_ > 0 ? reaction_sum_ / reactions_ : 0.0, reaction_max_};

@@ -291,7 +291,9 @@ void Player::ask_devices() {
       reflector::SoundWish{{{value, value}}, 0},
       reflector::ServerWish{static_cast<reflector::ServerAction>(value % 7), value},
       reflector::SerialWish{static_cast<std::uint8_t>(1 + value % 3), {1, 2, value}, value}};
-  core_.reflector().request("a person", ++number_, wishes[script_.choice(6)]);
+  Request request{.functor = {}, .source = "a person"};
+  request.number = ++number_;
+  core_.reflector().request(request, wishes[script_.choice(6)]);
 }
 
 void Player::event() {

@@ -39,6 +39,18 @@ TEST(Status, SaysWhatIsWaitedFor) {
             "waits for the robot to answer SYNC0 (is it switched on, and the cable in?)");
 }
 
+TEST(Status, ARobotThatDoesNotComeIsToldInTheLogOnce) {
+  Scene scene;
+  scene.around.link_trouble = "no such line";
+  scene.pass_slowly(2.0);
+  EXPECT_FALSE(scene.noted("no such line"));
+  scene.pass_slowly(2.0);
+  EXPECT_TRUE(scene.noted("there is no robot yet: robot link: no such line"));
+  const std::size_t told = scene.all<Note>().size();
+  scene.pass_slowly(10.0);
+  EXPECT_EQ(scene.all<Note>().size(), told);
+}
+
 TEST(Status, SaysThatASimulatorMayWaitForSteps) {
   Scene scene;
   scene.connect();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "saphira/protocol/impossible.hpp"
 
@@ -21,18 +20,6 @@ Overloaded(Ts...) -> Overloaded<Ts...>;
 
 // ARIA's and Player's numbers of the gripper's actions, in the order of GripperAction.
 constexpr std::array<std::uint16_t, 11> kGripperNumbers{1, 2, 3, 4, 5, 6, 7, 8, 15, 16, 17};
-constexpr std::array kGripperWords{"open",  "close",  "stop", "lift up",  "lift down", "lift stop",
-                                   "store", "deploy", "halt", "pressure", "carry",     "number"};
-constexpr std::array kServerWords{"set origin",           "motors",          "bump stall",
-                                  "report configuration", "report encoders", "report io",
-                                  "report gripper"};
-
-std::string hex(std::uint8_t value) {
-  char out[8];
-  std::snprintf(out, sizeof out, "0x%02X", value);
-  return out;
-}
-
 /// Which of a device's settings it is: each is asked for, and shown, by itself.
 int action_of(const Wish& wish) {
   if (const auto* server = std::get_if<ServerWish>(&wish))
@@ -42,51 +29,7 @@ int action_of(const Wish& wish) {
   return 0;
 }
 
-bool ended(RequestState state) {
-  return state != RequestState::sending;
-}
-
 }  // namespace
-
-std::string text(const Wish& wish) {
-  return std::visit(
-      Overloaded{
-          [](const ServoWish& w) { return "servo " + std::to_string(w.width) + " us"; },
-          [](const GripperWish& w) {
-            std::string out =
-                std::string("gripper ") + kGripperWords.at(static_cast<std::size_t>(w.action));
-            if (w.action >= GripperAction::pressure)
-              out += " " + std::to_string(w.value);
-            return out;
-          },
-          [](const OutputWish& w) {
-            return "output " + hex(w.bits) + (w.mask == 0xFF ? "" : " mask " + hex(w.mask));
-          },
-          [](const AnalogWish& w) { return "analog " + std::to_string(w.port); },
-          [](const TimerWish& w) { return "timer " + std::to_string(w.pin); },
-          [](const SonarWish& w) {
-            std::string out = w.on ? "sonar on" : "sonar off";
-            for (const std::uint8_t sonar : w.polling)
-              out += " " + std::to_string(sonar);
-            return out;
-          },
-          [](const SoundWish& w) {
-            return w.tones.empty() ? "sound " + std::to_string(w.stored)
-                                   : "sound of " + std::to_string(w.tones.size()) + " tones";
-          },
-          [](const ServerWish& w) {
-            return std::string(kServerWords.at(static_cast<std::size_t>(w.action))) +
-                   (w.action == ServerAction::set_origin || w.action == ServerAction::configuration
-                        ? ""
-                        : " " + std::to_string(w.value));
-          },
-          [](const SerialWish& w) {
-            return "serial " + std::to_string(w.port) + " " + std::to_string(w.data.size()) +
-                   " bytes";
-          },
-      },
-      wish);
-}
 
 void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters& parameters,
                    std::uint8_t digital_output) {
@@ -94,8 +37,7 @@ void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters
   const bool later = parameters.protocol != protocol::Protocol::kPsos;
   const bool arcos = parameters.protocol == protocol::Protocol::kArcos;
   const auto refuse = [&](const std::string& why) {
-    item.request.state = RequestState::refused;
-    item.request.reason = why;
+    item.request.answer = {AnswerCode::refused, item.request.asked + ": refused; " + why};
   };
   const auto send = [&](std::vector<protocol::Command> commands, Proof proof, int value = 0,
                         int mask = 0) {
@@ -138,11 +80,7 @@ void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters
               return refuse("this robot has one analog input");
             send({protocol::AnalogSelect{w.port}}, arcos ? Proof::analog : Proof::thrice, w.port);
           },
-          [&](const TimerWish& w) {
-            if (w.pin > 7)
-              return refuse("expected a pin in 0..7");
-            send({protocol::Timer{w.pin}}, Proof::once);
-          },
+          [&](const TimerWish& w) { send({protocol::Timer{w.pin}}, Proof::once); },
           [&](const SonarWish& w) {
             protocol::Polling polling{w.polling};
             for (const std::uint8_t sonar : polling.sonars)
@@ -226,9 +164,9 @@ void Devices::begin(const protocol::RobotParameters& parameters) {
     return;
   for (const ServerWish wish :
        {ServerWish{ServerAction::motors, 1}, ServerWish{ServerAction::configuration, 0}}) {
-    request("bridge", 0, wish, parameters);
-    Item& item = items_.at({Wish(wish).index(), action_of(wish)});
+    Item& item = put({.functor = {}, .source = "bridge"}, wish, parameters);
     item.quiet = true;
+    note(item);
     if (wish.action != ServerAction::configuration)
       continue;
     // Before the question how the robot is set, so that the answer shows what it takes of this.
@@ -243,46 +181,50 @@ void Devices::begin(const protocol::RobotParameters& parameters) {
 
 void Devices::connect() {
   for (auto& [key, item] : items_)
-    if (!ended(item.request.state))
-      end(item, RequestState::lost, "the connection to the robot ended");
+    if (!ended(item.request.answer.code))
+      end(item, AnswerCode::lost, "the connection to the robot ended");
   digital_output_ = 0;
   reports_ = {};
 }
 
-void Devices::request(const std::string& source, std::uint64_t number, const Wish& wish,
+void Devices::request(const Request& request, const Wish& wish,
                       const protocol::RobotParameters& parameters) {
-  Item item;
-  item.request = {wish.index(), source, number, text(wish), RequestState::sending, {}, 0};
+  note(put(request, wish, parameters));
+}
+
+Devices::Item& Devices::put(const Request& request, const Wish& wish,
+                            const protocol::RobotParameters& parameters) {
+  Item& item = items_[{wish.index(), action_of(wish)}];
+  if (!ended(item.request.answer.code) && !item.quiet) {
+    item.request.answer = {AnswerCode::lost, item.request.asked + ": a request of " +
+                                                 request.source + " took its place"};
+    answered_.push_back(item.request);
+  }
+  item = {};
+  item.request = {request.asker,
+                  request.number,
+                  request.source,
+                  text(wish),
+                  {AnswerCode::underway, text(wish) + ": not shown yet"},
+                  0};
+  item.deadline = request.deadline;
   plan(item, wish, parameters, digital_output_);
-  note(item.request);
-  items_[{wish.index(), action_of(wish)}] = std::move(item);
+  return item;
 }
 
-void Devices::refuse(std::size_t device, const std::string& source, std::uint64_t number,
-                     const std::string& text, const std::string& reason) {
-  Item& item = items_[{device, -1}];
-  item.request = {device, source, number, text, RequestState::refused, reason, 0};
-  note(item.request);
-}
-
-void Devices::end(Item& item, RequestState state, const std::string& reason) {
-  item.request.state = state;
-  item.request.reason = reason;
+void Devices::end(Item& item, AnswerCode code, const std::string& words) {
+  item.request.answer = {code, item.request.asked + ": " + words};
   item.commands.clear();
-  if (item.quiet)
-    changed_ = true;
-  else
-    note(item.request);
+  note(item);
 }
 
-void Devices::note(const Request& request) {
+void Devices::note(const Item& item) {
   changed_ = true;
-  if (request.reason.empty())
+  if (item.quiet)
     return;
-  const std::string what = request.text.empty() ? "device command" : request.text;
-  troubles_.push_back(what + " of " + request.source +
-                      (request.state == RequestState::refused ? " refused: " : ": ") +
-                      request.reason);
+  answered_.push_back(item.request);
+  if (!well(item.request.answer.code))
+    troubles_.push_back("a request of " + item.request.source + ": " + item.request.answer.text);
 }
 
 bool Devices::shown(const Item& item, const protocol::InformationPacket& packet,
@@ -312,9 +254,9 @@ void Devices::reflect(const protocol::InformationPacket& packet,
                       const protocol::Information& information, bool origin) {
   digital_output_ = packet.digital_output;
   for (auto& [key, item] : items_)
-    if (!ended(item.request.state) && item.request.sent > 0 &&
+    if (!ended(item.request.answer.code) && item.request.sent > 0 &&
         shown(item, packet, information, origin))
-      end(item, RequestState::shown);
+      end(item, AnswerCode::done, "the robot shows it");
 }
 
 void Devices::reflect(const protocol::ServerPacket& packet, std::uint8_t type) {
@@ -322,9 +264,9 @@ void Devices::reflect(const protocol::ServerPacket& packet, std::uint8_t type) {
     changed_ = changed_ || kept != came;
     kept = came;
     for (auto& [key, item] : items_)
-      if (!ended(item.request.state) && item.request.sent > 0 && item.proof == Proof::packet &&
-          item.value == type)
-        end(item, RequestState::shown);
+      if (!ended(item.request.answer.code) && item.request.sent > 0 &&
+          item.proof == Proof::packet && item.value == type)
+        end(item, AnswerCode::done, "the robot shows it");
   };
   if (const auto* configuration = std::get_if<protocol::ConfigPacket>(&packet))
     take(reports_.configuration, *configuration);
@@ -341,7 +283,7 @@ void Devices::reflect(const protocol::ServerPacket& packet, std::uint8_t type) {
 bool Devices::pending(double now) const {
   return std::any_of(items_.begin(), items_.end(), [&](const auto& entry) {
     const Item& item = entry.second;
-    return !ended(item.request.state) &&
+    return !ended(item.request.answer.code) &&
            (item.request.sent == 0 || now - item.at >= kRetry - kTick);
   });
 }
@@ -349,10 +291,17 @@ bool Devices::pending(double now) const {
 std::vector<protocol::Command> Devices::due(double now, std::size_t room) {
   std::vector<protocol::Command> out;
   for (auto& [key, item] : items_) {
-    if (ended(item.request.state) || (item.request.sent != 0 && now - item.at < kRetry - kTick))
+    if (ended(item.request.answer.code) ||
+        (item.request.sent != 0 && now - item.at < kRetry - kTick))
       continue;
+    if (item.deadline > 0.0 && now - item.first.value_or(now) >= item.deadline) {
+      end(item, AnswerCode::too_late, "given up; the robot has not shown it before the deadline");
+      continue;
+    }
     if (item.request.sent >= (item.quiet ? 3 : kTries)) {
-      end(item, RequestState::given_up, "the robot does not show it");
+      end(item, AnswerCode::given_up,
+          "given up after " + std::to_string(item.request.sent) +
+              " times; the robot does not show it");
       continue;
     }
     std::size_t size = 0;
@@ -362,16 +311,17 @@ std::vector<protocol::Command> Devices::due(double now, std::size_t room) {
       continue;
     room -= size;
     ++item.request.sent;
+    item.first = item.first.value_or(now);
     item.at = now;
     out.insert(out.end(), item.commands.begin(), item.commands.end());
     if (item.proof == Proof::once || (item.proof == Proof::thrice && item.request.sent == 3))
-      end(item, RequestState::sent);
+      end(item, AnswerCode::sent, "sent; no packet of this robot would show it");
   }
   return out;
 }
 
-std::vector<Request> Devices::requests() const {
-  std::vector<Request> out;
+std::vector<DeviceRequest> Devices::requests() const {
+  std::vector<DeviceRequest> out;
   for (const auto& [key, item] : items_)
     out.push_back(item.request);
   return out;

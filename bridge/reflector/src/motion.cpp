@@ -68,14 +68,18 @@ void DirectMotion::set(const Motion& motion, const Pose& pose_in_odom) {
 Setpoints DirectMotion::setpoints() const {
   Setpoints out = setpoints_;
   if (target_) {
-    const double left = *target_ - travelled_;
+    const double left = distance_left();
     const double a = limits_.deceleration;
     // v t + v^2 / 2a = left: the speed from which the robot still stops at the target.
     const double v = a * (std::sqrt(kReaction * kReaction + 2.0 * std::abs(left) / a) - kReaction);
-    out.velocity =
-        std::abs(left) < kThere ? 0.0 : std::copysign(std::min(speed_, std::max(kCreep, v)), left);
+    out.velocity = left == 0.0 ? 0.0 : std::copysign(std::min(speed_, std::max(kCreep, v)), left);
   }
   return out;
+}
+
+double DirectMotion::distance_left() const {
+  const double left = target_ ? *target_ - travelled_ : 0.0;
+  return std::abs(left) < kThere ? 0.0 : left;
 }
 
 bool DirectMotion::done_position(double tolerance) const {

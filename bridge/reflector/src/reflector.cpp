@@ -59,16 +59,19 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
                       std::abs(protocol::position_difference(0, packet.y)) * unit < 0.1 &&
                       std::abs(raw.th) < 0.2;
   const bool began = odometry_.update(raw, now - last_packet_, fresh);
-  if (began)
+  if (began) {
     motion_.stop();  // a heading or a way that was meant in the old frame means nothing now
-  else
+    state_.buckets.clear();
+  } else {
     motion_.moved(odometry_.advance());
+  }
   devices_.reflect(packet, state_.information, origin);
   last_packet_ = now;
 
   ++state_.cycle;
   state_.odom = odometry_.odom();
   state_.pose_in_odom = odometry_.pose_in_odom();
+  fill_buckets();
   state_.target_velocity = channels_.sent_velocity();
   state_.target_heading_in_odom = norm2_angle(state_.information.control + odometry_.rotation());
   channels_.cycle({state_.information.velocity, state_.information.rotation_velocity,
@@ -85,6 +88,23 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
   for (const auto& [time, count] : sonar_times_)
     state_.sonar_readings_per_s += static_cast<unsigned>(count);
   return state_;
+}
+
+void Reflector::fill_buckets() {
+  for (const protocol::Sonar& sonar : state_.information.sonars)
+    for (const protocol::SonarUnit& unit : parameters_.sonars)
+      if (unit.number == sonar.number) {
+        const auto place = std::lower_bound(
+            state_.buckets.begin(), state_.buckets.end(), sonar.number,
+            [](const Bucket& bucket, int number) { return bucket.reading.number < number; });
+        const Vec2 point =
+            unit.pose_in_robot.position() + sonar.range * unit.pose_in_robot.direction();
+        const Bucket bucket{sonar, state_.cycle, state_.pose_in_odom, point};
+        if (place != state_.buckets.end() && place->reading.number == sonar.number)
+          *place = bucket;
+        else
+          state_.buckets.insert(place, bucket);
+      }
 }
 
 void Reflector::emergency_stop() {

@@ -13,7 +13,13 @@ using protocol::InformationPacket;
 /// A robot that is asked things, cycle by cycle.
 struct Bench {
   explicit Bench(protocol::RobotParameters p = {}) : parameters(std::move(p)) { devices.connect(); }
-  void ask(const Wish& wish) { devices.request("test", ++number, wish, parameters); }
+  void ask(const Wish& wish) {
+    Request request{.functor = {}, .source = "test"};
+    request.asker = 7;
+    request.number = ++number;
+    request.deadline = deadline;
+    devices.request(request, wish, parameters);
+  }
   /// One cycle; how often this command was sent in it.
   int cycle(const Command& command) {
     devices.reflect(packet, protocol::interpret(packet, parameters), origin);
@@ -29,7 +35,7 @@ struct Bench {
       count += cycle(command);
     return count;
   }
-  Request only() const {
+  DeviceRequest only() const {
     EXPECT_EQ(devices.requests().size(), 1U);
     return devices.requests().at(0);
   }
@@ -39,21 +45,30 @@ struct Bench {
   InformationPacket packet;
   bool origin = false;
   double now = 0.0;
+  double deadline = 0.0;
   std::uint64_t number = 0;
 };
+
+TEST(Devices, AreGivenUpAtTheDeadline) {
+  Bench b;
+  b.deadline = 0.95;
+  b.ask(OutputWish{0xFF, 6});
+  EXPECT_EQ(b.cycles(30, protocol::DigitalOutput{6}), 5);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::too_late);
+}
 
 TEST(Devices, AreSentUntilShown) {
   Bench b;
   b.ask(OutputWish{0xFF, 5});
   b.ask(OutputWish{0xFF, 6});
   EXPECT_EQ(b.cycle(protocol::DigitalOutput{5}), 0) << "a newer one took its place";
-  EXPECT_EQ(b.only().state, RequestState::sending);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::underway);
   EXPECT_EQ(b.cycles(10, protocol::DigitalOutput{6}), 5) << "every 0.2 s";
   b.packet.digital_output = 6;
   EXPECT_EQ(b.cycles(10, protocol::DigitalOutput{6}), 0);
-  EXPECT_EQ(b.only().state, RequestState::shown);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::done);
   EXPECT_EQ(b.only().number, 2U);
-  EXPECT_EQ(b.only().text, "output 0x06");
+  EXPECT_EQ(b.only().asked, "output 0x06");
   EXPECT_TRUE(b.devices.take_changed());
   EXPECT_FALSE(b.devices.take_changed());
   EXPECT_TRUE(b.devices.take_troubles().empty());
@@ -67,16 +82,18 @@ TEST(Devices, AMaskLeavesTheOtherBits) {
   EXPECT_EQ(b.cycle(protocol::DigitalOutput{0xAA}), 1);
   b.packet.digital_output = 0x0A;
   b.cycle(Command{});
-  EXPECT_EQ(b.only().state, RequestState::shown) << "the other bits are not what was asked for";
+  EXPECT_EQ(b.only().answer.code, AnswerCode::done) << "the other bits are not what was asked for";
 }
 
 TEST(Devices, AreGivenUpAfterFiveSeconds) {
   Bench b;
   b.ask(ServoWish{1500});
   EXPECT_EQ(b.cycles(80, protocol::Ptu{1500}), 25);
-  EXPECT_EQ(b.only().state, RequestState::given_up);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::given_up);
   EXPECT_EQ(b.devices.take_troubles(),
-            std::vector<std::string>{"servo 1500 us of test: the robot does not show it"});
+            std::vector<std::string>{
+                "a request of test: servo 1500 us: given up after 25 times; the robot does not "
+                "show it"});
   EXPECT_TRUE(b.devices.take_troubles().empty());
 }
 
@@ -84,7 +101,7 @@ TEST(Devices, WhatNoPacketShowsIsSentThriceOrOnce) {
   Bench b;
   b.ask(TimerWish{2});
   EXPECT_EQ(b.cycles(20, protocol::Timer{2}), 1) << "a second one would begin it again";
-  EXPECT_EQ(b.only().state, RequestState::sent);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::sent);
   b.ask(GripperWish{GripperAction::number, 5});
   EXPECT_EQ(b.cycles(20, protocol::Gripper{5}), 3);
 }
@@ -95,7 +112,7 @@ TEST(Devices, TheOriginIsShownByThePosition) {
   EXPECT_EQ(b.cycles(4, protocol::SetOrigin{}), 2);
   b.origin = true;
   b.cycle(Command{});
-  EXPECT_EQ(b.only().state, RequestState::shown);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::done);
 }
 
 TEST(Devices, PollingNamesSonarsThatThereAre) {
@@ -109,8 +126,8 @@ TEST(Devices, PollingNamesSonarsThatThereAre) {
   b.ask(SonarWish{false, {}});
   EXPECT_EQ(b.cycles(20, protocol::Polling{}), 3);
   b.ask(SonarWish{true, {3}});
-  EXPECT_EQ(b.only().state, RequestState::refused);
-  EXPECT_EQ(b.only().reason, "the robot has no sonar 3");
+  EXPECT_EQ(b.only().answer.code, AnswerCode::refused);
+  EXPECT_EQ(b.only().answer.text, "sonar on 3: refused; the robot has no sonar 3");
   EXPECT_TRUE(b.devices.due(1000.0).empty());
 }
 
@@ -119,7 +136,7 @@ TEST(Devices, ALostConnectionEndsWhatWasUnderWay) {
   b.ask(ServoWish{1500});
   b.cycle(Command{});
   b.devices.connect();
-  EXPECT_EQ(b.only().state, RequestState::lost);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::lost);
   EXPECT_EQ(b.cycles(50, protocol::Ptu{1500}), 0) << "the robot was perhaps switched off";
 }
 
@@ -138,8 +155,8 @@ TEST(Devices, WaitForTheLine) {
   EXPECT_EQ(b.devices.due(1.0, 250).size(), 1U);
   EXPECT_TRUE(b.devices.due(1.1, 100).empty());
   EXPECT_EQ(b.devices.due(1.2, 250).size(), 1U);
-  for (const Request& request : b.devices.requests())
-    EXPECT_EQ(request.state, RequestState::sent) << request.text;
+  for (const DeviceRequest& request : b.devices.requests())
+    EXPECT_EQ(request.answer.code, AnswerCode::sent) << request.asked;
 }
 
 TEST(Devices, APioneerOneIsNotAskedForWhatCameLater) {
@@ -177,7 +194,7 @@ TEST(Devices, ALaterRobotIsSwitchedOnAndAskedWhatItIsLike) {
   b.devices.reflect(configuration, static_cast<std::uint8_t>(protocol::PacketType::kConfig));
   EXPECT_TRUE(b.devices.take_changed());
   EXPECT_EQ(b.devices.reports().configuration->firmware, "1.9");
-  EXPECT_EQ(b.devices.requests().back().state, RequestState::shown);
+  EXPECT_EQ(b.devices.requests().back().answer.code, AnswerCode::done);
 }
 
 TEST(Devices, AStrongerDecelerationIsSetBeforeTheQuestionHowItIsSet) {
@@ -206,7 +223,7 @@ TEST(Devices, FlagsOfArcosShowMotorsSonarsAndTheAnalogPort) {
   EXPECT_EQ(b.cycles(10, protocol::Enable{true}), 5);
   b.packet.ptu |= protocol::kFlagMotors;
   EXPECT_EQ(b.cycles(10, protocol::Enable{true}), 0);
-  EXPECT_EQ(b.only().state, RequestState::shown);
+  EXPECT_EQ(b.only().answer.code, AnswerCode::done);
   b.ask(SonarWish{false, {}});
   EXPECT_EQ(b.cycles(10, protocol::SonarSwitch{false, 0}), 5);
   b.packet.ptu = protocol::kFlagMotors;
@@ -215,8 +232,8 @@ TEST(Devices, FlagsOfArcosShowMotorsSonarsAndTheAnalogPort) {
   EXPECT_EQ(b.cycles(4, protocol::AnalogSelect{3}), 2);
   b.packet.timer = 3;
   EXPECT_EQ(b.cycles(10, protocol::AnalogSelect{3}), 0);
-  for (const Request& request : b.devices.requests())
-    EXPECT_EQ(request.state, RequestState::shown) << request.text;
+  for (const DeviceRequest& request : b.devices.requests())
+    EXPECT_EQ(request.answer.code, AnswerCode::done) << request.asked;
 }
 
 TEST(Devices, LaterRobotsHaveMasksTonesAndSerialPorts) {

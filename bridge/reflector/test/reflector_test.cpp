@@ -65,6 +65,34 @@ TEST(Reflector, CountsPacketsPerSecond) {
   EXPECT_EQ(r.state().motor_packets_per_s, 1U);
 }
 
+TEST(Reflector, ABucketHoldsTheNewestReadingOfItsSonar) {
+  protocol::RobotParameters parameters = pioneer();
+  parameters.sonars = {{1, {0.1, 0.1, 0.8}}, {4, {0.1, -0.1, -0.8}}};
+  Reflector r;
+  r.configure(parameters);
+  r.open(0.0, {}, 1);
+  InformationPacket packet;
+  packet.sonars = {{4, 2000}, {1, 1000}};
+  r.packet(packet, 0.1, 2);
+  packet.sonars = {{4, 1500}};
+  const State& state = r.packet(packet, 0.2, 2);
+  ASSERT_EQ(state.buckets.size(), 2U);
+  EXPECT_EQ(state.buckets[0].reading.number, 1);
+  EXPECT_EQ(state.buckets[0].cycle, 1U);
+  EXPECT_EQ(state.buckets[1].reading.number, 4);
+  EXPECT_EQ(state.buckets[1].cycle, 2U);
+  EXPECT_EQ(state.buckets[1].reading.range, state.information.sonars[0].range);
+  // On the axis of the sonar, at its range.
+  const double range = state.buckets[1].reading.range;
+  EXPECT_GT(range, 0.0);
+  EXPECT_NEAR(state.buckets[1].point.x(), 0.1 + range * std::cos(0.8), 1e-9);
+  EXPECT_NEAR(state.buckets[1].point.y(), -0.1 - range * std::sin(0.8), 1e-9);
+  // Where a new odom frame begins, the poses mean nothing any more.
+  packet.x = 20000;
+  packet.sonars = {};
+  EXPECT_TRUE(r.packet(packet, 0.3, 3).buckets.empty());
+}
+
 TEST(Reflector, HeadingsAreInOdomWhateverTheServersFrame) {
   Reflector r = open_reflector();
   r.due(0.0);

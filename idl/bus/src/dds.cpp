@@ -217,6 +217,8 @@ class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderList
     while (take_next(dds_info)) {
       SampleInfo info;
       info.writer = to_id(dds_info.sample_identity.writer_guid());
+      if (bus_->guard())
+        info.sender = sender_of(dds_info.sample_identity.writer_guid());
       if (internal::take_malformed()) {
         add_malformed(dds_info.sample_identity.writer_guid());
       } else if (was_taken(dds_info.sample_identity)) {
@@ -262,6 +264,11 @@ class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderList
   bool take_next(fdds::SampleInfo& info) {
     const auto session = bus_->hold();
     return reader_->take_next_sample(scratch_.get(), &info) == ReturnCode_t::RETCODE_OK;
+  }
+
+  std::shared_ptr<const Identity> sender_of(const rtps::GUID_t& writer) {
+    const auto session = bus_->hold();
+    return bus_->session().discovery.identity_of(writer);
   }
 
   void add_malformed(const rtps::GUID_t& writer) {
@@ -315,10 +322,12 @@ class DdsTransport : public Transport {
 
   std::unique_ptr<RawWriter> make_writer(const char* topic, const Policies& policies,
                                          const TypeInfo& type) override {
+    check_role(topic, true);
     return std::make_unique<DdsWriter>(bus_, topic, policies, type);
   }
   std::unique_ptr<RawReader> make_reader(const char* topic, const Policies& policies,
                                          const TypeInfo& type) override {
+    check_role(topic, false);
     return std::make_unique<DdsReader>(bus_, topic, policies, type);
   }
   std::vector<EndpointEntry> endpoints() const override {
@@ -336,6 +345,10 @@ class DdsTransport : public Transport {
   void watch_endpoints(bool watch) override { bus_->watch(watch); }
   std::vector<std::string> silent_peers() const override { return bus_->silent_peers(); }
   void renew() override { bus_->renew_soon(); }
+  std::optional<Identity> identity() const override {
+    return bus_->guard() ? std::optional(bus_->guard()->own()) : std::nullopt;
+  }
+  std::string expiry() const override { return bus_->guard() ? bus_->guard()->expiry() : ""; }
   bool is_own(const WriterId& writer) const override {
     const auto session = bus_->hold();
     const WriterId self = to_id(bus_->session().participant->guid());
@@ -343,6 +356,15 @@ class DdsTransport : public Transport {
   }
 
  private:
+  /// Fast DDS would refuse it without a word.
+  void check_role(const char* topic, bool writes) const {
+    if (!bus_->guard())
+      return;
+    const std::string why = bus_->guard()->why_not(bus_->guard()->own(), topic, writes);
+    if (!why.empty())
+      throw std::invalid_argument(why);
+  }
+
   std::shared_ptr<Bus> bus_;
 };
 

@@ -45,19 +45,21 @@ bool is_loopback(const std::string& address) {
 }  // namespace
 
 Session::Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers,
-                 const std::shared_ptr<Machines>& machines)
-    : discovery(wake, peers, machines, options.profile == Profile::wan ? kProgramsPerPeer : 0) {
+                 const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard)
+    : discovery(wake, peers, machines, guard,
+                options.profile == Profile::wan ? kProgramsPerPeer : 0) {
   if (options.domain > kMaxDomain)
     throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
                              std::to_string(kMaxDomain) + "]");
   set_up_library();
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   participant =
-      factory->create_participant(options.domain, participant_qos(options, mute_, machines),
+      factory->create_participant(options.domain, participant_qos(options, mute_, machines, guard),
                                   &discovery, fdds::StatusMask::none());
   if (participant == nullptr)
     throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
-                             ": Fast DDS refused the settings");
+                             ": Fast DDS refused the settings" +
+                             (guard ? " or the credentials in " + options.security : ""));
   for (auto& type : all_types())
     type.register_type(participant);
   fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;
@@ -106,10 +108,11 @@ Bus::Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wak
     : wake(std::move(the_wake)),
       peers(wake),
       options_(options),
+      guard_(Guard::make(options)),
       machines_(options.profile == Profile::wan
                     ? std::make_shared<Machines>(own_addresses(), peer_addresses(options))
                     : nullptr),
-      session_(std::make_unique<Session>(options, wake, peers, machines_)),
+      session_(std::make_unique<Session>(options, wake, peers, machines_, guard_)),
       presence_(std::make_unique<Presence>(peers, instance)),
       addresses_(own_addresses()) {
   add(*presence_);
@@ -160,6 +163,8 @@ void Bus::run() {
     presence_->tick();
     if (machines_)
       session_->tell_heard(machines_->heard(BootClock::now().time_since_epoch()));
+    if (guard_)
+      guard_->look(options_.name);
     note_sleep();
     give_back();
     if (renewal_due_)
@@ -206,7 +211,7 @@ void Bus::renew() {
     machines_->forget_told();  // by programs that the new session has to find again
   std::unique_ptr<Session> fresh;
   try {
-    fresh = std::make_unique<Session>(options_, wake, peers, machines_);
+    fresh = std::make_unique<Session>(options_, wake, peers, machines_, guard_);
   } catch (const std::exception& error) {
     write_log(v1::LOG_WARNING, options_.name + ": " + error.what() + "; tried again");
     return;

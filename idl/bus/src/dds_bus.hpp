@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "dds_discovery.hpp"
+#include "dds_guard.hpp"
 #include "machines.hpp"
 #include "peers.hpp"
 #include "saphira/base/boot_clock.hpp"
@@ -29,7 +30,7 @@ class Presence;
 class Session {
  public:
   Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers,
-          const std::shared_ptr<Machines>& machines);
+          const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -88,6 +89,8 @@ class Bus {
   const std::string& robot() const { return options_.robot; }
   /// As after a long sleep.
   void renew_soon();
+  /// None on an open bus.
+  const std::shared_ptr<Guard>& guard() const { return guard_; }
   /// Named peers from which nothing was heard lately.
   std::vector<std::string> silent_peers() const;
 
@@ -103,6 +106,7 @@ class Bus {
   void renew();
 
   const NodeOptions options_;
+  const std::shared_ptr<Guard> guard_;
   const std::shared_ptr<Machines> machines_;  // wan alone
   mutable std::shared_mutex mutex_;  // exclusive for who changes the session or the endpoints
   std::unique_ptr<Session> session_;

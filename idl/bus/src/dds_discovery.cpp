@@ -56,6 +56,13 @@ std::string field(const std::string& data, const std::string& key) {
   return data.substr(from, data.find(';', from) - from);
 }
 
+std::string announced_subject(const rtps::IdentityToken& token) {
+  for (const auto& property : token.properties())
+    if (property.name() == "dds.cert.sn")
+      return property.value();
+  return {};
+}
+
 std::string to_text(const rtps::GuidPrefix_t& prefix) {
   return {reinterpret_cast<const char*>(prefix.value), sizeof prefix.value};
 }
@@ -98,6 +105,7 @@ void Discovery::put(const Proxy& proxy, bool writer, bool removed) {
         proxy.m_qos.m_ownership.kind == fdds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
     endpoint.id = to_hex(to_id(proxy.guid()));
     endpoints_[proxy.guid()] = endpoint;
+    tell_forbidden(proxy.guid(), endpoint);
     for (const auto& own : own_)
       if (own.topic == endpoint.topic && own.type != endpoint.type) {
         type_check_due_ = true;
@@ -120,12 +128,21 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     if (--program.discovered <= 0) {
       if (machines_)
         machines_->forget(to_text(prefix));
+      if (guard_)
+        guard_->end_handshake(Peers::program_of(to_id(info.info.m_guid)));
       programs_.erase(prefix);
       std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
     }
   } else {
-    if (info.status == Info::DISCOVERED_PARTICIPANT)
+    if (info.status == Info::DISCOVERED_PARTICIPANT) {
       ++program.discovered;
+      // Not what it announces later: the handshake checked the certificate with the first.
+      if (guard_) {
+        program.identity = guard_->identify(prefix, announced_subject(info.info.identity_token_));
+        if (!program.identity->name.empty())
+          guard_->begin_handshake(Peers::program_of(to_id(info.info.m_guid)));
+      }
+    }
     program.name = info.info.m_participantName.to_string();
     const auto& bytes = info.info.m_userData.data_vec();
     const std::string data(bytes.begin(), bytes.end());
@@ -139,6 +156,33 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   changed();
 }
 
+std::shared_ptr<const Identity> Discovery::identity_of(const rtps::GUID_t& writer) const {
+  if (!guard_)
+    return nullptr;
+  static const auto stranger = std::make_shared<const Identity>();
+  const std::scoped_lock lock(mutex_);
+  const auto found = programs_.find(writer.guidPrefix);
+  return found == programs_.end() || !found->second.identity ? stranger : found->second.identity;
+}
+
+// Fast DDS refuses the match, and says neither whose nor why.
+void Discovery::tell_forbidden(const rtps::GUID_t& guid, const EndpointEntry& endpoint) {
+  const auto program = programs_.find(guid.guidPrefix);
+  if (!guard_ || told_.size() >= kMostTold || program == programs_.end() ||
+      !program->second.identity)
+    return;
+  const std::string why =
+      guard_->why_not(*program->second.identity, endpoint.topic, endpoint.writer);
+  const bool ours = std::any_of(own_.begin(), own_.end(), [&](const EndpointEntry& own) {
+    return own.topic == endpoint.topic && own.writer != endpoint.writer;
+  });
+  if (why.empty() || !ours || !told_.insert({"forbidden", endpoint.id}).second)
+    return;
+  troubles_.push_back("topic " + endpoint.topic + ": " + name(with_program(guid, endpoint)) +
+                      " is refused: " + why);
+  wake_->signal();
+}
+
 void Discovery::count_programs_here() {
   const auto here = static_cast<std::size_t>(
       std::count_if(programs_.begin(), programs_.end(),
@@ -149,6 +193,12 @@ void Discovery::count_programs_here() {
                       " programs on this one, and there are " + std::to_string(here + 1) +
                       ": some are not found unless this machine's --peer names the others");
   wake_->signal();
+}
+
+void Discovery::onParticipantAuthentication(fdds::DomainParticipant* /*participant*/,
+                                            rtps::ParticipantAuthenticationInfo&& info) {
+  if (guard_ && info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
+    guard_->end_handshake(Peers::program_of(to_id(info.guid)));
 }
 
 void Discovery::on_subscriber_discovery(fdds::DomainParticipant* /*participant*/,

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "dds_guard.hpp"
 #include "internal.hpp"
 #include "machines.hpp"
 #include "peers.hpp"
@@ -23,15 +24,20 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// most_here: programs of this machine that others can find [0: any number].
   /// machines: are told what each program hears, where there are any.
+  /// guard: knows who each program is, and is told which are let in; none on an open bus.
   Discovery(std::shared_ptr<Wake> wake, const Peers& peers, std::shared_ptr<Machines> machines,
-            std::size_t most_here)
+            std::shared_ptr<Guard> guard, std::size_t most_here)
       : wake_(std::move(wake)),
         peers_(peers),
         machines_(std::move(machines)),
+        guard_(std::move(guard)),
         most_here_(most_here) {}
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(
+      eprosima::fastdds::dds::DomainParticipant* /*participant*/,
+      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
@@ -47,6 +53,9 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   void add_own(const EndpointEntry& own);
   void remove_own(const std::string& id);
 
+  /// Who has written a sample, as far as discovery knows; none on an open bus.
+  std::shared_ptr<const Identity> identity_of(const eprosima::fastrtps::rtps::GUID_t& writer) const;
+
   /// As Transport has them.
   std::vector<EndpointEntry> endpoints() const;
   std::vector<std::string> take_troubles();
@@ -58,7 +67,8 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
     std::string name;
     std::string host;
     std::uint32_t pid = 0;
-    int discovered = 0;  ///< less how often it was dropped
+    int discovered = 0;                        ///< less how often it was dropped
+    std::shared_ptr<const Identity> identity;  ///< none on an open bus
   };
 
   EndpointEntry with_program(const eprosima::fastrtps::rtps::GUID_t& guid,
@@ -77,6 +87,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   bool tell_incompatible(const Incompatible& found, bool late, std::vector<std::string>& texts);
 
   void count_programs_here();
+  void tell_forbidden(const eprosima::fastrtps::rtps::GUID_t& guid, const EndpointEntry& endpoint);
 
   template <class Proxy>
   void put(const Proxy& proxy, bool writer, bool removed);
@@ -85,6 +96,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   const std::shared_ptr<Wake> wake_;
   const Peers& peers_;
   const std::shared_ptr<Machines> machines_;
+  const std::shared_ptr<Guard> guard_;
   const std::size_t most_here_;
   std::atomic<bool> watched_{false};
   mutable std::mutex mutex_;

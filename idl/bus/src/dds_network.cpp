@@ -32,9 +32,18 @@ constexpr int kAnnouncement = 250;
 // By unicast to every place where a peer may be: less often, for the sake of a radio.
 constexpr int kPeerAnnouncement = 500;
 
+/// Of an endpoint of somebody else: Discovery tells whose, and why.
+bool is_refusal(const std::string& message) {
+  return message.starts_with("Security manager returns an error") ||
+         message.starts_with("Error checking create remote ") ||
+         message.find(" not found in allow rule") != std::string::npos;
+}
+
 class DdsLog : public fdds::LogConsumer {
  public:
   void Consume(const fdds::Log::Entry& entry) override {
+    if (is_refusal(entry.message))
+      return;
     const std::string text = "Fast DDS: " + entry.message;
     // What Fast DDS calls an error is no more than a warning for a system that goes on.
     write_log(entry.kind == fdds::Log::Kind::Info ? v1::LOG_DEBUG : v1::LOG_WARNING, text);
@@ -117,7 +126,8 @@ std::set<std::string> peer_addresses(const NodeOptions& options) {
 
 fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
                                            std::shared_ptr<const std::atomic<bool>> mute,
-                                           std::shared_ptr<Machines> machines) {
+                                           std::shared_ptr<Machines> machines,
+                                           std::shared_ptr<Guard> guard) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.user_data() = user_data("");
@@ -158,7 +168,9 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
   }
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(
-      udp, std::move(mute), std::move(machines), std::move(ports)));
+      udp, std::move(mute), std::move(machines), std::move(ports), guard));
+  if (guard)
+    guard->secure(qos);
   return qos;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "dds_guard.hpp"
 #include "machines.hpp"
 #include "saphira/bus/node.hpp"
 
@@ -30,11 +31,11 @@ std::set<std::string> own_addresses();
 void set_up_library();
 
 /// How a program finds others and by which addresses. std::runtime_error where a peer or the
-/// interface is not to be had. While `mute` is set it sends nothing. `machines`: see
+/// interface is not to be had. While `mute` is set it sends nothing. `machines`, `guard`: see
 /// SieveDescriptor.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const NodeOptions& options, std::shared_ptr<const std::atomic<bool>> mute,
-    std::shared_ptr<Machines> machines = nullptr);
+    std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr);
 
 /// The user data of a participant: its host, its process, and the machines that it hears.
 eprosima::fastdds::dds::UserDataQosPolicy user_data(const std::string& heard);

@@ -4,6 +4,7 @@
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -11,6 +12,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "log.hpp"
@@ -24,6 +26,10 @@ namespace transport = eprosima::fastdds::rtps;
 
 // Between two announcements of a program.
 constexpr std::chrono::milliseconds kOnce{50};
+// Between two packets of a handshake that is sent to all. While many programs begin, one follows
+// the other; a packet waits no longer than this.
+constexpr std::chrono::milliseconds kHandshake{4};
+constexpr std::chrono::milliseconds kLongestHandshake{40};
 
 class Sieve : public transport::ChainingTransport {
  public:
@@ -37,6 +43,8 @@ class Sieve : public transport::ChainingTransport {
             const std::chrono::steady_clock::time_point& timeout) override {
     if (*descriptor_.mute)
       return true;
+    if (descriptor_.guard && handshake_for(buffer, size) != nullptr)
+      handshake_sent_ = ticks(BootClock::now());
     const bool sent = low->send(buffer, size, begin, end, timeout);
     if (descriptor_.machines && is_announcement(buffer, size))
       announce(low, buffer, size, timeout);
@@ -49,17 +57,35 @@ class Sieve : public transport::ChainingTransport {
     const auto sound = static_cast<std::uint32_t>(sound_length(buffer, size));
     if (sound == 0 || !plausible(buffer, sound))
       return;
+    if (descriptor_.guard) {
+      if (descriptor_.guard->revoked(sender_of(buffer)) ||
+          (is_announcement(buffer, sound) && descriptor_.guard->announced(sender_of(buffer)))) {
+        const auto gone = farewell(sender_of(buffer));
+        pass(next, gone.data(), static_cast<std::uint32_t>(gone.size()), local, remote);
+        return;
+      }
+      if (is_forgeable(buffer, sound))
+        return;
+      if (handshake_for(buffer, sound) != nullptr)
+        wait_for_own_handshake();
+    }
     if (descriptor_.machines && remote.kind == LOCATOR_KIND_UDPv4 && is_announcement(buffer, sound))
       descriptor_.machines->hear(rtps::IPLocator::toIPv4string(remote),
                                  BootClock::now().time_since_epoch());
+    pass(next, buffer, sound, local, remote);
+  }
+
+ private:
+  static void pass(transport::TransportReceiverInterface* next, const rtps::octet* buffer,
+                   std::uint32_t size, const rtps::Locator_t& local,
+                   const rtps::Locator_t& remote) {
     try {
-      next->OnDataReceived(buffer, sound, local, remote);
+      next->OnDataReceived(buffer, size, local, remote);
     } catch (const std::exception& error) {
       write_log(v1::LOG_DEBUG, std::string("dropped a packet: ") + error.what());
     }
   }
 
- private:
   /// To the machines that nobody named. Fast DDS sends each announcement several times at once.
   void announce(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
                 const std::chrono::steady_clock::time_point& timeout) {
@@ -91,6 +117,21 @@ class Sieve : public transport::ChainingTransport {
     return places;
   }
 
+  /// Fast DDS 2.9 drops the part of a handshake that comes while it still sends its own to the same
+  /// program. Each says its part again every second, so that two that began together would drop
+  /// each other's for good.
+  void wait_for_own_handshake() const {
+    const auto begun = BootClock::now();
+    for (auto now = begun; now - begun < kLongestHandshake &&
+                           ticks(now) - handshake_sent_ < BootClock::duration(kHandshake).count();
+         now = BootClock::now())
+      std::this_thread::sleep_for(kHandshake / 4);
+  }
+
+  static BootClock::rep ticks(BootClock::time_point time) {
+    return time.time_since_epoch().count();
+  }
+
   bool plausible(const rtps::octet* buffer, std::uint32_t size) {
     const std::scoped_lock lock(mutex_);
     return sequences_.plausible(buffer, size, BootClock::now());
@@ -102,6 +143,7 @@ class Sieve : public transport::ChainingTransport {
   std::set<std::pair<std::string, std::uint32_t>> opened_;
   transport::SendResourceList openers_;
   Sequences sequences_;
+  std::atomic<BootClock::rep> handshake_sent_{0};  // when it last sent a part of one
 };
 
 }  // namespace

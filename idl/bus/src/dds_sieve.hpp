@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dds_guard.hpp"
 #include "machines.hpp"
 
 namespace saphira::bus::internal {
@@ -19,19 +20,25 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   using Mute = std::shared_ptr<const std::atomic<bool>>;
 
   /// While `mute` is set nothing is sent. Where there are `machines`, they hear from where
-  /// announcements come, and the program announces itself to them, at each of these ports.
+  /// announcements come, and the program announces itself to them, at each of these ports. With a
+  /// `guard` nothing passes of those whose certificate was revoked, and no farewell, which anybody
+  /// can forge; and who announces itself for long and is not let in is
+  /// forgotten.
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
                   Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
-                  std::vector<std::uint32_t> the_ports = {})
+                  std::vector<std::uint32_t> the_ports = {},
+                  std::shared_ptr<Guard> the_guard = nullptr)
       : ChainingTransportDescriptor(std::move(low)),
         mute(std::move(the_mute)),
         machines(std::move(the_machines)),
-        ports(std::move(the_ports)) {}
+        ports(std::move(the_ports)),
+        guard(std::move(the_guard)) {}
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   Mute mute;
   std::shared_ptr<Machines> machines;
   std::vector<std::uint32_t> ports;
+  std::shared_ptr<Guard> guard;
 };
 
 }  // namespace saphira::bus::internal

@@ -56,6 +56,7 @@ struct Gateway::In {
       auto& writer = inside[info.writer];
       if (!writer)
         writer = node.make_writer(topic, qos, *type);
+      writer->set_sender(info.sender);
       if (info.disposed)
         writer->dispose(sample);
       else

@@ -116,33 +116,6 @@ bool GoalClient::delivered(int timeout_ms) {
   return writer_.wait_acknowledged(static_cast<int>(left().count()));
 }
 
-v1::Argument number(const std::string& name, double value) {
-  v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_NUMBER);
-  argument.number(value);
-  return argument;
-}
-
-v1::Argument text(const std::string& name, const std::string& value) {
-  v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_TEXT);
-  argument.text(value);
-  return argument;
-}
-
-v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame) {
-  v1::Argument argument;
-  argument.name(name);
-  argument.kind(v1::ARGUMENT_POINT);
-  argument.point().x(x);
-  argument.point().y(y);
-  argument.point().th(th);
-  argument.frame(frame);
-  return argument;
-}
-
 bool ended(v1::GoalState state) {
   switch (state) {
     case v1::GOAL_WAITING:

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,9 @@ class Transport {
   virtual void watch_endpoints(bool watch) = 0;
   /// As Node has them.
   virtual std::vector<std::string> silent_peers() const { return {}; }
+  /// With security, what this node is, and in words where its certificate expires soon.
+  virtual std::optional<Identity> identity() const { return std::nullopt; }
+  virtual std::string expiry() const { return {}; }
   /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
   virtual void renew() {}
   /// Whether a writer is one of this node's.
@@ -89,6 +93,8 @@ class Transport {
 /// instance: as in ServiceStatus.
 std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options, std::uint64_t instance,
                                               std::shared_ptr<Wake> wake);
+/// Throws where the credentials that the options name would not do.
+void check_credentials(const NodeOptions& options);
 std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
                                                  std::shared_ptr<MemoryBus> bus,
                                                  std::shared_ptr<Wake> wake);

@@ -7,6 +7,16 @@
 #include "internal.hpp"
 
 namespace saphira::bus {
+namespace {
+
+std::string no_such(const std::string& topic) {
+  std::string names;
+  for (const TopicEntry& known : known_topics())
+    names += (names.empty() ? "" : ", ") + known.name;
+  return "no topic \"" + topic + "\"; there are " + names;
+}
+
+}  // namespace
 
 std::vector<TopicEntry> known_topics() {
   std::vector<TopicEntry> result;
@@ -17,16 +27,14 @@ std::vector<TopicEntry> known_topics() {
 }
 
 Echo::Echo(Node& node, const std::string& topic) {
-  std::string names;
   for_each_topic([&]<class T>(const Topic<T>& known) {
-    names += std::string(names.empty() ? "" : ", ") + known.name;
     if (topic != known.name)
       return;
     type_ = &type_of<T>();
     reader_ = node.make_reader(known.name, known.qos, *type_);
   });
   if (!reader_)
-    throw std::runtime_error("no topic \"" + topic + "\"; there are " + names);
+    throw std::runtime_error(no_such(topic));
 }
 
 Echo::~Echo() = default;
@@ -41,6 +49,39 @@ std::vector<std::string> Echo::take_json() {
 
 std::size_t Echo::matched() const {
   return reader_->matched();
+}
+
+Scribe::Scribe(Node& node, const std::string& topic) {
+  for_each_topic([&]<class T>(const Topic<T>& known) {
+    if (topic != known.name)
+      return;
+    type_ = &type_of<T>();
+    writer_ = node.make_writer(known.name, known.qos, *type_);
+  });
+  if (!writer_)
+    throw std::runtime_error(no_such(topic));
+  sample_ = std::shared_ptr<void>(type_->create(), type_->destroy);
+}
+
+Scribe::~Scribe() = default;
+
+bool Scribe::write(const std::string& json) {
+  std::shared_ptr<void> sample(type_->create(), type_->destroy);
+  type_->parse(json, sample.get());
+  sample_ = std::move(sample);
+  return writer_->write(sample_.get());
+}
+
+bool Scribe::dispose() {
+  return writer_->dispose(sample_.get());
+}
+
+bool Scribe::wait_acknowledged(int timeout_ms) {
+  return writer_->wait_acknowledged(timeout_ms);
+}
+
+std::size_t Scribe::matched() const {
+  return writer_->matched();
 }
 
 Census::Census(Node& node) : node_(&node) {

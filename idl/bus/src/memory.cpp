@@ -42,6 +42,7 @@ struct Item {
   InstanceKey key;
   WriterId writer;
   bool disposed;
+  std::shared_ptr<const Identity> sender;
 };
 
 // KEEP_LAST: of each key the newest `depth`.
@@ -82,6 +83,7 @@ class MemoryWriter : public RawWriter {
   MemoryWriter(const MemoryWriter&) = delete;
   MemoryWriter& operator=(const MemoryWriter&) = delete;
 
+  void set_sender(const std::shared_ptr<const Identity>& of) override { sender = of; }
   bool write(const void* sample) override { return put(sample, false); }
   bool dispose(const void* sample) override { return put(sample, true); }
   bool wait_acknowledged(int /*timeout_ms*/) override { return true; }
@@ -89,6 +91,7 @@ class MemoryWriter : public RawWriter {
 
   Common common;
   WriterId id{};
+  std::shared_ptr<const Identity> sender;
   std::vector<MemoryReader*> matches;
   std::deque<Item> history;
 
@@ -170,7 +173,7 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
     return true;
   std::shared_ptr<void> copy(common.type->create(), common.type->destroy);
   common.type->copy(sample, copy.get());
-  const Item item{std::move(copy), common.type->key(sample), id, disposed};
+  const Item item{std::move(copy), common.type->key(sample), id, disposed, sender};
   const std::scoped_lock lock(common.bus->mutex);
   if (disposed) {
     std::erase_if(history, [&](const Item& old) { return old.key == item.key; });
@@ -212,7 +215,7 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
     items.swap(queue);
   }
   for (const auto& item : items) {
-    const SampleInfo info{item.writer, item.disposed};
+    const SampleInfo info{item.writer, item.disposed, item.sender};
     if (!item.disposed) {
       if (common.type->keyed)
         last_[item.key] = item.data;

@@ -24,6 +24,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kLongestLog = 2000;  // characters
+
 double to_seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -101,7 +103,10 @@ struct Node::Impl {
       log(v1::LOG_WARNING, text);
   }
 
-  void log(v1::LogLevel level, const std::string& text) {
+  void log(v1::LogLevel level, std::string text) {
+    // Somebody's file or message may have a line without an end.
+    if (text.size() > kLongestLog)
+      text = text.substr(0, kLongestLog) + "... (" + std::to_string(text.size()) + " characters)";
     internal::write_log(level, options.name + ": " + text);
     if (level == v1::LOG_DEBUG)
       return;
@@ -135,7 +140,9 @@ struct Node::Impl {
 
 Node::Node(NodeOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
   impl_->transport =
-      internal::make_dds_transport(impl_->options, impl_->status.instance(), impl_->wake);
+      impl_->options.dry_run
+          ? internal::make_memory_transport(impl_->options, make_memory_bus(), impl_->wake)
+          : internal::make_dds_transport(impl_->options, impl_->status.instance(), impl_->wake);
   impl_->start();
 }
 
@@ -225,6 +232,10 @@ std::vector<std::string> Node::silent_peers() const {
   return impl_->transport->silent_peers();
 }
 
+std::optional<Identity> Node::identity() const {
+  return impl_->transport->identity();
+}
+
 const NodeOptions& Node::options() const {
   return impl_->options;
 }
@@ -259,7 +270,14 @@ bool Node::publish_status() {
     self.last_cpu = cpu;
     self.last_published = now;
   }
-  self.status_writer->write(self.status);
+  // What a person has to do soon is told beside what the program says.
+  if (const std::string expiry = self.transport->expiry(); !expiry.empty()) {
+    v1::ServiceStatus told = self.status;
+    told.reason() += (told.reason().empty() ? "" : "; ") + expiry;
+    self.status_writer->write(told);
+  } else {
+    self.status_writer->write(self.status);
+  }
   self.beat(0);
   self.published_state = self.status.state();
   self.published_reason = self.status.reason();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,9 +11,29 @@
 #include "internal.hpp"
 #include "log.hpp"
 #include "saphira/base/guess.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::bus {
+
+namespace {
+
+/// Where the credentials of this machine or user are, if it has any. A user who has an authority
+/// has them also before they are made: nothing starts open by accident then.
+std::string usual_security() {
+  const auto is_folder = [](const std::string& path) {
+    std::error_code error;
+    return std::filesystem::is_directory(path, error);
+  };
+  if (const std::string machine = "/etc/saphira/credentials"; is_folder(machine))
+    return machine;
+  const std::string user = user_folder();
+  if (!user.empty() && (is_folder(user + "/credentials") || is_folder(user + "/authority")))
+    return user + "/credentials";
+  return {};
+}
+
+}  // namespace
 
 void add_node_options(CLI::App& app, NodeOptions& options) {
   app.add_option("--name", options.name, "Name of this program on the bus")->capture_default_str();
@@ -38,6 +59,13 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->delimiter(',');
   app.add_option("--interface", options.interface, "lan, wan: address of the one interface to use")
       ->envname("SAPHIRA_INTERFACE");
+  options.security = usual_security();
+  app.add_option("--security", options.security,
+                 "Folder of credentials (saphira security add); none: a bus that is open to all")
+      ->envname("SAPHIRA_SECURITY")
+      ->default_str(options.security.empty() ? kOpenBus : options.security);
+  app.add_flag("--dry-run", options.dry_run,
+               "Read what is given here, say what is wrong with it, and end");
   app.add_flag("--lockstep", options.lockstep,
                "Lose no sample of a cycle and wait for every input (simulator in single step)");
   app.add_option_function<std::string>(
@@ -49,7 +77,7 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
 
 namespace {
 
-/// Says what is not understood of the command line, and what may have been meant.
+/// Names the word that no option or command takes, with the nearest one that there is.
 int not_understood(const CLI::App& app) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty())
@@ -65,20 +93,25 @@ int not_understood(const CLI::App& app) {
   const std::string meant = guess(word, known);
   std::fprintf(
       stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
-      meant.empty() ? "; --help tells what is" : (": did you mean " + meant + "?").c_str());
+      meant.empty() ? "; --help lists the options" : (": did you mean " + meant + "?").c_str());
   return kExitUsage;
 }
 
 }  // namespace
+
+const char* version() {
+  return "saphira " SAPHIRA_VERSION ", contract " SAPHIRA_CONTRACT;
+}
 
 int run_program(int argc, char** argv, const std::string& name, const std::string& description,
                 const std::function<void(CLI::App&)>& add_options,
                 const std::function<int(const NodeOptions&, const Stop&)>& body) {
   NodeOptions options;
   options.name = name;
+  options.program = name;
   CLI::App app{description, "saphira-" + name};
   add_node_options(app, options);
-  app.set_version_flag("--version", "saphira " SAPHIRA_VERSION);
+  app.set_version_flag("--version", version());
   if (add_options)
     add_options(app);
   try {
@@ -94,6 +127,10 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   try {
     Stop stop;
     stop_on_signals(stop);
+    if (options.dry_run) {
+      internal::check_credentials(options);
+      stop.request();
+    }
     return body(options, stop);
   } catch (const FileError& error) {
     usage = what = error.what();

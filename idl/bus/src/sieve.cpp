@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
+#include <iterator>
 
 namespace saphira::bus::internal {
 
@@ -18,6 +20,8 @@ constexpr std::uint8_t kGap = 0x08;
 constexpr std::uint8_t kInfoSource = 0x0c;
 constexpr std::uint8_t kData = 0x15;
 constexpr std::uint8_t kDataFragment = 0x16;
+constexpr std::uint8_t kParticipantWriter[] = {0x00, 0x01, 0x00, 0xc2};
+constexpr std::uint8_t kHandshakeWriter[] = {0x00, 0x02, 0x01, 0xc3};
 
 /// A submessage of a sound message.
 struct Submessage {
@@ -31,6 +35,10 @@ struct Submessage {
     for (std::size_t i = 0; i < 4; ++i)
       value = value << 8U | data[at + (little ? 3 - i : i)];
     return value;
+  }
+  std::size_t half(std::size_t at) const {
+    return little ? data[at] | std::size_t{data[at + 1]} << 8U
+                  : data[at + 1] | std::size_t{data[at]} << 8U;
   }
   /// A sequence number: its high word first.
   std::uint64_t number(std::size_t at) const { return word(at) << 32U | word(at + 4); }
@@ -48,6 +56,20 @@ Submessage submessage(const std::uint8_t* message, std::size_t size, std::size_t
     result.size = size - at - kSubmessageHeader;
   next = at + kSubmessageHeader + ((result.size + 3) & ~std::size_t{3});
   return result;
+}
+
+/// Whether the inline QoS of data tells what became of its instance, or cannot be read.
+bool may_tell_status(const Submessage& data) {
+  constexpr std::uint64_t kEnd = 0x0001;
+  constexpr std::uint64_t kStatus = 0x0071;
+  for (std::size_t at = 4 + data.half(2); at + 4 <= data.size; at += 4 + data.half(at + 2)) {
+    const std::uint64_t parameter = data.half(at);
+    if (parameter == kEnd)
+      return false;
+    if (parameter == kStatus)
+      return true;
+  }
+  return true;
 }
 
 }  // namespace
@@ -70,8 +92,71 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size) {
   return size;
 }
 
+const std::uint8_t* handshake_for(const std::uint8_t* message, std::size_t size) {
+  // Behind the encapsulation: the message's own GUID and number, those of the one that it answers,
+  // and who is meant.
+  constexpr std::size_t kMeant = 20 + 4 + 24 + 24;
+  std::size_t next = 0;
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (part.id == kData && part.size >= kMeant + 16 &&
+        std::memcmp(part.data + 8, kHandshakeWriter, 4) == 0)
+      return part.data + kMeant;
+  }
+  return nullptr;
+}
+
+const std::uint8_t* sender_of(const std::uint8_t* message) {
+  return message + 8;
+}
+
+bool is_forgeable(const std::uint8_t* message, std::size_t size) {
+  constexpr std::uint8_t kInlineQos = 0x02;
+  constexpr std::uint8_t kKey = 0x08;
+  std::size_t next = 0;
+  for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
+    const Submessage part = submessage(message, size, at, next);
+    if (part.id == kInfoSource)
+      return true;
+    if (part.id == kData && part.size >= 20 &&
+        std::memcmp(part.data + 8, kParticipantWriter, 4) == 0 &&
+        ((message[at + 1] & kKey) != 0 ||
+         ((message[at + 1] & kInlineQos) != 0 && may_tell_status(part))))
+      return true;
+  }
+  return false;
+}
+
+std::vector<std::uint8_t> farewell(const std::uint8_t* prefix) {
+  std::vector<std::uint8_t> message{'R', 'T', 'P', 'S', 2, 2, 1, 0x0f};
+  const auto add = [&](std::initializer_list<std::uint8_t> bytes) {
+    message.insert(message.end(), bytes);
+  };
+  const auto add_participant = [&] {
+    message.insert(message.end(), prefix, prefix + 12);
+    add({0x00, 0x00, 0x01, 0xc1});
+  };
+  message.insert(message.end(), prefix, prefix + 12);
+  // Little-endian, inline QoS, and the key instead of data; to the end of the message.
+  add({kData, 0x0b, 0, 0, 0, 0, 16, 0});
+  add({0x00, 0x01, 0x00, 0xc7});
+  message.insert(message.end(), std::begin(kParticipantWriter), std::end(kParticipantWriter));
+  // A number above all that the participant has used: an older one would be passed over.
+  add({1, 0, 0, 0, 0, 0, 0, 0});
+  add({0x70, 0x00, 16, 0});  // the hash of the key
+  add_participant();
+  add({0x71, 0x00, 4, 0, 0, 0, 0, 3});  // disposed and unregistered
+  add({0x01, 0x00, 0, 0});
+  add({0x00, 0x03, 0x00, 0x00});  // a list of parameters, little-endian
+  add({0x50, 0x00, 16, 0});
+  add_participant();
+  add({0x01, 0x00, 0, 0});
+  const std::size_t size = message.size() - kHeader - kSubmessageHeader;
+  message[kHeader + 2] = static_cast<std::uint8_t>(size);
+  return message;
+}
+
 bool is_announcement(const std::uint8_t* message, std::size_t size) {
-  static constexpr std::uint8_t kParticipantWriter[] = {0x00, 0x01, 0x00, 0xc2};
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <vector>
 
 #include "saphira/base/boot_clock.hpp"
 
@@ -19,6 +20,22 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size);
 
 /// Whether a sound message says that a participant is there.
 bool is_announcement(const std::uint8_t* message, std::size_t size);
+
+/// The GUID prefix of the participant for which a sound message is, where it is part of a handshake
+/// of two participants; nullptr of any other message. Each is sent to all, and is for one.
+const std::uint8_t* handshake_for(const std::uint8_t* message, std::size_t size);
+
+/// The GUID prefix of the participant that a sound message says it is of.
+const std::uint8_t* sender_of(const std::uint8_t* message);
+
+/// Whether a sound message says that a participant has ended, or speaks for another than its
+/// sender. Both are in clear also where all else is encrypted, so that anybody can say so of
+/// anybody.
+bool is_forgeable(const std::uint8_t* message, std::size_t size);
+
+/// A message by which a participant says that it has ended: what makes Fast DDS, which cannot be
+/// told to ignore somebody, forget a participant and its keys.
+std::vector<std::uint8_t> farewell(const std::uint8_t* prefix);
 
 /// The numbers that writers give their samples, and readers acknowledge. Fast DDS believes each:
 /// one that is far too high makes it count up to it for minutes, and a reader deaf to that writer

@@ -1,6 +1,7 @@
 #include <type_traits>
 
 #include "json.hpp"
+#include "json_reader.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/topics.hpp"
 #include "saphira_visit.hpp"
@@ -41,7 +42,9 @@ TypeInfo make_type(const char* name) {
                  void* to) { *static_cast<T*>(to) = *static_cast<const T*>(from); },
       .destroy = [](void* sample) { delete static_cast<T*>(sample); },
       .json = [](const void* sample,
-                 const char* prefix) { return to_json(*static_cast<const T*>(sample), prefix); }};
+                 const char* prefix) { return to_json(*static_cast<const T*>(sample), prefix); },
+      .parse = [](const std::string& json,
+                  void* sample) { internal::from_json(json, *static_cast<T*>(sample)); }};
 }
 
 }  // namespace

@@ -72,10 +72,12 @@ TEST_P(Bus, InLockstepAReaderOfALatchedTopicGetsWhatCameInBetween) {
   auto reader = tool->reader(topics::kMap);
   const auto service = node("service", robot("l"), true);
   auto writer = service->writer(topics::kMap);
+  // Both sides: a reader that knows its writer later than the writer knows it gets the newest only.
   ASSERT_TRUE(eventually(*service, [&] { return writer.matched() == 1; }));
+  ASSERT_TRUE(eventually(*tool, [&] { return reader.matched() == 1; }));
   std::vector<std::uint64_t> revisions;
   for (const std::uint64_t revision : {1U, 2U, 3U}) {
-    v1::Map map;
+    v1::FloorMap map;
     map.revision(revision);
     ASSERT_TRUE(writer.write(map));
   }
@@ -217,19 +219,19 @@ TEST_P(Bus, RobotsDoNotHearEachOtherAndAFleetToolHearsAll) {
 
 TEST_P(Bus, CommandsAreNotForLateReaders) {
   auto a = node("a");
-  auto writer = a->writer(topics::kTimer);
-  v1::TimerCommand command;
-  command.pin(1);
+  auto writer = a->writer<v1::Request>(topics::kTimer);
+  v1::Request command;
+  command.number(1);
   writer.write(command);
   auto b = node("b");
-  auto reader = b->reader(topics::kTimer);
+  auto reader = b->reader<v1::Request>(topics::kTimer);
   ASSERT_TRUE(eventually(*a, [&] { return writer.matched() == 1; }));
   ASSERT_TRUE(eventually(*b, [&] { return reader.matched() == 1; }));
-  command.pin(2);
+  command.number(2);
   writer.write(command);
   const auto samples = take_at_least(*b, reader, 1);
   ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].data.pin(), 2);
+  EXPECT_EQ(samples[0].data.number(), 2U);
 }
 
 TEST_P(Bus, IncompatibleQosIsReportedOnBothSides) {

@@ -27,7 +27,7 @@ class GatewayTest : public testing::Test {
   std::shared_ptr<MemoryBus> memory_ = make_memory_bus();
   Node service_{named("service"), memory_};
   Writer<v1::RobotState> states_{service_.writer(topics::kRobotState)};
-  Writer<v1::Beliefs> beliefs_{service_.writer(topics::kBeliefs)};
+  Writer<v1::BeliefSet> beliefs_{service_.writer(topics::kBeliefs)};
   Writer<v1::Goal> own_goals_{service_.writer(topics::kGoals)};
   Reader<v1::Goal> goals_{service_.reader(topics::kGoals)};
   Reader<v1::RobotState> own_states_{service_.reader(topics::kRobotState)};
@@ -49,11 +49,11 @@ TEST_F(GatewayTest, WhatIsWrittenInsideIsReadOutside) {
 }
 
 TEST_F(GatewayTest, WhatIsKeptIsThereForWhoComesLate) {
-  v1::Beliefs sample;
+  v1::BeliefSet sample;
   sample.stamp().cycle(5);
   beliefs_.write(sample);
   gateway_.carry();
-  Reader<v1::Beliefs> beliefs(person_.reader(topics::kBeliefs));
+  Reader<v1::BeliefSet> beliefs(person_.reader(topics::kBeliefs));
   EXPECT_TRUE(carried([&] {
     const auto seen = beliefs.take_newest();
     return seen && seen->stamp().cycle() == 5;

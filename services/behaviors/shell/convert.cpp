@@ -1,6 +1,7 @@
 #include "behaviors/shell/convert.hpp"
 
 #include "lps/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::behaviors {
@@ -9,20 +10,11 @@ namespace {
 // The bounds of the contract.
 constexpr std::size_t kMostRules = 64;
 constexpr std::size_t kMostVariables = 64;
+constexpr std::size_t kMostAreas = 16;
 constexpr std::size_t kMostParameters = 16;
 constexpr std::size_t kMostChoices = 16;
 constexpr std::size_t kMostSchemas = 1024;
 
-constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
-    {Frame::robot, v1::FRAME_ROBOT},
-    {Frame::odom, v1::FRAME_ODOM},
-    {Frame::map, v1::FRAME_MAP},
-}}};
-constexpr EnumPairs<Kind, v1::ArgumentKind, 3> kKinds{{{
-    {Kind::number, v1::ARGUMENT_NUMBER},
-    {Kind::text, v1::ARGUMENT_TEXT},
-    {Kind::point, v1::ARGUMENT_POINT},
-}}};
 constexpr EnumPairs<Action, v1::ControlAction, 5> kActions{{{
     {Action::speed, v1::CONTROL_SPEED},
     {Action::turn_left, v1::CONTROL_TURN_LEFT},
@@ -48,29 +40,14 @@ RobotNow from_bus(const v1::RobotState& state) {
           state.target_heading_in_odom(),      state.left_stalled(), state.right_stalled()};
 }
 
-Argument from_bus(const v1::Argument& argument) {
-  switch (argument.kind()) {
-    case v1::ARGUMENT_POINT:
-      return {argument.name(), PlacedPoint{lps::from_bus(argument.point()),
-                                           kFrames.ours(argument.frame(), Frame::odom)}};
-    case v1::ARGUMENT_TEXT:
-      return {argument.name(), argument.text()};
-    default:
-      return {argument.name(), argument.number()};
-  }
-}
-
 Intent from_bus(const v1::Intentions& intentions) {
   Intent intent;
   intent.cycle = intentions.stamp().cycle();
   intent.control = intentions.behavior_control();
   intent.behaviors.reserve(intentions.behaviors().size());
   for (const v1::IntendedBehavior& behavior : intentions.behaviors()) {
-    Intended wanted{
-        behavior.name(), behavior.schema(), behavior.priority(), behavior.running(), {}};
-    for (const v1::Argument& parameter : behavior.parameters())
-      wanted.parameters.push_back(from_bus(parameter));
-    intent.behaviors.push_back(std::move(wanted));
+    intent.behaviors.push_back({behavior.name(), behavior.schema(), behavior.priority(),
+                                behavior.running(), saphira::from_bus(behavior.parameters())});
   }
   return intent;
 }
@@ -110,11 +87,20 @@ v1::BehaviorState to_bus(const BehaviorState& state) {
     sample.variables().back().name(name);
     sample.variables().back().value(value);
   }
+  for (const Area& area : blended.evaluation.areas) {
+    if (sample.areas().size() == kMostAreas)
+      break;
+    sample.areas().emplace_back();
+    sample.areas().back().x_from(static_cast<float>(area.x_from));
+    sample.areas().back().x_to(static_cast<float>(area.x_to));
+    sample.areas().back().y_from(static_cast<float>(area.y_from));
+    sample.areas().back().y_to(static_cast<float>(area.y_to));
+  }
   return sample;
 }
 
-v1::Behaviors to_bus(const Output& output) {
-  v1::Behaviors sample;
+v1::BehaviorSet to_bus(const Output& output) {
+  v1::BehaviorSet sample;
   sample.control(output.control);
   sample.behaviors().reserve(output.behaviors.size());
   for (const BehaviorState& state : output.behaviors)
@@ -145,7 +131,7 @@ v1::BehaviorSchema to_bus(const Schema& schema) {
       break;
     v1::BehaviorParameter out;
     out.name(spec.name);
-    out.kind(kKinds.theirs(spec.kind));
+    out.kind(saphira::to_bus(spec.kind));
     out.meaning(spec.meaning);
     out.required(spec.required);
     out.low(spec.low);

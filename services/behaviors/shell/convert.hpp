@@ -11,12 +11,11 @@ namespace saphira::behaviors {
 
 RobotModel from_bus(const v1::RobotDescription& description);
 RobotNow from_bus(const v1::RobotState& state);
-Argument from_bus(const v1::Argument& argument);
 Intent from_bus(const v1::Intentions& intentions);
 
 v1::BehaviorState to_bus(const BehaviorState& state);
 /// The behaviors sample; its stamp is the caller's.
-v1::Behaviors to_bus(const Output& output);
+v1::BehaviorSet to_bus(const Output& output);
 v1::BehaviorSchema to_bus(const Schema& schema);
 /// All of a registry; the stamp is the caller's.
 v1::BehaviorSchemas to_bus(const Registry& registry, const std::string& trouble);

@@ -52,7 +52,7 @@ void Service::step(const runtime::Turn& turn) {
   command.source(ports_.name());
   command.number(outputs.number);
   commands_.write(command);
-  const v1::Behaviors sample = to_bus(outputs.output);
+  const v1::BehaviorSet sample = to_bus(outputs.output);
   behaviors_.write(sample);
   recall_.write(sample);
   if (!outputs.degraded.empty())

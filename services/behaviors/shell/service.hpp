@@ -35,8 +35,8 @@ class Service final : public runtime::Service {
   bus::Input<v1::Intentions>& intentions_;
   std::optional<bus::Reader<v1::Grant>> grants_;  ///< none in lockstep: there is no delay
   runtime::Output<v1::MotorCommand> commands_;
-  runtime::Output<v1::Behaviors> behaviors_;
-  runtime::Output<v1::Behaviors> recall_;
+  runtime::Output<v1::BehaviorSet> behaviors_;
+  runtime::Output<v1::BehaviorSet> recall_;
   runtime::Output<v1::BehaviorSchemas> schemas_;
   Core core_;
   Sources sources_;

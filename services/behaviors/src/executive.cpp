@@ -185,7 +185,7 @@ std::string Executive::why_unheard(const Inputs& inputs) const {
     return "no newer intent has come for " + std::to_string(inputs.cycle - intent_came_) +
            " cycles: intentions, or the network to it, is gone";
   if (intent_age_.peak() > kOldest)
-    return kSlow + ("the newest intent is " + seconds(kCycle * intent_cycles(inputs))) +
+    return kSlow + ("intents are, or were a moment ago, " + seconds(intent_age_.peak())) +
            " old, which is too old to drive by";
   return {};
 }

@@ -10,43 +10,30 @@
 namespace saphira::behaviors {
 namespace {
 
-const char* name_of(Kind kind) {
-  switch (kind) {
-    case Kind::number:
-      return "a number";
-    case Kind::text:
-      return "a text";
-    case Kind::point:
-      return "a point";
-  }
-  return "";
-}
-
 bool finite(const Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.th);
 }
 
 /// What is wrong with the argument; empty when nothing is.
 std::string fault(const ParameterSpec& spec, const Argument& argument) {
-  if (argument.value.index() != static_cast<std::size_t>(spec.kind))
-    return std::string("expected ") + name_of(spec.kind) + " (" + spec.meaning + ")";
-  if (const double* const number = std::get_if<double>(&argument.value)) {
+  if (argument.kind != spec.kind)
+    return std::string("expected ") + describe(spec.kind) + " (" + spec.meaning + ")";
+  if (argument.kind == Kind::number) {
     // Written so that not-a-number is a fault.
-    if (!(*number >= spec.low && *number <= spec.high))
+    if (!(argument.number >= spec.low && argument.number <= spec.high))
       return "expected a number from " + plain(spec.low) + " to " + plain(spec.high) + " (" +
-             spec.meaning + "), got " + plain(*number);
-  } else if (const auto* const text = std::get_if<std::string>(&argument.value)) {
-    if (std::find(spec.choices.begin(), spec.choices.end(), *text) == spec.choices.end()) {
+             spec.meaning + "), got " + plain(argument.number);
+  } else if (argument.kind == Kind::text) {
+    if (std::find(spec.choices.begin(), spec.choices.end(), argument.text) == spec.choices.end()) {
       std::string expected;
       for (const std::string& choice : spec.choices)
         expected += (expected.empty() ? "" : " or ") + choice;
-      return "expected " + expected + ", got \"" + text->substr(0, 40) + "\"";
+      return "expected " + expected + ", got \"" + argument.text.substr(0, 40) + "\"";
     }
   } else {
-    const PlacedPoint& point = std::get<PlacedPoint>(argument.value);
-    if (!finite(point.pose))
+    if (!finite(argument.point))
       return "expected a point with finite coordinates";
-    if (point.frame == Frame::map)
+    if (argument.frame == Frame::map)
       return "expected a point in odom or in the robot's frame; where the map is is not known";
   }
   return {};
@@ -73,7 +60,7 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
                                     [&](const Argument& a) { return a.name == spec.name; });
     if (given == arguments.end()) {
       if (spec.required) {
-        trouble = "parameter \"" + spec.name + "\" is missing: expected " + name_of(spec.kind) +
+        trouble = "parameter \"" + spec.name + "\" is missing: expected " + describe(spec.kind) +
                   " (" + spec.meaning + ")";
         return {};
       }
@@ -89,17 +76,16 @@ std::optional<Parameters> Parameters::check(const std::vector<ParameterSpec>& sp
       trouble = "parameter \"" + spec.name + "\": " + wrong;
       return {};
     }
-    if (const double* const number = std::get_if<double>(&given->value))
-      parameters.items_.push_back({spec.name, *number});
-    else if (const auto* const text = std::get_if<std::string>(&given->value)) {
-      const auto choice = std::find(spec.choices.begin(), spec.choices.end(), *text);
+    if (spec.kind == Kind::number) {
+      parameters.items_.push_back({spec.name, given->number});
+    } else if (spec.kind == Kind::text) {
+      const auto choice = std::find(spec.choices.begin(), spec.choices.end(), given->text);
       parameters.items_.push_back(
-          {spec.name, *text, static_cast<std::size_t>(choice - spec.choices.begin())});
+          {spec.name, given->text, static_cast<std::size_t>(choice - spec.choices.begin())});
     } else {
-      const PlacedPoint& point = std::get<PlacedPoint>(given->value);
-      parameters.items_.push_back({spec.name, point.frame == Frame::robot
-                                                  ? compose(robot_in_odom, point.pose)
-                                                  : point.pose});
+      parameters.items_.push_back({spec.name, given->frame == Frame::robot
+                                                  ? compose(robot_in_odom, given->point)
+                                                  : given->point});
     }
   }
   return parameters;

@@ -121,7 +121,7 @@ TEST(Convert, Output) {
   state.blended.evaluation.variables = {{"too_left", 0.25}};
   output.behaviors.push_back(state);
 
-  const v1::Behaviors sample = to_bus(output);
+  const v1::BehaviorSet sample = to_bus(output);
   EXPECT_TRUE(sample.control());
   EXPECT_EQ(sample.trouble(), "something");
   EXPECT_TRUE(sample.turning());

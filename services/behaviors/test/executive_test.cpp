@@ -11,13 +11,6 @@
 namespace saphira::behaviors {
 namespace {
 
-Argument number(std::string name, double value) {
-  return {std::move(name), value};
-}
-Argument point(std::string name, Pose pose, Frame frame = Frame::odom) {
-  return {std::move(name), PlacedPoint{pose, frame}};
-}
-
 /// Counts what is done with it.
 struct Counts {
   int made = 0;

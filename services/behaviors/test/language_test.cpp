@@ -54,6 +54,8 @@ class Runner {
     return behavior_->update(parameters_, context);
   }
 
+  void touch(const Vec2& at_in_robot) { lps_.touch(at_in_robot); }
+
   RobotNow robot_;
   Schema schema_;
   Shared shared_;
@@ -127,6 +129,19 @@ TEST(Language, VariablesOfInitPersistAndThoseOfUpdateDoNot) {
   EXPECT_NEAR(runner.update().rules[0].value, 0.118, 1e-12);
   EXPECT_NEAR(runner.update().rules[0].value, 0.223, 1e-12);
   EXPECT_NEAR(runner.update().rules[0].value, 0.333, 1e-12);
+}
+
+TEST(Language, WhereSomethingWasFoundIsShown) {
+  Runner runner(with_update(
+      "float left = sfFreePathLeft(200, 1000); float right = sfFreePathRight(200, 1000);"
+      "x = 1; float v = left;"));
+  EXPECT_TRUE(runner.update().areas.empty());
+  runner.touch({0.6, 0.1});
+  const Evaluation found = runner.update();
+  ASSERT_EQ(found.areas.size(), 1u);
+  EXPECT_DOUBLE_EQ(found.areas[0].x_to, 1.2);
+  EXPECT_DOUBLE_EQ(found.areas[0].y_from, 0.0);
+  EXPECT_DOUBLE_EQ(found.areas[0].y_to, 0.2);
 }
 
 TEST(Language, RulesHaveNamesModifiersAndBothActions) {

@@ -63,7 +63,7 @@ class ShellTest : public testing::TestWithParam<bool> {
     const std::optional<v1::MotorCommand> newest = commands.take_newest();
     ASSERT_TRUE(newest);
     command = *newest;
-    const std::optional<v1::Behaviors> told_now = behaviors.take_newest();
+    const std::optional<v1::BehaviorSet> told_now = behaviors.take_newest();
     ASSERT_TRUE(told_now);
     told = *told_now;
     EXPECT_EQ(command.stamp().epoch(), epoch);
@@ -84,7 +84,7 @@ class ShellTest : public testing::TestWithParam<bool> {
   bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
   bus::Writer<v1::Intentions> intentions{bridge.writer(bus::topics::kIntentions)};
   bus::Reader<v1::MotorCommand> commands{bridge.reader(bus::topics::kDriveBehaviors)};
-  bus::Reader<v1::Behaviors> behaviors{bridge.reader(bus::topics::kBehaviors)};
+  bus::Reader<v1::BehaviorSet> behaviors{bridge.reader(bus::topics::kBehaviors)};
   runtime::Shell shell{service, with({})};
 
   std::uint64_t epoch = 77;
@@ -92,7 +92,7 @@ class ShellTest : public testing::TestWithParam<bool> {
   std::uint64_t odom = 1;
   double heading = 1.0;
   v1::MotorCommand command;
-  v1::Behaviors told;
+  v1::BehaviorSet told;
 };
 
 INSTANTIATE_TEST_SUITE_P(LiveAndLockstep, ShellTest, testing::Bool());
@@ -197,13 +197,13 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
 
 // Manual 6.5: who suspends what drives has a robot that stands.
 TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
-  bus::Writer<v1::ProcessRequest> requests{bridge.writer(bus::topics::kProcessRequest)};
-  const auto request = [&](v1::ProcessAction action) {
-    v1::ProcessRequest sample;
+  bus::Writer<v1::Request> requests{bridge.writer<v1::Request>(bus::topics::kProcessRequest)};
+  const auto request = [&](const char* functor) {
+    v1::Request sample;
     sample.source("a person");
     sample.service("behaviors");
-    sample.process("execute-current-behaviors");
-    sample.action(action);
+    sample.functor(functor);
+    sample.arguments({bus::text("process", "execute-current-behaviors")});
     requests.write(sample);
   };
   describe();
@@ -211,14 +211,14 @@ TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
   one({ahead});
   one({ahead});
   EXPECT_TRUE(command.active());
-  request(v1::PROCESS_INTERRUPT);
+  request("interrupt");
   for (int i = 0; i < 3; ++i) {
     one({ahead});
     EXPECT_FALSE(command.active());
     EXPECT_FALSE(told.control());
     EXPECT_TRUE(told.behaviors().empty());
   }
-  request(v1::PROCESS_RESUME);
+  request("resume");
   one({ahead});
   EXPECT_TRUE(command.active());
   EXPECT_EQ(told.behaviors().size(), 1U);
@@ -229,7 +229,7 @@ TEST_P(ShellTest, RecallsWhatItPublished) {
   describe();
   for (int i = 0; i < 20; ++i)
     one({behavior("Stop", 2)});
-  bus::Reader<v1::Behaviors> late{bridge.reader(bus::topics::kRecallBehaviors)};
+  bus::Reader<v1::BehaviorSet> late{bridge.reader(bus::topics::kRecallBehaviors)};
   const auto samples = late.take();
   ASSERT_EQ(samples.size(), 20U);
   EXPECT_EQ(samples.front().data.stamp().cycle(), 1U);

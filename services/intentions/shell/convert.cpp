@@ -5,29 +5,20 @@
 #include <utility>
 
 #include "lps/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-constexpr EnumPairs<ArgumentKind, v1::ArgumentKind, 3> kKinds{{{
-    {ArgumentKind::kNumber, v1::ARGUMENT_NUMBER},
-    {ArgumentKind::kText, v1::ARGUMENT_TEXT},
-    {ArgumentKind::kPoint, v1::ARGUMENT_POINT},
-}}};
 constexpr EnumPairs<ArgumentKind, v1::ParameterKind, 3> kParameterKinds{
     {{
-        {ArgumentKind::kNumber, v1::PARAMETER_NUMBER},
-        {ArgumentKind::kText, v1::PARAMETER_TEXT},
-        {ArgumentKind::kPoint, v1::PARAMETER_POINT},
+        {ArgumentKind::number, v1::PARAMETER_NUMBER},
+        {ArgumentKind::text, v1::PARAMETER_TEXT},
+        {ArgumentKind::point, v1::PARAMETER_POINT},
     }},
-    {},
+    {ArgumentKind::truth, ArgumentKind::unbound},
     {v1::PARAMETER_ANY}};
-constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
-    {Frame::kRobot, v1::FRAME_ROBOT},
-    {Frame::kOdom, v1::FRAME_ODOM},
-    {Frame::kMap, v1::FRAME_MAP},
-}}};
 constexpr EnumPairs<GoalState, v1::GoalState, 7> kStates{{{
     {GoalState::kWaiting, v1::GOAL_WAITING},
     {GoalState::kRefused, v1::GOAL_REFUSED},
@@ -86,45 +77,7 @@ constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
     }},
     {IntentionState::kRemoved}};
 
-Arguments from_bus(const std::vector<v1::Argument>& arguments) {
-  Arguments result;
-  result.reserve(arguments.size());
-  for (const v1::Argument& argument : arguments)
-    result.push_back(intentions::from_bus(argument));
-  return result;
-}
-
-std::vector<v1::Argument> to_bus(const Arguments& arguments) {
-  std::vector<v1::Argument> result;
-  result.reserve(arguments.size());
-  for (const Argument& argument : arguments)
-    result.push_back(intentions::to_bus(argument));
-  return result;
-}
-
 }  // namespace
-
-Argument from_bus(const v1::Argument& argument) {
-  Argument result;
-  result.name = argument.name();
-  result.kind = kKinds.ours(argument.kind(), ArgumentKind::kText);
-  result.number = argument.number();
-  result.text = argument.text();
-  result.point = lps::from_bus(argument.point());
-  result.frame = kFrames.ours(argument.frame(), Frame::kMap);
-  return result;
-}
-
-v1::Argument to_bus(const Argument& argument) {
-  v1::Argument result;
-  result.name(argument.name);
-  result.kind(kKinds.theirs(argument.kind));
-  result.number(argument.number);
-  result.text(argument.text);
-  result.point(lps::to_bus(argument.point));
-  result.frame(kFrames.theirs(argument.frame));
-  return result;
-}
 
 GoalId from_bus(const v1::GoalId& id) {
   return {id.writer(), id.number()};
@@ -142,7 +95,7 @@ Goal from_bus(const v1::Goal& goal) {
   result.id = from_bus(goal.id());
   result.requester = goal.requester();
   result.functor = goal.functor();
-  result.arguments = from_bus(goal.arguments());
+  result.arguments = saphira::from_bus(goal.arguments());
   result.priority = goal.priority();
   result.deadline = goal.deadline();
   result.level = goal.level();
@@ -155,7 +108,7 @@ v1::Goal to_bus(const Goal& goal) {
   result.id(to_bus(goal.id));
   result.requester(goal.requester);
   result.functor(goal.functor);
-  result.arguments(to_bus(goal.arguments));
+  result.arguments(saphira::to_bus(goal.arguments));
   result.priority(goal.priority);
   result.deadline(goal.deadline);
   result.level(goal.level);
@@ -204,7 +157,7 @@ IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {
   result.schema = behavior.schema();
   result.priority = behavior.priority();
   result.running = behavior.running();
-  result.parameters = from_bus(behavior.parameters());
+  result.parameters = saphira::from_bus(behavior.parameters());
   result.intention = behavior.intention();
   result.blocking = behavior.blocking();
   return result;
@@ -216,7 +169,7 @@ v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
   result.schema(behavior.schema);
   result.priority(behavior.priority);
   result.running(behavior.running);
-  result.parameters(to_bus(behavior.parameters));
+  result.parameters(saphira::to_bus(behavior.parameters));
   result.intention(behavior.intention);
   result.blocking(behavior.blocking);
   return result;
@@ -270,7 +223,7 @@ Robot from_bus(const v1::RobotState& robot) {
   return result;
 }
 
-std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors) {
+std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors) {
   std::vector<BehaviorLevel> result;
   result.reserve(behaviors.behaviors().size());
   for (const v1::BehaviorState& behavior : behaviors.behaviors())
@@ -278,13 +231,13 @@ std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors) {
   return result;
 }
 
-std::uint64_t intent_age_from_bus(const v1::Behaviors& behaviors) {
+std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
   // A behaviors service that does not say so acts on what was intended in the cycle before.
   const double cycles = std::clamp(behaviors.input_age() / kTick, 1.0, 1e6);
   return static_cast<std::uint64_t>(std::llround(std::isfinite(cycles) ? cycles : 1.0));
 }
 
-std::vector<BehaviorTrouble> troubles_from_bus(const v1::Behaviors& behaviors) {
+std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors) {
   std::vector<BehaviorTrouble> result;
   result.reserve(behaviors.missing().size());
   for (const v1::MissingBehavior& missing : behaviors.missing())
@@ -300,7 +253,7 @@ std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas) {
     for (const v1::BehaviorParameter& parameter : schema.parameters()) {
       Parameter& out = result.back().parameters.emplace_back();
       out.name = parameter.name();
-      out.kind = kKinds.ours(parameter.kind(), ArgumentKind::kText);
+      out.kind = saphira::from_bus(parameter.kind());
       out.low = parameter.low();
       out.high = parameter.high();
       out.required = parameter.required();

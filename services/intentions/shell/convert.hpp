@@ -17,9 +17,6 @@ namespace saphira::intentions {
 /// The types of the bus to those of the library and back. What a writer that does not keep to the
 /// contract puts into an enumeration becomes the value that is refused, or the cautious one.
 
-Argument from_bus(const v1::Argument& argument);
-v1::Argument to_bus(const Argument& argument);
-
 GoalId from_bus(const v1::GoalId& id);
 v1::GoalId to_bus(const GoalId& id);
 
@@ -36,10 +33,10 @@ IntentionNode from_bus(const v1::IntentionNode& node);
 v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);
-std::vector<BehaviorLevel> from_bus(const v1::Behaviors& behaviors);
+std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors);
 /// [cycles] of the intentions that they evaluated.
-std::uint64_t intent_age_from_bus(const v1::Behaviors& behaviors);
-std::vector<BehaviorTrouble> troubles_from_bus(const v1::Behaviors& behaviors);
+std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors);
+std::vector<BehaviorTrouble> troubles_from_bus(const v1::BehaviorSet& behaviors);
 std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas);
 
 v1::ActivitySchema to_bus(const Schema& schema);

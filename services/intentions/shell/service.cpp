@@ -7,15 +7,21 @@
 #include "intentions/shell/convert.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/sender.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/navigation.hpp"
 
 namespace saphira::intentions {
 namespace {
 
-constexpr std::size_t kMostNodes = 1024;    // the bound of Intentions.nodes
-constexpr std::size_t kMostBeliefs = 1024;  // of Beliefs.beliefs
+// The role that may change what others asked for.
+constexpr const char* kCommands = "operator";
+constexpr std::size_t kMostNodes = 1024;     // the bound of Intentions.nodes
+constexpr std::size_t kMostQuestions = 256;  // to agents, without an answer
+constexpr std::size_t kMostGoals = 1024;     // of GoalStatusSet.goals
+constexpr std::size_t kMostBeliefs = 1024;   // of Beliefs.beliefs
 
 std::vector<std::string> folders(const Options& options) {
   std::vector<std::string> paths{activities_folder()};
@@ -44,12 +50,15 @@ Service::Service(runtime::Ports& ports, const Options& options)
       grants_(ports.events(bus::topics::kGrant)),
       intentions_(ports.each_cycle(bus::topics::kIntentions)),
       recall_(ports.recall(bus::topics::kRecallIntentions)),
+      goal_recall_(ports.recall(bus::topics::kRecallGoals)),
       statuses_(ports.changes(bus::topics::kGoalStatus)),
       schemas_(ports.changes(bus::topics::kActivitySchemas)),
       beliefs_(ports.changes(bus::topics::kBeliefs)),
       messages_(ports.changes(bus::topics::kMessages)),
-      map_requests_(ports.changes(bus::topics::kRegistrationRequest)),
-      next_request_(ports.instance()),
+      drawings_(ports.changes(bus::topics::kDrawings)),
+      map_requests_(ports.asker(bus::topics::kRegistrationRequest)),
+      agents_(ports.asker(bus::topics::kSolve)),
+      answers_(ports.events(bus::topics::kSolved)),
       memory_(options.memory_file),
       functions_(all_functions()),
       folders_(folders(options), functions_, built_in()),
@@ -64,13 +73,16 @@ Service::Service(runtime::Ports& ports, const Options& options)
   look();
 }
 
-/// In lockstep it is known from the first cycle on in every run what can be intended, and which map
-/// registration had.
+/// In lockstep it is known from the first cycle on in every run what can be intended, which map
+/// registration had, and that it hears what is asked of it.
 std::string Service::missing() {
   if (!knows_behaviors_)
     take_behavior_schemas();
   if (!knows_behaviors_)
     return bus::topics::kBehaviorSchemas.name;
+  // What is asked of registration before it is heard of would be lost.
+  if (registration_ != nullptr && !map_requests_.is_taken())
+    return std::string("registration, for ") + bus::topics::kRegistrationRequest.name;
   take_maps();
   const v1::Registration* const registration =
       registration_ == nullptr ? nullptr : registration_->value();
@@ -87,6 +99,8 @@ void Service::step(const runtime::Turn& turn) {
   publish(outputs.intended.news);
   if (outputs.beliefs)
     publish(*outputs.beliefs);
+  if (outputs.way)
+    draw_way(*outputs.way);
   ports_.say(outputs.notes.lines());
 }
 
@@ -110,7 +124,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   inputs.robot = from_bus(turn.robot);
   inputs.readings = lps::sonars_from_bus(turn.robot);
   const std::uint64_t cycle = turn.stamp.cycle;
-  if (const v1::Behaviors* const behaviors = behaviors_.value()) {
+  if (const v1::BehaviorSet* const behaviors = behaviors_.value()) {
     inputs.behaviors = from_bus(*behaviors);
     inputs.troubles = troubles_from_bus(*behaviors);
     inputs.behaviors_cycle = behaviors->stamp().cycle();
@@ -130,6 +144,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   take_goals(inputs.heard);
   take_claims(inputs.heard);
   take_estops(inputs.heard);
+  take_answers(inputs.heard);
   return inputs;
 }
 
@@ -176,7 +191,10 @@ void Service::take_goals(Core::Heard& heard) {
     Core::Heard::Goal goal;
     goal.event.goal = from_bus(sample.data);
     goal.event.kind = sample.info.disposed ? GoalEvent::Kind::kDisposed : GoalEvent::Kind::kWritten;
+    goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
     goal.writer = sample.info.writer;
+    if (const auto& sender = sample.info.sender)
+      goal.sender = {sender->name, sender->role == kCommands};
     heard.goals.push_back(std::move(goal));
   }
 }
@@ -184,17 +202,32 @@ void Service::take_goals(Core::Heard& heard) {
 void Service::take_claims(Core::Heard& heard) {
   heard.lost_claimants = claims_.take_lost();
   Notes notes;
-  for (const auto& sample : claims_.take()) {
+  for (auto& sample : claims_.take()) {
+    sample.data.source() = bus::named(sample.data.source(), sample.info);
     try {
       heard.claims.push_back(
           {from_bus(sample.data,
                     sample.info.disposed ? ClaimEvent::Kind::kWithdrawn : ClaimEvent::Kind::kSaid),
            sample.info.writer, sample.data.writer_lost() == v1::WRITER_LOST_CANCEL});
     } catch (const FileError& error) {
-      notes.warn("a claim of " + intentions::quoted(sample.data.source()) + ": " + error.what());
+      notes.warn("a claim of " + saphira::quoted(sample.data.source()) + ": " + error.what());
     }
   }
   ports_.say(notes.lines());
+}
+
+void Service::take_answers(Core::Heard& heard) {
+  for (const auto& sample : answers_.take()) {
+    const auto question = questions_.find(sample.data.number());
+    if (sample.info.disposed || sample.data.asker() != ports_.instance() ||
+        question == questions_.end())
+      continue;
+    const Answer answer = saphira::from_bus(sample.data);
+    if (!ended(answer.code))
+      continue;
+    heard.answers.emplace_back(question->second, answer);
+    questions_.erase(question);
+  }
 }
 
 void Service::take_estops(Core::Heard& heard) {
@@ -248,18 +281,35 @@ void Service::remember(const News& news) {
 
 void Service::publish(const News& news) {
   Notes notes;
-  for (const GoalStatus& status : news.changed)
-    if (!statuses_.write(to_bus(status, ports_.stamp())))
+  for (const GoalStatus& status : news.changed) {
+    const v1::GoalStatus sample = to_bus(status, ports_.stamp());
+    if (!statuses_.write(sample))
       notes.warn("the status of goal " + describe(status.id) + " did not get onto the bus");
+    told_[status.id] = sample;
+  }
   for (const GoalId& id : news.withdrawn) {
     GoalStatus status;
     status.id = id;
     statuses_.dispose(to_bus(status, ports_.stamp()));
+    told_.erase(id);
+  }
+  if (!news.changed.empty() || !news.withdrawn.empty()) {
+    v1::GoalStatusSet all;
+    for (const auto& [id, status] : told_)
+      if (all.goals().size() < kMostGoals)
+        all.goals().push_back(status);
+    goal_recall_.write(std::move(all));
   }
   ports_.say(notes.lines());
 }
 
 void Service::publish(const intentions::Outputs& outputs) {
+  for (const Request& request : outputs.requests)
+    map_requests_.ask(request);
+  for (const Request& question : outputs.questions)
+    questions_[agents_.ask(question)] = question.number;
+  while (questions_.size() > kMostQuestions)  // never answered
+    questions_.erase(questions_.begin());
   v1::Intentions sample;
   sample.behavior_control(outputs.behavior_control);
   for (const IntendedBehavior& behavior : outputs.behaviors)
@@ -275,19 +325,31 @@ void Service::publish(const intentions::Outputs& outputs) {
     message.text(one.text);
     messages_.write(std::move(message));
   }
-  for (const MapRequest one : outputs.map_requests) {
-    v1::RegistrationRequest request;
-    request.source(ports_.name());
-    request.request(next_request_++);
-    request.action(one == MapRequest::kForget ? v1::REGISTRATION_DELETE
-                                              : v1::REGISTRATION_ADD_FEATURES);
-    request.on(one == MapRequest::kAddFeatures);
-    map_requests_.write(std::move(request));
+}
+
+void Service::draw_way(const std::vector<Vec2>& way) {
+  v1::Drawing drawing;
+  drawing.instance(ports_.instance());
+  if (way.empty()) {
+    drawings_.dispose(drawing);
+    return;
   }
+  drawing.source(ports_.name());
+  drawing.frame(v1::FRAME_MAP);
+  drawing.shape(v1::DRAWING_LINE);
+  for (const Vec2& at : way) {
+    drawing.points().emplace_back();
+    drawing.points().back().x(at.x());
+    drawing.points().back().y(at.y());
+  }
+  drawing.red(70);
+  drawing.green(130);
+  drawing.blue(180);
+  drawings_.write(std::move(drawing));
 }
 
 void Service::publish(const std::vector<Belief>& beliefs) {
-  v1::Beliefs sample;
+  v1::BeliefSet sample;
   for (const Belief& belief : beliefs)
     if (sample.beliefs().size() < kMostBeliefs)
       sample.beliefs().push_back(to_bus(belief));

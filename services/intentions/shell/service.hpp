@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -49,6 +50,7 @@ class Service final : public runtime::Service {
   void take_goals(Core::Heard& heard);
   void take_claims(Core::Heard& heard);
   void take_estops(Core::Heard& heard);
+  void take_answers(Core::Heard& heard);
   Core::Inputs inputs_of(const runtime::Turn& turn);
   std::optional<Core::Vision> vision();
   /// Onto the disk, before anybody hears of it: nothing that has been said or done is done again.
@@ -56,27 +58,33 @@ class Service final : public runtime::Service {
   void publish(const News& news);
   void publish(const intentions::Outputs& outputs);
   void publish(const std::vector<Belief>& beliefs);
+  void draw_way(const std::vector<Vec2>& way);
 
   runtime::Ports& ports_;
-  bus::Input<v1::Behaviors>& behaviors_;
+  bus::Input<v1::BehaviorSet>& behaviors_;
   bus::Input<v1::Registration>* registration_;  ///< null where there is no such service
   bus::Input<v1::Perception>* perception_;
   bus::Input<v1::Vision>* vision_;
   std::optional<bus::Reader<v1::Vision>> unasked_vision_;
   std::optional<v1::Vision> newest_vision_;
-  bus::Reader<v1::Map> maps_;
+  bus::Reader<v1::FloorMap> maps_;
   bus::Reader<v1::BehaviorSchemas> behavior_schemas_;
   bus::Reader<v1::BeliefClaim> claims_;
   bus::Reader<v1::Goal> goals_;
   bus::Reader<v1::Grant> grants_;
   runtime::Output<v1::Intentions> intentions_;
   runtime::Output<v1::Intentions> recall_;
+  runtime::Output<v1::GoalStatusSet> goal_recall_;
   runtime::Output<v1::GoalStatus> statuses_;
   runtime::Output<v1::ActivitySchemas> schemas_;
-  runtime::Output<v1::Beliefs> beliefs_;
+  runtime::Output<v1::BeliefSet> beliefs_;
   runtime::Output<v1::Message> messages_;
-  runtime::Output<v1::RegistrationRequest> map_requests_;
-  std::uint64_t next_request_;  ///< random at first
+  runtime::Output<v1::Drawing> drawings_;
+  runtime::Asker map_requests_;
+  runtime::Asker agents_;
+  bus::Reader<v1::Answer> answers_;
+  std::map<std::uint64_t, std::uint64_t> questions_;  ///< of the core, by the bus's number
+  std::map<GoalId, v1::GoalStatus> told_;             ///< of the goals: what goals/status holds
   MemoryFile memory_;
   std::shared_ptr<const Functions> functions_;
   ActivityFolders folders_;

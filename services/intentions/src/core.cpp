@@ -5,6 +5,7 @@
 
 #include "saphira/base/text.hpp"
 #include "saphira/intentions/language.hpp"
+#include "saphira/intentions/navigation.hpp"
 #include "saphira/maps/edit.hpp"
 #include "saphira/maps/topology.hpp"
 
@@ -12,6 +13,8 @@ namespace saphira::intentions {
 namespace {
 
 /// [s] Without a cycle for this long there is no robot, live.
+constexpr std::size_t kMostAnswers = 256;  // of agents, that are kept
+constexpr std::uint64_t kGone = 10;        // [cycles] without a word
 constexpr double kSilence = 1.0;
 constexpr std::uint64_t kVisionLease = 10;  // [cycles] what was seen before is no news
 
@@ -35,7 +38,6 @@ Core::Outputs Core::step(Inputs inputs) {
   now.troubles = std::move(inputs.troubles);
   now.behaviors_cycle = inputs.behaviors_cycle;
   now.intent_age = inputs.intent_age;
-  now.events = events_of(inputs.heard);
   now.claims = claims_of(inputs.heard);
   note_estops(inputs.heard.estops);
   now.estop = estop_;
@@ -43,8 +45,15 @@ Core::Outputs Core::step(Inputs inputs) {
     now.hold = execution_.name() + " is suspended";
 
   Outputs outputs;
+  now.events = events_of(inputs.heard, outputs.notes);
+  const std::string gone = who_is_gone(inputs);
   outputs.intended = executor_.step(now);
+  if (!gone.empty())
+    for (GoalStatus& status : outputs.intended.news.changed)
+      if (status.state == GoalState::kFailed)
+        status.reason += "; " + gone;
   nodes_ = outputs.intended.nodes;
+  outputs.way = look_for_way(now);
   tell(outputs.intended.news, outputs.notes);
   for (const Said& said : outputs.intended.said)
     outputs.notes.info("says: " + said.text);
@@ -56,9 +65,45 @@ Core::Outputs Core::step(Inputs inputs) {
   return outputs;
 }
 
+/// Of the intention that follows a path.
+std::optional<std::vector<Vec2>> Core::look_for_way(const intentions::Inputs& now) {
+  std::vector<Vec2> way;
+  for (const IntentionNode& node : nodes_)
+    if (node.schema == "follow-path" && node.state == IntentionState::kRunning)
+      if (const Value* const path = executor_.variable(node.id, "path"))
+        way = way_points(now.around, *path);
+  if (way == way_)
+    return std::nullopt;
+  way_ = way;
+  if (!way.empty() && now.robot.odom_in_map)
+    way.insert(way.begin(), compose(*now.robot.odom_in_map, now.robot.pose_in_odom).position());
+  return way;
+}
+
+/// The services that were heard and are not any more, in words: a goal that fails then fails for
+/// that.
+std::string Core::who_is_gone(const Inputs& inputs) {
+  const std::uint64_t now = inputs.stamp.cycle;
+  if (inputs.stamp.epoch != heard_epoch_) {
+    heard_epoch_ = inputs.stamp.epoch;
+    registration_heard_ = 0;
+  }
+  if (inputs.registered.state != Localization::kNone)
+    registration_heard_ = now;
+  std::string text;
+  const auto add = [&](const char* name, std::uint64_t heard) {
+    if (heard != 0 && heard + kGone <= now)
+      text += (text.empty() ? "" : "; ") + std::string(name) + " has not been heard for " +
+              plain(0.1 * static_cast<double>(now - heard)) + " s";
+  };
+  add("behaviors", inputs.behaviors_cycle);
+  add("registration", registration_heard_);
+  return text;
+}
+
 Core::Told Core::between(const Heard& heard, double silence) {
   Told told;
-  told.news = executor_.hear(events_of(heard));
+  told.news = executor_.hear(events_of(heard, told.notes));
   // A simulator that is being single-stepped may stand still for as long as it likes.
   if (robot_here_ && !lockstep_ && silence > kSilence) {
     robot_here_ = false;
@@ -107,6 +152,11 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
   around.topology = topology_;
   around.map = map_;
   around.map_revision = places_revision_;
+  for (const auto& [question, answer] : inputs.heard.answers)
+    answers_[question] = answer;
+  while (answers_.size() > kMostAnswers)
+    answers_.erase(answers_.begin());
+  around.answers = &answers_;
 }
 
 /// The map goes another way than what is cyclic. In lockstep it is the one that registration had in
@@ -142,12 +192,23 @@ Notes Core::know_behaviors(const std::vector<BehaviorSignature>& behaviors) {
 
 std::optional<std::string> Core::ask(const std::string& name, ProcessAction action,
                                      std::uint32_t cycles) {
-  const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
+  auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const IntentionNode& one) {
     return one.name == name || std::to_string(one.id) == name ||
            "I" + std::to_string(one.id) == name;
   });
-  if (node == nodes_.end())
-    return std::nullopt;
+  if (node == nodes_.end()) {
+    // As people call it: by its schema, where that says which one is meant.
+    const auto alike = [&](const IntentionNode& one) { return one.schema == name; };
+    node = std::find_if(nodes_.begin(), nodes_.end(), alike);
+    if (node == nodes_.end())
+      return std::nullopt;
+    std::string ids = "I" + std::to_string(node->id);
+    for (auto other = std::find_if(node + 1, nodes_.end(), alike); other != nodes_.end();
+         other = std::find_if(other + 1, nodes_.end(), alike))
+      ids += ", I" + std::to_string(other->id);
+    if (ids.find(',') != std::string::npos)
+      return "several intentions are " + name + ": say which one, " + ids;
+  }
   if (cycles > 0)
     return "an intention is interrupted until it is resumed, not for some cycles";
   if (action == ProcessAction::resume)
@@ -155,12 +216,16 @@ std::optional<std::string> Core::ask(const std::string& name, ProcessAction acti
   return executor_.interrupt(node->id) ? "" : name + " is not an intention any more";
 }
 
-std::vector<GoalEvent> Core::events_of(const Heard& heard) {
+std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
   std::vector<GoalEvent> events;
   for (const Heard::Goal& goal : heard.goals) {
-    if (goal.event.kind == GoalEvent::Kind::kWritten)
-      requesters_[goal.event.goal.id] = goal.writer;
-    events.push_back(goal.event);
+    GoalEvent event = goal.event;
+    if (!take_sender(goal, event, notes))
+      continue;
+    // One that somebody else changes ends with the program that asked for it.
+    if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
+      requesters_[event.goal.id] = goal.writer;
+    events.push_back(std::move(event));
   }
   for (const Writer& lost : heard.lost_requesters) {
     for (const auto& [id, writer] : requesters_) {
@@ -173,6 +238,35 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard) {
     }
   }
   return events;
+}
+
+/// Whether the sender may do that to the goal: its owner may, who asked for it first, and whoever
+/// commands. Tells the event who it is, where it is another than the owner.
+bool Core::take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes) {
+  if (!goal.sender)
+    return true;
+  const GoalId& id = event.goal.id;
+  const bool writes = event.kind == GoalEvent::Kind::kWritten;
+  const auto found = owners_.find(id);
+  if (found == owners_.end()) {
+    if (writes)
+      owners_[id] = {goal.sender->name, event.goal.requester};
+    return true;
+  }
+  Owner& owner = found->second;
+  if (!goal.sender->name.empty() && goal.sender->name == owner.name)
+    return true;
+  const std::string who = goal.sender->name.empty() ? "a stranger" : goal.sender->name;
+  if (!goal.sender->commands) {
+    if (!std::exchange(owner.told, true))
+      notes.warn("goal " + describe(id) + " of " + quoted(owner.requester) + ": " + who +
+                 " may not " + (writes ? "change" : "cancel") +
+                 " it; its owner may, or an operator");
+    return false;
+  }
+  event.by = who;
+  event.goal.requester = owner.requester;
+  return true;
 }
 
 std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
@@ -225,6 +319,7 @@ void Core::tell(const News& news, Notes& notes) {
   }
   for (const GoalId& id : news.withdrawn) {
     requesters_.erase(id);
+    owners_.erase(id);
     logged_.erase(id);
   }
 }

@@ -14,7 +14,7 @@ class BehaviorParametersTest : public testing::Test {
   World world() const { return {robot, around, beliefs, 1}; }
   Pose goal_of(const BehaviorParameters& parameters) {
     EXPECT_TRUE(parameters.place(placed, world()));
-    EXPECT_EQ(placed.at(0).frame, Frame::kOdom);
+    EXPECT_EQ(placed.at(0).frame, Frame::odom);
     return placed.at(0).point;
   }
 
@@ -26,7 +26,7 @@ class BehaviorParametersTest : public testing::Test {
 
 TEST_F(BehaviorParametersTest, WhatIsGivenFromTheRobotStaysWhereItWas) {
   robot.pose_in_odom = {1.0, 0.0, 0.0};
-  const BehaviorParameters parameters({{"goal", Value(Point{{2.0, 0.0, 0.0}, Frame::kRobot})}},
+  const BehaviorParameters parameters({{"goal", Value(Point{{2.0, 0.0, 0.0}, Frame::robot})}},
                                       "GoToPos", nullptr, world());
   EXPECT_EQ(goal_of(parameters), (Pose{3.0, 0.0, 0.0}));
   robot.pose_in_odom = {1.5, 0.0, 0.0};
@@ -34,7 +34,7 @@ TEST_F(BehaviorParametersTest, WhatIsGivenFromTheRobotStaysWhereItWas) {
 }
 
 TEST_F(BehaviorParametersTest, APointOnTheMapIsWhereRegistrationSays) {
-  const BehaviorParameters parameters({{"goal", Value(Point{{5.0, 0.0, 0.0}, Frame::kMap})}},
+  const BehaviorParameters parameters({{"goal", Value(Point{{5.0, 0.0, 0.0}, Frame::map})}},
                                       "GoToPos", nullptr, world());
   EXPECT_FALSE(parameters.place(placed, world())) << "it has never been known";
   robot.odom_in_map = Pose{1.0, 0.0, 0.0};

@@ -42,6 +42,7 @@ class Bench {
     Inputs inputs{epoch, cycle, world.robot, world.levels, cycle - 1, std::exchange(events, {})};
     inputs.troubles = std::exchange(troubles, {});
     inputs.estop = estop;
+    inputs.around.registration = registration;
     out = executor.step(inputs);
     note(out.news);
   }
@@ -74,6 +75,7 @@ class Bench {
   std::uint64_t cycle = 0;
   std::vector<GoalEvent> events;
   std::vector<BehaviorTrouble> troubles;  ///< of the next step
+  Registered registration;                ///< what it says
   std::string estop;                      ///< which program pressed the emergency stop; empty: none
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them

@@ -38,9 +38,9 @@ class CoreTest : public testing::Test {
     heard.event.goal.requester = "a test";
     Argument place;
     place.name = "position";
-    place.kind = ArgumentKind::kPoint;
+    place.kind = ArgumentKind::point;
     place.point = {5.0, 0.0, 0.0};
-    place.frame = Frame::kOdom;
+    place.frame = Frame::odom;
     heard.event.goal.arguments = {place};
     return heard;
   }
@@ -91,6 +91,32 @@ TEST_F(CoreTest, PursuesAGoalAndTellsEachChangeOnce) {
   EXPECT_TRUE(step().notes.empty());
 }
 
+// The robot does not come nearer since nobody drives it.
+TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  step();
+  const std::uint64_t heard = inputs_.behaviors_cycle;
+  for (int i = 0; i < 1000 && !ended(state(1)); ++i) {
+    ++inputs_.stamp.cycle;
+    inputs_.behaviors_cycle = heard;
+    inputs_.new_robot = nullptr;
+    note(core_.step(inputs_).intended.news);
+    inputs_.heard = {};
+  }
+  EXPECT_EQ(state(1), GoalState::kFailed);
+  EXPECT_NE(statuses_.at({5, 1}).reason.find("behaviors has not been heard for"), std::string::npos)
+      << statuses_.at({5, 1}).reason;
+}
+
+TEST_F(CoreTest, AnIntentionIsFoundByItsSchemaToo) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  EXPECT_EQ(core_.ask("go_to", ProcessAction::interrupt, 0), "");
+  EXPECT_EQ(core_.ask("go_to", ProcessAction::resume, 0), "");
+  EXPECT_EQ(core_.ask("nothing", ProcessAction::interrupt, 0), std::nullopt);
+}
+
 TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   inputs_.heard.goals = {written(1, kKaren), written(2, kJohn)};
   step();
@@ -104,6 +130,64 @@ TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   inputs_.heard.lost_requesters = {kJohn};
   step();
   EXPECT_FALSE(ended(state(2)));
+}
+
+// Whose program may do what with a goal, on a bus that knows who wrote.
+class OwnedGoal : public CoreTest {
+ protected:
+  using Sender = Core::Heard::Sender;
+  static constexpr auto kWritten = GoalEvent::Kind::kWritten;
+  static constexpr auto kDisposed = GoalEvent::Kind::kDisposed;
+
+  static Core::Heard::Goal by(const Sender& sender, GoalEvent::Kind kind, int priority = 0) {
+    Core::Heard::Goal heard = written(1, sender.name == "karen" ? kKaren : kJohn);
+    heard.event.kind = kind;
+    heard.event.goal.priority = priority;
+    heard.event.goal.requester = sender.name + ", a test";
+    heard.sender = sender;
+    return heard;
+  }
+  Core::Outputs hear(const Core::Heard::Goal& goal) {
+    inputs_.heard.goals = {goal};
+    return step();
+  }
+  const GoalStatus& status() { return statuses_.at({5, 1}); }
+};
+
+TEST_F(OwnedGoal, AnotherMayNeitherChangeNorCancelIt) {
+  hear(by({"karen"}, kWritten));
+  ASSERT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_TRUE(says(hear(by({"john"}, kDisposed)).notes,
+                   "\"karen, a test\": john may not cancel it; its owner may, or an operator"));
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_TRUE(hear(by({"john"}, kWritten, 7)).notes.lines().empty());  // once is enough
+  hear(by({""}, kDisposed));
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+  EXPECT_EQ(status().requester, "karen, a test");
+  EXPECT_NE(status().reason, "changed by its requester");
+}
+
+TEST_F(OwnedGoal, ItsOwnerMay) {
+  hear(by({"karen"}, kWritten));
+  hear(by({"karen"}, kWritten, 7));
+  EXPECT_EQ(status().reason, "changed by its requester");
+  hear(by({"karen"}, kDisposed));
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(status().reason, "withdrawn by its requester");
+}
+
+TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {
+  hear(by({"karen"}, kWritten));
+  hear(by({"john", true}, kWritten, 7));
+  EXPECT_EQ(status().reason, "changed by john");
+  EXPECT_EQ(status().requester, "karen, a test");
+  // It is still hers: it does not end with the program of him who changed it.
+  inputs_.heard.lost_requesters = {kJohn};
+  step();
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+  hear(by({"john", true}, kDisposed));
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(status().reason, "withdrawn by john");
 }
 
 TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {

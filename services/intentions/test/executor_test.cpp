@@ -28,9 +28,13 @@ TEST(Executor, RefusesWithAReason) {
   bench.step();
   EXPECT_EQ(bench.state(1), GoalState::kRefused);
   EXPECT_EQ(bench.status(1).code, GoalCode::kUnknownFunctor);
-  EXPECT_EQ(
-      bench.status(1).reason,
-      "unknown functor \"fly\": expected one of drive, explore_unknown, go_to, stop, turn_to");
+  EXPECT_EQ(bench.status(1).reason,
+            "unknown functor \"fly\": There are 5 schemas (saphira goal schemas)");
+  bench.ask(4, "go_too", {});
+  bench.step();
+  EXPECT_EQ(bench.status(4).reason,
+            "unknown functor \"go_too\": do you mean go_to? There are 5 schemas (saphira goal "
+            "schemas)");
   EXPECT_EQ(bench.status(2).code, GoalCode::kBadArgument);
   EXPECT_EQ(bench.status(3).reason, "expected a deadline of 0 (none) or more seconds, got -1");
   EXPECT_TRUE(bench.out.behaviors.empty());
@@ -38,13 +42,13 @@ TEST(Executor, RefusesWithAReason) {
 
 TEST(Executor, OfALongReasonTheBeginningIsRemembered) {
   Bench bench;
-  const std::string functor(300, 'x');
-  bench.ask(1, functor, {});
+  const Arguments wrong{text("position", std::string(300, 'x'))};
+  bench.ask(1, "go_to", wrong);
   bench.step();
   const std::string whole = bench.status(1).reason;
   ASSERT_GT(whole.size(), kLongestReason);
   Bench again(bench.memory());
-  again.ask(1, functor, {});
+  again.ask(1, "go_to", wrong);
   again.step();
   EXPECT_EQ(again.state(1), GoalState::kRefused);
   EXPECT_EQ(again.status(1).reason, whole.substr(0, kLongestReason - 3) + "...");
@@ -223,11 +227,11 @@ TEST(Executor, TheLossOfItsWriterEndsAGoalUnlessItIsToBeKept) {
 TEST(Executor, ARepetitionChangesNothing) {
   Bench bench;
   bench.world.held = true;
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.step();
   const std::vector<IntendedBehavior> before = bench.out.behaviors;
   bench.world.robot.pose_in_odom = {1.0, 0.0, 0.0};
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.step();
   EXPECT_EQ(bench.out.behaviors, before);
   EXPECT_EQ(bench.status(1).code, GoalCode::kNone);
@@ -276,8 +280,8 @@ TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
   EXPECT_EQ(bench.state(1), GoalState::kUnderway);
   EXPECT_EQ(bench.status(1).code, GoalCode::kBadArgument);
   EXPECT_EQ(bench.status(1).reason,
-            "goes on unchanged, the change was refused: argument \"position\": expected a point, "
-            "within 10000 m, got 3");
+            "goes on unchanged, the change was refused: argument \"position\": expected a point "
+            "x,y or x,y,heading, such as 3,1, within 10000 m, got 3");
   EXPECT_EQ(bench.out.behaviors, before);
 }
 
@@ -285,7 +289,8 @@ TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
 TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
   Bench bench;
   const std::string refused =
-      "the change was refused: argument \"position\": expected a point, within 10000 m, got 3";
+      "the change was refused: argument \"position\": expected a point x,y or x,y,heading, such as "
+      "3,1, within 10000 m, got 3";
   bench.ask(1, "go_to", kFar);
   bench.ask(2, "go_to", kFar);
   bench.step();
@@ -369,7 +374,7 @@ TEST(Executor, PublishesOnChangeAndOnceASecond) {
 
 TEST(Executor, HearsWithoutARobot) {
   Bench bench;
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.ask(2, "fly", {});
   bench.hear();
   EXPECT_EQ(bench.state(1), GoalState::kWaiting);
@@ -390,7 +395,7 @@ TEST(Executor, HearingBetweenCyclesOrWithThemIsTheSame) {
     bench->step();
   for (Bench* bench : {&between, &with}) {
     bench->ask(1, "drive", kSlow);
-    bench->ask(2, "go_to", {point("position", {1.0, 1.0, 0.0}, Frame::kRobot)}, 1);
+    bench->ask(2, "go_to", {point("position", {1.0, 1.0, 0.0}, Frame::robot)}, 1);
   }
   between.hear();
   for (int i = 0; i < 200; ++i) {
@@ -435,13 +440,13 @@ TEST(Executor, NothingIsIntendedForARobotThatIsNotConnected) {
 TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
   Bench bench;
   bench.ask(1, "go_to", kFar);
-  bench.ask(2, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(2, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.ask(3, "turn_to", {number("heading", 1.0)});
   bench.ask(4, "drive", kSlow);
   bench.step();
   bench.note(bench.executor.robot_gone());
   bench.ask(5, "go_to", kFar);  // odom is still the old one, as far as anybody can know
-  bench.ask(6, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(6, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.hear();
   bench.epoch = 101;
   bench.cycle = 0;
@@ -472,7 +477,7 @@ TEST(Executor, ARestartNeverRedoesAFinishedGoal) {
 
 TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
   Bench bench;
-  Goal goal = Bench::goal(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
+  Goal goal = Bench::goal(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
   goal.deadline = 5.0;
   bench.write(goal);
   Goal second = Bench::goal(2, "drive", kSlow);
@@ -498,11 +503,11 @@ TEST(Executor, ARestartGoesOnWithWhatWasUnderway) {
 
 TEST(Executor, ARestartKnowsThatThePositionIsLost) {
   Bench bench;
-  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
   bench.step();
   Bench again(bench.memory());
   again.world.robot.odom = 2;
-  again.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::kRobot)});
+  again.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}, Frame::robot)});
   again.step();
   EXPECT_EQ(again.state(1), GoalState::kFailed);
 }

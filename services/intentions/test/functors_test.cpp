@@ -80,13 +80,13 @@ TEST(GoTo, TakesTheBehaviorsWordWithinReason) {
 TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
   Bench bench;
   bench.world.robot.pose_in_odom = {1.0, 1.0, kPi / 2};
-  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::kRobot)});
+  bench.ask(1, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.step();
   for (int i = 0; i < 20; ++i) {
     const Argument* const goal = find(bench.out.behaviors.at(2).parameters, "goal");
     EXPECT_NEAR(goal->point.x, 1.0, 1e-12);
     EXPECT_NEAR(goal->point.y, 3.0, 1e-12);
-    EXPECT_EQ(goal->frame, Frame::kOdom);
+    EXPECT_EQ(goal->frame, Frame::odom);
     bench.step();
   }
 }
@@ -94,7 +94,7 @@ TEST(GoTo, APointFromTheRobotStaysWhereItIs) {
 TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{10.0, 5.0, kPi / 2};
-  bench.ask(1, "go_to", {point("position", {10.0, 7.0, 0.0}, Frame::kMap)});
+  bench.ask(1, "go_to", {point("position", {10.0, 7.0, 0.0}, Frame::map)});
   bench.step();
   const auto goal = [&] {
     for (const IntendedBehavior& behavior : bench.out.behaviors)
@@ -117,7 +117,7 @@ TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
 TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{};
-  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::kMap), number("patience", 3.0)});
+  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
   bench.step();
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
   bench.world.robot.odom_in_map.reset();
@@ -138,7 +138,7 @@ TEST(GoTo, StandsWhileItDoesNotKnowWhereItIs) {
 TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{};
-  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::kMap), number("patience", 3.0)});
+  bench.ask(1, "go_to", {point("position", {5.0, 0.0, 0.0}, Frame::map), number("patience", 3.0)});
   bench.step();
   const auto wait = [&](int cycles, bool known) {
     bench.world.held = true;
@@ -161,12 +161,43 @@ TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
 }
 
+// More is heard on the move. Without it, or without an end, a told pose would be an arrival.
+TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
+  const auto arrives = [](Bench& bench) {
+    bench.world.robot.odom_in_map = Pose{};
+    bench.registration.state = Localization::kTracking;
+    bench.registration.confidence = 0.5;
+    bench.ask(1, "go_to", {point("position", {1.0, 0.0, 0.0}, Frame::map)});
+    bench.step();
+    for (int i = 0; i < 100 && bench.status(1).step != "moving about to confirm where it is"; ++i)
+      bench.step();
+    for (int i = 0; i < 50; ++i)
+      bench.step();
+    EXPECT_EQ(bench.state(1), GoalState::kUnderway);
+    EXPECT_GT(bench.world.robot.pose_in_odom.x, 1.5) << "it moves about";
+  };
+  Bench bench;
+  arrives(bench);
+  bench.registration.confidence = 0.95;
+  for (int i = 0; i < 200; ++i)
+    bench.step();
+  EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
+  EXPECT_NEAR(bench.world.robot.pose_in_odom.x, 1.0, 0.2);
+
+  Bench never;
+  arrives(never);
+  for (int i = 0; i < 2000 && never.state(1) == GoalState::kUnderway; ++i)
+    never.step();
+  EXPECT_EQ(never.state(1), GoalState::kFailed);
+  EXPECT_EQ(never.status(1).code, GoalCode::kNoPosition);
+}
+
 TEST(TurnTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   Bench bench;
   bench.world.robot.odom_in_map = Pose{};
   bench.world.held = true;
   bench.ask(1, "turn_to",
-            {point("position", {0.0, 5.0, 0.0}, Frame::kMap), number("patience", 3.0)});
+            {point("position", {0.0, 5.0, 0.0}, Frame::map), number("patience", 3.0)});
   for (int i = 0; i < 45; ++i) {
     bench.world.robot.odom_in_map = i < 20 ? std::nullopt : std::optional(Pose{});
     bench.step();
@@ -278,7 +309,7 @@ TEST(TurnTo, TurnsToAHeading) {
 
 TEST(TurnTo, TurnsToAPositionTheShortWay) {
   Bench bench;
-  bench.ask(1, "turn_to", {point("position", {-1.0, -1.0, 0.0}, Frame::kRobot)});
+  bench.ask(1, "turn_to", {point("position", {-1.0, -1.0, 0.0}, Frame::robot)});
   while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
   }
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded) << bench.status(1).reason;

@@ -72,8 +72,8 @@ TEST(ActivityErrors, AMissingParenthesisDoesNotTakeTheNextDefinition) {
 
 TEST(ActivityErrors, OfGoals) {
   EXPECT_EQ(troubles(goals("(FLY)")),
-            List({"2:2 unknown goal \"FLY\": expected TEST, EXECUTE, =, WAIT-FOR, INTEND, "
-                  "UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, SUCCEED or FAIL"}));
+            List({"2:2 unknown goal \"FLY\": expected TEST, EXECUTE, =, WAIT-FOR, ASK, "
+                  "INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, SUCCEED or FAIL"}));
   EXPECT_EQ(troubles(goals(":plan (TEST t)")),
             List({"2:1 expected a goal-set in parentheses: (:plan goal ...)"}));
   EXPECT_EQ(troubles(goals("(TEST)")), List({"2:1 expected (TEST condition), found \"(TEST)\""}));
@@ -81,6 +81,12 @@ TEST(ActivityErrors, OfGoals) {
             List({"2:9 expected one of :else, :reason, found \":reson\""}));
   EXPECT_EQ(troubles(goals("(INTEND :go_to ((position . (point 1 2))) :blocking 2)")),
             List({"2:53 expected t, nil, or a degree from 0 to 1, found \"2\""}));
+  EXPECT_EQ(
+      troubles(goals("(ASK q place-of ((person . 1)))")),
+      List({"2:1 expected (ASK question functor ((slot . value) ...) :timeout seconds), found "
+            "\"(ASK q place-of ((person . 1)))\""}));
+  EXPECT_EQ(troubles(goals("(ASK q place-of (person) :timeout 5)")),
+            List({"2:18 expected (slot . value), found \"person\""}));
   EXPECT_EQ(troubles(goals("(= *x* 1)")),
             List({"2:4 expected a local variable; (EXECUTE (setq *x* ...)) sets an environment "
                   "variable"}));

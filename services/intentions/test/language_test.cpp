@@ -110,6 +110,57 @@ TEST(Activities, AFinishedChildIsPassedUpInTheSameCycle) {
   EXPECT_EQ(stage.behaviors(), Names({"Halt"}));
 }
 
+TEST(Activities, AnAgentIsAskedAndItsAnswerUsed) {
+  Stage stage(
+      "(defintention :where :params (name)\n"
+      "  :goals '((ASK q place-of ((person . name) (place . nil)) :timeout 5)\n"
+      "           (SUCCEED \"~a\" (answer q 'place))))\n"
+      "(defintention :anyway :params (name)\n"
+      "  :goals '((ASK q place-of ((person . name)) :timeout 5 :else (GOTO :without))\n"
+      "           (SUCCEED \"~a\" (answer q 'place))\n"
+      "           (:without (SUCCEED \"not told: ~a\" (answer-text q)))))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  std::map<std::uint64_t, Answer> answers;
+  stage.inputs.around.answers = &answers;
+  const auto asks = [&](std::uint64_t id, const std::string& functor) {
+    stage.ask(id, functor, {text("name", "karen")});
+    for (int i = 0; i < 5; ++i) {
+      stage.step();
+      if (!stage.out.questions.empty())
+        return stage.out.questions.at(0);
+    }
+    return Request{};
+  };
+  const Request first = asks(1, "where");
+  EXPECT_EQ(first.functor, "place-of");
+  ASSERT_EQ(first.arguments.size(), 2U);
+  EXPECT_EQ(first.arguments[0], text("person", "karen"));
+  EXPECT_EQ(first.arguments[1].kind, ArgumentKind::unbound);
+  stage.step(10);
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_TRUE(stage.out.questions.empty()) << "it is asked once";
+  answers[first.number] = {AnswerCode::done, "", {text("place", "EJ-231")}};
+  stage.step(2);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).reason, "EJ-231");
+
+  const Request refused = asks(2, "where");
+  EXPECT_NE(refused.number, first.number);
+  answers[refused.number] = {AnswerCode::refused, "nobody has told me", {}};
+  stage.step(2);
+  EXPECT_EQ(stage.status(2).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(2).reason, "nobody has told me");
+
+  const Request silence = asks(3, "anyway");
+  EXPECT_NE(silence.number, 0U);
+  stage.step(60);
+  EXPECT_EQ(stage.status(3).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(3).reason, "not told: nobody has answered");
+  asks(4, "where");
+  stage.step(60);
+  EXPECT_EQ(stage.status(4).reason, "waited 5 s for an answer to place-of");
+}
+
 TEST(Activities, Figure9RunsFromItsFile) {
   const std::string folder = std::getenv("SAPHIRA_SOURCE_DIR");
   Functions functions = core_functions();
@@ -120,6 +171,9 @@ TEST(Activities, Figure9RunsFromItsFile) {
                                       : Value(Value::List{arguments[0], arguments[1]});
                          },
                          ""});
+  functions.add(Function{
+      "why-no-path", 2, 2,
+      [](const World&, Values arguments) { return "no way to " + *arguments[1].text(); }, ""});
   Stage stage(read_file(folder + "/config/activities/figure-9.act") + R"(
     (defintention :follow-path
       :params (path)
@@ -130,16 +184,20 @@ TEST(Activities, Figure9RunsFromItsFile) {
   ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "plan_and_execute", {text("dest", "nowhere")});
   stage.step(6);
+  EXPECT_TRUE(stage.messages.empty()) << "it does not know where it is";
+  stage.inputs.robot.odom_in_map = Pose{};
+  stage.step(8);
   EXPECT_EQ(stage.messages, Names({"Planning path to nowhere", "No passable routes"}));
-  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).state, GoalState::kFailed);
+  EXPECT_EQ(stage.status(1).reason, "no way to nowhere");
 
   stage.messages.clear();
   stage.ask(2, "plan-and-execute", {text("dest", "EJ-231")});
-  stage.step(4);
+  stage.step(5);
   EXPECT_EQ(stage.messages, Names({"Planning path to EJ-231", "following nil, EJ-231"}));
   stage.step();
   EXPECT_EQ(stage.display(),
-            "* plan-and-execute S5; o monitor-planex CLEANUP; * follow-path END; * Follow B");
+            "* plan-and-execute S6; o monitor-planex CLEANUP; * follow-path END; * Follow B");
   // A failure signalled: the monitor ends the following, and the plan is made anew.
   stage.ask(3, "spoil");
   stage.step(4);

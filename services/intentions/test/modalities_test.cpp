@@ -345,7 +345,7 @@ TEST(Modality, WhatGoesOnHasItsPointsWhereTheyAreNow) {
                " (INTEND :GoToPos ((goal . p))))",
                ":params ((p :point))"));
   stage.inputs.robot.odom_in_map = Pose{};
-  stage.ask(1, "it", {point("p", {3.0, 0.0, 0.0}, Frame::kMap)});
+  stage.ask(1, "it", {point("p", {3.0, 0.0, 0.0}, Frame::map)});
   stage.step(2);
   stage.inputs.robot.left_stalled = true;
   stage.step(2);
@@ -499,10 +499,10 @@ TEST(Modality, ABehaviorThatCannotBeMadeFailsItsIntention) {
 TEST(Modality, PointsOnTheMapAreGivenInOdomAsRegistrationGoes) {
   Stage stage(activity("(INTEND :GoToPos ((goal . p)))", ":params ((p :point))"));
   stage.inputs.robot.odom_in_map = Pose{10.0, 0.0, 0.0};
-  stage.ask(1, "it", {point("p", {12.0, 3.0, 0.0}, Frame::kMap)});
+  stage.ask(1, "it", {point("p", {12.0, 3.0, 0.0}, Frame::map)});
   stage.step(2);
   EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{2.0, 3.0, 0.0}));
-  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->frame, Frame::kOdom);
+  EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->frame, Frame::odom);
   stage.inputs.robot.odom_in_map = Pose{10.5, 0.0, 0.0};
   stage.step();
   EXPECT_EQ(find(stage.out.behaviors.at(0).parameters, "goal")->point, (Pose{1.5, 3.0, 0.0}));

@@ -92,6 +92,24 @@ TEST_F(Navigation, AClosedWayIsLeftOutAndForgottenAfterFiveMinutes) {
   EXPECT_FALSE(path("south").nil());
 }
 
+TEST_F(Navigation, WhatPeopleWarnOfIsNotOnThePath) {
+  const Value before = path("south");
+  ASSERT_FALSE(before.nil());
+  EXPECT_TRUE(call("hazard-on", {before}).nil());
+  beliefs.set("hazards", "spill at nowhere; water leak at south", "test", now);
+  EXPECT_EQ(spoken(call("hazard-on", {before})), "water leak at south");
+  EXPECT_TRUE(path("south").nil());
+  EXPECT_FALSE(path("north").nil());
+  const std::string why = spoken(call("why-no-path", {Value(), "south"}));
+  EXPECT_TRUE(why.ends_with("people warn of: water leak at south")) << why;
+  // Out of where it is itself it has to get.
+  be_at({3.0, -3.0, 0.0});
+  EXPECT_FALSE(path("north").nil());
+  beliefs.unset("hazards");
+  be_at({1.0, 0.0, 0.0});
+  EXPECT_FALSE(path("south").nil());
+}
+
 TEST_F(Navigation, APathOfAnotherRevisionOfTheMapIsNoMoreOne) {
   const Value north = path("north");
   EXPECT_TRUE(call("path-current", {north}).truthy());
@@ -109,8 +127,8 @@ TEST_F(Navigation, WithoutAPositionThereIsNoRegionAndNoPath) {
 
 // Manual 8.1.3: aligned_in_lane(e, &follow_target, 80.0, 110.0).
 TEST_F(Navigation, AlignedIsWhoLooksAlongTheLaneTowardsTheTarget) {
-  const Value lane = Point{{5.0, 0.0, kPi}, Frame::kMap};
-  const Value east = Point{{9.0, 0.0, 0.0}, Frame::kMap};
+  const Value lane = Point{{5.0, 0.0, kPi}, Frame::map};
+  const Value east = Point{{9.0, 0.0, 0.0}, Frame::map};
   const auto aligned = [&](double heading) {
     be_at({2.0, 0.0, radians(heading)});
     return *call("aligned-in-lane", {lane, east, radians(80.0), radians(110.0)}).number();

@@ -17,7 +17,7 @@ Arguments random_arguments(Random& random, const std::string& functor) {
     return {number("speed", random.uniform(-0.4, 0.6))};
   if (functor == "go_to")
     return {point("position", {random.uniform(-3, 3), random.uniform(-3, 3), 0.0},
-                  random.chance(0.5) ? Frame::kRobot : Frame::kOdom),
+                  random.chance(0.5) ? Frame::robot : Frame::odom),
             number("patience", 3.0)};
   if (functor == "turn_to")
     return {number("heading", random.uniform(-3, 3))};

@@ -28,7 +28,8 @@ TEST(Schema, FillsInTheDefaults) {
 
 TEST(Schema, SaysWhatWasExpectedAndWhatCame) {
   EXPECT_EQ(complaint("go_to", {}),
-            "go_to needs the argument \"position\": expected a point, within 10000 m, got none");
+            "go_to needs the argument \"position\": expected a point x,y or x,y,heading, such as "
+            "3,1, within 10000 m, got none");
   EXPECT_EQ(complaint("drive", {number("speed", 7)}),
             "argument \"speed\": expected a number from -0.2 to 2 m/s, got 7");
   EXPECT_EQ(complaint("drive", {text("speed", "fast")}),
@@ -39,8 +40,8 @@ TEST(Schema, SaysWhatWasExpectedAndWhatCame) {
             "stop has no argument \"now\": it takes no arguments");
   EXPECT_EQ(complaint("drive", {number("speed", 0.1), number("speed", 0.2)}),
             "argument \"speed\" is given twice");
-  EXPECT_EQ(complaint("go_to", {point("position", {1e5, 0, 0}, Frame::kMap)}),
-            "argument \"position\": expected a point, within 10000 "
+  EXPECT_EQ(complaint("go_to", {point("position", {1e5, 0, 0}, Frame::map)}),
+            "argument \"position\": expected a point x,y or x,y,heading, such as 3,1, within 10000 "
             "m, got the point (100000, 0, 0) in map");
   EXPECT_EQ(complaint("turn_to", {}),
             "turn_to: expected either \"heading\" (a number) or \"position\" (a point), got "
@@ -65,12 +66,12 @@ TEST(Schema, RefusesPointsThatAreNowhere) {
   for (const bool any : {false, true}) {
     Parameter parameter;
     parameter.name = "where";
-    parameter.kind = ArgumentKind::kPoint;
+    parameter.kind = ArgumentKind::point;
     parameter.any = any;
     schema.parameters = {parameter};
     const auto refused = [&](const Pose& pose) {
       Arguments complete;
-      return !check_arguments(schema, {point("where", pose, Frame::kRobot)}, complete).empty();
+      return !check_arguments(schema, {point("where", pose, Frame::robot)}, complete).empty();
     };
     EXPECT_FALSE(refused({10e3, -10e3, -1e3}));
     for (const double wrong : {std::numeric_limits<double>::quiet_NaN(),
@@ -95,7 +96,8 @@ TEST(Schema, AReloadedSchemaTakesThePlaceOfTheOldOne) {
   schema.summary = "another";
   registry.add(schema);
   EXPECT_EQ(registry.find("stop")->summary, "another");
-  EXPECT_EQ(registry.names(), "drive, explore_unknown, go_to, stop, turn_to");
+  EXPECT_EQ(registry.instead_of("stpo"),
+            "do you mean stop? There are 5 schemas (saphira goal schemas)");
 }
 
 }  // namespace

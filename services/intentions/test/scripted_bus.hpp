@@ -73,7 +73,7 @@ class ScriptedBus {
     for (const v1::IntendedBehavior& behavior : intended->behaviors())
       behaviors.push_back(from_bus(behavior));
     world.move(behaviors, cycle);
-    v1::Behaviors sample;
+    v1::BehaviorSet sample;
     sample.stamp(stamp());
     sample.control(true);
     for (const BehaviorLevel& level : world.levels) {
@@ -108,7 +108,7 @@ class ScriptedBus {
   std::uint64_t described_ = 0;  ///< the epoch
   bus::Writer<v1::RobotDescription> description_;
   bus::Writer<v1::RobotState> state_;
-  bus::Writer<v1::Behaviors> behaviors_;
+  bus::Writer<v1::BehaviorSet> behaviors_;
   bus::Writer<v1::BehaviorSchemas> schemas_;
   bus::Reader<v1::Intentions> intentions_;
 };

@@ -75,7 +75,7 @@ TEST_F(Seeing, TheNearestOfItsKind) {
 TEST_F(Seeing, AThingHasAPlaceADistanceAndABearing) {
   const Value ann = call("seen", {"person"});
   ASSERT_NE(call("place-of", {ann}).point(), nullptr);
-  EXPECT_EQ(*call("place-of", {ann}).point(), (Point{{1.0, 2.0, -kPi / 2}, Frame::kOdom}));
+  EXPECT_EQ(*call("place-of", {ann}).point(), (Point{{1.0, 2.0, -kPi / 2}, Frame::odom}));
   EXPECT_NEAR(number("distance-to", {ann}), 2.0, 1e-9);
   EXPECT_NEAR(number("bearing-of", {ann}), kPi / 2, 1e-9);
   EXPECT_NEAR(number("speed-of", {ann}), 0.5, 1e-9);

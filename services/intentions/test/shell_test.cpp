@@ -8,6 +8,7 @@
 #include "intentions/shell/service.hpp"
 #include "node_options.hpp"
 #include "process.hpp"
+#include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "scripted_bus.hpp"
 
@@ -111,40 +112,40 @@ TEST_F(ShellTest, PublishesTheTree) {
 
 // Manual 6.5, and 2.3.8 for one intention alone.
 TEST_F(ShellTest, HoldsAllGoalsWhileItIsSuspendedAndOneIntentionByItsName) {
-  bus::Writer<v1::ProcessRequest> requests{requester.writer(bus::topics::kProcessRequest)};
-  bus::Reader<v1::ProcessAnswer> answers{requester.reader(bus::topics::kProcessAnswer)};
-  const auto request = [&](const std::string& process, v1::ProcessAction action) {
-    v1::ProcessRequest sample;
+  bus::Writer<v1::Request> requests{requester.writer<v1::Request>(bus::topics::kProcessRequest)};
+  bus::Reader<v1::Answer> answers{requester.reader(bus::topics::kProcessAnswers)};
+  const auto request = [&](const std::string& process, const char* functor) {
+    v1::Request sample;
     sample.source("a person");
     sample.service("intentions");
-    sample.process(process);
-    sample.action(action);
+    sample.functor(functor);
+    sample.arguments({bus::text("process", process)});
     requests.write(sample);
     cycle();
-    return answers.take_newest().value().reason();
+    return answers.take_newest().value().text();
   };
   start();
   const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
   cycle();
   EXPECT_FALSE(robot.intended->behaviors().empty());
-  EXPECT_EQ(request("execute-intentions", v1::PROCESS_SUSPEND), "");
+  EXPECT_EQ(request("execute-intentions", "suspend"), "");
   EXPECT_TRUE(robot.intended->behaviors().empty());
   EXPECT_EQ(state(id), v1::GOAL_SUSPENDED);
   EXPECT_EQ(goals.status(id)->reason(), "execute-intentions is suspended");
-  EXPECT_EQ(request("execute-intentions", v1::PROCESS_RESUME), "");
+  EXPECT_EQ(request("execute-intentions", "resume"), "");
   cycle();
   EXPECT_FALSE(robot.intended->behaviors().empty());
   EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
 
   const std::string name = robot.intended->nodes()[0].name();
-  EXPECT_EQ(request(name, v1::PROCESS_INTERRUPT), "");
+  EXPECT_EQ(request(name, "interrupt"), "");
   cycle();
   EXPECT_TRUE(robot.intended->behaviors().empty());
-  EXPECT_EQ(request(std::to_string(robot.intended->nodes()[0].id()), v1::PROCESS_RESUME), "");
+  EXPECT_EQ(request(std::to_string(robot.intended->nodes()[0].id()), "resume"), "");
   cycle();
   EXPECT_FALSE(robot.intended->behaviors().empty());
-  EXPECT_EQ(request(name, v1::PROCESS_RESUME), name + " was not interrupted");
-  EXPECT_EQ(request("nothing", v1::PROCESS_INTERRUPT),
+  EXPECT_EQ(request(name, "resume"), name + " was not interrupted");
+  EXPECT_EQ(request("nothing", "interrupt"),
             "no process \"nothing\"; there are execute-intentions");
 }
 
@@ -272,11 +273,44 @@ TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
   EXPECT_EQ(said->text(), "bye Karen");
 }
 
+TEST_F(ShellTest, AnActivityAsksAgents) {
+  const test::TempDir files;
+  folder = files.path();
+  std::ofstream(files.path("mine.act"))
+      << "(defintention :where :params ((who :text))"
+         " :goals '((ASK q place_of ((person . who) (place . nil)) :timeout 60)"
+         " (SUCCEED \"in ~a\" (answer q 'place))))";
+  auto asked = requester.reader<v1::Request>(bus::topics::kSolve);
+  auto answers = requester.writer(bus::topics::kSolved);
+  start();
+  v1::Goal goal;
+  goal.functor("where");
+  goal.arguments().push_back(bus::text("who", "karen"));
+  const v1::GoalId id = goals.ask(goal);
+  for (int i = 0; i < 20; ++i) {
+    cycle();
+    for (const auto& sample : asked.take()) {
+      EXPECT_EQ(sample.data.functor(), "place_of");
+      EXPECT_EQ(bus::text_of(sample.data.arguments(), "person"), "karen");
+      v1::Answer answer;
+      answer.asker(sample.data.asker());
+      answer.number(sample.data.number());
+      answer.code(v1::ANSWER_UNDERWAY);
+      answers.write(answer);
+      answer.code(v1::ANSWER_DONE);
+      answer.results().push_back(bus::text("place", "EJ-231"));
+      answers.write(answer);
+    }
+  }
+  EXPECT_EQ(state(id), v1::GOAL_SUCCEEDED);
+  EXPECT_EQ(goals.status(id)->reason(), "in EJ-231");
+}
+
 TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
   start();
   auto claims = requester.writer(bus::topics::kBeliefClaims);
   auto beliefs = requester.reader(bus::topics::kBeliefs);
-  std::optional<v1::Beliefs> newest;
+  std::optional<v1::BeliefSet> newest;
   const auto find = [&](const std::string& name) -> std::optional<v1::Belief> {
     if (auto news = beliefs.take_newest())
       newest = std::move(news);

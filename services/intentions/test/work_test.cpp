@@ -140,7 +140,7 @@ TEST(Work, ReadsWhatItWrote) {
       {{{0xfedcba9876543210ULL, 7},
         "about-turn",
         Value(Value::List{Value(1.0 / 3.0), Value("a \"b\" ; c"), Value(), Value::truth(true),
-                          Value(Point{{1.5, -2.0, 3.0}, Frame::kMap}),
+                          Value(Point{{1.5, -2.0, 3.0}, Frame::map}),
                           Value(Value::List{Value(-4.0), Value(Reference{})})})}},
       {{"*speed*", Value(0.3), "patrol", -17}}};
   EXPECT_EQ(read_work("work", write_work(work)), work);

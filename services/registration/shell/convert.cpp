@@ -1,7 +1,6 @@
 #include "registration/shell/convert.hpp"
 
 #include "lps/shell/convert.hpp"
-#include "maps/shell/convert.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -20,31 +19,6 @@ v1::RegistrationState to_bus(State state) {
       break;
   }
   return v1::REGISTRATION_TRACKING;
-}
-
-Core::Request::Action action_of(v1::RegistrationAction action) {
-  using Action = Core::Request::Action;
-  switch (action) {
-    case v1::REGISTRATION_LOAD:
-      return Action::kLoad;
-    case v1::REGISTRATION_DELETE:
-      return Action::kDelete;
-    case v1::REGISTRATION_PUT:
-      return Action::kPut;
-    case v1::REGISTRATION_REMOVE:
-      return Action::kRemove;
-    case v1::REGISTRATION_PLACE:
-      return Action::kPlace;
-    case v1::REGISTRATION_FIND:
-      return Action::kFind;
-    case v1::REGISTRATION_SWITCH:
-      return Action::kSwitch;
-    case v1::REGISTRATION_ADD_FEATURES:
-      return Action::kAddFeatures;
-    case v1::REGISTRATION_SNAP:
-      return Action::kSnap;
-  }
-  return static_cast<Action>(action);
 }
 
 v1::Match to_bus(const Core::Matched& match) {
@@ -82,15 +56,6 @@ v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom) 
     sample.matches().push_back(to_bus(match));
   }
   return sample;
-}
-
-Core::Request from_bus(const v1::RegistrationRequest& request) {
-  return {action_of(request.action()),
-          request.name(),
-          request.text(),
-          maps::from_bus(request.artifact()),
-          lps::from_bus(request.pose_in_map()),
-          request.on()};
 }
 
 }  // namespace saphira::registration

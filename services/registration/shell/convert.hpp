@@ -12,7 +12,5 @@ namespace saphira::registration {
 /// The registration sample of a step at `pose_in_odom`; stamp, odom, revision and switches are the
 /// caller's.
 v1::Registration to_bus(const Core::Outputs& outputs, const Pose& pose_in_odom);
-/// An action that is none of the contract's becomes one that no core knows.
-Core::Request from_bus(const v1::RegistrationRequest& request);
 
 }  // namespace saphira::registration

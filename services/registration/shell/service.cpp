@@ -38,11 +38,11 @@ Service::Service(runtime::Ports& ports, Options options)
     : ports_(ports),
       options_(std::move(options)),
       perception_(ports.cycle(bus::topics::kPerception)),
-      requests_(ports.events(bus::topics::kRegistrationRequest)),
       registrations_(ports.each_cycle(bus::topics::kRegistration)),
       maps_(ports.changes(bus::topics::kMap)),
-      answers_(ports.changes(bus::topics::kRegistrationAnswer)),
       saver_(options_.memory_file) {
+  ports.requests(bus::topics::kRegistrationRequest, Core::functors(),
+                 [this](const Request& request) { return core_->act(request); });
   const Core::Settings settings = settings_of(options_);
   try {
     core_.emplace(settings);
@@ -80,7 +80,6 @@ void Service::step(const runtime::Turn& turn) {
   if (seen != nullptr && seen->odom() == inputs.odom)
     for (const v1::Percept& percept : seen->percepts())
       inputs.percepts.push_back(lps::from_bus(percept));
-  take_requests();
 
   const Core::Outputs outputs = core_->step(inputs);
   v1::Registration sample = to_bus(outputs, inputs.pose_in_odom);
@@ -95,33 +94,14 @@ void Service::step(const runtime::Turn& turn) {
 }
 
 void Service::between(double /*silence*/) {
-  take_requests();
   publish_map();
-}
-
-void Service::take_requests() {
-  for (const auto& sample : requests_.take()) {
-    if (sample.info.disposed)
-      continue;
-    const v1::RegistrationRequest& request = sample.data;
-    const Core::Answer done = core_->act(from_bus(request));
-    v1::RegistrationAnswer answer;
-    answer.request(request.request());
-    answer.artifact(done.artifact);
-    answer.done(done.refusal.empty());
-    answer.reason(done.refusal);
-    if (!done.refusal.empty())
-      ports_.say(
-          {{Note::Level::warning, "a request of " + request.source() + ": " + done.refusal}});
-    answers_.write(std::move(answer));
-  }
 }
 
 void Service::publish_map() {
   if (published_ == core_->map_revision())
     return;
   published_ = core_->map_revision();
-  v1::Map sample = maps::to_bus(core_->map());
+  v1::FloorMap sample = maps::to_bus(core_->map());
   sample.revision(core_->map_revision());
   sample.source(core_->map_source());
   sample.changed(core_->map_changed());

@@ -31,17 +31,14 @@ class Service final : public runtime::Service {
   void between(double silence) override;
 
  private:
-  void take_requests();
   void publish_map();
   void remember();
 
   runtime::Ports& ports_;
   Options options_;
   bus::Input<v1::Perception>& perception_;
-  bus::Reader<v1::RegistrationRequest> requests_;
   runtime::Output<v1::Registration> registrations_;
-  runtime::Output<v1::Map> maps_;
-  runtime::Output<v1::RegistrationAnswer> answers_;
+  runtime::Output<v1::FloorMap> maps_;
   std::optional<Core> core_;
   runtime::Saver saver_;
   std::optional<std::uint64_t> published_;  ///< revision of the map

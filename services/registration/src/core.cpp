@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/registration/line_map.hpp"
 
@@ -21,10 +22,32 @@ void check(const maps::Map& map) {
 }
 
 /// While the map is being built there is nothing yet to be registered on.
-bool needs_a_map(Core::Request::Action action) {
-  using Action = Core::Request::Action;
-  return action == Action::kPut || action == Action::kRemove || action == Action::kPlace ||
-         action == Action::kFind || action == Action::kSwitch;
+bool needs_a_map(const std::string& functor) {
+  return functor == "put" || functor == "remove" || functor == "place" || functor == "find" ||
+         functor == "switch";
+}
+
+/// What may be put on a map, by its word there.
+std::vector<std::string> artifact_words() {
+  std::vector<std::string> words;
+  for (const maps::ArtifactTraits& traits : maps::kArtifactTraits)
+    if (!traits.word.empty())
+      words.emplace_back(traits.word);
+  return words;
+}
+
+maps::Feature artifact_of(const Arguments& arguments) {
+  maps::Feature artifact;
+  for (const maps::ArtifactTraits& traits : maps::kArtifactTraits)
+    if (traits.word == text_of(arguments, "type"))
+      artifact.type = traits.type;
+  artifact.id = static_cast<std::uint32_t>(number_of(arguments, "id"));
+  artifact.pose_in_map = point_of(arguments, "position");
+  artifact.length = number_of(arguments, "length");
+  artifact.width = number_of(arguments, "width");
+  artifact.name = text_of(arguments, "name");
+  artifact.learned = truth_of(arguments, "learned");
+  return artifact;
 }
 
 registration::Settings settings_for(const std::vector<lps::SonarMount>& sonars) {
@@ -254,11 +277,42 @@ bool Core::grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& no
   return true;
 }
 
-Core::Answer Core::act(const Request& request) {
+const std::vector<Functor>& Core::functors() {
+  constexpr double most_ids = 4294967295.0;
+  constexpr double far = 1e5;  // [m]; the map has limits of its own
+  static const std::vector<Functor> functors{
+      {"load",
+       "the map is this one",
+       {text_parameter("text", "content of a map file (manual 6.9.1)"),
+        text_parameter("name", "of the file, for people and errors")}},
+      {"delete", "the map is empty"},
+      {"put",
+       "adds an artifact to the map, or changes the one of that id",
+       {optional(whole_parameter("id", "0: it gets one", 0.0, most_ids)),
+        text_parameter("type", "as a map file has it", artifact_words()),
+        point_parameter("position", "its middle", Frame::map),
+        optional(number_parameter("length", "along its heading [m]", 0.0, far)),
+        optional(number_parameter("width", "across its heading [m]", 0.0, far)),
+        optional(text_parameter("name", "of a room and of its doors")),
+        optional(truth_parameter("learned", "taken back where it is seen no more"))}},
+      {"remove", "removes an artifact", {whole_parameter("id", "of the artifact", 1.0, most_ids)}},
+      {"place", "the robot is there", {point_parameter("position", "of the robot", Frame::map)}},
+      {"find", "the robot may be anywhere: finds it"},
+      {"switch", "registration on or off (manual 6.9.2)", {truth_parameter("on", "on or off")}},
+      {"add_features",
+       "whether what is seen is added to the map (add_new_features)",
+       {truth_parameter("on", "on or off")}},
+      {"snap",
+       "whether what is added is put on right angles (snap_to_right_angle_grid)",
+       {truth_parameter("on", "on or off")}}};
+  return functors;
+}
+
+Answer Core::act(const Request& request) {
   try {
-    return {"", obey(request)};
+    return {AnswerCode::done, "", obey(request)};
   } catch (const std::exception& error) {
-    return {error.what(), 0};
+    return {AnswerCode::refused, error.what(), {}};
   }
 }
 
@@ -269,62 +323,44 @@ Registration& Core::placed() {
 }
 
 /// Does it, or throws what is told to the one who asked.
-std::uint32_t Core::obey(const Request& request) {
-  using Action = Request::Action;
-  if (now_.building && needs_a_map(request.action))
+Arguments Core::obey(const Request& request) {
+  const std::string& what = request.functor;
+  const Arguments& with = request.arguments;
+  if (now_.building && needs_a_map(what))
     throw std::runtime_error(kBuilding);
   maps::Editor editor = now_.editor;
-  switch (request.action) {
-    case Action::kLoad:
-      editor.replace(maps::parse_map(request.text, request.name));
-      use(std::move(editor));
-      begin_anew(request.name);
-      return 0;
-    case Action::kDelete:
-      editor.replace({});
-      use(std::move(editor));
-      begin_anew("");
-      return 0;
-    case Action::kPut: {
-      const std::uint32_t id = editor.put(request.artifact);
-      use(std::move(editor));
-      now_.changed = true;
-      return id;
-    }
-    case Action::kRemove:
-      if (!editor.remove(request.artifact.id))
-        throw std::invalid_argument("no artifact (" + std::to_string(request.artifact.id) +
-                                    ") in the map");
-      use(std::move(editor));
-      now_.changed = true;
-      return request.artifact.id;
-    case Action::kPlace:
-      if (const auto why = maps::problem(request.pose_in_map))
-        throw std::invalid_argument(*why);
-      if (const auto why = maps::outside(map(), request.pose_in_map.position(), kOutside))
-        throw std::invalid_argument(*why);
-      placed().set_pose(request.pose_in_map);
-      return 0;
-    case Action::kFind:
-      placed().forget_pose();
-      return 0;
-    case Action::kSwitch:
-      placed();
-      now_.on = request.on;
-      return 0;
-    case Action::kAddFeatures:
-      placed();
-      now_.adds_features = request.on;
-      set_builder();
-      return 0;
-    case Action::kSnap:
-      placed();
-      now_.snaps = request.on;
-      set_builder();
-      return 0;
+  if (what == "load" || what == "delete") {
+    const std::string& name = text_of(with, "name");
+    editor.replace(what == "load" ? maps::parse_map(text_of(with, "text"), name) : maps::Map{});
+    use(std::move(editor));
+    begin_anew(name);
+  } else if (what == "put" || what == "remove") {
+    auto id = static_cast<std::uint32_t>(number_of(with, "id"));
+    if (what == "put")
+      id = editor.put(artifact_of(with));
+    else if (!editor.remove(id))
+      throw std::invalid_argument("no artifact (" + std::to_string(id) + ") in the map");
+    use(std::move(editor));
+    now_.changed = true;
+    return {number("id", id)};
+  } else if (what == "place") {
+    const Pose pose = point_of(with, "position");
+    if (const auto why = maps::problem(pose))
+      throw std::invalid_argument(*why);
+    if (const auto why = maps::outside(map(), pose.position(), kOutside))
+      throw std::invalid_argument(*why);
+    placed().set_pose(pose);
+  } else if (what == "find") {
+    placed().forget_pose();
+  } else if (what == "switch") {
+    placed();
+    now_.on = truth_of(with, "on");
+  } else {
+    placed();
+    (what == "snap" ? now_.snaps : now_.adds_features) = truth_of(with, "on");
+    set_builder();
   }
-  throw std::invalid_argument("nobody knows what action " +
-                              std::to_string(static_cast<int>(request.action)) + " is");
+  return {};
 }
 
 /// The map from now on, by somebody else than the builder, which begins anew with it. Where it

@@ -511,7 +511,12 @@ bool MapBuilder::publish() {
         std::any_of(junctions.begin(), junctions.end(), [&](const Feature& junction) {
           return maps::distance_to(junction, feature.pose_in_map.position()) < 0.5;
         });
-    if (feature.type == PointType::breach && of_a_junction)
+    const Vec2 behind = transform(feature.pose_in_map, {-1.0, 0.0});
+    const bool of_a_corridor = std::any_of(halls.begin(), halls.end(), [&](const Feature& hall) {
+      return maps::contains(hall, behind) &&
+             std::abs(norm3_angle(hall.pose_in_map.th - feature.pose_in_map.th)) < radians(30.0);
+    });
+    if (of_a_junction && (feature.type == PointType::breach || of_a_corridor))
       continue;  // another corridor is behind it
     add(feature, i);
   }

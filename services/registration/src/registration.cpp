@@ -17,7 +17,7 @@ constexpr double kNear = 1.0;                // [m] another place within this an
 constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther off it was lost
 constexpr std::size_t kTurns = 600;          // cycles
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
-constexpr double kUnconfirmed = 0.5;         // the most that a pose is trusted which was only told
+constexpr double kUnconfirmed = 0.5;         // the highest confidence of a pose that was only told
 constexpr std::uint64_t kNoFrame = 0;        // no frame of a robot has this number
 
 Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
@@ -66,6 +66,7 @@ class Registration::Self {
   void place(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
              double drift_variance, double confidence);
   void doubt();
+  void suspect_it_was_carried();
   bool holds_again() const;
   void forget();
   void switch_on(bool on);
@@ -122,13 +123,28 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.filter.emplace(pose, covariance, drift, drift_variance, settings_.reckoning);
   search_.clear();
   now_.search.own_score = settings_.lost + confidence * (settings_.sure - settings_.lost);
+  now_.search.own_recent = settings_.recently_sure;
   now_.state = State::tracking;
   now_.confirmed = confidence > kUnconfirmed;
-  now_.doubted = false;
+  now_.doubted = now_.carried = false;
   now_.done.clear();
   now_.cloud.clear();
   now_.leads = false;
   forget_looks();
+}
+
+/// All that was heard before was heard elsewhere.
+void Registration::Self::suspect_it_was_carried() {
+  if (!now_.filter)
+    return;
+  search_.clear();
+  now_.done.clear();
+  now_.cloud.clear();
+  now_.filter->widen(0.3, radians(10.0));
+  now_.confirmed = false;
+  now_.doubted = true;
+  now_.carried = true;
+  now_.state = State::lost;
 }
 
 /// Nothing that is heard in this odometry frame has been held against the pose yet.
@@ -151,7 +167,7 @@ void Registration::Self::doubt() {
 
 void Registration::Self::forget() {
   now_.cloud.clear();
-  now_.doubted = false;
+  now_.doubted = now_.carried = false;
   now_.filter.reset();
   search_.clear();
   now_.state = State::unplaced;
@@ -435,6 +451,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
+  now_.search.own_recent = settings_.recently_sure;
   now_.done.clear();
   now_.leads = true;
   now_.led = 0.0;
@@ -514,7 +531,8 @@ void Registration::Self::look_for_news(const Inputs& inputs,
 bool Registration::Self::holds_again() const {
   if (now_.doubted)
     return search_.own_leads();
-  return now_.search.own_score > settings_.again_sure && search_.own_is_best();
+  return now_.search.own_score > settings_.again_sure &&
+         now_.search.own_recent > settings_.recently_again && search_.own_is_best();
 }
 
 const Output& Registration::Self::step(const Inputs& inputs) {
@@ -529,12 +547,15 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     correct(readings);
     look_around(readings);
     look_elsewhere(readings, percepts);
-    if (now_.state == State::tracking && now_.search.own_score < settings_.lost)
+    if (now_.standing.step(now_.moved, inputs.readings))
+      suspect_it_was_carried();
+    if (now_.state == State::tracking && (now_.search.own_score < settings_.lost ||
+                                          now_.search.own_recent < settings_.recently_lost))
       now_.state = State::lost;
     else if (now_.state == State::lost && holds_again())
       now_.state = State::tracking;
     if (now_.state == State::tracking)
-      now_.doubted = false;
+      now_.doubted = now_.carried = false;
     now_.confirmed = now_.confirmed || now_.search.own_score >= settings_.sure;
     look_for_news(inputs, readings);
   }
@@ -584,19 +605,26 @@ void Registration::Self::report() {
                              ? "looking for where it is: no opening seen yet"
                              : "looking for where it is: several places would do";
   } else if (now_.state == State::lost) {
-    now_.output.reason = now_.doubted ? "dead reckoning has begun anew: what is heard has not "
-                                        "confirmed yet that the robot is where it was"
-                                      : "the readings do not fit the map at this pose";
+    now_.output.reason = now_.doubted && now_.carried
+                             ? "all around has changed while it stood, as if it had been carried: "
+                               "what is heard has not confirmed yet that it is where it was"
+                         : now_.doubted ? "dead reckoning has begun anew: what is heard has not "
+                                          "confirmed yet that the robot is where it was"
+                                        : "the readings do not fit the map at this pose";
   } else {
-    now_.output.confidence = std::clamp(
-        (now_.search.own_score - settings_.lost) / (settings_.sure - settings_.lost), 0.0, 1.0);
+    const auto between = [](double score, double lost, double sure) {
+      return std::clamp((score - lost) / (sure - lost), 0.0, 1.0);
+    };
+    now_.output.confidence =
+        std::min(between(now_.search.own_score, settings_.lost, settings_.sure),
+                 between(now_.search.own_recent, settings_.recently_lost, settings_.recently_sure));
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
-    now_.output.reason = !now_.confirmed ? "as it was told: too little was heard yet to confirm it"
-                         : now_.output.confidence < 0.5 ? "the readings hardly fit the map"
-                         : now_.filter->sigma_position() > 0.5
-                             ? "nothing matched for long: by dead reckoning"
-                             : "matched with the map";
+    now_.output.reason =
+        !now_.confirmed ? "as it was told or remembered: too little was heard yet to confirm it"
+        : now_.output.confidence < 0.5        ? "the readings hardly fit the map"
+        : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"
+                                              : "matched with the map";
   }
   find_environment();
 }

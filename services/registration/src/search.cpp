@@ -80,6 +80,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     h.score *= fading;
   }
   now_.own_score *= fading;
+  now_.own_recent *= std::exp(-way / settings_.recent);
   // Readings of a robot that stands repeat one event.
   if (now_.travelled >= settings_.spacing) {
     now_.travelled -= settings_.spacing;
@@ -87,7 +88,7 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
       for (Hypothesis& h : now_.hypotheses)
         h.score += weigh(h.filter.pose(), reading);
       if (now_.own)
-        now_.own_score += weigh(*now_.own, reading);
+        count_own(weigh(*now_.own, reading));
       now_.history.push_back(reading);
     }
     while (now_.history.size() > settings_.history)
@@ -105,12 +106,17 @@ void Search::step(const Pose& pose_in_odom, const std::vector<PlacedReading>& re
     if (own != nullptr) {
       PoseFilter copy = *own;
       const Match result = match(*percept, pose_in_odom, *map_, *lines_, match_settings_, copy);
-      now_.own_score += worth(*percept, result, own->pose());
+      count_own(worth(*percept, result, own->pose()));
     }
     if (opening)
       propose(*percept);
   }
   thin_out();
+}
+
+void Search::count_own(double worth) {
+  now_.own_score += worth;
+  now_.own_recent += worth;
 }
 
 /// What an object that is there, or is not, says of a place.

@@ -9,12 +9,13 @@
 #include <limits>
 #include <utility>
 
+#include "process.hpp"
 #include "saphira/base/random.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::registration {
 namespace {
-
-using Action = Core::Request::Action;
 
 constexpr int kSonars = 16;
 constexpr const char* kHall =
@@ -118,38 +119,37 @@ Core::Settings settings(const std::string& text = kHall) {
   return made;
 }
 
-Core::Request request(Action action) {
-  Core::Request made;
-  made.action = action;
-  return made;
+Request request(const std::string& functor) {
+  return {functor};
 }
 
-Core::Request request(Action action, bool on) {
-  Core::Request made = request(action);
-  made.on = on;
-  return made;
+Request request(const std::string& functor, bool on) {
+  return {functor, {{"on", on}}};
 }
 
-Core::Request load(const std::string& text, const std::string& name = "other.map") {
-  Core::Request made = request(Action::kLoad);
-  made.text = text;
-  made.name = name;
-  return made;
+Request load(const std::string& text, const std::string& name = "other.map") {
+  return {"load", {{"text", text}, {"name", name}}};
 }
 
-Core::Request place(const Pose& pose_in_map) {
-  Core::Request made = request(Action::kPlace);
-  made.pose_in_map = pose_in_map;
-  return made;
+Request place(const Pose& pose_in_map) {
+  return {"place", {{"position", PlacedPoint{pose_in_map, Frame::map}}}};
 }
 
-Core::Request put(lps::PointType type, const Pose& pose_in_map) {
-  Core::Request made = request(Action::kPut);
-  made.artifact.type = type;
-  made.artifact.pose_in_map = pose_in_map;
-  made.artifact.length = 1.0;
-  made.artifact.width = 1.0;
-  return made;
+Request put(lps::PointType type, const Pose& pose_in_map, std::uint32_t id = 0) {
+  return {"put",
+          {{"id", static_cast<double>(id)},
+           {"type", std::string(maps::traits(type).word)},
+           {"position", PlacedPoint{pose_in_map, Frame::map}},
+           {"length", 1.0},
+           {"width", 1.0}}};
+}
+
+Request remove(std::uint32_t id) {
+  return {"remove", {{"id", static_cast<double>(id)}}};
+}
+
+std::uint32_t id_of(const Answer& answer) {
+  return static_cast<std::uint32_t>(number_of(answer.results, "id"));
 }
 
 bool says(const Notes& notes, const std::string& part) {
@@ -205,13 +205,12 @@ TEST(RegistrationCore, AMapOnWhichNoRobotCanBeRegisteredIsRefused) {
 
 TEST(RegistrationCore, WhatNeedsARobotIsRefusedBeforeThereIsOne) {
   Core core(settings());
-  for (const Core::Request& one :
-       {place({5.0, 0.0, 0.0}), request(Action::kFind), request(Action::kSwitch),
-        request(Action::kAddFeatures), request(Action::kSnap)})
-    EXPECT_EQ(core.act(one).refusal, "there is no robot yet");
-  EXPECT_EQ(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})).refusal, "");
-  EXPECT_EQ(core.act(load(kHall)).refusal, "");
-  EXPECT_EQ(core.act(request(Action::kDelete)).refusal, "");
+  for (const Request& one : {place({5.0, 0.0, 0.0}), request("find"), request("switch"),
+                             request("add_features"), request("snap")})
+    EXPECT_EQ(core.act(one).text, "there is no robot yet");
+  EXPECT_EQ(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})).text, "");
+  EXPECT_EQ(core.act(load(kHall)).text, "");
+  EXPECT_EQ(core.act(request("delete")).text, "");
 }
 
 TEST(RegistrationCore, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
@@ -220,14 +219,14 @@ TEST(RegistrationCore, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
   robot.stand(core);
   const std::uint64_t revision = core.map_revision();
   EXPECT_TRUE(
-      contains(core.act(load("CORRIDOR (1) 0, 0, 0, 10000\n", "bad.map")).refusal, "bad.map:1:"));
+      contains(core.act(load("CORRIDOR (1) 0, 0, 0, 10000\n", "bad.map")).text, "bad.map:1:"));
   EXPECT_TRUE(
-      contains(core.act(load("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).refusal, "at most 25 ha"));
+      contains(core.act(load("OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).text, "at most 25 ha"));
   EXPECT_EQ(core.map_revision(), revision);
   EXPECT_EQ(core.map_source(), "hall.map");
   EXPECT_EQ(robot.stand(core).state, State::tracking);
 
-  EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).refusal, "");
+  EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
   EXPECT_GT(core.map_revision(), revision);
   EXPECT_EQ(core.map_source(), "other.map");
   EXPECT_FALSE(core.map_changed());
@@ -238,7 +237,7 @@ TEST(RegistrationCore, DeletesTheMap) {
   Core core(settings());
   Robot robot;
   robot.stand(core);
-  EXPECT_EQ(core.act(request(Action::kDelete)).refusal, "");
+  EXPECT_EQ(core.act(request("delete")).text, "");
   EXPECT_TRUE(core.map().features.empty());
   EXPECT_EQ(core.map_source(), "");
   EXPECT_FALSE(core.adds_features()) << "that is asked for, or of an empty map at the start";
@@ -248,24 +247,20 @@ TEST(RegistrationCore, PutsAndRemovesArtifacts) {
   Core core(settings());
   Robot robot;
   robot.stand(core);
-  const Core::Answer made = core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
-  EXPECT_EQ(made.refusal, "");
-  ASSERT_NE(maps::find(core.map(), made.artifact), nullptr);
+  const Answer made = core.act(put(lps::PointType::position, {5.0, 0.0, 0.0}));
+  EXPECT_EQ(made.text, "");
+  ASSERT_NE(maps::find(core.map(), id_of(made)), nullptr);
   EXPECT_TRUE(core.map_changed());
-  Core::Request moved = put(lps::PointType::position, {6.0, 0.0, 0.0});
-  moved.artifact.id = made.artifact;
-  EXPECT_EQ(core.act(moved).artifact, made.artifact);
-  EXPECT_EQ(maps::find(core.map(), made.artifact)->pose_in_map.x, 6.0);
+  const Request moved = put(lps::PointType::position, {6.0, 0.0, 0.0}, id_of(made));
+  EXPECT_EQ(id_of(core.act(moved)), id_of(made));
+  EXPECT_EQ(maps::find(core.map(), id_of(made))->pose_in_map.x, 6.0);
 
   const std::uint64_t revision = core.map_revision();
-  EXPECT_TRUE(contains(core.act(put(lps::PointType::object, {9000.0, 9000.0, 0.0})).refusal,
-                       "at most 25 ha"));
-  Core::Request remove = request(Action::kRemove);
-  remove.artifact.id = 4711;
-  EXPECT_EQ(core.act(remove).refusal, "no artifact (4711) in the map");
+  EXPECT_TRUE(
+      contains(core.act(put(lps::PointType::object, {9000.0, 9000.0, 0.0})).text, "at most 25 ha"));
+  EXPECT_EQ(core.act(remove(4711)).text, "no artifact (4711) in the map");
   EXPECT_EQ(core.map_revision(), revision);
-  remove.artifact.id = 2;
-  EXPECT_EQ(core.act(remove).artifact, 2U);
+  EXPECT_EQ(id_of(core.act(remove(2))), 2U);
   EXPECT_EQ(maps::find(core.map(), 2), nullptr);
 }
 
@@ -275,10 +270,10 @@ TEST(RegistrationCore, PlacesTheRobotWhereItCanBe) {
   robot.stand(core);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Pose& wrong : {Pose{nan, 0.0, 0.0}, Pose{5.0, 1e13, 0.0}, Pose{5.0, 0.0, nan}})
-    EXPECT_TRUE(contains(core.act(place(wrong)).refusal, "within 10 km"));
-  EXPECT_NE(core.act(place({5.0, 40.0, 0.0})).refusal, "");
+    EXPECT_TRUE(contains(core.act(place(wrong)).text, "within 10 km"));
+  EXPECT_NE(core.act(place({5.0, 40.0, 0.0})).text, "");
   EXPECT_NEAR(robot.stand(core).pose_in_map.x, 3.5, 0.1);
-  EXPECT_EQ(core.act(place({8.0, 0.0, 0.0})).refusal, "");
+  EXPECT_EQ(core.act(place({8.0, 0.0, 0.0})).text, "");
   EXPECT_NEAR(robot.stand(core).pose_in_map.x, 8.0, 0.1);
 }
 
@@ -286,11 +281,11 @@ TEST(RegistrationCore, FindsAndSwitches) {
   Core core(settings());
   Robot robot;
   robot.stand(core);
-  EXPECT_EQ(core.act(request(Action::kSwitch, false)).refusal, "");
+  EXPECT_EQ(core.act(request("switch", false)).text, "");
   EXPECT_EQ(robot.stand(core).state, State::off);
-  EXPECT_EQ(core.act(request(Action::kSwitch, true)).refusal, "");
+  EXPECT_EQ(core.act(request("switch", true)).text, "");
   EXPECT_EQ(robot.stand(core).state, State::tracking);
-  EXPECT_EQ(core.act(request(Action::kFind)).refusal, "");
+  EXPECT_EQ(core.act(request("find")).text, "");
   EXPECT_EQ(robot.stand(core).state, State::unplaced);
 }
 
@@ -300,16 +295,27 @@ TEST(RegistrationCore, AddsFeaturesAndSnapsAsItIsAsked) {
   robot.stand(core);
   EXPECT_FALSE(core.adds_features());
   EXPECT_TRUE(core.snaps());
-  EXPECT_EQ(core.act(request(Action::kAddFeatures, true)).refusal, "");
-  EXPECT_EQ(core.act(request(Action::kSnap, false)).refusal, "");
+  EXPECT_EQ(core.act(request("add_features", true)).text, "");
+  EXPECT_EQ(core.act(request("snap", false)).text, "");
   EXPECT_TRUE(core.adds_features());
   EXPECT_FALSE(core.snaps());
   EXPECT_EQ(robot.stand(core).state, State::tracking) << "on a map that is known it is registered";
 }
 
-TEST(RegistrationCore, AnActionOfNoNameIsRefused) {
-  Core core(settings());
-  EXPECT_NE(core.act(request(static_cast<Action>(77))).refusal, "");
+TEST(RegistrationCore, WhatItCanBeAskedForIsDeclared) {
+  for (Request one : {load(kHall), request("delete"), put(lps::PointType::door, {5.0, 0.0, 0.0}),
+                      remove(4), place({5.0, 0.0, 0.0}), request("find"), request("switch", true),
+                      request("add_features", false), request("snap", true)})
+    EXPECT_FALSE(refusal(Core::functors(), one)) << describe(one);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (Request one : {request("sing"), request("switch"), remove(0), place({nan, 0.0, 0.0}),
+                      put(lps::PointType::invalid, {5.0, 0.0, 0.0})})
+    EXPECT_TRUE(refusal(Core::functors(), one)) << describe(one);
+}
+
+TEST(RegistrationCore, WhatItCanBeAskedForIsDocumented) {
+  EXPECT_TRUE(contains(read_file(test::source("docs/requests.md")), help(Core::functors())))
+      << help(Core::functors());
 }
 
 // A map from nothing.
@@ -319,9 +325,8 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   Robot robot;
   EXPECT_EQ(robot.step(core).reason, "builds the map");
   EXPECT_TRUE(core.adds_features());
-  for (const Action action :
-       {Action::kPut, Action::kRemove, Action::kPlace, Action::kFind, Action::kSwitch})
-    EXPECT_EQ(core.act(request(action)).refusal,
+  for (const char* const action : {"put", "remove", "place", "find", "switch"})
+    EXPECT_EQ(core.act(request(action)).text,
               "the map is being built: switch that off first (features off)");
   for (int i = 0; i < 300; ++i)
     robot.step(core);
@@ -329,7 +334,7 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
   EXPECT_TRUE(core.map_changed());
   // The robot is registered on what was built, where it was.
   const Pose before = robot.stand(core).pose_in_map;
-  EXPECT_EQ(core.act(request(Action::kAddFeatures, false)).refusal, "");
+  EXPECT_EQ(core.act(request("add_features", false)).text, "");
   const Core::Outputs after = robot.stand(core);
   EXPECT_EQ(after.state, State::tracking);
   EXPECT_NE(after.reason, "builds the map");
@@ -342,7 +347,7 @@ TEST(RegistrationCore, AMapThatIsLoadedEndsTheBuilding) {
   Robot robot;
   for (int i = 0; i < 300; ++i)
     robot.step(core);
-  EXPECT_EQ(core.act(load(kHall)).refusal, "");
+  EXPECT_EQ(core.act(load(kHall)).text, "");
   EXPECT_NE(robot.stand(core).reason, "builds the map");
   EXPECT_EQ(core.map_source(), "other.map");
   EXPECT_NE(maps::find(core.map(), 2), nullptr);
@@ -354,12 +359,12 @@ TEST(RegistrationCore, WhatWasAskedForOutlastsTheLink) {
   Core core(settings());
   Robot robot;
   robot.stand(core);
-  core.act(request(Action::kSwitch, false));
+  core.act(request("switch", false));
   EXPECT_EQ(robot.stand(core).state, State::off);
   robot.reconnect();
   EXPECT_EQ(robot.stand(core).state, State::off);
-  core.act(request(Action::kSwitch, true));
-  core.act(request(Action::kFind));
+  core.act(request("switch", true));
+  core.act(request("find"));
   EXPECT_EQ(robot.stand(core).state, State::unplaced);
   robot.reconnect();
   EXPECT_EQ(robot.stand(core).state, State::unplaced) << "it may be far from the start";
@@ -435,7 +440,7 @@ TEST(RegistrationCore, ARestartGoesOnFromWhatWasRemembered) {
   Robot robot;
   for (int i = 0; i < 100; ++i)
     robot.step(core);
-  const std::uint32_t id = core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})).artifact;
+  const std::uint32_t id = id_of(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})));
   const Pose before = robot.stand(core).pose_in_map;
   Core next(settings(), parse_remembered(to_text(*core.remembered()), "memory"));
   EXPECT_NE(maps::find(next.map(), id), nullptr);
@@ -463,7 +468,7 @@ TEST(RegistrationCore, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
   Robot robot;
   robot.stand(core);
   core.act(load("CORRIDOR (5) 0, 0, 0, 30000, 2000\n", "a;b  c.map"));
-  core.act(request(Action::kFind));
+  core.act(request("find"));
   robot.stand(core);
   Core next(settings(), core.remembered());
   EXPECT_EQ(next.map_source(), "a;b  c.map");
@@ -510,16 +515,16 @@ void happen(int cycle, Core& core, Robot& robot) {
       core.processes().request("test-match", ProcessAction::suspend, 15);
       break;
     case 160:
-      core.act(request(Action::kAddFeatures, true));
+      core.act(request("add_features", true));
       break;
     case 200:
       robot.reconnect();
       break;
     case 240:
-      core.act(request(Action::kAddFeatures, false));
+      core.act(request("add_features", false));
       break;
     case 280:
-      core.act(request(Action::kFind));
+      core.act(request("find"));
       break;
     default:
       break;

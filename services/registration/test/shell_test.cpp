@@ -10,16 +10,17 @@
 #include <fstream>
 #include <functional>
 #include <limits>
-#include <thread>
 
 #include "drive/drive.hpp"
 #include "interpretation/shell/service.hpp"
 #include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "registration/shell/service.hpp"
+#include "requests/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/request_client.hpp"
 
 namespace {
 
@@ -168,15 +169,36 @@ class RegistrationShell : public testing::Test {
         .norm();
   }
 
-  v1::RegistrationAnswer ask(v1::RegistrationRequest request) {
+  Answer ask(const Request& asked) {
+    v1::Request request = to_bus(asked);
     request.source("test");
-    request.request(++asked);
+    request.number(++number);
     requests.write(request);
     cycle();
     const auto answer = answers.take_newest();
     EXPECT_TRUE(answer.has_value());
-    EXPECT_EQ(answer->request(), asked);
-    return *answer;
+    EXPECT_EQ(answer->number(), number);
+    return from_bus(*answer);
+  }
+  bool done(const Request& asked) { return ask(asked).code == AnswerCode::done; }
+  static Request on_or_off(const char* functor, bool on) { return {functor, {{"on", on}}}; }
+  static Request load(const std::string& name, const std::string& text) {
+    return {"load", {{"name", name}, {"text", text}}};
+  }
+  static Request place(const Pose& pose_in_map) {
+    return {"place", {{"position", PlacedPoint{pose_in_map, Frame::map}}}};
+  }
+  static Request put(const char* type, const Pose& pose_in_map, double size,
+                     const std::string& name = "") {
+    return {"put",
+            {{"type", std::string(type)},
+             {"position", PlacedPoint{pose_in_map, Frame::map}},
+             {"length", size},
+             {"width", size},
+             {"name", name}}};
+  }
+  static std::uint32_t id_of(const Answer& answer) {
+    return static_cast<std::uint32_t>(number_of(answer.results, "id"));
   }
 
   /// The office with a door to N2, which is open at first, and a crate, which is far away.
@@ -219,10 +241,10 @@ class RegistrationShell : public testing::Test {
   bus::Node bridge{named("bridge"), memory};
   bus::Writer<v1::RobotState> states{bridge.writer(bus::topics::kRobotState)};
   bus::Writer<v1::RobotDescription> descriptions{bridge.writer(bus::topics::kRobotDescription)};
-  bus::Writer<v1::RegistrationRequest> requests{bridge.writer(bus::topics::kRegistrationRequest)};
+  bus::Writer<v1::Request> requests{bridge.writer<v1::Request>(bus::topics::kRegistrationRequest)};
   bus::Reader<v1::Registration> registrations{bridge.reader(bus::topics::kRegistration)};
-  bus::Reader<v1::RegistrationAnswer> answers{bridge.reader(bus::topics::kRegistrationAnswer)};
-  bus::Reader<v1::Map> maps{bridge.reader(bus::topics::kMap)};
+  bus::Reader<v1::Answer> answers{bridge.reader(bus::topics::kRegistrationAnswers)};
+  bus::Reader<v1::FloorMap> maps{bridge.reader(bus::topics::kMap)};
   bus::Node eyes{named("interpretation"), memory};
   runtime::Shell eyes_shell{eyes, interpretation::component().make};
   std::optional<bus::Node> service;
@@ -230,7 +252,7 @@ class RegistrationShell : public testing::Test {
   v1::Registration registration;
   maps::Map newest_map;
   std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
-  std::uint64_t asked = 0;
+  std::uint64_t number = 0;
   std::uint64_t epoch = 7;
   std::uint64_t before_epoch = 0;  ///< cycles of the robot
 };
@@ -293,15 +315,7 @@ TEST_F(RegistrationShell, AThingComesOntoTheMapAndGoesWhereFeaturesAreAdded) {
 TEST_F(RegistrationShell, AThingThatIsNotThereIsTakenFromTheMapOfAPerson) {
   start({map_path("office"), "start", ""});
   cycle();
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_PUT);
-  maps::Feature box;
-  box.type = lps::PointType::object;
-  box.pose_in_map = {5.0, 7.7, 0.0};
-  box.length = 0.5;
-  box.width = 0.5;
-  request.artifact(maps::to_bus(box));
-  const std::uint32_t id = ask(request).artifact();
+  const std::uint32_t id = id_of(ask(put("OBJECT", {5.0, 7.7, 0.0}, 0.5)));
   ASSERT_NE(maps::find(known_map(), id), nullptr);
   EXPECT_TRUE(tour_until([&] { return maps::find(known_map(), id) == nullptr; }, 2000));
   // And the crate is not put onto it.
@@ -323,38 +337,35 @@ TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
   // On another map it is another door.
   ASSERT_TRUE(drive.scene().set_door("n2", false));
   ASSERT_TRUE(tour_until([&] { return !registration.closed_doors().empty(); }, 1200));
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_LOAD);
-  request.name("another");
-  request.text(read_file(map_path("office")));
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(load("another", read_file(map_path("office")))));
   EXPECT_TRUE(registration.closed_doors().empty());
 }
 
 TEST_F(RegistrationShell, ASuspendedProcessSaysNothingUntilItIsResumed) {
   start({map_path("office"), "start", ""});
-  bus::Writer<v1::ProcessRequest> process_requests = bridge.writer(bus::topics::kProcessRequest);
-  const auto request = [&](const std::string& process, v1::ProcessAction action) {
-    v1::ProcessRequest sample;
+  bus::Writer<v1::Request> process_requests =
+      bridge.writer<v1::Request>(bus::topics::kProcessRequest);
+  const auto request = [&](const std::string& process, const char* functor) {
+    v1::Request sample;
     sample.source("test");
     sample.service("registration");
-    sample.process(process);
-    sample.action(action);
+    sample.functor(functor);
+    sample.arguments({bus::text("process", process)});
     process_requests.write(sample);
     cycle();
   };
   cycle();
   ASSERT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
   ASSERT_EQ(registration.environment(), 1U);
-  request("test-environment", v1::PROCESS_SUSPEND);
+  request("test-environment", "suspend");
   EXPECT_EQ(registration.environment(), 0U);
-  request("test-environment", v1::PROCESS_RESUME);
+  request("test-environment", "resume");
   EXPECT_EQ(registration.environment(), 1U);
-  request("test-match", v1::PROCESS_INTERRUPT);
+  request("test-match", "interrupt");
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
   EXPECT_EQ(registration.reason(), "test-match is suspended: the pose goes on by dead reckoning");
-  request("test-match", v1::PROCESS_RESUME);
+  request("test-match", "resume");
   EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
 }
 
@@ -364,28 +375,29 @@ TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
   cycle();
   test::Tour there({{8.0, 7.0}}, false);
   tour(there, 100);
-  v1::RegistrationRequest put;
-  put.action(v1::REGISTRATION_PUT);
-  put.artifact().type(v1::ARTIFACT_POSITION);
-  put.artifact().pose_in_map().x(5.0);
-  put.artifact().name("printer");
-  const std::uint32_t id = ask(put).artifact();
+  const std::uint32_t id = id_of(ask(put("POS", {5.0, 0.0, 0.0}, 0.0, "printer")));
   EXPECT_NE(id, 0U);
-  // The memory is written once a second: after a second without any, that of the next cycle is.
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-  cycle();
-  const v1::Registration before = registration;
+  // The memory is written once a second.
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto holds_printer = [&] {
+    return std::filesystem::exists(options.memory_file) &&
+           read_file(options.memory_file).find("printer") != std::string::npos;
+  };
+  while (!holds_printer() && std::chrono::steady_clock::now() < limit)
+    cycle();
   shell.reset();
   service.reset();
+  const Memory kept = parse_remembered(read_file(options.memory_file), "memory").memory;
+  const Pose before = compose(kept.pose_in_map, relative(kept.pose_in_odom, Pose{}));
   start(options);
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
   const Vec2 moved = drive.seen().true_pose_in_world.position();
   EXPECT_LT((lps::from_bus(registration.pose_in_map()).position() - moved).norm(), 0.4);
   // Without a jump: odom has the same place on the map.
-  EXPECT_NEAR(registration.odom_in_map().x(), before.odom_in_map().x(), 0.1);
-  EXPECT_NEAR(registration.odom_in_map().y(), before.odom_in_map().y(), 0.1);
-  EXPECT_NEAR(registration.odom_in_map().th(), before.odom_in_map().th(), 0.03);
+  EXPECT_NEAR(registration.odom_in_map().x(), before.x, 0.1);
+  EXPECT_NEAR(registration.odom_in_map().y(), before.y, 0.1);
+  EXPECT_NEAR(registration.odom_in_map().th(), before.th, 0.03);
   const auto map = maps.take_newest();
   ASSERT_TRUE(map);
   EXPECT_TRUE(map->changed());
@@ -398,37 +410,24 @@ TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
 TEST_F(RegistrationShell, TakesRequestsAndSaysWhyNot) {
   start({map_path("office"), "start", ""});
   cycle();
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_LOAD);
-  request.name("wrong.map");
-  request.text("CORRIDOR (1) 0, 0, 0, 10000\n");
-  const auto refused = ask(request);
-  EXPECT_FALSE(refused.done());
-  EXPECT_NE(refused.reason().find("wrong.map:1:"), std::string::npos) << refused.reason();
+  const Answer refused = ask(load("wrong.map", "CORRIDOR (1) 0, 0, 0, 10000\n"));
+  EXPECT_EQ(refused.code, AnswerCode::refused);
+  EXPECT_NE(refused.text.find("wrong.map:1:"), std::string::npos) << refused.text;
   // A bad map does not replace the good one.
   EXPECT_GT(maps.take_newest()->artifacts().size(), 10U);
-  request.action(v1::REGISTRATION_REMOVE);
-  request.artifact().id(4711);
-  EXPECT_EQ(ask(request).reason(), "no artifact (4711) in the map");
-  request.artifact().id(111);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_EQ(ask({"remove", {{"id", 4711.0}}}).text, "no artifact (4711) in the map");
+  EXPECT_TRUE(done({"remove", {{"id", 111.0}}}));
   const auto map = maps.take_newest();
   ASSERT_TRUE(map);
   EXPECT_EQ(maps::find(maps::from_bus(*map), 111), nullptr);
-  request.action(v1::REGISTRATION_SWITCH);
-  request.on(false);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(on_or_off("switch", false)));
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
-  request.on(true);
-  EXPECT_TRUE(ask(request).done());
-  request.action(v1::REGISTRATION_PLACE);
-  request.pose_in_map(lps::to_bus(Pose{5.0, 7.0, 1.0}));
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(on_or_off("switch", true)));
+  EXPECT_TRUE(done(place({5.0, 7.0, 1.0})));
   EXPECT_NEAR(registration.pose_in_map().x(), 5.0, 0.05);
   EXPECT_NEAR(registration.pose_in_map().th(), 1.0, 0.05);
-  request.action(v1::REGISTRATION_DELETE);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done({"delete"}));
   EXPECT_TRUE(maps.take_newest()->artifacts().empty());
 }
 
@@ -436,15 +435,17 @@ TEST_F(RegistrationShell, RefusesPlacesThatAreNone) {
   start({map_path("office"), "start", ""});
   cycle();
   const v1::Registration before = registration;
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_PLACE);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Pose& wrong : {Pose{nan, 7.0, 1.0}, Pose{5.0, 1e13, 1.0}, Pose{5.0, 7.0, nan}}) {
-    request.pose_in_map(lps::to_bus(wrong));
-    const auto answer = ask(request);
-    EXPECT_FALSE(answer.done());
-    EXPECT_NE(answer.reason().find("within 10 km"), std::string::npos) << answer.reason();
+  for (const Pose& wrong : {Pose{nan, 7.0, 1.0}, Pose{5.0, 7.0, nan}}) {
+    const Answer answer = ask(place(wrong));
+    EXPECT_EQ(answer.code, AnswerCode::bad_argument);
+    EXPECT_NE(answer.text.find("place: argument \"position\": expected a point in the map"),
+              std::string::npos)
+        << answer.text;
   }
+  const Answer far = ask(place({5.0, 1e13, 1.0}));
+  EXPECT_EQ(far.code, AnswerCode::refused);
+  EXPECT_NE(far.text.find("within 10 km"), std::string::npos) << far.text;
   EXPECT_NEAR(registration.pose_in_map().x(), before.pose_in_map().x(), 0.1);
   EXPECT_NEAR(registration.pose_in_map().y(), before.pose_in_map().y(), 0.1);
 }
@@ -454,17 +455,11 @@ TEST_F(RegistrationShell, AMapThatIsTooLargeChangesNothing) {
   cycle();
   const auto before = maps.take_newest();
   ASSERT_TRUE(before);
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_LOAD);
-  request.name("campus.map");
-  request.text("OFFICE (1) 0, 0, 0, 2000000, 2000000\n");
-  EXPECT_NE(ask(request).reason().find("at most 25 ha"), std::string::npos);
-  request.action(v1::REGISTRATION_PUT);
-  request.artifact().type(v1::ARTIFACT_OBJECT);
-  request.artifact().pose_in_map(lps::to_bus(Pose{9000.0, 9000.0, 0.0}));
-  request.artifact().length(1.0);
-  request.artifact().width(1.0);
-  EXPECT_NE(ask(request).reason().find("at most 25 ha"), std::string::npos);
+  EXPECT_NE(
+      ask(load("campus.map", "OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).text.find("at most 25 ha"),
+      std::string::npos);
+  EXPECT_NE(ask(put("OBJECT", {9000.0, 9000.0, 0.0}, 1.0)).text.find("at most 25 ha"),
+            std::string::npos);
   EXPECT_FALSE(maps.take_newest()) << "nothing has changed";
   EXPECT_EQ(registration.map_revision(), before->revision());
   EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
@@ -474,14 +469,9 @@ TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
   const Options given{map_path("office"), "start", folder.path("memory")};
   start(given);
   cycle();
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_LOAD);
-  request.name("a;b  c.map");
-  request.text("CORRIDOR (5) 0, 0, 0, 30000, 2000 \"hall\"\nWALL 0, 5000, 0, 3000\n");
-  EXPECT_TRUE(ask(request).done());
-  request.action(v1::REGISTRATION_PLACE);
-  request.pose_in_map(lps::to_bus(Pose{-3.0, 0.2, 0.1}));
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(
+      load("a;b  c.map", "CORRIDOR (5) 0, 0, 0, 30000, 2000 \"hall\"\nWALL 0, 5000, 0, 3000\n")));
+  EXPECT_TRUE(done(place({-3.0, 0.2, 0.1})));
   maps.take_newest();
   restart(given);
   auto map = maps.take_newest();
@@ -506,9 +496,7 @@ TEST_F(RegistrationShell, ARestartKnowsThatTheMapWasDeleted) {
   const Options given{map_path("office"), "start", folder.path("memory")};
   start(given);
   cycle();
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_DELETE);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done({"delete"}));
   restart(given);
   const auto map = maps.take_newest();
   ASSERT_TRUE(map);
@@ -538,20 +526,15 @@ TEST_F(RegistrationShell, ABadMemoryIsNone) {
 TEST_F(RegistrationShell, WhatWasSaidOutlastsTheLink) {
   start({map_path("office"), "start", ""});
   cycle();
-  v1::RegistrationRequest request;
-  request.action(v1::REGISTRATION_SWITCH);
-  request.on(false);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(on_or_off("switch", false)));
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
   reconnect();
   cycle();
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
-  request.on(true);
-  EXPECT_TRUE(ask(request).done());
-  request.action(v1::REGISTRATION_FIND);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(on_or_off("switch", true)));
+  EXPECT_TRUE(done({"find"}));
   EXPECT_EQ(registration.state(), v1::REGISTRATION_UNPLACED);
   reconnect();
   cycle();
@@ -563,21 +546,17 @@ TEST_F(RegistrationShell, BuildsAnEmptyMapAndRefusesWhatWouldBeLost) {
   cycle();
   EXPECT_TRUE(registration.adds_features());
   EXPECT_EQ(registration.reason(), "builds the map");
-  v1::RegistrationRequest request;
-  for (const v1::RegistrationAction action :
-       {v1::REGISTRATION_PUT, v1::REGISTRATION_REMOVE, v1::REGISTRATION_PLACE,
-        v1::REGISTRATION_FIND, v1::REGISTRATION_SWITCH}) {
-    request.action(action);
-    const auto answer = ask(request);
-    EXPECT_FALSE(answer.done());
-    EXPECT_NE(answer.reason().find("being built"), std::string::npos) << answer.reason();
+  for (const Request& request :
+       {put("POS", {1.0, 0.0, 0.0}, 0.0), Request{"remove", {{"id", 1.0}}}, place({1.0, 0.0, 0.0}),
+        Request{"find"}, on_or_off("switch", false)}) {
+    const Answer answer = ask(request);
+    EXPECT_EQ(answer.code, AnswerCode::refused);
+    EXPECT_NE(answer.text.find("being built"), std::string::npos) << answer.text;
   }
   test::Tour there({{8.0, 0.0}}, false);
   tour(there, 400);
   EXPECT_GT(maps.take_newest()->artifacts().size(), 0U);
-  request.action(v1::REGISTRATION_ADD_FEATURES);
-  request.on(false);
-  EXPECT_TRUE(ask(request).done());
+  EXPECT_TRUE(done(on_or_off("add_features", false)));
   // On what was built, where it was.
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);

@@ -1,8 +1,16 @@
 #include "saphira/runtime/ports.hpp"
 
+#include "requests/shell/convert.hpp"
 #include "saphira/bus/notes.hpp"
+#include "saphira/bus/request_client.hpp"
 
 namespace saphira::runtime {
+namespace {
+
+constexpr int kAcknowledged = 5000;  // [ms] in lockstep, for a program that hangs
+
+}  // namespace
+
 const char* word(Port::Use use) {
   switch (use) {
     case Port::Use::kState:
@@ -26,6 +34,30 @@ const char* word(Port::Use use) {
 Ports::Ports(bus::Node& node, bus::Cycle& cycle) : node_(node), cycle_(cycle) {
   declare(bus::topics::kRobotState.name, Port::Use::kState);
   declare(bus::topics::kRobotDescription.name, Port::Use::kState);
+}
+
+std::uint64_t Asker::ask(Request request) {
+  request.source = node_->options().name;
+  request.asker = node_->instance();
+  request.number = bus::next_request_number();
+  request.stamp = {cycle_->stamp().epoch(), cycle_->stamp().cycle()};
+  const bool taken = writer_.write(to_bus(request)) &&
+                     (!node_->options().lockstep || writer_.wait_acknowledged(kAcknowledged));
+  if (!taken)
+    node_->warn("not everybody has got this request: " + describe(request));
+  return request.number;
+}
+
+void Ports::requests(const bus::RequestTopic& topic, std::vector<Functor> functors, Desk::Act act) {
+  declare(topic.name, Port::Use::kEvents);
+  declare(topic.answers.name, Port::Use::kChanges);
+  desks_.push_back(std::make_unique<Desk>(node_, topic.answers));
+  desks_.back()->serve(topic, std::move(functors), std::move(act));
+}
+
+void Ports::take_requests() {
+  for (const auto& desk : desks_)
+    desk->take({cycle_.stamp().epoch(), cycle_.stamp().cycle()});
 }
 
 void Ports::say(const std::vector<Note>& notes) {

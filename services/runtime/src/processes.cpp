@@ -22,29 +22,22 @@ v1::ProcessState state_of(const Process& process) {
   }
 }
 
-/// Nothing for a number that no enumerator has.
-std::optional<ProcessAction> action_of(v1::ProcessAction action) {
-  switch (action) {
-    case v1::PROCESS_INTERRUPT:
-      return ProcessAction::interrupt;
-    case v1::PROCESS_SUSPEND:
-      return ProcessAction::suspend;
-    case v1::PROCESS_RESUME:
-      return ProcessAction::resume;
-  }
-  return std::nullopt;
+std::vector<Functor> functors() {
+  const Parameter process = text_parameter("process", "name of a process");
+  return {
+      {"interrupt", "the process puts its things away and waits until it is resumed", {process}},
+      {"suspend",
+       "the process waits",
+       {process, optional(whole_parameter("cycles", "for so many; 0: until it is resumed", 0.0,
+                                          4294967295.0))}},
+      {"resume", "the process goes on", {process}}};
 }
 
-const char* word(ProcessAction action) {
-  switch (action) {
-    case ProcessAction::interrupt:
-      return "interrupted";
-    case ProcessAction::suspend:
-      return "suspended";
-    case ProcessAction::resume:
-      break;
-  }
-  return "resumed";
+/// Of one of functors().
+ProcessAction action_of(const std::string& functor) {
+  return functor == "interrupt" ? ProcessAction::interrupt
+         : functor == "suspend" ? ProcessAction::suspend
+                                : ProcessAction::resume;
 }
 
 }  // namespace
@@ -53,63 +46,51 @@ ProcessesOnBus::ProcessesOnBus(bus::Node& node, ProcessTable& table, Others othe
     : node_(node),
       table_(table),
       others_(std::move(others)),
-      requests_(node.reader(bus::topics::kProcessRequest)),
-      answers_(node.writer(bus::topics::kProcessAnswer)),
+      desk_(node, bus::topics::kProcessAnswers),
       states_(node.writer(bus::topics::kProcesses)) {
+  desk_.serve(bus::topics::kProcessRequest, functors(),
+              [this](const Request& request) { return act(request); });
   publish();
 }
 
 ProcessesOnBus::~ProcessesOnBus() {
-  v1::Processes sample;
+  v1::ProcessSet sample;
   sample.instance(node_.instance());
   states_.dispose(sample);
 }
 
-void ProcessesOnBus::step(const v1::Stamp& stamp) {
+void ProcessesOnBus::step(const Stamp& stamp) {
   stamp_ = stamp;
-  take_requests();
-  table_.step(stamp.cycle());
+  desk_.take(stamp_);
+  table_.step(stamp.cycle);
   publish();
 }
 
 void ProcessesOnBus::idle() {
-  take_requests();
+  desk_.take(stamp_);
   publish();
 }
 
-void ProcessesOnBus::take_requests() {
-  for (const auto& sample : requests_.take()) {
-    const v1::ProcessRequest& request = sample.data;
-    if (sample.info.disposed || request.service() != node_.options().name)
-      continue;
-    v1::ProcessAnswer answer;
-    answer.stamp(stamp_);
-    answer.request(request.request());
-    const std::optional<ProcessAction> action = action_of(request.action());
-    if (!action) {
-      answer.reason("nobody knows what action " +
-                    std::to_string(static_cast<int>(request.action())) + " is");
-    } else {
-      std::optional<std::string> wrong;
-      if (others_ && table_.find(request.process()) == nullptr)
-        wrong = others_(request.process(), *action, request.cycles());
-      answer.reason(wrong ? *wrong : table_.request(request.process(), *action, request.cycles()));
-      if (answer.reason().empty())
-        node_.info("process " + request.process() + " " + word(*action) + " by " +
-                   request.source().substr(0, 255));
-    }
-    answer.done(answer.reason().empty());
-    answers_.write(answer);
-  }
+std::optional<Answer> ProcessesOnBus::act(const Request& request) {
+  const std::string& process = text_of(request.arguments, "process");
+  const ProcessAction action = action_of(request.functor);
+  const auto cycles = static_cast<std::uint32_t>(number_of(request.arguments, "cycles"));
+  std::optional<std::string> wrong;
+  if (others_ && table_.find(process) == nullptr)
+    wrong = others_(process, action, cycles);
+  if (!wrong)
+    wrong = table_.request(process, action, cycles);
+  return Answer{wrong->empty() ? AnswerCode::done : AnswerCode::refused, *wrong};
 }
 
 void ProcessesOnBus::publish() {
   if (!table_.take_changed())
     return;
-  v1::Processes sample;
+  v1::ProcessSet sample;
   sample.instance(node_.instance());
   sample.service(node_.options().name);
-  sample.stamp(stamp_);
+  sample.stamp().epoch(stamp_.epoch);
+  sample.stamp().cycle(stamp_.cycle);
   for (const Process* process : table_.processes()) {
     v1::Process one;
     one.name(process->name());

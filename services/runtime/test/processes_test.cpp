@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "node_options.hpp"
+#include "saphira/bus/request_client.hpp"
 
 namespace saphira::runtime {
 namespace {
@@ -10,30 +11,31 @@ namespace {
 /// A service and somebody who looks at it and asks, on a bus in memory.
 class ProcessesOnBusTest : public ::testing::Test {
  protected:
-  std::optional<v1::ProcessAnswer> ask(const std::string& whom, const std::string& process,
-                                       v1::ProcessAction action, std::uint32_t cycles = 0) {
-    v1::ProcessRequest request;
+  std::optional<v1::Answer> ask(const std::string& whom, const std::string& process,
+                                const char* functor, std::optional<double> cycles = {}) {
+    v1::Request request;
     request.source("a person");
-    request.request(++number);
+    request.number(++number);
     request.service(whom);
-    request.process(process);
-    request.action(action);
-    request.cycles(cycles);
+    request.functor(functor);
+    request.arguments({bus::text("process", process)});
+    if (cycles)
+      request.arguments().push_back(bus::number("cycles", *cycles));
     requests.write(request);
     on_bus.idle();
     return answers.take_newest();
   }
   void cycle() {
-    stamp.cycle(stamp.cycle() + 1);
+    ++stamp.cycle;
     on_bus.step(stamp);
   }
 
   std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
   bus::Node service{test::memory_options("eyes"), memory};
   bus::Node person{test::memory_options("person"), memory};
-  bus::Writer<v1::ProcessRequest> requests = person.writer(bus::topics::kProcessRequest);
-  bus::Reader<v1::ProcessAnswer> answers = person.reader(bus::topics::kProcessAnswer);
-  bus::Reader<v1::Processes> states = person.reader(bus::topics::kProcesses);
+  bus::Writer<v1::Request> requests = person.writer<v1::Request>(bus::topics::kProcessRequest);
+  bus::Reader<v1::Answer> answers = person.reader(bus::topics::kProcessAnswers);
+  bus::Reader<v1::ProcessSet> states = person.reader(bus::topics::kProcesses);
   ProcessTable table;
   Process& doors = table.add("doors", "finds doors");
   ProcessesOnBus on_bus{service, table,
@@ -43,7 +45,7 @@ class ProcessesOnBusTest : public ::testing::Test {
                             return cycles == 0 ? "" : "not for so long";
                           return std::nullopt;
                         }};
-  v1::Stamp stamp;
+  Stamp stamp;
   std::uint64_t number = 0;
 };
 
@@ -66,34 +68,35 @@ TEST_F(ProcessesOnBusTest, TellsTheStatesWhenTheyChange) {
 
 TEST_F(ProcessesOnBusTest, ObeysAndAnswers) {
   cycle();
-  auto answer = ask("eyes", "doors", v1::PROCESS_INTERRUPT);
+  auto answer = ask("eyes", "doors", "interrupt");
   ASSERT_TRUE(answer);
-  EXPECT_TRUE(answer->done());
-  EXPECT_EQ(answer->request(), number);
+  EXPECT_EQ(answer->code(), v1::ANSWER_DONE);
+  EXPECT_EQ(answer->number(), number);
   // Told at once, also while the cycles stand still.
   EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_INTERRUPTED);
   cycle();
   EXPECT_TRUE(doors.interrupted());
   EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_SUSPENDED);
-  EXPECT_TRUE(ask("eyes", "doors", v1::PROCESS_RESUME).value().done());
+  EXPECT_EQ(ask("eyes", "doors", "resume").value().code(), v1::ANSWER_DONE);
   cycle();
   EXPECT_TRUE(doors.works());
-  EXPECT_TRUE(ask("eyes", "doors", v1::PROCESS_SUSPEND, 2).value().done());
+  EXPECT_EQ(ask("eyes", "doors", "suspend", 2).value().code(), v1::ANSWER_DONE);
   EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_SLEEPING);
 }
 
 TEST_F(ProcessesOnBusTest, SaysWhyNot) {
-  auto answer = ask("eyes", "windows", v1::PROCESS_SUSPEND);
+  auto answer = ask("eyes", "windows", "suspend");
   ASSERT_TRUE(answer);
-  EXPECT_FALSE(answer->done());
-  EXPECT_EQ(answer->reason(), "no process \"windows\"; there are doors");
-  EXPECT_FALSE(ask("ears", "doors", v1::PROCESS_SUSPEND));
-  EXPECT_FALSE(ask("eyes", "doors", static_cast<v1::ProcessAction>(77)).value().done());
+  EXPECT_EQ(answer->code(), v1::ANSWER_REFUSED);
+  EXPECT_EQ(answer->text(), "no process \"windows\"; there are doors");
+  EXPECT_FALSE(ask("ears", "doors", "suspend"));
+  EXPECT_EQ(ask("eyes", "doors", "end").value().code(), v1::ANSWER_UNKNOWN_FUNCTOR);
+  EXPECT_EQ(ask("eyes", "doors", "suspend", -1.0).value().code(), v1::ANSWER_BAD_ARGUMENT);
 }
 
 TEST_F(ProcessesOnBusTest, LetsTheServiceAnswerForWhatIsNotInTheTable) {
-  EXPECT_TRUE(ask("eyes", "follow-it", v1::PROCESS_INTERRUPT).value().done());
-  EXPECT_EQ(ask("eyes", "follow-it", v1::PROCESS_SUSPEND, 3).value().reason(), "not for so long");
+  EXPECT_EQ(ask("eyes", "follow-it", "interrupt").value().code(), v1::ANSWER_DONE);
+  EXPECT_EQ(ask("eyes", "follow-it", "suspend", 3).value().text(), "not for so long");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ class Repeater final : public Service {
     seen_.new_robot.push_back(turn.new_robot);
     seen_.new_frame.push_back(turn.new_frame);
     EXPECT_EQ(turn.description.stamp().epoch(), turn.stamp.epoch);
-    v1::Behaviors sample;
+    v1::BehaviorSet sample;
     sample.control(intentions_.value() != nullptr);
     behaviors_.write(sample);
     Notes notes;
@@ -53,8 +53,8 @@ class Repeater final : public Service {
   Seen& seen_;
   bus::Input<v1::Intentions>& intentions_;
   bus::Reader<v1::Message> messages_;
-  Output<v1::Behaviors> behaviors_;
-  Output<v1::Beliefs> beliefs_;
+  Output<v1::BehaviorSet> behaviors_;
+  Output<v1::BeliefSet> beliefs_;
   ProcessTable table_;
 };
 
@@ -85,7 +85,7 @@ class RuntimeTest : public testing::TestWithParam<bool> {
   bus::Writer<v1::RobotState> states_{bridge_.writer(bus::topics::kRobotState)};
   bus::Writer<v1::RobotDescription> descriptions_{bridge_.writer(bus::topics::kRobotDescription)};
   bus::Writer<v1::Intentions> intentions_{bridge_.writer(bus::topics::kIntentions)};
-  bus::Reader<v1::Behaviors> behaviors_{bridge_.reader(bus::topics::kBehaviors)};
+  bus::Reader<v1::BehaviorSet> behaviors_{bridge_.reader(bus::topics::kBehaviors)};
   Seen seen_;
   Shell shell_{node_, [this](Ports& ports) { return std::make_unique<Repeater>(ports, seen_); }};
   std::uint64_t epoch_ = 7;

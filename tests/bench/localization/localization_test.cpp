@@ -40,13 +40,6 @@ DriveOptions on_office(DriveOptions options) {
   return registered_on(office(), std::move(options));
 }
 
-Core::Request request(Core::Request::Action action, bool on) {
-  Core::Request asked;
-  asked.action = action;
-  asked.on = on;
-  return asked;
-}
-
 /// The office floor with more in it, as a file.
 std::string office_with(const std::string& name, const std::string& more) {
   const std::string path = testing::TempDir() + "saphira-" + name + ".wld";
@@ -301,7 +294,7 @@ TEST(Localization, WhereDeadReckoningHasBegunAnewWhatIsRememberedIsAGuess) {
 TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
   Drive robot(on_office(doubled(1)));
   patrol(robot, office_tour(), 300);
-  robot.cores().registration().act(request(Core::Request::Action::kSwitch, false));
+  robot.cores().registration().act({"switch", {{"on", false}}});
   Tour tour(office_tour(), true);
   for (int i = 0; i < 100; ++i) {
     tour.act(robot, robot.believed());
@@ -311,7 +304,7 @@ TEST(Localization, SwitchedOffItGoesOnByDeadReckoning) {
     EXPECT_TRUE(output.matches.empty());
   }
   EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.6);
-  robot.cores().registration().act(request(Core::Request::Action::kSwitch, true));
+  robot.cores().registration().act({"switch", {{"on", true}}});
   robot.advance();
   EXPECT_EQ(robot.registered().state, State::tracking);
 }

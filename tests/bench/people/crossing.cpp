@@ -360,11 +360,13 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   }
   result.closest = watch.closest_person();
   for (const sim::Contact& contact : watch.contacts()) {
-    const bool person = contact.kind == sim::ThingKind::kPerson;
-    if (contact.blame == sim::Blame::kCaused)
-      ++(person ? result.caused : result.things);
+    const bool caused = contact.blame == sim::Blame::kCaused;
+    if (contact.kind != sim::ThingKind::kPerson)
+      ++(caused ? result.things : result.other_things);
+    else if (caused)
+      ++result.caused;
     else
-      ++result.other;
+      ++(contact.blame == sim::Blame::kUnseen ? result.unseen : result.walked_into);
   }
   result.end_in_world = drive.seen().true_pose_in_world.position();
   return result;

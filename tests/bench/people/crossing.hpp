@@ -40,9 +40,12 @@ struct CrossingResult {
   bool arrived = false;
   double seconds = 0.0;
   double closest = 0.0;  ///< [m] hull to person, the least of the run
-  int caused = 0;        ///< contacts that the robot has caused
-  int other = 0;         ///< walked into at rest, or nothing that a sonar could hear
-  int things = 0;        ///< contacts with walls and things
+  // Contacts with people (sim::Blame).
+  int caused = 0;       ///< by the robot
+  int walked_into = 0;  ///< the robot stood, or crept
+  int unseen = 0;       ///< no sonar could have heard the person in time
+  int things = 0;       ///< with walls and things, caused by the robot
+  int other_things = 0;
   Vec2 end_in_world{0.0, 0.0};
 };
 

@@ -51,11 +51,11 @@ void print(const Run& run) {
     std::printf("no way for this robot\n");
   else
     std::printf(
-        "%s %4.1f m in %5.1f s, nearest to a person %5.2f m, contacts: %d caused, %d other, "
-        "%d with things; ended at (%.1f, %.1f)\n",
+        "%s %4.1f m in %5.1f s, nearest to a person %5.2f m, contacts: %d caused, %d walked into "
+        "the robot, %d unseen, %d with things (%d caused); ended at (%.1f, %.1f)\n",
         result.arrived ? "arrived   " : "NOT THERE ", run.length, result.seconds, result.closest,
-        result.caused, result.other, result.things, result.end_in_world.x(),
-        result.end_in_world.y());
+        result.caused, result.walked_into, result.unseen, result.things + result.other_things,
+        result.things, result.end_in_world.x(), result.end_in_world.y());
 }
 
 double median(std::vector<double> values) {
@@ -135,39 +135,50 @@ int main(int argc, char** argv) {
 
     int possible = 0;
     int arrived = 0;
-    int caused = 0;
-    int other = 0;
-    int things = 0;
+    CrossingResult sum;
     std::vector<double> closest;
     for (const Run& run : runs) {
-      const bool bad = run.possible && (!run.result.arrived || run.result.caused > 0 ||
-                                        run.result.other > 0 || run.result.things > 0);
+      const CrossingResult& result = run.result;
+      const bool bad =
+          run.possible && (!result.arrived || result.caused + result.walked_into + result.unseen +
+                                                      result.things + result.other_things >
+                                                  0);
       if (!quiet || bad)
         print(run);
       if (!run.possible)
         continue;
       ++possible;
-      arrived += run.result.arrived ? 1 : 0;
-      caused += run.result.caused;
-      other += run.result.other;
-      things += run.result.things;
-      if (std::isfinite(run.result.closest))
-        closest.push_back(run.result.closest);
+      arrived += result.arrived ? 1 : 0;
+      sum.caused += result.caused;
+      sum.walked_into += result.walked_into;
+      sum.unseen += result.unseen;
+      sum.things += result.things;
+      sum.other_things += result.other_things;
+      if (std::isfinite(result.closest))
+        closest.push_back(result.closest);
     }
+    const double closest_p50 = median(closest);
     std::printf(
-        "%d of %d arrived (%zu planned; the others have no way of 2 m for the robot), %d contacts "
-        "caused by the robot, %d others, %d with things; nearest to a person, median %.2f m\n",
-        arrived, possible, runs.size(), caused, other, things, median(closest));
+        "%d of %d arrived (%zu planned; the others have no way of 2 m for the robot). Contacts "
+        "with people: %d caused by the robot, %d walked into it, %d unseen; with things: %d "
+        "caused, %d others. Nearest to a person, median %.2f m\n",
+        arrived, possible, runs.size(), sum.caused, sum.walked_into, sum.unseen, sum.things,
+        sum.other_things, closest_p50);
     if (json)
       std::printf("%s\n", nlohmann::json{{"runs", possible},
                                          {"arrived", arrived},
-                                         {"contacts_caused", caused},
-                                         {"contacts_other", other},
-                                         {"contacts_things", things},
-                                         {"closest_m_p50", median(closest)}}
+                                         {"contacts_caused", sum.caused + sum.things},
+                                         {"contacts_other",
+                                          sum.walked_into + sum.unseen + sum.other_things},
+                                         {"people_caused", sum.caused},
+                                         {"people_walked_into", sum.walked_into},
+                                         {"people_unseen", sum.unseen},
+                                         {"things_caused", sum.things},
+                                         {"things_other", sum.other_things},
+                                         {"closest_m_p50", closest_p50}}
                               .dump()
                               .c_str());
-    return caused == 0 && things == 0 && arrived == possible ? 0 : 1;
+    return sum.caused == 0 && sum.things == 0 && arrived == possible ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "saphira-bench-people: %s\n", error.what());
     return 1;

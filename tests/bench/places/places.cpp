@@ -131,7 +131,7 @@ Arrival travel(const Journey& journey, std::uint64_t seed, int cycles, const std
   Whole whole(options);
   Arrival arrival;
   Passages passages;
-  const intentions::GoalId goal = whole.ask("go-to-place", {intentions::text("place", journey.to)});
+  const intentions::GoalId goal = whole.ask("go-to-place", {saphira::text("place", journey.to)});
   whole.advance_until(
       [&] {
         const Seen& seen = whole.drive().seen();

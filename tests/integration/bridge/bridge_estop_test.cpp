@@ -20,18 +20,16 @@ class Button {
     writer_.write(command_);
   }
   void reset() {
-    v1::EstopReset reset;
-    reset.source("key switch");
-    reset.number(++resets_);
-    reset_writer_.write(reset);
+    v1::Request request;
+    request.functor("reset");
+    resets_.send(request);
   }
 
  private:
   bus::Node node_;
   bus::Writer<v1::MotorCommand> writer_ = node_.writer(bus::topics::kDriveEstop);
-  bus::Writer<v1::EstopReset> reset_writer_ = node_.writer(bus::topics::kEstopReset);
+  bus::RequestClient resets_{node_, bus::topics::kEstopReset, "key switch"};
   v1::MotorCommand command_;
-  std::uint64_t resets_ = 0;
 };
 
 struct Driving : Scene {

@@ -173,21 +173,13 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().x() > 0.5; }));
   const std::uint64_t epoch = scene.state.stamp().epoch();
   const std::uint64_t odom = scene.state.odom();
-  auto servos = scene.node.writer(bus::topics::kServo);
   scene.simulator->signal(SIGKILL);
   ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
   ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
   // What is asked for meanwhile is refused, and does not happen later.
-  ASSERT_TRUE(scene.until([&] { return servos.matched() > 0; }));
-  v1::ServoCommand servo;
-  servo.source("test");
-  servo.request(7);
-  servo.width(1800);
-  servos.write(servo);
-  ASSERT_TRUE(scene.until([&] {
-    return !scene.devices.requests().empty() && scene.devices.requests()[0].request() == 7;
-  }));
-  EXPECT_EQ(scene.devices.requests()[0].reason(), "no robot is connected");
+  const v1::Answer answer = scene.ask(bus::topics::kServo, "servo", {bus::number("width", 1800)});
+  EXPECT_EQ(answer.code(), v1::ANSWER_NOBODY);
+  EXPECT_EQ(answer.text(), "no robot is connected");
   scene.drives = false;
   scene.start_simulator();
   scene.expect_halves();

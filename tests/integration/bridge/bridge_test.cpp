@@ -272,64 +272,35 @@ TEST(Bridge, DrivesADistanceAndTurnsToAHeading) {
   EXPECT_NEAR(scene.state.pose_in_odom().th(), kPi / 2, radians(2.0));
 }
 
-/// What the bridge says became of a request; nothing yet.
-std::optional<v1::DeviceRequest> outcome(const Scene& scene, std::uint64_t number) {
-  for (const v1::DeviceRequest& request : scene.devices.requests())
-    if (request.request() == number && request.state() != v1::REQUEST_SENDING)
-      return request;
-  return {};
-}
-
 TEST(Bridge, DevicesReflect) {
   Scene scene;
-  auto outputs = scene.node.writer(bus::topics::kDigitalOutput);
-  auto servos = scene.node.writer(bus::topics::kServo);
-  auto timers = scene.node.writer(bus::topics::kTimer);
-  auto servers = scene.node.writer(bus::topics::kServer);
   scene.start_simulator();
   scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected() && servers.matched() > 0; }))
-      << scene.bridge_log();
-  v1::DigitalOutputCommand output;
-  output.source("test");
-  output.request(1);
-  output.mask(0xFF);
-  output.bits(0x5A);
-  outputs.write(output);
-  EXPECT_TRUE(scene.until([&] { return outcome(scene, 1).has_value(); }));
-  EXPECT_EQ(outcome(scene, 1)->state(), v1::REQUEST_SHOWN);
+  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
+  const v1::Answer output =
+      scene.ask(bus::topics::kDigitalOutput, "output", {bus::number("bits", 0x5A)});
+  EXPECT_EQ(output.code(), v1::ANSWER_DONE);
+  EXPECT_EQ(output.text(), "output 0x5A: the robot shows it");
   // The state comes on another topic: there is no order between the two.
   EXPECT_TRUE(scene.until([&] { return scene.state.digital_output() == 0x5A; }));
-  output.request(2);
-  output.mask(0x0F);
-  output.bits(0x0C);
-  outputs.write(output);
+  scene.ask(bus::topics::kDigitalOutput, "output",
+            {bus::number("bits", 0x0C), bus::number("mask", 0x0F)});
   EXPECT_TRUE(scene.until([&] { return scene.state.digital_output() == 0x5C; }));
 
-  v1::ServoCommand servo;
-  servo.source("test");
-  servo.request(3);
-  servo.width(1500);
-  servos.write(servo);
+  scene.ask(bus::topics::kServo, "servo", {bus::number("width", 1500)});
   EXPECT_TRUE(scene.until([&] { return scene.state.ptu() == 1500; }));
 
-  v1::TimerCommand timer;
-  timer.source("test");
-  timer.request(4);
-  timer.pin(9);
-  timers.write(timer);
-  EXPECT_TRUE(scene.until([&] { return outcome(scene, 4).has_value(); }));
-  EXPECT_EQ(outcome(scene, 4)->state(), v1::REQUEST_REFUSED);
-  EXPECT_EQ(outcome(scene, 4)->reason(), "expected a pin in 0..7");
-
-  v1::ServerCommand server;
-  server.source("test");
-  server.request(5);
-  server.action(v1::SERVER_MOTORS);
-  server.value(7);
-  servers.write(server);
+  const v1::Answer timer = scene.ask(bus::topics::kTimer, "timer", {bus::number("pin", 9)});
+  EXPECT_EQ(timer.code(), v1::ANSWER_BAD_ARGUMENT);
+  EXPECT_NE(timer.text().find("expected a whole number from 0 to 7"), std::string::npos)
+      << timer.text();
+  EXPECT_EQ(scene.ask(bus::topics::kServer, "motors", {bus::number("on", 7)}).code(),
+            v1::ANSWER_BAD_ARGUMENT);
+  EXPECT_EQ(scene.ask(bus::topics::kServer, "servo").code(), v1::ANSWER_UNKNOWN_FUNCTOR)
+      << "another topic's";
   EXPECT_TRUE(scene.until([&] {
-    return scene.bridge_log().find("of test refused: value 7 is not within 0..1") !=
+    return scene.bridge_log().find(
+               "a request of test: motors: argument \"on\": expected yes or no") !=
            std::string::npos;
   })) << scene.bridge_log();
 }

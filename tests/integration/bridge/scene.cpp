@@ -130,6 +130,18 @@ void Scene::watch(milliseconds time) {
   until([] { return false; }, time);
 }
 
+v1::Answer Scene::ask(const bus::RequestTopic& topic, const std::string& functor,
+                      const std::vector<v1::Argument>& arguments) {
+  v1::Request request;
+  request.functor(functor);
+  request.arguments(arguments);
+  return bus::RequestClient(node, topic, "test").ask(request, 30.0, nullptr, [this] {
+    take();
+    if (drives)
+      publish();
+  });
+}
+
 bool Scene::rests() const {
   return std::abs(state.velocity()) < 0.01 && std::abs(state.rotation_velocity()) < 0.05;
 }

@@ -8,6 +8,7 @@
 
 #include "process.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "saphira/sim/trace.hpp"
 
 namespace saphira::test {
@@ -43,6 +44,9 @@ class Scene {
   bool until(const std::function<bool()>& condition,
              std::chrono::milliseconds limit = std::chrono::seconds(30));
   void watch(std::chrono::milliseconds time);
+  /// Asks the bridge, and drives until that has come to an end.
+  v1::Answer ask(const bus::RequestTopic& topic, const std::string& functor,
+                 const std::vector<v1::Argument>& arguments = {});
 
   v1::RobotState state;
   v1::Grant grant;

@@ -37,11 +37,23 @@ lps::Source source(double value) {
   return value == kSides ? lps::Source::sides : lps::Source::all;
 }
 
+constexpr std::size_t kMostAreas = 16;  // of a behavior
+
+void note(Call& call, const Area& area) {
+  if (call.evaluation != nullptr && call.evaluation->areas.size() < kMostAreas)
+    call.evaluation->areas.push_back(area);
+}
+
 void occ_box(Call& call, const double* a, double* out) {
   const lps::Axis axis = a[0] == kSides ? lps::Axis::sides : lps::Axis::front;
-  *out = kMillimetres *
-         call.context->lps.box(axis, a[1] * kMetres, a[2] * kMetres, a[3] * kMetres, a[4] * kMetres)
-             .distance;
+  const double cx = a[1] * kMetres;
+  const double cy = a[2] * kMetres;
+  const double h = a[3] * kMetres;
+  const double w = a[4] * kMetres;
+  const lps::Occupancy found = call.context->lps.box(axis, cx, cy, h, w);
+  *out = kMillimetres * found.distance;
+  if (found.point)
+    note(call, {cx - h / 2.0, cx + h / 2.0, cy - w / 2.0, cy + w / 2.0});
 }
 
 void occ_plane(Call& call, const double* a, double* out) {
@@ -71,7 +83,10 @@ const std::vector<Vec2>& near(Call& call, double within) {
 void path(Call& call, const double* a, double* out) {
   const double radius = a[1] * kMetres;
   const double limit = std::clamp(a[2] * kMetres, 0.0, 10.0);
-  *out = kMillimetres * free_path(near(call, limit + radius), a[0], radius, limit);
+  const double free = free_path(near(call, limit + radius), a[0], radius, limit);
+  *out = kMillimetres * free;
+  if (free < limit && a[0] == 0.0)
+    note(call, {0.0, limit + radius, -radius, radius});
 }
 
 /// As sfFreePath straight ahead, among what is on one side alone.
@@ -87,6 +102,9 @@ void path_beside(Call& call, const double* a, double* out) {
     free = std::min(free, p.x() - std::sqrt(radius * radius - p.y() * p.y()));
   }
   *out = kMillimetres * std::max(free, 0.0);
+  if (free < limit)
+    note(call, kSide == Beside::left ? Area{0.0, limit + radius, 0.0, radius}
+                                     : Area{0.0, limit + radius, -radius, 0.0});
 }
 
 /// sfNearestLeft(from, to, limit): among what is from `from` to `to` along X.
@@ -100,6 +118,8 @@ void nearest_beside(Call& call, const double* a, double* out) {
     if ((p.y() >= 0.0) == (kSide == Beside::left) && p.x() > from && p.x() < to)
       distance = std::min(distance, p.norm());
   *out = kMillimetres * distance;
+  if (distance < limit)
+    note(call, kSide == Beside::left ? Area{from, to, 0.0, limit} : Area{from, to, -limit, 0.0});
 }
 
 constexpr double kFree = 0.8;                 ///< of the reach: a way so far is free

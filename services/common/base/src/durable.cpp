@@ -22,9 +22,7 @@ constexpr std::string_view kSum = "; sum ";
 std::string sum_of(std::string_view text) {
   Fnv1a hash;
   hash.add(text);
-  char digits[20];
-  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
-  return digits;
+  return hash.text();
 }
 
 std::string short_sum_of(std::string_view text) {

@@ -1,6 +1,7 @@
 #include "saphira/base/places.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
@@ -24,6 +25,14 @@ std::string config_folder() {
   }
   throw std::runtime_error("no configuration: expected " + (bin / "../share/saphira").string() +
                            " (installed) or the source tree's config/");
+}
+
+std::string user_folder() {
+  const char* const config = std::getenv("XDG_CONFIG_HOME");
+  if (config != nullptr && *config != 0)
+    return std::string(config) + "/saphira";
+  const char* const home = std::getenv("HOME");
+  return home == nullptr || *home == 0 ? "" : std::string(home) + "/.config/saphira";
 }
 
 std::string find_file(const std::string& folder, const std::string& name,

@@ -75,7 +75,8 @@ bool Explorer::is_tried(const Lead& lead) const {
     const Vec2 off = tried.point - lead.point;
     const double along = std::abs(off.dot(ahead({0.0, 0.0}, lead.heading, 1.0)));
     const double across = std::sqrt(std::max(0.0, off.squaredNorm() - along * along));
-    return along < settings_.tried + 0.8 && across < settings_.tried &&
+    return along < settings_.tried + 0.8 &&
+           across < (lead.door ? settings_.wide_door / 2 : settings_.tried) &&
            std::abs(norm2_angle(tried.heading - lead.heading)) < radians(45.0);
   });
 }
@@ -122,6 +123,20 @@ std::vector<Explorer::Lead> Explorer::leads(const Inputs& inputs) const {
   for (const Lead& lead : seen_open_)
     if (!mapped_along(inputs.map, lead.point, lead.heading))
       offer(lead);
+  return out;
+}
+
+/// A narrow corridor looks like a wide door.
+std::vector<Explorer::Lead> Explorer::wide_doors(const Inputs& inputs) const {
+  std::vector<Lead> out;
+  for (const Feature& f : inputs.map.features) {
+    const double inwards = norm2_angle(f.pose_in_map.th + kPi);
+    const Lead lead{
+        f.pose_in_map.position(), inwards, "door " + std::to_string(f.id), false, true, true};
+    if (f.type == PointType::door && f.width >= settings_.wide_door && !is_tried(lead) &&
+        !mapped_along(inputs.map, lead.point, inwards))
+      out.push_back(lead);
+  }
   return out;
 }
 
@@ -172,6 +187,8 @@ void Explorer::choose(const Inputs& inputs) {
         break;
       }
     }
+  if (open.empty())
+    open = wide_doors(inputs);
   if (open.empty() && settings_.home > 0.0) {
     // Along the way that it went first, so that what was seen there is seen again.
     std::size_t i = 0;
@@ -208,7 +225,8 @@ void Explorer::choose(const Inputs& inputs) {
     return;
   }
   tried_.insert(tried_.end(), unreached.begin(), unreached.end());
-  given_up_ += static_cast<int>(unreached.size());
+  for (const Lead& lead : unreached)
+    leave(lead, "no way leads there");
   if (!best) {
     if (open.empty())
       output_ = {true, std::nullopt, std::nullopt, 0.0, "nothing is left to explore"};
@@ -319,8 +337,18 @@ void Explorer::probe(const Inputs& inputs) {
     aside_ = 0.0;
   }
   const double turned = norm2_angle(inputs.pose_in_map.th - heading);
-  const bool front = !squeeze_ && off < settings_.aside && std::abs(turned) < radians(35.0) &&
+  // Before it is through an opening it may only see the edge of it.
+  const bool entering = lead_->opening && done < settings_.entering;
+  const bool front = !squeeze_ && off < (entering ? 0.3 : settings_.aside) &&
+                     std::abs(turned) < radians(entering ? 15.0 : 35.0) &&
                      heard(-turned).value_or(lps::kNothing) < settings_.front;
+  if (lead_->door && !in_corridor_ &&
+      (front || stuck || away || (done > settings_.in_door && !walled()))) {
+    output_.reason = lead_->what + ": a room";
+    open_ = true;  // where it stands is no end of anything
+    finish(inputs);
+    return;
+  }
   if (front) {
     // The sides first: what is ahead turns the robot away, into a door as likely as not. Then on,
     // for it may be a box.
@@ -333,11 +361,14 @@ void Explorer::probe(const Inputs& inputs) {
     return;
   }
   const double beyond = lead_->opening ? settings_.beyond_opening : settings_.beyond;
-  if (stuck || away || gone > beyond) {
+  // Between two walls it is on its way along a corridor, however late the map has it.
+  if (stuck || away || gone > (walled() ? 3.0 : 1.0) * beyond) {
     output_.reason = lead_->what + (stuck  ? ": closed"
                                     : away ? ": turned away"
                                            : ": open, and nothing follows");
     open_ = !stuck && !away;
+    if (!open_ && (lead_->opening || lead_->aside) && !in_corridor_)
+      leave(*lead_, stuck ? "closed" : "turned away");
     // An end that was left behind on the way into the open has been tried with it.
     tried_.push_back({point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
     if (squeeze_) {
@@ -349,7 +380,27 @@ void Explorer::probe(const Inputs& inputs) {
     look(inputs);
     return;
   }
-  head_for(point + (at + 2 * settings_.look_ahead) * u + aside_ * Vec2(-u.y(), u.x()), inputs);
+  const double far = (entering ? 0.8 : 2.0) * settings_.look_ahead;
+  head_for(point + (at + far) * u + aside_ * Vec2(-u.y(), u.x()), inputs);
+}
+
+void Explorer::leave(const Lead& lead, const std::string& why) {
+  left_.push_back(lead);
+  left_.back().what += " (" + why + ")";
+}
+
+std::vector<std::string> Explorer::left(const maps::Map& map) const {
+  std::vector<std::string> out;
+  for (const Lead& lead : left_)
+    if (!lead.home && !lead.door && !mapped_along(map, lead.point, lead.heading) &&
+        std::find(out.begin(), out.end(), lead.what) == out.end())
+      out.push_back(lead.what);
+  return out;
+}
+
+bool Explorer::walled() const {
+  return std::all_of(open_way_.begin(), open_way_.end(),
+                     [&](double way) { return way < settings_.gap_in_walls; });
 }
 
 std::optional<double> Explorer::heard(double bearing) const {
@@ -390,6 +441,9 @@ void Explorer::begin_looking(const Inputs& inputs) {
                                [](const Feature& f) { return f.type == PointType::corridor; });
   if (any && !in_corridor_)
     looks_.clear();
+  if (lead_->opening && !in_corridor_)  // a wing that stands aslant
+    for (const double aslant : {kPi / 4, -kPi / 4})
+      looks_.push_back(norm2_angle(lead_->heading + aslant));
   aligned_ = std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(12.0);
   turned_ = !aligned_;
   if (aligned_)
@@ -407,17 +461,18 @@ void Explorer::listen_aside(const Inputs& inputs) {
     if (!range)
       return false;
     const bool left = norm2_angle(heading - lead_->heading) > 0.0;
-    if (turned_ || open_way_.at(left ? 0 : 1) > settings_.wider_than_a_door)
-      hear_aside(*range, heading, inputs);
+    const bool wide = turned_ || open_way_.at(left ? 0 : 1) > settings_.wider_than_a_door;
+    hear_aside(*range, heading, !wide, inputs);
     return true;
   });
 }
 
-void Explorer::hear_aside(double range, double heading, const Inputs& inputs) {
+void Explorer::hear_aside(double range, double heading, bool narrow, const Inputs& inputs) {
   if (range <= settings_.open_side)
     return;
-  open_aside_ = true;
-  Lead side{look_from_, heading, "a way aside", false, false};
+  open_aside_ = open_aside_ || !narrow;
+  Lead side{look_from_, heading, narrow ? "a narrow way aside" : "a way aside",
+            false,      false,   narrow};
   if (!mapped_along(inputs.map, look_from_, heading) && !is_tried(side))
     seen_open_.push_back(side);
 }
@@ -478,7 +533,7 @@ void Explorer::look(const Inputs& inputs) {
   if (!looked(heading, inputs))
     return;
   if (steady_cycle_ != 0)
-    hear_aside(heard(0.0).value_or(0.0), heading, inputs);
+    hear_aside(heard(0.0).value_or(0.0), heading, false, inputs);
   looks_.erase(looks_.begin());
   look_cycle_ = inputs.cycle;
   steady_cycle_ = 0;

@@ -28,7 +28,7 @@ v1::MapArtifact to_bus(const Feature& feature) {
   return artifact;
 }
 
-Map from_bus(const v1::Map& map) {
+Map from_bus(const v1::FloorMap& map) {
   Map result;
   result.features.reserve(map.artifacts().size());
   for (const v1::MapArtifact& artifact : map.artifacts())
@@ -36,8 +36,8 @@ Map from_bus(const v1::Map& map) {
   return result;
 }
 
-v1::Map to_bus(const Map& map) {
-  v1::Map result;
+v1::FloorMap to_bus(const Map& map) {
+  v1::FloorMap result;
   result.artifacts().reserve(map.features.size());
   for (const Feature& feature : map.features)
     result.artifacts().push_back(to_bus(feature));

@@ -8,8 +8,8 @@ namespace saphira::maps {
 
 Feature from_bus(const v1::MapArtifact& artifact);
 v1::MapArtifact to_bus(const Feature& feature);
-Map from_bus(const v1::Map& map);
+Map from_bus(const v1::FloorMap& map);
 /// The artifacts; stamp, revision and source are the caller's.
-v1::Map to_bus(const Map& map);
+v1::FloorMap to_bus(const Map& map);
 
 }  // namespace saphira::maps

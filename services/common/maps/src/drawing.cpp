@@ -95,6 +95,8 @@ void Picture::bounds() {
   for (const Strokes& strokes : drawing_.strokes)
     for (const Vec2& point : strokes.lines)
       include(point);
+  for (const Words& words : drawing_.words)
+    include(words.at_in_map);
   if (drawing_.robot)
     include(drawing_.robot->pose_in_map.position());
   if (drawing_.raster) {
@@ -249,6 +251,8 @@ void Picture::strokes() {
     out_ += "\" fill=\"none\" stroke=\"" + escaped(strokes.color) + "\" stroke-width=\"" +
             number(strokes.width) + "\"/>\n";
   }
+  for (const Words& words : drawing_.words)
+    label(words.at_in_map, words.text, 0.35, escaped(words.color));
 }
 
 void Picture::robot() {

@@ -44,6 +44,17 @@ TEST(Drawing, ShowsEveryRoomDoorAndCorridor) {
     std::ofstream(file) << svg;
 }
 
+TEST(Drawing, ShowsWhatProgramsHaveDrawnAndWritten) {
+  Drawing drawing;
+  drawing.map = parse_map("DOOR (3) 0, 0, 0, 900\n", "test.map");
+  drawing.strokes = {{"planner", "#ff0000", 0.05, {{0.0, 0.0}, {1.0, 1.0}}}};
+  drawing.words = {{{2.0, 3.0}, "here <b>", "#00ff00"}};
+  const std::string svg = to_svg(drawing);
+  EXPECT_NE(svg.find("stroke=\"#ff0000\""), std::string::npos);
+  EXPECT_NE(svg.find(">here &lt;b&gt;</text>"), std::string::npos) << svg;
+  EXPECT_NE(svg.find(">planner</text>"), std::string::npos) << "in the legend";
+}
+
 TEST(Drawing, ShowsWhichDoorsAreClosedAndWhatTheRobotHasPutDown) {
   Drawing drawing;
   drawing.map = parse_map(

@@ -16,6 +16,8 @@ namespace saphira::sim {
 inline constexpr double kMaxRate = std::numeric_limits<double>::infinity();
 
 /// One more robot in the same world.
+class ViewFeed;
+
 struct RobotOptions {
   std::string robot;             ///< path of a robot parameter file; empty: as the first robot
   std::optional<Pose> position;  ///< start_in_world; otherwise the world file's next one
@@ -24,6 +26,8 @@ struct RobotOptions {
 /// Where a simulated robot stands and who may talk to it.
 struct HostOptions {
   std::string world;  ///< path of a world file
+  /// Path of a second file, for what stands and walks in that world besides; empty: none.
+  std::string things;
   std::string robot;  ///< path of a robot parameter file
   /// Path of the local socket that is listened on; see default_socket(). Without a port only.
   std::optional<std::string> socket;
@@ -53,6 +57,14 @@ struct HostOptions {
   std::string stereo;
   /// Local socket on which the same pictures are sent to whoever connects. README, "Vision".
   std::optional<std::string> stereo_socket;
+  /// Local socket of the simulator's own view (view.hpp): what is true, and what people do to it.
+  std::optional<std::string> view_socket;
+  /// What the view may load, by name; empty: nothing.
+  std::vector<std::string> worlds;
+  std::vector<std::string> robots;
+  /// The file of such a world or robot.
+  std::function<std::string(const std::string& name)> world_file;
+  std::function<std::string(const std::string& name)> robot_file;
   /// Takes lines for the log; may be empty. Called in the thread of run().
   std::function<void(const std::string&)> log;
 };
@@ -84,7 +96,12 @@ class Host {
   void end();
 
  private:
+  /// Another world or robot, by its name; where it cannot be had all stays as it is.
+  void change(const std::string& world, const std::string& robot);
+
   struct Parts;
+  HostOptions options_;
+  std::unique_ptr<ViewFeed> view_;
   std::unique_ptr<Parts> parts_;
 };
 

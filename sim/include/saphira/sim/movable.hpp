@@ -36,6 +36,7 @@ struct PersonPlan {
     Vec2 to{0.0, 0.0};   ///< where to, unless speed is 0
     double speed = 0.0;  ///< [m/s]; 0: waits
     double wait = 0.0;   ///< [s]
+    bool leads = false;  ///< walks while a robot is near, and waits for one otherwise
   };
   Look look;
   Vec2 at{0.0, 0.0};

@@ -109,6 +109,8 @@ class Scene {
   bool set_door(std::string_view name, bool open);
   /// Somebody carries a box elsewhere. False where there is no such box, or something stands there.
   bool set_box(std::string_view name, const Pose& pose_in_world);
+  /// Somebody goes elsewhere at once; their script goes on. False likewise.
+  bool set_person(std::string_view name, const Vec2& at);
 
   /// A sonar has fired; what a robot alone in a scene does is not kept.
   void sound(const Ping& ping);
@@ -142,6 +144,7 @@ class Scene {
 
   void walk(Person& person);
   void next_leg(Person& person);
+  bool has_robot_within(double reach, const Vec2& point) const;
   bool lets_pass(const Person& person, const Vec2& to);
   void turn(std::size_t door);
   bool is_free(std::size_t box, const Pose& pose_in_world, RobotNumber pusher) const;

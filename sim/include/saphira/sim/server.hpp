@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saphira/protocol/command.hpp"
@@ -99,6 +101,8 @@ class Server {
   const Robot& robot() const { return robot_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
   std::uint64_t cycle() const { return cycle_; }
+  /// Where each sonar looks [in the robot], and what it has heard last [m]; those that have fired.
+  std::vector<std::pair<Pose, double>> beams() const;
   ServerCounters counters() const;
   const Devices& devices() const { return devices_; }
   Devices& devices() { return devices_; }
@@ -144,6 +148,7 @@ class Server {
   bool first_row_ = true;
   bool watchdog_ = false;  // has stopped the motors
   std::vector<protocol::RawSonar> readings_;
+  std::map<std::uint8_t, std::uint16_t> newest_;  // of each sonar, for who looks on
   ServerCounters counters_;
 
   Devices devices_;

@@ -70,8 +70,9 @@ struct World {
 World parse_world(std::string_view text, const std::string& file);
 
 /// The same from a file, whose last line has a line break: it would not be noticed otherwise that a
-/// file was cut off within a number.
-World load_world(const std::string& path);
+/// file was cut off within a number. `things`: a second file of the same form, for what stands and
+/// walks in that world besides; empty: none.
+World load_world(const std::string& path, const std::string& things = "");
 
 /// The point of the segment that is nearest to `point`.
 Vec2 nearest_point(const Segment& segment, const Vec2& point);

@@ -24,6 +24,7 @@ struct BusOptions {
   std::optional<std::string> profile;
   std::vector<std::string> peers;
   std::optional<std::string> interface;
+  std::optional<std::string> security;  ///< folder of credentials, absolute, or "none"
   bool lockstep = false;
 };
 
@@ -58,9 +59,11 @@ struct Places {
   std::string config;             ///< the folder of our configuration: ${config}
   std::string run;                ///< for sockets and what must outlast a restart: ${run}
   std::string robot = "pioneer";  ///< ${robot} where the deployment states none
+  std::string own = {};           ///< an administrator's deployments; empty: there are none
 };
 /// The places of the running program: config is ../share/saphira beside it, or the source tree's.
-/// `run` is left empty. std::runtime_error when there is no config.
+/// `run` is left empty; `own` is /etc/saphira where the programs are in /usr. std::runtime_error
+/// when there is no config.
 Places find_places();
 
 /// The file that a person means by "demo", "demo.yaml" or a path. std::invalid_argument that

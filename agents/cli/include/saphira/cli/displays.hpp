@@ -13,15 +13,12 @@ namespace saphira::cli {
 /// The intention display (paper, Figure 10): a line for each intention and each behavior, with the
 /// marker * (blocking) or o, the schema, the instance, and the state that comes next or B; behind
 /// that what it does. `behaviors` adds how far each is satisfied.
-std::string intentions_display(const v1::Intentions& intentions, const v1::Behaviors* behaviors);
-
-/// Whether the node stands for a behavior: a leaf of the tree.
-bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions);
+std::string intentions_display(const v1::Intentions& intentions, const v1::BehaviorSet* behaviors);
 
 /// The behaviors window (manual 2.3.6, Figures 2-4 and 2-5): for each behavior on both channels its
 /// activity as a bar through the middle line, and its recommendation as a bar to one side; at the
 /// bottom their summation.
-std::string behaviors_display(const v1::Behaviors& behaviors);
+std::string behaviors_display(const v1::BehaviorSet& behaviors);
 
 /// The window of one behavior (Figure 2-6): parameters, state, rules with their antecedents, fuzzy
 /// variables. `intended` and `schema` add what only they know.
@@ -30,10 +27,10 @@ std::string behavior_display(const v1::BehaviorState& behavior,
                              const v1::BehaviorSchema* schema);
 
 /// The beliefs whose name holds `part` (all: empty), with who said so and how long ago.
-std::string beliefs_table(const v1::Beliefs& beliefs, const std::string& part = {});
+std::string beliefs_table(const v1::BeliefSet& beliefs, const std::string& part = {});
 
 /// The processes window (manual 2.3.7), for all services together.
-std::string processes_table(std::vector<v1::Processes> services);
+std::string processes_table(std::vector<v1::ProcessSet> services);
 
 /// As the manual's window shows it: INIT, SUSP, or the number of its own state.
 std::string state_text(const v1::Process& process);

@@ -4,8 +4,11 @@
 #include <vector>
 
 #include "intention.h"
+#include "saphira/situation/words.hpp"
 
 namespace saphira::cli {
+
+using situation::describe;
 
 /// One argument of a goal as a person types it, name=value:
 ///
@@ -30,8 +33,5 @@ v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& 
 ///
 /// each with further name=value words behind it. std::invalid_argument as above.
 v1::Goal parse_request(const std::vector<std::string>& words);
-
-/// The goal as a person reads it: go_to(position=(3, 1) in odom).
-std::string describe(const v1::Goal& goal);
 
 }  // namespace saphira::cli

@@ -64,6 +64,12 @@ class Supervisor {
   /// after `limit`.
   void stop(std::chrono::milliseconds limit = std::chrono::seconds(2));
 
+  /// Takes in new versions: each child whose program is another file than the one that it was
+  /// started from is ended and started again, the next one when it has run for two seconds. Those
+  /// stay to which `objection` (of a program's path) has something to say, and those that are not
+  /// on the bus, such as a simulator. The work is done by step().
+  void renew(const std::function<std::string(const std::string& program)>& objection);
+
   std::vector<Child> children() const;
   /// A child that ended with a usage error (exit code 2) right after its first start, before it
   /// had proven itself: what it was given is wrong, so to start it again is of no use.
@@ -85,6 +91,7 @@ class Supervisor {
     bool crashed = false;
     int beats = -1;       ///< the pipe of its heartbeats
     std::string trouble;  ///< for which it was killed
+    std::string file;     ///< which file it was started from; see file_of()
   };
   struct Stream {
     int fd;
@@ -101,6 +108,7 @@ class Supervisor {
   void reap(std::size_t index);
   void read_beats(std::size_t index);
   void watch(BootClock::duration waited, std::chrono::milliseconds timeout);
+  void renew_next();
   void say(const std::string& text) { print_({}, text); }
 
   std::vector<Slot> slots_;
@@ -109,6 +117,8 @@ class Supervisor {
   std::chrono::milliseconds proven_;  ///< a child that ran this long starts afresh
   Watchdog watchdog_;
   bool stopping_ = false;
+  std::vector<std::size_t> to_renew_;    ///< the next one first
+  std::optional<std::size_t> renewing_;  ///< ended for a new version, and not proven yet
 };
 
 }  // namespace saphira::cli

@@ -9,6 +9,7 @@
 
 #include "saphira/authority/latches.hpp"
 #include "saphira/base/age.hpp"
+#include "saphira/base/stamp.hpp"
 
 namespace saphira::authority {
 
@@ -64,6 +65,8 @@ struct Grant {
   bool estopped = false;             ///< an emergency stop is latched
   std::string estop_source;          ///< which program pressed it
   bool waits_for_hand_back = false;  ///< autonomy waits until a person hands the robot back
+  Stamp answers;             ///< the robot state that the newest command answers; cycle 0: none
+  std::uint64_t number = 0;  ///< of that command
 
   /// Whether the same one drives (a change means: stop first, then obey).
   bool same_driver(const Grant& other) const {

@@ -29,10 +29,10 @@ struct CoreSettings {
   bool keeps_latches = false;   ///< what is latched outlives a restart
 };
 
-/// The bridge without bus, clock, files and sockets. It decides on the session with the robot, the
-/// ages of the link, of commands and of the bridge's own loop, which program drives, what the robot
-/// is sent and what the status reports. The caller tells it each event together with the time, in
-/// seconds of a steady clock, and carries out its outputs.
+/// The bridge without bus, clock, files and sockets. Its decisions: the session with the robot, too
+/// old links and commands, pauses of the bridge's own loop, the program that drives, packets to the
+/// robot, the status. The caller passes each event with its time, in seconds of a steady clock, and
+/// carries out the outputs.
 ///
 /// After each call the caller carries out what take() returns, in that order, and then calls work()
 /// in the same way until it returns false. A cycle is two such pieces: first its state, so that the
@@ -79,7 +79,7 @@ class Core {
   /// A writer of motor commands is gone.
   void writer_lost(authority::Role role, const authority::WriterId& writer, double now);
   /// Somebody releases the emergency stop.
-  void reset_estop(const std::string& source, double now);
+  Answer reset_estop(const std::string& source, double now);
   /// Lockstep: the simulator may step while its cycle is less than this.
   void permit(std::uint64_t until_cycle) { permit_ = until_cycle; }
   /// All of the above that had come was told: decides, and answers.
@@ -163,6 +163,7 @@ class Core {
   Condition condition(double now, const Surroundings& around) const;
   Condition robot_condition(double now) const;
   void report(double now, const Surroundings& around);
+  void tell_wait(const Condition& now_is, double now);
 
   CoreSettings settings_;
   std::vector<Output> out_;
@@ -187,6 +188,7 @@ class Core {
 
   // The decision of now.
   authority::Grant grant_;
+  Told told_;
   authority::Guarded guarded_;
   bool grant_changed_ = false;
   bool driver_spoke_ = false;  ///< the one who drives, since the last answer
@@ -203,9 +205,15 @@ class Core {
   int keeper_restarts_ = 0;
   double keeper_new_until_ = 0.0;  ///< [s] the status tells that the keeper was replaced
   double reported_at_ = 0.0;       ///< [s]
-  double reaction_at_ = 0.0;       ///< [s]
-  double reaction_sum_ = 0.0;      ///< [s]
-  double reaction_max_ = 0.0;      ///< [s]
+  struct Wait {
+    std::string reason;
+    double since = 0.0;  ///< [s]
+    bool told = false;
+  };
+  Wait wait_;                  ///< for the robot
+  double reaction_at_ = 0.0;   ///< [s]
+  double reaction_sum_ = 0.0;  ///< [s]
+  double reaction_max_ = 0.0;  ///< [s]
   int reactions_ = 0;
   std::uint64_t late_ = 0;
   std::uint64_t steps_ = 0;

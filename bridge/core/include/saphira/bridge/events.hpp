@@ -70,6 +70,11 @@ struct CycleBegan {
   reflector::State state;
   std::uint64_t bad_packets = 0;  ///< of this session
 };
+/// What the one who drives wants of the wheels, before the guard.
+struct Told {
+  reflector::Setpoints setpoints;
+  double distance_left = 0.0;  ///< [m] of a position
+};
 /// Any packet but an information packet, for devices and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
@@ -82,6 +87,7 @@ struct DevicesChanged {
 };
 struct GrantDecided {
   authority::Grant grant;
+  Told told;
   authority::Guarded guarded;
   std::vector<authority::Refusal> refused;
   Stamp stamp;

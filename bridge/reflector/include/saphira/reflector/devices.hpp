@@ -12,83 +12,18 @@
 #include "saphira/protocol/information.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/protocol/server_packet.hpp"
+#include "saphira/reflector/wishes.hpp"
 
 namespace saphira::reflector {
 
-// ---- What may be asked of the robot's devices. SI units, but where a number is the robot's own.
-
-struct ServoWish {
-  std::uint16_t width = 0;  ///< [us]
-};
-enum class GripperAction {
-  open,
-  close,
-  stop,
-  lift_up,
-  lift_down,
-  lift_stop,
-  store,
-  deploy,
-  halt,
-  pressure,
-  carry,
-  number
-};
-struct GripperWish {
-  GripperAction action = GripperAction::stop;
-  std::uint16_t value = 0;  ///< of pressure, carry and number, in the robot's own units
-};
-struct OutputWish {
-  std::uint8_t mask = 0;
-  std::uint8_t bits = 0;
-};
-struct AnalogWish {
-  std::uint8_t port = 0;
-};
-struct TimerWish {
-  std::uint8_t pin = 0;
-};
-struct SonarWish {
-  bool on = true;
-  std::vector<std::uint8_t> polling;  ///< empty: all, in order
-};
-struct Tone {
-  std::uint8_t duration = 0;  ///< [20 ms]
-  std::uint8_t pitch = 0;     ///< the robot's own; 0 is silence
-};
-struct SoundWish {
-  std::vector<Tone> tones;  ///< empty: a stored sound
-  std::uint8_t stored = 0;
-};
-enum class ServerAction { set_origin, motors, bump_stall, configuration, encoders, io, gripper };
-struct ServerWish {
-  ServerAction action = ServerAction::set_origin;
-  int value = 0;
-};
-struct SerialWish {
-  std::uint8_t port = 1;
-  std::vector<std::uint8_t> data;
-  std::uint8_t answer = 0;
-};
-/// In the order of enum Device of the contract.
-using Wish = std::variant<ServoWish, GripperWish, OutputWish, AnalogWish, TimerWish, SonarWish,
-                          SoundWish, ServerWish, SerialWish>;
-
-/// A wish in words, such as "servo 1500 us".
-std::string text(const Wish& wish);
-
-// ---- What became of it.
-
-enum class RequestState { sending, shown, sent, given_up, refused, lost };
-
-struct Request {
-  std::size_t device = 0;  ///< index into Wish
-  std::string source;
+/// What was asked of a device, and what became of it.
+struct DeviceRequest {
+  std::uint64_t asker = 0;
   std::uint64_t number = 0;
-  std::string text;
-  RequestState state = RequestState::sending;
-  std::string reason;
-  unsigned sent = 0;
+  std::string source;
+  std::string asked;  ///< in words
+  Answer answer;      ///< the newest
+  unsigned sent = 0;  ///< how often
 };
 
 /// Sends what is asked of the devices until the robot's packets show it (manual 5.1.3). What no
@@ -101,12 +36,10 @@ class Devices {
 
   /// A connection begins, or ended: what was under way is lost.
   void connect();
-  /// A newer request takes the place of an older one of the same device and action.
-  void request(const std::string& source, std::uint64_t number, const Wish& wish,
+  /// What may be asked of a device (wishes.hpp). A newer request takes the place of an older one of
+  /// the same device and action.
+  void request(const Request& request, const Wish& wish,
                const protocol::RobotParameters& parameters);
-  /// One that is not to be sent.
-  void refuse(std::size_t device, const std::string& source, std::uint64_t number,
-              const std::string& text, const std::string& reason);
   /// What a session begins with: a robot since P2OS switches its motors on when it is told, and
   /// says what it is like. No answer does no harm.
   void begin(const protocol::RobotParameters& parameters);
@@ -121,7 +54,9 @@ class Devices {
   bool pending(double now) const;
 
   /// The newest of each device and action, in the order of the devices.
-  std::vector<Request> requests() const;
+  std::vector<DeviceRequest> requests() const;
+  /// Those of which something new is to be told since the last call, in that order.
+  std::vector<DeviceRequest> take_answered() { return std::exchange(answered_, {}); }
   /// What the packets besides the information packet said last, in this session.
   struct Reports {
     std::optional<protocol::ConfigPacket> configuration;
@@ -140,7 +75,9 @@ class Devices {
   /// What shows that a request was heard.
   enum class Proof { once, thrice, output, servo, origin, motors, sonar, analog, packet };
   struct Item {
-    Request request;
+    DeviceRequest request;
+    double deadline = 0.0;        ///< [s] from the first time that it is sent; 0: none
+    std::optional<double> first;  ///< [s] when that was
     std::vector<protocol::Command> commands;
     Proof proof = Proof::once;
     int value = 0;  ///< what is to be shown
@@ -150,11 +87,12 @@ class Devices {
   };
   using Key = std::pair<std::size_t, int>;  ///< device, action
 
-  void note(const Request& request);
+  Item& put(const Request& request, const Wish& wish, const protocol::RobotParameters& parameters);
+  void note(const Item& item);
   bool shown(const Item& item, const protocol::InformationPacket& packet,
              const protocol::Information& information, bool origin) const;
 
-  void end(Item& item, RequestState state, const std::string& reason = {});
+  void end(Item& item, AnswerCode code, const std::string& words);
   static void plan(Item& item, const Wish& wish, const protocol::RobotParameters& parameters,
                    std::uint8_t digital_output);
 
@@ -162,6 +100,7 @@ class Devices {
   std::uint8_t digital_output_ = 0;  ///< as the robot shows it
   Reports reports_;
   bool changed_ = false;
+  std::vector<DeviceRequest> answered_;
   std::vector<std::string> troubles_;
 };
 

@@ -55,6 +55,8 @@ class DirectMotion {
   void moved(double advance) { travelled_ += advance; }
 
   Setpoints setpoints() const;
+  /// [m] of a position: the rest of the way; 0: it is done, or none was asked for.
+  double distance_left() const;
 
   /// Whether the distance is done to within `tolerance` [m]; true where no position was asked.
   bool done_position(double tolerance) const;

@@ -15,6 +15,16 @@
 
 namespace saphira::reflector {
 
+/// The newest reading of one sonar (manual 6.3.2).
+struct Bucket {
+  protocol::Sonar reading;
+  std::uint64_t cycle = 0;  ///< of the packet that it came with
+  Pose pose_in_odom;        ///< of the robot, by that packet
+  /// [m] where the reading is on the sonar's axis, in the frame of the robot at that packet;
+  /// meaningless without an echo.
+  Vec2 point = Vec2::Zero();
+};
+
 /// The robot as its newest packet shows it (manual Tables 5-5 and 6-2).
 struct State {
   std::uint64_t cycle = 0;  ///< packets since the connection was opened
@@ -25,6 +35,7 @@ struct State {
   double target_heading_in_odom = 0.0;  ///< [rad] the server's own heading setpoint
   unsigned motor_packets_per_s = 0;
   unsigned sonar_readings_per_s = 0;
+  std::vector<Bucket> buckets;  ///< by sonar; those that have fired in this odom frame
 };
 
 /// The state reflector (manual 6.3): information packets in, the robot's state out; setpoints in,
@@ -63,8 +74,8 @@ class Reflector {
   /// The hardest stop that the server has, instead of setpoints, until hold() is called again.
   void emergency_stop();
   /// The devices: what is asked of them, and what became of it.
-  void request(const std::string& source, std::uint64_t number, const Wish& wish) {
-    devices_.request(source, number, wish, parameters_);
+  void request(const Request& request, const Wish& wish) {
+    devices_.request(request, wish, parameters_);
   }
   Devices& devices() { return devices_; }
 
@@ -75,6 +86,8 @@ class Reflector {
   double sent_velocity() const { return channels_.sent_velocity(); }
 
  private:
+  void fill_buckets();
+
   protocol::RobotParameters parameters_;
   Odometry odometry_;
   DirectMotion motion_;

@@ -17,9 +17,20 @@ using WriterId = std::array<std::uint8_t, 16>;
 /// The key of a keyed sample, at most 16 bytes; all zero for a type without key.
 using InstanceKey = std::array<std::uint64_t, 2>;
 
+/// Who a program is, by its certificate: the receiver has checked it.
+struct Identity {
+  std::string name;  ///< of the machine or person, such as karen [empty: nobody that is known]
+  std::string role;  ///< such as operator
+
+  bool operator==(const Identity&) const = default;
+  /// "karen (operator)".
+  std::string text() const { return name.empty() ? "a stranger" : name + " (" + role + ")"; }
+};
+
 struct SampleInfo {
   WriterId writer{};
   bool disposed = false;  ///< the instance was withdrawn; the data are those that came last
+  std::shared_ptr<const Identity> sender = nullptr;  ///< none on an open bus
 };
 
 template <class T>
@@ -38,6 +49,9 @@ struct TypeInfo {
   void (*destroy)(void* sample);
   /// One JSON object, on one line; `prefix` is put behind its opening brace.
   std::string (*json)(const void* sample, const char* prefix);
+  /// Sets the members that the JSON object names; std::invalid_argument that says where it is
+  /// wrong.
+  void (*parse)(const std::string& json, void* sample);
 };
 
 /// The types of idl/ alone; defined in src/types.cpp.
@@ -51,6 +65,8 @@ class RawWriter {
   /// False where the sample was not taken within the QoS's blocking time.
   virtual bool write(const void* sample) = 0;
   virtual bool dispose(const void* sample) = 0;
+  /// In memory, where nobody checks it: from now on the samples are of this sender.
+  virtual void set_sender(const std::shared_ptr<const Identity>& /*sender*/) {}
   virtual bool wait_acknowledged(int timeout_ms) = 0;
   virtual std::size_t matched() const = 0;
 };

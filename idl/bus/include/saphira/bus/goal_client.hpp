@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "saphira/bus/node.hpp"
+#include "saphira/bus/request_client.hpp"
 
 namespace saphira::bus {
 
@@ -69,11 +69,6 @@ class GoalClient {
   /// has withdrawn it.
   std::map<Key, std::optional<Clock::time_point>> own_;
 };
-
-v1::Argument number(const std::string& name, double value);
-v1::Argument text(const std::string& name, const std::string& value);
-/// x, y [m], th [rad], in the frame.
-v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame);
 
 /// Whether a goal in this state has come to its end.
 bool ended(v1::GoalState state);

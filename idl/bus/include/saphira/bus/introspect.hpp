@@ -38,6 +38,35 @@ class Echo {
   const TypeInfo* type_ = nullptr;
 };
 
+/// Writes one topic by its name; samples are JSON objects as Echo tells them. What an object does
+/// not name is 0, false or empty.
+class Scribe {
+ public:
+  /// Throws std::runtime_error that names the known topics where `topic` is none of them.
+  Scribe(Node& node, const std::string& topic);
+  ~Scribe();
+
+  /// Throws std::invalid_argument that says where the object is wrong; nothing is written then.
+  /// False where the bus did not take the sample.
+  bool write(const std::string& json);
+  /// Withdraws the instance that was written last.
+  bool dispose();
+  bool wait_acknowledged(int timeout_ms);
+  std::size_t matched() const;
+
+ private:
+  const TypeInfo* type_ = nullptr;
+  std::unique_ptr<RawWriter> writer_;
+  std::shared_ptr<void> sample_;
+};
+
+/// Sets what a JSON object names in a sample of the contract, such as a v1::MotorCommand. As
+/// Scribe::write throws.
+template <class T>
+void from_json(const std::string& json, T& sample) {
+  type_of<T>().parse(json, &sample);
+}
+
 /// One reader or writer that was discovered on the bus.
 struct EndpointEntry {
   std::string topic;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ enum class Profile {
   wan,   ///< no multicast: the listed peers, and the machines that they hear
 };
 
+/// Instead of a folder of credentials.
+inline constexpr const char* kOpenBus = "none";
+
 struct NodeOptions {
   std::string name;               ///< of the program on the bus, such as behaviors
   std::string robot = "pioneer";  ///< the partition; "*" to read every robot
@@ -28,6 +32,9 @@ struct NodeOptions {
       peers;              ///< wan: addresses of other machines; one that all name is enough
   std::string interface;  ///< lan, wan: address of the one interface to use; empty: all
   bool lockstep = false;  ///< cyclic topics lose nothing and steps wait for their inputs
+  std::string security;   ///< folder of credentials [empty or kOpenBus: a bus that is open to all]
+  std::string program;    ///< which program it is, for its role [empty: as its name]
+  bool dry_run = false;   ///< checks the credentials, and joins nothing: a bus of its own in memory
 };
 
 class Node;
@@ -36,6 +43,7 @@ class Node;
 /// threads; delivery is immediate and in order. For tests.
 class MemoryBus;
 class Echo;
+class Scribe;
 class Gateway;
 namespace internal {
 class Transport;
@@ -96,6 +104,8 @@ class Node {
 
   /// wan: addresses of named peers from which no program was heard in the last minute.
   std::vector<std::string> silent_peers() const;
+  /// With security, what this program is; none on an open bus.
+  std::optional<Identity> identity() const;
 
   const NodeOptions& options() const;
   /// Random, one a process start: ServiceStatus.instance, and the writer part of goal ids.
@@ -118,6 +128,7 @@ class Node {
 
  private:
   friend class Echo;
+  friend class Scribe;
   friend class Gateway;
   friend internal::Transport& internal::transport_of(Node& node);
   friend internal::Wake& internal::wake_of(Node& node);

@@ -20,11 +20,16 @@ enum Exit : int {
   kExitBroken = 3,  ///< could not run: no bus, no memory, our own bug
 };
 
+/// What programs say to --version: "saphira 0.1.0, contract 0f1e2d3c". Programs with another
+/// contract (its types and topics, as a digest) do not understand each other.
+const char* version();
+
 /// The main() of a service: parses the options that every program has (--robot, --domain,
 /// --profile, --peer, --interface, --lockstep, --name, --log-level; defaults from SAPHIRA_ROBOT,
 /// SAPHIRA_DOMAIN, SAPHIRA_PROFILE, SAPHIRA_PEERS, SAPHIRA_INTERFACE) and those that `add_options`
 /// adds, sets up logging and signals, runs `body`, and turns exceptions into a message and an exit
-/// code.
+/// code. With --dry-run the stop is requested before `body` begins, whose nodes join nothing: it
+/// reads what it was given, and ends.
 int run_program(int argc, char** argv, const std::string& name, const std::string& description,
                 const std::function<void(CLI::App&)>& add_options,
                 const std::function<int(const NodeOptions&, const Stop&)>& body);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "agents.h"
 #include "behavior.h"
 #include "device.h"
 #include "intention.h"
 #include "map.h"
 #include "motion.h"
 #include "perception.h"
+#include "request.h"
 #include "robot.h"
 #include "saphira/bus/qos.hpp"
 #include "system.h"
@@ -20,10 +22,17 @@ struct Topic {
   Qos qos;
 };
 
+/// A topic of requests, and the one on which they are answered.
+struct RequestTopic : Topic<v1::Request> {
+  Topic<v1::Answer> answers;
+};
+
 namespace topics {
 
 #define SAPHIRA_TOPIC(constant, topic, type, qos) \
   inline constexpr Topic<v1::type> constant{topic, Qos::qos};
+#define SAPHIRA_REQUESTS(constant, topic, answers) \
+  inline constexpr RequestTopic constant{{topic, Qos::command}, answers};
 #include "saphira/bus/topics.def"
 
 }  // namespace topics

@@ -84,12 +84,22 @@ struct Lane {
   double right = 0.0;  ///< [m]
 };
 
+/// A part of the surroundings in which a behavior has found something, to be drawn into the LPS
+/// (manual 2.3.2.5) [m] [robot].
+struct Area {
+  double x_from = 0.0;
+  double x_to = 0.0;
+  double y_from = 0.0;
+  double y_to = 0.0;
+};
+
 struct Evaluation {
   std::vector<Rule> rules;
   Activity activity;
   /// What the update found, as far as the antecedents of the rules and the activity name it.
   std::vector<std::pair<std::string, double>> variables = {};
   std::optional<Lane> lane = {};
+  std::vector<Area> areas = {};
   std::string trouble = {};  ///< what went wrong in this cycle; empty: nothing
 };
 

@@ -7,29 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "saphira/geometry/pose.hpp"
+#include "saphira/requests/argument.hpp"
 
 namespace saphira::behaviors {
 
-enum class Frame { robot, odom, map };
-
-/// A point as somebody gave it.
-struct PlacedPoint {
-  Pose pose;
-  Frame frame = Frame::odom;
-
-  bool operator==(const PlacedPoint&) const = default;
-};
-
-enum class Kind { number, text, point };
-
-/// A named argument of an intended behavior.
-struct Argument {
-  std::string name;
-  std::variant<double, std::string, PlacedPoint> value;
-
-  bool operator==(const Argument&) const = default;
-};
+using Kind = ArgumentKind;
 
 /// A parameter that a schema takes.
 struct ParameterSpec {

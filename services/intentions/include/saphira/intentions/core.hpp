@@ -38,9 +38,15 @@ class Core {
   /// What has come in a cycle or between two. Writers that are lost count before what has come:
   /// what they have written earlier is among it.
   struct Heard {
+    /// Who wrote it, as the bus has checked.
+    struct Sender {
+      std::string name;       ///< empty: nobody that is known
+      bool commands = false;  ///< may change and cancel what others asked for
+    };
     struct Goal {
       GoalEvent event;
       Writer writer{};
+      std::optional<Sender> sender{};  ///< none on a bus that is open to all
     };
     struct Claim {
       ClaimEvent event;
@@ -57,6 +63,8 @@ class Core {
     std::vector<Claim> claims;
     /// As the bridge's grants have it. For steps alone: all since the last one together.
     std::vector<Estop> estops;
+    /// What agents said, by the number of the question (intentions::Outputs). For steps alone.
+    std::vector<std::pair<std::uint64_t, Answer>> answers;
   };
 
   /// A map of the registration service.
@@ -93,6 +101,9 @@ class Core {
     intentions::Outputs intended;
     /// All of them, where they have changed.
     std::optional<std::vector<Belief>> beliefs;
+    /// The way that is followed over the map [m] [map], from where the robot is, where it has
+    /// changed; empty: none is.
+    std::optional<std::vector<Vec2>> way;
     Notes notes;
   };
   Outputs step(Inputs inputs);
@@ -120,12 +131,15 @@ class Core {
                                  std::uint32_t cycles);
 
  private:
-  std::vector<GoalEvent> events_of(const Heard& heard);
+  std::vector<GoalEvent> events_of(const Heard& heard, Notes& notes);
+  bool take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes);
   std::vector<ClaimEvent> claims_of(const Heard& heard);
   void note_estops(const std::vector<Heard::Estop>& estops);
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
+  std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
   void tell(const News& news, Notes& notes);
+  std::string who_is_gone(const Inputs& inputs);
 
   bool lockstep_;
   Executor executor_;
@@ -144,11 +158,22 @@ class Core {
   std::uint64_t places_revision_ = 0;  ///< of the map when its topology changed last
   std::deque<MapNews> newer_maps_;     ///< lockstep: than the cycle that is stepped
   std::map<GoalId, Writer> requesters_;
-  std::map<GoalId, Writer> claimants_;  ///< of claims that end with their writer
+  /// With security: who asked for a goal first, whose it stays.
+  struct Owner {
+    std::string name;
+    std::string requester;  ///< as the goal's status has it
+    bool told = false;      ///< that somebody else was refused
+  };
+  std::map<GoalId, Owner> owners_;
+  std::map<std::uint64_t, Answer> answers_;  ///< the newest, by the number of the question
+  std::map<GoalId, Writer> claimants_;       ///< of claims that end with their writer
   std::map<GoalId, GoalState> logged_;
   std::vector<IntentionNode> nodes_;  ///< of the newest step
+  std::vector<Vec2> way_;             ///< that was told of last, without where the robot was
   std::uint64_t beliefs_revision_ = 0;
   bool robot_here_ = false;
+  std::uint64_t heard_epoch_ = 0;
+  std::uint64_t registration_heard_ = 0;  ///< [cycle]
 };
 
 }  // namespace saphira::intentions

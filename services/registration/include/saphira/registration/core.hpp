@@ -13,6 +13,7 @@
 #include "saphira/registration/registration.hpp"
 #include "saphira/registration/remembered.hpp"
 #include "saphira/registration/state.hpp"
+#include "saphira/requests/request.hpp"
 
 namespace saphira::registration {
 
@@ -106,30 +107,10 @@ class Core {
   /// The first step has to bring a robot.
   Outputs step(const Inputs& inputs);
 
-  struct Request {
-    enum class Action {
-      kLoad,         ///< text: a map file of that name, instead of the map
-      kDelete,       ///< an empty map
-      kPut,          ///< the artifact, changed by its id or new
-      kRemove,       ///< the artifact of that id
-      kPlace,        ///< the robot is at pose_in_map
-      kFind,         ///< the robot is to find itself
-      kSwitch,       ///< matching on or off
-      kAddFeatures,  ///< on or off
-      kSnap          ///< on or off
-    };
-    Action action = Action::kFind;
-    std::string name;
-    std::string text;
-    maps::Feature artifact;
-    Pose pose_in_map;
-    bool on = false;
-  };
-  struct Answer {
-    std::string refusal;         ///< why it was not done; empty: it was
-    std::uint32_t artifact = 0;  ///< id of the one that was put or removed
-  };
-  /// In a cycle or between two. What is refused has changed nothing.
+  /// What may be asked of it.
+  static const std::vector<Functor>& functors();
+  /// In a cycle or between two: a request that functors() can take. What is refused has changed
+  /// nothing. The result "id" is that of the artifact that was put or removed.
   Answer act(const Request& request);
 
   const maps::Map& map() const { return now_.editor.map(); }
@@ -160,7 +141,7 @@ class Core {
   Outputs built(const Inputs& inputs);
   bool amend(const Presence::News& news, const std::vector<maps::Feature>& objects, Notes& notes);
   bool grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& notes);
-  std::uint32_t obey(const Request& request);
+  Arguments obey(const Request& request);
   Registration& placed();
   void use(maps::Editor editor);
   void begin_anew(const std::string& source);

@@ -33,11 +33,12 @@ struct SearchSettings {
   std::size_t history = 60;      ///< readings that a new hypothesis is held against
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
-  double evidence = 20.0;        ///< score from which on a hypothesis may be it...
-  double margin = 10.0;          ///< ...when it is so much better than any at another place...
-  double way = 2.5;              ///< [m] ...and has been followed for so long
-  int matches = 3;               ///< ...and openings that it has explained, its first one included
-  double hopeless = 25.0;        ///< below the best one's score: given up
+  double recent = 2.0;     ///< [m] the same of what the place that is believed was worth of late
+  double evidence = 20.0;  ///< score from which on a hypothesis may be it...
+  double margin = 10.0;    ///< ...when it is so much better than any at another place...
+  double way = 2.5;        ///< [m] ...and has been followed for so long
+  int matches = 3;         ///< ...and openings that it has explained, its first one included
+  double hopeless = 25.0;  ///< below the best one's score: given up
 };
 
 /// What a search has learnt.
@@ -57,7 +58,8 @@ struct SearchState {
   std::optional<Pose> odom;
   double travelled = 0.0;
   std::optional<Pose> own;
-  double own_score = 0.0;  ///< what the place that is believed has been worth so far
+  double own_score = 0.0;   ///< what the place that is believed has been worth so far...
+  double own_recent = 0.0;  ///< ...and of late
 
   bool operator==(const SearchState&) const = default;
 };
@@ -107,6 +109,7 @@ class Search {
   bool leads(const Pose& pose, double score) const;
   void propose(const lps::Percept& percept);
   double weigh(const Pose& pose, const PlacedReading& reading) const;
+  void count_own(double worth);
   double worth(const lps::Percept& percept, const Match& match, const Pose& robot_in_map) const;
   void thin_out();
 

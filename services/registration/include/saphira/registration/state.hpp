@@ -13,6 +13,7 @@
 #include "saphira/registration/presence.hpp"
 #include "saphira/registration/registration.hpp"
 #include "saphira/registration/search.hpp"
+#include "saphira/registration/standing.hpp"
 
 namespace saphira::registration {
 
@@ -49,6 +50,7 @@ struct RegistrationState {
   /// Dead reckoning has begun anew: the robot may have been carried away, and what was believed
   /// before is a guess until the readings have fitted it.
   bool doubted = false;
+  bool carried = false;       ///< what raised the doubt is what it hears, while it stood
   std::optional<Pose> start;  ///< where it may be instead, then
 
   // Dead reckoning.
@@ -75,6 +77,7 @@ struct RegistrationState {
   ParticleCloud cloud;
 
   SearchState search;
+  Standing standing;
   Presence presence;
   ObjectFinder objects;
   Output output;  ///< of the newest step

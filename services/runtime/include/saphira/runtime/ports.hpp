@@ -1,10 +1,12 @@
 #pragma once
 
 #include <concepts>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "requests/shell/desk.hpp"
 #include "saphira/base/notes.hpp"
 #include "saphira/bus/cycle.hpp"
 
@@ -67,6 +69,25 @@ class Output {
   Stamper stamper_;
 };
 
+/// Asks other programs of a topic of requests.
+class Asker {
+ public:
+  Asker(bus::Node& node, const bus::Cycle& cycle, const bus::RequestTopic& topic)
+      : node_(&node), cycle_(&cycle), writer_(node.writer<v1::Request>(topic)) {}
+
+  /// Asks. In lockstep it returns when everybody has it who takes such requests: what the service
+  /// writes after that is known to nobody who does not know of the request, too.
+  /// The number by which answers name it.
+  std::uint64_t ask(Request request);
+  /// Whether some program takes such requests.
+  bool is_taken() const { return writer_.matched() > 0; }
+
+ private:
+  bus::Node* node_;
+  const bus::Cycle* cycle_;
+  bus::Writer<v1::Request> writer_;
+};
+
 /// The declaration of a service: what it reads from the bus and writes to it. A service takes its
 /// inputs and outputs from here when it is made; the shell knows them all from then on.
 class Ports {
@@ -104,6 +125,17 @@ class Ports {
   Output<T> recall(const bus::Topic<T>& topic) {
     return output(topic, Port::Use::kRecall);
   }
+  /// Takes requests: each is checked against `functors` and handed to `act`, in a step or between
+  /// two.
+  void requests(const bus::RequestTopic& topic, std::vector<Functor> functors, Desk::Act act);
+  /// Asks of such a topic.
+  Asker asker(const bus::RequestTopic& topic) {
+    declare(topic.name, Port::Use::kChanges);
+    return {node_, cycle_, topic};
+  }
+  /// For the shell: carries out what was asked for.
+  void take_requests();
+
   /// What else a step needs, and lockstep waits for (bus::Cycle::gate).
   void gate(bus::Cycle::Gate missing) { cycle_.gate(std::move(missing)); }
 
@@ -135,6 +167,7 @@ class Ports {
 
   bus::Node& node_;
   bus::Cycle& cycle_;
+  std::vector<std::unique_ptr<Desk>> desks_;
   std::vector<Port> table_;
 };
 

@@ -36,7 +36,8 @@ class Service {
 
   /// One cycle: inputs, the core's step, outputs. What moves the robot is written first.
   virtual void step(const Turn& turn) = 0;
-  /// Takes what need not wait for a cycle, such as requests; `silence` [s] since the newest step.
+  /// Takes what need not wait for a cycle, and tells what requests have changed; `silence` [s]
+  /// since the newest step.
   virtual void between(double /*silence*/) {}
   /// Looks at the files that people edit while the robot drives. Called once a second, behind a
   /// step; in lockstep, where cycles are short, every hundred.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
+#include <string>
 #include <string_view>
 
 namespace saphira {
@@ -15,6 +17,12 @@ class Fnv1a {
       add(static_cast<std::uint8_t>(c));
   }
   std::uint64_t value() const { return value_; }
+  /// The value as 16 hexadecimal digits.
+  std::string text() const {
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(value_));
+    return digits;
+  }
 
  private:
   std::uint64_t value_ = 0xcbf29ce484222325U;

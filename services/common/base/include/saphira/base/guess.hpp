@@ -6,9 +6,9 @@
 
 namespace saphira {
 
-/// The candidate that a person may have meant by a mistyped `word`: the one that the fewest letters
-/// left out, added, replaced or swapped lead to, where these are no more than a third of it, or
-/// that begins with it. Empty where none is so near; of several the first.
+/// The candidate nearest to a mistyped `word`, by the number of letters left out, added, replaced
+/// or swapped (optimal string alignment). At most a third of the letters may differ. Without such a
+/// candidate, the first that begins with the word; empty if there is none.
 std::string guess(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace saphira

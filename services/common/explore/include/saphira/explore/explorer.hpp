@@ -19,6 +19,10 @@ struct Settings {
   double look_ahead = 1.5;      ///< [m] how far before the robot the point to drive to is kept
   double beyond = 6.5;          ///< [m] so far out of what is mapped nothing came: an open area
   double beyond_opening = 6.0;  ///< [m] the same behind an opening
+  double entering = 1.5;        ///< [m] of way on which it turns into an opening
+  double gap_in_walls = 1.2;    ///< [m] with no wall at a side that a corridor may have
+  double wide_door = 1.1;       ///< [m] one that is as wide may be a corridor...
+  double in_door = 2.0;         ///< [m] ...and so far inside it has walls on both sides then
   double aside = 0.8;           ///< [m] off the middle: what is ahead has turned the robot away
   double tried = 1.2;           ///< [m] nearer than this to where it was tried, an end is the same
   double by_a_box = 0.45;       ///< [m] off the middle, to get by one that stands in the way
@@ -61,8 +65,8 @@ class Explorer {
 
   const Output& step(const Inputs& inputs);
   const Output& output() const { return output_; }
-  /// Ends and openings that were given up since no way leads there.
-  int given_up() const { return given_up_; }
+  /// Ways that were found and could not be followed, and are not on the map: each with why.
+  std::vector<std::string> left(const maps::Map& map) const;
 
  private:
   /// A way out of what is mapped: from a point, straight on.
@@ -72,11 +76,14 @@ class Explorer {
     std::string what;
     bool home = false;
     bool opening = false;  ///< in a wall: what is behind it begins there
+    bool door = false;     ///< likely only a room is behind it
+    bool aside = false;    ///< heard from the side, at the end of a way
   };
   enum class Doing { choosing, going, probing, looking };
 
   void listen(const Inputs& inputs);
   std::vector<Lead> leads(const Inputs& inputs) const;
+  std::vector<Lead> wide_doors(const Inputs& inputs) const;
   bool is_tried(const Lead& lead) const;
   bool mapped_along(const maps::Map& map, const Vec2& point, double heading) const;
   void choose(const Inputs& inputs);
@@ -86,14 +93,17 @@ class Explorer {
   void look(const Inputs& inputs);
   void listen_aside(const Inputs& inputs);
   bool looked(double heading, const Inputs& inputs);
-  void hear_aside(double range, double heading, const Inputs& inputs);
+  void hear_aside(double range, double heading, bool narrow, const Inputs& inputs);
   double room(double side) const;
   /// [m] The middle one of what the sonars that look that way have heard of late; none: nothing
   /// looks there.
   std::optional<double> heard(double bearing) const;
+  /// To both sides a wall has been heard of late.
+  bool walled() const;
   /// What is ahead leaves room to the left or right, as far as can be heard.
   bool passable() const;
   void finish(const Inputs& inputs);  ///< with the lead
+  void leave(const Lead& lead, const std::string& why);
   void head_for(const Vec2& point, const Inputs& inputs);
   std::vector<std::size_t> path(const std::vector<Vec2>& way, const Vec2& to, double& length) const;
 
@@ -104,6 +114,7 @@ class Explorer {
   std::optional<Lead> lead_;
   Vec2 probe_from_{0.0, 0.0};
   std::vector<Lead> tried_;
+  std::vector<Lead> left_;
   std::vector<Lead> seen_open_;  ///< ways that were heard, not yet mapped
   std::vector<Vec2> shut_;       ///< where the robot came no farther on a way it had driven
   std::vector<Vec2> path_;       ///< to the lead's point
@@ -131,7 +142,6 @@ class Explorer {
   Vec2 ended_{0.0, 0.0};      ///< where the lead ended at what is ahead
   double progress_ = 0.0;
   std::uint64_t progress_cycle_ = 0;
-  int given_up_ = 0;
   int reopened_ = 0;
   int stuck_ = 0;  ///< times that it came no farther on the way to this lead
   bool begun_ = false;

@@ -34,6 +34,13 @@ struct Strokes {
   std::vector<Vec2> lines;  ///< pairs of end points
 };
 
+/// Words in the picture.
+struct Words {
+  Vec2 at_in_map{0.0, 0.0};
+  std::string text;
+  std::string color;  ///< as SVG writes it
+};
+
 /// Something seen, and what it was taken for.
 struct DrawnMatch {
   Vec2 seen_in_map{0.0, 0.0};
@@ -62,6 +69,7 @@ struct Drawing {
   std::vector<Trajectory> trajectories;
   /// Over the map and the ways.
   std::vector<Strokes> strokes;
+  std::vector<Words> words;
   std::vector<DrawnMatch> matches;
   std::optional<DrawnRobot> robot;
 };

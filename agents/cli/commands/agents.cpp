@@ -1,0 +1,130 @@
+// ask and agents: programs that can be asked for something.
+#include <cstdio>
+#include <iostream>
+#include <map>
+
+#include "commands.hpp"
+#include "saphira/bus/agent.hpp"
+#include "saphira/cli/talk_words.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+struct AskOptions {
+  std::string functor;
+  std::vector<std::string> arguments;
+  std::string agent;
+  int answers = 1;
+  double patience = 10.0;
+};
+
+int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop) {
+  v1::Request request;
+  try {
+    for (const std::string& word : ask_options.arguments)
+      request.arguments().push_back(parse_slot(word));
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "saphira: " << error.what() << '\n';
+    return bus::kExitUsage;
+  }
+  request.functor(ask_options.functor);
+  request.service(ask_options.agent);
+  request.deadline(ask_options.patience);
+  if (ask_options.answers != 1)
+    request.arguments().push_back(bus::number("answers", ask_options.answers));
+
+  bus::Node node(options);
+  Processes processes(node);
+  bus::RequestClient client(node, bus::topics::kSolve, "saphira ask");
+  auto answers = node.reader(bus::topics::kSolved);
+  const auto show = [&] {
+    processes.poll();
+    for (const auto& sample : answers.take())
+      if (!sample.info.disposed && sample.data.asker() == node.instance() &&
+          sample.data.code() == v1::ANSWER_UNDERWAY)
+        std::printf("%s\n", line_of(sample.data).c_str());
+  };
+  const v1::Answer end = client.ask(request, ask_options.patience + 1.0, &stop, show);
+  if (end.service().empty()) {
+    std::cerr << "saphira: " << end.text() << "; " << who_is_there(options, processes) << '\n';
+    return bus::kExitFailed;
+  }
+  show();
+  std::printf("%s\n", line_of(end).c_str());
+  return bus::well(end.code()) ? bus::kExitOk : bus::kExitFailed;
+}
+
+int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  Processes processes(node);
+  auto agents = node.reader(bus::topics::kAgents);
+  auto triggers = node.reader(bus::topics::kTriggers);
+  std::map<std::uint64_t, v1::Agent> known;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::Trigger> set;
+  const auto end = Clock::now() + milliseconds(1300);
+  while (!stop.requested() && Clock::now() < end) {
+    node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
+    processes.poll();
+    for (const auto& sample : agents.take()) {
+      if (sample.info.disposed)
+        known.erase(sample.data.id());
+      else
+        known[sample.data.id()] = sample.data;
+    }
+    for (const auto& sample : triggers.take()) {
+      const std::pair<std::uint64_t, std::uint64_t> id{sample.data.id().writer(),
+                                                       sample.data.id().number()};
+      if (sample.info.disposed)
+        set.erase(id);
+      else
+        set[id] = sample.data;
+    }
+  }
+  for (const auto& [id, agent] : known)
+    std::fputs(describe(agent).c_str(), stdout);
+  for (const auto& [id, trigger] : set)
+    std::printf("%s\n", describe(trigger).c_str());
+  if (known.empty())
+    std::printf("no agents; %s\n", who_is_there(options, processes).c_str());
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+void add_ask(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<AskOptions>();
+  CLI::App* command = app.add_subcommand("ask", "Ask whichever agent can answer");
+  command->add_option("functor", options->functor, "what is asked for (saphira agents lists it)")
+      ->required();
+  command->add_option("arguments", options->arguments,
+                      "name=value, or name=? for what the answer is to fill");
+  command->add_option("--of", options->agent, "the agent that is meant (usual: whichever can)");
+  command->add_option("--answers", options->answers, "how many are wanted; 0: of each that can")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--deadline", options->patience, "[s] for the answer")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 3600.0));
+  command->footer("Exit code 0: it was answered; 1: it was not, and why.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return ask(*options, node, stop);
+    };
+  });
+}
+
+void add_agents(CLI::App& app, Chosen& chosen) {
+  CLI::App* command =
+      app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
+  command->callback([&chosen] {
+    chosen.run = [](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return list(node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,106 @@
+// check: whether the programs of a deployment would start with what it gives them. What runs goes
+// on.
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "commands.hpp"
+#include "environment.hpp"
+#include "run_folder.hpp"
+#include "saphira/cli/deployment.hpp"
+#include "saphira/cli/printer.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word)
+    text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// What one program says to what it is given, and whether it would start. A program that nobody
+/// here has written is not asked: it may not know how to answer.
+struct Said {
+  bool well = true;
+  std::string text;
+};
+Said ask(const ChildSpec& child) {
+  std::string command = "env";
+  for (const auto& [name, value] : child.environment)
+    command += " " + quoted(name + "=" + value);
+  for (const std::string& word : child.argv)
+    command += " " + quoted(word);
+  Said said;
+  FILE* const output = popen((command + " --dry-run 2>&1 </dev/null").c_str(), "r");
+  if (output == nullptr)
+    return {false, "it cannot be started"};
+  std::array<char, 4096> part;
+  while (fgets(part.data(), part.size(), output) != nullptr)
+    said.text += part.data();
+  const int status = pclose(output);
+  said.well = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return said;
+}
+
+int check(const std::string& name, const std::vector<std::string>& set,
+          const bus::NodeOptions& options) {
+  Places places = find_places();
+  const Deployment deployment = load_deployment(find_deployment(name, places));
+  const RunFolder folder;  // what a running deployment remembers is not touched
+  places.run = folder.path();
+  places.robot = options.robot;
+  int wrong = 0;
+  for (ChildSpec& child : command_lines(deployment, places, set)) {
+    child.environment.merge(as_environment(options));
+    const std::string program = std::filesystem::path(child.argv.at(0)).filename();
+    if (!program.starts_with("saphira-")) {
+      print("%-15s not asked: %s is no program of saphira\n", child.name.c_str(), program.c_str());
+      continue;
+    }
+    const Said said = ask(child);
+    print("%-15s %s\n%s", child.name.c_str(),
+          !said.well          ? "WRONG"
+          : said.text.empty() ? "ok"
+                              : "would start, but says",
+          said.text.c_str());
+    wrong += said.well ? 0 : 1;
+  }
+  if (wrong == 0)
+    print("%s would start\n", deployment.file.c_str());
+  else
+    print("%s would not start: %d of its programs do not take what they are given\n",
+          deployment.file.c_str(), wrong);
+  return wrong == 0 ? bus::kExitOk : bus::kExitUsage;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Chosen& chosen) {
+  struct Options {
+    std::string deployment;
+    std::vector<std::string> set;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Whether a deployment would start: its file, and all files that it gives its programs");
+  command->add_option("deployment", options->deployment, "a file, or a shipped one such as demo")
+      ->required();
+  command->add_option("--set", options->set, "name=value: a setting of the deployment")
+      ->take_all()
+      ->type_size(1);
+  command->footer("Nothing is started, and what runs is not touched. Exit code 0: it would start.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop&) {
+      return check(options->deployment, options->set, node);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,217 @@
+// move, turn and speed: direct motion control (manual 6.4) from the command line.
+#include "direct.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "commands.hpp"
+#include "saphira/base/guess.hpp"
+#include "saphira/bus/introspect.hpp"
+#include "saphira/cli/done.hpp"
+#include "saphira/cli/printer.hpp"
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kReleases = 4;         ///< of the last word: the topic is best effort
+constexpr double kUnanswered = 1.0;  ///< [s]
+constexpr double kStuck = 5.0;       ///< [s] without any progress
+
+}  // namespace
+
+DirectDriver::DirectDriver(bus::Node& node, const bus::Topic<v1::MotorCommand>& topic,
+                           const std::string& program)
+    : node_(node),
+      processes_(node),
+      commands_(node.writer(topic)),
+      robots_(node.reader(bus::topics::kRobotState)),
+      grants_(node.reader(bus::topics::kGrant)),
+      source_(person(program)) {}
+
+void DirectDriver::drive(v1::MotorCommand command) {
+  // The stamp says which picture of the robot it answers: an old one is refused.
+  if (command.stamp().cycle() == 0 && robot_)
+    command.stamp(robot_->stamp());
+  if (command.source().empty())
+    command.source(source_);
+  source_ = command.source();
+  command.number(++number_);
+  // Unique over restarts too, or the bridge would take the first for an old one.
+  command.move(node_.instance() + command.move());
+  commands_.write(command);
+}
+
+void DirectDriver::release() {
+  for (int i = 0; i < kReleases; ++i) {
+    v1::MotorCommand command;
+    command.source(source_);
+    drive(command);
+    node_.wait(milliseconds(20));
+  }
+}
+
+void DirectDriver::poll() {
+  processes_.poll();
+  if (auto robot = robots_.take_newest())
+    robot_ = std::move(robot);
+  for (const auto& sample : grants_.take()) {
+    grant_ = sample.data;
+    for (const v1::Refusal& refusal : grant_->refused())
+      if (refusal.source() == source_)
+        refusal_ = refusal.reason();
+  }
+  if (drives())
+    refusal_.clear();
+}
+
+bool DirectDriver::drives() const {
+  return grant_ && grant_->role() != v1::ROLE_NONE && grant_->source() == source_;
+}
+
+std::string DirectDriver::trouble() const {
+  if (!grant_)
+    return seconds_since(began_) < kUnanswered
+               ? ""
+               : "no bridge is heard; " + who_is_there(node_.options(), processes_);
+  if (!refusal_.empty())
+    return "refused: " + refusal_;
+  if (!drives())
+    return seconds_since(began_) < kUnanswered ? "" : describe(*grant_);
+  if (grant_->guard() != v1::GUARD_NONE)
+    return "the guard beside the robot " + std::string(name_of(grant_->guard())) +
+           " it: " + grant_->guard_reason();
+  return {};
+}
+
+std::optional<std::string> DirectDriver::news() {
+  std::string now = trouble();
+  // Distances in a reason change all the time: the kind of trouble is what is new.
+  const std::string kind = now.substr(0, now.find_first_of("0123456789"));
+  if (kind == told_)
+    return std::nullopt;
+  told_ = kind;
+  return now.empty() ? std::nullopt : std::optional(now);
+}
+
+std::optional<std::string> unknown_topic(const std::string& topic) {
+  std::vector<std::string> names;
+  for (const bus::TopicEntry& entry : bus::known_topics())
+    names.push_back(entry.name);
+  if (std::find(names.begin(), names.end(), topic) != names.end())
+    return std::nullopt;
+  const std::string meant = guess(topic, names);
+  std::string text = "no topic \"" + topic.substr(0, 200) + "\": " +
+                     (meant.empty() ? "expected one of" : "did you mean " + meant + "? There are");
+  for (const std::string& name : names)
+    text += " " + name;
+  return text;
+}
+
+std::string qos_of(const std::string& topic) {
+  for (const bus::TopicEntry& entry : bus::known_topics())
+    if (entry.name == topic)
+      return entry.qos;
+  return {};
+}
+
+namespace {
+
+/// Until it is done, as the bridge shows it.
+int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
+         const bus::Stop& stop) {
+  bus::Node node(options);
+  DirectDriver driver(node, bus::topics::kDriveDirect, "saphira " + wanted.name);
+  const auto began = Clock::now();
+  auto moved = began;
+  double nearest = 1e9;
+  int code = bus::kExitFailed;
+  std::string end = "stopped by Ctrl-C";
+  while (!stop.requested()) {
+    if (seconds > 0.0 && seconds_since(began) >= seconds) {
+      code = bus::kExitOk;
+      end = "the time is over";
+      break;
+    }
+    if (driver.robot())
+      driver.drive(command_of(wanted));
+    if (const auto news = driver.news())
+      complain("saphira: %s\n", news->c_str());
+    node.wait(kDrivePeriod, &stop);
+    driver.poll();
+    if (driver.drives() && driver.robot()) {
+      const double left = left_of(wanted, *driver.grant(), *driver.robot());
+      if (done(wanted, *driver.grant(), *driver.robot())) {
+        code = bus::kExitOk;
+        end = "done";
+        break;
+      }
+      if (left < nearest - kProgress) {
+        nearest = left;
+        moved = Clock::now();
+      }
+    }
+    if (wanted.kind != Move::Kind::speed && seconds_since(moved) > kStuck) {
+      end = driver.drives() ? "given up: it has come no nearer for 5 s"
+                            : "given up: it was not allowed to drive for 5 s";
+      break;
+    }
+  }
+  const std::string rest =
+      driver.drives() && driver.robot() ? rest_of(wanted, *driver.grant(), *driver.robot()) : "";
+  driver.release();
+  print("%s%s\n", end.c_str(), rest.c_str());
+  return code;
+}
+
+struct Options {
+  double value = 0.0;
+  double speed = 0.0;
+  double seconds = 0.0;
+};
+
+CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, const char* help,
+              const char* value, const std::shared_ptr<Options>& options) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->add_option("value", options->value, value)->required()->check(CLI::Number);
+  command->footer(
+      "The robot stops when this ends. The guard beside it holds; a person's keyboard is "
+      "stronger,\n"
+      "goals are weaker. Exit code 0: done.");
+  command->callback([options, kind, name, &chosen] {
+    chosen.run = [=](const bus::NodeOptions& node, const bus::Stop& stop) -> int {
+      const double wish = kind == Move::Kind::turn ? radians(options->value) : options->value;
+      const Move wanted{kind, name, wish, options->speed};
+      if (const std::string wrong = trouble_of(wanted); !wrong.empty()) {
+        std::cerr << "saphira: " << wrong << '\n';
+        return bus::kExitUsage;
+      }
+      return move(wanted, options->seconds, node, stop);
+    };
+  });
+  return command;
+}
+
+}  // namespace
+
+void add_direct(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  add(app, chosen, Move::Kind::move, "move", "Drive so far straight on, and say when it is done",
+      "METERS, below 0: back", options)
+      ->add_option("--speed", options->speed, "[m/s] at most")
+      ->check(above_zero());
+  options = std::make_shared<Options>();
+  add(app, chosen, Move::Kind::turn, "turn", "Turn on the spot, and say when it is done",
+      "DEGREES to the left, below 0: to the right", options);
+  options = std::make_shared<Options>();
+  add(app, chosen, Move::Kind::speed, "speed", "Drive at a speed, until Ctrl-C", "METERS a second",
+      options)
+      ->add_option("--for", options->seconds, "[s] so long")
+      ->check(above_zero());
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "saphira/bus/node.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+inline constexpr std::chrono::milliseconds kDrivePeriod{50};  ///< the bridge's lease is 300 ms
+
+/// Plays a role on drive/...: writes commands with what each must have, and tells what becomes of
+/// them. Whoever has it calls drive() and poll() every kDrivePeriod.
+class DirectDriver {
+ public:
+  DirectDriver(bus::Node& node, const bus::Topic<v1::MotorCommand>& topic,
+               const std::string& program);
+
+  /// Writes the command, stamped with the robot's newest state.
+  void drive(v1::MotorCommand command);
+  /// Lets the role go, which stops the robot.
+  void release();
+  void poll();
+
+  const std::string& source() const { return source_; }
+  /// Where the robot is, once it was heard.
+  const std::optional<v1::RobotState>& robot() const { return robot_; }
+  const std::optional<v1::Grant>& grant() const { return grant_; }
+  /// A command of this driver's is what the wheels are told.
+  bool drives() const;
+  /// Who drives instead and why, that the guard holds it back, that nobody answers: each once.
+  std::optional<std::string> news();
+
+ private:
+  std::string trouble() const;
+
+  bus::Node& node_;
+  Processes processes_;
+  bus::Writer<v1::MotorCommand> commands_;
+  bus::Reader<v1::RobotState> robots_;
+  bus::Reader<v1::Grant> grants_;
+  std::string source_;
+  std::uint64_t number_ = 0;
+  std::optional<v1::RobotState> robot_;
+  std::optional<v1::Grant> grant_;
+  std::string refusal_;
+  Clock::time_point began_ = Clock::now();
+  std::string told_;
+};
+
+/// That there is no topic of that name, with a guess; nothing: there is one.
+std::optional<std::string> unknown_topic(const std::string& topic);
+/// The name of its QoS.
+std::string qos_of(const std::string& topic);
+
+}  // namespace saphira::cli

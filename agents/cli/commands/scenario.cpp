@@ -1,0 +1,373 @@
+// The paper's story (4.6): people tell the robot who is where, and send it for a report.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "commands.hpp"
+#include "environment.hpp"
+#include "run_folder.hpp"
+#include "saphira/base/durable.hpp"
+#include "saphira/base/fnv1a.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/cli/deployment.hpp"
+#include "saphira/cli/printer.hpp"
+#include "saphira/cli/supervisor.hpp"
+#include "saphira/cli/trace.hpp"
+#include "story/shell/story.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kKeptLines = 40;
+constexpr double kStart = 60.0;  // [s] for the programs to be there
+
+struct Options {
+  std::vector<std::string> casts{"introduction"};
+  std::uint64_t seed = 1;
+  std::uint64_t seeds = 1;
+  double rate = 1.0;
+  double time_limit = 1200.0;
+  bool lockstep = false;
+  bool json = false;
+  std::string audio;  ///< a folder for what was said, as sound; empty: none
+};
+
+/// One story, with one seed.
+struct Run {
+  std::string cast;  ///< a file
+  std::uint64_t seed = 1;
+  std::string folder;  ///< for sockets and the trace
+  story::Cast people() const { return {read_file(cast), cast}; }
+
+  std::string trace() const { return folder + "/trace.csv"; }
+};
+
+/// How a story ended.
+struct Ending {
+  bool well = false;  ///< as its cast says
+  std::string outcome;
+  double time = 0.0;  ///< [s] of the robot
+  std::uint64_t utterances = 0;
+  std::string hash;  ///< of what was said
+  Track track;
+  std::string said;  ///< "speaker: text" a line
+
+  bool delivered() const { return outcome.starts_with("done: "); }
+};
+
+/// What programs said last: shown where something went wrong.
+class Kept {
+ public:
+  void add(std::string_view from, std::string_view line) {
+    lines_.push_back(std::string(from) + " | " + std::string(line));
+    if (lines_.size() > kKeptLines)
+      lines_.pop_front();
+  }
+  void show(const std::string& trouble) const {
+    complain("saphira: %s; the last that the programs said:\n", trouble.c_str());
+    for (const std::string& line : lines_)
+      complain("  %s\n", line.c_str());
+  }
+
+ private:
+  std::deque<std::string> lines_;
+};
+
+bus::NodeOptions own_bus(bus::NodeOptions options) {
+  std::random_device device;
+  if (options.domain == 0 && std::getenv("SAPHIRA_DOMAIN") == nullptr)
+    options.domain = 60 + device() % 40;
+  options.robot = "flakey-" + std::to_string(getpid());
+  options.profile = bus::Profile::host;
+  options.name = "scenario";
+  options.lockstep = false;
+  return options;
+}
+
+Places places_of(const Run& run) {
+  Places places = find_places();
+  places.run = run.folder;
+  return places;
+}
+
+Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Places& places) {
+  const story::Cast people = run.people();
+  Deployment deployment = load_deployment(find_deployment(people.deployment(), places));
+  deployment.bus.robot = node.robot;
+  deployment.bus.domain = node.domain;
+  deployment.bus.profile = "host";
+  std::erase_if(deployment.programs,
+                [](const Program& program) { return program.name == "console"; });
+  // The simulator is the first of the deployment.
+  std::vector<Placed>& simulator = deployment.programs.at(0).arguments;
+  simulator.insert(simulator.end(), {Placed{"--trace"}, Placed{run.trace()}});
+  if (!people.things().empty())
+    simulator.insert(simulator.end(), {Placed{"--things"}, Placed{people.things()}});
+  return deployment;
+}
+
+std::vector<ChildSpec> programs(const Options& options, const Run& run,
+                                const bus::NodeOptions& node) {
+  const Places places = places_of(run);
+  std::vector<ChildSpec> children =
+      command_lines(deployment_of(run, node, places), places,
+                    {"seed=" + std::to_string(run.seed), "rate=" + std::to_string(options.rate)});
+  for (ChildSpec& child : children)
+    child.environment.merge(as_environment(node));
+  return children;
+}
+
+/// All of it in one process, with the people.
+std::vector<ChildSpec> one_program(const Options& options, const Run& run,
+                                   const bus::NodeOptions& node) {
+  const Places places = places_of(run);
+  Deployment deployment = deployment_of(run, node, places);
+  deployment.bus.lockstep = true;
+  Program all{"all", {"saphira-all"}, {}, {}, true, true};
+  all.restart = false;
+  for (const Program& program : deployment.programs)
+    if (program.name != "dialogue" && program.name != "facilitator")
+      all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
+  deployment.programs = {all};
+  std::vector<ChildSpec> children =
+      command_lines(deployment, places, {"seed=" + std::to_string(run.seed)});
+  children.at(0).environment.merge(as_environment(node));
+  children.at(0).argv.insert(children.at(0).argv.end(),
+                             {"--step", "--free-step", "--grammar", "flakey", "--people", run.cast,
+                              "--time-limit", std::to_string(options.time_limit)});
+  return children;
+}
+
+Ending play_live(const Options& options, const Run& run, const bus::NodeOptions& node_options,
+                 const bus::Stop& stop) {
+  Kept kept;
+  Supervisor supervisor(
+      programs(options, run, node_options),
+      [&](std::string_view from, std::string_view line) { kept.add(from, line); });
+  supervisor.start();
+  bus::Node node(node_options);
+  if (!options.json)
+    print("robot %s on domain %u: saphira --robot %s --domain %u why explains what it does\n",
+          node_options.robot.c_str(), node_options.domain, node_options.robot.c_str(),
+          node_options.domain);
+  story::StoryOptions how{{"dialogue", "intentions"}, options.time_limit, {}};
+  std::string said;
+  how.show = [&](double time, const std::string& place, const std::string& line) {
+    said += line + "\n";
+    if (!options.json)
+      print("%s\n", story::story_line(time, place, line).c_str());
+  };
+  story::Story played(node, run.people(), how);
+  const auto began = Clock::now();
+  std::string trouble;
+  while (!stop.requested() && trouble.empty() && !played.step()) {
+    supervisor.step(milliseconds(200), {stop.fd(), node.wake_fd()});
+    node.clear_wake();
+    if (supervisor.misused())
+      trouble = *supervisor.misused() + " does not take what it is given";
+    else if (!played.ready() && seconds_since(began) > kStart)
+      trouble = "the programs were not all there within 60 s";
+  }
+  supervisor.stop();
+  if (!trouble.empty())
+    kept.show(trouble);
+  return {played.well(), played.outcome(), played.time(), played.utterances(), played.hash(), {},
+          said};
+}
+
+Ending play_in_lockstep(const Options& options, const Run& run, const bus::NodeOptions& node,
+                        const bus::Stop& stop) {
+  Kept kept;
+  Ending ending;
+  std::string said;
+  bool told = false;
+  Supervisor supervisor(
+      one_program(options, run, node), [&](std::string_view from, std::string_view line) {
+        const nlohmann::json result =
+            line.starts_with("{") ? nlohmann::json::parse(line, nullptr, false) : nlohmann::json();
+        if (result.is_object()) {
+          told = true;
+          ending = {result.value("well", false),
+                    result.value("outcome", ""),
+                    result.value("time_s", 0.0),
+                    result.value("utterances", std::uint64_t{0}),
+                    result.value("dialogue_hash", ""),
+                    {},
+                    {}};
+        } else if (from.empty() || !story::is_story_line(line)) {
+          kept.add(from, line);
+        } else {
+          said += story::said_in(line);
+          said += '\n';
+          if (options.json)
+            kept.add(from, line);
+          else
+            print("%.*s\n", static_cast<int>(line.size()), line.data());
+        }
+      });
+  supervisor.start();
+  while (!stop.requested() && !supervisor.finished())
+    supervisor.step(milliseconds(200), {stop.fd()});
+  supervisor.stop();
+  if (!told && !stop.requested())
+    kept.show("saphira-all ended before the story");
+  ending.said = said;
+  return ending;
+}
+
+/// What was said, as text and as sound.
+void write_audio(const std::string& folder, const std::string& said, const bus::Stop& stop) {
+  std::filesystem::create_directories(folder);
+  const std::string text = folder + "/dialogue.txt";
+  if (!replace_file(text, said))
+    throw std::runtime_error(text + ": cannot be written: " + std::strerror(errno));
+  const std::string speech = find_places().bin + "/saphira-speech";
+  if (!std::filesystem::exists(speech))
+    throw std::runtime_error(
+        "--audio: there is no saphira-speech beside this program; " + text +
+        " has what was said. It is of the package saphira-speech, or is built where Debian's "
+        "libpocketsphinx-dev, pocketsphinx-en-us, flite1-dev and libasound2-dev are");
+  Kept kept;
+  ChildSpec reader{"speech", {speech, "--read", text, "--speaker", folder}, {}, false};
+  Supervisor supervisor(
+      {reader}, [&](std::string_view from, std::string_view line) { kept.add(from, line); });
+  supervisor.start();
+  while (!stop.requested() && !supervisor.finished())
+    supervisor.step(milliseconds(200), {stop.fd()});
+  if (!std::filesystem::exists(folder + "/dialogue.wav"))
+    kept.show("saphira-speech wrote no sound");
+}
+
+Ending play(const Options& options, const std::string& cast, std::uint64_t seed,
+            const bus::NodeOptions& node, const bus::Stop& stop) {
+  const RunFolder folder;
+  const Run run{cast, seed, folder.path()};
+  Ending ending = options.lockstep ? play_in_lockstep(options, run, node, stop)
+                                   : play_live(options, run, node, stop);
+  ending.track = evaluate_trace(read_file(run.trace()), std::numeric_limits<std::uint64_t>::max(),
+                                run.trace());
+  if (!options.json)
+    print("%s after %.0f s of robot time, %.0f m, %llu contacts%s\n",
+          ending.delivered() ? "delivered" : "not delivered", ending.time, ending.track.path,
+          static_cast<unsigned long long>(ending.track.contacts),
+          ending.well ? "" : "; the story was to end otherwise");
+  flush_output();
+  if (!options.audio.empty())
+    write_audio(options.audio, ending.said, stop);
+  return ending;
+}
+
+/// Of all stories together, as JSON.
+class Sum {
+ public:
+  void add(const Ending& ending) {
+    ++runs_;
+    well_ += ending.well ? 1 : 0;
+    delivered_ += ending.delivered() ? 1 : 0;
+    time_ += ending.time;
+    contacts_ += ending.track.contacts;
+    utterances_ += ending.utterances;
+    said_.add(ending.hash + "\n");
+    driven_.add(ending.track.hash + "\n");
+  }
+  bool well() const { return well_ == runs_ && contacts_ == 0; }
+  std::string json() const {
+    const nlohmann::ordered_json result{{"runs", runs_},
+                                        {"well", well_},
+                                        {"delivered", delivered_},
+                                        {"time_s", time_},
+                                        {"contacts", contacts_},
+                                        {"utterances", utterances_},
+                                        {"dialogue_hash", said_.text()},
+                                        {"trajectory_hash", driven_.text()}};
+    return result.dump();
+  }
+  std::string text() const {
+    return std::to_string(well_) + " of " + std::to_string(runs_) +
+           " stories ended as their cast says, " + std::to_string(delivered_) +
+           " with the delivery; " + std::to_string(contacts_) + " contacts";
+  }
+
+ private:
+  std::size_t runs_ = 0;
+  std::size_t well_ = 0;
+  std::size_t delivered_ = 0;
+  double time_ = 0.0;
+  std::uint64_t contacts_ = 0;
+  std::uint64_t utterances_ = 0;
+  Fnv1a said_;
+  Fnv1a driven_;
+};
+
+int scenario(const Options& options, const bus::NodeOptions& given, const bus::Stop& stop) {
+  std::vector<std::string> casts;
+  for (const std::string& name : options.casts) {
+    casts.push_back(find_file(config_folder() + "/people", name, ".people"));
+    story::Cast(read_file(casts.back()), casts.back());  // mistakes are told before anything runs
+  }
+  const bus::NodeOptions node = own_bus(given);
+  const bool several = casts.size() * options.seeds > 1;
+  Sum sum;
+  for (const std::string& cast : casts)
+    for (std::uint64_t seed = options.seed; seed < options.seed + options.seeds; ++seed) {
+      if (stop.requested())
+        return bus::kExitFailed;
+      if (several && !options.json)
+        print("-- %s, seed %llu\n", cast.c_str(), static_cast<unsigned long long>(seed));
+      sum.add(play(options, cast, seed, node, stop));
+    }
+  if (options.json)
+    std::printf("%s\n", sum.json().c_str());
+  else if (several)
+    std::printf("%s\n", sum.text().c_str());
+  return sum.well() ? bus::kExitOk : bus::kExitFailed;
+}
+
+}  // namespace
+
+void add_scenario(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "scenario",
+      "A robot follows its supervisor through an office, is told who is where, and gets a report");
+  command->add_option("--cast", options->casts, "the people: names of config/people, or files")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the simulator's noise")->capture_default_str();
+  command->add_option("--seeds", options->seeds, "how many runs, each with the next seed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag(
+      "--lockstep", options->lockstep,
+      "in one process and as fast as the machine: the same seed is the same story, to "
+      "the bit");
+  command->add_option("--rate", options->rate, "times real time")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
+  command->add_option("--time-limit", options->time_limit, "[s] of robot time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "the result as JSON");
+  command->add_option(
+      "--audio", options->audio,
+      "a folder: dialogue.wav with what was said, and a file for each utterance; of "
+      "several runs the last");
+  command->footer(
+      "Exit code 0: each story ended as its cast says, without a contact; 1: one did not.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return scenario(*options, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

@@ -1,0 +1,203 @@
+// security: the authority of a site, and the credentials of its members.
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/security/authority.hpp"
+
+namespace saphira::cli {
+namespace {
+
+using security::Authority;
+
+constexpr int kDays = 365;
+constexpr std::int64_t kDay = 86400;
+constexpr std::int64_t kSoon = 30;  // [days]
+
+struct Words {
+  std::string folder;
+  std::string name;
+  std::string roles_file;
+  std::vector<std::string> roles;
+  std::string robot;
+  int days = kDays;
+  std::string credentials;
+  std::string program = "cli";
+  bool json = false;
+};
+
+std::int64_t now() {
+  return std::chrono::duration_cast<std::chrono::seconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string day_of(std::int64_t seconds) {
+  const std::time_t time = seconds;
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  std::array<char, 16> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d", &utc);
+  return text.data();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ",") + word;
+  return text;
+}
+
+void tell_folder(const std::string& folder) {
+  std::cout << folder
+            << "\nCopy this folder, whole, to the machine, as ~/.config/saphira/credentials "
+               "of the user who runs the programs (or /etc/saphira/credentials, or where "
+               "--security says); "
+               "it holds private keys.\n";
+}
+
+int init(const Words& words) {
+  const std::string file =
+      words.roles_file.empty() ? config_folder() + "/security/roles.yaml" : words.roles_file;
+  const Authority made = Authority::make(words.folder, words.name, read_file(file), file, now());
+  std::cout
+      << "The authority of " << made.site() << " is in " << made.folder()
+      << ". Whoever reads that folder can make members: keep it off the robots, and keep a copy.\n"
+         "Next: saphira security add NAME --role ROLE, for each machine and person. Roles:\n";
+  for (const security::Role& role : made.roles().roles)
+    std::cout << "  " << role.name
+              << std::string(role.name.size() < 10 ? 10 - role.name.size() : 1, ' ') << role.about
+              << '\n';
+  return bus::kExitOk;
+}
+
+int add(const Words& words) {
+  tell_folder(Authority(words.folder).add(words.name, words.roles, words.robot, words.days, now()));
+  return bus::kExitOk;
+}
+
+int renew(const Words& words) {
+  tell_folder(Authority(words.folder).renew(words.name, words.days, now()));
+  std::cout << "Its programs take it when they are started again; the old certificates hold until "
+               "they expire.\n";
+  return bus::kExitOk;
+}
+
+int revoke(const Words& words) {
+  const std::string list = Authority(words.folder).revoke(words.name);
+  std::cout << words.name << " is revoked.\n"
+            << list
+            << "\nCopy this file over revoked.signed in the folder of credentials on every "
+               "machine: its programs "
+               "take it within seconds, without a restart.\n";
+  return bus::kExitOk;
+}
+
+int list(const Words& words) {
+  const Authority authority(words.folder);
+  nlohmann::json members = nlohmann::json::array();
+  for (const auto& [name, member] : authority.members()) {
+    const std::int64_t days = (member.until - now()) / kDay;
+    const std::string state = member.revoked          ? "revoked"
+                              : member.until <= now() ? "expired"
+                              : days < kSoon          ? "expires in " + std::to_string(days) +
+                                                   " days: saphira security renew " + name
+                                             : "holds";
+    members.push_back({{"name", name},
+                       {"issue", member.issue},
+                       {"roles", member.roles},
+                       {"robot", member.robot},
+                       {"until", day_of(member.until)},
+                       {"state", state}});
+    if (!words.json)
+      std::printf("%-20s %-28s %-12s until %s  %s\n", name.c_str(), joined(member.roles).c_str(),
+                  member.robot.empty() ? "any robot" : member.robot.c_str(),
+                  day_of(member.until).c_str(), state.c_str());
+  }
+  if (words.json)
+    std::cout << members.dump() << '\n';
+  else if (members.empty())
+    std::cout << authority.site() << " has no members yet: saphira security add NAME --role ROLE\n";
+  return bus::kExitOk;
+}
+
+/// A folder of credentials, or the authority's files.
+int check(const Words& words, const bus::NodeOptions& options) {
+  const std::string folder = words.credentials.empty() ? options.security : words.credentials;
+  if (folder.empty() || folder == bus::kOpenBus) {
+    std::cerr << "saphira: this user and this machine have no credentials: the bus is open to all "
+                 "(docs/security.md)\n";
+    return bus::kExitFailed;
+  }
+  for (const std::string& role : security::roles_in(folder)) {
+    const security::Credentials good = security::load_role(folder, role, now());
+    std::cout << folder << "/" << role << ": " << security::common_name(good.subject) << " of "
+              << good.subject.site << ", " << role << ", until " << day_of(good.until) << '\n';
+  }
+  const security::Credentials mine = security::load_credentials(folder, words.program, now());
+  std::cout << words.program << " is " << mine.subject.name << " (" << mine.subject.role << ")\n";
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+void add_security(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<Words>();
+  words->folder = user_folder() + "/authority";
+  CLI::App* command = app.add_subcommand(
+      "security", "Who may do what on the bus: keys and certificates of a site (docs/security.md)");
+  command->require_subcommand(1);
+  const auto action = [&](const std::string& name, const std::string& about,
+                          int (*run)(const Words&)) {
+    CLI::App* one = command->add_subcommand(name, about);
+    one->add_option("--authority", words->folder, "folder of the authority")
+        ->envname("SAPHIRA_AUTHORITY")
+        ->capture_default_str();
+    one->callback([words, run, &chosen] {
+      chosen.run = [words, run](const bus::NodeOptions&, const bus::Stop&) { return run(*words); };
+    });
+    return one;
+  };
+  const auto add_days = [&](CLI::App* one) {
+    one->add_option("--days", words->days, "how long the certificates hold")->capture_default_str();
+  };
+  CLI::App* one = action("init", "Make the authority of a site", init);
+  one->add_option("site", words->name, "its name")->required();
+  one->add_option("--roles", words->roles_file, "file of roles [config/security/roles.yaml]");
+
+  one = action("add", "Make a member: a machine, a person or a program", add);
+  one->add_option("name", words->name, "its name")->required();
+  one->add_option("--role", words->roles,
+                  "what it may do; several for several programs of a machine")
+      ->required()
+      ->delimiter(',');
+  one->add_option("--robot", words->robot, "the only robot that it may have to do with");
+  add_days(one);
+
+  one = action("renew", "Make new certificates of a member, before the old ones expire", renew);
+  one->add_option("name", words->name, "of the member")->required();
+  add_days(one);
+
+  one = action("revoke", "End a member's certificates", revoke);
+  one->add_option("name", words->name, "of the member")->required();
+
+  one = action("list", "The members", list);
+  one->add_flag("--json", words->json, "for programs");
+
+  one = command->add_subcommand("check", "Whether a folder of credentials is whole and holds");
+  one->add_option("folder", words->credentials, "the folder [that of this user or machine]");
+  one->add_option("--program", words->program, "for which program")->capture_default_str();
+  one->callback([words, &chosen] {
+    chosen.run = [words](const bus::NodeOptions& options, const bus::Stop&) {
+      return check(*words, options);
+    };
+  });
+}
+
+}  // namespace saphira::cli

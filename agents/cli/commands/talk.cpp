@@ -1,0 +1,177 @@
+// say and knows: talking to the robot, and what it knows from that.
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+
+#include "commands.hpp"
+#include "saphira/bus/agent.hpp"
+#include "saphira/cli/printer.hpp"
+#include "saphira/cli/talk_words.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kSilence = 5.0;  // [s] for the first answer
+
+struct SayOptions {
+  std::vector<std::string> words;
+  std::string speaker;
+  bool quick = false;
+};
+
+std::string user() {
+  const char* const name = std::getenv("USER");
+  return name == nullptr || *name == '\0' ? "somebody" : name;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// All that is said to and by the robot, as it is said.
+int listen(const bus::NodeOptions& options, const bus::Stop& stop) {
+  bus::Node node(options);
+  auto heard = node.reader(bus::topics::kHeard);
+  auto said = node.reader(bus::topics::kSaid);
+  while (!stop.requested()) {
+    for (const auto& sample : heard.take())
+      if (!sample.info.disposed)
+        print("%s\n", line_of(sample.data).c_str());
+    for (const auto& sample : said.take())
+      if (!sample.info.disposed)
+        print("%s\n", line_of(sample.data, options.robot).c_str());
+    std::fflush(stdout);
+    if (std::ferror(stdout) != 0)
+      return bus::kExitOk;  // who read our output has left
+    node.wait(milliseconds(500), &stop);
+  }
+  return bus::kExitOk;
+}
+
+int say(const SayOptions& say_options, const bus::NodeOptions& options, const bus::Stop& stop) {
+  if (say_options.words.empty())
+    return listen(options, stop);
+  bus::Node node(options);
+  Processes processes(node);
+  auto writer = node.writer(bus::topics::kHeard);
+  auto said = node.reader(bus::topics::kSaid);
+  v1::Utterance utterance;
+  utterance.id().writer(node.instance());
+  utterance.id().number(1);
+  utterance.speaker(say_options.speaker.empty() ? user() : say_options.speaker);
+  utterance.text(joined(say_options.words));
+  utterance.means(v1::UTTERANCE_TYPED);
+  utterance.confidence(1.0);
+  utterance.time(
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+  writer.write(utterance);
+  print("%s\n", line_of(utterance).c_str());
+  const auto began = Clock::now();
+  bool answered = false;
+  while (!stop.requested()) {
+    node.wait(milliseconds(200), &stop);
+    processes.poll();
+    for (const auto& sample : said.take()) {
+      if (sample.info.disposed || sample.data.answers().writer() != node.instance())
+        continue;
+      answered = true;
+      print("%s\n", line_of(sample.data, options.robot).c_str());
+      std::fflush(stdout);
+      if (sample.data.end() || say_options.quick)
+        return sample.data.text().starts_with("what?") ? bus::kExitFailed : bus::kExitOk;
+    }
+    if (answered || seconds_since(began) < kSilence)
+      continue;
+    complain("saphira: nothing was answered. %s\n",
+             writer.matched() == 0
+                 ? ("No program listens: " + who_is_there(options, processes)).c_str()
+                 : "What is said to the robot begins with its keyword, such as \"Flakey, stop\"");
+    return bus::kExitFailed;
+  }
+  return bus::kExitFailed;
+}
+
+/// What is known, once it is said.
+std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const bus::Stop& stop) {
+  auto reader = node.reader(bus::topics::kKnows);
+  std::optional<v1::Knowledge> knowledge;
+  const auto began = Clock::now();
+  while (!stop.requested() && !knowledge && seconds_since(began) < kSilence) {
+    node.wait(milliseconds(100), &stop);
+    processes.poll();
+    knowledge = reader.take_newest();
+  }
+  return knowledge;
+}
+
+int knows(const std::vector<std::string>& words, const bus::NodeOptions& options,
+          const bus::Stop& stop) {
+  bus::Node node(options);
+  Processes processes(node);
+  if (words.empty()) {
+    const auto knowledge = known(node, processes, stop);
+    if (!knowledge) {
+      std::cerr << "saphira: nothing is said about what the robot knows; "
+                << who_is_there(options, processes) << '\n';
+      return bus::kExitFailed;
+    }
+    std::fputs(knowledge_table(*knowledge).c_str(), stdout);
+    return bus::kExitOk;
+  }
+  char* end = nullptr;
+  const double number = words.size() == 2 ? std::strtod(words[1].c_str(), &end) : 0.0;
+  if (words[0] != "forget" || number < 1.0 || end == nullptr || *end != '\0') {
+    std::cerr << "saphira: expected knows, or knows forget NUMBER (saphira knows lists them)\n";
+    return bus::kExitUsage;
+  }
+  bus::RequestClient client(node, bus::topics::kSolve, "saphira knows");
+  v1::Request request;
+  request.functor("forget");
+  request.service("dialogue");
+  request.arguments({bus::number("number", number)});
+  const v1::Answer answer = client.ask(request, 10.0, &stop, [&] { processes.poll(); });
+  std::printf("%s\n", answer.text().c_str());
+  return bus::well(answer.code()) ? bus::kExitOk : bus::kExitFailed;
+}
+
+}  // namespace
+
+void add_say(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<SayOptions>();
+  CLI::App* command =
+      app.add_subcommand("say", "Say something to the robot; without words: hear what is said");
+  command->add_option("words", options->words, "such as \"Flakey, go to EJ-231\"");
+  command->add_option("--as", options->speaker, "who says it (usual: your name here)");
+  command->add_flag("--quick", options->quick, "do not wait for the end of what it does");
+  command->footer(
+      "What may be said: config/grammars/flakey.grammar. Exit code 0: it was understood; 1: not.\n"
+      "Ctrl-C ends the command, not what the robot does: say \"Flakey, stop\" for that.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return say(*options, node, stop);
+    };
+  });
+}
+
+void add_knows(CLI::App& app, Chosen& chosen) {
+  auto words = std::make_shared<std::vector<std::string>>();
+  CLI::App* command =
+      app.add_subcommand("knows", "What the robot knows because it was told, and by whom");
+  command->add_option("words", *words, "forget NUMBER: takes one back");
+  command->callback([words, &chosen] {
+    chosen.run = [words](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return knows(*words, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

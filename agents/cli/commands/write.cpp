@@ -1,0 +1,251 @@
+// write: any topic by its name, from a shell or a script.
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <deque>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "commands.hpp"
+#include "direct.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/introspect.hpp"
+#include "saphira/bus/request_client.hpp"
+#include "saphira/cli/printer.hpp"
+#include "watch.hpp"
+
+namespace saphira::cli {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kNobodyReads = 3.0;  ///< [s]
+constexpr double kAnswer = 20.0;      ///< [s] for an answer to a request
+constexpr int kDelivered = 2000;      ///< [ms]
+
+struct Options {
+  std::string topic;
+  std::string json;
+  double seconds = 0.0;
+};
+
+/// The samples in their order: the one of the command line, or each line of standard input.
+class Samples {
+ public:
+  explicit Samples(const std::string& json) : input_(json == "-") {
+    if (!input_)
+      lines_.push_back(json);
+  }
+  /// Nothing: none has come yet, or there is no other.
+  std::optional<std::string> next() {
+    if (input_)
+      read();
+    if (lines_.empty())
+      return std::nullopt;
+    std::string line = lines_.front();
+    lines_.pop_front();
+    return line;
+  }
+  bool ended() const { return lines_.empty() && (!input_ || ended_); }
+  bool from_input() const { return input_; }
+
+ private:
+  void read() {
+    std::array<char, 4096> buffer{};
+    pollfd fd{STDIN_FILENO, POLLIN, 0};
+    while (!ended_ && poll(&fd, 1, 0) > 0) {
+      const ssize_t n = ::read(STDIN_FILENO, buffer.data(), buffer.size());
+      ended_ = n <= 0;
+      text_.append(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+    }
+    if (ended_ && !text_.empty() && text_.back() != '\n')
+      text_ += '\n';
+    for (std::size_t end = 0; (end = text_.find('\n')) != std::string::npos;
+         text_.erase(0, end + 1))
+      if (text_.find_first_not_of(" \t\r") < end)
+        lines_.push_back(text_.substr(0, end));
+  }
+
+  bool input_;
+  bool ended_ = false;
+  std::string text_;
+  std::deque<std::string> lines_;
+};
+
+nlohmann::json object_of(const std::string& text) {
+  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  // What is no object is refused where the sample is made of it.
+  return json.is_object() ? json : nlohmann::json();
+}
+
+/// A motor command of which what a person left out is what the person means.
+v1::MotorCommand motor_command(const std::string& text) {
+  v1::MotorCommand command;
+  command.active(true);
+  bus::from_json(text, command);
+  const nlohmann::json json = object_of(text);
+  if (json.contains("velocity") && !json.contains("translation"))
+    command.translation(v1::TRANSLATION_VELOCITY);
+  if (json.contains("rotation_velocity") && !json.contains("rotation"))
+    command.rotation(v1::ROTATION_VELOCITY);
+  return command;
+}
+
+/// Drives for as long as it lives: a command is good for a fraction of a second.
+int drive(const Options& options, const bus::Topic<v1::MotorCommand>& topic,
+          const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  Samples samples(options.json);
+  // A mistake on the command line moves nothing.
+  std::optional<v1::MotorCommand> command;
+  if (!samples.from_input())
+    command = motor_command(*samples.next());
+  bus::Node node(node_options);
+  DirectDriver driver(node, topic, "saphira write");
+  const auto began = Clock::now();
+  while (!stop.requested() && (options.seconds <= 0.0 || seconds_since(began) < options.seconds)) {
+    while (const auto line = samples.next())
+      command = motor_command(*line);
+    if (samples.from_input() && samples.ended())
+      break;
+    if (command)
+      driver.drive(*command);
+    if (const auto news = driver.news())
+      complain("saphira: %s\n", news->c_str());
+    node.wait(kDrivePeriod, &stop);
+    driver.poll();
+  }
+  driver.release();
+  return bus::kExitOk;
+}
+
+int ask(const Options& options, const bus::RequestTopic& topic,
+        const bus::NodeOptions& node_options, const bus::Stop& stop) {
+  Samples samples(options.json);
+  bus::Node node(node_options);
+  bus::RequestClient client(node, topic, person("saphira write"));
+  int code = bus::kExitOk;
+  while (!stop.requested() && !samples.ended()) {
+    const auto line = samples.next();
+    if (!line) {
+      node.wait(milliseconds(50), &stop);
+      continue;
+    }
+    v1::Request request;
+    bus::from_json(*line, request);
+    const v1::Answer answer = client.ask(request, kAnswer, &stop);
+    print("%s%s%s\n", bus::well(answer.code()) ? "done" : "not done",
+          answer.text().empty() ? "" : ": ", answer.text().c_str());
+    if (!bus::well(answer.code()))
+      code = bus::kExitFailed;
+  }
+  return code;
+}
+
+/// With what has to be unique and nobody wants to make up.
+std::string completed(const std::string& topic, const std::string& text, const bus::Node& node) {
+  nlohmann::json json = object_of(text);
+  if (topic == bus::topics::kGoals.name && json.is_object()) {
+    if (!json.contains("id"))
+      json["id"] = {{"writer", node.instance()}, {"number", 1}};
+    if (!json.contains("requester"))
+      json["requester"] = person("saphira write");
+    return json.dump();
+  }
+  return text;
+}
+
+/// What is declared (goals, latched) holds until Ctrl-C; what happens once is written once.
+int tell(const Options& options, const std::string& qos, const bus::NodeOptions& node_options,
+         const bus::Stop& stop) {
+  const bool holds = qos == "goal" || qos == "latched";
+  Samples samples(options.json);
+  bus::Node node(node_options);
+  bus::Scribe scribe(node, options.topic);
+  bool written = false;
+  const auto began = Clock::now();
+  while (!stop.requested() && !samples.ended()) {
+    if (scribe.matched() == 0 && !holds) {
+      if (seconds_since(began) > kNobodyReads) {
+        complain("saphira: not written: no program reads %s of robot %s in domain %u\n",
+                 options.topic.c_str(), node_options.robot.c_str(), node_options.domain);
+        return bus::kExitFailed;
+      }
+      node.wait(milliseconds(20), &stop);
+      continue;
+    }
+    const auto line = samples.next();
+    if (!line) {
+      node.wait(milliseconds(50), &stop);
+      continue;
+    }
+    if (!scribe.write(completed(options.topic, *line, node)))
+      throw std::runtime_error("the bus did not take the sample");
+    written = true;
+  }
+  if (holds && written) {
+    print("%s holds it %s\n", options.topic.c_str(),
+          options.seconds > 0.0 ? "for the time given" : "until Ctrl-C");
+    const auto since = Clock::now();
+    while (!stop.requested() && (options.seconds <= 0.0 || seconds_since(since) < options.seconds))
+      node.wait(milliseconds(100), &stop);
+    scribe.dispose();
+  }
+  scribe.wait_acknowledged(kDelivered);
+  return bus::kExitOk;
+}
+
+int write(const Options& options, const bus::NodeOptions& node, const bus::Stop& stop) {
+  if (const auto unknown = unknown_topic(options.topic)) {
+    std::cerr << "saphira: " << *unknown << '\n';
+    return bus::kExitUsage;
+  }
+  int code = bus::kExitOk;
+  try {
+    bus::for_each_topic([&](const auto& topic) {
+      using Topic = std::decay_t<decltype(topic)>;
+      if (options.topic != topic.name)
+        return;
+      if constexpr (std::is_same_v<Topic, bus::Topic<v1::MotorCommand>>)
+        code = drive(options, topic, node, stop);
+      else if constexpr (std::is_same_v<Topic, bus::RequestTopic>)
+        code = ask(options, topic, node, stop);
+      else
+        code = tell(options, qos_of(options.topic), node, stop);
+    });
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "saphira: " << options.topic << ": " << error.what() << '\n';
+    return bus::kExitUsage;
+  }
+  return code;
+}
+
+}  // namespace
+
+void add_write(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("write", "Write on a topic, as JSON");
+  command->add_option("topic", options->topic, "such as drive/direct")->required();
+  command
+      ->add_option("json", options->json,
+                   "one object, such as '{\"velocity\": 0.2}'; - : one on each line of the input")
+      ->required();
+  command->add_option("--for", options->seconds, "[s] drive/..., goals: end then")
+      ->check(above_zero());
+  command->footer(
+      "What is not named is 0, false or empty; saphira echo shows what a sample looks like.\n"
+      "drive/...: the robot drives for as long as this runs, and stops when it ends. goals and "
+      "what is\n"
+      "latched hold until Ctrl-C. Requests are answered: exit code 0 means done.");
+  command->callback([options, &chosen] {
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return write(*options, node, stop);
+    };
+  });
+}
+
+}  // namespace saphira::cli

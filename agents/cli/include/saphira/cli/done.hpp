@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include "motion.h"
+#include "robot.h"
+
+namespace saphira::cli {
+
+/// One direct motion (manual 6.4).
+struct Move {
+  enum class Kind {
+    move,  ///< so far along the heading (sfSetPosition)
+    turn,  ///< by an angle (sfSetDHeading)
+    speed  ///< sfSetVelocity
+  };
+  Kind kind = Kind::speed;
+  std::string name;    ///< of the command
+  double value = 0.0;  ///< [m], [rad], [m/s]
+  double speed = 0.0;  ///< [m/s] of a move, at most [0: the robot's own]
+};
+
+/// What of a way or angle counts as progress [m or rad].
+inline constexpr double kProgress = 0.01;
+
+/// What is wrong with it, in words; empty: nothing.
+std::string trouble_of(const Move& move);
+/// What is to be written again and again until it is done.
+v1::MotorCommand command_of(const Move& move);
+/// What is left of it [m or rad, not negative], by the grant that it holds; 0 of a speed.
+double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
+/// sfDonePosition, sfDoneHeading: it is there, and at rest. A speed is never done.
+bool done(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
+/// Such as ", 0.35 m left"; empty where nothing is.
+std::string rest_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
+
+}  // namespace saphira::cli

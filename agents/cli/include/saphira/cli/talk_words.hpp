@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "agents.h"
+#include "request.h"
+
+/// Agents and what is said, as people read and type it.
+namespace saphira::cli {
+
+/// name=? for a slot that the answer fills; otherwise as parse_argument. std::invalid_argument says
+/// what was expected.
+v1::Argument parse_slot(const std::string& word);
+
+/// "alice: Flakey, stop"; of the robot with its name.
+std::string line_of(const v1::Utterance& utterance, const std::string& robot = {});
+
+/// "calendar: place="library"", or the code and the reason.
+std::string line_of(const v1::Answer& answer);
+
+/// An agent with a line for each capability.
+std::string describe(const v1::Agent& agent);
+/// "ann: every 5 s: note()"
+std::string describe(const v1::Trigger& trigger);
+
+/// What the robot was told, each with its number, speaker and time.
+std::string knowledge_table(const v1::Knowledge& knowledge);
+
+}  // namespace saphira::cli

@@ -1,0 +1,30 @@
+# cmake -DOUT=file.cpp -DFOLDER=built -P embed.cmake: the page's files as bytes of a source file.
+set(bytes)
+set(list)
+foreach(file index.html console.js console.css simulator.html simulator.js)
+  file(READ ${FOLDER}/${file} hex HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," hex "${hex}")
+  string(MAKE_C_IDENTIFIER ${file} name)
+  string(APPEND bytes "constexpr unsigned char ${name}[] = {${hex}};\n")
+  set(type "text/html; charset=utf-8")
+  if(file MATCHES js$)
+    set(type "text/javascript; charset=utf-8")
+  elseif(file MATCHES css$)
+    set(type "text/css; charset=utf-8")
+  endif()
+  string(APPEND list "      {\"/${file}\", \"${type}\", {reinterpret_cast<const char*>(${name}), sizeof ${name}}},\n")
+endforeach()
+file(WRITE ${OUT} "// Made by embed.cmake.
+#include \"page_files.hpp\"
+
+namespace saphira::console {
+namespace {
+${bytes}}  // namespace
+
+std::vector<PageFile> page_files() {
+  return {
+${list}  };
+}
+
+}  // namespace saphira::console
+")

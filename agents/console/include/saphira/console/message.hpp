@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "saphira/console/control.hpp"
+
+namespace saphira::console {
+
+/// What a page may say: one JSON object, with "type" as its first word. The list is in README.md.
+struct Hello {
+  std::string key;
+  std::string name;  ///< of the operator, for people
+  /// Of the connection whose operator's samples come here as well [empty: one of its own].
+  std::string ticket;
+};
+struct Ack {
+  std::uint64_t frame = 0;
+};
+struct Ping {
+  double at = 0.0;  ///< what the page wants back
+};
+struct TakeControl {
+  bool force = false;
+};
+struct AskForControl {};
+struct ReleaseControl {};
+struct HandBack {};
+struct EmergencyStop {};
+struct ResetEmergencyStop {};
+struct AskGoal {
+  std::uint64_t reference = 0;  ///< of the answer
+  std::string words;            ///< as `saphira goal` takes them
+};
+struct Say {
+  std::string text;  ///< to the robot, in a person's words
+};
+struct CancelGoal {
+  std::uint64_t reference = 0;
+  std::string id;  ///< as the board names it
+};
+struct AskProcess {
+  std::uint64_t reference = 0;
+  std::string service;
+  std::string process;
+  std::string functor;  ///< interrupt, suspend, resume
+};
+struct PlaceRobot {
+  std::uint64_t reference = 0;
+  double x = 0.0;  ///< [m] [map]
+  double y = 0.0;
+  double th = 0.0;  ///< [rad]
+};
+/// A place that the programs on the bus are to know of.
+struct PointOut {
+  double x = 0.0;  ///< [m] [map], or [odom] where there is no map
+  double y = 0.0;
+  bool in_map = true;
+};
+/// Not understood.
+struct Wrong {
+  std::string why;
+};
+
+using Message = std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, ReleaseControl,
+                             Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal,
+                             Say, CancelGoal, AskProcess, PlaceRobot, PointOut>;
+
+/// Whatever the text is, a message: Wrong, with what was expected, where it is none.
+Message parse_message(std::string_view text);
+
+}  // namespace saphira::console

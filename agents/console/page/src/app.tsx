@@ -1,0 +1,336 @@
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {Drive} from './drive';
+import {DrivePanel} from './drive_panel';
+import {degrees, heading} from './geometry';
+import {Link} from './link';
+import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
+import type {ConsoleInfo, Grant, Registration, RobotState, Why} from './types';
+import {type Layers, type Target, View} from './view';
+
+const tabs = ['Goals', 'Why', 'Behaviors', 'Intentions', 'Programs', 'Messages'] as const;
+type Tab = typeof tabs[number];
+const old = 1000;            // [ms] an older picture is marked as such
+const gone = 2000;           // [ms] nothing heard for so long: the connection is gone
+const wordsPeriod = 100;     // [ms] between two looks at the words
+
+interface Seen { state: 'live' | 'old' | 'silent' | 'gone' | 'locked'; age: number }
+function seen(link: Link, now: number): Seen {
+  const robot = link.get<RobotState>('robot/state');
+  const age = robot ? now - robot.at : Infinity;
+  if (!link.mayWatch) return {state: 'locked', age};
+  if (!link.connected || now - link.heard > gone) return {state: 'gone', age};
+  if (!robot) return {state: 'silent', age};
+  return {state: age > old ? 'old' : 'live', age};
+}
+
+export function App() {
+  const [link] = useState(() => {
+    const made = new Link();
+    Object.assign(globalThis, {saphira: made});  // for benchmarks, and for who is curious
+    return made;
+  });
+  const [drive] = useState(() => new Drive(link, () => constant.current()));
+  const constant = useRef(() => {});
+  const [, redraw] = useState(0);
+  const [tab, setTab] = useState<Tab>('Goals');
+  const [note, setNote] = useState<{text: string; well: boolean}>();
+  const [goal, setGoal] = useState('');
+  const now = performance.now();
+
+  constant.current = async () => {
+    if (goal) {
+      link.ask({type: 'cancel', id: goal});
+      return setGoal('');
+    }
+    drive.letGo();
+    link.send({type: 'hand_back'});
+    const answer = await link.ask({type: 'goal', words: 'drive 0.3'});
+    if (answer.well) setGoal(answer.id);
+    setNote(answer.well ? {text: 'Constant velocity: the behaviors drive, avoiding what is in the way. Press g again to end it.', well: true} : answer);
+  };
+
+  useEffect(() => {
+    let due = false;
+    const words = () => {
+      if (due) return;
+      due = true;
+      setTimeout(() => {
+        due = false;
+        redraw(n => n + 1);
+      }, wordsPeriod);
+    };
+    link.onFrame(words);
+    drive.onChange(words);
+    let timer = 0;
+    link.onNote((text, well) => {
+      clearTimeout(timer);
+      setNote({text, well});
+      timer = window.setTimeout(() => setNote(undefined), 8000);
+    });
+  }, []);
+
+  const state = seen(link, now);
+  const grant = link.data<Grant>('drive/grant');
+  return <>
+    <Header link={link} seen={state} grant={grant} />
+    <main>
+      <section class="picture" aria-label="Map">
+        <Picture link={link} drive={drive} seen={state} />
+      </section>
+      <section class="side" aria-label="What the robot does">
+        {grant?.estopped && <Estopped link={link} grant={grant} />}
+        <Now link={link} grant={grant} seen={state} />
+        <DrivePanel link={link} drive={drive} grant={grant} />
+        {note && <p class={note.well ? 'note' : 'note bad'} role="status">{note.text}
+          <button class="plain" aria-label="Close this message" onClick={() => setNote(undefined)}>×</button></p>}
+        <Tabs tab={tab} choose={setTab} />
+        <div class="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
+          {tab === 'Goals' && <Goals link={link} />}
+          {tab === 'Why' && <WhyTree link={link} />}
+          {tab === 'Behaviors' && <BehaviorList link={link} now={now} />}
+          {tab === 'Intentions' && <IntentionTree link={link} now={now} />}
+          {tab === 'Programs' && <Programs link={link} now={now} />}
+          {tab === 'Messages' && <Messages link={link} />}
+        </div>
+      </section>
+    </main>
+  </>;
+}
+
+const linkWords = {live: 'live', old: 'old', silent: 'no robot', gone: 'link gone', locked: 'locked'};
+
+function Header({link, seen: s, grant}: {link: Link; seen: Seen; grant?: Grant}) {
+  const info = link.data<ConsoleInfo>('console');
+  const [pressed, setPressed] = useState(false);
+  useEffect(() => {
+    if (grant?.estopped) setPressed(false);
+  }, [grant?.estopped]);
+  const press = () => {
+    setPressed(true);
+    if (!link.send({type: 'estop'})) link.note('NOT SENT: there is no connection. Stop the robot by its own switch.', false);
+  };
+  return <header>
+    <h1>{info?.robot ?? 'Saphira'}</h1>
+    <span class={`chip link ${s.state}`} title="age of the picture; round trip of a command">
+      {linkWords[s.state]}{Number.isFinite(s.age) && s.state !== 'gone' && ` ${s.age < 1000 ? `${Math.max(0, Math.round(s.age / 10) * 10)} ms` : `${(s.age / 1000).toFixed(1)} s`}`}
+      {link.roundTrip > 0 && s.state !== 'gone' && <span class="wide">, there and back {Math.round(link.roundTrip)} ms</span>}
+    </span>
+    <span class="grow" />
+    {info?.simulator && <a class="wide" href="/simulator.html">the simulator's own view</a>}
+    <button class="estop" onClick={press} disabled={!link.commanding}
+            aria-label="Emergency stop">{pressed && !grant?.estopped ? 'STOP …' : 'STOP'}</button>
+  </header>;
+}
+
+function Estopped({link, grant}: {link: Link; grant: Grant}) {
+  return <div class="alarm" role="alert">
+    <div><strong>Emergency stop</strong> pressed by {grant.estop_source}. The robot stands until it is reset; its goals are ended.</div>
+    <button disabled={!link.mayDrive} onClick={() => link.send({type: 'estop_reset'})}>Reset</button>
+  </div>;
+}
+
+const driverWords: {[role: string]: string} = {
+  ROLE_NONE: 'nobody drives', ROLE_TELEOP: 'a person drives', ROLE_DIRECT: 'a program drives',
+  ROLE_BEHAVIORS: 'autonomy drives', ROLE_ESTOP: 'emergency stop',
+};
+
+// The information area (manual 2.3.3), and above it in one sentence what goes on.
+function Now({link, grant, seen: s}: {link: Link; grant?: Grant; seen: Seen}) {
+  const robot = link.data<RobotState>('robot/state');
+  const registration = link.data<Registration>('registration');
+  const why = link.data<Why>('why');
+  if (!robot) return <div class="now">{nothing(s.state === 'live' || s.state === 'silent' ? 'The console runs, and no robot is heard. Is the bridge there, and the robot switched on?' : 'Nothing is known of the robot yet.')}</div>;
+  const tracking = registration?.state === 'REGISTRATION_TRACKING';
+  const pose = tracking ? registration!.pose_in_map : robot.pose_in_odom;
+  const sigma = tracking ? Math.sqrt(Math.max(0, (registration!.covariance.xx + registration!.covariance.yy) / 2)) : 0;
+  return <div class={`now ${s.state}`}>
+    <p class="sentence" title={why?.sentence}>{grant?.waits_for_hand_back ? 'A person drove last: autonomy waits until the robot is handed back.' : why?.sentence ?? grant?.reason}</p>
+    {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {grant.guard_reason}</p>}
+    <dl>
+      <div><dt>Status</dt><dd>{robot.status.replace('MOTORS_', '').replace('_', ' ').toLowerCase()}{(robot.left_stalled || robot.right_stalled) && ', stalled'}</dd></div>
+      <div><dt>Driver</dt><dd>{driverWords[grant?.role ?? ''] ?? '?'}</dd></div>
+      <div><dt>Speed</dt><dd>{robot.velocity.toFixed(2)} m/s</dd></div>
+      <div><dt>Turning</dt><dd>{degrees(robot.rotation_velocity).toFixed(0)} °/s</dd></div>
+      <div class="place"><dt>{tracking ? 'On the map' : 'By odometry'}</dt><dd>{pose.x.toFixed(2)}, {pose.y.toFixed(2)} m, {heading(pose.th).toFixed(0)}°{' '}
+        {tracking ? `± ${sigma < 0.1 ? (100 * sigma).toFixed(0) + ' cm' : sigma.toFixed(1) + ' m'}` : `(${(registration?.state ?? 'no registration').replace('REGISTRATION_', '').toLowerCase()})`}</dd></div>
+      <div><dt>Battery</dt><dd>{robot.battery.toFixed(1)} V</dd></div>
+      <div><dt>Packets</dt><dd title="motor, sonar and vision packets a second">{robot.motor_packets_per_s} / {robot.sonar_readings_per_s} / {robot.vision_packets_per_s}</dd></div>
+    </dl>
+  </div>;
+}
+
+function Tabs({tab, choose}: {tab: Tab; choose: (tab: Tab) => void}) {
+  const key = (event: KeyboardEvent) => {
+    const step = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+    if (!step) return;
+    const next = tabs[(tabs.indexOf(tab) + step + tabs.length) % tabs.length];
+    choose(next);
+    document.getElementById(`tab-${next}`)?.focus();
+    event.preventDefault();
+  };
+  return <div class="tabs" role="tablist" aria-label="Views" onKeyDown={key}>
+    {tabs.map(t => <button key={t} role="tab" id={`tab-${t}`} aria-selected={t === tab} aria-controls="panel"
+                           tabIndex={t === tab ? 0 : -1} onClick={() => choose(t)}>{t}</button>)}
+  </div>;
+}
+
+function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const view = useRef<View>();
+  const [target, setTarget] = useState<Target>();
+  const [layers, setLayers] = useState<Layers>();
+  const [, look] = useState(0);
+  useEffect(() => {
+    const v = view.current = new View(canvas.current!, link);
+    setLayers({...v.layers});
+    link.onFrame(() => v.news());
+    let fitted = false;
+    const draw = () => {
+      const robot = link.get<RobotState>('robot/state');
+      // The whole map at first; the robot with what is around it where there is no map.
+      if (!fitted && robot && link.data('map') && link.data('registration')) {
+        fitted = true;
+        if (v.onMap()) v.fit();
+      }
+      const moving = robot && performance.now() - robot.at < 300 && (robot.data.velocity !== 0 || robot.data.rotation_velocity !== 0);
+      if (v.dirty || moving) v.draw();
+      requestAnimationFrame(draw);
+    };
+    draw();
+    listen(canvas.current!, v, at => {
+      v.target = at;
+      v.dirty = true;
+      setTarget(at);
+    });
+  }, []);
+  const v = view.current;
+  const close = () => {
+    if (v) v.target = undefined, v.dirty = true;
+    setTarget(undefined);
+  };
+  const toggle = (layer: keyof Layers) => {
+    v!.layers[layer] = !v!.layers[layer];
+    v!.dirty = true;
+    setLayers({...v!.layers});
+  };
+  const act = (change: () => void) => {
+    if (v) change(), v.dirty = true;
+    look(n => n + 1);
+  };
+  const stale = s.state !== 'live';
+  return <>
+    <canvas ref={canvas} class={stale ? 'stale' : ''} role="img"
+            aria-label={`${v?.local ? 'Around the robot' : 'Map'} with the robot, its sonars and what it takes them for`} />
+    {stale && <p class="banner" role="status">{bannerText(s)}</p>}
+    <div class="tools" role="group" aria-label="View">
+      <button aria-pressed={!!v?.local} title="the robot in the middle, pointing up" onClick={() => act(() => { v!.local = !v!.local; })}>Local</button>
+      <button aria-pressed={!!v?.follow && !v.local} title="the map moves with the robot" onClick={() => act(() => { v!.local = false; v!.follow = !v!.follow; })}>Follow</button>
+      <button title="the whole map" onClick={() => act(() => v!.fit())}>All</button>
+      <button aria-label="Grow" onClick={() => act(() => v!.zoom(1.3))}>+</button>
+      <button aria-label="Shrink" onClick={() => act(() => v!.zoom(1 / 1.3))}>−</button>
+    </div>
+    {layers && <details class="layers"><summary>Layers</summary>
+      {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
+        <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
+      <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
+    </details>}
+    {target && <TargetCard link={link} target={target} close={close} />}
+    {drive.mine() && <Stick drive={drive} />}
+  </>;
+}
+const layerWords: {[name in keyof Layers]: string} =
+  {grid: 'occupancy grid', sonar: 'sonar echoes', map: 'the map', percepts: 'what is seen', areas: 'where behaviors find something', wake: 'wake (10 s)'};
+function bannerText(s: Seen): string {
+  const age = Number.isFinite(s.age) ? `The picture is ${(s.age / 1000).toFixed(s.age < 10_000 ? 1 : 0)} s old. ` : '';
+  switch (s.state) {
+    case 'locked': return 'To watch from here the key is needed: open the address that saphira console prints.';
+    case 'gone': return `${age}There is no connection to the console. Trying again …`;
+    case 'silent': return 'No robot is heard.';
+    default: return `${age}The robot says nothing.`;
+  }
+}
+
+// A click chooses a place; a drag moves the map, a wheel or two fingers change its scale.
+function listen(canvas: HTMLCanvasElement, view: View, clicked: (target: Target) => void) {
+  const pointers = new Map<number, {x: number; y: number}>();
+  let moved = 0, apart = 0;
+  canvas.addEventListener('pointerdown', e => {
+    pointers.set(e.pointerId, {x: e.offsetX, y: e.offsetY});
+    if (pointers.size === 1) moved = 0;
+    canvas.setPointerCapture(e.pointerId);
+  });
+  canvas.addEventListener('pointermove', e => {
+    const last = pointers.get(e.pointerId);
+    if (!last) return;
+    const at = {x: e.offsetX, y: e.offsetY};
+    moved += Math.hypot(at.x - last.x, at.y - last.y);
+    pointers.set(e.pointerId, at);
+    if (pointers.size === 1) {
+      if (moved > 5) view.drag(at.x - last.x, at.y - last.y);
+    } else {
+      const [a, b] = [...pointers.values()];
+      const now = Math.hypot(a.x - b.x, a.y - b.y);
+      if (apart > 0) view.zoom(now / apart);
+      apart = now;
+    }
+  });
+  const end = (e: PointerEvent) => {
+    if (pointers.size === 1 && moved <= 5 && e.type === 'pointerup') clicked(view.at(e.offsetX, e.offsetY));
+    pointers.delete(e.pointerId);
+    apart = 0;
+  };
+  canvas.addEventListener('pointerup', end);
+  canvas.addEventListener('pointercancel', end);
+  canvas.addEventListener('wheel', e => {
+    view.zoom(Math.exp(-e.deltaY / 500));
+    e.preventDefault();
+  }, {passive: false});
+}
+
+function TargetCard({link, target, close}: {link: Link; target: Target; close: () => void}) {
+  const [told, setTold] = useState('');
+  useEffect(() => setTold(''), [target]);
+  const name = target.artifact?.name;
+  const ask = async (words: string) => {
+    const answer = await link.ask({type: 'goal', words});
+    if (answer.well) close();
+    else setTold(answer.text);
+  };
+  const place = async () => {
+    const answer = await link.ask({type: 'place', x: target.x, y: target.y, th: link.data<Registration>('registration')?.pose_in_map.th ?? 0});
+    if (answer.well) close();
+    else setTold(answer.text);
+  };
+  return <div class="target" role="dialog" aria-label="A place on the map">
+    <div class="row"><strong>{name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
+      <button class="plain" aria-label="Close" onClick={close}>×</button></div>
+    {link.mayDrive ? <div class="row">
+      {name && <button class="main" onClick={() => ask(`go-to-place place=${name}`)}>Go to {name}</button>}
+      <button class={name ? '' : 'main'} onClick={() => ask(`go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`)}>Go here</button>
+      <button title="a program that takes clicks gets this one" onClick={() => { link.send({type: 'point_out', x: target.x, y: target.y, in_map: target.frame === 'map'}); close(); }}>Tell programs</button>
+      {target.frame === 'map' && <button title="tell the robot that it stands here" onClick={place}>The robot is here</button>}
+    </div> : <p class="small">Without the key you may watch.</p>}
+    {told && <p class="told bad" role="status">{told}</p>}
+  </div>;
+}
+
+function Stick({drive}: {drive: Drive}) {
+  const pad = useRef<SVGSVGElement>(null);
+  const move = (event: PointerEvent) => {
+    const box = pad.current!.getBoundingClientRect();
+    let x = 2 * (event.clientX - box.left) / box.width - 1, y = 1 - 2 * (event.clientY - box.top) / box.height;
+    const r = Math.hypot(x, y) / 0.75;
+    if (r > 1) x /= r, y /= r;
+    drive.stick = {x: x / 0.75, y: y / 0.75};
+  };
+  const end = () => drive.letGo();
+  const at = drive.stick ?? {x: 0, y: 0};
+  return <svg ref={pad} class={drive.active ? 'stick held' : 'stick'} viewBox="-100 -100 200 200" role="img"
+              aria-label="Stick: hold and move it to drive; or use the keys i m j l"
+              onPointerDown={e => { e.preventDefault(); pad.current!.setPointerCapture(e.pointerId); move(e); }}
+              onPointerMove={e => drive.stick && move(e)} onPointerUp={end} onPointerCancel={end} onLostPointerCapture={end}>
+    <circle class="stick-ground" r="98" />
+    <path class="stick-arrow" d="M0-90 8-78H-8ZM0 90 8 78H-8ZM-90 0-78 8V-8ZM90 0 78 8V-8Z" />
+    <circle class="stick-knob" cx={75 * at.x} cy={-75 * at.y} r="26" />
+  </svg>;
+}

@@ -1,0 +1,240 @@
+// The two connections to the gateway, and what has come by them.
+
+export interface Item<T> {
+  data: T;
+  at: number;   // [ms] performance.now() of when it was true, as near as the page can tell
+}
+export interface Answer { well: boolean; text: string; id: string }
+
+const retry = 1000;      // [ms]
+const furtherLanes = 2;     // for samples of driving
+const drift = 0.001;     // of two clocks, at the most
+const keyName = 'saphira key';
+const operatorName = 'saphira operator';
+
+function stored(name: string): string {
+  try {
+    return localStorage.getItem(name) ?? '';
+  } catch {
+    return '';
+  }
+}
+function store(name: string, value: string) {
+  try {
+    localStorage.setItem(name, value);
+  } catch {
+    // A browser that keeps nothing: the key holds for as long as the page is open.
+  }
+}
+
+export class Link {
+  connected = false;         // the telemetry
+  commanding = false;        // the commands
+  mayWatch = true;
+  mayDrive = false;
+  id = 0;                    // of our operator, by the gateway
+  operator = stored(operatorName);
+  roundTrip = 0;             // [ms] [0: not known]
+  refused = '';              // why the newest sample of driving did not count
+  heard = -1e9;              // [ms] when the newest frame came
+  delays: number[] = [];     // [ms] from the gateway to the pixels, of the newest robot states
+
+  private topics = new Map<string, Map<string, Item<unknown>>>();
+  private listeners: (() => void)[] = [];
+  private noteListeners: ((text: string, well: boolean) => void)[] = [];
+  private commands?: WebSocket;
+  private lanes: WebSocket[] = [];   // further ones for samples
+  private lane = 0;
+  private ticket = '';
+  private key = '';
+  private offset = NaN;      // [ms] our clock less the gateway's, with the quickest frame
+  private offsetAt = 0;
+  private quickest = Infinity;
+  private references = 0;
+  private waiting = new Map<number, (answer: Answer) => void>();
+
+  constructor() {
+    const given = location.hash.slice(1);
+    if (given) {
+      store(keyName, given);
+      history.replaceState(null, '', location.pathname);
+    }
+    this.key = given || stored(keyName);
+    this.openTelemetry();
+    this.openCommands();
+    setInterval(() => this.ping(), 500);
+  }
+
+  get<T>(topic: string, key = ''): Item<T> | undefined {
+    return this.topics.get(topic)?.get(key) as Item<T> | undefined;
+  }
+  data<T>(topic: string): T | undefined {
+    return this.get<T>(topic)?.data;
+  }
+  all<T>(topic: string): [string, Item<T>][] {
+    return [...(this.topics.get(topic) ?? [])] as [string, Item<T>][];
+  }
+  onFrame(listener: () => void) { this.listeners.push(listener); }
+  onNote(listener: (text: string, well: boolean) => void) { this.noteListeners.push(listener); }
+
+  drawn(delay: number) {
+    this.delays.push(delay);
+    if (this.delays.length > 1000) this.delays.shift();
+  }
+
+  rename(name: string) {
+    this.operator = name.trim().slice(0, 20);
+    store(operatorName, this.operator);
+    this.commands?.close();
+  }
+
+  // False: there is no connection, and nothing was sent.
+  send(message: object): boolean {
+    if (this.commands?.readyState !== WebSocket.OPEN) return false;
+    // What a thin link has not taken yet is not followed by more: the newest word counts.
+    if (this.commands.bufferedAmount > 2000) return false;
+    this.commands.send(JSON.stringify(message));
+    return true;
+  }
+
+  // A sample of driving, by several connections in turn: where one waits for what was lost on its way, the
+  // others go on. The gateway takes the newest.
+  sendSample(sample: object) {
+    if (this.ticket && this.lanes.length === 0)
+      for (let i = 0; i < furtherLanes; ++i) this.openLane(i);
+    const free = [this.commands, ...this.lanes].filter(s => s?.readyState === WebSocket.OPEN && s.bufferedAmount < 500);
+    free[++this.lane % free.length]?.send(JSON.stringify(sample));
+  }
+  private openLane(i: number) {
+    const socket = this.lanes[i] = this.open('saphira.commands');
+    const ticket = this.ticket;
+    socket.onopen = () => socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator, ticket}));
+    socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
+  }
+
+  ask(message: object): Promise<Answer> {
+    const reference = ++this.references;
+    return new Promise(resolve => {
+      if (!this.send({...message, reference}))
+        return resolve({well: false, text: 'There is no connection to the console.', id: ''});
+      this.waiting.set(reference, resolve);
+      setTimeout(() => {
+        if (this.waiting.delete(reference))
+          resolve({well: false, text: 'Nobody has answered within 5 s.', id: ''});
+      }, 5000);
+    });
+  }
+
+  private open(protocol: string): WebSocket {
+    return new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/`, protocol);
+  }
+
+  private openTelemetry() {
+    const socket = this.open('saphira.telemetry');
+    socket.onopen = () => {
+      this.topics.clear();
+      this.offset = NaN;
+      this.connected = true;
+      socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator}));
+    };
+    socket.onmessage = event => {
+      const frame = JSON.parse(event.data as string);
+      if (frame.seq === undefined) return this.greeted(frame);
+      socket.send(JSON.stringify({type: 'ack', frame: frame.seq}));
+      this.take(frame);
+    };
+    socket.onclose = () => {
+      this.connected = false;
+      this.tell();
+      setTimeout(() => this.openTelemetry(), retry);
+    };
+  }
+
+  private openCommands() {
+    const socket = this.commands = this.open('saphira.commands');
+    socket.onopen = () => {
+      socket.send(JSON.stringify({type: 'hello', key: this.key, name: this.operator}));
+    };
+    socket.onmessage = event => this.takeCommand(JSON.parse(event.data as string));
+    socket.onclose = () => {
+      this.commanding = false;
+      this.id = 0;
+      this.ticket = '';
+      for (const lane of this.lanes.splice(0)) lane.close();
+      this.roundTrip = 0;
+      this.tell();
+      setTimeout(() => this.openCommands(), retry);
+    };
+  }
+
+  private greeted(hello: {may_watch?: boolean}) {
+    this.mayWatch = hello.may_watch !== false;
+    this.tell();
+  }
+
+  private take(frame: {now: number; items: {t: string; k: string; a: number; d: unknown}[]}) {
+    const now = performance.now();
+    const difference = now - 1000 * frame.now;
+    this.offset = Number.isNaN(this.offset)
+        ? difference : Math.min(difference, this.offset + drift * (now - this.offsetAt));
+    this.offsetAt = now;
+    this.heard = now;
+    // How long it took: what it took longer than the quickest one, and half the quickest round trip.
+    const took = difference - this.offset + (Number.isFinite(this.quickest) ? this.quickest / 2 : 0);
+    for (const {t, k, a, d} of frame.items) {
+      let items = this.topics.get(t);
+      if (!items) this.topics.set(t, items = new Map());
+      if (d === null) items.delete(k);
+      else items.set(k, {data: d, at: now - a - took});
+    }
+    this.tell();
+  }
+
+  private takeCommand(message: {type: string; [name: string]: unknown}) {
+    switch (message.type) {
+      case 'hello':
+        this.commanding = true;
+        this.id = message.id as number;
+        this.ticket = message.ticket as string;
+        this.mayDrive = message.may_drive as boolean;
+        this.mayWatch = message.may_watch as boolean;
+        break;
+      case 'pong':
+        this.roundTrip = performance.now() - (message.at as number);
+        this.quickest = Math.min(this.quickest, this.roundTrip);
+        break;
+      case 'drive':
+        this.refused = message.refused as string;
+        break;
+      case 'note':
+        this.note(message.text as string, false);
+        break;
+      case 'wrong':
+        this.note('The console did not understand the page: ' + (message.why as string), false);
+        break;
+      case 'answer': {
+        const answer = message as unknown as Answer & {reference: number};
+        const waiting = this.waiting.get(answer.reference);
+        if (waiting) {
+          this.waiting.delete(answer.reference);
+          waiting(answer);
+        } else if (answer.text) {
+          this.note(answer.text, answer.well);
+        }
+        break;
+      }
+    }
+    this.tell();
+  }
+
+  note(text: string, well: boolean) {
+    for (const listener of this.noteListeners) listener(text, well);
+  }
+  private tell() {
+    for (const listener of this.listeners) listener();
+  }
+  private ping() {
+    if (this.commanding) this.send({type: 'ping', at: performance.now()});
+    this.tell();
+  }
+}

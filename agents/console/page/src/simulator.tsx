@@ -1,0 +1,182 @@
+// The simulator's own view: what is true, for people; and what they do to it (saphira-sim --view-socket).
+import {render} from 'preact';
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {type Kind, type Scene, SimulatorView, type Thing, thingsOf, type World} from './simulator_view';
+
+const retry = 1000;           // [ms]
+const silent = 3000;          // [ms] without a word the simulator is gone, or stands still
+const stepAside = 0.1;        // [m] of an arrow key
+const stepAround = 15;        // [degrees]
+const rates = [0.25, 0.5, 1, 2, 5, 10];
+
+function storedKey(): string {
+  const given = location.hash.slice(1);
+  try {
+    if (given) localStorage.setItem('saphira key', given);
+    if (given) history.replaceState(null, '', location.pathname);
+    return given || localStorage.getItem('saphira key') || '';
+  } catch {
+    return given;
+  }
+}
+
+function App() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const view = useRef<SimulatorView>();
+  const socket = useRef<WebSocket>();
+  const [world, setWorld] = useState<World>();
+  const [scene, setScene] = useState<Scene>();
+  const [heard, setHeard] = useState(-1e9);
+  const [connected, setConnected] = useState(false);
+  const [mayMove, setMayMove] = useState(false);
+  const [trouble, setTrouble] = useState('');
+  const [chosen, setChosen] = useState('robot 0');
+  const [load, setLoad] = useState({world: '', robot: ''});
+  const [beams, setBeams] = useState(true);
+  const [wake, setWake] = useState(true);
+
+  const wish = (what: object) => {
+    setTrouble('');
+    if (socket.current?.readyState === WebSocket.OPEN) socket.current.send(JSON.stringify(what));
+    else setTrouble('There is no connection to the console.');
+  };
+  const put = (thing: Thing, x: number, y: number, th = thing.th) => {
+    if (thing.kind === 'robot') wish({do: 'place', robot: Number(thing.name), x, y, th});
+    else if (thing.kind === 'person') wish({do: 'person', name: thing.name, x, y});
+    else if (thing.kind === 'box') wish({do: 'box', name: thing.name, x, y, th});
+  };
+  const turnDoor = (name: string) => {
+    const door = view.current?.scene?.doors.find(d => d.name === name);
+    if (door) wish({do: 'door', name, open: !door.open});
+  };
+
+  useEffect(() => {
+    const made = new SimulatorView(canvas.current!);
+    view.current = made;
+    made.onChoose = setChosen;
+    made.onDrop = (thing, x, y) => (thing.kind === 'door' ? turnDoor(thing.name) : put(thing, x, y));
+    const key = storedKey();
+    let ended = false;
+    const open = () => {
+      if (ended) return;
+      const line = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/`, 'saphira.simulator');
+      socket.current = line;
+      line.onopen = () => line.send(JSON.stringify({type: 'hello', key, name: ''}));
+      line.onclose = () => {
+        setConnected(false);
+        setTimeout(open, retry);
+      };
+      line.onmessage = event => {
+        const told = JSON.parse(event.data as string);
+        setHeard(performance.now());
+        if (told.type === 'hello') {
+          setConnected(told.may_watch);
+          setMayMove(told.may_drive);
+        } else if (told.type === 'world') {
+          made.setWorld(told);
+          setWorld(told);
+          setLoad({world: told.world, robot: ''});
+        } else if (told.type === 'scene') {
+          made.setScene(told);
+          setScene(told);
+        } else if (told.type === 'trouble') {
+          setTrouble(told.text);
+        }
+      };
+    };
+    open();
+    const look = setInterval(() => setHeard(h => h + 1e-6), 1000);  // draws the age anew
+    return () => {
+      ended = true;
+      clearInterval(look);
+    };
+  }, []);
+  useEffect(() => {
+    if (!view.current) return;
+    Object.assign(view.current, {beams, wake, chosen});
+    if (view.current.scene) view.current.setScene(view.current.scene);
+  }, [beams, wake, chosen]);
+
+  const things = scene ? thingsOf(scene) : [];
+  const thing = things.find(t => `${t.kind} ${t.name}` === chosen);
+  const still = performance.now() - heard > silent;
+  const keys = (event: KeyboardEvent) => {
+    const way: Record<string, [number, number]> = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+    if (!thing || thing.kind === 'door' || !way[event.key]) return;
+    event.preventDefault();
+    put(thing, thing.x + way[event.key][0] * stepAside, thing.y + way[event.key][1] * stepAside);
+  };
+  const around = (degrees: number) => thing && put(thing, thing.x, thing.y, thing.th + degrees * Math.PI / 180);
+  const label = (t: Thing) => (t.kind === 'robot' ? `robot ${Number(t.name) + 1}` : `${t.kind} ${t.name}`);
+  const contacts = scene?.robots.reduce((sum, r) => sum + r.contacts, 0) ?? 0;
+  return <>
+    <header>
+      <h1>Simulator</h1>
+      <span class={`chip link ${connected && !still ? 'good' : 'bad'}`}>{!connected ? 'link gone' : !scene ? 'no simulator' : scene.paused ? 'paused' : still ? 'time stands still' : 'runs'}</span>
+      <span class="grow small faint wide">What is true here the robot does not know. Its own view is <a href="/">the console</a>.</span>
+    </header>
+    <main>
+      <section class="picture" aria-label="World">
+        <canvas ref={canvas} class="sim-canvas" tabIndex={0} onKeyDown={keys}
+                aria-label="The world, from above. Drag robots, people and boxes; press a door; arrow keys move what is chosen." />
+      </section>
+      <section class="side sim-side" aria-label="Time, things and worlds">
+        {trouble && <p class="note bad" role="status">{trouble}
+          <button class="plain" aria-label="Close this message" onClick={() => setTrouble('')}>×</button></p>}
+        {connected && !mayMove && <p class="note">Without the key you may watch: open the address that saphira has printed.</p>}
+        <h2>Time</h2>
+        <div class="row">
+          <button class="main" disabled={!mayMove || !scene} onClick={() => wish({do: 'pause', on: !scene!.paused})}>{scene?.paused ? 'Go on' : 'Pause'}</button>
+          <button disabled={!mayMove || !scene?.paused} onClick={() => wish({do: 'step'})}>Step 0.1 s</button>
+          <label class="check">Speed <select disabled={!mayMove || !scene} value={String(scene?.rate ?? 1)}
+            onChange={e => wish({do: 'rate', rate: Number((e.target as HTMLSelectElement).value)})}>
+            {[...new Set([...rates, scene?.rate ?? 1])].sort((a, b) => a - b).map(r => <option key={r} value={String(r)}>{r} ×</option>)}
+          </select></label>
+        </div>
+        <dl>
+          <div><dt>Time</dt><dd>{scene ? `${scene.time.toFixed(2)} s` : ''}</dd></div>
+          <div><dt>Contacts</dt><dd>{contacts}</dd></div>
+        </dl>
+        <h2>Things</h2>
+        <label class="check">Chosen <select value={chosen} onChange={e => setChosen((e.target as HTMLSelectElement).value)}>
+          {things.map(t => <option key={t.kind + t.name} value={`${t.kind} ${t.name}`}>{label(t)}</option>)}
+        </select></label>
+        {thing && thing.kind !== 'door' && <>
+          <p class="small">x {thing.x.toFixed(2)} m, y {thing.y.toFixed(2)} m{thing.kind !== 'person' && `, ${(thing.th * 180 / Math.PI).toFixed(0)}°`}. Drag it, or move it in steps of 0.1 m.</p>
+          <div class="row" onKeyDown={keys}>
+            {(thing.kind as Kind) !== 'person' && <>
+              <button disabled={!mayMove} onClick={() => around(stepAround)}>Turn left</button>
+              <button disabled={!mayMove} onClick={() => around(-stepAround)}>Turn right</button></>}
+            {thing.kind === 'robot' && <button disabled={!mayMove} onClick={() => wish({do: 'disconnect', robot: Number(thing.name)})}>Disconnect</button>}
+            {([['←', 'left', -1, 0], ['→', 'right', 1, 0], ['↑', 'up', 0, 1], ['↓', 'down', 0, -1]] as const).map(([sign, name, dx, dy]) =>
+              <button key={name} disabled={!mayMove} aria-label={`Move it ${name}`}
+                      onClick={() => put(thing, thing.x + dx * stepAside, thing.y + dy * stepAside)}>{sign}</button>)}
+          </div></>}
+        {thing?.kind === 'door' && <div class="row"><button disabled={!mayMove} onClick={() => turnDoor(thing.name)}>
+          {scene!.doors.find(d => d.name === thing.name)!.open ? 'Close' : 'Open'}</button></div>}
+        <h2>Show</h2>
+        <div class="row">
+          <label class="check"><input type="checkbox" checked={beams} onChange={() => setBeams(!beams)} /> sonar beams</label>
+          <label class="check"><input type="checkbox" checked={wake} onChange={() => setWake(!wake)} /> wake</label>
+          <button onClick={() => view.current?.clearWake()}>Clear wake</button>
+          <button aria-label="Zoom in" onClick={() => view.current?.zoom(1.3)}>+</button>
+          <button aria-label="Zoom out" onClick={() => view.current?.zoom(1 / 1.3)}>−</button>
+          <button onClick={() => view.current?.fit()}>All</button>
+        </div>
+        <h2>World and robot</h2>
+        <div class="row">
+          <label class="check">World <select value={load.world} onChange={e => setLoad({...load, world: (e.target as HTMLSelectElement).value})}>
+            {[...new Set([...(world?.worlds ?? []), world?.world ?? ''])].map(w => <option key={w} value={w}>{w}</option>)}</select></label>
+          <label class="check">Robot <select value={load.robot} onChange={e => setLoad({...load, robot: (e.target as HTMLSelectElement).value})}>
+            <option value="">as it is</option>{world?.robots.map(r => <option key={r} value={r}>{r}</option>)}</select></label>
+          <button disabled={!mayMove || !world} onClick={() => wish({do: 'load', world: load.world === world!.world ? '' : load.world, robot: load.robot})}>Load</button>
+        </div>
+        <p class="small faint">The robot begins at the world's start. Its own map stays: saphira map load NAME gives it another.</p>
+      </section>
+    </main>
+  </>;
+}
+
+const app = document.getElementById('app')!;
+app.textContent = '';
+render(<App />, app);

@@ -1,0 +1,387 @@
+// The page as people use it, in Chromium, before a simulated robot with all that drives it.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import net from 'node:net';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {chromium} from 'playwright-core';
+
+const axeSource = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const limit = 30_000;        // [ms] generous: for broken runs
+const folder = mkdtempSync(join(tmpdir(), 'saphira-console-'));
+let up, output = '', address, gatewayPid, browser;
+
+const bin = process.env.SAPHIRA_BIN_DIR;
+const robot = `console-${process.pid}`;
+
+async function until(what, condition) {
+  const end = Date.now() + limit;
+  while (Date.now() < end) {
+    const value = await condition();
+    if (value) return value;
+    await new Promise(resolve => setTimeout(resolve, 50));
+  }
+  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${output.slice(-3000)}`);
+}
+
+before(async () => {
+  // Ports of its own: a restarted gateway finds its port again, whatever runs beside it.
+  const port = 20_000 + process.pid % 500 * 20;
+  up = spawn(join(bin, 'saphira'), ['--robot', robot, 'up', 'demo', '--set', `behaviors=${folder}`, '--set', `port=${port}`], {stdio: ['ignore', 'pipe', 'pipe']});
+  for (const stream of [up.stdout, up.stderr]) stream.on('data', data => { output += data; });
+  address = await until('the address', () => output.match(/open (http:\S+)/)?.[1]);
+  browser = await chromium.launch({executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--disable-dev-shm-usage']});
+});
+after(async () => {
+  await browser?.close();
+  if (up && up.exitCode === null) {
+    up.kill('SIGTERM');
+    await new Promise(resolve => up.on('exit', resolve));
+  }
+  rmSync(folder, {recursive: true, force: true});
+});
+
+// A browser profile of its own: another person. Complaints of the page are failures.
+async function person(options = {}) {
+  const context = await browser.newContext({viewport: {width: 1280, height: 800}, ...options});
+  const page = await context.newPage();
+  page.setDefaultTimeout(limit);
+  page.complaints = [];
+  page.on('pageerror', error => page.complaints.push(String(error)));
+  page.on('console', message => {
+    if (message.type() === 'error' && !/WebSocket connection/.test(message.text())) page.complaints.push(message.text());
+  });
+  return page;
+}
+async function open(page, withKey = true) {
+  await page.goto(withKey ? address : address.replace(/#.*/, ''));
+  await page.locator('.link.live').waitFor();
+}
+async function leave(page) {
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+}
+const fact = async (page, name) => page.locator(`dl div:has(dt:text-is("${name}")) dd`).innerText();
+const speed = async page => parseFloat(await fact(page, 'Speed'));
+const moves = page => until('the robot moves', async () => await speed(page) > 0.04);
+const stands = page => until('the robot stands', async () => Math.abs(await speed(page)) < 0.02);
+async function takeControl(page, name) {
+  await page.getByLabel('I am').fill(name);
+  await page.getByLabel('I am').blur();
+  // The name opens the connection anew.
+  await until('control', async () => {
+    if (await page.getByText('You drive').count()) return true;
+    const button = page.getByRole('button', {name: 'Drive', exact: true});
+    if (await button.count()) await button.click({timeout: 1000}).catch(() => {});
+    await page.waitForTimeout(300);
+    return false;
+  });
+}
+// Holds something until the robot moves. A busy machine breaks the chain of samples now and then, and then
+// the robot rightly waits until it is let go, or control is gone: again.
+async function drive(page, hold, letGo, forward) {
+  await until('the robot moves', async () => {
+    const button = page.getByRole('button', {name: 'Drive', exact: true});
+    if (await button.count()) await button.click({timeout: 1000}).catch(() => {});
+    await hold();
+    const end = Date.now() + 3000;
+    while (Date.now() < end) {
+      if ((forward ? 1 : -1) * await speed(page) > 0.04) return true;
+      await page.waitForTimeout(50);
+    }
+    await letGo();
+    await page.waitForTimeout(300);
+    return false;
+  });
+}
+const driveByKey = (page, key, forward) => drive(page, () => page.keyboard.down(key), () => page.keyboard.up(key), forward);
+async function handBack(page) {
+  await page.getByRole('button', {name: 'Hand back'}).click();
+  await until('autonomy may drive', async () => !(await page.getByText('autonomy waits').count()));
+}
+async function gatewayProcess() {
+  return until('the console process', async () => {
+    for (const pid of readFileSync(`/proc/${up.pid}/task/${up.pid}/children`, 'utf8').trim().split(' '))
+      if (readFileSync(`/proc/${pid}/cmdline`, 'utf8').startsWith(join(bin, 'saphira-console') + '\0')) return Number(pid);
+    return undefined;
+  });
+}
+
+test('shows the robot, on a map, soon', async () => {
+  const page = await person();
+  await open(page);
+  assert.equal(new URL(page.url()).hash, '', 'the key does not stay in the address');
+  await until('the place on the map', async () => page.locator('dt:text-is("On the map")').count());
+  assert.match(await fact(page, 'Battery'), /^\d+\.\d V$/);
+  const drawn = await page.evaluate(() => {
+    const canvas = document.querySelector('canvas');
+    const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    return new Set(Array.from({length: pixels.length / 4}, (_, i) => pixels[4 * i] << 16 | pixels[4 * i + 1] << 8 | pixels[4 * i + 2])).size;
+  });
+  assert.ok(drawn > 5, `${drawn} colors are on the canvas`);
+  await leave(page);
+});
+
+for (const [name, options] of [['light', {colorScheme: 'light'}], ['dark', {colorScheme: 'dark'}],
+                               ['a telephone', {viewport: {width: 390, height: 844}, hasTouch: true, isMobile: true}]])
+  test(`axe finds nothing, and nothing is cut off: ${name}`, async () => {
+    const page = await person({...options, bypassCSP: true});
+    await open(page);
+    await page.addScriptTag({content: axeSource});
+    for (const tab of ['Goals', 'Why', 'Behaviors', 'Intentions', 'Programs', 'Messages']) {
+      await page.getByRole('tab', {name: tab}).click();
+      const {violations} = await page.evaluate(() => window.axe.run());
+      assert.deepEqual(violations.map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' ')}`), [], tab);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${tab} is wider than the window`);
+    }
+    await leave(page);
+  });
+
+test('a click sends the robot, with an answer and a cancel button', async () => {
+  const page = await person();
+  await open(page);
+  await page.getByRole('button', {name: 'Follow'}).click();
+  const box = await page.locator('canvas').boundingBox();
+  await page.mouse.click(box.x + box.width / 2 + 90, box.y + box.height / 2);
+  await page.getByRole('button', {name: 'Go here'}).click();
+  const card = page.locator('.card:not(.over)', {hasText: 'go to'});
+  await card.locator('.chip', {hasText: 'underway'}).waitFor();
+  await moves(page);
+  await card.getByRole('button', {name: 'Cancel'}).click();
+  await page.locator('.card.over', {hasText: 'go to'}).waitFor();
+  await stands(page);
+  // What is refused says why.
+  await page.getByLabel('Ask the robot for something').fill('go nowhere at all');
+  await page.getByRole('button', {name: 'Send'}).click();
+  await page.locator('.told.bad').waitFor();
+  await leave(page);
+});
+
+test('keys drive while they are held, and somebody else waits for control', async () => {
+  const ann = await person(), bob = await person();
+  await open(ann);
+  await takeControl(ann, 'ann');
+  await driveByKey(ann, 'i', true);
+  await ann.keyboard.up('i');
+  await stands(ann);
+  await open(bob);
+  await bob.getByText('ann has control').waitFor();
+  await bob.getByRole('button', {name: 'Ask for it'}).click();
+  await ann.getByText('asks for control').waitFor();
+  await driveByKey(ann, 'i', true);
+  await bob.getByRole('button', {name: 'Take it'}).click();
+  await bob.getByText('You drive').waitFor();
+  await stands(bob);  // though ann still holds the key
+  await ann.getByText('has control').waitFor();
+  await ann.keyboard.up('i');
+  await handBack(bob);
+  await leave(ann);
+  await leave(bob);
+});
+
+test('the stick drives, and letting it go or losing the window stops', async () => {
+  const page = await person();
+  await open(page);
+  await takeControl(page, 'ann');
+  const box = await page.locator('svg.stick').boundingBox();
+  const middle = [box.x + box.width / 2, box.y + box.height / 2];
+  const back = () => drive(page, async () => {
+    await page.mouse.move(...middle);
+    await page.mouse.down();
+    await page.mouse.move(middle[0], middle[1] + 40);
+  }, () => page.mouse.up(), false);
+  await back();
+  await page.mouse.up();
+  await stands(page);
+  await back();
+  await page.evaluate(() => dispatchEvent(new Event('blur')));
+  await stands(page);
+  await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();  // it only watches now
+  await page.mouse.up();
+  await handBack(page);
+  await leave(page);
+});
+
+test('a gamepad drives with a shoulder button, and one that is unplugged stops', async () => {
+  const page = await person();
+  await page.addInitScript(() => {
+    window.pad = {id: 'Test pad (Vendor: 1)', connected: true, axes: [0, 0], buttons: Array.from({length: 16}, () => ({pressed: false}))};
+    navigator.getGamepads = () => [window.pad];
+  });
+  await open(page);
+  await takeControl(page, 'ann');
+  await page.getByText('hold a shoulder button').waitFor();
+  await page.evaluate(() => { window.pad.axes[1] = 1; });  // drifts: moves nothing
+  const shoulder = pressed => page.evaluate(is => { window.pad.buttons[4].pressed = is; }, pressed);
+  await drive(page, () => shoulder(true), () => shoulder(false), false);
+  await page.evaluate(() => {
+    window.pad = null;
+    dispatchEvent(new Event('gamepaddisconnected'));
+  });
+  await stands(page);
+  await handBack(page);
+  await leave(page);
+});
+
+test('everybody may stop the robot, also without the key', async () => {
+  const ann = await person(), guest = await person();
+  await open(ann);
+  await open(guest, false);
+  await guest.getByText('You watch').waitFor();
+  assert.equal(await guest.getByRole('button', {name: 'Drive', exact: true}).count(), 0);
+  assert.ok(await guest.getByRole('button', {name: 'Send'}).isDisabled());
+  await guest.getByRole('button', {name: 'Emergency stop'}).click();
+  for (const page of [ann, guest]) await page.getByRole('alert').filter({hasText: 'pressed by'}).waitFor();
+  assert.ok(await guest.getByRole('button', {name: 'Reset'}).isDisabled());
+  await ann.getByRole('button', {name: 'Reset'}).click();
+  await until('the reset', async () => !(await ann.getByRole('alert').count()));
+  if (await ann.getByRole('button', {name: 'Hand back'}).count()) await handBack(ann);
+  await leave(ann);
+  await leave(guest);
+});
+
+test('a gateway that hangs is told, the robot stands, and afterwards the page only watches', async () => {
+  const page = await person(), watcher = await person();
+  await open(page);
+  await takeControl(page, 'ann');
+  await driveByKey(page, 'm', false);
+  const pid = await gatewayProcess();
+  process.kill(pid, 'SIGSTOP');
+  try {
+    await page.locator('.link.gone').waitFor();
+    await page.locator('canvas.stale').waitFor();
+  } finally {
+    try {
+      process.kill(pid, 'SIGCONT');
+    } catch {
+      // The supervisor has found that it hangs, and started another one: the page may find either.
+    }
+  }
+  await page.locator('.link.live').waitFor();
+  await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
+  await stands(page);  // the key is still held
+  await page.keyboard.up('m');
+  await open(watcher);
+  await handBack(page);
+  await leave(page);
+  await leave(watcher);
+});
+
+test('reload and the back button keep the key, a behavior that is edited is seen', async () => {
+  const page = await person();
+  await open(page);
+  await page.reload();
+  await page.locator('.link.live').waitFor();
+  await page.goto('about:blank');
+  await page.goBack();
+  await page.locator('.link.live').waitFor();
+  await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
+  await page.getByRole('tab', {name: 'Messages'}).click();
+  await page.getByLabel('everything that programs log').check();
+  writeFileSync(join(folder, 'broken.beh'), 'BeginBehavior Broken\nthis is no behavior\n');
+  await page.locator('.lines li', {hasText: 'broken.beh'}).first().waitFor();
+  await leave(page);
+});
+
+// A link between page and gateway that delays, and that can be cut: what is sent meanwhile comes afterwards.
+async function link() {
+  const state = {delay: 0, cut: false};
+  const carry = (from, to) => {
+    let last = Promise.resolve();
+    from.on('data', data => {
+      const due = Date.now() + state.delay;
+      last = last.then(async () => {
+        while (Date.now() < due || state.cut) await new Promise(resolve => setTimeout(resolve, 5));
+        if (!to.destroyed) to.write(data);
+      });
+    });
+    from.on('close', () => last.then(() => to.destroy())).on('error', () => {});
+  };
+  const gateway = Number(new URL(address).port);
+  const server = net.createServer(near => {
+    const far = net.connect(gateway, '127.0.0.1');
+    carry(near, far);
+    carry(far, near);
+  });
+  server.unref();  // a failed test does not keep the program
+  await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
+  state.address = address.replace(/:\d+\//, `:${server.address().port}/`);
+  return state;
+}
+
+test('over a slow link it drives and says so; a cut link stops the robot and comes back to watching', async () => {
+  const far = await link(), page = await person(), watcher = await person();
+  await open(watcher);
+  far.delay = 200;
+  await page.goto(far.address);
+  await page.locator('.link.live').waitFor();
+  await takeControl(page, 'ann');
+  await driveByKey(page, 'm', false);
+  await page.getByText('there and back: the robot is slowed down').waitFor();
+  far.cut = true;
+  await page.locator('.link.gone').waitFor();
+  await stands(watcher);
+  await watcher.getByRole('button', {name: 'Drive', exact: true}).waitFor();  // control is free
+  far.cut = false;
+  await page.locator('.link.live').waitFor();
+  await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
+  await stands(page);  // the key is held all the time
+  await page.keyboard.up('m');
+  await handBack(watcher);
+  await leave(page);
+  await leave(watcher);
+});
+
+// Last: it loads another world.
+test('the simulator is paused, stepped, rearranged and given another world, and the robot is not told', async () => {
+  const page = await person(), stranger = await person(), watcher = await person();
+  await open(watcher);
+  await page.goto(address.replace('/#', '/simulator.html#'));
+  const at = async () => (await page.getByText(/^x .* m, y .* m/).innerText()).match(/x (\S+) m, y (\S+) m/).slice(1).map(Number);
+  await page.locator('.chip.good', {hasText: 'runs'}).waitFor();
+  const looked = await person({bypassCSP: true});
+  await looked.goto(address.replace('/#', '/simulator.html#'));
+  await looked.locator('.chip.good', {hasText: 'runs'}).waitFor();
+  await looked.addScriptTag({content: axeSource});
+  const {violations} = await looked.evaluate(() => window.axe.run());
+  await leave(looked);
+  assert.deepEqual(violations.map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' ')}`), []);
+
+  await page.getByRole('button', {name: 'Pause'}).click();
+  await page.locator('.chip', {hasText: 'paused'}).waitFor();
+  const time = async () => parseFloat(await fact(page, 'Time'));
+  const before = await time();
+  await page.getByRole('button', {name: 'Step 0.1 s'}).click();
+  await until('a step', async () => Math.abs(await time() - before - 0.1) < 0.01);
+  await page.getByRole('button', {name: 'Go on'}).click();
+  await until('time', async () => await time() > before + 0.5);
+
+  const [x, y] = await at();
+  await page.getByRole('button', {name: 'Move it right'}).click();
+  await until('the robot is moved', async () => Math.abs((await at())[0] - x - 0.1) < 0.02);
+  // By hand: it is picked up where it is drawn, and put down elsewhere.
+  const canvas = await page.locator('canvas').boundingBox();
+  const scale = 0.95 * Math.min(canvas.width / 24, canvas.height / 14);
+  const pixel = (wx, wy) => [canvas.x + (canvas.width - 24 * scale) / 2 + wx * scale, canvas.y + (canvas.height + 14 * scale) / 2 - wy * scale];
+  await page.mouse.move(...pixel(x + 0.1, y));
+  await page.mouse.down();
+  await page.mouse.move(...pixel(x + 1, y), {steps: 5});
+  await page.mouse.up();
+  await until('the robot is carried', async () => Math.abs((await at())[0] - x - 1) < 0.15);
+  await page.getByRole('button', {name: 'Disconnect'}).click();
+  await watcher.locator('.link.live').waitFor();  // the bridge connects again by itself
+
+  await stranger.goto(address.replace(/\/#.*/, '/simulator.html'));
+  await stranger.getByText('Without the key you may watch').waitFor();
+  assert.equal(await stranger.getByRole('button', {name: 'Pause'}).isDisabled(), true);
+
+  const worlds = page.locator('label', {hasText: /^World/}).locator('select');
+  await worlds.selectOption('arena');
+  await page.getByRole('button', {name: 'Load'}).click();
+  await until('another world', async () => await worlds.inputValue() === 'arena' && (await at())[0] < 11);
+  await watcher.locator('.link.live').waitFor();
+  for (const each of [page, stranger, watcher]) await leave(each);
+});

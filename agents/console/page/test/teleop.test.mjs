@@ -1,0 +1,250 @@
+// Driving over bad links: an operator's samples and pictures cross a link that delays, loses and is cut,
+// the robot is the simulator's, and what happened is read from its trace. It needs no browser: this is
+// the page's side of the two connections, with a key that is held all the time.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import net from 'node:net';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {socketTo} from './socket.mjs';
+
+const limit = 30_000;        // [ms] generous: for broken runs
+const period = 50;           // [ms] of the samples
+const wanted = 0.3;          // [m/s]
+const resend = 200;          // [ms] until TCP sends again what was lost, besides the delay
+const folder = mkdtempSync(join(tmpdir(), 'saphira-teleop-'));
+const bin = name => join(process.env.SAPHIRA_BIN_DIR, name);
+const table = [];
+let simulator, bridge, gateway, port, key, output = '';
+
+const sleep = time => new Promise(resolve => setTimeout(resolve, time));
+async function until(what, condition) {
+  const end = Date.now() + limit;
+  while (Date.now() < end) {
+    const value = await condition();
+    if (value) return value;
+    await sleep(20);
+  }
+  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${output.slice(-2000)}`);
+}
+function start(...command) {
+  const [program, ...words] = command;
+  const child = spawn(bin(program), words);
+  for (const stream of [child.stdout, child.stderr]) stream.on('data', data => { output += data; });
+  return child;
+}
+
+before(async () => {
+  const robot = `teleop-${process.pid}`, line = join(folder, 'robot');
+  simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', join(folder, 'trace.csv'));
+  bridge = start('saphira-bridge', '--robot', robot, '--link', line);
+  gateway = start('saphira-console', '--robot', robot, '--port', '0');
+  const address = await until('the address', () => output.match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
+  [port, key] = [Number(address[1]), address[2]];
+});
+after(async () => {
+  for (const child of [gateway, bridge, simulator]) {
+    child.kill('SIGCONT');
+    child.kill('SIGTERM');
+    await new Promise(resolve => child.on('exit', resolve));
+  }
+  rmSync(folder, {recursive: true, force: true});
+  console.log(`\n| link | speed [m/s] | what happens | until it stands [s] | afterwards |\n| --- | --- | --- | --- | --- |\n${table.join('\n')}`);
+});
+
+// What is true, a row for each cycle of 0.1 s.
+function truth() {
+  const lines = readFileSync(join(folder, 'trace.csv'), 'utf8').split('\n').slice(1, -1);
+  return lines.map(line => line.split(',').map(Number)).map(row => ({cycle: row[0], velocity: row[4], rotation: row[5]}));
+}
+const now = () => truth().at(-1)?.cycle ?? 0;
+const speed = () => Math.abs(truth().at(-1)?.velocity ?? 0);
+// [s] from a cycle on; undefined while it moves.
+function stood(from) {
+  const found = truth().find(row => row.cycle >= from && Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02);
+  return found && (found.cycle - from) / 10;
+}
+
+// The same losses in each run.
+function chance(seed) {
+  let state = seed;
+  return () => (state = (state * 1103515245 + 12345) % 2147483648) / 2147483648;
+}
+
+// A link of its own for an operator. What is lost is sent again, and what follows waits for it, as TCP does.
+async function link(delay = 0, loss = 0) {
+  const state = {cut: false};
+  const random = chance(7);
+  const carry = (from, to) => {
+    let last = Promise.resolve();
+    from.on('data', data => {
+      const due = Date.now() + delay + (random() < loss ? resend + 2 * delay : 0);
+      last = last.then(async () => {
+        while ((Date.now() < due || state.cut) && !to.destroyed) await sleep(5);
+        if (!to.destroyed) to.write(data);
+      });
+    });
+    from.on('close', () => last.then(() => to.destroy())).on('error', () => {});
+  };
+  const server = net.createServer(near => {
+    const far = net.connect(port, '127.0.0.1');
+    carry(near, far);
+    carry(far, near);
+  });
+  server.unref();
+  await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
+  return Object.assign(state, {port: server.address().port});
+}
+
+// A page with a key that is held: `held` false lets it go.
+async function operator(at, name) {
+  const headers = {Host: `localhost:${port}`, Origin: `http://localhost:${port}`};
+  const self = {name, held: false, velocity: wanted, control: {}, cycle: 0};
+  let telemetry, commands, lanes = [], number = 0;
+  const open = async () => {
+    telemetry = await socketTo(at, 'saphira.telemetry', headers);
+    commands = await socketTo(at, 'saphira.commands', headers);
+    for (const socket of [telemetry, commands]) socket.say({type: 'hello', key, name});
+    const {ticket} = await until('a ticket', () => commands.texts.find(text => text.type === 'hello'));
+    lanes = [commands];
+    for (let i = 0; i < 2; ++i) {
+      lanes.push(await socketTo(at, 'saphira.commands', headers));
+      lanes.at(-1).say({type: 'hello', key, name, ticket});
+    }
+  };
+  await open();
+  let opening = false;
+  const beat = setInterval(() => {
+    if (opening) return;
+    if (telemetry.closed || commands.closed) {  // the gateway gave it up: as the page does, anew
+      opening = true;
+      telemetry.socket.destroy();
+      for (const lane of lanes) lane.socket.destroy();
+      open().catch(() => {}).finally(() => { opening = false; });
+      return;
+    }
+    for (const frame of telemetry.texts.splice(0)) {
+      for (const {t, d} of frame.items ?? []) {
+        if (t === 'robot/state') self.cycle = d.stamp.cycle;
+        if (t === 'console/control') self.control = d;
+      }
+      if (frame.seq !== undefined) telemetry.say({type: 'ack', frame: frame.seq});
+    }
+    for (const lane of lanes) lane.texts.length = 0;
+    lanes[number % lanes.length].say({type: 'drive', number: ++number, at: performance.now() / 1000, active: self.held, velocity: self.held ? self.velocity : 0, rotation: 0, cycle: self.cycle});
+  }, period);
+  self.say = message => commands.say(message);
+  self.leave = () => {
+    clearInterval(beat);
+    for (const socket of [telemetry, ...lanes]) socket.socket.destroy();
+  };
+  return self;
+}
+const holds = self => self.control.name === self.name;
+let forth = 1;  // to and fro, so that there is always room
+async function drives(self) {
+  self.velocity = wanted * (forth = -forth);
+  await until('control', async () => {
+    if (!holds(self)) self.say({type: 'take', force: false});
+    await sleep(300);
+    return holds(self);
+  });
+  // A late sample is a gap, and then the key must be let go first.
+  let fastest = 0;
+  await until('that it drives', async () => {
+    self.held = false;
+    await sleep(300);
+    self.held = true;
+    const end = Date.now() + 2500;
+    for (fastest = 0; Date.now() < end; await sleep(50)) fastest = Math.max(fastest, speed());
+    return speed() > 0.05;
+  });
+  return fastest;
+}
+function row(link, velocity, what, stands, then) {
+  table.push(`| ${link} | ${velocity.toFixed(2)} | ${what} | ${stands === undefined ? '-' : stands.toFixed(1)} | ${then} |`);
+}
+
+const bad = [100, 0.05];
+test('over 100 ms and 5 % loss each way it drives; cuts of 0.3, 2 and 20 s', async () => {
+  for (const cut of [0.3, 2, 20]) {
+    const far = await link(...bad), ann = await operator(far.port, `ann${cut}`);
+    const velocity = await drives(ann);
+    const from = now();
+    far.cut = true;
+    await sleep(cut * 1000);
+    const stands = stood(from);
+    far.cut = false;
+    await sleep(2000);
+    const moves = speed() > 0.01;
+    if (cut >= 1) {
+      assert.ok(stands <= 1.0, `stands after ${stands} s`);
+      assert.ok(!moves, 'the key is held all the time, and must be let go first');
+      await until('that it watches', () => !holds(ann));
+    }
+    row('100 ms, 5 %', velocity, `cut for ${cut} s`, stands, moves ? 'drives on' : 'watches');
+    ann.held = false;
+    await until('that it stands', () => stood(now() - 1) !== undefined);
+    ann.leave();
+  }
+});
+
+test('over 500 ms each way it is slow', async () => {
+  const near = await operator(port, 'ben');
+  const quick = await drives(near);
+  let from = now();
+  near.held = false;
+  const letGo = await until('that it stands', () => stood(from));
+  row('none', quick, 'key let go', letGo, 'watches');
+  near.leave();
+  const far = await link(500), ann = await operator(far.port, 'fay');
+  const slow = await drives(ann);
+  assert.ok(slow < 0.7 * quick, `${slow} m/s over 500 ms, ${quick} m/s here`);
+  from = now();
+  far.cut = true;
+  const stands = await until('that it stands', () => stood(from));
+  row('500 ms', slow, 'cut', stands, 'watches');
+  assert.ok(stands <= 1.0, `stands after ${stands} s`);
+  far.cut = false;
+  ann.leave();
+});
+
+test('a gateway that hangs, an operator who is gone, another who takes over', async () => {
+  const ann = await operator(port, 'ann');
+  let velocity = await drives(ann);
+  let from = now();
+  gateway.kill('SIGSTOP');
+  await sleep(2500);
+  let stands = stood(from);
+  gateway.kill('SIGCONT');
+  await sleep(1500);
+  assert.ok(stands <= 1.0, `stands after ${stands} s`);
+  assert.ok(speed() < 0.01, 'the key is held all the time');
+  row('none', velocity, 'gateway stopped for 2.5 s', stands, 'watches');
+  ann.leave();
+
+  const cora = await operator(port, 'cora'), dan = await operator(port, 'dan');
+  velocity = await drives(cora);
+  dan.say({type: 'take', force: false});
+  await sleep(500);
+  assert.ok(holds(cora) && speed() > 0.05, 'who asks takes nothing');
+  from = now();
+  dan.held = true;
+  dan.say({type: 'take', force: true});
+  stands = await until('that it stands', () => stood(from));
+  await until('that dan has control', () => holds(dan));
+  assert.ok(stands <= 1.0, `stands after ${stands} s`);
+  row('none', velocity, 'somebody takes control, key held', stands, 'the other has control');
+  cora.leave();
+  dan.leave();
+
+  const eve = await operator(port, 'eve');
+  velocity = await drives(eve);
+  from = now();
+  eve.leave();
+  stands = await until('that it stands', () => stood(from));
+  assert.ok(stands <= 1.0, `stands after ${stands} s`);
+  row('none', velocity, 'page closed', stands, '-');
+});

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace saphira::console {
+
+/// A running Chromium without a display that is told what to do: its DevTools protocol, JSON texts
+/// that end with a zero byte, on its descriptors 3 and 4. std::runtime_error where there is no
+/// Chromium, and where it does not do what it is told.
+class Browser {
+ public:
+  Browser();
+  ~Browser();
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  /// Opens a page with a window of this size; the commands that follow are for it.
+  void open(int width, int height, bool telephone = false);
+  void go(const std::string& address);
+  nlohmann::json call(const std::string& method,
+                      const nlohmann::json& parameters = nlohmann::json::object());
+  /// What a JavaScript expression is in the page.
+  nlohmann::json value(const std::string& expression);
+  /// Waits until an expression is true. False where it is not within 20 s.
+  bool wait(const std::string& expression);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string read_text(Clock::time_point end);
+
+  std::string folder_;
+  std::string session_;
+  std::string received_;
+  pid_t pid_ = -1;
+  int to_ = -1;
+  int from_ = -1;
+  int id_ = 0;
+};
+
+}  // namespace saphira::console

@@ -1,0 +1,295 @@
+#include "gateway.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <stdexcept>
+
+#include "key.hpp"
+#include "page_files.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/program.hpp"
+#include "saphira/situation/why.hpp"
+
+namespace saphira::console {
+
+namespace {
+
+namespace topics = bus::topics;
+
+constexpr double kGreeting = 5.0;     // [s] within which a page says hello
+constexpr double kStillThere = 60.0;  // [s] after driving the bridge hears that nobody drives
+constexpr double kExplain = 0.5;      // [s]
+constexpr std::size_t kLines = 200;   // of a log
+constexpr std::size_t kMany = 2000;   // instances of a topic
+
+std::string host_name() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+ServerOptions server_of(const GatewayOptions& options, const Kept& kept) {
+  ServerOptions server = options.server;
+  server.before = kept.port;
+  return server;
+}
+
+AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
+  AccessSettings access{kept.key, options.names};
+  access.names.push_back(host_name());
+  access.names.push_back(host_name() + ".local");
+  return access;
+}
+
+/// The address for people, without the port.
+std::string origin_of(const ServerOptions& options) {
+  return (options.certificate.empty() ? "http://" : "https://") +
+         (options.address == "127.0.0.1" ? "localhost" : host_name());
+}
+
+}  // namespace
+
+double now() {
+  return BootClock::seconds();  // what was wanted before the machine slept is not wanted now
+}
+
+std::string key_text(const bus::InstanceKey& key) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%llx:%llx", static_cast<unsigned long long>(key[0]),
+                static_cast<unsigned long long>(key[1]));
+  return text;
+}
+
+std::string operator_of(const std::string& name) {
+  return (name.empty() ? "somebody" : name) + " at the console";
+}
+
+Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options)
+    : Gateway(node, options, keep(options.key_file)) {}
+
+Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, const Kept& kept)
+    : access_(access_of(options, kept)),
+      origin_(origin_of(options.server)),
+      node_(node),
+      mind_(node_, false),
+      goals_(node_, "console"),
+      resets_(node_, topics::kEstopReset, "console"),
+      registration_(node_, topics::kRegistrationRequest, "console"),
+      processes_(node_, topics::kProcessRequest, "console"),
+      teleop_(node_.writer(topics::kDriveTeleop)),
+      estop_(node_.writer(topics::kDriveEstop)),
+      heard_(node_.writer(topics::kHeard)),
+      pointed_out_(node_.writer(topics::kAgentEvents)),
+      grants_(node_.reader(topics::kGrant)),
+      server_(server_of(options, kept), access_, page_files(), events()) {
+  keep_port(options.key_file, kept, server_.port());
+  feed_all();
+  board_.put(board_.topic("console"), "",
+             "{\"robot\":" + quoted(node.robot) + ",\"host\":" + quoted(host_name()) +
+                 ",\"simulator\":" + (options.simulator.empty() ? "false" : "true") + "}",
+             now());
+  if (!options.simulator.empty())
+    simulator_.emplace(options.simulator);
+  show_control();
+  server_.watch(node_.wake_fd());
+}
+
+Server::Events Gateway::events() {
+  return {[this](auto connection, auto channel, const auto& caller) {
+            opened(connection, channel, caller);
+          },
+          [this](auto connection, const auto& text) { return came(connection, text); },
+          [this](auto connection) { closed(connection); },
+          [this](auto connection) { return next(connection); },
+          [this] {
+            node_.clear_wake();
+            poll();
+          },
+          [this] { tick(); }};
+}
+
+std::string Gateway::address() const {
+  return origin_ + ":" + std::to_string(server_.port()) + "/#" + access_.key;
+}
+
+/// with_writer: an instance goes with the program that wrote it.
+template <class T>
+void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
+  const int rank = board_.topic(topic.name, most);
+  auto reader = std::make_shared<bus::Reader<T>>(node_.reader(topic));
+  auto written = std::make_shared<std::map<bus::WriterId, std::set<std::string>>>();
+  feeds_.push_back([this, rank, reader, written, with_writer, topic] {
+    const bus::TypeInfo& type = bus::type_of<T>();
+    bool any = false;
+    reader->visit([&](const T& sample, const bus::SampleInfo& info) {
+      any = true;
+      // What comes again in a tenth of a second is kept for somebody who looks.
+      if (viewers_ == 0 && topic.qos == bus::Qos::cyclic)
+        return;
+      std::string key = type.keyed ? key_text(type.key(&sample)) : std::string();
+      if (topic.qos == bus::Qos::event) {
+        char number[24];
+        std::snprintf(number, sizeof number, "%020llu", static_cast<unsigned long long>(++events_));
+        key = number;
+      }
+      if (info.disposed) {
+        board_.withdraw(rank, key);
+        return;
+      }
+      board_.put(rank, key, type.json(&sample, ""), now());
+      if (with_writer)
+        (*written)[info.writer].insert(key);
+    });
+    for (const bus::WriterId& writer : reader->take_lost()) {
+      for (const std::string& key : (*written)[writer])
+        board_.withdraw(rank, key);
+      written->erase(writer);
+      any = true;
+    }
+    return any;
+  });
+}
+
+/// What a page needs first comes first: on a thin link the rest waits for it.
+void Gateway::feed_all() {
+  feed(topics::kRobotState);
+  feed(topics::kGrant);
+  control_topic_ = board_.topic("console/control");
+  feed(topics::kRobotDescription);
+  feed(topics::kRegistration);
+  feed(topics::kPerception);
+  feed(topics::kVision);
+  feed(topics::kGoals, kMany, true);
+  feed(topics::kGoalStatus, kMany);
+  feed(topics::kIntentions);
+  feed(topics::kBehaviors);
+  feed(topics::kProgramMinds, kMany, true);
+  why_topic_ = board_.topic("why");
+  feed(topics::kMap);
+  feed(topics::kMessages, kLines);
+  feed(topics::kHeard, kLines);
+  feed(topics::kSaid, kLines);
+  feed(topics::kStatus, kMany);
+  feed(topics::kDrawings, kMany, true);
+  feed(topics::kProcesses, kMany, true);
+  feed(topics::kBeliefs);
+  feed(topics::kBehaviorSchemas);
+  feed(topics::kGrid, kMany, true);
+  feed(topics::kLog, kLines);
+}
+
+int Gateway::run(const bus::Stop& stop) {
+  node_.status().state(v1::SERVICE_RUNNING);
+  server_.run(stop.fd());
+  return bus::kExitOk;
+}
+
+void Gateway::poll() {
+  bool any = false;
+  for (const auto& take : feeds_)
+    any = take() || any;
+  mind_.poll();
+  goals_.poll();
+  for (bus::RequestClient* client : {&resets_, &registration_, &processes_})
+    take_answers(*client);
+  if (auto grant = grants_.take_newest())
+    grant_ = std::move(grant);
+  if (const v1::RobotState* const robot = mind_.robot())
+    stamp_ = robot->stamp();
+  if (any)
+    server_.want_all_soon();
+}
+
+void Gateway::look_at_simulator() {
+  if (!simulator_ || !simulator_->poll(now()))
+    return;
+  const std::vector<std::string> troubles = simulator_->take_troubles();
+  for (auto& [connection, page] : pages_) {
+    if (page.channel != Channel::simulator || !page.greeted)
+      continue;
+    for (const std::string& trouble : troubles)
+      say(connection, trouble);
+    server_.want(connection);
+  }
+}
+
+void Gateway::tick() {
+  poll();
+  look_at_simulator();
+  drive();
+  press_estop();
+  explain();
+  show_control();
+  for (const auto& [connection, page] : pages_)
+    if (!page.greeted && now() - page.opened > kGreeting)
+      server_.close(connection);
+  node_.status().stamp(stamp_);
+  node_.publish_status();
+}
+
+/// For as long as somebody drives, and a while after that, the bridge hears it 20 times a second:
+/// so it knows that this program lives, and that a release that got lost was meant.
+void Gateway::drive() {
+  const Control::Order order = control_.order(now());
+  if (!order.source.empty()) {
+    last_source_ = operator_of(order.source);
+    drove_ = now();
+  }
+  if (now() - drove_ > kStillThere && hand_backs_left_ == 0)
+    return;
+  v1::MotorCommand command;
+  // The stamp says which picture of the robot the operator has: the bridge is slower by an old one,
+  // and refuses one that is too old. A release and a hand-back hold whatever is seen.
+  command.stamp(stamp_);
+  if (order.active)
+    command.stamp().cycle(std::min(order.cycle, stamp_.cycle()));
+  command.source(last_source_);
+  command.number(++command_);
+  command.active(order.active);
+  command.hand_back(!order.active && hand_backs_left_ > 0);
+  hand_backs_left_ = order.active ? 0 : std::max(0, hand_backs_left_ - 1);
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.velocity(order.velocity);
+  command.rotation(v1::ROTATION_VELOCITY);
+  command.rotation_velocity(order.rotation);
+  teleop_.write(command);
+}
+
+/// Presses until the bridge says that the stop is latched; then lets go, so that it can be reset.
+void Gateway::press_estop() {
+  if (presser_.empty() && releases_left_ == 0)
+    return;
+  if (!presser_.empty() && grant_ && grant_->estopped()) {
+    presser_.clear();
+    releases_left_ = kReleases;
+  }
+  v1::MotorCommand command;
+  command.source(presser_.empty() ? "console" : presser_);
+  command.number(++command_);
+  command.active(!presser_.empty());
+  if (presser_.empty())
+    --releases_left_;
+  estop_.write(command);
+}
+
+/// Why the robot does what it does, as `saphira why` tells it.
+void Gateway::explain() {
+  if (viewers_ == 0 || now() - explained_ < kExplain || !mind_.heard())
+    return;
+  explained_ = now();
+  board_.put(why_topic_, "",
+             situation::to_json(situation::why(mind_.situation(mind_.newest_cycle(), false))),
+             now());
+}
+
+void Gateway::show_control() {
+  std::string text = control_.json();
+  if (text == shown_control_)
+    return;
+  shown_control_ = text;
+  board_.put(control_topic_, "", std::move(text), now());
+}
+
+}  // namespace saphira::console

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "key.hpp"
+#include "mind.hpp"
+#include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/bus/request_client.hpp"
+#include "saphira/console/board.hpp"
+#include "saphira/console/control.hpp"
+#include "saphira/console/message.hpp"
+#include "server.hpp"
+#include "simulator_link.hpp"
+
+namespace saphira::console {
+
+struct GatewayOptions {
+  ServerOptions server;
+  std::vector<std::string> names;  ///< further host names of this machine
+  std::string simulator;           ///< socket of a simulator's own view; empty: there is none
+  std::string key_file;  ///< keeps key and port over a restart; empty: a new key each time
+};
+
+constexpr int kReleases = 4;  ///< of the last word: the topics of driving are best effort
+
+/// [s] of the clock that all of this uses.
+double now();
+/// A key as the board names it.
+std::string key_text(const bus::InstanceKey& key);
+/// Who is at a page, as the rest of the system names it.
+std::string operator_of(const std::string& name);
+
+/// Between the bus and the browsers: what is on the bus goes onto the board, what the pages say
+/// goes to the bus. For one thread.
+class Gateway {
+ public:
+  Gateway(const bus::NodeOptions& node, const GatewayOptions& options);
+
+  int run(const bus::Stop& stop);
+  /// What a person opens, with the key.
+  std::string address() const;
+
+ private:
+  Gateway(const bus::NodeOptions& node, const GatewayOptions& options, const Kept& kept);
+
+  using Connection = Server::Connection;
+
+  struct Page {
+    Channel channel = Channel::telemetry;
+    Caller caller;
+    bool greeted = false;        ///< it has said hello, and may watch
+    bool trusted = false;        ///< it has the key
+    std::string name;            ///< of the operator
+    std::string ticket;          ///< by which a further connection carries this operator's samples
+    Connection operator_id = 0;  ///< whose samples come here [0: none]
+    double opened = 0.0;         ///< [s]
+    Viewer viewer;
+    std::deque<std::string> queue;  ///< of commands: what it is to be told
+    std::uint64_t world = 0;        ///< of the simulator: the newest that it was told
+    std::uint64_t scene = 0;        ///< likewise
+    std::string refused;            ///< the newest reason why a sample did not count
+  };
+  struct Asked {
+    Connection connection = 0;
+    std::uint64_t reference = 0;
+  };
+
+  Server::Events events();
+  template <class T>
+  void feed(const bus::Topic<T>& topic, std::size_t most = 1, bool with_writer = false);
+  void feed_all();
+  void poll();
+  void tick();
+  void drive();
+  void press_estop();
+  void explain();
+  void show_control();
+  void look_at_simulator();
+  void ask_simulator(Connection connection, const Page& page, std::string text);
+
+  void opened(Connection connection, Channel channel, const Caller& caller);
+  bool came(Connection connection, const std::string& text);
+  void closed(Connection connection);
+  std::optional<std::string> next(Connection connection);
+
+  bool greet(Connection connection, Page& page, const Hello& hello);
+  void admit(Connection connection, Page& page, const Hello& hello);
+  void obey(Connection connection, Page& page, const Message& message);
+  void take_sample(Connection connection, Page& page, const Control::Sample& sample);
+  void ask_goal(Connection connection, const Page& page, const AskGoal& ask);
+  void cancel_goal(Connection connection, const CancelGoal& cancel);
+  void hear(const Page& page, const Say& words);
+  void hand_back(Connection connection);
+  void say(Connection connection, std::string text);
+  void answer(Connection connection, std::uint64_t reference, bool well, const std::string& text,
+              const std::string& id = {});
+  void take_answers(bus::RequestClient& client);
+  void send(bus::RequestClient& client, v1::Request request, Connection connection,
+            std::uint64_t reference);
+
+  AccessSettings access_;
+  std::string origin_;
+  bus::Node node_;
+  Board board_;
+  Control control_;
+  cli::Mind mind_;
+  bus::GoalClient goals_;
+  bus::RequestClient resets_;
+  bus::RequestClient registration_;
+  bus::RequestClient processes_;
+  bus::Writer<v1::MotorCommand> teleop_;
+  bus::Writer<v1::MotorCommand> estop_;
+  bus::Writer<v1::Utterance> heard_;
+  bus::Writer<v1::AgentEvent> pointed_out_;
+  bus::Reader<v1::Grant> grants_;
+
+  std::vector<std::function<bool()>> feeds_;  ///< each: whether something came
+  int control_topic_ = 0;
+  int why_topic_ = 0;
+  std::map<Connection, Page> pages_;
+  std::map<std::uint64_t, Asked> asked_;  ///< by the number of the request
+  int viewers_ = 0;
+  std::uint64_t events_ = 0;
+
+  v1::Stamp stamp_;  ///< of the newest robot state
+  std::optional<v1::Grant> grant_;
+  std::uint64_t command_ = 0;
+  std::uint64_t utterances_ = 0;
+  double drove_ = -1e9;      ///< [s] when an operator had control last
+  int hand_backs_left_ = 0;  ///< the topic is best effort
+  std::string last_source_ = "console";
+  std::string presser_;  ///< who presses the emergency stop, until it is confirmed
+  int releases_left_ = 0;
+  double explained_ = -1e9;  ///< [s]
+  std::string shown_control_;
+  std::optional<SimulatorLink> simulator_;
+
+  Server server_;
+};
+
+}  // namespace saphira::console

@@ -1,0 +1,317 @@
+// The pages' side: what they say, and what they are told.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <sstream>
+
+#include "gateway.hpp"
+#include "key.hpp"
+#include "saphira/cli/goal_words.hpp"
+
+namespace saphira::console {
+
+namespace {
+
+constexpr std::size_t kMostQueued = 64;  // texts for a page that does not read
+
+std::optional<v1::GoalId> goal_id(const std::string& text) {
+  unsigned long long writer = 0;
+  unsigned long long number = 0;
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%llx:%llx%n", &writer, &number, &used) != 2 ||
+      static_cast<std::size_t>(used) != text.size())
+    return std::nullopt;
+  v1::GoalId id;
+  id.writer(writer);
+  id.number(number);
+  return id;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;)
+    words.push_back(word);
+  return words;
+}
+
+}  // namespace
+
+void Gateway::opened(Connection connection, Channel channel, const Caller& caller) {
+  Page& page = pages_[connection];
+  page.channel = channel;
+  page.caller = caller;
+  page.opened = now();
+}
+
+void Gateway::closed(Connection connection) {
+  const auto found = pages_.find(connection);
+  if (found == pages_.end())
+    return;
+  control_.leave(connection);
+  if (found->second.greeted && found->second.channel == Channel::telemetry)
+    --viewers_;
+  std::erase_if(asked_, [&](const auto& asked) { return asked.second.connection == connection; });
+  pages_.erase(found);
+  show_control();
+}
+
+std::optional<std::string> Gateway::next(Connection connection) {
+  const auto found = pages_.find(connection);
+  if (found == pages_.end())
+    return std::nullopt;
+  Page& page = found->second;
+  if (!page.queue.empty()) {
+    std::string text = std::move(page.queue.front());
+    page.queue.pop_front();
+    return text;
+  }
+  if (!page.greeted)
+    return std::nullopt;
+  if (page.channel == Channel::simulator && simulator_) {
+    if (page.world != simulator_->world().number) {
+      page.world = simulator_->world().number;
+      server_.want(connection);
+      return simulator_->world().line;
+    }
+    if (page.scene != simulator_->scene().number) {
+      page.scene = simulator_->scene().number;
+      return simulator_->scene().line;
+    }
+  }
+  if (page.channel != Channel::telemetry)
+    return std::nullopt;
+  return board_.frame(page.viewer, now());
+}
+
+void Gateway::say(Connection connection, std::string text) {
+  const auto found = pages_.find(connection);
+  if (found == pages_.end())
+    return;
+  if (found->second.queue.size() >= kMostQueued) {
+    server_.close(connection);
+    return;
+  }
+  found->second.queue.push_back(std::move(text));
+  server_.want(connection);
+}
+
+void Gateway::answer(Connection connection, std::uint64_t reference, bool well,
+                     const std::string& text, const std::string& id) {
+  say(connection, "{\"type\":\"answer\",\"reference\":" + std::to_string(reference) +
+                      ",\"well\":" + (well ? "true" : "false") + ",\"text\":" + quoted(text) +
+                      ",\"id\":" + quoted(id) + "}");
+}
+
+bool Gateway::came(Connection connection, const std::string& text) {
+  const auto found = pages_.find(connection);
+  if (found == pages_.end())
+    return false;
+  Page& page = found->second;
+  if (page.channel == Channel::simulator && page.greeted) {
+    ask_simulator(connection, page, text);
+    return true;
+  }
+  const Message message = parse_message(text);
+  if (const auto* wrong = std::get_if<Wrong>(&message)) {
+    say(connection, "{\"type\":\"wrong\",\"why\":" + quoted(wrong->why) + "}");
+    return true;
+  }
+  if (const auto* hello = std::get_if<Hello>(&message))
+    return greet(connection, page, *hello);
+  if (!page.greeted)
+    return false;
+  if (const auto* ack = std::get_if<Ack>(&message)) {
+    Board::seen(page.viewer, ack->frame);
+    server_.want(connection);
+  } else if (page.channel == Channel::commands) {
+    obey(connection, page, message);
+  }
+  return true;
+}
+
+void Gateway::ask_simulator(Connection connection, const Page& page, std::string text) {
+  const auto refuse = [&](const char* why) {
+    say(connection, "{\"type\":\"trouble\",\"text\":" + quoted(why) + "}");
+  };
+  if (!page.trusted)
+    return refuse("without the key you may watch: open the address that saphira has printed");
+  std::replace(text.begin(), text.end(), '\n', ' ');  // a line is one wish
+  if (!simulator_ || !simulator_->say(text))
+    refuse("the simulator is not there");
+}
+
+bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
+  if (page.greeted)
+    return true;
+  page.trusted = right_key(access_, hello.key);
+  page.greeted = may_watch(access_, page.caller, hello.key);
+  page.name = hello.name;
+  if (page.greeted && page.channel == Channel::telemetry)
+    ++viewers_;
+  if (page.trusted && page.channel == Channel::commands)
+    admit(connection, page, hello);
+  if (page.greeted && page.channel == Channel::telemetry)
+    return true;
+  // One without the key is told so, and closed when it has not given it in time.
+  say(connection, std::string("{\"type\":\"hello\",\"id\":") + std::to_string(connection) +
+                      ",\"may_watch\":" + (page.greeted ? "true" : "false") +
+                      ",\"may_drive\":" + (page.trusted ? "true" : "false") +
+                      ",\"ticket\":" + quoted(page.ticket) + "}");
+  return true;
+}
+
+/// An operator, or a further connection of one.
+void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
+  if (hello.ticket.empty()) {
+    page.ticket = new_key();
+    page.operator_id = connection;
+    control_.join(connection, hello.name.empty() ? "somebody" : hello.name);
+    return;
+  }
+  for (const auto& [other, known] : pages_)
+    if (known.ticket == hello.ticket)
+      page.operator_id = other;
+}
+
+void Gateway::obey(Connection connection, Page& page, const Message& message) {
+  if (const auto* ping = std::get_if<Ping>(&message)) {
+    char text[100];
+    std::snprintf(text, sizeof text, "{\"type\":\"pong\",\"at\":%.3f,\"cycle\":%llu}", ping->at,
+                  static_cast<unsigned long long>(stamp_.cycle()));
+    say(connection, text);
+    return;
+  }
+  // Whoever sees the robot may stop it.
+  if (std::holds_alternative<EmergencyStop>(message)) {
+    presser_ = operator_of(page.name);
+    press_estop();
+    return;
+  }
+  if (!page.trusted) {
+    say(connection,
+        "{\"type\":\"note\",\"text\":\"Without the key you may watch, and stop the robot. Open the "
+        "address with the key that saphira console prints.\"}");
+    return;
+  }
+  const auto note = [&](const std::string& why) {
+    if (!why.empty())
+      say(connection, "{\"type\":\"note\",\"text\":" + quoted(why) + "}");
+  };
+  if (const auto* sample = std::get_if<Control::Sample>(&message))
+    take_sample(connection, page, *sample);
+  else if (const auto* take = std::get_if<TakeControl>(&message))
+    note(control_.take(connection, take->force, now()));
+  else if (std::holds_alternative<AskForControl>(message))
+    note(control_.ask(connection));
+  else if (std::holds_alternative<ReleaseControl>(message))
+    control_.release(connection);
+  else if (std::holds_alternative<HandBack>(message))
+    hand_back(connection);
+  else if (std::holds_alternative<ResetEmergencyStop>(message)) {
+    v1::Request request;
+    request.functor("reset");
+    send(resets_, request, connection, 0);
+  } else if (const auto* goal = std::get_if<AskGoal>(&message))
+    ask_goal(connection, page, *goal);
+  else if (const auto* cancel = std::get_if<CancelGoal>(&message))
+    cancel_goal(connection, *cancel);
+  else if (const auto* words = std::get_if<Say>(&message))
+    hear(page, *words);
+  else if (const auto* process = std::get_if<AskProcess>(&message)) {
+    v1::Request request;
+    request.service(process->service);
+    request.functor(process->functor);
+    request.arguments({bus::text("process", process->process)});
+    send(processes_, request, connection, process->reference);
+  } else if (const auto* place = std::get_if<PlaceRobot>(&message)) {
+    v1::Request request;
+    request.functor("place");
+    request.arguments({bus::point("position", place->x, place->y, place->th, v1::FRAME_MAP)});
+    send(registration_, request, connection, place->reference);
+  } else if (const auto* out = std::get_if<PointOut>(&message)) {
+    v1::AgentEvent event;
+    event.stamp(stamp_);
+    event.source(operator_of(page.name));
+    event.functor("pointed_out");
+    event.arguments({bus::point("position", out->x, out->y, 0.0,
+                                out->in_map ? v1::FRAME_MAP : v1::FRAME_ODOM)});
+    pointed_out_.write(event);
+  }
+  show_control();
+}
+
+void Gateway::take_sample(Connection connection, Page& page, const Control::Sample& sample) {
+  const std::string why = control_.drive(page.operator_id, sample, now());
+  // Of several connections one is quicker: that a sample was overtaken is nothing to tell.
+  if (why == page.refused || why == Control::kRepeated)
+    return;
+  page.refused = why;
+  say(connection, "{\"type\":\"drive\",\"refused\":" + quoted(why) + "}");
+}
+
+void Gateway::hand_back(Connection connection) {
+  if (control_.holder() != 0 && control_.holder() != connection) {
+    say(connection,
+        "{\"type\":\"note\",\"text\":\"Somebody else has control: it is not yours to hand "
+        "back.\"}");
+    return;
+  }
+  control_.release(connection);
+  hand_backs_left_ = kReleases;
+}
+
+void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& ask) {
+  try {
+    v1::Goal goal = cli::parse_request(words_of(ask.words));
+    goal.requester(operator_of(page.name));
+    const v1::GoalId id = goals_.ask(goal);
+    answer(connection, ask.reference, true, cli::describe(goal),
+           key_text({id.writer(), id.number()}));
+  } catch (const std::exception& error) {  // what the person typed, or a bus that does not take it
+    answer(connection, ask.reference, false, error.what());
+  }
+}
+
+void Gateway::cancel_goal(Connection connection, const CancelGoal& cancel) {
+  const auto id = goal_id(cancel.id);
+  if (!id) {
+    answer(connection, cancel.reference, false, "expected the id of a goal");
+    return;
+  }
+  goals_.cancel(*id);
+  answer(connection, cancel.reference, true, "withdrawn", cancel.id);
+}
+
+/// For the agent interface: what a person types to the robot.
+void Gateway::hear(const Page& page, const Say& words) {
+  v1::Utterance utterance;
+  utterance.id().writer(node_.instance());
+  utterance.id().number(++utterances_);
+  utterance.speaker(page.name);
+  utterance.text(words.text);
+  utterance.means(v1::UTTERANCE_TYPED);
+  utterance.confidence(1.0);
+  utterance.time(
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+  heard_.write(utterance);
+}
+
+void Gateway::send(bus::RequestClient& client, v1::Request request, Connection connection,
+                   std::uint64_t reference) {
+  asked_[client.send(std::move(request))] = {connection, reference};
+}
+
+void Gateway::take_answers(bus::RequestClient& client) {
+  for (const v1::Answer& given : client.poll()) {
+    const auto asked = asked_.find(given.number());
+    if (asked == asked_.end())
+      continue;
+    answer(asked->second.connection, asked->second.reference, bus::well(given.code()),
+           given.text());
+    if (bus::ended(given.code()))
+      asked_.erase(asked);
+  }
+}
+
+}  // namespace saphira::console

@@ -1,0 +1,77 @@
+#include "key.hpp"
+
+#include <fcntl.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+
+namespace saphira::console {
+
+namespace {
+
+constexpr std::size_t kBytes = 12;
+
+bool write_all(int fd, const Kept& kept) {
+  const std::string text =
+      kept.key + "\n" + (kept.port == 0 ? "" : std::to_string(kept.port) + "\n");
+  return ftruncate(fd, 0) == 0 &&
+         pwrite(fd, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+}
+
+}  // namespace
+
+std::string new_key() {
+  std::array<std::uint8_t, kBytes> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw std::runtime_error("no random numbers for a key");
+  std::string key;
+  for (const std::uint8_t byte : bytes)
+    for (const int half : {byte >> 4, byte & 15})
+      key += "0123456789abcdef"[half];
+  return key;
+}
+
+Kept keep(const std::string& file) {
+  if (file.empty())
+    return {new_key(), 0};
+  const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (fd < 0)
+    throw std::runtime_error(file + ": cannot be opened, to keep the console's key");
+  struct stat state {};
+  std::array<char, 100> text{};
+  const ssize_t size = read(fd, text.data(), text.size());
+  std::istringstream content(
+      std::string(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0));
+  Kept kept;
+  content >> kept.key >> kept.port;
+  const bool open_to_others = fstat(fd, &state) != 0 || (state.st_mode & 077U) != 0;
+  bool written = true;
+  if (!open_to_others && kept.key.size() < 2 * kBytes) {
+    kept = {new_key(), 0};
+    written = write_all(fd, kept);
+  }
+  close(fd);
+  if (open_to_others)
+    throw std::runtime_error(file +
+                             ": others may read the console's key; chmod 600 it, or remove it");
+  if (!written)
+    throw std::runtime_error(file + ": the console's key cannot be written");
+  return kept;
+}
+
+void keep_port(const std::string& file, const Kept& kept, int port) {
+  if (file.empty() || kept.port == port)
+    return;
+  const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
+  const bool written = fd >= 0 && write_all(fd, {kept.key, port});
+  close(fd);
+  if (!written)
+    throw std::runtime_error(file + ": the console's port cannot be written");
+}
+
+}  // namespace saphira::console

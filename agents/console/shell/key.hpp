@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+namespace saphira::console {
+
+/// Random, in hexadecimal digits. std::runtime_error where the system has no random numbers.
+std::string new_key();
+
+/// What lets open pages go on after a restart.
+struct Kept {
+  std::string key;
+  int port = 0;  ///< that pages know; 0: none yet
+};
+
+/// What the file keeps; where it keeps nothing, a new key that is written there, for its owner
+/// alone to read. Without a file a new one. std::runtime_error that names the file where it is open
+/// to others or cannot be written.
+Kept keep(const std::string& file);
+/// The port that was found is kept as well. std::runtime_error that names the file.
+void keep_port(const std::string& file, const Kept& kept, int port);
+
+}  // namespace saphira::console

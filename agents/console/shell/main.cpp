@@ -1,0 +1,88 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+#include "gateway.hpp"
+#include "saphira/bus/program.hpp"
+#include "screenshot.hpp"
+
+namespace {
+
+using namespace saphira;
+
+/// The page as it is now, into a file; then the program ends.
+int picture(console::Gateway& gateway, const console::ScreenshotOptions& options) {
+  bus::Stop done;
+  std::exception_ptr failure;
+  {
+    const std::jthread photographer([&] {
+      try {
+        console::make_screenshot(gateway.address(), options);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      done.request();
+    });
+    gateway.run(done);
+  }
+  if (failure)
+    std::rethrow_exception(failure);
+  std::printf("%s\n", options.file.c_str());
+  return bus::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  console::GatewayOptions options;
+  console::ScreenshotOptions screenshot;
+  return bus::run_program(
+      argc, argv, "console", "Shows the robot in a browser, and lets people drive it from there.",
+      [&](CLI::App& app) {
+        app.add_option("--listen", options.server.address,
+                       "address to listen on; 0.0.0.0: every one of this machine")
+            ->capture_default_str();
+        app.add_option("--port", options.server.port,
+                       "the first port to try, of 20; 0: any that is free")
+            ->check(CLI::Range(0, 65500))
+            ->capture_default_str();
+        auto* const key = app.add_option("--certificate-key", options.server.certificate_key,
+                                         "PEM file, of the certificate")
+                              ->check(CLI::ExistingFile);
+        auto* const certificate = app.add_option("--certificate", options.server.certificate,
+                                                 "PEM file: the page is served by HTTPS")
+                                      ->check(CLI::ExistingFile)
+                                      ->needs(key);
+        key->needs(certificate);
+        app.add_option("--host-name", options.names, "a further name of this machine");
+        app.add_option("--simulator", options.simulator,
+                       "socket of a simulator's own view (saphira-sim --view-socket), for the page "
+                       "/simulator.html");
+        app.add_option("--key-file", options.key_file,
+                       "keeps key and port over a restart, so that open pages go on");
+        app.add_option("--screenshot", screenshot.file,
+                       "makes a picture of the page, and ends; needs Chromium, and no display");
+        app.add_option("--width", screenshot.width, "[pixels] of the picture")
+            ->capture_default_str();
+        app.add_option("--height", screenshot.height, "[pixels]")->capture_default_str();
+        app.add_flag("--dark", screenshot.dark, "the picture in dark colours");
+        app.add_flag("--narrow", screenshot.narrow, "the picture as on a telephone");
+        app.add_option("--tab", screenshot.tab, "what is open in the picture")
+            ->check(
+                CLI::IsMember({"Goals", "Why", "Behaviors", "Intentions", "Programs", "Messages"}))
+            ->capture_default_str();
+      },
+      [&](const bus::NodeOptions& node, const bus::Stop& stop) {
+        if (node.dry_run)  // its files are there, as the options ask
+          return static_cast<int>(bus::kExitOk);
+        if (!screenshot.file.empty())
+          options.server.port = 0;
+        console::Gateway gateway(node, options);
+        if (!screenshot.file.empty())
+          return picture(gateway, screenshot);
+        std::printf("open %s\n", gateway.address().c_str());
+        std::fflush(stdout);
+        return gateway.run(stop);
+      });
+}

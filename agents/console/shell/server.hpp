@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/console/access.hpp"
+
+namespace saphira::console {
+
+/// A file of the page.
+struct PageFile {
+  std::string path;  ///< such as /console.js
+  std::string type;  ///< such as text/javascript
+  std::string_view content;
+};
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  ///< to listen on; 0.0.0.0: every one
+  int port = 8642;                    ///< the first to try; 0: any that is free
+  int ports = 20;                     ///< how many to try
+  int before = 0;                     ///< tried before them, where it is one of them
+  std::string certificate;            ///< a file; empty: HTTP
+  std::string certificate_key;        ///< a file
+};
+
+/// The kinds of connection of a page: so the picture never makes a command wait. simulator: both
+/// ways, of the page of the simulator's own view.
+enum class Channel { telemetry, commands, simulator };
+
+/// HTTP and WebSockets (libwebsockets), in one thread: the page's files, and texts to and from each
+/// connection. Bounded: connections, sizes, and times without a word.
+class Server {
+ public:
+  using Connection = std::uint64_t;
+
+  /// What happens. Each is called from run() alone.
+  struct Events {
+    std::function<void(Connection, Channel, const Caller&)> opened;
+    /// False closes the connection.
+    std::function<bool(Connection, const std::string& text)> came;
+    std::function<void(Connection)> closed;
+    /// The next text for a connection, when it can be sent; nothing: there is none.
+    std::function<std::optional<std::string>(Connection)> next;
+    std::function<void()> readable;  ///< the file descriptor of watch()
+    std::function<void()> tick;      ///< 20 times a second
+  };
+
+  /// std::runtime_error that names the cause (no port, no certificate).
+  Server(const ServerOptions& options, const AccessSettings& access, std::vector<PageFile> files,
+         Events events);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  int port() const;
+  /// From now on Events::readable is called when this is readable.
+  void watch(int fd);
+  /// There may be something to send: next() is called soon.
+  void want(Connection connection);
+  /// The same for all connections, a hundredth of a second later: what comes together goes
+  /// together.
+  void want_all_soon();
+  void close(Connection connection);
+
+  /// Until `stop` is readable.
+  void run(int stop);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace saphira::console

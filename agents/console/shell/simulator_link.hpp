@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace saphira::console {
+
+/// The simulator's own view (saphira/sim/view.hpp), by its local socket: the newest of what it
+/// tells, and lines to it. Where the simulator is not there, or gone, it is tried again.
+class SimulatorLink {
+ public:
+  explicit SimulatorLink(std::string socket) : socket_(std::move(socket)) {}
+  ~SimulatorLink();
+  SimulatorLink(const SimulatorLink&) = delete;
+  SimulatorLink& operator=(const SimulatorLink&) = delete;
+
+  /// Takes what has come. True where there is something new.
+  bool poll(double now);
+  /// False where nobody is there.
+  bool say(const std::string& text);
+
+  /// A line, with a number that grows with each change; 0: none yet.
+  struct Told {
+    std::string line;
+    std::uint64_t number = 0;
+  };
+  const Told& world() const { return world_; }
+  const Told& scene() const { return scene_; }
+  /// What could not be done, since the last call.
+  std::vector<std::string> take_troubles();
+
+ private:
+  void connect();
+  void disconnect();
+  void take(std::string line);
+
+  std::string socket_;
+  int fd_ = -1;
+  double tried_ = -1e9;  ///< [s]
+  std::string heard_;
+  Told world_;
+  Told scene_;
+  std::vector<std::string> troubles_;
+};
+
+}  // namespace saphira::console

@@ -1,0 +1,98 @@
+#include "saphira/console/board.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace saphira::console {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(c));
+      out += escape;
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+int Board::topic(std::string name, std::size_t most) {
+  topics_.push_back({std::move(name), most, 0});
+  return static_cast<int>(topics_.size()) - 1;
+}
+
+void Board::put(int topic, const std::string& key, std::string json, double now) {
+  auto [item, added] = items_.try_emplace({topic, key});
+  item->second = {std::move(json), ++version_, now};
+  Topic& entry = topics_.at(static_cast<std::size_t>(topic));
+  if (added && ++entry.count > entry.most)
+    forget_oldest(topic);
+}
+
+void Board::withdraw(int topic, const std::string& key) {
+  if (items_.erase({topic, key}) > 0)
+    --topics_.at(static_cast<std::size_t>(topic)).count;
+}
+
+void Board::forget_oldest(int topic) {
+  auto oldest = items_.end();
+  for (auto item = items_.lower_bound({topic, {}});
+       item != items_.end() && item->first.first == topic; ++item)
+    if (oldest == items_.end() || item->second.version < oldest->second.version)
+      oldest = item;
+  items_.erase(oldest);
+  --topics_.at(static_cast<std::size_t>(topic)).count;
+}
+
+std::optional<std::string> Board::frame(Viewer& viewer, double now) const {
+  if (viewer.sent - viewer.seen >= settings_.unseen)
+    return std::nullopt;
+  std::string items;
+  const auto add = [&](const Place& place, double age, const std::string& json) {
+    char head[48];
+    std::snprintf(head, sizeof head, ",\"a\":%.0f,\"d\":", 1000.0 * std::max(0.0, age));
+    items += items.empty() ? "{\"t\":" : ",{\"t\":";
+    items += quoted(topics_.at(static_cast<std::size_t>(place.first)).name);
+    items += ",\"k\":" + quoted(place.second) + head + json + '}';
+  };
+  for (auto had = viewer.has.begin(); had != viewer.has.end();) {
+    if (items_.contains(had->first)) {
+      ++had;
+    } else {
+      add(had->first, 0.0, "null");
+      had = viewer.has.erase(had);
+    }
+  }
+  for (const auto& [place, item] : items_) {
+    std::uint64_t& has = viewer.has[place];
+    if (has == item.version)
+      continue;
+    if (!items.empty() && items.size() + item.json.size() > settings_.frame_bytes) {
+      if (has == 0)
+        viewer.has.erase(place);
+      break;
+    }
+    has = item.version;
+    add(place, now - item.came, item.json);
+  }
+  if (items.empty() && now - viewer.last < settings_.silence)
+    return std::nullopt;
+  viewer.last = now;
+  char head[80];
+  std::snprintf(head, sizeof head, "{\"seq\":%llu,\"now\":%.4f,\"items\":[",
+                static_cast<unsigned long long>(++viewer.sent), now);
+  return head + items + "]}";
+}
+
+void Board::seen(Viewer& viewer, std::uint64_t frame) {
+  if (frame <= viewer.sent)
+    viewer.seen = std::max(viewer.seen, frame);
+}
+
+}  // namespace saphira::console

@@ -1,0 +1,150 @@
+#include "saphira/console/control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "saphira/console/board.hpp"
+
+namespace saphira::console {
+
+namespace {
+
+constexpr double kClockDrift = 1e-3;  // more than two clocks drift apart
+
+std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f s", value);
+  return text;
+}
+
+}  // namespace
+
+std::string Control::name_of(OperatorId id) const {
+  const auto found = operators_.find(id);
+  return found == operators_.end() ? "nobody" : found->second;
+}
+
+void Control::drop(const std::string& note) {
+  holder_ = 0;
+  newest_ = {};
+  any_ = false;
+  note_ = note;
+}
+
+// Also a sample that ends the silence comes too late: what waited while this program hung or the
+// link was cut is no sign of an operator who has seen anything.
+void Control::lose_silent(double now) {
+  const double silence = now - came_;
+  if (holder_ != 0 && silence > settings_.lose)
+    drop("nothing was heard of " + name_of(holder_) + " for " + seconds(silence) +
+         ": the robot stands, and control is free");
+}
+
+void Control::join(OperatorId id, const std::string& name) {
+  operators_[id] = name;
+}
+
+void Control::leave(OperatorId id) {
+  if (holder_ == id)
+    drop(name_of(id) + " is gone: nobody has control");
+  std::erase(asked_, id);
+  operators_.erase(id);
+}
+
+std::string Control::take(OperatorId id, bool force, double now) {
+  if (!operators_.contains(id))
+    return "not known here: give the key first";
+  if (holder_ == id)
+    return {};
+  if (holder_ != 0 && !force)
+    return name_of(holder_) + " has control: ask for it, or take it";
+  const std::string from = holder_ == 0 ? std::string() : " from " + name_of(holder_);
+  drop({});
+  note_ = name_of(id) + " took control" + from;
+  holder_ = id;
+  std::erase(asked_, id);
+  came_ = now;
+  let_go_first_ = true;
+  return {};
+}
+
+std::string Control::ask(OperatorId id) {
+  if (!operators_.contains(id))
+    return "not known here: give the key first";
+  if (holder_ == 0)
+    return "nobody has control: take it";
+  if (holder_ == id)
+    return "you have control";
+  if (std::find(asked_.begin(), asked_.end(), id) == asked_.end())
+    asked_.push_back(id);
+  return {};
+}
+
+void Control::release(OperatorId id) {
+  if (holder_ == id)
+    drop(name_of(id) + " released control");
+  std::erase(asked_, id);
+}
+
+std::string Control::drive(OperatorId id, const Sample& sample, double now) {
+  lose_silent(now);
+  if (holder_ != id || holder_ == 0)
+    return "you do not have control";
+  if (!std::isfinite(sample.device_time) || !std::isfinite(sample.velocity) ||
+      !std::isfinite(sample.rotation))
+    return "a number was expected";
+  const double difference = now - sample.device_time;
+  if (any_) {
+    if (sample.number <= newest_.number)
+      return kRepeated;
+    if (sample.device_time < newest_.device_time)
+      return "the device's time went back";
+    quickest_ = std::min(difference, quickest_ + kClockDrift * (now - came_));
+  } else {
+    quickest_ = difference;
+  }
+  // What waited in the network is not wanted any more. The operator's link lives all the same.
+  const double late = difference - quickest_;
+  newest_.number = sample.number;
+  newest_.device_time = sample.device_time;
+  any_ = true;
+  if (late > settings_.late)
+    return "came " + seconds(late) + " late";
+  if (now - came_ > settings_.hold)
+    let_go_first_ = true;
+  came_ = now;
+  newest_ = sample;
+  if (!sample.active)
+    let_go_first_ = false;
+  return let_go_first_ && sample.active ? "let the stick go first" : "";
+}
+
+Control::Order Control::order(double now) {
+  Order order;
+  lose_silent(now);
+  if (holder_ == 0)
+    return order;
+  order.source = name_of(holder_);
+  if (now - came_ > settings_.hold)
+    let_go_first_ = true;
+  if (!any_ || let_go_first_ || !newest_.active)
+    return order;
+  order.active = true;
+  order.velocity = newest_.velocity;
+  order.rotation = newest_.rotation;
+  order.cycle = newest_.cycle;
+  return order;
+}
+
+std::string Control::json() const {
+  std::string asked;
+  for (const OperatorId id : asked_)
+    asked += (asked.empty() ? "" : ",") + quoted(name_of(id));
+  return "{\"holder\":" + std::to_string(holder_) +
+         ",\"name\":" + quoted(holder_ == 0 ? "" : name_of(holder_)) + ",\"asked\":[" + asked +
+         "],\"note\":" + quoted(note_) +
+         ",\"let_go\":" + (holder_ != 0 && let_go_first_ ? "true" : "false") + "}";
+}
+
+}  // namespace saphira::console

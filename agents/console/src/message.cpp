@@ -1,0 +1,107 @@
+#include "saphira/console/message.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace saphira::console {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kLongest = 1000;  // of a text
+constexpr std::size_t kName = 40;
+
+const Json& member(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end())
+    throw std::invalid_argument(std::string("\"") + name + "\" is missing");
+  return *found;
+}
+
+std::string text(const Json& object, const char* name, std::size_t longest = kLongest) {
+  const Json& value = member(object, name);
+  if (!value.is_string() || value.get_ref<const std::string&>().size() > longest)
+    throw std::invalid_argument(std::string("\"") + name + "\": expected a text of at most " +
+                                std::to_string(longest) + " bytes");
+  return value.get<std::string>();
+}
+
+double number(const Json& object, const char* name) {
+  const Json& value = member(object, name);
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    throw std::invalid_argument(std::string("\"") + name + "\": expected a number");
+  return value.get<double>();
+}
+
+std::uint64_t count(const Json& object, const char* name) {
+  const Json& value = member(object, name);
+  if (!value.is_number_unsigned())
+    throw std::invalid_argument(std::string("\"") + name + "\": expected a whole number from 0 on");
+  return value.get<std::uint64_t>();
+}
+
+bool truth(const Json& object, const char* name) {
+  const Json& value = member(object, name);
+  if (!value.is_boolean())
+    throw std::invalid_argument(std::string("\"") + name + "\": expected true or false");
+  return value.get<bool>();
+}
+
+Message read(const Json& json) {
+  const std::string type = text(json, "type");
+  if (type == "drive")
+    return Control::Sample{count(json, "number"),    number(json, "at"),
+                           truth(json, "active"),    number(json, "velocity"),
+                           number(json, "rotation"), count(json, "cycle")};
+  if (type == "ack")
+    return Ack{count(json, "frame")};
+  if (type == "ping")
+    return Ping{number(json, "at")};
+  if (type == "hello")
+    return Hello{text(json, "key"), text(json, "name", kName),
+                 json.contains("ticket") ? text(json, "ticket", kName) : ""};
+  if (type == "take")
+    return TakeControl{truth(json, "force")};
+  if (type == "ask")
+    return AskForControl{};
+  if (type == "release")
+    return ReleaseControl{};
+  if (type == "hand_back")
+    return HandBack{};
+  if (type == "estop")
+    return EmergencyStop{};
+  if (type == "estop_reset")
+    return ResetEmergencyStop{};
+  if (type == "goal")
+    return AskGoal{count(json, "reference"), text(json, "words")};
+  if (type == "say")
+    return Say{text(json, "text")};
+  if (type == "cancel")
+    return CancelGoal{count(json, "reference"), text(json, "id")};
+  if (type == "process")
+    return AskProcess{count(json, "reference"), text(json, "service"), text(json, "process"),
+                      text(json, "functor")};
+  if (type == "place")
+    return PlaceRobot{count(json, "reference"), number(json, "x"), number(json, "y"),
+                      number(json, "th")};
+  if (type == "point_out")
+    return PointOut{number(json, "x"), number(json, "y"), truth(json, "in_map")};
+  return Wrong{"\"type\" is not known: " + type.substr(0, kName)};
+}
+
+}  // namespace
+
+Message parse_message(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object())
+    return Wrong{"expected one JSON object"};
+  try {
+    return read(json);
+  } catch (const std::invalid_argument& error) {
+    return Wrong{error.what()};
+  }
+}
+
+}  // namespace saphira::console

@@ -1,0 +1,187 @@
+#include "saphira/console/control.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace saphira::console {
+namespace {
+
+constexpr Control::OperatorId kAnn = 1;
+constexpr Control::OperatorId kBob = 2;
+
+/// Two operators, of whom one drives 20 times a second.
+class ControlTest : public testing::Test {
+ protected:
+  ControlTest() {
+    control.join(kAnn, "ann");
+    control.join(kBob, "bob");
+  }
+  Control::Sample sample(bool active) {
+    return {++number, now + device_ahead, active, active ? 0.2 : 0.0, 0.0, 100};
+  }
+  /// Samples for so long, each of which arrives at once. Whether the robot moved at the end.
+  bool samples(bool active, double duration) {
+    for (const double end = now + duration; now < end; now += 0.05) {
+      refused = control.drive(kAnn, sample(active), now);
+      moves = control.order(now).active;
+    }
+    return moves;
+  }
+  /// Nothing comes for so long. Until when the robot moved, from the beginning of it.
+  double silence(double duration) {
+    double moved = 0.0;
+    const double begin = now;
+    for (const double end = now + duration; now < end; now += 0.01)
+      if (control.order(now).active)
+        moved = now - begin;
+    return moved;
+  }
+  void take_and_drive() {
+    EXPECT_EQ(control.take(kAnn, false, now), "");
+    samples(false, 0.2);
+    EXPECT_TRUE(samples(true, 0.5));
+  }
+
+  Control control;
+  double now = 1000.0;
+  double device_ahead = -777.0;  ///< [s] of the operator's clock
+  std::uint64_t number = 0;
+  std::string refused;
+  bool moves = false;
+};
+
+TEST_F(ControlTest, DrivesWhatTheHolderHolds) {
+  take_and_drive();
+  const Control::Order order = control.order(now);
+  EXPECT_EQ(order.source, "ann");
+  EXPECT_DOUBLE_EQ(order.velocity, 0.2);
+  EXPECT_EQ(order.cycle, 100U);
+  EXPECT_FALSE(samples(false, 0.05));  // at once
+}
+
+TEST_F(ControlTest, AStickThatIsHeldWhenControlIsTakenMovesNothing) {
+  EXPECT_EQ(control.take(kAnn, false, now), "");
+  EXPECT_FALSE(samples(true, 1.0));
+  EXPECT_EQ(refused, "let the stick go first");
+  samples(false, 0.1);
+  EXPECT_TRUE(samples(true, 0.1));
+}
+
+TEST_F(ControlTest, SilenceStopsWithinHalfASecondAndTheStickMustBeLetGo) {
+  take_and_drive();
+  EXPECT_LE(silence(0.6), 0.5);
+  EXPECT_EQ(control.holder(), kAnn);
+  EXPECT_FALSE(samples(true, 0.5));
+  samples(false, 0.1);
+  EXPECT_TRUE(samples(true, 0.1));
+}
+
+TEST_F(ControlTest, AfterALongSilenceTheOperatorOnlyWatches) {
+  take_and_drive();
+  EXPECT_LE(silence(2.0), 0.5);
+  EXPECT_EQ(control.holder(), 0U);
+  EXPECT_FALSE(samples(true, 0.5));
+  EXPECT_EQ(refused, "you do not have control");
+  EXPECT_NE(control.json().find("nothing was heard of ann"), std::string::npos);
+}
+
+// A retransmission holds all that comes after it: a third of a second is no reason to stop.
+TEST_F(ControlTest, ASampleAfterALongSilenceDoesNotKeepControl) {
+  take_and_drive();
+  now += 1.1;  // nobody has asked for an order: this program hung, too
+  EXPECT_EQ(control.drive(kAnn, sample(false), now), "you do not have control");
+  EXPECT_EQ(control.holder(), 0U);
+}
+
+TEST_F(ControlTest, AShortGapOfTheLinkGoesUnnoticed) {
+  take_and_drive();
+  EXPECT_GT(silence(0.3), 0.25);
+  EXPECT_TRUE(samples(true, 0.1));
+}
+
+TEST_F(ControlTest, WhatWaitedInTheNetworkDrivesNothing) {
+  take_and_drive();
+  std::vector<Control::Sample> waiting;
+  for (int i = 0; i < 20; ++i, now += 0.05)
+    waiting.push_back(sample(true));
+  // All of them at once, a second later: the newest is young, and still the stick must be let go.
+  for (const Control::Sample& one : waiting)
+    control.drive(kAnn, one, now);
+  EXPECT_FALSE(control.order(now).active);
+}
+
+TEST_F(ControlTest, ALinkThatGetsSlowStopsTheRobot) {
+  take_and_drive();
+  for (int i = 0; i < 20; ++i, now += 0.05) {
+    Control::Sample late = sample(true);
+    late.device_time -= 0.6;
+    if (i > 0)
+      EXPECT_NE(control.drive(kAnn, late, now), "");
+    else
+      control.drive(kAnn, late, now);
+  }
+  EXPECT_FALSE(control.order(now).active);
+}
+
+TEST_F(ControlTest, RepeatedAndBackdatedSamplesAreRefused) {
+  take_and_drive();
+  Control::Sample old = sample(true);
+  EXPECT_EQ(control.drive(kAnn, old, now), "");
+  EXPECT_EQ(control.drive(kAnn, old, now), "a repeated sample");
+  Control::Sample back = sample(true);
+  back.device_time -= 5.0;
+  EXPECT_NE(control.drive(kAnn, back, now), "");
+}
+
+TEST_F(ControlTest, NumbersThatAreNoneAreRefused) {
+  take_and_drive();
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Control::Sample wrong = sample(true);
+    wrong.velocity = bad;
+    EXPECT_NE(control.drive(kAnn, wrong, now), "");
+    wrong = sample(true);
+    wrong.rotation = bad;
+    EXPECT_NE(control.drive(kAnn, wrong, now), "");
+  }
+}
+
+TEST_F(ControlTest, OneHasControlAndTheOtherAsksOrTakes) {
+  take_and_drive();
+  EXPECT_NE(control.take(kBob, false, now), "");
+  EXPECT_EQ(control.ask(kBob), "");
+  EXPECT_NE(control.json().find(R"("asked":["bob"])"), std::string::npos);
+  EXPECT_EQ(control.holder(), kAnn);
+  EXPECT_EQ(control.take(kBob, true, now), "");
+  EXPECT_EQ(control.holder(), kBob);
+  EXPECT_FALSE(control.order(now).active);
+  EXPECT_EQ(control.drive(kAnn, sample(true), now), "you do not have control");
+  EXPECT_NE(control.json().find(R"("asked":[])"), std::string::npos);
+}
+
+TEST_F(ControlTest, ReleasingAndLeavingStop) {
+  take_and_drive();
+  control.release(kBob);  // not bob's
+  EXPECT_TRUE(control.order(now).active);
+  control.release(kAnn);
+  EXPECT_FALSE(control.order(now).active);
+  take_and_drive();
+  control.leave(kAnn);
+  EXPECT_FALSE(control.order(now).active);
+  EXPECT_EQ(control.holder(), 0U);
+  EXPECT_NE(control.take(kAnn, false, now), "");
+}
+
+// The clock of a telephone is a little fast or slow.
+TEST_F(ControlTest, ClocksThatDriftApartDoNotStopTheDriver) {
+  take_and_drive();
+  for (int i = 0; i < 20 * 600; ++i, now += 0.05) {
+    device_ahead += 0.05 * 2e-4;
+    EXPECT_EQ(control.drive(kAnn, sample(true), now), "");
+    device_ahead -= 0.05 * 4e-4;
+  }
+}
+
+}  // namespace
+}  // namespace saphira::console

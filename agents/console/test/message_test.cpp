@@ -1,0 +1,80 @@
+#include "saphira/console/message.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace saphira::console {
+namespace {
+
+std::string wrong(std::string_view text) {
+  const Message message = parse_message(text);
+  const auto* const why = std::get_if<Wrong>(&message);
+  return why == nullptr ? "" : why->why;
+}
+
+TEST(Message, EachKindIsRead) {
+  const Message drive = parse_message(
+      R"({"type":"drive","number":7,"at":1.5,"active":true,"velocity":-0.1,"rotation":0.2,"cycle":9})");
+  const auto& sample = std::get<Control::Sample>(drive);
+  EXPECT_EQ(sample.number, 7U);
+  EXPECT_DOUBLE_EQ(sample.device_time, 1.5);
+  EXPECT_TRUE(sample.active);
+  EXPECT_DOUBLE_EQ(sample.velocity, -0.1);
+  EXPECT_DOUBLE_EQ(sample.rotation, 0.2);
+  EXPECT_EQ(sample.cycle, 9U);
+  EXPECT_EQ(std::get<Hello>(parse_message(R"({"type":"hello","key":"k","name":"ann"})")).name,
+            "ann");
+  EXPECT_EQ(std::get<Ack>(parse_message(R"({"type":"ack","frame":3})")).frame, 3U);
+  EXPECT_TRUE(std::get<TakeControl>(parse_message(R"({"type":"take","force":true})")).force);
+  EXPECT_EQ(
+      std::get<Hello>(parse_message(R"({"type":"hello","key":"k","name":"ann","ticket":"t"})"))
+          .ticket,
+      "t");
+  EXPECT_EQ(std::get<Say>(parse_message(R"({"type":"say","text":"hello"})")).text, "hello");
+  EXPECT_TRUE(std::holds_alternative<AskForControl>(parse_message(R"({"type":"ask"})")));
+  EXPECT_TRUE(std::holds_alternative<ReleaseControl>(parse_message(R"({"type":"release"})")));
+  EXPECT_TRUE(std::holds_alternative<HandBack>(parse_message(R"({"type":"hand_back"})")));
+  EXPECT_TRUE(std::holds_alternative<EmergencyStop>(parse_message(R"({"type":"estop"})")));
+  EXPECT_TRUE(
+      std::holds_alternative<ResetEmergencyStop>(parse_message(R"({"type":"estop_reset"})")));
+  EXPECT_EQ(
+      std::get<AskGoal>(parse_message(R"({"type":"goal","reference":1,"words":"go 3 1"})")).words,
+      "go 3 1");
+  EXPECT_EQ(std::get<CancelGoal>(parse_message(R"({"type":"cancel","reference":1,"id":"a:1"})")).id,
+            "a:1");
+  EXPECT_EQ(
+      std::get<AskProcess>(
+          parse_message(
+              R"({"type":"process","reference":1,"service":"s","process":"p","functor":"f"})"))
+          .process,
+      "p");
+  EXPECT_DOUBLE_EQ(
+      std::get<PlaceRobot>(parse_message(R"({"type":"place","reference":1,"x":1,"y":2,"th":3})"))
+          .th,
+      3.0);
+  EXPECT_FALSE(
+      std::get<PointOut>(parse_message(R"({"type":"point_out","x":1,"y":2,"in_map":false})"))
+          .in_map);
+}
+
+TEST(Message, WhatIsNoneSaysWhatWasExpected) {
+  for (const char* text : {"", "{", "[]", "7", "null", "\"drive\"", "{}{}", "\xff\xfe"})
+    EXPECT_EQ(wrong(text), "expected one JSON object") << text;
+  EXPECT_EQ(wrong("{}"), "\"type\" is missing");
+  EXPECT_EQ(wrong(R"({"type":"fly"})"), "\"type\" is not known: fly");
+  EXPECT_NE(wrong(R"({"type":"ack","frame":-1})"), "");
+  EXPECT_NE(wrong(R"({"type":"ack","frame":1.5})"), "");
+  EXPECT_NE(wrong(R"({"type":"take","force":1})"), "");
+  EXPECT_NE(wrong(R"({"type":"ping","at":1e999})"), "");
+  EXPECT_NE(wrong(R"({"type":"goal","reference":1,"words":7})"), "");
+  EXPECT_NE(wrong(R"({"type":"hello","key":"k","name":")" + std::string(100, 'x') + "\"}"), "");
+}
+
+TEST(Message, DeepNestingIsNoTrouble) {
+  EXPECT_NE(wrong(std::string(4000, '[')), "");
+  EXPECT_NE(wrong(R"({"type":)" + std::string(1000, '[') + std::string(1000, ']') + "}"), "");
+}
+
+}  // namespace
+}  // namespace saphira::console

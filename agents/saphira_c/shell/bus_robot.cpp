@@ -1,0 +1,805 @@
+// The part of the C library that joins the bus (SAPHIRA_ROBOT): the robot is the bridge's, what its
+// sensors show is the services', and the program is one more that may drive it (role direct).
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "../src/robot.hpp"
+#include "behaviors/shell/convert.hpp"
+#include "geometry/shell/convert.hpp"
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "saphira.h"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/program.hpp"
+#include "saphira/bus/request_client.hpp"
+#include "saphira/runtime/processes.hpp"
+
+namespace saphira::c {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTurn{20};
+constexpr double kSilent = 1.0;          // [s] after which the robot is gone
+constexpr int kReleases = 4;             // of the last word: the topic is best effort
+constexpr std::size_t kMostKept = 1000;  // sonar readings of cycles that were passed over
+constexpr double kDrawnFor = 1.0;        // [s]
+constexpr double kPixel = 0.025;         // [m] that a pixel of the manual's window shows
+
+bus::NodeOptions options_of(const std::string& robot) {
+  bus::NodeOptions options;
+  CLI::App app;
+  bus::add_node_options(app, options);
+  app.parse(std::vector<std::string>{});  // what the environment says
+  options.robot = robot;
+  options.name = program_invocation_short_name;
+  options.program = "agent";
+  return options;
+}
+
+protocol::RobotParameters parameters_of(const v1::RobotDescription& robot) {
+  protocol::RobotParameters parameters;
+  parameters.file = robot.parameter_file();
+  parameters.name = robot.name();
+  parameters.robot_class = robot.robot_class();
+  parameters.subclass = robot.robot_subclass();
+  parameters.radius = robot.radius();
+  parameters.diagonal = robot.diagonal();
+  parameters.max_velocity = robot.max_velocity();
+  parameters.max_rotation_velocity = robot.max_rotation_velocity();
+  parameters.acceleration = robot.acceleration();
+  parameters.deceleration = robot.deceleration();
+  parameters.rotation_acceleration = robot.rotation_acceleration();
+  parameters.front_buffer = robot.front_buffer();
+  parameters.side_buffer = robot.side_buffer();
+  parameters.front_max_range = robot.front_max_range();
+  for (const lps::SonarMount& mount : lps::mounts_from_bus(robot))
+    parameters.sonars.push_back({static_cast<std::uint8_t>(mount.sonar), mount.in_robot});
+  return parameters;
+}
+
+protocol::Motors motors_of(v1::MotorStatus status) {
+  switch (status) {
+    case v1::MOTORS_MOVING:
+      return protocol::Motors::kMoving;
+    case v1::MOTORS_NO_POWER:
+      return protocol::Motors::kNoPower;
+    default:
+      return protocol::Motors::kStopped;
+  }
+}
+
+reflector::State state_of(const v1::RobotState& robot) {
+  reflector::State state;
+  state.cycle = robot.stamp().cycle();
+  state.odom = robot.odom();
+  state.pose_in_odom = from_bus(robot.pose_in_odom());
+  state.target_velocity = robot.target_velocity();
+  state.target_heading_in_odom = robot.target_heading_in_odom();
+  state.motor_packets_per_s = robot.motor_packets_per_s();
+  state.sonar_readings_per_s = robot.sonar_readings_per_s();
+  protocol::Information& now = state.information;
+  now.motors = motors_of(robot.status());
+  now.th = state.pose_in_odom.th;
+  now.velocity = robot.velocity();
+  now.rotation_velocity = robot.rotation_velocity();
+  now.left_velocity = robot.left_velocity();
+  now.right_velocity = robot.right_velocity();
+  now.battery = robot.battery();
+  now.left_stalled = robot.left_stalled();
+  now.right_stalled = robot.right_stalled();
+  now.bumpers = robot.bumpers();
+  now.ptu = robot.ptu();
+  now.say = robot.say();
+  now.timer = robot.timer();
+  now.analog = robot.analog();
+  now.digital_input = robot.digital_input();
+  now.digital_output = robot.digital_output();
+  for (const v1::SonarReading& sonar : robot.sonars())
+    now.sonars.push_back({sonar.sonar(), static_cast<double>(sonar.range()), sonar.echo()});
+  return state;
+}
+
+v1::MotorCommand command_of(const reflector::Motion& motion) {
+  v1::MotorCommand command;
+  command.active(true);
+  switch (motion.translation) {
+    case reflector::Translation::none:
+      command.translation(v1::TRANSLATION_NONE);
+      break;
+    case reflector::Translation::velocity:
+      command.translation(v1::TRANSLATION_VELOCITY);
+      break;
+    case reflector::Translation::position:
+      command.translation(v1::TRANSLATION_POSITION);
+      break;
+  }
+  switch (motion.rotation) {
+    case reflector::Rotation::none:
+      command.rotation(v1::ROTATION_NONE);
+      break;
+    case reflector::Rotation::velocity:
+      command.rotation(v1::ROTATION_VELOCITY);
+      break;
+    case reflector::Rotation::heading:
+      command.rotation(v1::ROTATION_HEADING);
+      break;
+    case reflector::Rotation::relative_heading:
+      command.rotation(v1::ROTATION_RELATIVE_HEADING);
+      break;
+  }
+  command.velocity(motion.velocity);
+  command.distance(motion.distance);
+  command.move(motion.move);
+  command.rotation_velocity(motion.rotation_velocity);
+  command.heading(motion.heading);
+  return command;
+}
+
+protocol::VisionPacket seen_in(const v1::VisionChannels& channels) {
+  protocol::VisionPacket seen;
+  for (std::size_t i = 0; i < std::min(seen.channels.size(), channels.channels().size()); ++i) {
+    const v1::VisionChannel& from = channels.channels()[i];
+    protocol::VisionChannel& to = seen.channels[i];
+    using Mode = protocol::VisionChannel::Mode;
+    to.mode = from.mode() == v1::VISION_LINE       ? Mode::kLine
+              : from.mode() == v1::VISION_BLOB_BOX ? Mode::kBlobWithBox
+                                                   : Mode::kBlob;
+    to.x = from.x();
+    to.y = from.y();
+    to.area = from.area();
+    to.height = from.height();
+    to.width = from.width();
+    to.first = from.first();
+    to.count = from.count();
+  }
+  return seen;
+}
+
+/// Manual Table 6-4.
+std::array<std::uint8_t, 3> color_of(int number) {
+  switch (number) {
+    case 0:
+      return {255, 215, 0};
+    case 3:
+      return {255, 240, 130};
+    case 5:
+      return {210, 0, 0};
+    case 8:
+      return {255, 110, 110};
+    case 10:
+      return {0, 190, 200};
+    case 11:
+      return {85, 107, 47};
+    case 12:
+      return {255, 69, 0};
+    case 13:
+      return {255, 0, 255};
+    case 15:
+      return {178, 60, 50};
+    case 100:
+      return {0, 0, 0};
+    case 101:
+      return {255, 255, 255};
+    default:
+      return {70, 130, 180};  // steel blue
+  }
+}
+
+v1::Drawing drawing_of(const Drawn& drawn) {
+  v1::Drawing drawing;
+  drawing.frame(v1::FRAME_ROBOT);
+  drawing.shape(v1::DRAWING_RECTANGLE);
+  v1::DrawnPoint corner;
+  corner.x(drawn.x / 1000.0);
+  corner.y(drawn.y / 1000.0);
+  drawing.points().push_back(corner);
+  corner.x((drawn.x + drawn.dx) / 1000.0);
+  corner.y((drawn.y + drawn.dy) / 1000.0);
+  drawing.points().push_back(corner);
+  const auto color = color_of(drawn.pen.line);
+  drawing.red(color[0]);
+  drawing.green(color[1]);
+  drawing.blue(color[2]);
+  drawing.width(drawn.pen.width * kPixel);
+  drawing.lifetime(kDrawnFor);
+  return drawing;
+}
+
+v1::IntentionState intention_state(int state) {
+  switch (state) {
+    case sfINIT:
+      return v1::INTENTION_INIT;
+    case sfINTERRUPT:
+      return v1::INTENTION_INTERRUPTED;
+    case sfSUCCESS:
+      return v1::INTENTION_SUCCESS;
+    case sfFAILURE:
+      return v1::INTENTION_FAILURE;
+    case sfTIMEOUT:
+      return v1::INTENTION_TIMEOUT;
+    default:
+      return state == sfSUSPEND || state < 0 ? v1::INTENTION_SUSPENDED : v1::INTENTION_RUNNING;
+  }
+}
+
+v1::ProgramMind mind_of(const SharedMind& mind) {
+  v1::ProgramMind sample;
+  sample.behaviors(behaviors::to_bus(mind.behaviors));
+  v1::Intentions& intentions = sample.intended();
+  intentions.behavior_control(mind.behaviors.control);
+  for (const SharedIntention& one : mind.intentions) {
+    v1::IntentionNode node;
+    node.id(one.id);
+    node.parent(one.parent);
+    node.name(one.name);
+    node.schema(one.behavior.empty() ? one.name : one.behavior);
+    node.state(intention_state(one.state));
+    node.label(!one.behavior.empty()         ? "B"
+               : one.state >= kFirstOwnState ? "state " + std::to_string(one.state)
+                                             : "");
+    intentions.nodes().push_back(node);
+  }
+  for (const behaviors::BehaviorState& one : mind.behaviors.behaviors) {
+    v1::IntendedBehavior intended;
+    intended.name(one.name);
+    intended.schema(one.schema);
+    intended.priority(one.blended.priority);
+    intended.running(one.running);
+    for (const SharedIntention& intention : mind.intentions)
+      if (intention.behavior == one.name)
+        intended.intention(intention.id);
+    intentions.behaviors().push_back(intended);
+  }
+  return sample;
+}
+
+/// A client command (manual 5.2) for a device of the robot, as a request; nothing: there is none.
+struct DeviceCall {
+  bus::RequestTopic topic;
+  v1::Request request;
+};
+std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
+  // Header (2), count, command, kind of argument, argument, sum (2).
+  constexpr std::size_t kCommand = 3;
+  if (packet.size() < kCommand + 6)
+    return std::nullopt;
+  const int low = packet[kCommand + 2];
+  const int high = packet[kCommand + 3];
+  const auto call = [](const bus::RequestTopic& topic, const char* functor,
+                       std::vector<v1::Argument> arguments) {
+    v1::Request request;
+    request.functor(functor);
+    request.arguments(std::move(arguments));
+    return DeviceCall{topic, request};
+  };
+  switch (static_cast<protocol::Number>(packet[kCommand])) {
+    case protocol::Number::kDigitalOutput:
+      return call(bus::topics::kDigitalOutput, "output",
+                  {bus::number("bits", low), bus::number("mask", high)});
+    case protocol::Number::kPtu:
+      return call(bus::topics::kServo, "servo", {bus::number("width", low + 256 * high)});
+    case protocol::Number::kTimer:
+      return call(bus::topics::kTimer, "timer", {bus::number("pin", low)});
+    case protocol::Number::kGripper:
+      return call(bus::topics::kGripper, "gripper",
+                  {bus::text("action", "number"), bus::number("value", low + 256 * high)});
+    default:
+      return std::nullopt;
+  }
+}
+
+class BusRobot final : public Robot {
+ public:
+  BusRobot(const std::string& name, Say say) : name_(name), say_(std::move(say)) {
+    trouble_ = "no bridge of robot \"" + name + "\" is heard";
+    thread_ = std::thread([this] { run(); });
+  }
+  ~BusRobot() override { end(); }
+
+  std::uint64_t session() const override {
+    const std::lock_guard lock(mutex_);
+    return session_;
+  }
+  protocol::RobotParameters parameters() const override {
+    const std::lock_guard lock(mutex_);
+    return parameters_;
+  }
+  protocol::RobotIdentity identity() const override {
+    const std::lock_guard lock(mutex_);
+    return {parameters_.name, parameters_.robot_class, parameters_.subclass};
+  }
+  std::string trouble() const override {
+    const std::lock_guard lock(mutex_);
+    return trouble_;
+  }
+  std::optional<Reflected> next(int most) override {
+    std::unique_lock lock(mutex_);
+    came_.wait_for(lock, milliseconds(most), [this] { return fresh_ || ended_; });
+    if (!std::exchange(fresh_, false))
+      return std::nullopt;
+    Reflected now{session_, newest_};
+    now.state.information.sonars = std::exchange(readings_, {});
+    return now;
+  }
+  void drive(const reflector::Motion& motion, std::uint64_t cycle) override {
+    const std::lock_guard lock(mutex_);
+    wish_ = command_of(motion);
+    wish_->stamp().epoch(epoch_);
+    wish_->stamp().cycle(cycle);
+    wake();
+  }
+  void send(protocol::Bytes packet) override {
+    const std::lock_guard lock(mutex_);
+    packets_.push_back(std::move(packet));
+    wake();
+  }
+  protocol::VisionPacket vision(std::uint64_t& count) const override {
+    const std::lock_guard lock(mutex_);
+    count = seen_count_;
+    return seen_;
+  }
+  void end() override {
+    {
+      std::unique_lock lock(mutex_);
+      ending_ = true;
+      wake();
+      came_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; });
+    }
+    if (thread_.joinable())
+      thread_.join();
+  }
+
+  std::optional<Found> found() override {
+    const std::lock_guard lock(mutex_);
+    return found_;
+  }
+  std::vector<TaskRequest> share(std::vector<SharedTask> tasks,
+                                 std::optional<SharedMind> mind) override {
+    const std::lock_guard lock(mutex_);
+    shared_ = std::move(tasks);
+    mind_ = std::move(mind);
+    // What is handed over now shows in what the program says the next time.
+    unanswered_.clear();
+    for (const TaskRequest& asked : asked_)
+      unanswered_.insert(asked.name);
+    return std::exchange(asked_, {});
+  }
+  void draw(std::vector<Drawn> drawn) override {
+    const std::lock_guard lock(mutex_);
+    if (!drawn.empty())
+      drawn_ = std::move(drawn);
+  }
+  void tell(const std::string& text) override {
+    const std::lock_guard lock(mutex_);
+    told_.push_back(text.substr(0, 255));
+  }
+  std::vector<Vec2> pointed_out() override {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(pointed_out_, {});
+  }
+  void load_map(const std::string& text, const std::string& name) override {
+    v1::Request request;
+    request.functor("load");
+    request.arguments({bus::text("text", text), bus::text("name", name)});
+    ask(request);
+  }
+  void place(const Pose& robot) override {
+    v1::Request request;
+    request.functor("place");
+    request.arguments({bus::point("position", robot.x, robot.y, robot.th, v1::FRAME_MAP)});
+    ask(request);
+  }
+
+ private:
+  /// What is on the bus: of the thread alone.
+  struct Ends {
+    explicit Ends(bus::Node& node, const std::string& source)
+        : robots(node.reader(bus::topics::kRobotState)),
+          descriptions(node.reader(bus::topics::kRobotDescription)),
+          grants(node.reader(bus::topics::kGrant)),
+          perceptions(node.reader(bus::topics::kPerception)),
+          registrations(node.reader(bus::topics::kRegistration)),
+          maps(node.reader(bus::topics::kMap)),
+          channels(node.reader(bus::topics::kVisionChannels)),
+          events(node.reader(bus::topics::kAgentEvents)),
+          commands(node.writer(bus::topics::kDriveDirect)),
+          messages(node.writer(bus::topics::kMessages)),
+          drawings(node.writer(bus::topics::kDrawings)),
+          minds(node.writer(bus::topics::kProgramMinds)),
+          registration(node, bus::topics::kRegistrationRequest, source) {}
+    bus::Reader<v1::RobotState> robots;
+    bus::Reader<v1::RobotDescription> descriptions;
+    bus::Reader<v1::Grant> grants;
+    bus::Reader<v1::Perception> perceptions;
+    bus::Reader<v1::Registration> registrations;
+    bus::Reader<v1::FloorMap> maps;
+    bus::Reader<v1::VisionChannels> channels;
+    bus::Reader<v1::AgentEvent> events;
+    bus::Writer<v1::MotorCommand> commands;
+    bus::Writer<v1::Message> messages;
+    bus::Writer<v1::Drawing> drawings;
+    bus::Writer<v1::ProgramMind> minds;
+    bus::RequestClient registration;
+  };
+
+  void ask(const v1::Request& request) {
+    const std::lock_guard lock(mutex_);
+    requests_.push_back(request);
+    wake();
+  }
+  void wake() {
+    if (node_ != nullptr)
+      node_->wake();
+  }
+
+  void run() {
+    try {
+      serve();
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      trouble_ = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    node_ = nullptr;
+    session_ = 0;
+    ended_ = true;
+    came_.notify_all();
+  }
+
+  void serve() {
+    bus::Node node(options_of(name_));
+    source_ = node.options().name;
+    Ends ends(node, source_);
+    ProcessTable table;
+    runtime::ProcessesOnBus processes(node, table);
+    {
+      const std::lock_guard lock(mutex_);
+      node_ = &node;
+    }
+    while (true) {
+      node.wait(kTurn);
+      take_robot(ends);
+      take_services(ends);
+      take_pointed_out(ends);
+      take_grant(ends);
+      if (!say_all(node, ends))
+        break;
+      show_tasks(table, processes);
+      tell_status(node);
+    }
+    for (int i = 0; i < kReleases; ++i) {
+      v1::MotorCommand release;
+      release.stamp(stamp_);
+      write(node, ends, release);
+      node.wait(kTurn);
+    }
+  }
+
+  void tell_status(bus::Node& node) {
+    const std::lock_guard lock(mutex_);
+    const bool well = session_ != 0;
+    node.status().state(well ? v1::SERVICE_RUNNING : v1::SERVICE_STARTING);
+    node.status().reason(well ? "a program in C" : trouble_);
+    node.status().stamp(stamp_);
+    node.publish_status();
+  }
+
+  void take_robot(Ends& ends) {
+    for (const auto& sample : ends.descriptions.take())
+      if (!sample.info.disposed)
+        description_ = sample.data;
+    for (const auto& sample : ends.robots.take()) {
+      if (sample.info.disposed)
+        continue;
+      const v1::RobotState& robot = sample.data;
+      if (!description_ || description_->stamp().epoch() != robot.stamp().epoch())
+        continue;
+      heard_ = BootClock::seconds();
+      stamp_ = robot.stamp();
+      const std::lock_guard lock(mutex_);
+      if (session_ == 0 || epoch_ != stamp_.epoch())
+        begin();
+      newest_ = state_of(robot);
+      note_sonars(newest_);
+      readings_.insert(readings_.end(), newest_.information.sonars.begin(),
+                       newest_.information.sonars.end());
+      if (readings_.size() > kMostKept)
+        readings_.erase(readings_.begin(),
+                        readings_.end() - static_cast<std::ptrdiff_t>(kMostKept));
+      fresh_ = true;
+      came_.notify_all();
+    }
+    const std::lock_guard lock(mutex_);
+    if (session_ != 0 && BootClock::seconds() - heard_ > kSilent) {
+      session_ = 0;
+      fresh_ = false;
+      trouble_ = "the robot's bridge is not heard any more";
+      came_.notify_all();
+    }
+  }
+
+  /// Under the mutex.
+  void begin() {
+    parameters_ = parameters_of(*description_);
+    epoch_ = stamp_.epoch();
+    session_ = ++sessions_;
+    readings_.clear();
+    buckets_.clear();
+    wish_.reset();
+    found_ = Found{};
+    trouble_.clear();
+  }
+
+  /// The newest reading of each sonar, as the reflector has it (manual 6.3.2).
+  void note_sonars(reflector::State& state) {
+    if (state.odom != odom_)
+      buckets_.clear();
+    odom_ = state.odom;
+    for (const protocol::Sonar& sonar : state.information.sonars) {
+      const auto unit = std::find_if(parameters_.sonars.begin(), parameters_.sonars.end(),
+                                     [&](const auto& each) { return each.number == sonar.number; });
+      if (unit == parameters_.sonars.end())
+        continue;
+      buckets_[sonar.number] = {sonar, state.cycle, state.pose_in_odom,
+                                transform(unit->pose_in_robot, Vec2(sonar.range, 0.0))};
+    }
+    for (const auto& [number, bucket] : buckets_)
+      state.buckets.push_back(bucket);
+  }
+
+  void take_services(Ends& ends) {
+    const auto perception = ends.perceptions.take_newest();
+    const auto registration = ends.registrations.take_newest();
+    const auto map = ends.maps.take_newest();
+    const auto channels = ends.channels.take_newest();
+    const std::lock_guard lock(mutex_);
+    if (channels) {
+      seen_ = seen_in(*channels);
+      ++seen_count_;
+    }
+    if (map)
+      map_ = std::make_shared<const maps::Map>(maps::from_bus(*map));
+    if (!found_)
+      return;
+    if (perception && perception->odom() == odom_) {
+      found_->left_wall = percept(*perception, perception->left_wall());
+      found_->right_wall = percept(*perception, perception->right_wall());
+    }
+    if (registration && registration->odom() == odom_) {
+      found_->environment = registration->environment();
+      if (registration->state() == v1::REGISTRATION_TRACKING)
+        found_->odom_in_map = from_bus(registration->odom_in_map());
+    }
+    found_->map = map_;
+  }
+  void take_pointed_out(Ends& ends) {
+    for (const auto& sample : ends.events.take()) {
+      const auto& arguments = sample.data.arguments();
+      if (sample.data.functor() != "pointed_out" || arguments.empty() ||
+          arguments.front().kind() != v1::ARGUMENT_POINT)
+        continue;
+      const Pose at = from_bus(arguments.front().point());
+      const std::lock_guard lock(mutex_);
+      if (arguments.front().frame() == v1::FRAME_ODOM)
+        pointed_out_.push_back(at.position());
+      else if (found_ && found_->odom_in_map)
+        pointed_out_.push_back(relative(*found_->odom_in_map, at).position());
+    }
+  }
+  static std::optional<lps::Percept> percept(const v1::Perception& perception, std::uint32_t id) {
+    for (const v1::Percept& each : perception.percepts())
+      if (id != 0 && each.id() == id)
+        return lps::from_bus(each);
+    return std::nullopt;
+  }
+
+  /// Who drives instead, and that the guard holds the robot back: each once.
+  void take_grant(Ends& ends) {
+    const auto grant = ends.grants.take_newest();
+    if (!grant)
+      return;
+    std::string news;
+    for (const v1::Refusal& refusal : grant->refused())
+      if (refusal.source() == source_)
+        news = "the robot's bridge refuses to drive: " + refusal.reason();
+    if (grant->source() == source_ && grant->guard() == v1::GUARD_STOP)
+      news = "the guard stops the robot: " + grant->guard_reason();
+    // Distances in a reason change all the time: the kind of trouble is what is new.
+    const std::string kind = news.substr(0, news.find_first_of("0123456789"));
+    if (kind != news_ && !news.empty())
+      say_(news, false);
+    news_ = kind;
+  }
+
+  void write(bus::Node& node, Ends& ends, v1::MotorCommand command) {
+    command.source(source_);
+    command.number(++number_);
+    // Unique over restarts too, or the bridge would take the first for an old one.
+    command.move(node.instance() + command.move());
+    ends.commands.write(command);
+  }
+
+  /// What the program asks for. False where it ends.
+  bool say_all(bus::Node& node, Ends& ends) {
+    std::optional<v1::MotorCommand> wish;
+    std::vector<protocol::Bytes> packets;
+    std::vector<v1::Request> requests;
+    std::vector<std::string> told;
+    std::vector<Drawn> drawn;
+    std::optional<SharedMind> mind;
+    {
+      const std::lock_guard lock(mutex_);
+      wish = std::exchange(wish_, std::nullopt);
+      packets = std::exchange(packets_, {});
+      requests = std::exchange(requests_, {});
+      told = std::exchange(told_, {});
+      drawn = std::exchange(drawn_, {});
+      mind = std::exchange(mind_, std::nullopt);
+      if (ending_)
+        return false;
+    }
+    if (wish)
+      write(node, ends, *wish);
+    for (const protocol::Bytes& packet : packets)
+      call_device(node, packet);
+    for (v1::Request& request : requests)
+      ends.registration.send(std::move(request));
+    hear(ends.registration.poll());
+    for (auto& [name, client] : devices_)
+      hear(client.poll());
+    for (const std::string& text : told) {
+      v1::Message message;
+      message.stamp(stamp_);
+      message.source(source_);
+      message.text(text);
+      ends.messages.write(message);
+    }
+    if (mind) {
+      v1::ProgramMind sample = mind_of(*mind);
+      v1::Stamp stamp = stamp_;
+      stamp.cycle(mind->cycle);
+      sample.instance(node.instance());
+      sample.source(source_);
+      sample.stamp(stamp);
+      sample.behaviors().stamp(stamp);
+      sample.intended().stamp(stamp);
+      ends.minds.write(sample);
+    }
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      v1::Drawing drawing = drawing_of(drawn[i]);
+      drawing.instance(node.instance());
+      drawing.number(i);
+      drawing.source(source_);
+      ends.drawings.write(drawing);
+    }
+    return true;
+  }
+
+  void call_device(bus::Node& node, const protocol::Bytes& packet) {
+    const auto call = device_call(packet);
+    if (!call) {
+      say_("command " + std::to_string(packet.size() > 3 ? packet[3] : 0) +
+               " is not for the bus: its bridge keeps the packets of the robot (docs/requests.md "
+               "has what can be asked of it)",
+           true);
+      return;
+    }
+    auto found = devices_.find(call->topic.name);
+    if (found == devices_.end())
+      found = devices_
+                  .emplace(std::piecewise_construct, std::tuple(call->topic.name),
+                           std::forward_as_tuple(node, call->topic, source_))
+                  .first;
+    found->second.send(call->request);
+  }
+  void hear(const std::vector<v1::Answer>& answers) {
+    for (const v1::Answer& answer : answers)
+      if (bus::ended(answer.code()) && !bus::well(answer.code()))
+        say_("the robot does not do it: " + std::string(answer.text()), true);
+  }
+
+  /// What the program says of its micro-tasks holds, until somebody on the bus asks otherwise.
+  void show_tasks(ProcessTable& table, runtime::ProcessesOnBus& processes) {
+    std::vector<SharedTask> shared;
+    std::set<std::string> busy;
+    {
+      const std::lock_guard lock(mutex_);
+      shared = shared_;
+      busy = unanswered_;
+      for (const TaskRequest& asked : asked_)
+        busy.insert(asked.name);
+    }
+    std::map<std::string, int> wanted;
+    for (const SharedTask& task : shared) {
+      if (busy.contains(task.name)) {
+        wanted[task.name] = table.find(task.name)->state();
+        continue;
+      }
+      Process* process = table.find(task.name);
+      if (process == nullptr)
+        process = &table.add(task.name, task.effect, [](Process&) {});
+      const bool known = task.state <= kInterrupt || task.state >= kFirstOwnState;
+      const int state = known && task.state >= 0 ? task.state : kSuspend;
+      if (process->state() != state)
+        process->set_state(state);
+      wanted[task.name] = state;
+    }
+    for (const Process* const gone : table.processes())
+      if (!wanted.contains(gone->name()) && !gone->suspended())
+        table.find(gone->name())->suspend();
+    processes.idle();
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, state] : wanted) {
+      const int now = table.find(name)->state();
+      if (now == state)
+        continue;
+      const ProcessAction action = now == kResume      ? ProcessAction::resume
+                                   : now == kInterrupt ? ProcessAction::interrupt
+                                                       : ProcessAction::suspend;
+      asked_.push_back({name, action});
+    }
+  }
+
+  const std::string name_;
+  Say say_;
+
+  // Of the thread.
+  std::string source_;
+  std::optional<v1::RobotDescription> description_;
+  v1::Stamp stamp_;
+  double heard_ = 0.0;
+  std::uint64_t number_ = 0;
+  std::string news_;
+  std::map<std::string, bus::RequestClient> devices_;
+
+  // Between the threads.
+  mutable std::mutex mutex_;
+  std::condition_variable came_;
+  bus::Node* node_ = nullptr;
+  bool ending_ = false;
+  bool ended_ = false;
+  bool fresh_ = false;
+  std::uint64_t session_ = 0;
+  std::uint64_t sessions_ = 0;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t odom_ = 0;
+  protocol::RobotParameters parameters_;
+  std::string trouble_;
+  reflector::State newest_;
+  std::map<int, reflector::Bucket> buckets_;
+  std::vector<protocol::Sonar> readings_;
+  std::optional<v1::MotorCommand> wish_;
+  std::vector<protocol::Bytes> packets_;
+  std::vector<v1::Request> requests_;
+  std::vector<std::string> told_;
+  std::vector<Drawn> drawn_;
+  std::vector<SharedTask> shared_;
+  std::optional<SharedMind> mind_;
+  std::vector<Vec2> pointed_out_;
+  std::vector<TaskRequest> asked_;    // to be handed to the program
+  std::set<std::string> unanswered_;  // micro-tasks that it was asked for something by now
+  std::optional<Found> found_;
+  std::shared_ptr<const maps::Map> map_;
+  protocol::VisionPacket seen_;
+  std::uint64_t seen_count_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace
+}  // namespace saphira::c
+
+extern "C" __attribute__((visibility("default"))) saphira::c::Robot* saphira_c_bus_robot(
+    const std::string& name, saphira::c::Say say) {
+  return new saphira::c::BusRobot(name, std::move(say));
+}

@@ -1,0 +1,216 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "robot.hpp"
+#include "saphira.h"
+#include "saphira/behaviors/core.hpp"
+#include "saphira/interpretation/core.hpp"
+#include "saphira/registration/core.hpp"
+#include "view.hpp"
+
+namespace saphira::c {
+
+/// A micro-task or an intention.
+struct Task {
+  process shown{};
+  std::string name;
+  std::function<void()> built_in;  ///< else shown.fn
+  bool intention = false;
+  bool removed = false;
+  std::uint64_t age = 0;  ///< [cycles] of an intention
+  std::vector<beh_param> params;
+};
+
+/// An instance of a behavior.
+struct Closure {
+  beh_closure shown{};
+  std::string name;    ///< unique
+  std::string schema;  ///< of the executive
+  bool removed = false;
+  std::vector<beh_param> params;
+};
+
+/// An artifact on the pointlist, and what it was when it was written here last.
+struct Listed {
+  point* artifact = nullptr;
+  std::array<float, 3> local{};
+  std::array<float, 3> global{};
+};
+
+/// The Saphira OS of a C program: the cores of the services, stepped once for each information
+/// packet in the order of the micro-tasks; and what the program says to them.
+///
+/// The members are under the mutex, but for what only the thread of the micro-tasks uses. It is
+/// never held while a function of the program runs.
+class Os {
+ public:
+  /// There is one, and it is never destroyed: threads may use it until the process is gone.
+  static Os& get();
+
+  // ---- 6.1
+  void startup(bool async);
+  bool started() const { return started_; }
+  bool connect(const std::string& address);
+  void disconnect();
+  void pause(int milliseconds);
+  bool connected() const { return connected_; }
+  bool on_task_thread() const { return std::this_thread::get_id() == task_thread_; }
+  /// The program ends: stops the robot. Once.
+  void finish();
+  void say(const std::string& text, bool error);
+  /// The same, from the program: whoever looks on sees it too.
+  void message(const std::string& text, bool error);
+
+  std::recursive_mutex mutex;
+  void (*on_startup)() = nullptr;
+  void (*on_connect)() = nullptr;
+  void (*on_disconnect)() = nullptr;
+  std::array<int, 5> display{2, FALSE, FALSE, FALSE, FALSE};  ///< Table 6-1
+
+  // ---- 6.2, 6.5, 8: tasks.cpp
+  Task* add(const char* name, void (*fn)(), std::function<void()> built_in, bool intention);
+  Task* find(const std::string& name);
+  Task* of(const process* shown);
+  void run_tasks();
+  /// A micro-task of the library that somebody has stopped.
+  bool suspended(const char* built_in);
+  void add_built_in(const char* name, std::function<void()> step);
+  void init_basic();
+  void init_control();
+  void init_interpretation();
+  void init_registration();
+  void init_environment();
+  Task* current = nullptr;  ///< of the thread of the micro-tasks
+
+  // ---- 7: closures.cpp
+  Closure* add_closure(behavior* b, int priority, bool running, std::vector<beh_param> params,
+                       bool duplicate);
+  Closure* of(const beh_closure* shown);
+  std::deque<std::unique_ptr<Closure>> closures;
+
+  // ---- 6.6: artifacts.cpp
+  void add_point(point* p);
+  std::vector<Listed> points;
+  void update_points();
+  void move_robot(const Pose& by);
+  bool load_map(const std::string& name);
+  void read_map();
+  point* find_on_map(int id);
+
+  // ---- What holds in this cycle.
+  Pose robot_in_odom;
+  Pose odom_in_global;
+  Pose robot_in_global() const { return compose(odom_in_global, robot_in_odom); }
+  reflector::State state;
+  protocol::RobotParameters parameters;
+  lps::LocalPerceptualSpace lps;
+  std::uint64_t cycle = 0;  ///< since this program began, through all connections
+
+  // ---- 6.4: what is wanted of the wheels, motion.cpp
+  reflector::Motion motion;
+  double travelled = 0.0;                 ///< [m]
+  std::optional<double> position_target;  ///< [m] on that scale
+  double target_heading = 0.0;            ///< [rad] in odom
+  double max_velocity = 0.0;              ///< [m/s] 0: the robot's own
+  void send(protocol::Bytes packet);
+  /// Shows a state that came by another way (the packet functions).
+  void reflect(const reflector::State& now, const protocol::RobotParameters& robot);
+
+ private:
+  Os() = default;
+  void run();
+  void serve(const std::shared_ptr<Robot>& robot);
+  void session_began(const std::shared_ptr<Robot>& robot);
+  void session_ended();
+  void step(const Reflected& now);
+  void go_on_to_position();
+  void clamp(const reflector::State& now);
+  View shown();
+  void show_sonars(View& next);
+  void run_task(Task& task);
+  void tend_intentions();
+  void mind_time(const Task& task, double seconds);
+  void watch();
+  void reset();
+  void share(Robot& robot, std::uint64_t robot_cycle);
+  std::optional<SharedMind> mind(std::uint64_t robot_cycle) const;
+  void show_map(const maps::Map& map);
+  void match_on_bus(const Found& found);
+
+  // The micro-tasks of the library.
+  void evaluate_behaviors();
+  void interpret();
+  void match();
+  std::vector<behaviors::Intended> intended();
+  behaviors::Intended intended(const Closure& closure);
+  void hear_behaviors(const behaviors::Output& output);
+
+  std::atomic<bool> started_{false};
+  std::atomic<bool> connected_{false};
+  std::atomic<bool> ending_{false};
+  std::atomic<bool> idle_{true};
+  std::atomic<std::thread::id> task_thread_{};
+  std::condition_variable_any changed_;
+  std::shared_ptr<Robot> robot_;
+  bool wants_robot_ = false;  ///< the connect menu was chosen
+  bool explicit_ = false;     ///< the program connects by itself
+  std::uint64_t session_ = 0;
+  int waits_ = 0;  ///< for a robot
+
+  std::deque<std::unique_ptr<Task>> tasks_;
+  std::set<std::string> slow_;  ///< micro-tasks that were named
+  struct Watched {
+    std::string name;
+    double since = 0.0;  ///< [s] 0: no task of the program runs
+    bool told = false;
+  } watched_;
+
+  // Of the thread of the micro-tasks alone.
+  std::unique_ptr<behaviors::Core> behaviors_;
+  std::unique_ptr<interpretation::Core> interpretation_;
+  std::unique_ptr<registration::Core> registration_;
+  std::optional<interpretation::Output> percepts_;
+  std::shared_ptr<const maps::Map> services_map_;  ///< the newest of the bus
+  std::vector<lps::SonarReading> readings_;
+  std::uint64_t odom_ = 0;
+  bool first_ = true;
+  bool new_frame_ = false;
+  bool behaviors_began_ = false;
+  bool interpretation_began_ = false;
+  bool behaviors_drive_ = false;
+  int stands_ = 0;  ///< [cycles] on the way to a position
+  std::uint64_t seen_ = 0;
+  std::deque<std::pair<double, std::uint64_t>> seen_times_;
+  std::uint64_t map_revision_ = 0;
+  std::uint32_t environment_ = 0;
+  std::vector<std::unique_ptr<wall>> map_points_;
+  std::vector<std::unique_ptr<wall>> gone_points_;   ///< a program may have pointers to them
+  std::optional<registration::Core::Settings> map_;  ///< to be used from the next cycle on
+  std::string behavior_trouble_;
+  behaviors::Output behaviors_said_;  ///< in this cycle
+};
+
+wall to_c(const maps::Feature& feature);
+behaviors::RobotModel model_of(const protocol::RobotParameters& parameters);
+/// How the executive calls a behavior of the program, or of the library.
+void register_behaviors(behaviors::Registry& registry);
+/// Reads "sfFLOAT, 300.0, ..., sfEND". What is no such list is said, as far as it can be known.
+bool read_arguments(const std::string& function, std::vector<beh_param>& params,
+                    std::vector<int>& kinds, va_list list);
+/// The parameters' types of one of the library's behaviors.
+std::vector<int> kinds_of(const behavior* b);
+
+}  // namespace saphira::c

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/base/process.hpp"
+#include "saphira/behaviors/executive.hpp"
+#include "saphira/lps/percept.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/protocol/command.hpp"
+#include "saphira/protocol/parameters.hpp"
+#include "saphira/protocol/server_packet.hpp"
+#include "saphira/reflector/reflector.hpp"
+#include "window.hpp"
+
+namespace saphira::c {
+
+/// What a cycle brings.
+struct Reflected {
+  std::uint64_t session = 0;  ///< another number for each connection
+  reflector::State state;
+};
+
+/// What the services of a robot on the bus have found.
+struct Found {
+  std::optional<lps::Percept> left_wall;   ///< sfLeftWallHyp
+  std::optional<lps::Percept> right_wall;  ///< sfRightWallHyp
+  std::optional<Pose> odom_in_map;         ///< where registration knows the robot
+  std::shared_ptr<const maps::Map> map;    ///< another object where it has changed
+  std::uint32_t environment = 0;           ///< the artifact that the robot is in; 0: none known
+};
+
+/// A micro-task as other programs see it.
+struct SharedTask {
+  std::string name;
+  std::string effect;  ///< what it is, for people
+  int state = 0;       ///< manual Table 6-3
+};
+/// An intention of the program (manual 8).
+struct SharedIntention {
+  std::uint32_t id = 0;
+  std::uint32_t parent = 0;  ///< 0: none
+  std::string name;
+  std::string behavior;  ///< that it is there for; empty: a function
+  int state = 0;         ///< as above, or an end of Table 8-1
+};
+/// What the program's behaviors and intentions are in a cycle.
+struct SharedMind {
+  std::uint64_t cycle = 0;  ///< of the robot
+  behaviors::Output behaviors;
+  std::vector<SharedIntention> intentions;
+};
+/// What another program asks of one.
+struct TaskRequest {
+  std::string name;
+  ProcessAction action = ProcessAction::suspend;
+};
+
+/// The robot that a C program is connected to, by whatever way. It is served by a thread of its
+/// own, so that it stands where the program hangs.
+class Robot {
+ public:
+  virtual ~Robot() = default;
+
+  /// Of the connection; changed between two sessions only.
+  virtual std::uint64_t session() const = 0;  ///< 0: not connected
+  virtual protocol::RobotParameters parameters() const = 0;
+  virtual protocol::RobotIdentity identity() const = 0;
+  /// Why it is not connected, in words.
+  virtual std::string trouble() const = 0;
+
+  /// Waits until a cycle begins that was not returned yet; nothing where none does in time, or the
+  /// connection is lost. The newest counts: cycles in which the caller was busy are passed over,
+  /// with their sonar readings kept.
+  virtual std::optional<Reflected> next(int milliseconds) = 0;
+  /// What the program wants of the wheels, in answer to the cycle. Counts for 0.3 s.
+  virtual void drive(const reflector::Motion& motion, std::uint64_t cycle) = 0;
+  /// A packet to the robot, as it is.
+  virtual void send(protocol::Bytes packet) = 0;
+  /// What the camera said last; and how many packets have come.
+  virtual protocol::VisionPacket vision(std::uint64_t& count) const = 0;
+  /// Stops the robot and lets it go. Waits a second at the most.
+  virtual void end() = 0;
+
+  // ---- Of a robot on the bus; one that is served directly has none of it.
+  /// What its services have found; nothing: there are none, the program finds it by itself.
+  virtual std::optional<Found> found() { return std::nullopt; }
+  /// Shows the program's micro-tasks to others, and what it thinks, where it has behaviors or
+  /// intentions. What these have asked since the last call.
+  virtual std::vector<TaskRequest> share(std::vector<SharedTask>, std::optional<SharedMind>) {
+    return {};
+  }
+  /// For whoever looks on: what was drawn in this cycle, and a line of text.
+  virtual void draw(std::vector<Drawn>) {}
+  virtual void tell(const std::string&) {}
+  /// Where somebody who looks on has pointed since the last call [m] [odom].
+  virtual std::vector<Vec2> pointed_out() { return {}; }
+  /// Asks registration for something; what it is and what became of it is said.
+  virtual void load_map(const std::string& /*text*/, const std::string& /*name*/) {}
+  virtual void place(const Pose& /*robot_in_map*/) {}
+};
+
+/// Takes lines for people; called in any thread.
+using Say = std::function<void(const std::string&, bool error)>;
+
+/// A robot server at this address, with the bridge's core before it: its session, its guard, its
+/// lease. std::invalid_argument for an address that is none.
+std::unique_ptr<Robot> direct_robot(const std::string& address, Say say);
+
+/// The robot of that name on the bus, by the library's part for the bus, which is loaded for it;
+/// the other options of the bus are those of the environment (SAPHIRA_DOMAIN and so on).
+/// std::runtime_error where that part is not there.
+std::unique_ptr<Robot> bus_robot(const std::string& name, Say say);
+/// What that part exports under the name kBusRobot.
+using MakeBusRobot = Robot* (*)(const std::string& name, Say say);
+inline constexpr const char* kBusRobot = "saphira_c_bus_robot";
+/// Of an address, before the robot's name on the bus.
+inline constexpr const char* kOnBus = "bus:";
+/// The one that is meant by an address.
+std::unique_ptr<Robot> robot_at(const std::string& address, Say say);
+/// The robot that the environment names (SAPHIRA_ROBOT), as an address; empty: none.
+std::string robot_of_environment();
+
+/// A program of ours, wherever this library was put; the path in any case.
+std::string beside_library(const std::string& path);
+/// The folder of robots and behaviors; std::runtime_error where there is none.
+std::string configuration();
+
+}  // namespace saphira::c

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::c {
+
+/// How the next thing is drawn.
+struct Pen {
+  int width = 1;  ///< [pixels]
+  int dashed = 0;
+  int line = 14;  ///< a colour of Table 6-4
+  int patch = 14;
+};
+/// A rectangle that the program has drawn: its lower left corner in the LPS, its extent [mm].
+struct Drawn {
+  Pen pen;
+  float x = 0.0F;
+  float y = 0.0F;
+  float dx = 0.0F;
+  float dy = 0.0F;
+};
+/// What was drawn since the last call.
+std::vector<Drawn> take_drawn();
+
+/// Hands what was typed to the program. In the thread of the micro-tasks, once a cycle.
+void take_keys();
+/// Likewise a place where somebody has pointed [m] [robot], as a click there.
+void click(const Vec2& in_robot);
+
+}  // namespace saphira::c

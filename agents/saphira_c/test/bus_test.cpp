@@ -1,0 +1,304 @@
+// The same programs in C as one more program on the bus, beside all services (SAPHIRA_ROBOT).
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+#include "printed.hpp"
+#include "programs.hpp"
+#include "saphira/bus/request_client.hpp"
+#include "system.hpp"
+
+namespace saphira {
+namespace {
+
+using test::Process;
+using test::wait_until;
+
+constexpr std::chrono::seconds kPatience{60};
+
+class OnBus : public testing::Test {
+ protected:
+  OnBus()
+      : grants_(system_.node().reader(bus::topics::kGrant)),
+        tasks_(system_.node().reader(bus::topics::kProcesses)),
+        messages_(system_.node().reader(bus::topics::kMessages)) {
+    system_.start_all();
+  }
+  Process start(const std::string& program) {
+    return Process({program}, system_.folder().path("out"), {{"SAPHIRA_ROBOT", system_.robot()}});
+  }
+  Process example(const std::string& name) {
+    return start(test::compiled(test::source("agents/saphira_c/examples/" + name + ".c"),
+                                system_.folder(), false));
+  }
+  Process written(const std::string& text) {
+    const std::string path = system_.folder().path("written.c");
+    std::ofstream(path) << "#include \"saphira.h\"\n" << text;
+    return start(test::compiled(path, system_.folder(), false));
+  }
+  bool drives(const std::string& source) {
+    return wait_until(
+        [&] {
+          const auto grant = grants_.take_newest();
+          return grant && grant->role() == v1::ROLE_DIRECT && grant->source() == source;
+        },
+        kPatience);
+  }
+  /// Waits for the state of a program's micro-task as others see it.
+  bool shows(const std::string& service, const std::string& name, v1::ProcessState state) {
+    return wait_until(
+        [&] {
+          for (const auto& sample : tasks_.take())
+            shown_[sample.data.service()] = sample.data.processes();
+          const std::vector<v1::Process>& processes = shown_[service];
+          return std::any_of(processes.begin(), processes.end(), [&](const v1::Process& one) {
+            return one.name() == name && one.state() == state;
+          });
+        },
+        kPatience);
+  }
+  /// What the command line prints.
+  std::string cli(std::vector<std::string> words) {
+    words.insert(words.begin(), test::program("saphira"));
+    Process process(words, system_.folder().path("cli"), {{"SAPHIRA_ROBOT", system_.robot()}});
+    process.wait();
+    return process.output();
+  }
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+  v1::AnswerCode ask(const std::string& functor, const std::string& service,
+                     const std::string& process) {
+    bus::RequestClient client(system_.node(), bus::topics::kProcessRequest, "test");
+    v1::Request request;
+    request.functor(functor);
+    request.service(service);
+    request.arguments({bus::text("process", process)});
+    return client.ask(request, 20.0).code();
+  }
+
+  test::System system_;
+  bus::Reader<v1::Grant> grants_;
+  bus::Reader<v1::ProcessSet> tasks_;
+  bus::Reader<v1::Message> messages_;
+  /// By the program, the processes that it told of last: they are told when they change.
+  std::map<std::string, std::vector<v1::Process>> shown_;
+};
+
+TEST_F(OnBus, AProgramDrivesAsDirectAndItsMicroTasksAreEverybodys) {
+  Process program = example("direct");
+  ASSERT_TRUE(drives("program")) << program.output();
+  ASSERT_TRUE(system_.wait_moving()) << program.output();
+  EXPECT_TRUE(shows("program", "patrol", v1::PROCESS_RUNNING));
+  EXPECT_TRUE(wait_until([&] {
+    const auto message = messages_.take_newest();
+    return message && message->text() == "patrols";
+  })) << "sfMessage is seen by others";
+
+  EXPECT_EQ(ask("suspend", "program", "patrol"), v1::ANSWER_DONE);
+  EXPECT_TRUE(shows("program", "patrol", v1::PROCESS_SUSPENDED));
+  EXPECT_TRUE(system_.wait_still(kPatience)) << "it comes to the end of its two metres";
+  EXPECT_EQ(ask("resume", "program", "patrol"), v1::ANSWER_DONE);
+  EXPECT_TRUE(system_.wait_moving(kPatience));
+  // Those of the library as well: without motor_proc nothing drives.
+  EXPECT_EQ(ask("suspend", "program", "motor_proc"), v1::ANSWER_DONE);
+  EXPECT_TRUE(shows("program", "motor_proc", v1::PROCESS_SUSPENDED));
+  EXPECT_TRUE(system_.wait_still(kPatience));
+  EXPECT_EQ(ask("resume", "program", "motor_proc"), v1::ANSWER_DONE);
+  EXPECT_TRUE(system_.wait_moving(kPatience));
+
+  // It dies while it drives: the lease ends within 0.3 s, and the services have the robot again.
+  program.signal(SIGKILL);
+  const long cycle = system_.truth().cycle;
+  ASSERT_TRUE(system_.wait_still());
+  EXPECT_LE(*system_.stood_still(cycle) - cycle, 8) << "0.3 s of lease, and the way to stop";
+  const auto end = system_.wait_end(system_.go_to(1.0, 0.0));
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->state(), v1::GOAL_SUCCEEDED) << end->reason();
+  EXPECT_EQ(system_.truth().contacts, 0);
+}
+
+TEST_F(OnBus, WhatSomebodyPointsOutIsAClick) {
+  Process program = written(R"(
+#include <stdlib.h>
+static int clicked(int x, int y, int b) {
+  sfSMessage("button %d at %.0f %.0f", b, sfScreenToWorldX(x, y), sfScreenToWorldY(x, y));
+  exit(0);
+}
+int main(void) { sfButtonProcFn(clicked); sfStartup(0); return 0; }
+)");
+  bus::Writer<v1::AgentEvent> events = system_.node().writer(bus::topics::kAgentEvents);
+  v1::AgentEvent event;
+  event.functor("pointed_out");
+  event.arguments({bus::point("position", 1.5, -0.5, 0.0, v1::FRAME_ODOM)});
+  EXPECT_TRUE(wait_until(
+      [&] {
+        events.write(event);
+        system_.node().wait(std::chrono::milliseconds(100));
+        return !program.running();
+      },
+      kPatience))
+      << program.output();
+  EXPECT_TRUE(has(program.output(), "button 1 at 1500 -500")) << program.output();
+}
+
+TEST_F(OnBus, TheMapAndWhereTheRobotIsAreThoseOfTheServices) {
+  Process program = written(R"(
+#include <stdlib.h>
+static int n;
+static void look(void) {
+  point* door = sfFindArtifact(111);
+  if (++n > 150 || (door != NULL && sfRobot.ax > 1000)) {
+    sfSMessage("door %d at %.0f, robot at %.0f %.0f, wall %d", door != NULL, door ? door->ax : 0,
+               sfRobot.ax, sfRobot.ay, sfLeftWallHyp.viewable);
+    exit(0);
+  }
+}
+static void connected(void) {
+  sfInitBasicProcs();
+  sfInitInterpretationProcs();
+  sfInitRegistrationProcs();
+  sfInitProcess(look, "look");
+}
+int main(void) { sfOnConnectFn(connected); sfStartup(0); return 0; }
+)");
+  EXPECT_EQ(program.wait(kPatience), std::optional<int>(0)) << program.output();
+  const std::string said = program.output();
+  EXPECT_NE(said.find("door 1 at 2450, robot at 1500 7000"), std::string::npos) << said;
+}
+
+// Manual 4.3.4, as it is printed: what it has started and left suspended is switched on from
+// outside.
+TEST_F(OnBus, ThePrintedSaphiraClientIsSwitchedOnByOthers) {
+  if (test::manual().empty())
+    GTEST_SKIP() << "the manual is not there (SAPHIRA_MANUAL, ../shared/seeds)";
+  const std::string path = system_.folder().path("printed.c");
+  std::ofstream(path) << test::printed_saphira();
+  Process program = start(test::compiled(path, system_.folder(), false));
+  ASSERT_TRUE(shows("program", "User Process", v1::PROCESS_SUSPENDED)) << program.output();
+  ASSERT_TRUE(shows("program", "behavior sfConstantVelocity", v1::PROCESS_SUSPENDED));
+  EXPECT_EQ(ask("resume", "program", "behavior sfAvoidCollision"), v1::ANSWER_DONE);
+  EXPECT_EQ(ask("resume", "program", "behavior sfConstantVelocity"), v1::ANSWER_DONE);
+  EXPECT_TRUE(system_.wait_moving(kPatience)) << program.output();
+  EXPECT_TRUE(drives("program"));
+  EXPECT_TRUE(wait_until([this] {
+    return has(cli({"behaviors", "--once"}), "of the program program:\n");
+  }));
+  EXPECT_TRUE(wait_until([this] {
+    return has(cli({"why"}),
+               "sfConstantVelocity (ConstantVelocity) wants 0.30 m/s (rule go); "
+               "behaviors of the program program");
+  })) << cli({"why"});
+  EXPECT_EQ(ask("suspend", "program", "behavior sfConstantVelocity"), v1::ANSWER_DONE);
+  EXPECT_TRUE(system_.wait_still(kPatience)) << program.output();
+  EXPECT_EQ(system_.truth().contacts, 0);
+}
+
+// Manual 8.1, as it is printed: the corridor that it finds is the one of the services'
+// registration.
+TEST_F(OnBus, ThePrintedIntentionFollowsTheCorridor) {
+  if (test::manual().empty())
+    GTEST_SKIP() << "the manual is not there (SAPHIRA_MANUAL, ../shared/seeds)";
+  Process program = written(R"(
+point follow_target;
+#define CHECK_CORRIDOR 20
+#define FOLLOW_CORRIDOR 10
+#define WAIT_REMOVE 11
+static void find_and_follow(void) {
+  static process* p;
+  static point* e;
+  beh_params par;
+)" + test::printed("8.1.2. Find a corridor", "8.2.", {{"convenience function */", ""}}) +
+                            R"(
+}
+static void connected(void) {
+  sfInitBasicProcs();
+  sfInitControlProcs();
+  sfInitRegistrationProcs();
+  sfInitIntention(find_and_follow, "find and follow", 0, sfEND);
+}
+int main(void) { sfOnConnectFn(connected); sfStartup(0); return 0; }
+)");
+  EXPECT_TRUE(drives("program")) << program.output();
+  EXPECT_TRUE(wait_until([&] { return system_.truth().x > 6.0; }, kPatience))
+      << system_.truth().x << program.output();
+  EXPECT_TRUE(shows("program", "find and follow", v1::PROCESS_RUNNING));
+  EXPECT_TRUE(wait_until([this] {
+    return has(cli({"intentions", "--once"}), "of the program program:\no find and follow");
+  })) << cli({"intentions", "--once"});
+  EXPECT_EQ(system_.truth().contacts, 0);
+}
+
+// The same outcomes as on a robot that they have to themselves (programs_test.cpp).
+TEST_F(OnBus, TheExamplesDoWhatTheyDoAlone) {
+  {
+    Process program = example("name_artifacts");
+    EXPECT_TRUE(wait_until(
+        [&] {
+          return has(program.output(), "passed the goal") && has(program.output(), "a wall of ");
+        },
+        kPatience))
+        << program.output();
+  }
+  {
+    Process program = example("five_tasks");
+    EXPECT_EQ(program.wait(kPatience), std::optional<int>(0)) << program.output();
+    EXPECT_TRUE(has(program.output(), "four puts its work away after 6 cycles"));
+  }
+  {
+    Process program = example("wall_follower");
+    const test::Truth from = system_.truth();
+    EXPECT_TRUE(wait_until(
+        [&] {
+          const test::Truth now = system_.truth();
+          return std::hypot(now.x - from.x, now.y - from.y) > 0.5;
+        },
+        kPatience))
+        << program.output();
+  }
+  ASSERT_TRUE(system_.wait_still(kPatience));
+  const double heading = system_.truth().th;
+  Process program = example("async");
+  EXPECT_EQ(program.wait(kPatience), std::optional<int>(0)) << program.output();
+  EXPECT_NEAR(norm2_angle(system_.truth().th - heading), radians(135.0), radians(8.0));
+  EXPECT_EQ(system_.truth().contacts, 0);
+}
+
+TEST_F(OnBus, APortOfTheBusIsAsGoodAsTheEnvironment) {
+  const std::string path = system_.folder().path("written.c");
+  std::ofstream(path) << "#include \"saphira.h\"\n"
+                         "int main(void) {\n"
+                         "  sfStartup(1);\n"
+                         "  if (!sfConnectToRobot(sfBUSPORT, \""
+                      << system_.robot()
+                      << "\"))\n"
+                         "    return 1;\n"
+                         "  sfInitBasicProcs();\n"
+                         "  sfSetVelocity(200);\n"
+                         "  sfPause(20000);\n"
+                         "  return 0;\n"
+                         "}\n";
+  Process program({test::compiled(path, system_.folder(), false)}, system_.folder().path("out"));
+  EXPECT_TRUE(drives("program")) << program.output();
+  EXPECT_TRUE(system_.wait_moving(kPatience)) << program.output();
+}
+
+TEST_F(OnBus, PacketsOfTheRobotAreNotForIt) {
+  Process program = example("packet");
+  EXPECT_TRUE(program.wait(kPatience).has_value());
+  EXPECT_NE(program.output().find("there are no packets on the bus"), std::string::npos)
+      << program.output();
+}
+
+TEST(OnBusAlone, WithoutABridgeItSaysSo) {
+  const test::TempDir dir;
+  Process program({test::compiled(test::source("agents/saphira_c/examples/async.c"), dir, false)},
+                  dir.path("out"), {{"SAPHIRA_ROBOT", test::unique_robot()}});
+  EXPECT_TRUE(wait_until(
+      [&] { return program.output().find("no bridge of robot") != std::string::npos; }, kPatience))
+      << program.output();
+}
+
+}  // namespace
+}  // namespace saphira

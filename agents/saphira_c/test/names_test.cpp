@@ -1,0 +1,88 @@
+// docs/c-api.md has the names of saphira.h and no others; and what the manual names is in one of
+// the two.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "process.hpp"
+
+namespace saphira {
+namespace {
+
+std::string read(const std::string& path) {
+  std::ifstream in(path);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::set<std::string> all(const std::string& text, const std::string& pattern) {
+  std::set<std::string> found;
+  const std::regex expression(pattern);
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), expression);
+       it != std::sregex_iterator(); ++it)
+    found.insert((*it)[1]);
+  return found;
+}
+
+std::string header() {
+  const std::string text = read(test::source("agents/saphira_c/include/saphira.h"));
+  return std::regex_replace(text, std::regex(R"(/\*[^*]*\*+([^/*][^*]*\*+)*/)"), " ");
+}
+
+/// $SAPHIRA_MANUAL, or where it is beside the source tree.
+std::string manual_path() {
+  const char* const given = std::getenv("SAPHIRA_MANUAL");
+  return given != nullptr ? given : test::source("../shared/seeds/saphira-manual-5.3.txt");
+}
+
+TEST(Names, EachOfTheHeaderIsInTheTable) {
+  const std::set<std::string> named =
+      all(read(test::source("docs/c-api.md")), "`(?:struct )?(\\w+)`");
+  ASSERT_GT(named.size(), 250U);
+  const std::string text = header();
+  for (const char* const pattern :
+       {R"(\b(sf[A-Z]\w*|sf_\w+)\b)", R"((\w+)\([^()]*\)(?: SF_LIKE_PRINTF)?;)",
+        R"(\b([A-Z][A-Z_]+(?:MODE|COM|COLLISION)|STATUS_\w+)\b)"})
+    for (const std::string& name : all(text, pattern))
+      EXPECT_TRUE(named.contains(name)) << name << " is not in docs/c-api.md";
+}
+
+TEST(Names, EachOfTheTableIsInTheHeader) {
+  const std::string page = read(test::source("docs/c-api.md"));
+  const std::string table = page.substr(0, page.find("## What differs"));
+  const std::set<std::string> there = all(header(), R"(\b(\w+)\b)");
+  for (const std::string& name : all(table.substr(table.find("## Names")), "`(?:struct )?(\\w+)`"))
+    EXPECT_TRUE(there.contains(name)) << name << " is not in saphira.h";
+}
+
+TEST(Names, EachOfTheManualIsInTheHeaderOrDiffers) {
+  const std::string manual = read(manual_path());
+  if (manual.empty())
+    GTEST_SKIP() << "the manual is not there: " << manual_path();
+  std::set<std::string> there = all(header(), R"(\b(\w+)\b)");
+  there.merge(all(read(test::source("docs/c-api.md")), "`(\\w+)`"));
+  std::set<std::string> named = all(manual, R"(\b(sf[A-Za-z0-9_]+)\b)");
+  // Chapter 12: a prototype begins a line, or what is between two tags.
+  const std::string reference = manual.substr(manual.rfind("12. Saphira API Reference"));
+  named.merge(all(
+      reference,
+      R"((?:^|\n|>)(?:void|int|float|process \*|point \*|BEHCLOSURE|char \*|behavior \*|wall) ?\*?(\w+)\()"));
+  ASSERT_GT(named.size(), 150U);
+  // Of the program's own, and slips of the scan that no name begins with.
+  for (const char* const own : {"myButtonFn", "myKeyFn", "siBehaviorOff", "siBehaviorOn"})
+    named.erase(own);
+  for (const std::string& name : named) {
+    const bool slip = name.starts_with("si");
+    EXPECT_TRUE(there.contains(name) || slip) << name;
+  }
+}
+
+}  // namespace
+}  // namespace saphira

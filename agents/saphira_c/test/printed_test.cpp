@@ -1,0 +1,105 @@
+#include "printed.hpp"
+
+#include "programs.hpp"
+
+namespace saphira {
+namespace {
+
+using test::kBrace;
+using test::kMain;
+using test::kSmallBrace;
+using test::kStartup;
+using test::printed;
+using test::Process;
+
+class Printed : public test::Programs {
+ protected:
+  void SetUp() override {
+    if (test::manual().empty())
+      GTEST_SKIP() << "the manual is not there (SAPHIRA_MANUAL, ../shared/seeds)";
+  }
+
+  std::string built(const std::string& code) {
+    const std::string path = dir_.path("printed.c");
+    std::ofstream(path) << code;
+    return build(path);
+  }
+};
+
+TEST_P(Printed, Direct) {
+  simulate();
+  Process program = start(built(
+      printed("4.3.1. The Direct", "4.3.2.",
+              {kMain,
+               kBrace,
+               kSmallBrace,
+               {"/* start up the Saphira window */", "/* start up the Saphira window */ }"}})));
+  EXPECT_TRUE(test::wait_until([this] { return farthest() > 1.85; }, std::chrono::seconds(60)))
+      << program.output();
+}
+
+// "Turns of 0 to 260 degrees", one way and back. It takes two minutes.
+TEST_P(Printed, Async) {
+  const std::string program_text =
+      printed("4.3.2. The Async", "4.3.3.",
+              {kMain, kStartup, kBrace, {"char **argv)\n", "char **argv)\n{"}, {"</pre>", ""}});
+  if (std::string(GetParam()) == "c++") {
+    built(program_text);
+    return;
+  }
+  simulate();
+  Process program = start(built(program_text));
+  ASSERT_EQ(program.wait(std::chrono::minutes(5)), std::optional<int>(0)) << program.output();
+  EXPECT_NE(program.output().find("Turn 260 degrees"), std::string::npos) << program.output();
+  EXPECT_GT(farthest(), 1.5) << "ten seconds at 300 mm/s, on an arc";
+  EXPECT_TRUE(stands());
+}
+
+// Its behaviors and its intention do not run before somebody switches them on.
+TEST_P(Printed, Saphira) {
+  simulate();
+  Process program = start(built(test::printed_saphira()));
+  EXPECT_TRUE(test::wait_until([this] { return truth().size() > 30; }, std::chrono::seconds(60)))
+      << program.output();
+  EXPECT_FALSE(program.wait(std::chrono::milliseconds(0)).has_value()) << program.output();
+  EXPECT_LT(farthest(), 0.01);
+  EXPECT_EQ(program.output().find("saphira:"), std::string::npos) << program.output();
+}
+
+TEST_P(Printed, Nowin) {
+  simulate();
+  Process program = start(
+      built(printed("4.3.3. The Nowin", "4.3.4.",
+                    {kMain,
+                     kStartup,
+                     kBrace,
+                     kSmallBrace,
+                     {"</pre>", ""},
+                     {"[ omitted callback definitions ]",
+                      "void myConnectFn(void) { sfInitBasicProcs(); }\nvoid myStartupFn(void) {}"},
+                     {"char **argv)\n", "char **argv)\n{"},
+                     {" else\n", " } else\n"},
+                     {"printf(\"Can't connect!!\\n\");", "printf(\"Can't connect!!\\n\"); }"}})));
+  ASSERT_EQ(program.wait(std::chrono::minutes(2)), std::optional<int>(0)) << program.output();
+  const std::string said = program.output();
+  int positions = 0;
+  for (std::size_t at = said.find("X: "); at != std::string::npos; at = said.find("X: ", at + 1))
+    ++positions;
+  EXPECT_EQ(positions, 10) << said;
+  EXPECT_GT(farthest(), 1.0) << said;
+}
+
+TEST_P(Printed, Packet) {
+  simulate_on_line("19000 19000 0");
+  Process program = start(built(printed(
+      "4.3.5. The Packet", "5. Saphira Servers",
+      {kMain, kSmallBrace, {"sfDisconnectFromRobot();", "sfDisconnectFromRobot(); return 0; }"}})));
+  ASSERT_EQ(program.wait(), std::optional<int>(0)) << program.output();
+  EXPECT_NE(program.output().find("100 packets received"), std::string::npos) << program.output();
+  EXPECT_NEAR(farthest(), 3.0, 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Printed, testing::Values("c", "c++"), test::language_name);
+
+}  // namespace
+}  // namespace saphira

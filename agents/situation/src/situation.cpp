@@ -1,0 +1,220 @@
+#include "saphira/situation/situation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "saphira/situation/words.hpp"
+#include "why_words.hpp"
+
+namespace saphira::situation {
+namespace {
+
+constexpr std::array kMakeItGo{"bridge", "behaviors", "intentions"};
+
+constexpr std::uint64_t kLateCycles = 3;   // behind: worth a word
+constexpr std::uint64_t kHungCycles = 10;  // behind: nothing comes any more
+constexpr double kListened = 1.0;          // [s] of listening after which silence means something
+constexpr double kFresh = 5.0;             // [s] after its start
+constexpr std::uint64_t kLongRun = 100;    // [cycles] of the robot: then a fresh program came late
+
+double seconds_of(std::uint64_t cycles) {
+  return 0.1 * static_cast<double>(cycles);
+}
+
+/// The newest instance that is heard; of those that are not, the one that was heard last.
+const Program* find(const std::vector<Program>& programs, const std::string& name) {
+  const Program* found = nullptr;
+  const auto better = [](const Program& a, const Program& b) {
+    const bool heard = a.age <= kLostAge;
+    if (heard != (b.age <= kLostAge))
+      return heard;
+    return heard ? a.status.uptime() < b.status.uptime() : a.age < b.age;
+  };
+  for (const Program& program : programs)
+    if (program.status.name() == name && (found == nullptr || better(program, *found)))
+      found = &program;
+  return found;
+}
+
+std::string of_several(const std::string& words, std::size_t count) {
+  if (count > 1 && words.starts_with("is "))
+    return "are " + words.substr(3);
+  if (count > 1 && words.starts_with("has "))
+    return "have " + words.substr(4);
+  return words;
+}
+
+struct Expected {
+  Known known;
+  std::uint64_t cycle = 0;  ///< which sample is wanted
+  bool there = false;
+};
+
+/// What a program says in each cycle; nothing: it is not known of this one.
+std::optional<Expected> expected(const Situation& s, const std::string& program) {
+  if (program == "behaviors")
+    return Expected{s.behaviors_known, s.cycle, s.behaviors.has_value()};
+  if (program == "intentions")
+    return Expected{s.intentions_known, s.cycle > 0 ? s.cycle - 1 : 0, s.intentions.has_value()};
+  return std::nullopt;
+}
+
+/// Of a past cycle: only what was kept of that time counts.
+Condition past_condition(const Situation& s, const std::string& program) {
+  const auto wanted = expected(s, program);
+  if (!wanted)
+    return program == "bridge" && !s.grant
+               ? Condition{Health::unknown, "has left nothing of this cycle"}
+               : Condition{};
+  if (wanted->there)
+    return {};
+  const auto& [oldest, newest] = wanted->known;
+  if (newest == 0)
+    return {Health::unknown,
+            "has left nothing of the last minute: it was not there, or ended since"};
+  if (wanted->cycle < oldest)
+    return {Health::unknown, "has kept nothing from before cycle " + std::to_string(oldest) +
+                                 ": it was not there then, or was started again since"};
+  if (wanted->cycle > newest)
+    return {Health::hung, "has said nothing since cycle " + std::to_string(newest)};
+  return {Health::late, "left this cycle out"};
+}
+
+Condition present_condition(const Situation& s, const std::string& name) {
+  const Program* const program = find(s.programs, name);
+  // What is there may not have spoken yet.
+  if (program == nullptr)
+    return s.listened < kListened
+               ? Condition{}
+               : Condition{Health::absent, "is not heard (not running, hung, or cut off)"};
+  if (program->age > kLostAge)
+    return {Health::lost, "has not been heard for " + seconds_text(program->age) +
+                              " (it is dead, hangs, or is cut off)"};
+  const v1::ServiceStatus& status = program->status;
+  if (status.state() == v1::SERVICE_STARTING || status.state() == v1::SERVICE_WAITING)
+    return {Health::waiting, std::string("is ") + name_of(status.state()) +
+                                 (status.reason().empty() ? "" : ": " + status.reason())};
+  const auto wanted = expected(s, name);
+  if (wanted && s.now > 0 && s.listened >= kListened) {
+    if (wanted->known.newest == 0)
+      return {Health::hung, "is on the bus, and says nothing (it hangs, or is cut off)"};
+    const std::uint64_t behind = s.now - std::min(s.now, wanted->known.newest);
+    if (behind >= kHungCycles)
+      return {Health::hung, "has said nothing for " + seconds_text(seconds_of(behind)) +
+                                " (it hangs, or is cut off)"};
+    if (behind >= kLateCycles)
+      return {Health::late, "is " + seconds_text(seconds_of(behind)) + " behind"};
+  }
+  if (status.uptime() < kFresh && status.stamp().cycle() > kLongRun)
+    return {Health::fresh, "was started " + seconds_text(status.uptime()) + " ago"};
+  return {};
+}
+
+nlohmann::ordered_json json_of(const Situation& s, const Program& program) {
+  const v1::ServiceStatus& status = program.status;
+  const Condition how = condition(s, status.name());
+  nlohmann::ordered_json json;
+  json["name"] = status.name();
+  json["state"] = program.age > kLostAge ? "lost" : name_of(status.state());
+  json["reason"] = status.reason();
+  json["condition"] = how.words;
+  json["age"] = program.age;
+  json["epoch"] = status.stamp().epoch();
+  json["cycle"] = status.stamp().cycle();
+  json["late_cycles"] = status.late_cycles();
+  json["step_ms_mean"] = status.step_ms_mean();
+  json["step_ms_max"] = status.step_ms_max();
+  json["cpu_percent"] = status.cpu_percent();
+  json["rss_mb"] = status.rss_mb();
+  json["uptime"] = status.uptime();
+  json["host"] = status.host();
+  json["pid"] = status.pid();
+  return json;
+}
+
+}  // namespace
+
+Condition condition(const Situation& situation, const std::string& program) {
+  return situation.past ? past_condition(situation, program)
+                        : present_condition(situation, program);
+}
+
+std::string trouble(const Situation& situation) {
+  // Of what is the case for several it is said once.
+  std::vector<std::pair<std::string, std::vector<std::string>>> all;
+  for (const char* const name : kMakeItGo) {
+    const Condition how = condition(situation, name);
+    if (how.health == Health::running || how.health == Health::fresh)
+      continue;
+    if (all.empty() || all.back().first != how.words)
+      all.push_back({how.words, {}});
+    all.back().second.emplace_back(name);
+  }
+  std::string text;
+  for (const auto& [words, names] : all)
+    text += (text.empty() ? "" : "; ") + listed(names) + " " + of_several(words, names.size());
+  return text;
+}
+
+std::string missing_services(const std::vector<Program>& programs) {
+  std::vector<std::string> missing;
+  for (const char* const name : kMakeItGo) {
+    const Program* const program = find(programs, name);
+    if (program == nullptr || program->age > kLostAge)
+      missing.emplace_back(name);
+  }
+  return listed(missing);
+}
+
+std::string suspended(const Situation& situation) {
+  std::string text;
+  for (const v1::ProcessSet& service : situation.processes)
+    for (const v1::Process& process : service.processes())
+      // One that was suspended later was not then; one that goes on again is not told apart.
+      if (process.state() == v1::PROCESS_SUSPENDED &&
+          (!situation.past || process.since() <= situation.cycle))
+        text += (text.empty() ? "" : ", ") + process.name() + " of " + service.service();
+  return text;
+}
+
+std::string driver(const Situation& situation) {
+  const Condition bridge = condition(situation, "bridge");
+  const std::string why = bridge.words.empty() ? "" : ": bridge " + bridge.words;
+  if (!situation.grant)
+    return "which program drives is not known" + why;
+  if (situation.silence > kListened && bridge.health >= Health::hung)
+    return "which program drives is not known any more" + why;
+  return describe(*situation.grant);
+}
+
+std::string to_json(const Situation& situation) {
+  nlohmann::ordered_json json;
+  json["programs"] = nlohmann::ordered_json::array();
+  for (const Program& program : situation.programs)
+    json["programs"].push_back(json_of(situation, program));
+  json["drive"] = {{"known", situation.grant.has_value()}, {"text", driver(situation)}};
+  if (situation.grant) {
+    const v1::Grant& grant = *situation.grant;
+    json["drive"]["role"] = name_of(grant.role());
+    json["drive"]["source"] = grant.source();
+    json["drive"]["reason"] = grant.reason();
+    json["drive"]["velocity"] = grant.velocity();
+    json["drive"]["rotation_velocity"] = grant.rotation_velocity();
+    json["drive"]["estopped"] = grant.estopped();
+    json["drive"]["waits_for_hand_back"] = grant.waits_for_hand_back();
+  }
+  json["goals"] = nlohmann::ordered_json::array();
+  for (const v1::GoalStatus& status : situation.statuses)
+    json["goals"].push_back({{"functor", status.functor()},
+                             {"requester", status.requester()},
+                             {"state", name_of(status.state())},
+                             {"reason", status.reason()},
+                             {"step", status.step()},
+                             {"progress", status.progress()}});
+  json["missing"] = missing_services(situation.programs);
+  json["trouble"] = trouble(situation);
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace saphira::situation

@@ -1,0 +1,244 @@
+#include "saphira/situation/why.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "saphira/situation/words.hpp"
+#include "why_reason.hpp"
+
+namespace saphira::situation {
+namespace {
+
+void draw(const Cause& cause, const std::string& indent, std::string& text) {
+  for (std::size_t i = 0; i < cause.because.size(); ++i) {
+    const bool last = i + 1 == cause.because.size();
+    text.append(indent).append(last ? "`- " : "|- ").append(cause.because[i].text).append("\n");
+    draw(cause.because[i], indent + (last ? "   " : "|  "), text);
+  }
+}
+
+nlohmann::ordered_json json_of(const Cause& cause) {
+  nlohmann::ordered_json json;
+  json["kind"] = cause.kind;
+  json["text"] = cause.text;
+  json["because"] = nlohmann::ordered_json::array();
+  for (const Cause& one : cause.because)
+    json["because"].push_back(json_of(one));
+  return json;
+}
+
+}  // namespace
+
+Explanation Reason::finish(const Sentence& sentence, Cause cause) const {
+  Explanation result;
+  result.cycle = scene_.cycle;
+  if (scene_.grant)
+    result.epoch = scene_.grant->stamp().epoch();
+  else if (scene_.behaviors)
+    result.epoch = scene_.behaviors->stamp().epoch();
+  result.sentence = sentence.text();
+  result.cause = std::move(cause);
+  add_conditions(result.cause);
+  return result;
+}
+
+void Reason::add_conditions(Cause& cause) const {
+  const std::vector<const char*> programs =
+      scene_.own_mind ? std::vector{"bridge"} : std::vector{"bridge", "behaviors", "intentions"};
+  for (const char* const name : programs)
+    if (const Condition how = condition(scene_, name); !how.words.empty())
+      cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
+}
+
+Explanation Reason::stopped() const {
+  const v1::Grant& grant = *scene_.grant;
+  const std::string idle = idle_reason();
+  Cause cause{"wheels", "The robot is told to stand", {grant_cause()}};
+  Sentence sentence;
+  const std::string still = meanwhile();
+  sentence.add(0,
+               still.empty() ? "The robot stands: " : "The robot is told to stop" + still + ": ");
+  std::vector<std::string> reasons;
+  if (const std::string held = latched(grant); !held.empty())
+    reasons.push_back(held);
+  else if (grant.stamp().epoch() == 0)
+    reasons.push_back(grant.reason());
+  if (auto age = age_cause()) {
+    if (!scene_.behaviors->limit_reason().empty())
+      reasons.push_back(age->text);
+    cause.because.push_back(std::move(*age));
+  }
+  if (!idle.empty()) {
+    reasons.push_back(idle);
+    cause.because.front().because.push_back({"goal", idle, {}});
+  }
+  if (reasons.empty())
+    reasons.push_back("nobody drives it: " + grant.reason());
+  for (std::size_t i = 0; i < reasons.size(); ++i)
+    sentence.add(static_cast<int>(i), (i == 0 ? "" : "; ") + reasons[i]);
+  return finish(sentence, std::move(cause));
+}
+
+Explanation Reason::by_hand() const {
+  const v1::Grant& grant = *scene_.grant;
+  Sentence sentence;
+  if (grant.role() == v1::ROLE_ESTOP) {
+    sentence.add(0, latched(grant));
+    sentence.add(1, meanwhile());
+  } else {
+    sentence.add(0, told());
+    sentence.add(2, meanwhile());
+    sentence.add(0,
+                 ": " + grant.source() + " drives it (" + situation::name_of(grant.role()) + ")");
+  }
+  Cause cause{"wheels",
+              grant.role() == v1::ROLE_ESTOP ? "The robot is told to stop" : told(),
+              {grant_cause()}};
+  if (auto guard = guard_cause()) {
+    sentence.add(1, "; " + guard->text);
+    cause.because.push_back(std::move(*guard));
+  }
+  return finish(sentence, std::move(cause));
+}
+
+/// The robot itself is not heard: what was, and why there is no more.
+Explanation Reason::silent() {
+  const Condition bridge = condition(scene_, "bridge");
+  Sentence sentence;
+  sentence.add(0, "What the robot does is not known: nothing has been heard of it for " +
+                      seconds_text(scene_.silence));
+  if (!bridge.words.empty())
+    sentence.add(1, "; bridge " + bridge.words);
+  const Explanation before = known_so_far();
+  sentence.add(2, "; before that: " + before.sentence.substr(0, before.sentence.size() - 1));
+  return finish(sentence, {"wheels", "before that: " + before.cause.text, before.cause.because});
+}
+
+Explanation Reason::by_behaviors_unknown() const {
+  Sentence sentence;
+  Cause cause{"wheels", "not known", {}};
+  const Condition how = condition(scene_, "behaviors");
+  if (scene_.grant) {
+    sentence.add(0, told() + ": " + scene_.grant->source() + " drives it");
+    cause = {"wheels", told(), {grant_cause()}};
+  } else {
+    sentence.add(0, "What the robot is told in this cycle is not known");
+  }
+  sentence.add(
+      1, "; its reasons are not known" + (how.words.empty() ? "" : ": behaviors " + how.words),
+      "; its reasons are not known");
+  return finish(sentence, std::move(cause));
+}
+
+Explanation Reason::by_behaviors_known() {
+  const std::string what = told();
+  Sentence sentence;
+  sentence.add(0, what);
+  sentence.add(3, meanwhile());
+  const bool guarded = scene_.grant && scene_.grant->guard() != v1::GUARD_NONE;
+  const bool aged = !scene_.behaviors->limit_reason().empty();
+  std::vector<Say> speeds = says(Channel::speed);
+  std::vector<Say> turns = says(Channel::turn);
+  const auto few = [](std::vector<Say>& all) {
+    std::erase_if(all,
+                  [](const Say& say) { return say.share < kMentioned || say.weight < kNoSay; });
+    if (all.size() > kMostMentioned)
+      all.resize(kMostMentioned);
+  };
+  few(speeds);
+  few(turns);
+  // Going straight on needs no reason unless somebody wanted something else.
+  std::erase_if(turns, [](const Say& say) { return std::abs(say.behavior->turn()) < kNoTurn; });
+  if (std::abs(told_turn()) < kNoTurn && turns.size() < 2)
+    turns.clear();
+  std::vector<const v1::BehaviorState*> mentioned;
+  for (const std::vector<Say>* const all : {&speeds, &turns})
+    for (const Say& say : *all)
+      if (std::find(mentioned.begin(), mentioned.end(), say.behavior) == mentioned.end())
+        mentioned.push_back(say.behavior);
+
+  const char* separator = ": ";
+  const auto add = [&](int rank, const std::string& text, const std::string& brief = {}) {
+    sentence.add(rank, separator + text, brief.empty() ? "" : separator + brief);
+    separator = ", ";
+  };
+  if (guarded)
+    add(1, guard_cause()->text);
+  if (aged)
+    add(1, age_cause()->text);
+  int rank = 2;
+  for (const v1::BehaviorState* behavior : mentioned) {
+    add(rank, wants(speeds, turns, *behavior, true), wants(speeds, turns, *behavior, false));
+    rank = 4;
+  }
+  if (speeds.empty() && !guarded && !aged) {
+    // What is left of a speed of before comes down by itself.
+    add(rank, std::abs(told_speed()) >= kNoSpeed
+                  ? "it slows down, no behavior wants a speed any more"
+                  : "no behavior wants a speed");
+  }
+  add_purpose(sentence, mentioned);
+  return finish(sentence, wheels(what));
+}
+
+Explanation Reason::known_so_far() {
+  if (!scene_.robot && !scene_.grant && !scene_.behaviors) {
+    Sentence sentence;
+    sentence.add(0, "Nothing is known of this cycle");
+    if (!scene_.past)
+      if (const std::string wrong = trouble(scene_); !wrong.empty())
+        sentence.add(1, ": " + wrong);
+    return finish(sentence, {"wheels", "nothing is known", {}});
+  }
+  if (scene_.grant && scene_.grant->role() == v1::ROLE_NONE)
+    return stopped();
+  if (!by_behaviors())
+    return by_hand();
+  return scene_.behaviors ? by_behaviors_known() : by_behaviors_unknown();
+}
+
+Explanation Reason::why() {
+  if (!scene_.past && scene_.silence > kSilence && (scene_.robot || scene_.grant))
+    return silent();
+  return known_so_far();
+}
+
+Explanation why(const Situation& situation) {
+  return Reason(situation).why();
+}
+
+Explanation why_not(const Situation& situation, Wish wish) {
+  return Reason(situation).why_not(wish);
+}
+
+std::optional<Wish> parse_wish(const std::vector<std::string>& words) {
+  const std::string text = listed(words, " ");
+  if (text == "turn left")
+    return Wish::turn_left;
+  if (text == "turn right")
+    return Wish::turn_right;
+  if (text == "faster")
+    return Wish::faster;
+  if (text == "slower")
+    return Wish::slower;
+  return std::nullopt;
+}
+
+std::string to_text(const Explanation& explanation) {
+  std::string text = explanation.sentence + "\n\n" + "cycle " + std::to_string(explanation.cycle) +
+                     ": " + explanation.cause.text + "\n";
+  draw(explanation.cause, "", text);
+  return text;
+}
+
+std::string to_json(const Explanation& explanation) {
+  nlohmann::ordered_json json;
+  json["epoch"] = explanation.epoch;
+  json["cycle"] = explanation.cycle;
+  json["sentence"] = explanation.sentence;
+  json["tree"] = json_of(explanation.cause);
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace saphira::situation

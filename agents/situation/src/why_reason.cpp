@@ -1,0 +1,433 @@
+#include "why_reason.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saphira/situation/words.hpp"
+
+namespace saphira::situation {
+namespace {
+
+/// [s] What is older is worth mentioning.
+constexpr double kOldInput = 0.3;
+
+bool later(const v1::Stamp& a, const v1::Stamp& b) {
+  return a.epoch() != b.epoch() ? a.epoch() > b.epoch() : a.cycle() >= b.cycle();
+}
+
+bool same(const v1::GoalId& a, const v1::GoalId& b) {
+  return a.writer() == b.writer() && a.number() == b.number();
+}
+
+}  // namespace
+
+std::string Reason::name_of(const v1::BehaviorState& behavior) const {
+  const auto short_name = [](const v1::BehaviorState& one) {
+    if (nameless(one.name(), one.schema()))
+      return one.schema();
+    const std::string name = without_number(one.name());
+    return one.schema().empty() ? name : name + " (" + one.schema() + ")";
+  };
+  const std::string name = short_name(behavior);
+  const auto& all = scene_.behaviors->behaviors();
+  const auto alike = std::count_if(all.begin(), all.end(), [&](const v1::BehaviorState& other) {
+    return short_name(other) == name;
+  });
+  return alike == 1 ? name : behavior.name();
+}
+
+std::vector<Say> Reason::says(Channel channel) const {
+  std::vector<Say> result;
+  double all = 0.0;
+  for (const v1::BehaviorState& behavior : scene_.behaviors->behaviors()) {
+    if (!behavior.running() || !recommends(behavior, channel))
+      continue;
+    Say say;
+    say.behavior = &behavior;
+    for (const v1::RuleState& rule : behavior.rules()) {
+      if (channel_of(rule) != channel)
+        continue;
+      say.weight += clamp01(rule.strength()) * weight_of(behavior, channel);
+      // Of turns what counts is how far they turn; of speeds, how strongly they hold.
+      const auto counts = [&](const v1::RuleState& r) {
+        return r.strength() * (channel == Channel::turn ? std::abs(r.value()) : 1.0);
+      };
+      if (rule.strength() > 0.0 &&
+          (say.main_rule == nullptr || counts(rule) > counts(*say.main_rule)))
+        say.main_rule = &rule;
+    }
+    all += say.weight;
+    result.push_back(say);
+  }
+  for (Say& say : result)
+    say.share = all > 0.0 ? say.weight / all : 0.0;
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Say& a, const Say& b) { return a.weight > b.weight; });
+  return result;
+}
+
+double Reason::told_turn() const {
+  if (by_behaviors() && scene_.behaviors)
+    return scene_.behaviors->turning() ? scene_.behaviors->turn() : 0.0;
+  if (!scene_.grant || scene_.grant->role() == v1::ROLE_NONE)
+    return 0.0;
+  if (scene_.grant->rotation() == v1::ROTATION_VELOCITY)
+    return scene_.grant->rotation_velocity();
+  return scene_.robot ? norm2_angle(scene_.grant->heading() - scene_.robot->pose_in_odom().th())
+                      : 0.0;
+}
+
+/// What the wheels are told.
+std::string Reason::told() const {
+  const double speed = told_speed();
+  const double turn = told_turn();
+  const bool turns = std::abs(turn) >= kNoTurn;
+  const bool rate =
+      !(by_behaviors() && scene_.behaviors) && scene_.grant->rotation() == v1::ROTATION_VELOCITY;
+  std::string text = "The robot is told to ";
+  if (std::abs(speed) >= kNoSpeed)
+    text += (speed > 0.0 ? "drive ahead at " : "back up at ") + speed_text(std::abs(speed)) +
+            (turns ? " and to turn " : ", straight on");
+  else
+    text += turns ? "turn on the spot, " : "stand";
+  if (turns)
+    text += turn_text(turn, rate);
+  return text;
+}
+
+std::string Reason::meanwhile() const {
+  if (!scene_.robot)
+    return {};
+  const double velocity = scene_.robot->velocity();
+  const double rotation = scene_.robot->rotation_velocity();
+  const bool stands = scene_.grant && (scene_.grant->role() == v1::ROLE_NONE ||
+                                       scene_.grant->role() == v1::ROLE_ESTOP);
+  const double speed = stands ? 0.0 : told_speed();
+  std::vector<std::string> parts;
+  if (std::abs(velocity - speed) >= kFarFromTold)
+    parts.push_back(speed_text(velocity));
+  // It may well turn where it is told a heading.
+  if (stands && std::abs(rotation) >= kTurning)
+    parts.push_back("turns " + turn_text(rotation, true));
+  if (parts.empty())
+    return {};
+  return " (now it does " + listed(parts) + ")";
+}
+
+const v1::RuleText* Reason::text_of(const v1::BehaviorState& behavior,
+                                    const v1::RuleState& rule) const {
+  for (const v1::BehaviorSchema& schema : scene_.schemas)
+    if (schema.name() == behavior.schema())
+      for (const v1::RuleText& text : schema.rules())
+        if (text.name() == rule.name())
+          return &text;
+  return nullptr;
+}
+
+/// The rule's antecedent as it is written, with the values of what is in it; empty where it is not
+/// known.
+std::string Reason::antecedent(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
+  const v1::RuleText* const text = text_of(behavior, rule);
+  if (text == nullptr || text->antecedent().empty())
+    return {};
+  std::vector<std::string> values;
+  for (const v1::FuzzyVariable& variable : behavior.variables())
+    if (has_word(text->antecedent(), variable.name()))
+      values.push_back(variable.name() + format(" %.2f", variable.value()));
+  return "if " + text->antecedent() + (values.empty() ? "" : ": " + listed(values, ", "));
+}
+
+const v1::IntentionNode* Reason::node(std::uint32_t id) const {
+  if (scene_.intentions && id != 0)
+    for (const v1::IntentionNode& candidate : scene_.intentions->nodes())
+      if (candidate.id() == id)
+        return &candidate;
+  return nullptr;
+}
+
+/// The intention that wants the behavior.
+const v1::IntentionNode* Reason::node_of(const v1::BehaviorState& behavior) const {
+  if (scene_.intentions)
+    for (const v1::IntendedBehavior& intended : scene_.intentions->behaviors())
+      if (intended.name() == behavior.name()) {
+        const v1::IntentionNode* const found = node(intended.intention());
+        return found != nullptr && is_behavior(*found, *scene_.intentions) ? node(found->parent())
+                                                                           : found;
+      }
+  return nullptr;
+}
+
+const v1::GoalStatus* Reason::status(const v1::GoalId& id) const {
+  for (const v1::GoalStatus& candidate : scene_.statuses)
+    if (same(candidate.id(), id))
+      return &candidate;
+  return nullptr;
+}
+
+/// Empty where nothing is known of it.
+std::string Reason::goal_text(const v1::GoalId& id) const {
+  for (const v1::Goal& goal : scene_.goals)
+    if (same(goal.id(), id))
+      return describe(goal);
+  const v1::GoalStatus* const known = status(id);
+  return known == nullptr ? "" : known->functor();
+}
+
+std::string Reason::goal_name(const v1::GoalId& id) const {
+  const std::string text = goal_text(id);
+  return text.substr(0, text.find('('));
+}
+
+std::string Reason::requester(const v1::GoalId& id) const {
+  for (const v1::Goal& goal : scene_.goals)
+    if (same(goal.id(), id) && !goal.requester().empty())
+      return goal.requester();
+  const v1::GoalStatus* const known = status(id);
+  return known == nullptr || known->requester().empty() ? "somebody" : known->requester();
+}
+
+/// For which intention and goal (of a program's own mind: which program) these behaviors are there,
+/// where that is known.
+void Reason::add_purpose(Sentence& sentence,
+                         const std::vector<const v1::BehaviorState*>& behaviors) const {
+  if (scene_.own_mind)
+    sentence.add(1, "; behaviors of the program " + scene_.grant->source());
+  const v1::IntentionNode* own = nullptr;
+  for (const v1::BehaviorState* behavior : behaviors)
+    if (own == nullptr)
+      own = node_of(*behavior);
+  if (own == nullptr) {
+    if (!scene_.intentions)
+      if (const Condition how = condition(scene_, "intentions"); !how.words.empty())
+        sentence.add(3, "; for what is not known: intentions " + how.words);
+    return;
+  }
+  const v1::IntentionNode* root = own;
+  while (const v1::IntentionNode* const parent = node(root->parent()))
+    root = parent;
+  const std::string goal = goal_text(root->goal());
+  if (scene_.own_mind)
+    sentence.add(1, ", for " + intention_name(*root));
+  else if (goal.empty())
+    sentence.add(3, "; for a goal of which nothing is known");
+  else
+    sentence.add(1, "; for " + goal + " of " + requester(root->goal()),
+                 "; for " + goal_name(root->goal()) + " of " + requester(root->goal()));
+  if (root != own)
+    sentence.add(4, ", by " + with_arguments(*own), ", by " + intention_name(*own));
+}
+
+std::string Reason::of_say(const Say& say, Channel channel, bool with_rule) const {
+  return wish_of(*say.behavior, channel) +
+         (with_rule && say.main_rule != nullptr ? " (rule " + say.main_rule->name() + ")" : "");
+}
+
+/// What a behavior wants on both channels, as far as it is to be mentioned.
+std::string Reason::wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
+                          const v1::BehaviorState& behavior, bool with_rules) const {
+  std::vector<std::string> parts;
+  for (const Say& say : speeds)
+    if (say.behavior == &behavior)
+      parts.push_back(of_say(say, Channel::speed, with_rules));
+  for (const Say& say : turns)
+    if (say.behavior == &behavior)
+      parts.push_back(of_say(say, Channel::turn, with_rules));
+  return name_of(behavior) + " wants " + listed(parts);
+}
+
+Cause Reason::grant_cause() const {
+  const v1::Grant& grant = *scene_.grant;
+  Cause cause{"grant", std::string(situation::name_of(grant.role())), {}};
+  if (grant.role() == v1::ROLE_NONE)
+    cause.text = "nobody drives";
+  else if (grant.estopped())
+    cause.text = "emergency stop";
+  else
+    cause.text = grant.source() + " drives as " + situation::name_of(grant.role());
+  if (!grant.reason().empty())
+    cause.text += ": " + grant.reason();
+  for (const v1::Refusal& refusal : grant.refused())
+    cause.because.push_back({"grant",
+                             refusal.source() + " (" + situation::name_of(refusal.role()) +
+                                 ") was refused: " + refusal.reason(),
+                             {}});
+  return cause;
+}
+
+std::optional<Cause> Reason::guard_cause() const {
+  if (!scene_.grant || scene_.grant->guard() == v1::GUARD_NONE)
+    return std::nullopt;
+  return Cause{"guard",
+               std::string("the guard beside the robot ") +
+                   situation::name_of(scene_.grant->guard()) + " it (" +
+                   scene_.grant->guard_reason() + ")",
+               {}};
+}
+
+std::optional<Cause> Reason::age_cause() const {
+  if (!scene_.behaviors)
+    return std::nullopt;
+  const v1::BehaviorSet& all = *scene_.behaviors;
+  if (!all.limit_reason().empty())
+    return Cause{"age",
+                 all.limit_reason() + (all.speed_limit() > 0.0 ? ", so it drives no faster than " +
+                                                                     speed_text(all.speed_limit())
+                                                               : ""),
+                 {}};
+  const double command_age = scene_.grant ? scene_.grant->command_age() : 0.0;
+  if (std::max(all.input_age(), command_age) < kOldInput)
+    return std::nullopt;
+  return Cause{"age",
+               format("the network, or a computer, is slow: what was intended was %.1f s old, ",
+                      all.input_age()) +
+                   format("and the command answers what was %.1f s ago", command_age),
+               {}};
+}
+
+Cause Reason::rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
+  Cause cause{
+      "rule",
+      "rule " + rule.name() + format(" holds to %.2f: ", rule.strength()) + control_text(rule),
+      {}};
+  if (const std::string text = antecedent(behavior, rule); !text.empty())
+    cause.because.push_back({"rule", text, {}});
+  return cause;
+}
+
+Cause Reason::goal_cause(const v1::GoalId& id) const {
+  if (goal_text(id).empty())
+    return {"goal", "a goal of which nothing is known", {}};
+  return {"goal", "goal " + goal_text(id) + " of " + requester(id), {}};
+}
+
+std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
+  Cause cause{"intention", "for " + with_arguments(of), {}};
+  // Its label is the state that comes next, which says nothing about now.
+  if (!of.step().empty())
+    cause.text += ": " + of.step();
+  if (!told_nodes_.insert(of.id()).second) {
+    cause.text = "for " + intention_name(of) + ", as above";
+    return cause;
+  }
+  if (const v1::IntentionNode* const parent = node(of.parent())) {
+    if (auto above = chain(*parent))
+      cause.because.push_back(std::move(*above));
+  } else {
+    cause.because.push_back(scene_.own_mind
+                                ? Cause{"program", "of the program " + scene_.grant->source(), {}}
+                                : goal_cause(of.goal()));
+  }
+  add_advice(of, cause);
+  return cause;
+}
+
+/// What people have told the robot of what the intention is about: each once, where it counts
+/// first.
+void Reason::add_advice(const v1::IntentionNode& of, Cause& cause) {
+  for (const v1::Belief& belief : scene_.beliefs)
+    if (belief.said_by().find(" said ") != std::string::npos && concerns(belief, of) &&
+        told_beliefs_.insert(belief.name()).second)
+      cause.because.push_back(
+          {"belief", belief.said_by() + " (" + belief.name() + ": " + belief.value() + ")", {}});
+}
+
+std::optional<Cause> Reason::chain(const v1::BehaviorState& behavior) {
+  const v1::IntentionNode* const found = node_of(behavior);
+  return found == nullptr ? std::nullopt : chain(*found);
+}
+
+Cause Reason::behavior_cause(const Say& say, Channel channel) {
+  const v1::BehaviorState& behavior = *say.behavior;
+  Cause cause{"behavior",
+              name_of(behavior) + format(", priority %d, ", behavior.priority()) +
+                  (say.weight < kNoSay ? "has no say: "
+                                       : format("%.0f %% of the say: ", 100.0 * say.share)) +
+                  wish_of(behavior, channel),
+              {}};
+  if (say.weight < kNoSay && activity_of(behavior, channel) >= kNoSay) {
+    for (const v1::BehaviorState& above : scene_.behaviors->behaviors())
+      if (above.running() && above.priority() < behavior.priority() &&
+          activity_of(above, channel) >= 1.0 - kNoSay) {
+        cause.because.push_back({"behavior", name_of(above) + " is above it and fully active", {}});
+        break;
+      }
+  }
+  for (const v1::RuleState& rule : behavior.rules())
+    if (channel_of(rule) == channel && rule.strength() >= kNoSay)
+      cause.because.push_back(rule_cause(behavior, rule));
+  if (auto purpose = chain(behavior))
+    cause.because.push_back(std::move(*purpose));
+  return cause;
+}
+
+Cause Reason::channel_cause(Channel channel) {
+  const v1::BehaviorSet& all = *scene_.behaviors;
+  Cause cause;
+  if (channel == Channel::speed)
+    cause = {"speed",
+             all.moving() ? "the behaviors' blend of speeds: " + speed_text(all.speed())
+                          : "no behavior wants a speed: it stands",
+             {}};
+  else
+    cause = {"turn",
+             all.turning() ? "the behaviors' blend of turns: " + turn_text(all.turn())
+                           : "no behavior wants a turn: straight on",
+             {}};
+  for (const Say& say : says(channel))
+    cause.because.push_back(behavior_cause(say, channel));
+  return cause;
+}
+
+Cause Reason::wheels(const std::string& text) {
+  Cause cause{"wheels", text, {}};
+  if (scene_.grant)
+    cause.because.push_back(grant_cause());
+  if (auto guard = guard_cause())
+    cause.because.push_back(std::move(*guard));
+  if (auto age = age_cause())
+    cause.because.push_back(std::move(*age));
+  if (scene_.behaviors) {
+    cause.because.push_back(channel_cause(Channel::speed));
+    cause.because.push_back(channel_cause(Channel::turn));
+    if (!scene_.behaviors->trouble().empty())
+      cause.because.push_back(
+          {"trouble", "behaviors that cannot be had: " + scene_.behaviors->trouble(), {}});
+  }
+  return cause;
+}
+
+std::string Reason::idle_reason() const {
+  for (const char* const name : {"behaviors", "intentions"})
+    if (const Condition how = condition(scene_, name); !how.heard())
+      return std::string(name) + " " + how.words;
+  if (const std::string names = suspended(scene_); !names.empty())
+    return names + " is suspended";
+  if (scene_.intentions && !scene_.intentions->behavior_control())
+    return "behavior control is switched off";
+  if (scene_.intentions && !scene_.intentions->behaviors().empty())
+    return {};
+  return goals_reason();
+}
+
+/// Of a robot for which no behavior is intended.
+std::string Reason::goals_reason() const {
+  const v1::GoalStatus* newest = nullptr;
+  for (const v1::GoalStatus& status : scene_.statuses) {
+    if (status.state() == v1::GOAL_UNDERWAY)
+      return goal_text(status.id()) + " of " + requester(status.id()) +
+             " is underway and intends no behavior now" +
+             (status.step().empty() ? "" : ": " + status.step());
+    if (newest == nullptr || later(status.stamp(), newest->stamp()))
+      newest = &status;
+  }
+  if (newest == nullptr) {
+    if (!scene_.statuses_known)
+      return std::string("which goals there ") + (scene_.past ? "were" : "are") + " is not known";
+    return scene_.past ? "there was no goal" : "nobody has asked for a goal";
+  }
+  return "no goal is underway; the newest, " + goal_text(newest->id()) + " of " +
+         requester(newest->id()) + ": " + situation::name_of(newest->state()) +
+         (newest->reason().empty() ? "" : ", " + newest->reason());
+}
+
+}  // namespace saphira::situation

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saphira/situation/sentence.hpp"
+#include "saphira/situation/why.hpp"
+#include "why_words.hpp"
+
+namespace saphira::situation {
+
+/// [s] Without a packet of the robot for so long, what was last says little about now.
+inline constexpr double kSilence = 1.0;
+
+/// How a behavior takes part in a channel of the blend.
+struct Say {
+  const v1::BehaviorState* behavior = nullptr;
+  double weight = 0.0;  ///< its rules' strengths times what is left of its activity
+  double share = 0.0;   ///< [0..1] of all weights on the channel
+  const v1::RuleState* main_rule = nullptr;
+};
+
+/// Walks over what is known and puts it into words.
+class Reason {
+ public:
+  explicit Reason(const Situation& situation) : scene_(situation) {}
+
+  Explanation why();
+  Explanation why_not(Wish wish);
+
+ private:
+  double told_speed() const {
+    return scene_.grant ? scene_.grant->velocity() : scene_.behaviors->speed();
+  }
+  /// [rad], of a turn that goes on [rad/s]
+  double told_turn() const;
+  bool by_behaviors() const {
+    return !scene_.grant || scene_.grant->role() == v1::ROLE_BEHAVIORS || scene_.own_mind;
+  }
+  std::string name_of(const v1::BehaviorState& behavior) const;
+  std::vector<Say> says(Channel channel) const;
+  std::string told() const;
+  /// What the robot does, where that is not what it is told; else empty.
+  std::string meanwhile() const;
+  std::string of_say(const Say& say, Channel channel, bool with_rule) const;
+  std::string wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
+                    const v1::BehaviorState& behavior, bool with_rules) const;
+
+  const v1::RuleText* text_of(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
+  std::string antecedent(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
+
+  const v1::IntentionNode* node(std::uint32_t id) const;
+  const v1::IntentionNode* node_of(const v1::BehaviorState& behavior) const;
+  const v1::GoalStatus* status(const v1::GoalId& id) const;
+  std::string goal_text(const v1::GoalId& id) const;
+  /// Without its arguments.
+  std::string goal_name(const v1::GoalId& id) const;
+  std::string requester(const v1::GoalId& id) const;
+  void add_purpose(Sentence& sentence,
+                   const std::vector<const v1::BehaviorState*>& behaviors) const;
+  /// Why no behavior drives; empty where that is not known.
+  std::string idle_reason() const;
+  std::string goals_reason() const;
+
+  Cause grant_cause() const;
+  std::optional<Cause> guard_cause() const;
+  /// What is old of what the behaviors act on, and what that does to the speed.
+  std::optional<Cause> age_cause() const;
+  Cause rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
+  Cause behavior_cause(const Say& say, Channel channel);
+  Cause channel_cause(Channel channel);
+  std::optional<Cause> chain(const v1::BehaviorState& behavior);
+  std::optional<Cause> chain(const v1::IntentionNode& node);
+  Cause goal_cause(const v1::GoalId& id) const;
+  Cause wheels(const std::string& text);
+
+  bool does(Wish wish) const;
+  Explanation known_so_far();
+  Explanation silent();
+  Explanation stopped() const;
+  Explanation by_hand() const;
+  Explanation by_behaviors_unknown() const;
+  Explanation by_behaviors_known();
+  Explanation finish(const Sentence& sentence, Cause cause) const;
+  /// Of how the programs are that this rests on, those that are not simply well.
+  void add_conditions(Cause& cause) const;
+
+  const Situation& scene_;
+  void add_advice(const v1::IntentionNode& of, Cause& cause);
+  std::set<std::string> told_beliefs_;
+  std::set<std::uint32_t> told_nodes_;
+};
+
+}  // namespace saphira::situation

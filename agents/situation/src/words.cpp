@@ -1,0 +1,177 @@
+#include "saphira/situation/words.hpp"
+
+#include <algorithm>
+
+#include "saphira/base/numbers.hpp"
+#include "saphira/situation/format.hpp"
+
+namespace saphira::situation {
+
+namespace {
+
+const char* name_of(v1::Frame frame) {
+  switch (frame) {
+    case v1::FRAME_ROBOT:
+      return "robot";
+    case v1::FRAME_ODOM:
+      return "odom";
+    case v1::FRAME_MAP:
+      return "map";
+  }
+  return "?";
+}
+
+}  // namespace
+
+const char* name_of(v1::ServiceState state) {
+  switch (state) {
+    case v1::SERVICE_STARTING:
+      return "starting";
+    case v1::SERVICE_WAITING:
+      return "waiting";
+    case v1::SERVICE_RUNNING:
+      return "running";
+    case v1::SERVICE_DEGRADED:
+      return "degraded";
+    case v1::SERVICE_STOPPING:
+      return "stopping";
+  }
+  return "?";
+}
+
+const char* name_of(v1::LogLevel level) {
+  switch (level) {
+    case v1::LOG_DEBUG:
+      return "debug";
+    case v1::LOG_INFO:
+      return "info";
+    case v1::LOG_WARNING:
+      return "warning";
+    case v1::LOG_ERROR:
+      return "error";
+  }
+  return "?";
+}
+
+const char* name_of(v1::Role role) {
+  switch (role) {
+    case v1::ROLE_NONE:
+      return "nobody";
+    case v1::ROLE_ESTOP:
+      return "estop";
+    case v1::ROLE_TELEOP:
+      return "teleop";
+    case v1::ROLE_DIRECT:
+      return "direct";
+    case v1::ROLE_BEHAVIORS:
+      return "behaviors";
+  }
+  return "?";
+}
+
+const char* name_of(v1::GuardAction action) {
+  switch (action) {
+    case v1::GUARD_NONE:
+      return "passes";
+    case v1::GUARD_LIMIT:
+      return "limits";
+    case v1::GUARD_SLOW:
+      return "slows";
+    case v1::GUARD_STOP:
+      return "stops";
+  }
+  return "?";
+}
+
+const char* name_of(v1::GoalState state) {
+  switch (state) {
+    case v1::GOAL_WAITING:
+      return "waiting";
+    case v1::GOAL_REFUSED:
+      return "refused";
+    case v1::GOAL_UNDERWAY:
+      return "underway";
+    case v1::GOAL_SUSPENDED:
+      return "suspended";
+    case v1::GOAL_SUCCEEDED:
+      return "succeeded";
+    case v1::GOAL_FAILED:
+      return "failed";
+    case v1::GOAL_CANCELED:
+      return "canceled";
+  }
+  return "?";
+}
+
+std::string latched(const v1::Grant& grant) {
+  if (grant.estopped())
+    return "EMERGENCY STOP, pressed by " +
+           (grant.estop_source().empty() ? "a program without a name" : grant.estop_source()) +
+           ": the robot stands until saphira estop reset";
+  if (grant.waits_for_hand_back())
+    return "autonomy waits until the robot is handed back: saphira drive hand-back";
+  return {};
+}
+
+std::string describe(const v1::Grant& grant) {
+  std::string text;
+  if (grant.estopped()) {
+    text = latched(grant);
+  } else {
+    text = name_of(grant.role());
+    text += grant.role() == v1::ROLE_NONE ? " drives" : " drives (" + grant.source() + ")";
+    if (!grant.reason().empty())
+      text += ": " + grant.reason();
+    if (grant.waits_for_hand_back() && grant.reason().find("hand-back") == std::string::npos)
+      text += "; " + latched(grant);
+  }
+  if (grant.guard() != v1::GUARD_NONE)
+    text += "; the guard " + std::string(name_of(grant.guard())) + ": " + grant.guard_reason();
+  for (const v1::Refusal& refusal : grant.refused())
+    text +=
+        "; refused " + refusal.source() + " (" + name_of(refusal.role()) + "): " + refusal.reason();
+  return text;
+}
+
+std::string describe(const v1::Goal& goal) {
+  std::string text = goal.functor() + "(";
+  const char* separator = "";
+  for (const v1::Argument& argument : goal.arguments()) {
+    text += separator + argument.name() + "=";
+    separator = ", ";
+    switch (argument.kind()) {
+      case v1::ARGUMENT_NUMBER:
+        text += plain(argument.number());
+        break;
+      case v1::ARGUMENT_TEXT:
+        text += "\"" + argument.text() + "\"";
+        break;
+      case v1::ARGUMENT_POINT:
+        text += "(" + plain(argument.point().x()) + ", " + plain(argument.point().y()) + ") in " +
+                name_of(argument.frame());
+        break;
+      case v1::ARGUMENT_TRUTH:
+        text += argument.number() != 0.0 ? "yes" : "no";
+        break;
+      case v1::ARGUMENT_UNBOUND:
+        text += "?";
+        break;
+    }
+  }
+  return text + ")";
+}
+
+bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {
+  return node.label() == "B" ||
+         std::any_of(intentions.behaviors().begin(), intentions.behaviors().end(),
+                     [&](const v1::IntendedBehavior& behavior) {
+                       return behavior.intention() == node.id() && behavior.name() == node.name() &&
+                              behavior.schema() == node.schema();
+                     });
+}
+
+std::string seconds_text(double seconds) {
+  return seconds < 9.95 ? format("%.1f s", seconds) : format("%.0f s", seconds);
+}
+
+}  // namespace saphira::situation

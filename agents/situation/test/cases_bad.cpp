@@ -1,0 +1,246 @@
+#include <functional>
+
+#include "office.hpp"
+#include "table.hpp"
+
+namespace saphira::situation::test {
+namespace {
+
+using Change = std::function<void(Situation&)>;
+
+Case when(const std::string& words, const std::string& question, const Situation& before,
+          const std::vector<Change>& changes, std::vector<std::string> must,
+          std::vector<std::string> must_not = {}) {
+  Case one{words, question, before, std::move(must), std::move(must_not)};
+  for (const Change& change : changes)
+    change(one.situation);
+  return one;
+}
+
+/// Its samples ended `cycles` ago; its newest is not the one that is wanted.
+Change silent(const std::string& name, std::uint64_t cycles) {
+  return [=](Situation& s) {
+    if (name == "behaviors") {
+      s.behaviors.reset();
+      s.behaviors_known.newest = s.now - cycles;
+    } else {
+      s.intentions.reset();
+      s.intentions_known.newest = s.now - cycles;
+    }
+  };
+}
+Change lost(const std::string& name, double seconds) {
+  return [=](Situation& s) { find(s, name).age = seconds; };
+}
+Change absent(const std::string& name) {
+  return [=](Situation& s) { remove(s, name); };
+}
+Change stands(const std::string& reason) {
+  return [=](Situation& s) { stand(s, reason); };
+}
+void no_intent(Situation& s) {
+  s.behaviors->limit_reason("no newer intent has come for 3 cycles");
+}
+
+void intentions_gone(std::vector<Case>& all) {
+  // Its goal's status is latched, and still there.
+  const Situation before = driving();
+  const std::vector<std::string> never{"nobody has asked", "no goal is underway"};
+  all.push_back(when("intentions hangs for 2 s, a goal was underway", "why", before,
+                     {stands("nobody asks to drive"), silent("intentions", 20)},
+                     {"The robot stands", "intentions has said nothing for 2.0 s"}, never));
+  all.push_back(when("the same", "trouble", before, {silent("intentions", 20)},
+                     {"intentions has said nothing for 2.0 s"}, {"behaviors"}));
+  all.push_back(
+      when("intentions was killed 5 s ago", "why", before,
+           {stands("nobody asks to drive"), silent("intentions", 50), lost("intentions", 5.2)},
+           {"intentions has not been heard for 5.2 s"}, never));
+  all.push_back(
+      when("intentions is on the far side of a cut link, and behaviors says so", "why", before,
+           {stands("nobody asks to drive"), no_intent, silent("intentions", 40),
+            lost("intentions", 4.0)},
+           {"no newer intent has come", "intentions has not been heard for 4.0 s"}, never));
+  all.push_back(
+      when("intentions is not heard", "why", before,
+           {stands("nobody asks to drive"), silent("intentions", 100), absent("intentions")},
+           {"intentions is not heard"}, never));
+  all.push_back(when("the same, for who came after it died", "why", before,
+                     {stands("nobody asks to drive"), absent("intentions"),
+                      [](Situation& s) {
+                        s.intentions.reset();
+                        s.intentions_known = {};
+                        s.statuses.clear();
+                        s.goals.clear();
+                        s.statuses_known = false;
+                      }},
+                     {"intentions is not heard"}, never));
+  all.push_back(when("intentions was started again, and does not know the goal yet", "why", before,
+                     {stands("nobody asks to drive"),
+                      [](Situation& s) {
+                        s.intentions->behaviors().clear();
+                        s.intentions->nodes().clear();
+                        find(s, "intentions").status.uptime(0.8);
+                      }},
+                     {"go_to(position=(3, 1) in odom) of saphira goal is underway"}, never));
+  all.push_back(when("the same", "why tree", before,
+                     {stands("nobody asks to drive"),
+                      [](Situation& s) {
+                        s.intentions->behaviors().clear();
+                        find(s, "intentions").status.uptime(0.8);
+                      }},
+                     {"intentions was started 0.8 s ago"}));
+  all.push_back(when(
+      "behaviors drives on an intent that is 0.4 s old", "why", before, {silent("intentions", 4)},
+      {"drive ahead", "for what is not known: intentions is 0.4 s behind"}, {"stands"}));
+  all.push_back(when("intentions waits for the robot", "trouble", before, {[](Situation& s) {
+                       Program& program = find(s, "intentions");
+                       program.status.state(v1::SERVICE_WAITING);
+                       program.status.reason("waits for robot/state");
+                     }},
+                     {"intentions is waiting: waits for robot/state"}));
+}
+
+void behaviors_gone(std::vector<Case>& all) {
+  const Situation before = driving();
+  const std::string lease =
+      "the lease of behaviors (behaviors) ran out: its newest command is 2.0 s old";
+  all.push_back(
+      when("behaviors is frozen for 2 s", "why", before, {stands(lease), silent("behaviors", 20)},
+           {"behaviors has said nothing for 2.0 s"}, {"does not want", "nobody has asked"}));
+  all.push_back(when("the same", "why not turn left", before,
+                     {stands(lease), silent("behaviors", 20)},
+                     {"behaviors has said nothing for 2.0 s"}, {"It does turn"}));
+  all.push_back(when("behaviors is frozen for 10 s", "why", before,
+                     {stands("the lease of behaviors (behaviors) ran out"),
+                      silent("behaviors", 100), lost("behaviors", 10.0)},
+                     {"behaviors has not been heard for 10 s"}, {"does not want"}));
+  all.push_back(
+      when("behaviors is not heard", "why", before,
+           {stands("nobody asks to drive"), silent("behaviors", 100), absent("behaviors")},
+           {"behaviors is not heard"}, {"nobody has asked", "no goal"}));
+  all.push_back(when("the same", "trouble", before, {silent("behaviors", 100), absent("behaviors")},
+                     {"behaviors is not heard"}));
+  all.push_back(when("just started again: the command is of the process before", "why", before,
+                     {[](Situation& s) {
+                       s.behaviors.reset();
+                       s.behaviors_known = {s.now, s.now};
+                       s.grant->velocity(0.05);
+                       s.robot->velocity(0.05);
+                       find(s, "behaviors").status.uptime(0.2);
+                     }},
+                     {"its reasons are not known", "behaviors was started 0.2 s ago"},
+                     {"no behavior wants a speed"}));
+  all.push_back(when("the network is slow, so it drives slower", "why", before, {[](Situation& s) {
+                       s.behaviors->limit_reason("intentions are 0.5 s old");
+                       s.behaviors->speed_limit(0.2);
+                       s.grant->velocity(0.2);
+                       s.robot->velocity(0.2);
+                     }},
+                     {"0.20 m/s", "intentions are 0.5 s old, so it drives no faster than 0.20"}));
+}
+
+void bridge_gone(std::vector<Case>& all) {
+  const Situation before = driving();
+  const Change quiet = [](Situation& s) { s.silence = 4.0; };
+  all.push_back(when("the bridge was killed 4 s ago", "why", before, {quiet, lost("bridge", 4.3)},
+                     {"What the robot does is not known", "nothing has been heard of it for 4.0 s",
+                      "bridge has not been heard for 4.3 s"},
+                     {"stands"}));
+  all.push_back(when("the same", "drive", before, {quiet, lost("bridge", 4.3)},
+                     {"not known any more", "bridge has not been heard"}, {"behaviors drives"}));
+  all.push_back(when("the same", "why not faster", before, {quiet, lost("bridge", 4.3)},
+                     {"What the robot does is not known"}));
+  all.push_back(when("the bridge lost its robot", "why", before,
+                     {quiet,
+                      [](Situation& s) {
+                        Program& program = find(s, "bridge");
+                        program.status.state(v1::SERVICE_WAITING);
+                        program.status.reason("no answer from tcp:192.0.2.7:8101");
+                      }},
+                     {"What the robot does is not known", "bridge is waiting: no answer from"}));
+  all.push_back(when("no robot is connected yet", "why", resting(), {[](Situation& s) {
+                       s.grant->stamp().epoch(0);
+                       s.grant->reason("no robot is connected");
+                     }},
+                     {"no robot is connected"}));
+  all.push_back(when("nothing is on the bus", "why", Situation{},
+                     {[](Situation& s) { s.listened = 3.0; }},
+                     {"Nothing is known", "bridge, behaviors and intentions are not heard"},
+                     {"stands", "nobody has asked"}));
+  all.push_back(when("the same", "trouble", Situation{}, {[](Situation& s) { s.listened = 3.0; }},
+                     {"bridge, behaviors and intentions are not heard"}));
+  all.push_back(when("the same", "drive", Situation{}, {[](Situation& s) { s.listened = 3.0; }},
+                     {"not known", "bridge is not heard"}, {"nobody"}));
+  all.push_back(when("we have listened for a moment only", "trouble", Situation{},
+                     {[](Situation& s) { s.listened = 0.1; }}, {}, {"is not heard"}));
+}
+
+void past(std::vector<Case>& all) {
+  const Change then = [](Situation& s) {
+    s.past = true;
+    s.cycle = 900;
+  };
+  Situation before = resting();
+  then(before);
+  all.push_back(when("a standstill of before: what is suspended and missing now is not why", "why",
+                     before,
+                     {[](Situation& s) {
+                        s.statuses = {goal_status(v1::GOAL_FAILED, "the way is blocked")};
+                        s.goals = driving().goals;
+                        v1::ProcessSet service;
+                        service.service("intentions");
+                        v1::Process process;
+                        process.name("execute-intentions");
+                        process.state(v1::PROCESS_SUSPENDED);
+                        process.since(950);
+                        service.processes({process});
+                        s.processes = {service};
+                      },
+                      absent("behaviors")},
+                     {"failed, the way is blocked"}, {"suspended", "is not heard"}));
+  all.push_back(when("a standstill of before, without a goal", "why", before, {},
+                     {"there was no goal"}, {"nobody has asked"}));
+  all.push_back(when("intentions was killed before that cycle", "why", before, {[](Situation& s) {
+                       s.intentions.reset();
+                       s.intentions_known = {500, 880};
+                       s.statuses_known = false;
+                     }},
+                     {"intentions has said nothing since cycle 880"},
+                     {"no goal", "nobody has asked"}));
+  all.push_back(when("intentions was started again after that cycle", "why", before,
+                     {[](Situation& s) {
+                       s.intentions.reset();
+                       s.intentions_known = {950, 1000};
+                       s.statuses_known = false;
+                     }},
+                     {"intentions has kept nothing from before cycle 950"}, {"no goal"}));
+  all.push_back(when("behaviors has left nothing of that time", "why", before, {[](Situation& s) {
+                       s.behaviors.reset();
+                       s.behaviors_known = {};
+                     }},
+                     {"behaviors has left nothing of the last minute"}, {"is not heard"}));
+  Situation drove = driving();
+  then(drove);
+  all.push_back(when("a drive of before, of which behaviors left the cycle out", "why", drove,
+                     {[](Situation& s) {
+                       s.behaviors.reset();
+                       s.behaviors_known = {500, 1000};
+                     }},
+                     {"behaviors left this cycle out"}, {"stand"}));
+  all.push_back(when("a drive of before; now nothing is heard of the robot", "why", drove,
+                     {[](Situation& s) { s.silence = 20.0; }, absent("bridge")},
+                     {"drive ahead at 0.30 m/s", "GoToPos"}, {"not known", "not on the bus"}));
+}
+
+}  // namespace
+
+std::vector<Case> bad_cases() {
+  std::vector<Case> all;
+  intentions_gone(all);
+  behaviors_gone(all);
+  bridge_gone(all);
+  past(all);
+  return all;
+}
+
+}  // namespace saphira::situation::test

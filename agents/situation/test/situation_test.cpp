@@ -1,0 +1,70 @@
+#include "saphira/situation/situation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "office.hpp"
+
+namespace saphira::situation {
+namespace {
+
+using test::driving;
+using test::program;
+
+TEST(Condition, OfTwoInstancesTheOneThatIsHeardCounts) {
+  Situation s = driving();
+  Program dead = program("behaviors");
+  dead.age = 8.0;
+  s.programs.push_back(dead);
+  EXPECT_EQ(condition(s, "behaviors").health, Health::running);
+  test::find(s, "behaviors").age = 9.0;
+  EXPECT_EQ(condition(s, "behaviors").health, Health::lost);
+  EXPECT_NE(condition(s, "behaviors").words.find("8.0 s"), std::string::npos);
+}
+
+TEST(Condition, LateIsHeardAndHungIsNot) {
+  Situation s = driving();
+  s.behaviors_known.newest = s.now - 2;
+  EXPECT_EQ(condition(s, "behaviors").health, Health::running);
+  s.behaviors_known.newest = s.now - 3;
+  EXPECT_EQ(condition(s, "behaviors").health, Health::late);
+  EXPECT_TRUE(condition(s, "behaviors").heard());
+  s.behaviors_known.newest = s.now - 10;
+  EXPECT_EQ(condition(s, "behaviors").health, Health::hung);
+  EXPECT_FALSE(condition(s, "behaviors").heard());
+}
+
+TEST(Condition, IsNotJudgedBeforeSomebodyHasListened) {
+  Situation s;
+  s.listened = 0.5;
+  EXPECT_EQ(trouble(s), "");
+  s.listened = 1.5;
+  EXPECT_EQ(trouble(s),
+            "bridge, behaviors and intentions are not heard (not running, hung, or cut off)");
+}
+
+TEST(MissingServices, AreNamed) {
+  EXPECT_EQ(missing_services({}), "bridge, behaviors and intentions");
+  Program silent = program("intentions");
+  silent.age = 9.0;
+  EXPECT_EQ(missing_services({program("bridge"), silent}), "behaviors and intentions");
+  EXPECT_EQ(missing_services({program("bridge"), program("intentions"), program("behaviors")}), "");
+}
+
+TEST(Json, HoldsProgramsDriveGoalsAndTrouble) {
+  Situation s = driving();
+  test::find(s, "intentions").age = 4.0;
+  const auto json = nlohmann::json::parse(to_json(s));
+  EXPECT_EQ(json.at("programs").size(), 5U);
+  EXPECT_EQ(json.at("programs").at(0).at("name"), "bridge");
+  EXPECT_EQ(json.at("programs").at(2).at("state"), "lost");
+  EXPECT_EQ(json.at("drive").at("role"), "behaviors");
+  EXPECT_EQ(json.at("goals").at(0).at("functor"), "go_to");
+  EXPECT_EQ(json.at("goals").at(0).at("state"), "underway");
+  EXPECT_EQ(json.at("missing"), "intentions");
+  EXPECT_EQ(json.at("trouble"), trouble(s));
+}
+
+}  // namespace
+}  // namespace saphira::situation

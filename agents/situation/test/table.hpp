@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saphira/situation/situation.hpp"
+
+/// The table of situations (docs/situations.md).
+namespace saphira::situation::test {
+
+struct Case {
+  std::string words;     ///< what is the case, for people
+  std::string question;  ///< why, why not turn left, why tree, drive, trouble
+  Situation situation;
+  std::vector<std::string> must;      ///< parts of the answer
+  std::vector<std::string> must_not;  ///< no parts of it
+};
+
+/// Where all is well, and where people drive.
+std::vector<Case> good_cases();
+/// Where something is missing, slow, or past.
+std::vector<Case> bad_cases();
+/// Both.
+std::vector<Case> all_cases();
+
+/// What is said in the situation.
+std::string answer(const Case& one);
+/// What is wrong with the answer; empty: nothing.
+std::vector<std::string> faults(const Case& one);
+/// All as one table.
+std::string to_markdown(const std::vector<Case>& cases);
+
+}  // namespace saphira::situation::test

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira::speech {
+
+/// Whether a word is a code such as EJ-231, that is spelled.
+bool is_code(const std::string& word);
+/// "e j two three one"
+std::string spelled(const std::string& word);
+
+/// Phones of a word, such as "F L EY K IY", in those of the CMU dictionary.
+using Phones = std::vector<std::string>;
+
+/// How words sound: as a file says, else as the dictionary has them, else by flite's rules.
+class Pronunciations {
+ public:
+  /// Of one word in the dictionary: all of its pronunciations, or none.
+  using Dictionary = std::function<Phones(const std::string& word)>;
+
+  /// `text`: lines such as "flakey F L EY K IY"; several for a word are all right, # begins a
+  /// comment. FileError with line and column.
+  Pronunciations(std::string_view text, const std::string& file, Dictionary dictionary);
+
+  /// At least one, for a word of small letters as the grammar has it.
+  Phones of(const std::string& word) const;
+
+ private:
+  Phones of_code(const std::string& word) const;
+
+  Dictionary dictionary_;
+  std::map<std::string, Phones> own_;
+};
+
+/// All phones that there are.
+const std::vector<std::string>& phones();
+
+}  // namespace saphira::speech

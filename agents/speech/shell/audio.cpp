@@ -1,0 +1,238 @@
+#include "speech/shell/audio.hpp"
+
+#include <alsa/asoundlib.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::speech {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBlock = kRate / 50;
+constexpr std::size_t kMost = 10 * kRate;          // samples that wait to be taken
+constexpr unsigned kLatency = 100'000;             // [us] of a device
+constexpr std::chrono::milliseconds kAgain{5000};  // before a device is tried again
+constexpr std::chrono::milliseconds kLook{200};    // within which a thread notices its end
+
+struct ClosePcm {
+  void operator()(snd_pcm_t* pcm) const { snd_pcm_close(pcm); }
+};
+using Pcm = std::unique_ptr<snd_pcm_t, ClosePcm>;
+
+void say_nothing(const char* /*file*/, int /*line*/, const char* /*function*/, int /*error*/,
+                 const char* /*format*/, ...) {}
+
+Pcm open_device(const std::string& name, snd_pcm_stream_t direction) {
+  snd_lib_error_set_handler(say_nothing);
+  snd_pcm_t* raw = nullptr;
+  int error = snd_pcm_open(&raw, name.c_str(), direction, 0);
+  Pcm pcm(error < 0 ? nullptr : raw);
+  if (error >= 0)
+    error = snd_pcm_set_params(pcm.get(), SND_PCM_FORMAT_S16_LE, SND_PCM_ACCESS_RW_INTERLEAVED, 1,
+                               kRate, 1, kLatency);
+  if (error < 0)
+    throw std::runtime_error("the sound device \"" + name + "\": " + snd_strerror(error) +
+                             (direction == SND_PCM_STREAM_CAPTURE
+                                  ? " (arecord -L lists those there are)"
+                                  : " (aplay -L lists those there are)"));
+  return pcm;
+}
+
+/// After a device has reported an error that it does not recover from.
+std::runtime_error failed(const std::string& device, snd_pcm_sframes_t error) {
+  return std::runtime_error("the sound device \"" + device +
+                            "\": " + snd_strerror(static_cast<int>(error)));
+}
+
+}  // namespace
+
+Microphone::Microphone(std::string source, std::function<void(const std::string&)> trouble)
+    : source_(std::move(source)), trouble_(std::move(trouble)), thread_([this] { run(); }) {}
+
+Microphone::~Microphone() {
+  stop_ = true;
+  taken_.notify_all();
+  thread_.join();
+}
+
+Sound Microphone::take() {
+  const std::lock_guard lock(mutex_);
+  taken_.notify_all();
+  return std::exchange(waiting_, {});
+}
+
+bool Microphone::ended() const {
+  const std::lock_guard lock(mutex_);
+  return at_end_ && waiting_.empty();
+}
+
+/// waits: what comes from a file or a pipe is not lost.
+void Microphone::put(const Sound& sound, bool waits) {
+  std::unique_lock lock(mutex_);
+  while (waits && waiting_.size() > kMost && !stop_)
+    taken_.wait_for(lock, kLook);
+  waiting_.insert(waiting_.end(), sound.begin(), sound.end());
+  if (!waits && waiting_.size() > kMost)
+    waiting_.erase(waiting_.begin(), waiting_.end() - static_cast<std::ptrdiff_t>(kMost));
+}
+
+void Microphone::rest() {
+  for (auto left = kAgain; left.count() > 0 && !stop_; left -= kLook)
+    std::this_thread::sleep_for(kLook);
+}
+
+void Microphone::run() {
+  if (source_ == "none")
+    return;
+  while (!stop_ && !ended()) {
+    try {
+      read_once();
+    } catch (const std::exception& error) {
+      trouble_(error.what());
+      rest();
+    }
+  }
+}
+
+void Microphone::read_once() {
+  if (source_ == "-" || fs::is_regular_file(source_)) {
+    if (source_ == "-")
+      read_pipe(STDIN_FILENO);
+    else
+      put(read_wav(read_file(source_), source_), true);
+    const std::lock_guard lock(mutex_);
+    at_end_ = true;
+  } else if (fs::is_fifo(source_)) {
+    const int file = open(source_.c_str(), O_RDONLY | O_NONBLOCK);
+    if (file < 0)
+      throw std::runtime_error("the pipe " + source_ + " cannot be read");
+    read_pipe(file);  // whoever writes next is read next
+    close(file);
+  } else {
+    read_device();
+  }
+}
+
+void Microphone::read_pipe(int file) {
+  std::string bytes;
+  bool begun = false;
+  while (!stop_) {
+    pollfd ready{file, POLLIN, 0};
+    if (poll(&ready, 1, static_cast<int>(kLook.count())) <= 0)
+      continue;
+    std::array<char, 4096> block{};
+    const ssize_t count = read(file, block.data(), block.size());
+    if (count == 0 && !begun && file != STDIN_FILENO) {
+      std::this_thread::sleep_for(kLook);  // nobody has opened it to write yet
+      continue;
+    }
+    if (count <= 0)
+      return;
+    begun = true;
+    bytes.append(block.data(), static_cast<std::size_t>(count));
+    Sound sound(bytes.size() / 2);
+    for (std::size_t i = 0; i < sound.size(); ++i)
+      sound[i] = static_cast<std::int16_t>(static_cast<unsigned char>(bytes[2 * i]) |
+                                           (static_cast<unsigned char>(bytes[2 * i + 1]) << 8));
+    bytes.erase(0, 2 * sound.size());
+    put(sound, true);
+  }
+}
+
+void Microphone::read_device() {
+  const Pcm pcm = open_device(source_, SND_PCM_STREAM_CAPTURE);
+  trouble_("");
+  Sound block(kBlock);
+  while (!stop_) {
+    snd_pcm_sframes_t count = snd_pcm_readi(pcm.get(), block.data(), block.size());
+    if (count < 0)
+      count = snd_pcm_recover(pcm.get(), static_cast<int>(count), 1);
+    if (count < 0)
+      throw failed(source_, count);
+    put(Sound(block.begin(), block.begin() + count), false);
+  }
+}
+
+Speaker::Speaker(std::string sink, std::function<void(const std::string&)> trouble)
+    : sink_(std::move(sink)), trouble_(std::move(trouble)), thread_([this] { run(); }) {}
+
+Speaker::~Speaker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  more_.notify_all();
+  thread_.join();
+}
+
+void Speaker::play(Sound sound) {
+  if (sink_ == "none")
+    return;
+  {
+    const std::lock_guard lock(mutex_);
+    speaking_ = true;
+    waiting_.push_back(std::move(sound));
+  }
+  more_.notify_all();
+}
+
+void Speaker::run() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    more_.wait(lock, [this] { return stop_ || !waiting_.empty(); });
+    if (stop_)
+      return;
+    const Sound sound = std::move(waiting_.front());
+    waiting_.pop_front();
+    lock.unlock();
+    try {
+      play_once(sound);
+      trouble_("");
+    } catch (const std::exception& error) {
+      trouble_(error.what());
+    }
+    lock.lock();
+    speaking_ = !waiting_.empty();
+  }
+}
+
+void Speaker::play_once(const Sound& sound) {
+  if (!fs::is_directory(sink_)) {
+    play_on_device(sound);
+    return;
+  }
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "/%04d.wav", ++files_);
+  if (!(std::ofstream(sink_ + name.data(), std::ios::binary) << wav(sound)))
+    throw std::runtime_error(sink_ + name.data() + " cannot be written");
+}
+
+void Speaker::play_on_device(const Sound& sound) const {
+  const Pcm pcm = open_device(sink_, SND_PCM_STREAM_PLAYBACK);
+  for (std::size_t at = 0; at < sound.size();) {
+    const std::size_t left = std::min(kBlock, sound.size() - at);
+    snd_pcm_sframes_t count = snd_pcm_writei(pcm.get(), sound.data() + at, left);
+    if (count < 0)
+      count = snd_pcm_recover(pcm.get(), static_cast<int>(count), 1);
+    if (count < 0)
+      throw failed(sink_, count);
+    at += static_cast<std::size_t>(count);
+  }
+  snd_pcm_drain(pcm.get());
+}
+
+}  // namespace saphira::speech

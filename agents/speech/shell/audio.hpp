@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "saphira/speech/sound.hpp"
+
+namespace saphira::speech {
+
+/// Where sound comes from: a device of ALSA, a WAV file, `-` or a FIFO with raw samples (16 bits,
+/// 16 kHz, one channel), or `none`. Reads in a thread of its own; at most a few seconds wait to be
+/// taken, and of a device what is older is lost.
+class Microphone {
+ public:
+  /// `trouble` is told, from the thread, why nothing comes; an empty text: it comes again. A device
+  /// that fails is tried again.
+  Microphone(std::string source, std::function<void(const std::string&)> trouble);
+  ~Microphone();
+  Microphone(const Microphone&) = delete;
+  Microphone& operator=(const Microphone&) = delete;
+
+  Sound take();
+  /// A file is at its end, and all of it has been taken.
+  bool ended() const;
+
+ private:
+  void run();
+  void read_once();
+  void read_device();
+  void read_pipe(int file);
+  void put(const Sound& sound, bool waits);
+  void rest();
+
+  std::string source_;
+  std::function<void(const std::string&)> trouble_;
+  mutable std::mutex mutex_;
+  std::condition_variable taken_;
+  Sound waiting_;
+  bool at_end_ = false;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// Where sound goes to: a device of ALSA, a folder (a WAV file for each), or `none`. Plays in a
+/// thread of its own.
+class Speaker {
+ public:
+  Speaker(std::string sink, std::function<void(const std::string&)> trouble);
+  ~Speaker();
+  Speaker(const Speaker&) = delete;
+  Speaker& operator=(const Speaker&) = delete;
+
+  void play(Sound sound);
+  bool speaking() const { return speaking_; }
+
+ private:
+  void run();
+  void play_once(const Sound& sound);
+  void play_on_device(const Sound& sound) const;
+
+  std::string sink_;
+  std::function<void(const std::string&)> trouble_;
+  std::mutex mutex_;
+  std::condition_variable more_;
+  std::deque<Sound> waiting_;
+  bool stop_ = false;
+  std::atomic<bool> speaking_{false};
+  int files_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace saphira::speech

@@ -1,0 +1,129 @@
+#include "speech/shell/speech_shell.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <set>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::speech {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double unix_time() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string folder_of(const std::string& file) {
+  const std::string folder = fs::path(file).parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+}  // namespace
+
+SpeechShell::SpeechShell(bus::Node& node, const SpeechOptions& options)
+    : node_(node),
+      options_(options),
+      recognizer_({}, read_file(options.pronunciations), options.pronunciations),
+      conversation_(recognizer_,
+                    agent_interface::Grammar(read_file(options.grammar), options.grammar)),
+      voice_(options.voice),
+      um_(voice_.say("um")),
+      folder_(folder_of(options.grammar), fs::path(options.grammar).extension()),
+      maps_(node.reader(bus::topics::kMap)),
+      said_(node.reader(bus::topics::kSaid)),
+      heard_(node.writer(bus::topics::kHeard)),
+      microphone_(options.microphone,
+                  [this](const std::string& text) {
+                    const std::lock_guard lock(mutex_);
+                    trouble_ = text;
+                  }),
+      speaker_(options.speaker, [this](const std::string& text) {
+        const std::lock_guard lock(mutex_);
+        trouble_ = text;
+      }) {
+  folder_.look();
+}
+
+void SpeechShell::run(const bus::Stop& stop) {
+  constexpr std::chrono::milliseconds kLook{20};
+  auto looked = Clock::now();
+  while (!stop.requested()) {
+    node_.wait(kLook, &stop);
+    step();
+    if (Clock::now() - looked > std::chrono::seconds(1)) {
+      reload();
+      report();
+      looked = Clock::now();
+    }
+    node_.publish_status();
+  }
+}
+
+void SpeechShell::step() {
+  if (const auto map = maps_.take_newest()) {
+    std::set<std::string> names;
+    for (const auto& artifact : map->artifacts())
+      if (!artifact.name().empty())
+        names.insert(artifact.name());
+    conversation_.names({names.begin(), names.end()});
+  }
+  for (const auto& sample : said_.take()) {
+    if (sample.info.disposed)
+      continue;
+    conversation_.said(sample.data.text());
+    speaker_.play(voice_.say(sample.data.text()));
+  }
+  const Sound sound = microphone_.take();
+  if (!sound.empty())
+    tell(conversation_.hear(sound, speaker_.speaking()));
+  else if (microphone_.ended())
+    tell(conversation_.end());
+}
+
+void SpeechShell::tell(const Conversation::Outputs& out) {
+  if (out.um)
+    speaker_.play(um_);
+  for (const std::string& text : out.utterances) {
+    v1::Utterance utterance;
+    utterance.id().writer(node_.instance());
+    utterance.id().number(++number_);
+    utterance.speaker(options_.person);
+    utterance.text(text);
+    utterance.means(v1::UTTERANCE_SPOKEN);
+    // A keyword alone: what was behind it was not understood.
+    utterance.confidence(text.find(' ') == std::string::npos ? 0.5 : 1.0);
+    utterance.time(unix_time());
+    heard_.write(utterance);
+    node_.info("heard: " + text);
+  }
+}
+
+void SpeechShell::reload() {
+  for (const std::string& name : folder_.look().changed) {
+    if (name != fs::path(options_.grammar).filename())
+      continue;
+    try {
+      conversation_.use(agent_interface::Grammar(read_file(options_.grammar), options_.grammar));
+      node_.info("the grammar " + options_.grammar + " was read again");
+    } catch (const std::runtime_error& error) {
+      node_.error(std::string("the grammar stays as it was: ") + error.what());
+    }
+  }
+}
+
+/// What the threads have had to say. Each trouble is told once.
+void SpeechShell::report() {
+  const std::lock_guard lock(mutex_);
+  if (trouble_ == told_)
+    return;
+  told_ = trouble_;
+  if (!told_.empty())
+    node_.warn(told_);
+  node_.status().state(told_.empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED);
+  node_.status().reason(told_);
+}
+
+}  // namespace saphira::speech

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "saphira/base/watched_folder.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/bus/topics.hpp"
+#include "saphira/speech/conversation.hpp"
+#include "saphira/speech/voice.hpp"
+#include "speech/shell/audio.hpp"
+
+namespace saphira::speech {
+
+struct SpeechOptions {
+  std::string grammar;         ///< a file
+  std::string pronunciations;  ///< a file
+  std::string microphone = "default";
+  std::string speaker = "default";
+  std::string voice = "slt";
+  std::string person;  ///< whoever speaks, where it is known
+};
+
+/// Speech on the bus: what is heard becomes utterances, and what the robot says is spoken.
+class SpeechShell {
+ public:
+  /// FileError, std::runtime_error or std::invalid_argument where a file, the model or the voice
+  /// is wrong.
+  SpeechShell(bus::Node& node, const SpeechOptions& options);
+
+  void step();
+  void run(const bus::Stop& stop);
+
+ private:
+  void tell(const Conversation::Outputs& out);
+  void reload();
+  void report();
+
+  bus::Node& node_;
+  SpeechOptions options_;
+  Recognizer recognizer_;
+  Conversation conversation_;
+  Voice voice_;
+  Sound um_;
+  WatchedFolder folder_;
+  bus::Reader<v1::FloorMap> maps_;
+  bus::Reader<v1::Utterance> said_;
+  bus::Writer<v1::Utterance> heard_;
+  std::uint64_t number_ = 0;
+  std::mutex mutex_;
+  std::string trouble_;  ///< of the threads; guarded
+  std::string told_ = "?";
+  Microphone microphone_;
+  Speaker speaker_;
+};
+
+}  // namespace saphira::speech

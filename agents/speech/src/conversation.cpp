@@ -1,0 +1,82 @@
+#include "saphira/speech/conversation.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace saphira::speech {
+namespace {
+
+constexpr double kEcho = 0.3;       // [s] of a room, after the robot has spoken
+constexpr double kPatience = 20.0;  // [s] for a reply; as the dialogue has it
+
+}  // namespace
+
+Conversation::Conversation(Recognizer& recognizer, agent_interface::Grammar grammar)
+    : recognizer_(recognizer), grammar_(std::move(grammar)) {}
+
+void Conversation::use(agent_interface::Grammar grammar) {
+  grammar_ = std::move(grammar);
+  listens_for_replies_.reset();
+}
+
+void Conversation::names(std::vector<std::string> names) {
+  if (names == names_)
+    return;
+  names_ = std::move(names);
+  listens_for_replies_.reset();
+}
+
+void Conversation::said(const std::string& text) {
+  const bool question = !text.empty() && text.back() == '?' && text != "what?";
+  if (question)
+    replies_ = kPatience;
+}
+
+/// The grammar is changed between two utterances only.
+void Conversation::listen() {
+  const bool replies = replies_ > 0.0;
+  if (listens_for_replies_ == replies)
+    return;
+  std::vector<std::string> names = grammar_.names();
+  for (const std::string& name : names_) {
+    std::string text;
+    for (const std::string& word : agent_interface::words_of(name))
+      text += (text.empty() ? "" : " ") + word;
+    if (!text.empty() && std::find(names.begin(), names.end(), text) == names.end())
+      names.push_back(text);
+  }
+  recognizer_.listen_for(grammar_.graph(names, replies));
+  listens_for_replies_ = replies;
+}
+
+Conversation::Outputs Conversation::take(const std::vector<Event>& events) {
+  Outputs out;
+  for (const Event& event : events) {
+    if (event.kind != Event::Kind::heard || event.heard.outcome == Outcome::not_for_it)
+      continue;
+    out.um = true;
+    out.utterances.push_back(event.heard.outcome == Outcome::command
+                                 ? event.heard.text
+                                 : event.heard.text.substr(0, event.heard.text.find(' ')));
+  }
+  return out;
+}
+
+Conversation::Outputs Conversation::hear(const Sound& sound, bool speaking) {
+  const double length = seconds(sound);
+  replies_ = std::max(0.0, replies_ - (speaking ? 0.0 : length));
+  deaf_ = speaking ? kEcho : deaf_ - length;
+  if (speaking || deaf_ > 0.0) {
+    recognizer_.end();  // what was being said is lost in the robot's own voice
+    return {};
+  }
+  if (!recognizer_.in_speech())
+    listen();
+  return take(recognizer_.hear(sound));
+}
+
+Conversation::Outputs Conversation::end() {
+  return take(recognizer_.end());
+}
+
+}  // namespace saphira::speech

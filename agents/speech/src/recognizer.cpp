@@ -1,0 +1,277 @@
+#include "saphira/speech/recognizer.hpp"
+
+#include <pocketsphinx.h>
+#include <sphinxbase/err.h>
+#include <sphinxbase/fsg_model.h>
+
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace saphira::speech {
+namespace {
+
+// Phones behind the keyword that are no word: breath, or the noise of the room.
+constexpr int kBreath = 4;
+constexpr const char* kPhone = "p_";  // begins the token of a phone; words are w0, w1, ...
+
+Phones in_dictionary(ps_decoder_t* decoder, const std::string& word) {
+  Phones out;
+  for (int i = 1; i < 6; ++i) {
+    const std::string name = i == 1 ? word : word + "(" + std::to_string(i) + ")";
+    char* const found = ps_lookup_word(decoder, name.c_str());
+    if (found == nullptr)
+      break;
+    out.emplace_back(found);
+    ckd_free(found);
+  }
+  return out;
+}
+
+struct FreeDecoder {
+  void operator()(ps_decoder_t* decoder) const { ps_free(decoder); }
+};
+
+}  // namespace
+
+const char* word(Outcome outcome) {
+  return outcome == Outcome::command     ? "command"
+         : outcome == Outcome::addressed ? "addressed"
+                                         : "not for it";
+}
+
+struct Recognizer::Self {
+  RecognizerSettings settings;
+  std::unique_ptr<ps_decoder_t, FreeDecoder> decoder;
+  std::unique_ptr<Pronunciations> pronunciations;
+  std::map<std::string, std::string> tokens;  ///< of the words
+  std::map<std::string, std::string> words;   ///< of the tokens
+  bool listens = false;                       ///< an utterance has been begun
+  bool in_speech = false;
+  int grammars = 0;
+  std::string keyword;   ///< that was heard alone: what follows belongs to it
+  double attends = 0.0;  ///< [s] for how long still
+
+  std::string token(const std::string& word);
+  std::string name_of(bool continued) const {
+    return (continued ? "continued" : "grammar") + std::to_string(grammars);
+  }
+  void take(const agent_interface::WordGraph& graph, bool continued);
+  void search(bool continued);
+  Heard result() const;
+  void finish(std::vector<Event>& events);
+  void give_up_attention(std::vector<Event>& events);
+};
+
+Recognizer::Recognizer(RecognizerSettings settings, std::string_view text, const std::string& file)
+    : self_(std::make_unique<Self>()) {
+  self_->settings = std::move(settings);
+  err_set_logfp(nullptr);
+  const std::string model = self_->settings.model;
+  cmd_ln_t* const config =
+      cmd_ln_init(nullptr, ps_args(), TRUE, "-hmm", (model + "/en-us").c_str(), "-dict",
+                  (model + "/cmudict-en-us.dict").c_str(), "-remove_silence", "yes",
+                  "-vad_threshold", std::to_string(self_->settings.least_voice).c_str(),
+                  "-vad_postspeech", std::to_string(self_->settings.pause).c_str(), nullptr);
+  if (config != nullptr)
+    self_->decoder.reset(ps_init(config));
+  cmd_ln_free_r(config);
+  if (!self_->decoder)
+    throw std::runtime_error("the model of speech in " + model +
+                             " cannot be read: install the Debian package pocketsphinx-en-us");
+  ps_decoder_t* const decoder = self_->decoder.get();
+  self_->pronunciations = std::make_unique<Pronunciations>(
+      text, file, [decoder](const std::string& word) { return in_dictionary(decoder, word); });
+  for (const std::string& phone : phones())
+    ps_add_word(decoder, (kPhone + phone).c_str(), phone.c_str(), FALSE);
+}
+Recognizer::~Recognizer() {
+  if (self_->listens)
+    ps_end_utt(self_->decoder.get());
+}
+
+bool Recognizer::in_speech() const {
+  return self_->in_speech || !self_->keyword.empty();
+}
+
+/// The recognizer's dictionary is not asked for words with signs or digits in them.
+std::string Recognizer::Self::token(const std::string& word) {
+  const auto known = tokens.find(word);
+  if (known != tokens.end())
+    return known->second;
+  const std::string name = "w" + std::to_string(tokens.size());
+  int number = 0;
+  for (const std::string& sound : pronunciations->of(word)) {
+    ++number;
+    const std::string each = number == 1 ? name : name + "(" + std::to_string(number) + ")";
+    if (ps_add_word(decoder.get(), each.c_str(), sound.c_str(), FALSE) < 0)
+      throw std::runtime_error("\"" + word + "\" cannot be pronounced as " + sound);
+  }
+  tokens[word] = name;
+  words[name] = word;
+  return name;
+}
+
+/// continued: the keyword was said before.
+void Recognizer::Self::take(const agent_interface::WordGraph& graph, bool continued) {
+  using agent_interface::WordGraph;
+  logmath_t* const log = ps_get_logmath(decoder.get());
+  const double weight = cmd_ln_float32_r(ps_get_config(decoder.get()), "-lw");
+  const int garbage = graph.states;
+  const int behind = graph.states + 1;
+  const int instead = graph.states + 2;
+  const std::string name = name_of(continued);
+  fsg_model_t* const fsg =
+      fsg_model_init(name.c_str(), log, static_cast<float>(weight), graph.states + 3);
+  fsg->start_state = continued ? WordGraph::kAddressed : WordGraph::kStart;
+  fsg->final_state = WordGraph::kEnd;
+  for (const WordGraph::Arc& arc : graph.arcs) {
+    if (arc.word.empty())
+      fsg_model_null_trans_add(fsg, arc.from, arc.to, 0);
+    else
+      fsg_model_trans_add(fsg, arc.from, arc.to, 0,
+                          fsg_model_word_add(fsg, token(arc.word).c_str()));
+  }
+  const auto likely = [&](double natural) {
+    return static_cast<int32>(logmath_ln_to_log(log, natural) * weight);
+  };
+  for (const std::string& phone : phones()) {
+    const int id = fsg_model_word_add(fsg, (kPhone + phone).c_str());
+    if (!continued) {
+      fsg_model_trans_add(fsg, WordGraph::kStart, garbage, likely(settings.without_keyword), id);
+      fsg_model_trans_add(fsg, WordGraph::kStart, instead, likely(settings.instead_of_keyword), id);
+    }
+    fsg_model_trans_add(fsg, instead, instead, likely(settings.each_phone), id);
+    fsg_model_trans_add(fsg, garbage, garbage, likely(settings.each_phone), id);
+    fsg_model_trans_add(fsg, WordGraph::kAddressed, behind, likely(settings.behind_keyword), id);
+    fsg_model_trans_add(fsg, behind, behind, likely(settings.each_phone), id);
+  }
+  for (const int state : {garbage, behind, WordGraph::kAddressed})
+    fsg_model_null_trans_add(fsg, state, WordGraph::kEnd, 0);
+  fsg_model_null_trans_add(fsg, instead, WordGraph::kAddressed, 0);
+  glist_free(fsg_model_null_trans_closure(fsg, nullptr));
+  const bool taken = ps_set_fsg(decoder.get(), name.c_str(), fsg) == 0;
+  fsg_model_free(fsg);
+  if (!taken)
+    throw std::runtime_error("the recognizer of speech does not take the grammar");
+}
+
+void Recognizer::Self::search(bool continued) {
+  if (ps_set_search(decoder.get(), name_of(continued).c_str()) != 0)
+    throw std::runtime_error("the recognizer of speech does not take the grammar");
+}
+
+void Recognizer::listen_for(const agent_interface::WordGraph& graph) {
+  if (self_->listens)
+    ps_end_utt(self_->decoder.get());
+  self_->listens = self_->in_speech = false;
+  self_->keyword.clear();
+  const std::vector<std::string> old{self_->name_of(false), self_->name_of(true)};
+  ++self_->grammars;
+  self_->take(graph, true);
+  self_->take(graph, false);
+  self_->search(false);
+  if (self_->grammars > 1)
+    for (const std::string& name : old)
+      ps_unset_search(self_->decoder.get(), name.c_str());
+}
+
+Heard Recognizer::Self::result() const {
+  const char* const hypothesis = ps_get_hyp(decoder.get(), nullptr);
+  Heard heard;
+  if (hypothesis == nullptr)
+    return heard;
+  std::istringstream parts(hypothesis);
+  bool begins = false;
+  int phones_too = 0;
+  for (std::string part; parts >> part;) {
+    part = part.substr(0, part.find('('));
+    if (part.rfind(kPhone, 0) == 0) {
+      if (!begins)
+        return {};  // no keyword
+      ++phones_too;
+      continue;
+    }
+    const auto word = words.find(part);
+    if (word == words.end())
+      continue;
+    begins = true;
+    const bool owner = word->second == "'s";
+    heard.text += (heard.text.empty() || owner ? "" : " ") + word->second;
+  }
+  if (begins)
+    heard.outcome = phones_too > kBreath ? Outcome::addressed : Outcome::command;
+  return heard;
+}
+
+/// The utterance has ended. A keyword alone waits for what follows it.
+void Recognizer::Self::finish(std::vector<Event>& events) {
+  if (!listens)
+    return;
+  ps_end_utt(decoder.get());
+  listens = false;
+  if (!std::exchange(in_speech, false))
+    return;
+  Heard heard = result();
+  if (!keyword.empty()) {
+    heard.text = std::exchange(keyword, {}) + (heard.text.empty() ? "" : " ") + heard.text;
+    if (heard.outcome == Outcome::not_for_it)
+      heard.outcome = Outcome::addressed;
+    search(false);
+  } else if (heard.outcome == Outcome::command && heard.text.find(' ') == std::string::npos) {
+    keyword = heard.text;
+    attends = settings.attention;
+    search(true);
+    return;
+  }
+  events.push_back({Event::Kind::ends});
+  events.push_back({Event::Kind::heard, heard});
+}
+
+/// Nothing has followed.
+void Recognizer::Self::give_up_attention(std::vector<Event>& events) {
+  if (keyword.empty() || in_speech)
+    return;
+  if (listens)
+    ps_end_utt(decoder.get());
+  listens = false;
+  search(false);
+  events.push_back({Event::Kind::ends});
+  events.push_back({Event::Kind::heard, {Outcome::addressed, std::exchange(keyword, {})}});
+}
+
+std::vector<Event> Recognizer::end() {
+  std::vector<Event> events;
+  self_->finish(events);
+  self_->give_up_attention(events);
+  return events;
+}
+
+std::vector<Event> Recognizer::hear(const Sound& sound) {
+  constexpr std::size_t kBlock = kRate / 50;
+  std::vector<Event> events;
+  ps_decoder_t* const decoder = self_->decoder.get();
+  for (std::size_t at = 0; at < sound.size(); at += kBlock) {
+    const std::size_t count = std::min(kBlock, sound.size() - at);
+    if (!self_->listens) {
+      if (self_->grammars == 0 || ps_start_utt(decoder) < 0)
+        throw std::runtime_error("the recognizer of speech does not begin: it has no grammar");
+      self_->listens = true;
+    }
+    ps_process_raw(decoder, sound.data() + at, count, FALSE, FALSE);
+    const bool speaks = ps_get_in_speech(decoder) != 0;
+    if (speaks && !self_->in_speech && self_->keyword.empty())
+      events.push_back({Event::Kind::begins});
+    if (!speaks && self_->in_speech)
+      self_->finish(events);
+    else
+      self_->in_speech = speaks;
+    self_->attends -= static_cast<double>(count) / kRate;
+    if (!self_->in_speech && self_->attends <= 0.0)
+      self_->give_up_attention(events);
+  }
+  return events;
+}
+
+}  // namespace saphira::speech

@@ -1,0 +1,42 @@
+#include "saphira/speech/reading.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "saphira/speech/voice.hpp"
+
+namespace saphira::speech {
+namespace {
+
+TEST(Reading, EverySpeakerKeepsAVoiceOfTheirOwn) {
+  const auto passages = read_aloud(
+      "alice: Flakey, stop\nflakey: I stop\n\njohn: Flakey, stop\nalice: Flakey, stop\n");
+  ASSERT_EQ(passages.size(), 4U);
+  EXPECT_EQ(passages[0].speaker, "alice");
+  // flite adds noise of its own to each: a voice is known by how long it takes.
+  const auto length = [](const char* voice, const char* text) {
+    return Voice(voice).say(text).size();
+  };
+  EXPECT_EQ(passages[0].sound.size(), length("slt", "Flakey, stop"));
+  EXPECT_EQ(passages[1].sound.size(), length("kal16", "I stop"));
+  EXPECT_EQ(passages[2].sound.size(), length("rms", "Flakey, stop"));
+  EXPECT_EQ(passages[3].sound.size(), passages[0].sound.size());
+  EXPECT_NE(passages[2].sound.size(), passages[0].sound.size());
+  double alone = 0.0;
+  for (const Passage& passage : passages)
+    alone += seconds(passage.sound);
+  EXPECT_NEAR(seconds(joined(passages)), alone + 4 * 0.5, 0.001);
+}
+
+TEST(Reading, ALineWithoutASpeakerIsNamed) {
+  try {
+    read_aloud("alice: hello\nhello\n");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("line 2: ", 0), 0U) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace saphira::speech

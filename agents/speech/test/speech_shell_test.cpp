@@ -1,0 +1,87 @@
+#include "speech/shell/speech_shell.hpp"
+
+#include <fstream>
+#include <thread>
+
+#include "node_options.hpp"
+#include "speech_for_tests.hpp"
+
+namespace saphira::speech {
+namespace {
+
+/// Speech on a bus in memory: from a sound file, and to the sound of an answer.
+class SpeechOnTheBus : public WithModel {
+ protected:
+  SpeechOptions options() {
+    SpeechOptions made;
+    made.grammar = test::source("config/grammars/flakey.grammar");
+    made.pronunciations = test::source("config/speech/pronunciations.dict");
+    made.microphone = folder.path("heard.wav");
+    made.speaker = folder.path("");
+    made.person = "Alice";
+    return made;
+  }
+  void speak(const std::string& text) {
+    std::ofstream(folder.path("heard.wav"), std::ios::binary) << wav(said_by("rms", text));
+  }
+
+  test::TempDir folder;
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Node person{test::memory_options("person"), memory};
+  bus::Reader<v1::Utterance> heard = person.reader(bus::topics::kHeard);
+  bus::Node service{test::memory_options("speech"), memory};
+};
+
+TEST_F(SpeechOnTheBus, WhatIsSpokenBecomesAnUtteranceAndTheAnswerIsSpoken) {
+  speak("flakey turn left");
+  SpeechShell speech(service, options());
+  std::vector<v1::Utterance> utterances;
+  ASSERT_TRUE(test::wait_until([&] {
+    speech.step();
+    for (const auto& sample : heard.take())
+      utterances.push_back(sample.data);
+    return !utterances.empty();
+  }));
+  EXPECT_EQ(utterances[0].text(), "flakey turn left");
+  EXPECT_EQ(utterances[0].speaker(), "Alice");
+  EXPECT_EQ(utterances[0].means(), v1::UTTERANCE_SPOKEN);
+  v1::Utterance answer;
+  answer.id().writer(7);
+  answer.id().number(1);
+  answer.text("I turn 90 degrees to the left");
+  person.writer(bus::topics::kSaid).write(answer);
+  const auto spoken = [&](const char* file) {
+    try {
+      return seconds(read_wav(read_file(folder.path(file)), file)) > 0.3;
+    } catch (const std::runtime_error&) {
+      return false;  // not written yet
+    }
+  };
+  EXPECT_TRUE(test::wait_until([&] {
+    speech.step();
+    return spoken("0001.wav") && spoken("0002.wav");
+  })) << "um, and the answer";
+}
+
+TEST_F(SpeechOnTheBus, WithoutASoundCardItSaysSoAndGoesOn) {
+  SpeechOptions none = options();
+  none.microphone = "no-such-device";
+  none.speaker = "none";
+  bus::Reader<v1::ServiceStatus> statuses = person.reader(bus::topics::kStatus);
+  SpeechShell speech(service, none);
+  bus::Stop stop;
+  std::thread thread([&] { speech.run(stop); });
+  std::string reason;
+  EXPECT_TRUE(test::wait_until([&] {
+    for (const auto& sample : statuses.take())
+      if (sample.data.state() == v1::SERVICE_DEGRADED)
+        reason = sample.data.reason();
+    return !reason.empty();
+  }));
+  EXPECT_NE(reason.find("no-such-device"), std::string::npos) << reason;
+  stop.request();
+  thread.join();
+}
+
+}  // namespace
+}  // namespace saphira::speech

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/base/fnv1a.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/story/cast.hpp"
+
+namespace saphira::story {
+
+struct StoryOptions {
+  std::vector<std::string> services;  ///< that have to run before the first line
+  double time_limit = 1200.0;         ///< [s] of robot time
+  /// Takes what is said, as it is said: the robot's time, its place, and "alice: Flakey, ...".
+  std::function<void(double time, const std::string& place, const std::string& line)> show;
+};
+
+/// "   12.3 s  EJ-247           alice: Flakey, ...": what is said as people and programs read it.
+std::string story_line(double time, const std::string& place, const std::string& line);
+bool is_story_line(std::string_view line);
+/// Of a story line: "alice: Flakey, ...".
+std::string_view said_in(std::string_view story_line);
+
+/// Plays the people of a cast on the bus: they say their lines, and answer what the robot asks them
+/// where they are. They take the same way as everybody who speaks to the robot. The robot's cycles
+/// are their only clock. For the node's own thread.
+class Story {
+ public:
+  Story(bus::Node& node, Cast cast, StoryOptions options);
+
+  /// Takes what has come, and says what is due. True when the story has come to its end.
+  bool step();
+
+  /// Whether the robot knows where it is, and the services run.
+  bool ready() const { return waiting_for_.empty() && !place_.empty(); }
+  /// Whether it ended as the cast says.
+  bool well() const { return ended_ && cast_.ends_well(outcome_); }
+  /// What the robot said last to the newest line; empty: nothing.
+  const std::string& outcome() const { return outcome_; }
+  double time() const { return time_; }  ///< [s] of the robot
+  std::size_t utterances() const { return utterances_; }
+  /// Of all that was said, in its order.
+  std::string hash() const { return hash_.text(); }
+
+ private:
+  void take();
+  void say_next();
+  bool stands_at(const Cast::Spot& spot) const;
+  std::uint64_t say(const Cast::Line& line);
+  void listen(const v1::Utterance& said);
+  void show(const std::string& line);
+
+  bus::Node& node_;
+  Cast cast_;
+  StoryOptions options_;
+  bus::Reader<v1::RobotState> robots_;
+  bus::Reader<v1::Registration> registrations_;
+  bus::Reader<v1::FloorMap> maps_;
+  bus::Reader<v1::ServiceStatus> statuses_;
+  bus::Reader<v1::Utterance> said_;
+  bus::Writer<v1::Utterance> heard_;
+  std::set<std::string> waiting_for_;  ///< services
+  maps::Map map_;
+  std::string place_;  ///< of the robot
+  std::string outcome_;
+  double time_ = 0.0;
+  bool waits_ = false;  ///< for the end of the newest line
+  bool ended_ = false;
+  std::optional<Cast::Line> answer_;
+  double answer_time_ = 0.0;  ///< [s] of the robot, when somebody gives that answer
+  std::size_t next_ = 0;      ///< line of the cast
+  std::uint64_t number_ = 0;  ///< of the newest utterance
+  std::uint64_t line_ = 0;    ///< number of the newest line of the cast
+  /// What the robot is about while it is told more, such as to follow somebody. Where it gives up
+  /// too soon it is told again.
+  struct Errand {
+    Cast::Line line;
+    std::uint64_t number = 0;
+    bool over = false;
+  };
+  std::optional<Errand> errand_;
+  Pose pose_in_map_;
+  double stands_since_ = 0.0;  ///< [s] of the robot
+  std::size_t utterances_ = 0;
+  Fnv1a hash_;
+};
+
+}  // namespace saphira::story

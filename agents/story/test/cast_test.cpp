@@ -1,0 +1,72 @@
+#include "saphira/story/cast.hpp"
+
+#include <gtest/gtest.h>
+
+#include "process.hpp"
+#include "saphira/base/text.hpp"
+
+namespace saphira::story {
+namespace {
+
+std::string answer(Cast& cast, const std::string& said, const std::string& place) {
+  const auto line = cast.answer(said, place);
+  return line ? line->speaker + ": " + line->text : "";
+}
+
+TEST(Cast, PeopleAnswerWhereTheyAreByWhatTheyHaveAndKnow) {
+  const std::string file = test::source("config/people/report.people");
+  Cast cast(read_file(file), file);
+  ASSERT_EQ(cast.lines().size(), 5u);
+  EXPECT_EQ(cast.lines()[1].text, "Flakey, EJ-243 is Karen's office");
+  EXPECT_EQ(answer(cast, "Is karen here?", "EJ-243"), "");
+  EXPECT_EQ(answer(cast, "Is karen here?", "EJ-245"), "john: no, sorry");
+  EXPECT_EQ(answer(cast, "Who knows where karen is?", "EJ-245"), "john: in the kitchen");
+  EXPECT_EQ(answer(cast, "Who knows where bob is?", "EJ-245"), "john: I don't know");
+  EXPECT_EQ(answer(cast, "Is karen here?", "kitchen"), "karen: yes");
+  EXPECT_EQ(answer(cast, "Please give me the report", "kitchen"), "karen: here you are");
+  EXPECT_FALSE(cast.has("karen", "report"));
+  EXPECT_EQ(answer(cast, "Please give me the report", "kitchen"), "karen: no, sorry");
+  EXPECT_EQ(answer(cast, "Here is the report from karen, please take it", "EJ-247"),
+            "alice: thank you");
+  EXPECT_TRUE(cast.has("alice", "report"));
+}
+
+TEST(Cast, ALineMayWaitForTheRobotAtAPlace) {
+  const std::string file = test::source("config/people/introduction.people");
+  const Cast cast(read_file(file), file);
+  EXPECT_EQ(cast.deployment(), "seeing-office");
+  EXPECT_EQ(cast.things(), test::source("config/people/introduction.wld"));
+  ASSERT_GE(cast.lines().size(), 2U);
+  EXPECT_FALSE(cast.lines()[0].near);
+  ASSERT_TRUE(cast.lines()[1].near);
+  EXPECT_EQ(cast.lines()[1].near->place, "EJ-249");
+  EXPECT_EQ(cast.lines()[1].near->distance, 1.6);
+  EXPECT_EQ(Cast("", "f").deployment(), "office");
+}
+
+TEST(Cast, MistakesNameLineAndColumn) {
+  const auto mistake = [](const std::string& text) {
+    try {
+      Cast(text, "f");
+    } catch (const FileError& error) {
+      return std::to_string(error.line()) + ":" + std::to_string(error.column());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(mistake("HAS report\n"), "1:1");
+  EXPECT_EQ(mistake("PERSON karen\n"), "1:13");
+  EXPECT_EQ(mistake("PERSON karen kitchen\nLIKES tea\n"), "2:1");
+  EXPECT_EQ(mistake("SAYS alice\n"), "1:6");
+  EXPECT_EQ(mistake("ENDS\n"), "1:1");
+  EXPECT_EQ(mistake("NEAR kitchen 1\n"), "1:1");
+  EXPECT_EQ(mistake("SAYS alice go\nNEAR kitchen far\n"), "2:14");
+}
+
+TEST(Cast, TheEndIsWhatTheRobotSaysLast) {
+  EXPECT_TRUE(Cast("", "f").ends_well("done: the report was brought"));
+  EXPECT_FALSE(Cast("", "f").ends_well("that failed: nobody is in"));
+  EXPECT_TRUE(Cast("ENDS that failed: nobody\n", "f").ends_well("that failed: nobody is in"));
+}
+
+}  // namespace
+}  // namespace saphira::story

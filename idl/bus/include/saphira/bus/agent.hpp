@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/bus/request_client.hpp"
+
+namespace saphira::bus {
+
+/// A program that can be asked, and that asks others, by way of the facilitator. For the node's own
+/// thread.
+///
+///   Node node(options);
+///   Agent agent(node, "calendar", "knows where people are");
+///   agent.can(capability("place_of", "where a person is", {text_slot("person", "a name"),
+///                                                          text_slot("place", "of the map")}),
+///             [&](const v1::Request& request) { return done({text("place", "library")}); });
+///   while (!stop.requested()) { node.wait(500ms, &stop); agent.poll(); }
+///
+/// What it can do ends with it, also when it is killed.
+class Agent {
+ public:
+  /// What it says to a request whose arguments fit. ANSWER_UNDERWAY: the end follows by answer().
+  using Answerer = std::function<v1::Answer(const v1::Request&)>;
+
+  Agent(Node& node, std::string name, std::string summary);
+  ~Agent();
+  Agent(const Agent&) = delete;
+  Agent& operator=(const Agent&) = delete;
+
+  /// Announces one thing more that it can be asked for.
+  void can(const v1::Capability& capability, Answerer answerer);
+  /// Answers what has come. Call after each Node::wait. Not from an Answerer.
+  void poll();
+  /// The end of a request that was underway.
+  void answer(const v1::Request& request, v1::Answer answer);
+
+  /// Asks whichever agent can, and waits: see RequestClient::ask. Others are answered meanwhile.
+  /// request.service: the one agent that is meant; an argument `answers`: how many are wanted.
+  v1::Answer ask(const v1::Request& request, double patience, const Stop* stop = nullptr);
+
+  /// Sets a trigger: its action is asked for when it fires, for as long as this agent lives.
+  /// std::runtime_error where the bus did not take it.
+  v1::GoalId set(v1::Trigger trigger);
+  void take_back(const v1::GoalId& trigger);
+  /// Says that something happened, which triggers may wait for.
+  void tell(const std::string& functor, std::vector<v1::Argument> arguments);
+
+ private:
+  using Id = std::pair<std::uint64_t, std::uint64_t>;  ///< asker, number
+  void handle(const v1::Request& request);
+
+  Node& node_;
+  v1::Agent self_;
+  std::string address_;  ///< Request.service that means this agent
+  Writer<v1::Agent> announcements_;
+  Writer<v1::Trigger> triggers_;
+  Writer<v1::AgentEvent> events_;
+  Reader<v1::Request> requests_;
+  Writer<v1::Answer> answers_;
+  RequestClient solver_;
+  std::map<std::string, Answerer> answerers_;
+  std::deque<std::pair<Id, v1::Answer>> known_;  ///< newest requests with their newest answers
+  bool answering_ = false;
+};
+
+/// The address of an agent on agents/request: "1f3a/calendar".
+std::string agent_address(std::uint64_t id, const std::string& name);
+
+/// A capability, and what it takes. A fact: asking changes nothing, so several may be asked.
+v1::Capability capability(const std::string& functor, const std::string& summary,
+                          std::vector<v1::CapabilityParameter> parameters);
+/// Something that is done: one agent is asked, once.
+v1::Capability action(const std::string& functor, const std::string& summary,
+                      std::vector<v1::CapabilityParameter> parameters);
+/// What must be given, and what may be left open for the answer to fill.
+v1::CapabilityParameter text_slot(const std::string& name, const std::string& meaning,
+                                  bool required = false);
+v1::CapabilityParameter number_slot(const std::string& name, const std::string& meaning,
+                                    bool required = false);
+
+/// Answers of an agent.
+v1::Answer done(std::vector<v1::Argument> results, const std::string& text = {});
+v1::Answer refused(const std::string& text);
+
+/// The text or number of an argument of a request; nothing and 0 where it is not given.
+std::string text_of(const std::vector<v1::Argument>& arguments, const std::string& name);
+double number_of(const std::vector<v1::Argument>& arguments, const std::string& name);
+/// A slot that the answer is to fill.
+v1::Argument open(const std::string& name);
+
+}  // namespace saphira::bus

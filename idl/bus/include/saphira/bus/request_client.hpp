@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "saphira/bus/node.hpp"
+
+namespace saphira::bus {
+
+/// An agent's side of requests: asks, and waits for what becomes of it. For the node's own thread.
+///
+///   Node node(options);
+///   RequestClient robot(node, topics::kServo, "my agent");
+///   v1::Request request;
+///   request.functor("servo");
+///   request.arguments({number("width", 1500)});
+///   const v1::Answer answer = robot.ask(request, 10.0);
+///   if (answer.code() != v1::ANSWER_DONE) ... answer.text() ...
+class RequestClient {
+ public:
+  /// source: who asks, for people.
+  RequestClient(Node& node, const RequestTopic& topic, std::string source);
+
+  /// Asks, and waits for the end of it, for `patience` [s] at most. There is always an answer:
+  /// where none came, ANSWER_NOBODY says that no program takes such requests, and ANSWER_TOO_LATE
+  /// that none has answered. It is written again until somebody answers, and done once.
+  /// `meanwhile` is called whenever something has come to the node.
+  v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
+                 const std::function<void()>& meanwhile = {});
+
+  /// Asks without waiting: the number of the request. Its answers come out of poll().
+  std::uint64_t send(v1::Request request);
+  /// The answers to what this client asked, since the last call, oldest first.
+  std::vector<v1::Answer> poll();
+
+ private:
+  v1::Request complete(v1::Request request);
+
+  Node& node_;
+  const RequestTopic topic_;
+  std::string source_;
+  Writer<v1::Request> writer_;
+  Reader<v1::Answer> reader_;
+};
+
+v1::Argument number(const std::string& name, double value);
+v1::Argument text(const std::string& name, const std::string& value);
+/// x, y [m], th [rad], in the frame.
+v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame);
+v1::Argument truth(const std::string& name, bool value);
+
+/// Counts the requests of this process: each has a number of its own.
+std::uint64_t next_request_number();
+
+/// Whether a request with this answer has come to its end.
+bool ended(v1::AnswerCode code);
+/// Whether that is a good end, or may become one.
+bool well(v1::AnswerCode code);
+
+}  // namespace saphira::bus

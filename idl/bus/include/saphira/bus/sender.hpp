@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "saphira/bus/endpoint.hpp"
+
+namespace saphira::bus {
+
+/// Who has written a sample, for people: what it says of itself, and with security before that who
+/// it is: "karen (operator), saphira drive".
+inline std::string named(const std::string& says, const SampleInfo& info) {
+  if (!info.sender)
+    return says;
+  return info.sender->text() + (says.empty() ? "" : ", " + says);
+}
+
+}  // namespace saphira::bus

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "handshakes.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/endpoint.hpp"
+#include "saphira/bus/node.hpp"
+#include "saphira/security/credentials.hpp"
+
+namespace saphira::bus::internal {
+
+/// The security of a node: its credentials, who the others are, and which of them were revoked or
+/// are not let in.
+class Guard {
+ public:
+  /// None for an open bus. std::invalid_argument where the credentials are of no use.
+  static std::shared_ptr<Guard> make(const NodeOptions& options);
+
+  Guard(std::string folder, security::Credentials credentials);
+
+  void secure(eprosima::fastdds::dds::DomainParticipantQos& qos) const;
+
+  /// Who a participant is by the subject that it announced when it was discovered, where its prefix
+  /// is that subject's. Fast DDS 2.9 hears samples of those alone whose certificate has the subject
+  /// that they announced; that the prefix is that certificate's it checks within the handshake, but
+  /// not against the prefix of the samples. Who fails here is nobody.
+  std::shared_ptr<const Identity> identify(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix,
+                                           const std::string& announced) const;
+
+  /// Why somebody may not write or read a topic, in words; empty where it may.
+  std::string why_not(const Identity& identity, const std::string& topic, bool writes) const;
+  const Identity& own() const { return own_; }
+
+  /// Of a packet's sender. From any thread.
+  bool revoked(const std::uint8_t* prefix) const;
+
+  // The handshakes with programs that announce themselves. From any thread.
+  void begin_handshake(const Handshakes::Program& program);
+  void end_handshake(const Handshakes::Program& program);
+  /// That a packet's sender announces itself. True: it is to be forgotten, so that both begin anew.
+  bool announced(const std::uint8_t* prefix);
+
+  /// Looks for a newer list of what was revoked, now and then.
+  void look(const std::string& program);
+
+  /// In words where the certificate expires soon; empty otherwise.
+  std::string expiry() const;
+
+ private:
+  void take(const security::Revoked& list);
+
+  const std::string folder_;
+  const security::Credentials credentials_;
+  const Identity own_;
+  BootClock::time_point looked_;
+  std::string trouble_;
+  std::uint64_t number_ = 0;
+  mutable std::mutex mutex_;
+  std::set<security::PrefixHead> revoked_;
+  std::atomic<bool> any_{false};
+  Handshakes handshakes_;
+};
+
+}  // namespace saphira::bus::internal

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "saphira/base/guess.hpp"
+#include "saphira_visit.hpp"
+
+namespace saphira::bus::internal {
+
+/// Sets a sample of a generated type from JSON: members that are not named stay as they are.
+/// std::invalid_argument that names the place and what was expected.
+class JsonReader {
+ public:
+  template <class T>
+  void read(const nlohmann::json& json, T& item, const std::string& place) {
+    if constexpr (std::is_same_v<T, bool>) {
+      expect(json.is_boolean(), json, place, "true or false");
+      item = json.get<bool>();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      expect(json.is_string(), json, place, "a text");
+      item = json.get<std::string>();
+    } else if constexpr (std::is_enum_v<T>) {
+      item = enumerator<T>(json, place);
+    } else if constexpr (std::is_floating_point_v<T>) {
+      expect(json.is_number(), json, place, "a number");
+      item = json.get<T>();
+    } else if constexpr (std::is_integral_v<T>) {
+      integer(json, item, place);
+    } else {
+      structure(json, item, place);
+    }
+  }
+  template <class T>
+  void read(const nlohmann::json& json, std::vector<T>& items, const std::string& place) {
+    expect(json.is_array(), json, place, "a list [...]");
+    items.clear();
+    for (std::size_t i = 0; i < json.size(); ++i)
+      read(json[i], items.emplace_back(), place + "[" + std::to_string(i) + "]");
+  }
+  template <class T>
+  void structure(const nlohmann::json& json, T& item, const std::string& place) {
+    expect(json.is_object(), json, place, "an object {...}");
+    std::vector<std::string> names;
+    std::size_t known = 0;
+    visit_members(item, [&](const char* name, auto& member) {
+      names.emplace_back(name);
+      const auto found = json.find(name);
+      if (found == json.end())
+        return;
+      ++known;
+      read(*found, member, place.empty() ? name : place + "." + name);
+    });
+    if (known < json.size())
+      unknown(json, names, place);
+  }
+
+ private:
+  [[noreturn]] static void fail(const std::string& place, const std::string& what) {
+    throw std::invalid_argument((place.empty() ? "" : place + ": ") + what);
+  }
+  static void expect(bool good, const nlohmann::json& json, const std::string& place,
+                     const std::string& what) {
+    if (!good)
+      fail(place, "expected " + what + ", found " + json.dump().substr(0, 60));
+  }
+  static void unknown(const nlohmann::json& json, const std::vector<std::string>& names,
+                      const std::string& place) {
+    std::string all;
+    for (const std::string& name : names)
+      all += (all.empty() ? "" : ", ") + name;
+    for (const auto& [key, value] : json.items())
+      if (std::find(names.begin(), names.end(), key) == names.end()) {
+        const std::string meant = guess(key, names);
+        fail(place, "no member \"" + key.substr(0, 60) + "\"" +
+                        (meant.empty() ? "" : ": did you mean " + meant + "?") + "; there are " +
+                        all);
+      }
+  }
+  template <class T>
+  static void integer(const nlohmann::json& json, T& item, const std::string& place) {
+    using Limits = std::numeric_limits<T>;
+    const std::string range = "a whole number from " + std::to_string(Limits::min()) + " to " +
+                              std::to_string(Limits::max());
+    expect(json.is_number_integer(), json, place, range);
+    if (json.is_number_unsigned()) {
+      const auto value = json.get<std::uint64_t>();
+      expect(value <= static_cast<std::uint64_t>(Limits::max()), json, place, range);
+      item = static_cast<T>(value);
+    } else {
+      const auto value = json.get<std::int64_t>();
+      expect(std::is_signed_v<T> && value >= static_cast<std::int64_t>(Limits::min()), json, place,
+             range);
+      item = static_cast<T>(value);
+    }
+  }
+  template <class T>
+  static T enumerator(const nlohmann::json& json, const std::string& place) {
+    std::string all;
+    for (std::uint32_t i = 0; name_of(static_cast<T>(i)) != nullptr; ++i) {
+      if (json.is_string() && json.get<std::string>() == name_of(static_cast<T>(i)))
+        return static_cast<T>(i);
+      all += (i == 0 ? "" : ", ") + std::string(name_of(static_cast<T>(i)));
+    }
+    fail(place, "expected one of " + all + ", found " + json.dump().substr(0, 60));
+  }
+};
+
+template <class T>
+void from_json(const std::string& text, T& sample) {
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw std::invalid_argument("this is not JSON, at character " + std::to_string(error.byte) +
+                                ": " + text.substr(0, 60));
+  }
+  JsonReader().structure(json, sample, "");
+}
+
+}  // namespace saphira::bus::internal

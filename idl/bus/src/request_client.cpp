@@ -1,0 +1,139 @@
+#include "saphira/bus/request_client.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace saphira::bus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kAgain{300};  // until it is written again
+constexpr std::chrono::milliseconds kLook{50};
+
+std::string seconds(double patience) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.0f s", patience);
+  return text;
+}
+
+}  // namespace
+
+RequestClient::RequestClient(Node& node, const RequestTopic& topic, std::string source)
+    : node_(node),
+      topic_(topic),
+      source_(std::move(source)),
+      writer_(node.writer<v1::Request>(topic)),
+      reader_(node.reader(topic.answers)) {}
+
+v1::Request RequestClient::complete(v1::Request request) {
+  request.asker(node_.instance());
+  request.number(next_request_number());
+  if (request.source().empty())
+    request.source(source_);
+  return request;
+}
+
+std::uint64_t RequestClient::send(v1::Request request) {
+  request = complete(std::move(request));
+  if (!writer_.write(request))
+    throw std::runtime_error(std::string("the bus did not take a request on ") + topic_.name);
+  return request.number();
+}
+
+std::vector<v1::Answer> RequestClient::poll() {
+  std::vector<v1::Answer> answers;
+  for (auto& sample : reader_.take())
+    if (!sample.info.disposed && sample.data.asker() == node_.instance())
+      answers.push_back(std::move(sample.data));
+  return answers;
+}
+
+v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* stop,
+                              const std::function<void()>& meanwhile) {
+  request = complete(std::move(request));
+  v1::Answer newest;
+  newest.asker(request.asker());
+  newest.number(request.number());
+  newest.code(v1::ANSWER_NOBODY);
+  newest.text(std::string("no program takes what is asked on ") + topic_.name);
+  bool heard = false;
+  auto again = Clock::now();
+  const auto end =
+      again + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
+  for (auto now = again; now < end && (stop == nullptr || !stop->requested()); now = Clock::now()) {
+    if (!heard && now >= again && writer_.matched() > 0 && writer_.write(request)) {
+      again = now + kAgain;
+      newest.code(v1::ANSWER_TOO_LATE);
+      newest.text("nothing was heard of the request within " + seconds(patience));
+    }
+    node_.wait(std::min(kLook, std::chrono::ceil<std::chrono::milliseconds>(end - now)), stop);
+    if (meanwhile)
+      meanwhile();
+    for (v1::Answer& answer : poll()) {
+      if (answer.number() != request.number())
+        continue;
+      heard = true;
+      newest = std::move(answer);
+      if (ended(newest.code()))
+        return newest;
+    }
+  }
+  if (heard) {
+    newest.code(v1::ANSWER_TOO_LATE);
+    newest.text("the request is still under way after " + seconds(patience));
+  }
+  return newest;
+}
+
+v1::Argument number(const std::string& name, double value) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_NUMBER);
+  argument.number(value);
+  return argument;
+}
+
+v1::Argument text(const std::string& name, const std::string& value) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_TEXT);
+  argument.text(value);
+  return argument;
+}
+
+v1::Argument point(const std::string& name, double x, double y, double th, v1::Frame frame) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(v1::ARGUMENT_POINT);
+  argument.point().x(x);
+  argument.point().y(y);
+  argument.point().th(th);
+  argument.frame(frame);
+  return argument;
+}
+
+v1::Argument truth(const std::string& name, bool value) {
+  v1::Argument argument = number(name, value ? 1.0 : 0.0);
+  argument.kind(v1::ARGUMENT_TRUTH);
+  return argument;
+}
+
+std::uint64_t next_request_number() {
+  static std::atomic<std::uint64_t> number{0};
+  return ++number;
+}
+
+bool ended(v1::AnswerCode code) {
+  return code != v1::ANSWER_UNDERWAY;
+}
+
+bool well(v1::AnswerCode code) {
+  return code == v1::ANSWER_UNDERWAY || code == v1::ANSWER_DONE || code == v1::ANSWER_SENT;
+}
+
+}  // namespace saphira::bus

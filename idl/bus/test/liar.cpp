@@ -1,0 +1,68 @@
+#include "liar.hpp"
+
+#include <fastdds/dds/core/status/StatusMask.hpp>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <utility>
+
+#include "dds_bus.hpp"
+#include "dds_qos.hpp"
+#include "saphira/bus/topics.hpp"
+
+namespace saphira::bus::test {
+
+namespace fdds = eprosima::fastdds::dds;
+
+struct Liar::Impl {
+  Impl(const NodeOptions& options, std::string the_allowed)
+      : allowed(std::move(the_allowed)),
+        wake(std::make_shared<internal::Wake>()),
+        peers(wake),
+        session(options, wake, peers, nullptr, internal::Guard::make(options)) {}
+
+  const std::string allowed;
+  const std::shared_ptr<internal::Wake> wake;
+  internal::Peers peers;
+  internal::Session session;
+};
+
+namespace {
+
+// Fast DDS adds the true one behind it, and takes the first.
+template <class EndpointQos>
+void lie(EndpointQos& qos, const std::string& topic) {
+  qos.properties().properties().emplace_back("topic_name", topic);
+}
+
+}  // namespace
+
+Liar::Liar(const NodeOptions& options, std::string allowed_topic)
+    : impl_(std::make_unique<Impl>(options, std::move(allowed_topic))) {}
+
+Liar::~Liar() = default;
+
+bool Liar::add(const std::string& name, bool writes) {
+  bool made = false;
+  for_each_topic([&]<class T>(const Topic<T>& topic) {
+    if (topic.name != name)
+      return;
+    const internal::Policies policies = internal::policies(topic.qos, false);
+    auto* const dds_topic = impl_->session.topic(topic.name, type_of<T>().name);
+    if (writes) {
+      fdds::DataWriterQos qos = fdds::DATAWRITER_QOS_DEFAULT;
+      set_common_qos(qos, policies, policies.writer_depth);
+      lie(qos, impl_->allowed);
+      made = impl_->session.publisher->create_datawriter(dds_topic, qos, nullptr,
+                                                         fdds::StatusMask::none()) != nullptr;
+    } else {
+      fdds::DataReaderQos qos = fdds::DATAREADER_QOS_DEFAULT;
+      set_common_qos(qos, policies, policies.reader_depth);
+      lie(qos, impl_->allowed);
+      made = impl_->session.subscriber->create_datareader(dds_topic, qos, nullptr,
+                                                          fdds::StatusMask::none()) != nullptr;
+    }
+  });
+  return made;
+}
+
+}  // namespace saphira::bus::test

@@ -1,0 +1,375 @@
+// The bus with security: several members of a site in one process.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "harness.hpp"
+#include "liar.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/security/authority.hpp"
+
+namespace saphira::bus::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::int64_t now() {
+  return std::chrono::duration_cast<std::chrono::seconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+/// A site with a member for each role, named as the role.
+class Site {
+ public:
+  explicit Site(const std::string& name)
+      : folder_(fs::temp_directory_path() / ("saphira-" + name + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    const std::string file = config_folder() + "/security/roles.yaml";
+    authority_.emplace(security::Authority::make((folder_ / "authority").string(), name,
+                                                 read_file(file), file, now()));
+    for (const security::Role& role : authority_->roles().roles)
+      add(role.name, role.name);
+  }
+  ~Site() { fs::remove_all(folder_); }
+  Site(const Site&) = delete;
+  Site& operator=(const Site&) = delete;
+
+  void add(const std::string& name, const std::string& role, const std::string& robot = "") {
+    authority_->add(name, {role}, robot, 365, now());
+  }
+  security::Authority& authority() { return *authority_; }
+
+  /// A member's folder as somebody else has copied it.
+  std::string copy_of(const std::string& member) const {
+    const fs::path copy = folder_ / ("copy-" + member);
+    fs::remove_all(copy);
+    fs::copy(authority_->folder_of(member), copy, fs::copy_options::recursive);
+    return copy.string();
+  }
+
+  NodeOptions options(const std::string& member, const std::string& of_robot = robot("s")) const {
+    NodeOptions options;
+    options.name = member;
+    options.program = program_of(member);
+    options.robot = of_robot;
+    options.domain = domain();
+    options.security = authority_->folder_of(member);
+    return options;
+  }
+  std::unique_ptr<Node> node(const std::string& member,
+                             const std::string& of_robot = robot("s")) const {
+    return std::make_unique<Node>(options(member, of_robot));
+  }
+
+ private:
+  // Of a role that goes with certain programs, one of them.
+  std::string program_of(const std::string& member) const {
+    const security::Role* const role = authority_->roles().find(member);
+    return role == nullptr || role->programs.empty() ? member : role->programs.front();
+  }
+
+  const fs::path folder_;
+  std::optional<security::Authority> authority_;
+};
+
+/// An endpoint of any topic.
+class AnyEndpoint {
+ public:
+  virtual ~AnyEndpoint() = default;
+  virtual std::size_t matched() const = 0;
+};
+
+template <class End>
+class EndpointOf : public AnyEndpoint {
+ public:
+  explicit EndpointOf(End end) : end_(std::move(end)) {}
+  std::size_t matched() const override { return end_.matched(); }
+
+ private:
+  End end_;
+};
+
+std::unique_ptr<AnyEndpoint> endpoint(Node& node, const std::string& name, bool writes) {
+  std::unique_ptr<AnyEndpoint> made;
+  for_each_topic([&]<class T>(const Topic<T>& topic) {
+    if (topic.name != name)
+      return;
+    if (writes)
+      made = std::make_unique<EndpointOf<Writer<T>>>(node.writer(topic));
+    else
+      made = std::make_unique<EndpointOf<Reader<T>>>(node.reader(topic));
+  });
+  return made;
+}
+
+v1::MotorCommand command_of(const std::string& source) {
+  v1::MotorCommand command;
+  command.source(source);
+  return command;
+}
+
+TEST(Security, WhatAMemberWritesComesWithItsName) {
+  const Site site("office");
+  const auto bridge = site.node("bridge");
+  const auto operating = site.node("operator");
+  auto reader = bridge->reader(topics::kDriveTeleop);
+  auto writer = operating->writer(topics::kDriveTeleop);
+  ASSERT_TRUE(eventually(*bridge, [&] { return reader.matched() == 1; }));
+  std::vector<Sample<v1::MotorCommand>> samples;
+  ASSERT_TRUE(eventually(*bridge, [&] {
+    writer.write(command_of("bridge"));  // what it says of itself is another matter
+    for (auto& sample : reader.take())
+      samples.push_back(std::move(sample));
+    return !samples.empty();
+  }));
+  ASSERT_TRUE(samples[0].info.sender);
+  EXPECT_EQ(samples[0].info.sender->text(), "operator (operator)");
+}
+
+// Every line of the file of roles, for each role that it does not name: the role is told so by its
+// own program, and where its program was altered so that it does not care, by everybody else's.
+class EveryLine : public testing::Test {
+ protected:
+  /// The name of a role that the line does name, first those that run on a robot.
+  static std::string allowed(const std::set<std::string>& roles) {
+    for (const char* const role : {"robot", "bridge", "services", "operator"})
+      if (roles.contains(role))
+        return role;
+    return *roles.begin();
+  }
+  Node& node(const std::string& role) {
+    auto& made = nodes_[role];
+    if (!made)
+      made = site_.node(role);
+    return *made;
+  }
+
+  Site site_{"lines"};
+
+ private:
+  std::map<std::string, std::unique_ptr<Node>> nodes_;
+};
+
+TEST_F(EveryLine, IsKeptByTheProgramItself) {
+  for (const security::TopicRule& rule : site_.authority().roles().topics)
+    for (const security::Role& role : site_.authority().roles().roles)
+      for (const bool writes : {true, false}) {
+        SCOPED_TRACE(rule.topic + " " + role.name + (writes ? " writes" : " reads"));
+        const bool may = (writes ? rule.writers : rule.readers).contains(role.name);
+        try {
+          EXPECT_NE(endpoint(node(role.name), rule.topic, writes), nullptr);
+          EXPECT_TRUE(may);
+        } catch (const std::invalid_argument& error) {
+          EXPECT_FALSE(may) << error.what();
+          EXPECT_NE(std::string(error.what()).find(role.name + " (" + role.name + ") may not "),
+                    std::string::npos)
+              << error.what();
+          EXPECT_NE(std::string(error.what()).find(rule.topic), std::string::npos) << error.what();
+        }
+      }
+}
+
+TEST_F(EveryLine, IsKeptByTheOthers) {
+  const security::Roles& roles = site_.authority().roles();
+  for (const security::Role& role : roles.roles)
+    node(role.name);
+  struct Honest {
+    std::unique_ptr<AnyEndpoint> writer;
+    std::unique_ptr<AnyEndpoint> reader;
+    std::size_t readers = 0;  ///< that the writer has without any liar
+    std::size_t writers = 0;
+  };
+  std::map<std::string, Honest> honest;
+  for (const security::TopicRule& rule : roles.topics)
+    honest[rule.topic] = {endpoint(node(allowed(rule.writers)), rule.topic, true),
+                          endpoint(node(allowed(rule.readers)), rule.topic, false)};
+  Node& watch = node("bridge");
+  // Every program writes these two.
+  const std::size_t programs = roles.roles.size();
+  for (auto& [topic, pair] : honest) {
+    pair.readers = 1;
+    pair.writers = topic == topics::kStatus.name || topic == topics::kLog.name ? programs + 1 : 1;
+    if (topic == topics::kPresence.name)
+      continue;  // the programs' own readers are its
+    ASSERT_TRUE(eventually(watch,
+                           [&] {
+                             return pair.writer->matched() == pair.readers &&
+                                    pair.reader->matched() == pair.writers;
+                           }))
+        << topic << ": " << pair.writer->matched() << " " << pair.reader->matched();
+  }
+
+  // Together, since one that ended would count until its lease is over.
+  std::vector<std::unique_ptr<Liar>> liars;
+  for (const security::Role& role : roles.roles) {
+    SCOPED_TRACE(role.name);
+    liars.push_back(std::make_unique<Liar>(site_.options(role.name), topics::kLog.name));
+    std::set<std::string> untold;
+    for (const security::TopicRule& rule : roles.topics) {
+      if (rule.topic == topics::kPresence.name)
+        continue;
+      for (const bool writes : {true, false}) {
+        ASSERT_TRUE(liars.back()->add(rule.topic, writes)) << rule.topic;
+        if (!(writes ? rule.writers : rule.readers).contains(role.name))
+          untold.insert(role.name + " (" + role.name + ") may not " + (writes ? "write" : "read") +
+                        " the topic " + rule.topic + ":");
+      }
+      honest[rule.topic].writers += rule.writers.contains(role.name) ? 1U : 0U;
+      honest[rule.topic].readers += rule.readers.contains(role.name) ? 1U : 0U;
+    }
+    const auto as_the_line_says = [&](const std::string& topic) {
+      const Honest& pair = honest[topic];
+      return topic == topics::kPresence.name ||
+             (pair.reader->matched() == pair.writers && pair.writer->matched() == pair.readers);
+    };
+    for (const security::TopicRule& rule : roles.topics)
+      EXPECT_TRUE(eventually(watch, [&] { return as_the_line_says(rule.topic); })) << rule.topic;
+    EXPECT_TRUE(eventually(watch,
+                           [&] {
+                             for (const security::Role& other : roles.roles)
+                               for (const std::string& trouble :
+                                    internal::transport_of(node(other.name)).take_troubles())
+                                 std::erase_if(untold, [&](const std::string& part) {
+                                   return trouble.find(part) != std::string::npos;
+                                 });
+                             return untold.empty();
+                           }))
+        << untold.size() << " are not told, such as " << *untold.begin();
+    // All that it has made was looked at by now, and what it may not have is still not matched.
+    for (const security::TopicRule& rule : roles.topics)
+      EXPECT_TRUE(as_the_line_says(rule.topic)) << rule.topic;
+  }
+}
+
+TEST(Security, AStrangerIsNotHeardAndHearsNothing) {
+  const Site site("stranger");
+  const auto bridge = site.node("bridge");
+  const auto operating = site.node("operator");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  auto states = bridge->writer(topics::kRobotState);
+  auto driver = operating->writer(topics::kDriveTeleop);
+  NodeOptions open = site.options("operator");
+  open.security = kOpenBus;
+  open.name = "stranger";
+  Node one(open);
+  Node other(open);
+  auto forged = one.writer(topics::kDriveTeleop);
+  auto spy = one.reader(topics::kRobotState);
+  auto forged_states = other.writer(topics::kRobotState);
+  // The strangers have each other, and the members have each other.
+  ASSERT_TRUE(eventually(one, [&] { return spy.matched() == 1; }));
+  ASSERT_TRUE(eventually(*bridge, [&] { return commands.matched() == 1; }));
+  for (int i = 0; i < 20; ++i) {
+    forged.write(command_of("stranger"));
+    states.write(robot_state(1, static_cast<std::uint64_t>(i)));
+    driver.write(command_of("operator"));
+    bridge->wait(milliseconds(10));
+  }
+  for (const auto& sample : commands.take())
+    EXPECT_EQ(sample.data.source(), "operator");
+  EXPECT_EQ(commands.matched(), 1U);
+  EXPECT_EQ(states.matched(), 0U);
+  EXPECT_EQ(forged.matched(), 0U);
+  EXPECT_EQ(spy.matched(), 1U);
+  EXPECT_TRUE(spy.take().empty());
+}
+
+TEST(Security, AMemberOfAnotherSiteIsAStranger) {
+  const Site site("one");
+  const Site other("other");
+  const auto bridge = site.node("bridge");
+  const auto operating = site.node("operator");
+  const auto foreign = other.node("operator");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  auto forged = foreign->writer(topics::kDriveTeleop);
+  auto driver = operating->writer(topics::kDriveTeleop);
+  ASSERT_TRUE(eventually(*bridge, [&] { return commands.matched() == 1; }));
+  ASSERT_TRUE(eventually(*bridge, [&] {
+    driver.write(command_of("operator"));
+    forged.write(command_of("foreign"));
+    bool heard = false;
+    for (const auto& sample : commands.take()) {
+      EXPECT_EQ(sample.data.source(), "operator");
+      heard = true;
+    }
+    return heard;
+  }));
+  EXPECT_EQ(forged.matched(), 0U);
+}
+
+TEST(Security, WhoIsRevokedIsCutOff) {
+  Site site("revoked");
+  site.add("karen", "operator");
+  const std::string stolen = site.copy_of("karen");
+  const auto bridge = site.node("bridge");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  NodeOptions options = site.options("karen");
+  options.security = stolen;
+  Node karen(options);
+  auto driver = karen.writer(topics::kDriveTeleop);
+  ASSERT_TRUE(eventually(*bridge, [&] { return commands.matched() == 1; }));
+  site.authority().revoke("karen");
+  // She goes on, with the folder that nobody has taken from her.
+  EXPECT_TRUE(eventually(
+      *bridge,
+      [&] {
+        driver.write(command_of("karen"));
+        return commands.matched() == 0;
+      },
+      milliseconds(60000)));
+  commands.take();
+  // Nor is she taken back when she begins again.
+  Node again(options);
+  auto second = again.writer(topics::kDriveTeleop);
+  auto own = again.reader(topics::kLog);
+  ASSERT_TRUE(eventually(again, [&] { return own.matched() >= 1; }));  // her own old program
+  EXPECT_EQ(second.matched(), 0U);
+  EXPECT_EQ(commands.matched(), 0U);
+  EXPECT_TRUE(commands.take().empty());
+}
+
+TEST(Security, CredentialsOfOneRobotAreForItAlone) {
+  Site site("robots");
+  site.add("karen", "operator", robot("s"));
+  const auto bridge = site.node("bridge");
+  const auto karen = site.node("karen");
+  auto commands = bridge->reader(topics::kDriveTeleop);
+  auto driver = karen->writer(topics::kDriveTeleop);
+  EXPECT_TRUE(eventually(*bridge, [&] { return commands.matched() == 1; }));
+  for (const std::string& other : {robot("other"), std::string("*")}) {
+    try {
+      site.node("karen", other);
+      ADD_FAILURE() << other;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("are for the robot " + robot("s") + " alone"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST(Security, ABusWithoutItsCredentialsDoesNotBegin) {
+  NodeOptions options;
+  options.name = "a";
+  options.domain = domain();
+  options.security = "/nowhere";
+  try {
+    const Node node(options);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("/nowhere: there is no such folder"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace saphira::bus::test

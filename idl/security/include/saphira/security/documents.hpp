@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "saphira/security/roles.hpp"
+#include "saphira/security/subject.hpp"
+
+namespace saphira::security {
+
+/// What every program of a site asks of every other (DDS Security 1.1, 9.4.1.2): who is not
+/// authenticated is not heard; every topic has its readers and writers; discovery and every message
+/// of a topic are encrypted, with a key that only those have who may read the topic.
+std::string governance();
+
+/// What a member may do, until when [s since 1970, UTC] (DDS Security 1.1, 9.4.1.3). `robot`: the
+/// only one whose topics it may write and read [empty: those of all].
+struct Grant {
+  Subject subject;
+  std::string robot;
+  std::int64_t from = 0;
+  std::int64_t until = 0;
+};
+std::string permissions(const Grant& grant, const Roles& roles);
+/// The robot of a grant that permissions() wrote.
+std::string robot_of(const std::string& permissions);
+
+}  // namespace saphira::security

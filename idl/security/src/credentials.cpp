@@ -1,0 +1,195 @@
+#include "saphira/security/credentials.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "crypto.hpp"
+#include "files.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/security/documents.hpp"
+
+namespace saphira::security {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Which of its roles a program has that the site's roles do not name.
+constexpr std::array<const char*, 4> kOfPeople{"operator", "agent", "observer", "recorder"};
+
+[[noreturn]] void fail(const std::string& file, const std::string& what, const std::string& todo) {
+  throw std::invalid_argument(file + ": " + what + "; " + todo);
+}
+
+std::string read(const std::string& file) {
+  try {
+    return read_file(file);
+  } catch (const std::exception&) {
+    fail(file, "cannot be read",
+         "a folder of credentials is made by `saphira security add` and copied whole, by and for "
+         "the user who runs the program");
+  }
+}
+
+/// Calls f(); what it says is told with the file that it concerns.
+template <class F>
+auto checked(const std::string& file, F&& f) {
+  try {
+    return f();
+  } catch (const std::invalid_argument&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail(file, error.what(), "copy the folder anew from the authority");
+  }
+}
+
+std::string day(std::int64_t seconds) {
+  const std::time_t time = seconds;
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
+  return text.data();
+}
+
+std::string role_for(const std::string& folder, const std::string& program, const Roles& roles) {
+  const std::vector<std::string> there = roles_in(folder);
+  const auto has = [&](const std::string& role) {
+    return std::find(there.begin(), there.end(), role) != there.end();
+  };
+  std::string all;
+  for (const std::string& role : there)
+    all += (all.empty() ? "" : ", ") + role;
+  const Role* const named = roles.of_program(program);
+  if (named != nullptr) {
+    if (has(named->name))
+      return named->name;
+    fail(folder,
+         "has credentials of " + (all.empty() ? "no role" : all) + ", and " + program +
+             " needs those of " + named->name,
+         "`saphira security add NAME --role " + named->name + "` makes them");
+  }
+  for (const char* const role : kOfPeople)
+    if (has(role))
+      return role;
+  if (there.size() == 1)
+    return there.front();
+  fail(folder, "has no credentials of an operator, agent, observer or recorder",
+       "`saphira security add NAME --role operator` makes them");
+}
+
+/// What all roles of a folder have in common.
+Credentials load_shared(const std::string& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    fail(folder, "there is no such folder of credentials",
+         "`saphira security add` makes one on the machine of the authority; copy it here");
+  Credentials found;
+  found.files.authority = folder + "/" + kAuthority;
+  found.authority = read(found.files.authority);
+  const std::string roles_file = folder + "/" + kRoles;
+  const std::string roles_text = read(roles_file);
+  found.roles = checked(roles_file, [&] {
+    return parse_signed_roles(verified(roles_text, found.authority), roles_file);
+  });
+  return found;
+}
+
+}  // namespace
+
+PrefixHead prefix_head(const Subject& subject) {
+  return name_hash_head(subject);
+}
+
+std::vector<std::string> roles_in(const std::string& folder) {
+  std::vector<std::string> roles;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.is_directory(error) && is_name(entry.path().filename().string()) &&
+        fs::exists(entry.path() / kCertificate, error))
+      roles.push_back(entry.path().filename().string());
+  std::sort(roles.begin(), roles.end());
+  return roles;
+}
+
+Credentials load_credentials(const std::string& folder, const std::string& program,
+                             std::int64_t now) {
+  return load_role(folder, role_for(folder, program, load_shared(folder).roles), now);
+}
+
+Credentials load_role(const std::string& folder, const std::string& role, std::int64_t now) {
+  Credentials found = load_shared(folder);
+  const std::string own = folder + "/" + role + "/";
+  found.files.governance = folder + "/" + kGovernance;
+  found.files.certificate = own + kCertificate;
+  found.files.key = own + kKey;
+  found.files.permissions = own + kPermissions;
+
+  const std::string certificate = read(found.files.certificate);
+  checked(found.files.certificate, [&] {
+    check_signed(certificate, found.authority);
+    const CertificateText text = read_certificate(certificate);
+    const auto subject = parse_subject(text.subject);
+    if (!subject)
+      throw std::runtime_error("\"" + text.subject + "\" is no member of a site");
+    if (now < text.validity.from)
+      fail(found.files.certificate, "it holds from " + day(text.validity.from) + " on",
+           "the clock of this machine says " + day(now) + ": is that right?");
+    if (now >= text.validity.until)
+      fail(found.files.certificate, "it has expired on " + day(text.validity.until),
+           "`saphira security renew " + subject->name +
+               "` makes a new one (the clock of this machine says " + day(now) + ")");
+    found.subject = *subject;
+    found.until = text.validity.until;
+  });
+  const std::string key = read(found.files.key);
+  checked(found.files.key, [&] { check_key(key, certificate); });
+  const auto document = [&](const std::string& file) {
+    const std::string text = read(file);
+    return checked(file, [&] { return verified(text, found.authority); });
+  };
+  document(found.files.governance);
+  found.robot = robot_of(document(found.files.permissions));
+  const std::string revoked_file = folder + "/" + kRevoked;
+  const Revoked revoked =
+      checked(revoked_file, [&] { return load_revoked(folder, found.authority); });
+  if (revoked.members.contains(common_name(found.subject)))
+    fail(found.files.certificate, common_name(found.subject) + " was revoked",
+         "`saphira security add " + found.subject.name + " --role " + found.subject.role +
+             "` makes a new one, if it should have one");
+  return found;
+}
+
+std::string to_text(const Revoked& revoked) {
+  std::string text = "revoked " + std::to_string(revoked.number) + "\n";
+  for (const std::string& member : revoked.members)
+    text += member + "\n";
+  return text;
+}
+
+Revoked load_revoked(const std::string& folder, const std::string& authority_certificate) {
+  const std::string file = folder + "/" + kRevoked;
+  const std::string text = verified(read_file(file), authority_certificate);
+  Revoked revoked;
+  bool first = true;
+  for (const Line& line : split_lines(text)) {
+    if (!std::exchange(first, false)) {
+      revoked.members.insert(std::string(line.words.front().text));
+      continue;
+    }
+    LineReader words(file, line);
+    if (words.word("revoked") != "revoked")
+      words.fail("expected revoked and the number of the list");
+    revoked.number =
+        static_cast<std::uint64_t>(words.integer("the number of the list", 0, 1L << 40));
+  }
+  if (first)
+    throw std::runtime_error("expected a list of what was revoked");
+  return revoked;
+}
+
+}  // namespace saphira::security

@@ -1,0 +1,49 @@
+#pragma once
+
+// Keys, certificates and signatures by libcrypto.
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "saphira/security/subject.hpp"
+
+namespace saphira::security {
+
+struct KeyPair {
+  std::string key;          ///< PEM
+  std::string certificate;  ///< PEM
+};
+
+/// How long something holds [s since 1970].
+struct Validity {
+  std::int64_t from = 0;
+  std::int64_t until = 0;
+};
+
+struct CertificateText {
+  std::string subject;  ///< as RFC 2253 writes it
+  Validity validity;
+};
+
+/// Of an authority: signs certificates and documents.
+KeyPair make_authority(const std::string& site, Validity validity);
+KeyPair make_member(const Subject& subject, Validity validity, const KeyPair& authority);
+
+/// S/MIME, as DDS Security wants its documents.
+std::string sign(const std::string& text, const KeyPair& authority);
+
+// All of these throw std::runtime_error that says what is wrong, without the file.
+
+/// What was signed by this certificate.
+std::string verified(const std::string& document, const std::string& authority_certificate);
+CertificateText read_certificate(const std::string& pem);
+/// Whether an authority has signed a certificate.
+void check_signed(const std::string& certificate, const std::string& authority_certificate);
+/// Whether a private key is that of a certificate.
+void check_key(const std::string& key, const std::string& certificate);
+
+/// As prefix_head().
+std::array<std::uint8_t, 6> name_hash_head(const Subject& subject);
+
+}  // namespace saphira::security

@@ -1,0 +1,91 @@
+#include "saphira/security/documents.hpp"
+
+#include <array>
+#include <ctime>
+#include <string_view>
+
+namespace saphira::security {
+namespace {
+
+constexpr const char* kHeader =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+    "<dds xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"\n"
+    " xsi:noNamespaceSchemaLocation=\"http://www.omg.org/spec/DDS-SECURITY/20170901/";
+constexpr const char* kDomains =
+    "<domains><id_range><min>0</min><max>232</max></id_range></domains>\n";
+
+std::string element(const std::string& name, const std::string& content) {
+  return "<" + name + ">" + content + "</" + name + ">\n";
+}
+
+std::string time_text(std::int64_t seconds) {
+  const std::time_t time = seconds;
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  return text.data();
+}
+
+/// One direction: its topics, of one robot or of all.
+std::string criteria(const std::string& direction, const std::string& topics,
+                     const std::string& robot) {
+  if (topics.empty())
+    return {};
+  return element(direction,
+                 element("topics", topics) +
+                     element("partitions", element("partition", robot.empty() ? "*" : robot)));
+}
+
+}  // namespace
+
+std::string governance() {
+  const std::string rule =
+      element("topic_expression", "*") + element("enable_discovery_protection", "true") +
+      element("enable_liveliness_protection", "true") +
+      element("enable_read_access_control", "true") +
+      element("enable_write_access_control", "true") +
+      // The submessages: data, and what says which of them there are. The data alone once more
+      // would cost time and hide nothing.
+      element("metadata_protection_kind", "ENCRYPT") + element("data_protection_kind", "NONE");
+  return std::string(kHeader) + "omg_shared_ca_governance.xsd\">\n" +
+         element("domain_access_rules",
+                 element("domain_rule",
+                         kDomains + element("allow_unauthenticated_participants", "false") +
+                             element("enable_join_access_control", "true") +
+                             element("discovery_protection_kind", "ENCRYPT") +
+                             element("liveliness_protection_kind", "ENCRYPT") +
+                             element("rtps_protection_kind", "NONE") +
+                             element("topic_access_rules", element("topic_rule", rule)))) +
+         "</dds>\n";
+}
+
+std::string permissions(const Grant& grant, const Roles& roles) {
+  std::string writes;
+  std::string reads;
+  for (const TopicRule& rule : roles.topics) {
+    if (rule.writers.contains(grant.subject.role))
+      writes += element("topic", rule.topic);
+    if (rule.readers.contains(grant.subject.role))
+      reads += element("topic", rule.topic);
+  }
+  return std::string(kHeader) + "omg_shared_ca_permissions.xsd\">\n<permissions>\n<grant name=\"" +
+         common_name(grant.subject) + "\">\n" + element("subject_name", to_text(grant.subject)) +
+         element("validity", element("not_before", time_text(grant.from)) +
+                                 element("not_after", time_text(grant.until))) +
+         element("allow_rule", kDomains + criteria("publish", writes, grant.robot) +
+                                   criteria("subscribe", reads, grant.robot)) +
+         element("default", "DENY") + "</grant>\n</permissions>\n</dds>\n";
+}
+
+std::string robot_of(const std::string& permissions) {
+  static constexpr std::string_view kBegin = "<partition>";
+  const std::size_t begin = permissions.find(kBegin);
+  if (begin == std::string::npos)
+    return {};
+  const std::size_t from = begin + kBegin.size();
+  const std::string robot = permissions.substr(from, permissions.find('<', from) - from);
+  return robot == "*" ? "" : robot;
+}
+
+}  // namespace saphira::security

@@ -1,0 +1,90 @@
+#include "saphira/security/credentials.hpp"
+
+#include <gtest/gtest.h>
+
+#include "saphira/base/durable.hpp"
+#include "site.hpp"
+
+namespace saphira::security::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CredentialsTest : public testing::Test {
+ protected:
+  Folder folder_{"credentials"};
+  std::string made_ = folder_.authority().add("karen", {"operator"}, "", 365, kNow);
+
+  std::string loading(std::int64_t now = kNow, const std::string& program = "cli") const {
+    return trouble([&] { load_credentials(made_, program, now); });
+  }
+  void change(const std::string& file, const std::string& what, const std::string& by) const {
+    std::string text = read_file(made_ + "/" + file);
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos);
+    ASSERT_TRUE(replace_file(made_ + "/" + file, text.replace(at, what.size(), by)));
+  }
+};
+
+TEST_F(CredentialsTest, TimesAreTold) {
+  EXPECT_EQ(loading(), "");
+  EXPECT_TRUE(says(loading(kNow + 365 * kDay), "has expired on 2028-01-15"));
+  EXPECT_TRUE(says(loading(kNow + 365 * kDay), "saphira security renew karen"));
+  EXPECT_TRUE(says(loading(kNow - 2 * kDay), "holds from"));
+  EXPECT_TRUE(says(loading(kNow - 2 * kDay), "clock of this machine"));
+}
+
+TEST_F(CredentialsTest, EachMissingFileIsNamed) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(made_))
+    if (entry.is_regular_file())
+      files.push_back(entry.path().string());
+  ASSERT_EQ(files.size(), 7U);
+  for (const std::string& file : files) {
+    fs::rename(file, file + ".away");
+    // Without its certificate a folder has no role.
+    const std::string named = says(file, "certificate") ? made_ : file;
+    EXPECT_TRUE(says(loading(), named)) << file << ": " << loading();
+    fs::rename(file + ".away", file);
+  }
+  EXPECT_EQ(loading(), "");
+}
+
+TEST_F(CredentialsTest, ChangedDocumentsAreTold) {
+  change("roles.signed", "drive/teleop: {write: [operator]", "drive/teleop: {write: [observer]");
+  EXPECT_TRUE(says(loading(), "roles.signed: the signature is not that of")) << loading();
+  change("roles.signed", "drive/teleop: {write: [observer]", "drive/teleop: {write: [operator]");
+  EXPECT_EQ(loading(), "");
+  change("operator/permissions.signed", "<topic>goals</topic>", "<topic>robot/state</topic>");
+  EXPECT_TRUE(says(loading(), "permissions.signed: the signature is not that of")) << loading();
+}
+
+TEST_F(CredentialsTest, FilesOfOthersAreTold) {
+  Authority other = folder_.authority("office", "other");
+  const std::string theirs = other.add("karen", {"operator"}, "", 365, kNow);
+  const auto copy = [&](const std::string& file) {
+    fs::copy(theirs + "/" + file, made_ + "/" + file, fs::copy_options::overwrite_existing);
+  };
+  copy("operator/key.pem");
+  EXPECT_TRUE(says(loading(), "key of another certificate")) << loading();
+  copy("operator/certificate.pem");
+  EXPECT_TRUE(says(loading(), "another authority has signed it")) << loading();
+}
+
+TEST_F(CredentialsTest, AProgramNeedsItsRole) {
+  const std::string text = loading(kNow, "bridge");
+  EXPECT_TRUE(says(text, "has credentials of operator, and bridge needs those of bridge")) << text;
+  EXPECT_TRUE(
+      says(trouble([&] { load_credentials("/nowhere", "cli", kNow); }), "saphira security add"));
+}
+
+TEST(PrefixHead, IsOfTheSubjectAlone) {
+  const Subject karen{"karen", 1, "operator", "office"};
+  EXPECT_EQ(prefix_head(karen), prefix_head(karen));
+  EXPECT_NE(prefix_head(karen), prefix_head({"karen", 2, "operator", "office"}));
+  EXPECT_NE(prefix_head(karen), prefix_head({"karen", 1, "observer", "office"}));
+  EXPECT_NE(prefix_head(karen)[0] & 0x80, 0);
+}
+
+}  // namespace
+}  // namespace saphira::security::test

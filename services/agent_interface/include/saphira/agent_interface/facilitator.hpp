@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/requests/request.hpp"
+
+namespace saphira::agent_interface {
+
+/// Something that an agent can be asked for.
+struct Capability {
+  Functor functor;
+  bool acts = false;  ///< it changes something, so it is asked of one agent, once
+  double cost = 0.0;  ///< the cheapest are asked first
+};
+
+struct AgentInfo {
+  std::uint64_t id = 0;
+  std::string name;
+  std::string address;  ///< Request.service that means it
+  std::vector<Capability> capabilities;
+};
+
+enum class TriggerKind { time, data, event };
+
+/// An action that is asked for when something is so (after OAA).
+struct Trigger {
+  std::pair<std::uint64_t, std::uint64_t> id;
+  std::string source;  ///< who set it
+  TriggerKind kind = TriggerKind::time;
+  double period = 1.0;  ///< [s] of time and data
+  std::string condition;
+  Arguments condition_arguments;
+  std::string action;
+  Arguments action_arguments;  ///< unbound ones are filled with what the condition found
+  std::uint64_t times = 0;     ///< so often at most; 0: without end
+};
+
+/// An answer on its way to who asked, with the agent that gave it.
+struct Solved {
+  std::uint64_t asker = 0;
+  std::uint64_t number = 0;
+  std::string service;
+  Answer answer;
+};
+
+/// Matches requests with the agents that can answer them, collects the answers, and asks for the
+/// actions of triggers (manual 2.2.8). A value without clock or bus: `now` is seconds of any clock
+/// that never goes back.
+class Facilitator {
+ public:
+  /// self: the asker of what triggers ask for.
+  explicit Facilitator(std::uint64_t self) : self_(self) {}
+
+  void announce(const AgentInfo& agent);
+  /// What it owed is asked of another agent, or answered with the reason.
+  void leave(std::uint64_t agent);
+
+  void set(const Trigger& trigger, double now);
+  void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
+  void happened(const std::string& functor, const Arguments& arguments, double now);
+
+  /// A request as it came; one that is known is not taken twice.
+  void ask(const Request& request, double now);
+  /// What the agent at an address said.
+  void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
+            const Answer& answer, double now);
+
+  struct Outputs {
+    std::vector<Request> requests;  ///< to agents, by their address
+    std::vector<Solved> solved;     ///< to askers
+    std::vector<std::string> notes;
+  };
+  /// Deadlines, triggers, and what has not been heard: asked again. Call after all of the above.
+  Outputs step(double now);
+  /// When step() has something to do though nothing comes; none: nothing is open.
+  std::optional<double> due() const;
+
+  std::size_t open() const { return open_.size(); }
+  std::size_t agents() const { return agents_.size(); }
+
+ private:
+  using Id = std::pair<std::uint64_t, std::uint64_t>;  ///< asker, number
+  struct Asked {
+    std::uint64_t agent = 0;
+    bool acts = false;
+    double again = 0.0;  ///< when it is asked again, unless something was heard
+    bool heard = false;
+  };
+  struct Open {
+    Request request;
+    std::size_t wanted = 1;  ///< 0: of each
+    double end = 0.0;
+    std::vector<std::uint64_t> left{};  ///< agents that can, and were not asked
+    std::vector<Asked> asked{};         ///< and have not answered
+    std::size_t got = 0;
+    Answer trouble{AnswerCode::nobody};  ///< the newest answer that is no good
+    std::string troubler{};
+    std::optional<Id> trigger{};  ///< whose condition it is
+  };
+  struct Armed {
+    Trigger trigger;
+    double next = 0.0;
+    std::uint64_t fired = 0;
+    std::optional<Arguments> found{};  ///< at the last look
+  };
+
+  std::optional<Answer> candidates(Open& open) const;
+  void begin(const Request& request, std::optional<Id> trigger, double now);
+  void advance(const Id& id, double now);
+  void send(Open& open, std::uint64_t agent, double now);
+  void give(const Id& id, const std::string& service, const Answer& answer);
+  void end(const Id& id, const std::string& service, const Answer& answer);
+  void looked(const Id& trigger, const Answer& answer);
+  void fire(Armed& armed, const Arguments& found, double now);
+  const Capability* capability(std::uint64_t agent, const std::string& functor) const;
+
+  std::uint64_t self_;
+  std::uint64_t number_ = 0;
+  double now_ = 0.0;
+  std::map<std::uint64_t, AgentInfo> agents_;
+  std::map<Id, Open> open_;
+  std::vector<std::pair<Id, Solved>>
+      ended_;  ///< newest ends, which are said again where asked again
+  std::map<Id, Armed> triggers_;
+  Outputs out_;
+};
+
+}  // namespace saphira::agent_interface

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/base/text.hpp"
+
+namespace saphira::agent_interface {
+
+/// What an utterance means: a functor with slots. Numbers are written as text, such as "1.5".
+struct Meaning {
+  std::string functor;
+  std::map<std::string, std::string> slots;
+
+  friend bool operator==(const Meaning&, const Meaning&) = default;
+};
+
+/// "move(direction=forward, distance=2)"
+std::string describe(const Meaning& meaning);
+
+/// The words of a text, as the grammar compares them: small letters, without punctuation; "Karen's"
+/// is the two words "karen" and "'s".
+std::vector<std::string> words_of(std::string_view text);
+
+/// Sequences of words as ways through a graph, for a recognizer of speech. Arcs without a word are
+/// passed in silence.
+struct WordGraph {
+  struct Arc {
+    int from = 0;
+    int to = 0;
+    std::string word{};
+
+    friend bool operator==(const Arc&, const Arc&) = default;
+  };
+  static constexpr int kStart = 0;
+  static constexpr int kEnd = 1;
+  static constexpr int kAddressed = 2;  ///< after the keyword
+  int states = 3;
+  std::vector<Arc> arcs;
+};
+
+/// Words to meanings, from a file that a person edits (config/grammars/README.md).
+class Grammar {
+ public:
+  Grammar() = default;
+  /// FileError that names line and column.
+  Grammar(std::string_view text, const std::string& file);
+
+  struct Understood {
+    bool addressed = false;         ///< it began with the keyword
+    std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
+  };
+  /// What a text means. replies: also what needs no keyword, since the robot has asked something.
+  Understood understand(std::string_view text, bool replies = false) const;
+
+  /// The meaning in words, for the robot to say before it acts; empty where the file has none.
+  std::string paraphrase(const Meaning& meaning) const;
+  const std::vector<std::string>& keywords() const { return keywords_; }
+  /// What may be heard as the name of a person, place or thing; `{slot}` takes any other one in
+  /// writing, too.
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// All that is understood, as it is spoken: with these names where the grammar has a name, and
+  /// with the words of its lists where it has a number. replies: also what needs no keyword.
+  WordGraph graph(const std::vector<std::string>& names, bool replies) const;
+
+  struct Node {
+    enum class Kind { word, list, name, number, sequence, choice, optional };
+    Kind kind = Kind::sequence;
+    std::string text{};  ///< of a word, or the name of a list
+    std::string slot{};  ///< that is filled
+    std::vector<Node> parts{};
+  };
+
+ private:
+  struct Entry {
+    std::vector<std::string> words;
+    std::string value;
+  };
+  struct Rule {
+    Meaning meaning;  ///< slots with their values where nothing is heard of them
+    bool reply = false;
+    std::string paraphrase;
+    std::vector<Node> patterns{};
+  };
+  struct Match {
+    std::size_t end = 0;
+    std::size_t literal = 0;  ///< words that the pattern itself has
+    std::map<std::string, std::string> slots{};
+  };
+  class Reader;
+  class GraphMaker;
+
+  std::vector<Match> match(const Node& node, const std::vector<std::string>& words,
+                           const Match& from) const;
+  std::vector<Match> sequence(const std::vector<Node>& parts, const std::vector<std::string>& words,
+                              const Match& from) const;
+  std::vector<Match> name(const Node& node, const std::vector<std::string>& words,
+                          const Match& from) const;
+  std::vector<Match> entry(const Node& node, const std::vector<std::string>& words,
+                           const Match& from) const;
+
+  std::vector<std::string> keywords_;
+  std::vector<std::string> names_;
+  std::vector<std::string> no_names_;  ///< words that no name contains
+  std::map<std::string, std::vector<Entry>> lists_;
+  std::vector<Rule> rules_;
+};
+
+}  // namespace saphira::agent_interface

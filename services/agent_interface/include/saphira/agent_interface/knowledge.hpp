@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace saphira::agent_interface {
+
+/// What the robot knows because somebody said it (paper 4.5).
+struct Advice {
+  enum class Kind { office_of, person_at, knows_where, hazard };
+  std::uint64_t number = 0;
+  Kind kind = Kind::office_of;
+  std::string about;  ///< the person, or the kind of hazard
+  std::string value;  ///< a place, or the person that knows
+  std::string speaker;
+  std::string said;            ///< in the speaker's words
+  double time = 0.0;           ///< [s] since 1970; 0: unknown
+  std::uint32_t artifact = 0;  ///< of the map; 0: none
+
+  friend bool operator==(const Advice&, const Advice&) = default;
+};
+
+/// "office_of"
+const char* describe(Advice::Kind kind);
+/// As a sentence: "EJ-231 is karen's office".
+std::string describe(const Advice& advice);
+
+class Knowledge {
+ public:
+  /// The newest about somebody or something of a kind; of a hazard: at that place.
+  const Advice* find(Advice::Kind kind, std::string_view about, std::string_view place = {}) const;
+  /// Takes the place of what was known of the same; gives it its number.
+  const Advice& learn(Advice advice);
+  /// What is known no more; nothing where it never was.
+  std::optional<Advice> forget(std::uint64_t number);
+  const std::vector<Advice>& all() const { return all_; }
+
+  /// Where a person may be: where somebody saw them, otherwise their office. Empty: not known.
+  std::string place_of(std::string_view person) const;
+
+  /// As text, a sealed line for each (saphira/base/durable.hpp). What cannot be read is left out;
+  /// the number of lines that were.
+  std::string save() const;
+  std::size_t restore(std::string_view text);
+
+ private:
+  std::vector<Advice> all_;
+  std::uint64_t newest_ = 0;
+};
+
+}  // namespace saphira::agent_interface

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "agents.h"
+#include "saphira/agent_interface/facilitator.hpp"
+#include "saphira/agent_interface/knowledge.hpp"
+
+/// Between the bus and plain types: pure functions, nothing else.
+namespace saphira::agent_interface {
+
+AgentInfo from_bus(const v1::Agent& agent);
+Trigger from_bus(const v1::Trigger& trigger);
+v1::Advice to_bus(const Advice& advice);
+
+}  // namespace saphira::agent_interface

@@ -1,0 +1,25 @@
+#include <CLI/CLI.hpp>
+
+#include "agent_interface/shell/dialogue_shell.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/bus/program.hpp"
+
+int main(int argc, char** argv) {
+  using namespace saphira;
+  agent_interface::DialogueOptions dialogue;
+  dialogue.grammar = "flakey";
+  return bus::run_program(
+      argc, argv, "dialogue", "Understands what people say to the robot, and answers",
+      [&](CLI::App& app) {
+        app.add_option("--grammar", dialogue.grammar,
+                       "what people may say: a name of config/grammars, or a file")
+            ->capture_default_str();
+        app.add_option("--memory", dialogue.memory, "a file that keeps what the robot was told");
+      },
+      [&](const bus::NodeOptions& options, const bus::Stop& stop) {
+        dialogue.grammar = find_file(config_folder() + "/grammars", dialogue.grammar, ".grammar");
+        bus::Node node(options);
+        agent_interface::DialogueShell(node, dialogue).run(stop);
+        return bus::kExitOk;
+      });
+}

@@ -1,0 +1,307 @@
+#include "agent_interface/shell/dialogue_shell.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+
+#include "agent_interface/shell/convert.hpp"
+#include "geometry/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
+#include "saphira/base/durable.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kName = "dialogue";
+constexpr const char* kQuestion = "asking-about";  // the belief of config/activities/people.act
+
+constexpr double kOld = 60.0;  // [s] after which nobody waits for it to be done
+
+constexpr std::chrono::seconds kTakenUp{5};  // a goal that nobody knows by then is withdrawn
+constexpr const char* kNotTakenUp =
+    "no program has taken up the goal: saphira status shows whether intentions runs";
+
+double unix_time() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string folder_of(const std::string& file) {
+  const std::string folder = fs::path(file).parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+/// As the activity language writes a text: "karen's office".
+std::string literal(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text)
+    result += c == '"' || c == '\\' ? ' ' : c;
+  return result + "\"";
+}
+
+}  // namespace
+
+DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
+    : node_(node),
+      options_(options),
+      folder_(folder_of(options.grammar), fs::path(options.grammar).extension()),
+      dialogue_(Grammar(read_file(options.grammar), options.grammar)),
+      agent_(node, kName, "what the robot was told"),
+      goals_(node, kName),
+      registration_(node, bus::topics::kRegistrationRequest, kName),
+      heard_(node.reader(bus::topics::kHeard)),
+      messages_(node.reader(bus::topics::kMessages)),
+      beliefs_(node.reader(bus::topics::kBeliefs)),
+      registrations_(node.reader(bus::topics::kRegistration)),
+      maps_(node.reader(bus::topics::kMap)),
+      said_(node.writer(bus::topics::kSaid)),
+      claims_(node.writer(bus::topics::kBeliefClaims)),
+      knows_(node.writer(bus::topics::kKnows)) {
+  folder_.look();
+  if (!options_.memory.empty()) {
+    std::size_t bad = 0;
+    const std::string trouble = read_or_set_aside(
+        options_.memory, [&](const std::string& text) { bad = dialogue_.restore(text); });
+    if (!trouble.empty())
+      node_.warn(trouble);
+    if (bad > 0)
+      node_.warn(options_.memory + ": " + std::to_string(bad) +
+                 " lines cannot be read, and are lost");
+  }
+  for (const Claimed& one : dialogue_.claims())
+    claim(one);
+  for (const auto& [tag, goal] : dialogue_.lasting()) {
+    v1::GoalId id;
+    id.writer(goal.first);
+    id.number(goal.second);
+    asked_[tag] = {id, std::chrono::steady_clock::now()};
+  }
+  publish();
+  announce();
+}
+
+void DialogueShell::announce() {
+  agent_.can(bus::capability(
+                 "place_of", "where a person may be, by what people said",
+                 {bus::text_slot("person", "a name", true), bus::text_slot("place", "of the map")}),
+             [this](const v1::Request& request) {
+               const std::string person = bus::text_of(request.arguments(), "person");
+               const std::string place = dialogue_.knowledge().place_of(person);
+               return place.empty() ? bus::refused("nobody has told me where " + person + " is")
+                                    : bus::done({bus::text("place", place)});
+             });
+  agent_.can(bus::action("forget", "takes back what the robot was told",
+                         {bus::number_slot("number", "of the advice (saphira knows)", true)}),
+             [this](const v1::Request& request) {
+               const auto number =
+                   static_cast<std::uint64_t>(bus::number_of(request.arguments(), "number"));
+               const Dialogue::Outputs out = dialogue_.forget(number);
+               if (!out.learned)
+                 return bus::refused("nothing is known under " + std::to_string(number) +
+                                     ": saphira knows lists what is");
+               perform(out);
+               return bus::done({}, "forgotten");
+             });
+}
+
+void DialogueShell::reload() {
+  const WatchedFolder::Changes changes = folder_.look();
+  const std::string file = fs::path(options_.grammar).filename();
+  for (const std::string& name : changes.changed) {
+    if (name != file)
+      continue;
+    try {
+      dialogue_.use(Grammar(read_file(options_.grammar), options_.grammar));
+      node_.info("the grammar " + options_.grammar + " was read again");
+    } catch (const std::runtime_error& error) {
+      node_.error(std::string("the grammar stays as it was: ") + error.what());
+    }
+  }
+}
+
+void DialogueShell::want(const WantedGoal& wanted) {
+  v1::Goal goal;
+  goal.functor(wanted.functor);
+  goal.arguments(to_bus(wanted.arguments));
+  goal.deadline(wanted.deadline);
+  const bool lasting = wanted.lasting && !options_.memory.empty();
+  goal.writer_lost(lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
+  const v1::GoalId id = goals_.ask(goal);
+  asked_[wanted.tag] = {id, std::chrono::steady_clock::now()};
+  if (lasting)
+    dialogue_.asked(wanted.tag, {id.writer(), id.number()});
+}
+
+void DialogueShell::claim(const Claimed& claim) {
+  const auto known = claimed_.find(claim.name);
+  if (claim.value.empty()) {
+    if (known != claimed_.end()) {
+      claims_.dispose(known->second);
+      claimed_.erase(known);
+    }
+    return;
+  }
+  v1::BeliefClaim sample;
+  sample.id().writer(node_.instance());
+  sample.id().number(known == claimed_.end() ? ++number_
+                                             : std::uint64_t{known->second.id().number()});
+  sample.source(claim.source);
+  sample.name(claim.name);
+  sample.value(literal(claim.value));
+  sample.writer_lost(v1::WRITER_LOST_CANCEL);
+  claimed_[claim.name] = sample;
+  claims_.write(sample);
+}
+
+void DialogueShell::rename(const Naming& naming) {
+  Request request;
+  request.functor = "put";
+  request.arguments = {
+      number("id", naming.feature.id),
+      text("type", naming.feature.type == lps::PointType::door ? "DOOR" : "CORRIDOR"),
+      point("position", naming.feature.pose_in_map, Frame::map),
+      number("length", naming.feature.length),
+      number("width", naming.feature.width),
+      text("name", naming.feature.name),
+      truth("learned", naming.feature.learned)};
+  registration_.send(to_bus(request));
+}
+
+void DialogueShell::perform(const Dialogue::Outputs& out) {
+  for (const Said& said : out.said) {
+    v1::Utterance sample;
+    sample.id().writer(node_.instance());
+    sample.id().number(bus::next_request_number());
+    sample.answers().writer(said.answers.first);
+    sample.answers().number(said.answers.second);
+    sample.listener(said.listener);
+    sample.text(said.text);
+    sample.confidence(1.0);
+    sample.end(said.end);
+    said_.write(sample);
+  }
+  for (const std::uint64_t tag : out.canceled)
+    if (const auto goal = asked_.find(tag); goal != asked_.end()) {
+      goals_.cancel(goal->second.goal);
+      asked_.erase(goal);
+    }
+  for (const WantedGoal& goal : out.goals)
+    want(goal);
+  for (const Claimed& one : out.claims)
+    claim(one);
+  for (const Naming& naming : out.namings)
+    rename(naming);
+  if (out.learned) {
+    remember();
+    publish();
+  }
+}
+
+void DialogueShell::remember() {
+  if (!options_.memory.empty() && !replace_file(options_.memory, dialogue_.save()))
+    node_.warn("what the robot was told cannot be kept: " + options_.memory + " cannot be written");
+}
+
+void DialogueShell::publish() {
+  v1::Knowledge sample;
+  for (const Advice& advice : dialogue_.knowledge().all())
+    sample.known().push_back(to_bus(advice));
+  knows_.write(sample);
+}
+
+void DialogueShell::take_goals() {
+  goals_.poll();
+  for (auto goal = asked_.begin(); goal != asked_.end();) {
+    const auto status = goals_.status(goal->second.goal);
+    const bool taken = status || std::chrono::steady_clock::now() - goal->second.when < kTakenUp;
+    if (taken && !(status && bus::ended(status->state()))) {
+      ++goal;
+      continue;
+    }
+    Outcome outcome{goal->first, false, kNotTakenUp};
+    if (status)
+      outcome = {goal->first, status->state() == v1::GOAL_SUCCEEDED, status->reason()};
+    else
+      goals_.cancel(goal->second.goal);
+    goal = asked_.erase(goal);
+    perform(dialogue_.ended(outcome));
+    remember();
+  }
+}
+
+void DialogueShell::take_beliefs() {
+  const auto beliefs = beliefs_.take_newest();
+  if (!beliefs)
+    return;
+  situation_.asked_about.clear();
+  for (const v1::Belief& belief : beliefs->beliefs())
+    if (belief.name() == kQuestion && belief.value().size() > 2 && belief.value().front() == '"')
+      situation_.asked_about = belief.value().substr(1, belief.value().size() - 2);
+    else if (belief.name() == kQuestion && belief.value() != "nil")
+      situation_.asked_about = belief.value();
+}
+
+void DialogueShell::take_utterances() {
+  for (const auto& sample : heard_.take()) {
+    if (sample.info.disposed)
+      continue;
+    // A writer that lives keeps what it wrote: who has just begun hears it too.
+    if (sample.data.time() > 0.0 && unix_time() - sample.data.time() > kOld) {
+      node_.info("not acted on, since it is older than a minute: " +
+                 saphira::quoted(sample.data.text()));
+      continue;
+    }
+    Utterance utterance;
+    utterance.id = {sample.data.id().writer(), sample.data.id().number()};
+    utterance.speaker = sample.data.speaker().substr(0, 31);
+    utterance.text = sample.data.text().substr(0, 255);
+    utterance.confidence = sample.data.confidence();
+    utterance.time = sample.data.time();
+    perform(dialogue_.hear(utterance, situation_));
+  }
+}
+
+void DialogueShell::step() {
+  if (const auto map = maps_.take_newest()) {
+    situation_.map = maps::from_bus(*map);
+    node_.status().state(v1::SERVICE_RUNNING);
+    node_.status().reason("");
+  }
+  if (const auto registration = registrations_.take_newest()) {
+    situation_.pose_in_map.reset();
+    if (registration->state() == v1::REGISTRATION_TRACKING)
+      situation_.pose_in_map = saphira::from_bus(registration->pose_in_map());
+  }
+  registration_.poll();
+  take_beliefs();
+  for (const auto& sample : messages_.take())
+    if (!sample.info.disposed && !asked_.empty()) {
+      perform(dialogue_.says(sample.data.text(),
+                             {sample.data.stamp().epoch(), sample.data.stamp().cycle()}));
+      remember();
+    }
+  take_goals();
+  take_utterances();
+  agent_.poll();
+}
+
+void DialogueShell::run(const bus::Stop& stop) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kLook{450};
+  node_.status().state(v1::SERVICE_WAITING);
+  node_.status().reason("no map has come: places have no names yet");
+  auto looked = Clock::now();
+  while (!stop.requested()) {
+    node_.wait(kLook, &stop);
+    step();
+    if (Clock::now() - looked > std::chrono::seconds(1)) {
+      reload();
+      looked = Clock::now();
+    }
+    node_.publish_status();
+  }
+}
+
+}  // namespace saphira::agent_interface

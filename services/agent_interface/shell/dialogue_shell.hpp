@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+
+#include "saphira/agent_interface/dialogue.hpp"
+#include "saphira/base/watched_folder.hpp"
+#include "saphira/bus/agent.hpp"
+#include "saphira/bus/goal_client.hpp"
+
+namespace saphira::agent_interface {
+
+struct DialogueOptions {
+  std::string grammar;  ///< a file
+  std::string memory;   ///< where what was told outlives a restart; empty: nowhere
+};
+
+/// The dialogue on the bus: utterances in and out, goals, claims and what the robot knows. For the
+/// node's own thread.
+class DialogueShell {
+ public:
+  /// FileError where the grammar has a mistake.
+  DialogueShell(bus::Node& node, const DialogueOptions& options);
+
+  /// Takes what has come and does what follows.
+  void step();
+  /// Reads the grammar again where its file has changed; one with a mistake is not taken.
+  void reload();
+  void run(const bus::Stop& stop);
+
+ private:
+  void announce();
+  void take_goals();
+  void take_beliefs();
+  void take_utterances();
+  void perform(const Dialogue::Outputs& out);
+  void want(const WantedGoal& goal);
+  void claim(const Claimed& claim);
+  void rename(const Naming& naming);
+  void remember();
+  void publish();
+
+  bus::Node& node_;
+  DialogueOptions options_;
+  WatchedFolder folder_;
+  Dialogue dialogue_;
+  bus::Agent agent_;
+  bus::GoalClient goals_;
+  bus::RequestClient registration_;
+  bus::Reader<v1::Utterance> heard_;
+  bus::Reader<v1::Message> messages_;
+  bus::Reader<v1::BeliefSet> beliefs_;
+  bus::Reader<v1::Registration> registrations_;
+  bus::Reader<v1::FloorMap> maps_;
+  bus::Writer<v1::Utterance> said_;
+  bus::Writer<v1::BeliefClaim> claims_;
+  bus::Writer<v1::Knowledge> knows_;
+  Situation situation_;
+  struct Asked {
+    v1::GoalId goal;
+    std::chrono::steady_clock::time_point when;
+  };
+  std::map<std::uint64_t, Asked> asked_;            ///< by the dialogue's tag
+  std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace saphira::agent_interface

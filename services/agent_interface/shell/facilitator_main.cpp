@@ -1,0 +1,14 @@
+#include "agent_interface/shell/facilitator_shell.hpp"
+#include "saphira/bus/program.hpp"
+
+int main(int argc, char** argv) {
+  using namespace saphira;
+  return bus::run_program(
+      argc, argv, "facilitator", "Routes requests to the agents that can answer them",
+      [](CLI::App&) {},
+      [](const bus::NodeOptions& options, const bus::Stop& stop) {
+        bus::Node node(options);
+        agent_interface::FacilitatorShell(node).run(stop);
+        return bus::kExitOk;
+      });
+}

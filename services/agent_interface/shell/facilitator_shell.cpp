@@ -1,0 +1,114 @@
+#include "agent_interface/shell/facilitator_shell.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "agent_interface/shell/convert.hpp"
+#include "requests/shell/convert.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+template <class Key>
+void note(std::multimap<bus::WriterId, Key>& of, const bus::WriterId& writer, const Key& key) {
+  const auto [begin, end] = of.equal_range(writer);
+  if (std::none_of(begin, end, [&](const auto& one) { return one.second == key; }))
+    of.emplace(writer, key);
+}
+
+}  // namespace
+
+FacilitatorShell::FacilitatorShell(bus::Node& node)
+    : node_(node),
+      agents_(node.reader(bus::topics::kAgents)),
+      triggers_(node.reader(bus::topics::kTriggers)),
+      events_(node.reader(bus::topics::kAgentEvents)),
+      asked_(node.reader<v1::Request>(bus::topics::kSolve)),
+      answers_(node.reader(bus::topics::kAgentAnswers)),
+      requests_(node.writer<v1::Request>(bus::topics::kAgentRequest)),
+      solved_(node.writer(bus::topics::kSolved)),
+      facilitator_(node.instance()) {}
+
+void FacilitatorShell::take_agents() {
+  for (const auto& sample : agents_.take()) {
+    if (sample.info.disposed) {
+      facilitator_.leave(sample.data.id());
+      continue;
+    }
+    note(agents_of_, sample.info.writer, std::uint64_t{sample.data.id()});
+    facilitator_.announce(from_bus(sample.data));
+  }
+  for (const bus::WriterId& writer : agents_.take_lost()) {
+    const auto [begin, end] = agents_of_.equal_range(writer);
+    for (auto one = begin; one != end; ++one)
+      facilitator_.leave(one->second);
+    agents_of_.erase(writer);
+  }
+}
+
+void FacilitatorShell::take_triggers(double now) {
+  for (const auto& sample : triggers_.take()) {
+    const Trigger trigger = from_bus(sample.data);
+    if (sample.info.disposed) {
+      facilitator_.take_back(trigger.id);
+      continue;
+    }
+    note(triggers_of_, sample.info.writer, trigger.id);
+    facilitator_.set(trigger, now);
+  }
+  for (const bus::WriterId& writer : triggers_.take_lost()) {
+    const auto [begin, end] = triggers_of_.equal_range(writer);
+    for (auto one = begin; one != end; ++one)
+      facilitator_.take_back(one->second);
+    triggers_of_.erase(writer);
+  }
+}
+
+void FacilitatorShell::step(double now) {
+  take_agents();
+  take_triggers(now);
+  for (const auto& sample : answers_.take())
+    if (!sample.info.disposed)
+      facilitator_.hear(sample.data.service(), sample.data.asker(), sample.data.number(),
+                        saphira::from_bus(sample.data), now);
+  for (const auto& sample : events_.take())
+    if (!sample.info.disposed)
+      facilitator_.happened(sample.data.functor(), saphira::from_bus(sample.data.arguments()), now);
+  for (const auto& sample : asked_.take())
+    if (!sample.info.disposed)
+      facilitator_.ask(saphira::from_bus(sample.data), now);
+
+  const Facilitator::Outputs out = facilitator_.step(now);
+  for (const Request& request : out.requests)
+    requests_.write(to_bus(request));
+  for (const Solved& solved : out.solved) {
+    v1::Answer answer = to_bus(solved.answer);
+    answer.asker(solved.asker);
+    answer.number(solved.number);
+    answer.service(solved.service);
+    solved_.write(answer);
+  }
+  for (const std::string& text : out.notes)
+    node_.info(text);
+}
+
+void FacilitatorShell::run(const bus::Stop& stop) {
+  constexpr double kStatusTime = 0.45;  // [s] twice a second
+  node_.status().state(v1::SERVICE_RUNNING);
+  while (!stop.requested()) {
+    const double now = seconds();
+    const double due = facilitator_.due().value_or(now + kStatusTime);
+    const double wait = std::clamp(due - now, 0.001, kStatusTime);
+    node_.wait(std::chrono::milliseconds(static_cast<int>(1000.0 * wait) + 1), &stop);
+    step(seconds());
+    node_.publish_status();
+  }
+}
+
+}  // namespace saphira::agent_interface

@@ -1,0 +1,378 @@
+#include "saphira/agent_interface/facilitator.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "saphira/base/guess.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr double kUsualDeadline = 10.0;  // [s] of a request that names none
+constexpr double kAgain = 0.3;           // [s] until an agent that says nothing is asked again
+constexpr std::size_t kOpenOfOne = 64;   // requests of one asker at a time
+constexpr std::size_t kEnded = 256;      // ends that are remembered
+constexpr const char* kName = "facilitator";
+
+Arguments without(Arguments arguments, const std::string& name) {
+  std::erase_if(arguments, [&](const Argument& one) { return one.name == name; });
+  return arguments;
+}
+
+/// What is wrong with the arguments, as complete() says it. A slot that is left open fits.
+std::string misfit(const Functor& functor, const Arguments& arguments) {
+  Functor asked = functor;
+  Arguments bound;
+  for (const Argument& argument : arguments) {
+    const auto parameter =
+        std::find_if(asked.parameters.begin(), asked.parameters.end(),
+                     [&](const Parameter& one) { return one.name == argument.name; });
+    if (argument.kind == ArgumentKind::unbound && parameter != asked.parameters.end())
+      parameter->required = false;
+    else
+      bound.push_back(argument);
+  }
+  return complete(asked, bound);
+}
+
+/// Nothing was done: another agent may be asked for the same.
+bool untouched(AnswerCode code) {
+  return code == AnswerCode::refused || code == AnswerCode::unknown_functor ||
+         code == AnswerCode::bad_argument || code == AnswerCode::nobody;
+}
+
+std::string counted(std::size_t number) {
+  return std::to_string(number) + (number == 1 ? " answer" : " answers");
+}
+
+}  // namespace
+
+const Capability* Facilitator::capability(std::uint64_t agent, const std::string& functor) const {
+  const auto found = agents_.find(agent);
+  if (found == agents_.end())
+    return nullptr;
+  for (const Capability& one : found->second.capabilities)
+    if (one.functor.name == functor)
+      return &one;
+  return nullptr;
+}
+
+void Facilitator::announce(const AgentInfo& agent) {
+  const bool known = agents_.contains(agent.id);
+  agents_[agent.id] = agent;
+  if (!known)
+    out_.notes.push_back("agent " + agent.name + " came");
+}
+
+void Facilitator::leave(std::uint64_t agent) {
+  const auto found = agents_.find(agent);
+  if (found == agents_.end())
+    return;
+  const std::string name = found->second.name;
+  agents_.erase(found);
+  out_.notes.push_back("agent " + name + " left");
+  std::vector<Id> concerned;
+  for (auto& [id, open] : open_) {
+    std::erase(open.left, agent);
+    for (const Asked& asked : open.asked)
+      if (asked.agent == agent)
+        concerned.push_back(id);
+  }
+  for (const Id& id : concerned) {
+    Open& open = open_.at(id);
+    const auto asked = std::find_if(open.asked.begin(), open.asked.end(),
+                                    [&](const Asked& one) { return one.agent == agent; });
+    const bool acts = asked->acts;
+    open.asked.erase(asked);
+    open.troubler = name;
+    open.trouble = {AnswerCode::lost, "agent " + name + " left before it answered" +
+                                          (acts ? "; whether it was done is not known" : "")};
+    if (acts && open.wanted == 1)
+      end(id, name, Answer(open.trouble));
+    else
+      advance(id, now_);
+  }
+}
+
+std::optional<Answer> Facilitator::candidates(Open& open) const {
+  const Request& request = open.request;
+  std::string wrong;
+  std::vector<std::string> known;
+  bool named = request.service.empty();
+  std::vector<std::tuple<double, std::string, std::uint64_t>> fit;
+  for (const auto& [id, agent] : agents_) {
+    if (!request.service.empty() && request.service != agent.name &&
+        request.service != agent.address)
+      continue;
+    named = true;
+    for (const Capability& one : agent.capabilities) {
+      known.push_back(one.functor.name);
+      if (one.functor.name != request.functor)
+        continue;
+      if (const std::string bad = misfit(one.functor, request.arguments); !bad.empty())
+        wrong = bad;
+      else
+        fit.emplace_back(one.cost, agent.name, id);
+    }
+  }
+  if (fit.empty()) {
+    if (!named)
+      return Answer{AnswerCode::nobody, "there is no agent " + quoted(request.service)};
+    if (!wrong.empty())
+      return Answer{AnswerCode::bad_argument, wrong};
+    const std::string meant = guess(request.functor, known);
+    return Answer{AnswerCode::nobody, "no agent " +
+                                          (request.service.empty() ? "" : request.service + " ") +
+                                          "can do " + quoted(request.functor) +
+                                          (meant.empty() ? "" : ": did you mean " + meant + "?")};
+  }
+  std::sort(fit.begin(), fit.end());
+  for (const auto& one : fit)
+    open.left.push_back(std::get<std::uint64_t>(one));
+  return std::nullopt;
+}
+
+void Facilitator::ask(const Request& request, double now) {
+  const Id id{request.asker, request.number};
+  if (open_.contains(id))
+    return;
+  for (const auto& [known, solved] : ended_)
+    if (known == id) {
+      out_.solved.push_back(solved);
+      return;
+    }
+  begin(request, std::nullopt, now);
+}
+
+void Facilitator::begin(const Request& request, std::optional<Id> trigger, double now) {
+  const Id id{request.asker, request.number};
+  Open open{request};
+  open.trigger = trigger;
+  if (const Argument* const wanted = find(request.arguments, "answers")) {
+    open.wanted = static_cast<std::size_t>(std::clamp(wanted->number, 0.0, 1e6));
+    open.request.arguments = without(request.arguments, "answers");
+  }
+  open.end = now + (request.deadline > 0.0 ? request.deadline : kUsualDeadline);
+  const auto same = std::count_if(open_.begin(), open_.end(), [&](const auto& one) {
+    return one.first.first == id.first && one.second.request.source == request.source;
+  });
+  std::optional<Answer> none;
+  if (static_cast<std::size_t>(same) >= kOpenOfOne)
+    none = Answer{AnswerCode::refused, request.source + " has " + std::to_string(same) +
+                                           " requests open: ask again when one has ended"};
+  else
+    none = candidates(open);
+  open_[id] = std::move(open);
+  if (none)
+    end(id, kName, *none);
+  else
+    advance(id, now);
+}
+
+void Facilitator::send(Open& open, std::uint64_t agent, double now) {
+  const Capability* const can = capability(agent, open.request.functor);
+  open.asked.push_back({agent, can != nullptr && can->acts, now + kAgain});
+  Request request = open.request;
+  request.service = agents_.at(agent).address;
+  out_.requests.push_back(std::move(request));
+}
+
+/// Asks who is next, or ends the request.
+void Facilitator::advance(const Id& id, double now) {
+  Open& open = open_.at(id);
+  if (open.wanted == 1 ? open.asked.empty() : true) {
+    while (!open.left.empty() && (open.wanted != 1 || open.asked.empty())) {
+      const std::uint64_t agent = open.left.front();
+      open.left.erase(open.left.begin());
+      send(open, agent, now);
+    }
+  }
+  if (!open.asked.empty() && (open.wanted == 0 || open.got < open.wanted))
+    return;
+  if (open.got > 0)
+    end(id, kName, {AnswerCode::done, counted(open.got)});
+  else
+    end(id, open.troubler.empty() ? kName : open.troubler, Answer(open.trouble));
+}
+
+void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
+                       const Answer& answer, double now) {
+  const Id id{asker, number};
+  const auto found = open_.find(id);
+  if (found == open_.end())
+    return;
+  Open& open = found->second;
+  const auto asked = std::find_if(open.asked.begin(), open.asked.end(), [&](const Asked& one) {
+    const auto agent = agents_.find(one.agent);
+    return agent != agents_.end() && agent->second.address == address;
+  });
+  if (asked == open.asked.end())
+    return;
+  asked->heard = true;
+  if (!ended(answer.code))
+    return;
+  const std::string name = agents_.at(asked->agent).name;
+  const bool acts = asked->acts;
+  open.asked.erase(asked);
+  if (well(answer.code)) {
+    ++open.got;
+    if (open.wanted == 1)
+      return end(id, name, answer);
+    Answer one = answer;
+    one.code = AnswerCode::underway;
+    give(id, name, one);
+  } else {
+    open.trouble = answer;
+    open.troubler = name;
+    if (acts && open.wanted == 1 && !untouched(answer.code))
+      return end(id, name, answer);
+  }
+  advance(id, now);
+}
+
+void Facilitator::give(const Id& id, const std::string& service, const Answer& answer) {
+  if (!open_.at(id).trigger && id.first != self_)
+    out_.solved.push_back({id.first, id.second, service, answer});
+}
+
+void Facilitator::end(const Id& id, const std::string& service, const Answer& answer) {
+  const Open open = std::move(open_.at(id));
+  open_.erase(id);
+  if (open.trigger)
+    return looked(*open.trigger, answer);
+  if (id.first == self_) {
+    if (!well(answer.code))
+      out_.notes.push_back(open.request.source + " asked for " + describe(open.request) + ": " +
+                           answer.text);
+    return;
+  }
+  out_.solved.push_back({id.first, id.second, service, answer});
+  ended_.emplace_back(id, out_.solved.back());
+  if (ended_.size() > kEnded)
+    ended_.erase(ended_.begin());
+}
+
+void Facilitator::set(const Trigger& trigger, double now) {
+  Armed armed{trigger};
+  armed.trigger.period = std::max(trigger.period, 0.1);
+  armed.next = now + (trigger.kind == TriggerKind::time ? armed.trigger.period : 0.0);
+  triggers_[trigger.id] = armed;
+}
+
+void Facilitator::take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger) {
+  triggers_.erase(trigger);
+}
+
+void Facilitator::happened(const std::string& functor, const Arguments& arguments, double now) {
+  for (auto& [id, armed] : triggers_) {
+    const Trigger& trigger = armed.trigger;
+    if (trigger.kind != TriggerKind::event || trigger.condition != functor)
+      continue;
+    const bool fits = std::all_of(trigger.condition_arguments.begin(),
+                                  trigger.condition_arguments.end(), [&](const Argument& wanted) {
+                                    const Argument* const has = find(arguments, wanted.name);
+                                    return has != nullptr &&
+                                           (wanted.kind == ArgumentKind::unbound || *has == wanted);
+                                  });
+    if (fits)
+      fire(armed, arguments, now);
+  }
+}
+
+void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
+  const Trigger& trigger = armed.trigger;
+  if (trigger.times != 0 && armed.fired >= trigger.times)
+    return;
+  ++armed.fired;
+  Request request;
+  request.functor = trigger.action;
+  request.source = "a trigger of " + trigger.source;
+  request.asker = self_;
+  request.number = ++number_;
+  for (const Argument& argument : trigger.action_arguments) {
+    const Argument* const value =
+        argument.kind == ArgumentKind::unbound ? find(found, argument.name) : nullptr;
+    request.arguments.push_back(value == nullptr ? argument : *value);
+  }
+  begin(request, std::nullopt, now);
+}
+
+/// The condition of a data trigger was answered.
+void Facilitator::looked(const Id& trigger, const Answer& answer) {
+  const auto found = triggers_.find(trigger);
+  if (found == triggers_.end() || !well(answer.code))
+    return;
+  Armed& armed = found->second;
+  const bool changed = armed.found && *armed.found != answer.results;
+  armed.found = answer.results;
+  if (changed)
+    fire(armed, answer.results, now_);
+}
+
+Facilitator::Outputs Facilitator::step(double now) {
+  now_ = now;
+  for (auto& [id, armed] : triggers_) {
+    if (armed.trigger.kind == TriggerKind::event || now < armed.next ||
+        (armed.trigger.times != 0 && armed.fired >= armed.trigger.times))
+      continue;
+    // What was missed while this program slept is not made up for.
+    armed.next = now + armed.trigger.period;
+    if (armed.trigger.kind == TriggerKind::time) {
+      fire(armed, {}, now);
+      continue;
+    }
+    Request condition;
+    condition.functor = armed.trigger.condition;
+    condition.arguments = armed.trigger.condition_arguments;
+    condition.source = "a trigger of " + armed.trigger.source;
+    condition.asker = self_;
+    condition.number = ++number_;
+    begin(condition, id, now);
+  }
+  std::vector<Id> late;
+  for (auto& [id, open] : open_) {
+    if (now >= open.end) {
+      late.push_back(id);
+      continue;
+    }
+    for (Asked& asked : open.asked)
+      if (!asked.heard && now >= asked.again) {
+        asked.again = now + kAgain;
+        Request request = open.request;
+        request.service = agents_.at(asked.agent).address;
+        out_.requests.push_back(std::move(request));
+      }
+  }
+  for (const Id& id : late) {
+    const Open& open = open_.at(id);
+    std::string names;
+    for (const Asked& asked : open.asked)
+      names += (names.empty() ? "" : ", ") + agents_.at(asked.agent).name;
+    Answer answer{AnswerCode::done, counted(open.got) + "; not in time: " + names};
+    if (open.got == 0)
+      answer = {AnswerCode::too_late, names + " did not answer in time"};
+    end(id, kName, answer);
+  }
+  return std::exchange(out_, {});
+}
+
+std::optional<double> Facilitator::due() const {
+  std::optional<double> soonest;
+  const auto consider = [&](double when) {
+    if (!soonest || when < *soonest)
+      soonest = when;
+  };
+  for (const auto& [id, open] : open_) {
+    consider(open.end);
+    for (const Asked& asked : open.asked)
+      if (!asked.heard)
+        consider(asked.again);
+  }
+  for (const auto& [id, armed] : triggers_)
+    if (armed.trigger.kind != TriggerKind::event &&
+        (armed.trigger.times == 0 || armed.fired < armed.trigger.times))
+      consider(armed.next);
+  return soonest;
+}
+
+}  // namespace saphira::agent_interface

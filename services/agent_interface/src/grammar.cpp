@@ -1,0 +1,538 @@
+#include "saphira/agent_interface/grammar.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "saphira/base/numbers.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr std::size_t kLongestUtterance = 40;  // words; more is no command
+constexpr std::size_t kLongestName = 3;        // words
+constexpr std::size_t kMostMatches = 1000;
+
+bool is_letter(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return std::isalnum(byte) != 0 || c == '-' || byte >= 0x80;
+}
+
+bool is_number(const std::string& word) {
+  return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front())) != 0 &&
+         std::all_of(
+             word.begin(), word.end(),
+             [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; }) &&
+         std::count(word.begin(), word.end(), '.') <= 1;
+}
+
+}  // namespace
+
+std::string describe(const Meaning& meaning) {
+  std::string text = meaning.functor + "(";
+  for (const auto& [name, value] : meaning.slots)
+    text += (text.back() == '(' ? "" : ", ") + name + "=" + value;
+  return text + ")";
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words;
+  std::string word;
+  const auto end = [&] {
+    if (!word.empty())
+      words.push_back(std::exchange(word, {}));
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const bool digit_follows =
+        i + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0;
+    if (is_letter(c)) {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } else if (c == '.' && is_number(word) && digit_follows) {
+      word += c;
+    } else if (c == '\'' && !word.empty()) {
+      const bool owner = i + 1 < text.size() && (text[i + 1] == 's' || text[i + 1] == 'S') &&
+                         (i + 2 == text.size() || !is_letter(text[i + 2]));
+      if (owner) {
+        end();
+        word = "'s";
+        end();
+        ++i;
+      }
+    } else {
+      end();
+    }
+  }
+  end();
+  return words;
+}
+
+/// Reads the file: see config/grammars/README.md.
+class Grammar::Reader {
+ public:
+  Reader(Grammar& grammar, const std::string& file) : grammar_(grammar), file_(file) {}
+
+  void read(std::string_view text) {
+    int number = 0;
+    while (!text.empty()) {
+      const std::size_t length = std::min(text.find('\n'), text.size());
+      line_ = text.substr(0, length);
+      text.remove_prefix(std::min(length + 1, text.size()));
+      number_ = ++number;
+      if (!line_.empty() && line_.back() == '\r')
+        line_.remove_suffix(1);
+      line_ = line_.substr(0, line_.find('#'));
+      at_ = 0;
+      const bool indented = !line_.empty() && (line_.front() == ' ' || line_.front() == '\t');
+      skip();
+      if (at_ < line_.size())
+        indented ? pattern() : header();
+    }
+    check_last();
+    if (grammar_.keywords_.empty())
+      fail("expected a line such as \"keyword: flakey\" in the file");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw FileError(file_, number_, static_cast<int>(at_) + 1, message, line_);
+  }
+  void skip() {
+    while (at_ < line_.size() && (line_[at_] == ' ' || line_[at_] == '\t'))
+      ++at_;
+  }
+  bool take(char c) {
+    skip();
+    if (at_ >= line_.size() || line_[at_] != c)
+      return false;
+    ++at_;
+    return true;
+  }
+  void expect(char c) {
+    if (!take(c))
+      fail(std::string("expected ") + c);
+  }
+  /// A word of the file: letters, digits, hyphens and what follows an apostrophe.
+  std::string word(const char* what) {
+    skip();
+    const std::size_t from = at_;
+    while (at_ < line_.size() &&
+           (is_letter(line_[at_]) || line_[at_] == '_' || line_[at_] == '\'' || line_[at_] == '.'))
+      ++at_;
+    if (at_ == from)
+      fail(std::string("expected ") + what);
+    return std::string(line_.substr(from, at_ - from));
+  }
+  std::string heard_word() {
+    skip();
+    const std::size_t from = at_;
+    const std::string text = word("a word");
+    if (words_of(text) != std::vector{text} && text != "'s") {
+      at_ = from;
+      fail("expected a word as it is heard: small letters, and \"karen 's\" for \"Karen's\"");
+    }
+    return text;
+  }
+
+  void header() {
+    const std::size_t from = at_;
+    const std::string first = word("keyword, names, no-names, list, reply or a functor");
+    if (first == "keyword") {
+      expect(':');
+      do
+        grammar_.keywords_.push_back(heard_word());
+      while (take('|'));
+    } else if (first == "no-names") {
+      expect(':');
+      while (at_ < line_.size()) {
+        grammar_.no_names_.push_back(heard_word());
+        skip();
+      }
+    } else if (first == "names") {
+      names();
+    } else if (first == "list") {
+      list();
+    } else {
+      const bool reply = first == "reply";
+      rule(reply ? word("a functor") : first, reply, from);
+    }
+    skip();
+    if (at_ < line_.size())
+      fail("expected the end of the line");
+  }
+
+  /// names: karen | ej-231 | copy room
+  void names() {
+    expect(':');
+    do {
+      std::string name = heard_word();
+      for (skip(); at_ < line_.size() && line_[at_] != '|'; skip())
+        name += " " + heard_word();
+      grammar_.names_.push_back(std::move(name));
+    } while (take('|'));
+  }
+
+  /// list side: left | to the left = left | right
+  void list() {
+    const std::string name = word("the name of the list");
+    expect(':');
+    std::vector<Entry>& entries = grammar_.lists_[name];
+    std::size_t unnamed = entries.size();
+    do {
+      Entry entry;
+      while (at_ < line_.size() && line_[at_] != '|' && line_[at_] != '=') {
+        entry.words.push_back(heard_word());
+        skip();
+      }
+      if (entry.words.empty())
+        fail("expected a word");
+      for (const std::string& one : entry.words)
+        entry.value += (entry.value.empty() ? "" : " ") + one;
+      entries.push_back(std::move(entry));
+      if (take('=')) {
+        std::string value = word("the value of the words before it");
+        for (skip(); at_ < line_.size() && line_[at_] != '|'; skip())
+          value += " " + word("a word");
+        for (; unnamed < entries.size(); ++unnamed)
+          entries[unnamed].value = value;
+      }
+    } while (take('|'));
+  }
+
+  /// move(direction=forward, distance=1) "going $distance m"
+  void rule(const std::string& functor, bool reply, std::size_t from) {
+    check_last();
+    Rule rule;
+    rule.meaning.functor = functor;
+    rule.reply = reply;
+    last_ = {number_, from, std::string(line_)};
+    expect('(');
+    while (!take(')')) {
+      const std::string slot = word("the name of a slot");
+      rule.meaning.slots[slot] = take('=') ? word("the value of the slot") : "";
+      skip();
+      if (!take(',') && (at_ >= line_.size() || line_[at_] != ')'))
+        fail("expected , or )");
+    }
+    if (take('"')) {
+      const std::size_t end = line_.find('"', at_);
+      if (end == std::string_view::npos)
+        fail("expected \" at the end of the paraphrase");
+      rule.paraphrase = line_.substr(at_, end - at_);
+      at_ = end + 1;
+    }
+    grammar_.rules_.push_back(std::move(rule));
+  }
+
+  void check_last() {
+    if (grammar_.rules_.empty() || !grammar_.rules_.back().patterns.empty())
+      return;
+    throw FileError(file_, last_.number, static_cast<int>(last_.at) + 1,
+                    "expected a line with words below " + grammar_.rules_.back().meaning.functor,
+                    last_.line);
+  }
+
+  void pattern() {
+    if (grammar_.rules_.empty())
+      fail("expected a functor such as stop() before the words that mean it");
+    Node node = parts('\0');
+    if (at_ < line_.size())
+      fail("expected the end of the line");
+    grammar_.rules_.back().patterns.push_back(std::move(node));
+  }
+
+  /// a b | c d, up to the closing character.
+  Node parts(char closing) {
+    Node choice{Node::Kind::choice};
+    Node sequence{Node::Kind::sequence};
+    while (true) {
+      skip();
+      if (at_ >= line_.size() || line_[at_] == closing || line_[at_] == '|') {
+        if (sequence.parts.empty())
+          fail("expected a word");
+        choice.parts.push_back(std::exchange(sequence, Node{Node::Kind::sequence}));
+        if (!take('|'))
+          break;
+        continue;
+      }
+      sequence.parts.push_back(part());
+    }
+    if (closing != '\0')
+      expect(closing);
+    return choice.parts.size() == 1 ? choice.parts.front() : choice;
+  }
+
+  Node part() {
+    if (take('('))
+      return parts(')');
+    if (take('['))
+      return {Node::Kind::optional, {}, {}, {parts(']')}};
+    if (take('{')) {
+      Node node{Node::Kind::name, {}, slot()};
+      expect('}');
+      return node;
+    }
+    if (take('<')) {
+      const std::size_t from = at_;
+      const std::string list = word("the name of a list, or number");
+      if (list != "number" && !grammar_.lists_.contains(list)) {
+        at_ = from;
+        fail("there is no list \"" + list + "\" above this line");
+      }
+      Node node{list == "number" ? Node::Kind::number : Node::Kind::list, list, {}};
+      if (take(':'))
+        node.slot = slot();
+      expect('>');
+      return node;
+    }
+    return {Node::Kind::word, heard_word(), {}};
+  }
+
+  std::string slot() {
+    skip();
+    const std::size_t from = at_;
+    const std::string name = word("the name of a slot");
+    if (!grammar_.rules_.back().meaning.slots.contains(name)) {
+      at_ = from;
+      fail("the functor " + grammar_.rules_.back().meaning.functor + " has no slot \"" + name +
+           "\"");
+    }
+    return name;
+  }
+
+  struct Place {
+    int number = 0;
+    std::size_t at = 0;
+    std::string line;
+  };
+  Grammar& grammar_;
+  std::string file_;
+  std::string_view line_;
+  int number_ = 0;
+  std::size_t at_ = 0;
+  Place last_;  ///< the newest functor's
+};
+
+Grammar::Grammar(std::string_view text, const std::string& file) {
+  Reader(*this, file).read(text);
+}
+
+std::vector<Grammar::Match> Grammar::entry(const Node& node, const std::vector<std::string>& words,
+                                           const Match& from) const {
+  std::vector<Match> matches;
+  if (node.kind == Node::Kind::number && from.end < words.size() && is_number(words[from.end])) {
+    matches.push_back(from);
+    matches.back().end += 1;
+    matches.back().slots[node.slot] = words[from.end];
+  }
+  const auto list = lists_.find(node.text);
+  if (list == lists_.end())
+    return matches;
+  for (const Entry& one : list->second) {
+    if (words.size() - from.end < one.words.size() ||
+        !std::equal(one.words.begin(), one.words.end(),
+                    words.begin() + static_cast<std::ptrdiff_t>(from.end)))
+      continue;
+    Match match = from;
+    match.end += one.words.size();
+    match.literal += one.words.size();
+    if (!node.slot.empty())
+      match.slots[node.slot] = one.value;
+    matches.push_back(std::move(match));
+  }
+  return matches;
+}
+
+/// A name is anything that is no word of other use: whether there is such a place or person is not
+/// the grammar's business.
+std::vector<Grammar::Match> Grammar::name(const Node& node, const std::vector<std::string>& words,
+                                          const Match& from) const {
+  std::vector<Match> matches;
+  std::string text;
+  for (std::size_t length = 1; length <= kLongestName && from.end + length <= words.size();
+       ++length) {
+    const std::string& word = words[from.end + length - 1];
+    if (word == "'s" || std::find(no_names_.begin(), no_names_.end(), word) != no_names_.end() ||
+        std::find(keywords_.begin(), keywords_.end(), word) != keywords_.end())
+      break;
+    text += (text.empty() ? "" : " ") + word;
+    matches.push_back(from);
+    matches.back().end += length;
+    matches.back().slots[node.slot] = text;
+  }
+  return matches;
+}
+
+std::vector<Grammar::Match> Grammar::sequence(const std::vector<Node>& parts,
+                                              const std::vector<std::string>& words,
+                                              const Match& from) const {
+  std::vector<Match> matches{from};
+  for (const Node& part : parts) {
+    std::vector<Match> next;
+    for (const Match& match : matches) {
+      const std::vector<Match> more = this->match(part, words, match);
+      next.insert(next.end(), more.begin(), more.end());
+      if (next.size() > kMostMatches)
+        return {};
+    }
+    matches = std::move(next);
+  }
+  return matches;
+}
+
+std::vector<Grammar::Match> Grammar::match(const Node& node, const std::vector<std::string>& words,
+                                           const Match& from) const {
+  std::vector<Match> matches;
+  switch (node.kind) {
+    case Node::Kind::word:
+      if (from.end < words.size() && words[from.end] == node.text) {
+        matches.push_back(from);
+        ++matches.back().end;
+        ++matches.back().literal;
+      }
+      return matches;
+    case Node::Kind::list:
+    case Node::Kind::number:
+      return entry(node, words, from);
+    case Node::Kind::name:
+      return name(node, words, from);
+    case Node::Kind::sequence:
+      return sequence(node.parts, words, from);
+    case Node::Kind::optional:
+      matches = match(node.parts.front(), words, from);
+      matches.push_back(from);
+      return matches;
+    case Node::Kind::choice:
+      for (const Node& part : node.parts) {
+        const std::vector<Match> more = match(part, words, from);
+        matches.insert(matches.end(), more.begin(), more.end());
+      }
+      return matches;
+  }
+  return matches;
+}
+
+Grammar::Understood Grammar::understand(std::string_view text, bool replies) const {
+  Understood result;
+  std::vector<std::string> words = words_of(text);
+  for (const char* const greeting : {"hey", "hello", "ok", "okay"})
+    if (words.size() > 1 && words[0] == greeting &&
+        std::find(keywords_.begin(), keywords_.end(), words[1]) != keywords_.end())
+      words.erase(words.begin());
+  if (!words.empty() &&
+      std::find(keywords_.begin(), keywords_.end(), words[0]) != keywords_.end()) {
+    result.addressed = true;
+    words.erase(words.begin());
+  }
+  if (words.size() > kLongestUtterance || (!result.addressed && !replies))
+    return result;
+  std::size_t best = 0;
+  for (const Rule& rule : rules_) {
+    if (rule.reply ? !replies : !result.addressed)
+      continue;
+    for (const Node& pattern : rule.patterns)
+      for (const Match& match : this->match(pattern, words, {})) {
+        // A mere name is a reply, and no word to the robot by its name.
+        if (match.end != words.size() || match.literal < best ||
+            (match.literal == 0 && result.addressed))
+          continue;
+        Meaning meaning = rule.meaning;
+        for (const auto& [slot, value] : match.slots)
+          meaning.slots[slot] = value;
+        // What explains more of the words by itself explains them better.
+        if (match.literal > best)
+          result.meanings.clear();
+        best = match.literal;
+        if (std::find(result.meanings.begin(), result.meanings.end(), meaning) ==
+            result.meanings.end())
+          result.meanings.push_back(std::move(meaning));
+      }
+  }
+  return result;
+}
+
+/// Each part of a pattern leads from one state to another.
+class Grammar::GraphMaker {
+ public:
+  GraphMaker(const Grammar& grammar, const std::vector<std::string>& names) : grammar_(grammar) {
+    for (const std::string& name : names)
+      names_.push_back(words_of(name));
+  }
+
+  void words(const std::vector<std::string>& words, int from, int to) {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const int next = i + 1 == words.size() ? to : graph.states++;
+      graph.arcs.push_back({from, next, words[i]});
+      from = next;
+    }
+  }
+
+  void lead(const Node& node, int from, int to) {
+    switch (node.kind) {
+      case Node::Kind::word:
+        graph.arcs.push_back({from, to, node.text});
+        return;
+      case Node::Kind::list:
+      case Node::Kind::number: {
+        const auto list = grammar_.lists_.find(node.text);
+        if (list != grammar_.lists_.end())
+          for (const Entry& entry : list->second)
+            words(entry.words, from, to);
+        return;
+      }
+      case Node::Kind::name:
+        for (const auto& name : names_)
+          words(name, from, to);
+        return;
+      case Node::Kind::sequence:
+        for (std::size_t i = 0; i < node.parts.size(); ++i) {
+          const int next = i + 1 == node.parts.size() ? to : graph.states++;
+          lead(node.parts[i], from, next);
+          from = next;
+        }
+        return;
+      case Node::Kind::optional:
+        graph.arcs.push_back({from, to});
+        lead(node.parts.front(), from, to);
+        return;
+      case Node::Kind::choice:
+        for (const Node& part : node.parts)
+          lead(part, from, to);
+        return;
+    }
+  }
+
+  WordGraph graph;
+
+ private:
+  const Grammar& grammar_;
+  std::vector<std::vector<std::string>> names_;
+};
+
+WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) const {
+  GraphMaker maker(*this, names);
+  for (const std::string& keyword : keywords_)
+    maker.graph.arcs.push_back({WordGraph::kStart, WordGraph::kAddressed, keyword});
+  for (const Rule& rule : rules_)
+    if (!rule.reply || replies)
+      for (const Node& pattern : rule.patterns)
+        maker.lead(pattern, rule.reply ? WordGraph::kStart : WordGraph::kAddressed,
+                   WordGraph::kEnd);
+  return std::move(maker.graph);
+}
+
+std::string Grammar::paraphrase(const Meaning& meaning) const {
+  for (const Rule& rule : rules_) {
+    if (rule.meaning.functor != meaning.functor)
+      continue;
+    std::string text = rule.paraphrase;
+    for (auto slot = meaning.slots.rbegin(); slot != meaning.slots.rend(); ++slot)
+      for (std::size_t at = text.find('$' + slot->first); at != std::string::npos;
+           at = text.find('$' + slot->first, at + slot->second.size()))
+        text.replace(at, slot->first.size() + 1, slot->second);
+    return text;
+  }
+  return {};
+}
+
+}  // namespace saphira::agent_interface

@@ -1,0 +1,238 @@
+#include "agent_interface/shell/dialogue_shell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "agent_interface/shell/facilitator_shell.hpp"
+#include "node_options.hpp"
+#include "process.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+/// The dialogue, and all that it talks to, on a bus in memory.
+class DialogueOnTheBus : public testing::Test {
+ protected:
+  DialogueOnTheBus() {
+    options.grammar = test::source("config/grammars/flakey.grammar");
+    options.memory = folder.path("memory");
+    start();
+  }
+  void start() {
+    dialogue.reset();
+    service.emplace(test::memory_options("dialogue"), memory);
+    dialogue = std::make_unique<DialogueShell>(*service, options);
+  }
+  /// What the robot says to that.
+  std::vector<std::string> say(const std::string& text) {
+    v1::Utterance utterance;
+    utterance.id().writer(5);
+    utterance.id().number(++number);
+    utterance.speaker("Alice");
+    utterance.text(text);
+    utterance.confidence(1.0);
+    heard.write(utterance);
+    dialogue->step();
+    return answers();
+  }
+  std::vector<std::string> answers() {
+    std::vector<std::string> texts;
+    for (const auto& sample : said.take())
+      texts.push_back(sample.data.text());
+    return texts;
+  }
+
+  test::TempDir folder;
+  DialogueOptions options;
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Node person{test::memory_options("person"), memory};
+  bus::Writer<v1::Utterance> heard = person.writer(bus::topics::kHeard);
+  bus::Reader<v1::Utterance> said = person.reader(bus::topics::kSaid);
+  bus::Reader<v1::Goal> goals = person.reader(bus::topics::kGoals);
+  bus::Reader<v1::BeliefClaim> claims = person.reader(bus::topics::kBeliefClaims);
+  bus::Reader<v1::Knowledge> knows = person.reader(bus::topics::kKnows);
+  bus::Writer<v1::GoalStatus> statuses = person.writer(bus::topics::kGoalStatus);
+  bus::Writer<v1::Message> messages = person.writer(bus::topics::kMessages);
+  bus::Writer<v1::BeliefSet> beliefs = person.writer(bus::topics::kBeliefs);
+  std::optional<bus::Node> service;
+  std::unique_ptr<DialogueShell> dialogue;
+  std::uint64_t number = 0;
+};
+
+TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
+  EXPECT_EQ(say("Flakey, turn left"), std::vector<std::string>{"I turn 90 degrees to the left"});
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].data.functor(), "turn_to");
+  v1::GoalStatus status;
+  status.id(asked[0].data.id());
+  status.state(v1::GOAL_SUCCEEDED);
+  status.reason("turned");
+  statuses.write(status);
+  dialogue->step();
+  EXPECT_EQ(answers(), std::vector<std::string>{"done: turned"});
+}
+
+TEST_F(DialogueOnTheBus, TheGrammarIsReadAgainWhenItChangesAndAMistakeChangesNothing) {
+  const std::string file = folder.path("own.grammar");
+  const auto write = [&](const std::string& text) { std::ofstream(file) << text; };
+  write("keyword: robot\nstop() \"I stop\"\n  stop\n");
+  options.grammar = file;
+  start();
+  EXPECT_EQ(say("robot, stop"), std::vector<std::string>{"I stop"});
+  EXPECT_EQ(say("robot, cease"), std::vector<std::string>{"what?"});
+  write("keyword: robot\nstop() \"I stop at once\"\n  stop | cease\n");
+  ASSERT_TRUE(test::wait_until([&] {
+    dialogue->reload();
+    return say("robot, cease") == std::vector<std::string>{"I stop at once"};
+  }));
+  auto logs = person.reader(bus::topics::kLog);
+  write("keyword: robot\nstop( \"no end\"\n");
+  std::string told;
+  ASSERT_TRUE(test::wait_until([&] {
+    dialogue->reload();
+    for (const auto& record : logs.take())
+      told += record.data.text();
+    return told.find("own.grammar:2:") != std::string::npos;
+  })) << told;
+  EXPECT_EQ(say("robot, cease"), std::vector<std::string>{"I stop at once"});
+}
+
+TEST_F(DialogueOnTheBus, ACommandThatNoProgramTakesUpHasAnEnd) {
+  say("Flakey, turn left");
+  ASSERT_EQ(goals.take().size(), 1u);
+  std::vector<std::string> said_then;
+  ASSERT_TRUE(test::wait_until(
+      [&] {
+        dialogue->step();
+        said_then = answers();
+        return !said_then.empty();
+      },
+      std::chrono::seconds(60)));
+  EXPECT_NE(said_then[0].find("no program has taken up the goal"), std::string::npos)
+      << said_then[0];
+  const auto withdrawn = goals.take();
+  ASSERT_EQ(withdrawn.size(), 1u);
+  EXPECT_TRUE(withdrawn[0].info.disposed);
+}
+
+TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
+  say("Flakey, John usually knows where Karen is");
+  const auto claimed = claims.take();
+  ASSERT_EQ(claimed.size(), 1u);
+  EXPECT_EQ(claimed[0].data.name(), "knows-where-karen");
+  EXPECT_EQ(claimed[0].data.value(), "\"john\"");
+  EXPECT_EQ(claimed[0].data.source(), "Alice said \"Flakey, John usually knows where Karen is\"");
+  start();
+  const auto known = knows.take_newest();
+  ASSERT_TRUE(known);
+  ASSERT_EQ(known->known().size(), 1u);
+  EXPECT_EQ(known->known()[0].words(), "john knows where karen is");
+  EXPECT_FALSE(claims.take().empty());
+}
+
+TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
+  say("Flakey, take the mail from EJ-231 to EJ-233");
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].data.writer_lost(), v1::WRITER_LOST_KEEP);
+  v1::GoalStatus status;
+  status.id(asked[0].data.id());
+  status.state(v1::GOAL_UNDERWAY);
+  statuses.write(status);
+  v1::Message message;
+  message.stamp().epoch(3);
+  message.stamp().cycle(40);
+  message.text("Is anybody here?");
+  messages.write(message);
+  dialogue->step();
+  EXPECT_EQ(answers(), std::vector<std::string>{"Is anybody here?"});
+  // What was said before, its writer keeps.
+  start();
+  message.stamp().cycle(52);
+  message.text("Please give me the mail");
+  messages.write(message);
+  dialogue->step();
+  EXPECT_EQ(answers(), std::vector<std::string>{"Please give me the mail"});
+  status.state(v1::GOAL_SUCCEEDED);
+  status.reason("brought");
+  statuses.write(status);
+  dialogue->step();
+  const auto told = said.take();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].data.text(), "done: brought");
+  EXPECT_EQ(told[0].data.listener(), "Alice");
+  EXPECT_EQ(told[0].data.answers().number(), number);
+  // Its end is not told again.
+  start();
+  dialogue->step();
+  EXPECT_TRUE(answers().empty());
+}
+
+TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
+  say("Flakey, take the mail from EJ-231 to EJ-233");
+  const auto first = goals.take();
+  ASSERT_EQ(first.size(), 1u);
+  start();
+  goals.take();
+  say("Flakey, stop");
+  const auto then = goals.take();
+  EXPECT_TRUE(std::any_of(then.begin(), then.end(), [&](const auto& sample) {
+    return sample.info.disposed && sample.data.id() == first[0].data.id();
+  }));
+}
+
+TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
+  v1::BeliefSet asked;
+  asked.beliefs().resize(1);
+  asked.beliefs()[0].name("asking-about");
+  asked.beliefs()[0].value("\"given\"");
+  beliefs.write(asked);
+  EXPECT_EQ(say("here you are"), std::vector<std::string>{"thank you"});
+  const auto claimed = claims.take();
+  ASSERT_EQ(claimed.size(), 1u);
+  EXPECT_EQ(claimed[0].data.name(), "given");
+  EXPECT_EQ(claimed[0].data.value(), "\"yes\"");
+}
+
+TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
+  say("Flakey, John usually knows where Karen is");
+  bus::Node hub(test::memory_options("facilitator"), memory);
+  FacilitatorShell facilitator(hub);
+  bus::RequestClient client(person, bus::topics::kSolve, "a person");
+  v1::Request request;
+  request.functor("forget");
+  request.arguments({bus::number("number", 1.0)});
+  double now = 0.0;
+  const auto others = [&] {
+    facilitator.step(now += 0.01);
+    dialogue->step();
+  };
+  EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text(), "forgotten");
+  EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text(),
+            "nothing is known under 1: saphira knows lists what is");
+}
+
+TEST_F(DialogueOnTheBus, WhatWasSaidLongAgoIsNotActedOn) {
+  v1::Utterance old;
+  old.id().writer(6);
+  old.id().number(1);
+  old.text("Flakey, go forward");
+  old.confidence(1.0);
+  old.time(1e9);
+  heard.write(old);
+  dialogue->step();
+  EXPECT_TRUE(answers().empty());
+  EXPECT_TRUE(goals.take().empty());
+}
+
+TEST_F(DialogueOnTheBus, AGrammarWithAMistakeIsRefusedAtTheStart) {
+  options.grammar = folder.path("my.grammar");
+  std::ofstream(options.grammar) << "keyword: flakey\nstop(\n";
+  EXPECT_THROW(start(), FileError);
+}
+
+}  // namespace
+}  // namespace saphira::agent_interface

@@ -1,0 +1,295 @@
+#include "saphira/agent_interface/facilitator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "saphira/base/random.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr std::uint64_t kSelf = 9;
+constexpr std::uint64_t kPerson = 1;
+
+Argument open_slot(const std::string& name) {
+  Argument argument;
+  argument.name = name;
+  argument.kind = ArgumentKind::unbound;
+  return argument;
+}
+
+AgentInfo agent(std::uint64_t id, const std::string& name, bool acts = false, double cost = 0.0) {
+  const Functor place_of{
+      "place_of",
+      "where a person is",
+      {text_parameter("person", "a name"), optional(text_parameter("place", "of the map"))}};
+  return {id, name, "address of " + name, {{place_of, acts, cost}}};
+}
+
+Request place_of(std::uint64_t number, std::uint64_t asker = kPerson) {
+  Request request;
+  request.functor = "place_of";
+  request.arguments = {text("person", "karen"), open_slot("place")};
+  request.source = "a person";
+  request.asker = asker;
+  request.number = number;
+  return request;
+}
+
+Request wanting(Request request, double answers) {
+  request.arguments.push_back(number("answers", answers));
+  return request;
+}
+
+Answer library() {
+  return {AnswerCode::done, "", {text("place", "library")}};
+}
+
+struct Facilitation : testing::Test {
+  Facilitator::Outputs ask(const Request& request) {
+    facilitator.ask(request, now);
+    return facilitator.step(now);
+  }
+  Facilitator::Outputs hear(const std::string& name, const Request& request, const Answer& answer) {
+    facilitator.hear("address of " + name, request.asker, request.number, answer, now);
+    return facilitator.step(now);
+  }
+  Facilitator facilitator{kSelf};
+  double now = 100.0;
+};
+
+TEST_F(Facilitation, AsksTheCheapestAgentAndSaysWhichOneAnswered) {
+  facilitator.announce(agent(1, "calendar", false, 2.0));
+  facilitator.announce(agent(2, "badge reader", false, 1.0));
+  const auto asked = ask(place_of(5));
+  ASSERT_EQ(asked.requests.size(), 1u);
+  EXPECT_EQ(asked.requests[0].service, "address of badge reader");
+  EXPECT_EQ(asked.requests[0].asker, kPerson);
+  const auto solved = hear("badge reader", place_of(5), library()).solved;
+  ASSERT_EQ(solved.size(), 1u);
+  EXPECT_EQ(solved[0].service, "badge reader");
+  EXPECT_EQ(solved[0].answer, library());
+  EXPECT_EQ(facilitator.open(), 0u);
+}
+
+TEST_F(Facilitation, WhatOneAgentRefusesIsAskedOfTheNext) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  ask(place_of(5));
+  const auto next = hear("a", place_of(5), {AnswerCode::refused, "no idea", {}});
+  ASSERT_EQ(next.requests.size(), 1u);
+  EXPECT_EQ(next.requests[0].service, "address of b");
+  EXPECT_TRUE(next.solved.empty());
+  const auto end = hear("b", place_of(5), {AnswerCode::refused, "nor I", {}});
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer.text, "nor I");
+}
+
+TEST_F(Facilitation, CollectsAnswersOfAllWithTheirOrigin) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  const Request request = wanting(place_of(5), 0.0);
+  const auto asked = ask(request);
+  ASSERT_EQ(asked.requests.size(), 2u);
+  EXPECT_EQ(find(asked.requests[0].arguments, "answers"), nullptr);
+  const auto first = hear("b", request, library()).solved;
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].service, "b");
+  EXPECT_EQ(first[0].answer.code, AnswerCode::underway);
+  const auto last = hear("a", request, library()).solved;
+  ASSERT_EQ(last.size(), 2u);
+  EXPECT_EQ(last[1].answer.code, AnswerCode::done);
+  EXPECT_EQ(last[1].answer.text, "2 answers");
+}
+
+TEST_F(Facilitation, SaysWhatIsNotKnownAndWhatDoesNotFit) {
+  facilitator.announce(agent(1, "a"));
+  Request request = place_of(1);
+  request.functor = "place_off";
+  EXPECT_EQ(ask(request).solved.at(0).answer.text,
+            "no agent can do \"place_off\": did you mean place_of?");
+  request = place_of(2);
+  request.arguments[0] = number("person", 3.0);
+  const Answer misfit = ask(request).solved.at(0).answer;
+  EXPECT_EQ(misfit.code, AnswerCode::bad_argument);
+  EXPECT_NE(misfit.text.find("\"person\""), std::string::npos) << misfit.text;
+  request = place_of(3);
+  request.service = "nobody";
+  EXPECT_EQ(ask(request).solved.at(0).answer.text, "there is no agent \"nobody\"");
+}
+
+TEST_F(Facilitation, WhatADeadAgentOwedIsAskedOfAnother) {
+  facilitator.announce(agent(1, "a"));
+  facilitator.announce(agent(2, "b"));
+  ask(place_of(5));
+  facilitator.leave(1);
+  const auto next = facilitator.step(now);
+  ASSERT_EQ(next.requests.size(), 1u);
+  EXPECT_EQ(next.requests[0].service, "address of b");
+  facilitator.leave(2);
+  const auto end = facilitator.step(now);
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer.code, AnswerCode::lost);
+  EXPECT_EQ(end.solved[0].answer.text, "agent b left before it answered");
+}
+
+TEST_F(Facilitation, AnActionIsNotBegunASecondTimeByAnother) {
+  facilitator.announce(agent(1, "a", true));
+  facilitator.announce(agent(2, "b", true));
+  ask(place_of(5));
+  facilitator.leave(1);
+  const auto end = facilitator.step(now);
+  EXPECT_TRUE(end.requests.empty());
+  ASSERT_EQ(end.solved.size(), 1u);
+  EXPECT_EQ(end.solved[0].answer.code, AnswerCode::lost);
+}
+
+TEST_F(Facilitation, AsksAgainUntilSomethingIsHeardAndEndsAtTheDeadline) {
+  facilitator.announce(agent(1, "a"));
+  Request request = place_of(5);
+  request.deadline = 2.0;
+  ask(request);
+  EXPECT_TRUE(facilitator.step(now).requests.empty());
+  now = *facilitator.due();
+  EXPECT_EQ(facilitator.step(now).requests.size(), 1u);
+  hear("a", request, {AnswerCode::underway, "", {}});
+  EXPECT_EQ(*facilitator.due(), 102.0);
+  now = 102.0;
+  const auto end = facilitator.step(now).solved;
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_EQ(end[0].answer.code, AnswerCode::too_late);
+  EXPECT_EQ(end[0].answer.text, "a did not answer in time");
+}
+
+TEST_F(Facilitation, ARepeatedRequestIsAnsweredAgainAndAskedOnce) {
+  facilitator.announce(agent(1, "a"));
+  EXPECT_EQ(ask(place_of(5)).requests.size(), 1u);
+  EXPECT_TRUE(ask(place_of(5)).requests.empty());
+  hear("a", place_of(5), library());
+  const auto again = ask(place_of(5));
+  EXPECT_TRUE(again.requests.empty());
+  ASSERT_EQ(again.solved.size(), 1u);
+  EXPECT_EQ(again.solved[0].answer, library());
+}
+
+TEST_F(Facilitation, WhoFloodsHurtsItselfOnly) {
+  facilitator.announce(agent(1, "a"));
+  std::size_t refused = 0;
+  for (std::uint64_t i = 1; i <= 100; ++i)
+    refused += ask(place_of(i)).solved.size();
+  EXPECT_EQ(refused, 36u);
+  EXPECT_EQ(ask(place_of(1, 2)).requests.size(), 1u);
+}
+
+TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
+  AgentInfo speaker = agent(1, "a");
+  speaker.capabilities.push_back(
+      {{"note", "", {optional(text_parameter("place", ""))}}, true, 0.0});
+  facilitator.announce(speaker);
+  Trigger trigger{{1, 1}, "ann", TriggerKind::time, 5.0, "", {}, "note", {}, 1};
+  facilitator.set(trigger, now);
+  EXPECT_TRUE(facilitator.step(now).requests.empty());
+  now += 5.0;
+  EXPECT_EQ(facilitator.step(now).requests.size(), 1u);
+  now += 50.0;
+  EXPECT_TRUE(facilitator.step(now).requests.empty()) << "it was to fire once";
+
+  trigger = {{1, 2},
+             "ann",
+             TriggerKind::event,
+             1.0,
+             "moved",
+             {open_slot("place"), text("person", "karen")},
+             "note",
+             {open_slot("place")},
+             0};
+  facilitator.set(trigger, now);
+  facilitator.happened("moved", {text("person", "john"), text("place", "kitchen")}, now);
+  EXPECT_TRUE(facilitator.step(now).requests.empty());
+  facilitator.happened("moved", {text("person", "karen"), text("place", "kitchen")}, now);
+  const auto moved = facilitator.step(now).requests;
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_EQ(text_of(moved[0].arguments, "place"), "kitchen");
+  facilitator.hear(moved[0].service, moved[0].asker, moved[0].number, {}, now);
+  facilitator.take_back({1, 2});
+  facilitator.happened("moved", {text("person", "karen"), text("place", "kitchen")}, now);
+  EXPECT_TRUE(facilitator.step(now).requests.empty());
+
+  trigger = {{1, 3},
+             "ann",
+             TriggerKind::data,
+             1.0,
+             "place_of",
+             {text("person", "karen"), open_slot("place")},
+             "note",
+             {open_slot("place")},
+             0};
+  facilitator.set(trigger, now);
+  std::vector<std::string> noted;
+  for (const char* const place : {"library", "library", "kitchen"}) {
+    now += 1.0;
+    for (const Request& request : facilitator.step(now).requests)
+      if (request.functor == "place_of")
+        facilitator.hear(request.service, request.asker, request.number,
+                         {AnswerCode::done, "", {text("place", place)}}, now);
+    for (const Request& request : facilitator.step(now).requests)
+      if (request.functor == "note")
+        noted.push_back(text_of(request.arguments, "place"));
+  }
+  EXPECT_EQ(noted, std::vector<std::string>{"kitchen"});
+}
+
+/// Agents come, go and answer at random: each request has one end, no more answers than were
+/// wanted, and no agent is begun with what another one may have done.
+TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(seed);
+    const auto pick = [&](std::uint64_t n) {
+      return static_cast<std::uint64_t>(random.uniform() * static_cast<double>(n)) % n;
+    };
+    Facilitator facilitator(kSelf);
+    std::vector<Request> sent;
+    std::map<std::uint64_t, int> ends;
+    std::map<std::uint64_t, std::set<std::string>> asked;
+    double now = 0.0;
+    std::uint64_t made = 0;
+    const auto take = [&](const Facilitator::Outputs& out) {
+      for (const Request& request : out.requests) {
+        sent.push_back(request);
+        asked[request.number].insert(request.service);
+      }
+      for (const Solved& solved : out.solved)
+        ends[solved.number] += ended(solved.answer.code) ? 1 : 0;
+    };
+    for (int step = 0; step < 300; ++step) {
+      now += 0.1;
+      switch (pick(5)) {
+        case 0:
+          facilitator.announce(agent(1 + pick(5), "a" + std::to_string(pick(5)), pick(2) == 0));
+          break;
+        case 1:
+          facilitator.leave(1 + pick(5));
+          break;
+        case 2:
+          facilitator.ask(wanting(place_of(++made), static_cast<double>(pick(4))), now);
+          break;
+        default:
+          if (!sent.empty()) {
+            const Request& request = sent[pick(sent.size())];
+            facilitator.hear(request.service, request.asker, request.number,
+                             {static_cast<AnswerCode>(pick(10)), "", {}}, now);
+          }
+      }
+      take(facilitator.step(now));
+    }
+    take(facilitator.step(now + 20.0));
+    EXPECT_EQ(facilitator.open(), 0u);
+    for (std::uint64_t request = 1; request <= made; ++request)
+      EXPECT_EQ(ends[request], 1) << "seed " << seed << ", request " << request;
+  }
+}
+
+}  // namespace
+}  // namespace saphira::agent_interface

@@ -1,0 +1,100 @@
+#include "saphira/agent_interface/grammar.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr const char* kFile = R"(
+keyword: flakey
+no-names: the is to
+list side: left = left | right | to starboard = right
+stop() "I stop"
+  stop [now]
+turn(direction, degrees=90) "I turn $degrees degrees to the $direction"
+  turn <side:direction> | turn <number:degrees> degrees <side:direction>
+go_to(place)
+  go to [the] {place}
+reply yes()
+  yes | of course
+)";
+
+const Grammar& grammar() {
+  static const Grammar one(kFile, "test.grammar");
+  return one;
+}
+
+std::string meaning(const std::string& text, bool replies = false) {
+  const Grammar::Understood understood = grammar().understand(text, replies);
+  std::string all;
+  for (const Meaning& one : understood.meanings)
+    all += (all.empty() ? "" : " or ") + describe(one);
+  return all.empty() && understood.addressed ? "what?" : all;
+}
+
+/// The mistake in a file: "line:column: message".
+std::string mistake(const std::string& text) {
+  try {
+    Grammar(text, "f");
+  } catch (const FileError& error) {
+    const std::string what = error.what();
+    return what.substr(2, what.find('\n') - 2);
+  }
+  return "none";
+}
+
+TEST(Grammar, WordsAreSmallAndWithoutPunctuation) {
+  EXPECT_EQ(words_of("Flakey, this is Karen's office!"),
+            (std::vector<std::string>{"flakey", "this", "is", "karen", "'s", "office"}));
+  EXPECT_EQ(words_of("go 1.5 m to EJ-231."),
+            (std::vector<std::string>{"go", "1.5", "m", "to", "ej-231"}));
+  EXPECT_EQ(words_of("Don't"), std::vector<std::string>{"dont"});
+}
+
+TEST(Grammar, WordsBecomeAFunctorWithSlots) {
+  EXPECT_EQ(meaning("Flakey, stop now"), "stop()");
+  EXPECT_EQ(meaning("flakey turn to starboard"), "turn(degrees=90, direction=right)");
+  EXPECT_EQ(meaning("flakey turn 30 degrees left"), "turn(degrees=30, direction=left)");
+  EXPECT_EQ(meaning("Hello Flakey, go to the conference room"), "go_to(place=conference room)");
+}
+
+TEST(Grammar, TheKeywordComesFirstAndAllWordsCount) {
+  EXPECT_EQ(meaning("stop now"), "");
+  EXPECT_EQ(meaning("stop now flakey"), "");
+  EXPECT_EQ(meaning("flakey stop now or never"), "what?");
+  EXPECT_EQ(meaning("flakey go to the"), "what?");
+  EXPECT_EQ(meaning("flakey"), "what?");
+}
+
+TEST(Grammar, RepliesNeedNoKeywordAndCountWhereTheRobotHasAsked) {
+  EXPECT_EQ(meaning("of course", true), "yes()");
+  EXPECT_EQ(meaning("of course"), "");
+  EXPECT_EQ(meaning("stop", true), "");
+}
+
+TEST(Grammar, ParaphrasesFillTheSlots) {
+  EXPECT_EQ(grammar().paraphrase({"turn", {{"degrees", "30"}, {"direction", "left"}}}),
+            "I turn 30 degrees to the left");
+  EXPECT_EQ(grammar().paraphrase({"go_to", {}}), "");
+}
+
+TEST(Grammar, MistakesNameLineAndColumn) {
+  EXPECT_EQ(mistake(""), "0:1: expected a line such as \"keyword: flakey\" in the file");
+  EXPECT_EQ(
+      mistake("keyword: Flakey\n"),
+      "1:10: expected a word as it is heard: small letters, and \"karen 's\" for \"Karen's\"");
+  EXPECT_EQ(mistake("keyword: f\n  stop\n"),
+            "2:3: expected a functor such as stop() before the words that mean it");
+  EXPECT_EQ(mistake("keyword: f\nstop()\nhalt()\n  halt\n"),
+            "2:1: expected a line with words below stop");
+  EXPECT_EQ(mistake("keyword: f\nstop()\n  stop (now | \n"), "3:15: expected a word");
+  EXPECT_EQ(mistake("keyword: f\nstop()\n  stop (now\n"), "3:12: expected )");
+  EXPECT_EQ(mistake("keyword: f\nturn(degrees)\n  turn <side:degrees>\n"),
+            "3:9: there is no list \"side\" above this line");
+  EXPECT_EQ(mistake("keyword: f\nturn(degrees)\n  turn <number:angle>\n"),
+            "3:16: the functor turn has no slot \"angle\"");
+  EXPECT_EQ(mistake("keyword: f\nstop( \"I stop\"\n  stop\n"), "2:7: expected the name of a slot");
+}
+
+}  // namespace
+}  // namespace saphira::agent_interface

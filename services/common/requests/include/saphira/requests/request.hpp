@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saphira/base/stamp.hpp"
+#include "saphira/requests/functor.hpp"
+
+namespace saphira {
+
+/// What somebody asks for once.
+struct Request {
+  std::string functor;
+  Arguments arguments{};
+  std::string source{};   ///< who asks, for people
+  std::string service{};  ///< which program is meant; empty: each that knows the functor
+  Stamp stamp{};          ///< of the asker's step; cycle 0: none
+  std::uint64_t asker = 0;
+  std::uint64_t number = 0;  ///< unique together with the asker; 0: not
+  double deadline = 0.0;     ///< [s] after which an end is of no use; 0: none
+
+  friend bool operator==(const Request&, const Request&) = default;
+};
+
+enum class AnswerCode {
+  underway,
+  done,
+  sent,  ///< to a robot, none of whose packets would show it
+  refused,
+  unknown_functor,
+  bad_argument,
+  nobody,
+  too_late,
+  given_up,
+  lost
+};
+
+inline bool ended(AnswerCode code) {
+  return code != AnswerCode::underway;
+}
+/// It came to a good end, or is on its way there.
+inline bool well(AnswerCode code) {
+  return code <= AnswerCode::sent;
+}
+
+/// What became of a request.
+struct Answer {
+  AnswerCode code = AnswerCode::done;
+  std::string text{};  ///< in words; empty: there is nothing to say beside the code
+  Arguments results{};
+
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+/// "place position=(1, 2, 0)"
+std::string describe(const Request& request);
+
+/// The answer to a request that none of the functors can take; nothing where one can. Then what it
+/// leaves out has been filled in with what is usual.
+std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& request);
+
+/// Whether a request may be acted on in a step of `now` so that every run does it in the same one:
+/// in lockstep what a service asked for in its step N is certain to be here in step N+2, since that
+/// one needs what others made of its outputs of N.
+bool is_due(const Request& request, const Stamp& now);
+
+}  // namespace saphira

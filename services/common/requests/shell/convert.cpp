@@ -1,0 +1,128 @@
+#include "requests/shell/convert.hpp"
+
+#include "geometry/shell/convert.hpp"
+#include "saphira/base/enum_pairs.hpp"
+
+namespace saphira {
+namespace {
+
+constexpr EnumPairs<ArgumentKind, v1::ArgumentKind, 5> kKinds{{{
+    {ArgumentKind::number, v1::ARGUMENT_NUMBER},
+    {ArgumentKind::text, v1::ARGUMENT_TEXT},
+    {ArgumentKind::point, v1::ARGUMENT_POINT},
+    {ArgumentKind::truth, v1::ARGUMENT_TRUTH},
+    {ArgumentKind::unbound, v1::ARGUMENT_UNBOUND},
+}}};
+constexpr EnumPairs<Frame, v1::Frame, 3> kFrames{{{
+    {Frame::robot, v1::FRAME_ROBOT},
+    {Frame::odom, v1::FRAME_ODOM},
+    {Frame::map, v1::FRAME_MAP},
+}}};
+constexpr EnumPairs<AnswerCode, v1::AnswerCode, 10> kCodes{{{
+    {AnswerCode::underway, v1::ANSWER_UNDERWAY},
+    {AnswerCode::done, v1::ANSWER_DONE},
+    {AnswerCode::sent, v1::ANSWER_SENT},
+    {AnswerCode::refused, v1::ANSWER_REFUSED},
+    {AnswerCode::unknown_functor, v1::ANSWER_UNKNOWN_FUNCTOR},
+    {AnswerCode::bad_argument, v1::ANSWER_BAD_ARGUMENT},
+    {AnswerCode::nobody, v1::ANSWER_NOBODY},
+    {AnswerCode::too_late, v1::ANSWER_TOO_LATE},
+    {AnswerCode::given_up, v1::ANSWER_GIVEN_UP},
+    {AnswerCode::lost, v1::ANSWER_LOST},
+}}};
+
+}  // namespace
+
+ArgumentKind from_bus(v1::ArgumentKind kind) {
+  return kKinds.ours(kind, ArgumentKind::unbound);
+}
+
+v1::ArgumentKind to_bus(ArgumentKind kind) {
+  return kKinds.theirs(kind);
+}
+
+Argument from_bus(const v1::Argument& argument) {
+  switch (argument.kind()) {
+    case v1::ARGUMENT_NUMBER:
+      return {argument.name(), argument.number()};
+    case v1::ARGUMENT_TEXT:
+      return {argument.name(), argument.text()};
+    case v1::ARGUMENT_TRUTH:
+      return {argument.name(), argument.number() != 0.0};
+    case v1::ARGUMENT_POINT:
+      if (argument.frame() > v1::FRAME_MAP)
+        break;  // in a frame that is unknown it is nowhere
+      return {argument.name(),
+              PlacedPoint{from_bus(argument.point()), kFrames.ours(argument.frame(), Frame::odom)}};
+    case v1::ARGUMENT_UNBOUND:
+      break;
+  }
+  Argument unbound;
+  unbound.name = argument.name();
+  unbound.kind = ArgumentKind::unbound;
+  return unbound;
+}
+
+v1::Argument to_bus(const Argument& argument) {
+  v1::Argument result;
+  result.name(argument.name);
+  result.kind(kKinds.theirs(argument.kind));
+  result.number(argument.number);
+  result.text(argument.text);
+  result.point(to_bus(argument.point));
+  result.frame(kFrames.theirs(argument.frame));
+  return result;
+}
+
+Arguments from_bus(const std::vector<v1::Argument>& arguments) {
+  Arguments result;
+  for (const v1::Argument& argument : arguments)
+    result.push_back(from_bus(argument));
+  return result;
+}
+
+std::vector<v1::Argument> to_bus(const Arguments& arguments) {
+  std::vector<v1::Argument> result;
+  for (const Argument& argument : arguments)
+    result.push_back(to_bus(argument));
+  return result;
+}
+
+Request from_bus(const v1::Request& request) {
+  return {request.functor(),
+          from_bus(request.arguments()),
+          request.source().substr(0, 255),
+          request.service(),
+          {request.stamp().epoch(), request.stamp().cycle()},
+          request.asker(),
+          request.number(),
+          request.deadline()};
+}
+
+v1::Request to_bus(const Request& request) {
+  v1::Request result;
+  result.stamp().epoch(request.stamp.epoch);
+  result.stamp().cycle(request.stamp.cycle);
+  result.asker(request.asker);
+  result.number(request.number);
+  result.source(request.source);
+  result.service(request.service);
+  result.functor(request.functor);
+  result.arguments(to_bus(request.arguments));
+  result.deadline(request.deadline);
+  return result;
+}
+
+Answer from_bus(const v1::Answer& answer) {
+  return {kCodes.ours(answer.code(), AnswerCode::lost), answer.text(), from_bus(answer.results())};
+}
+
+v1::Answer to_bus(const Answer& answer) {
+  v1::Answer result;
+  result.code(kCodes.theirs(answer.code));
+  result.text(answer.text);
+  result.results(to_bus(answer.results));
+  return result;
+}
+
+}  // namespace saphira

@@ -1,0 +1,98 @@
+#include "requests/shell/desk.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "requests/shell/convert.hpp"
+#include "saphira/bus/sender.hpp"
+
+namespace saphira {
+namespace {
+
+/// With who asks for it, as the bus has checked.
+Request from(bus::Sample<v1::Request>& sample) {
+  sample.data.source() = bus::named(sample.data.source(), sample.info);
+  return from_bus(sample.data);
+}
+
+constexpr std::size_t kKnown = 256;  // requests of which a repetition is recognized
+
+}  // namespace
+
+Desk::Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers)
+    : node_(node), writer_(node.writer(answers)) {}
+
+void Desk::serve(const bus::RequestTopic& topic, std::vector<Functor> functors, Act act) {
+  counters_.push_back(std::make_unique<Counter>(
+      Counter{node_.reader<v1::Request>(topic), std::move(functors), std::move(act)}));
+}
+
+void Desk::take(const Stamp& now) {
+  now_ = now;
+  for (const auto& counter : counters_)
+    take(*counter);
+}
+
+void Desk::take(Counter& counter) {
+  // Most of the time nobody has anything to ask. The last words of who has just left are heard.
+  const bool asks = counter.reader.matched() > 0;
+  const bool asked = std::exchange(counter.asked, asks);
+  if (!asks && !asked && counter.waiting.empty())
+    return;
+  for (auto& sample : counter.reader.take())
+    if (!sample.info.disposed &&
+        (sample.data.service().empty() || sample.data.service() == node_.options().name))
+      counter.waiting.push_back(from(sample));
+  const auto later = std::stable_partition(
+      counter.waiting.begin(), counter.waiting.end(),
+      [&](const Request& one) { return !node_.options().lockstep || is_due(one, now_); });
+  std::vector<Request> due(counter.waiting.begin(), later);
+  counter.waiting.erase(counter.waiting.begin(), later);
+  if (node_.options().lockstep)  // what several services asked for, in the same order in every run
+    std::stable_sort(due.begin(), due.end(), [](const Request& a, const Request& b) {
+      return std::tie(a.stamp.cycle, a.source) < std::tie(b.stamp.cycle, b.source);
+    });
+  for (Request& request : due)
+    handle(counter, std::move(request));
+}
+
+void Desk::handle(const Counter& counter, Request request) {
+  const Id id{request.asker, request.number};
+  const auto known =
+      std::find_if(known_.begin(), known_.end(), [&](const auto& one) { return one.first == id; });
+  if (id.second != 0 && known != known_.end()) {
+    if (known->second)
+      writer_.write(*known->second);
+    return;
+  }
+  known_.emplace_back(id, std::nullopt);
+  if (known_.size() > kKnown)
+    known_.pop_front();
+
+  std::optional<Answer> done = refusal(counter.functors, request);
+  if (!done)
+    done = counter.act(request);
+  if (done && !well(done->code)) {
+    ++refused_;
+    node_.warn("a request of " + request.source + ": " + done->text);
+  } else {
+    node_.info(describe(request) + ", asked for by " + request.source);
+  }
+  if (done)
+    answer(id.first, id.second, *done);
+}
+
+void Desk::answer(std::uint64_t asker, std::uint64_t number, const Answer& answer) {
+  v1::Answer sample = to_bus(answer);
+  sample.stamp().epoch(now_.epoch);
+  sample.stamp().cycle(now_.cycle);
+  sample.asker(asker);
+  sample.number(number);
+  sample.service(node_.options().name);
+  writer_.write(sample);
+  for (auto& [id, newest] : known_)
+    if (id == Id{asker, number})
+      newest = sample;
+}
+
+}  // namespace saphira

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "saphira/bus/node.hpp"
+#include "saphira/requests/request.hpp"
+
+namespace saphira {
+
+/// Where a program takes requests from the bus and answers them. It checks each against the table
+/// of functors, sees to it that one which is written again is carried out once, and logs what was
+/// asked. For the node's own thread.
+class Desk {
+ public:
+  /// Carries out a request that was checked. Nothing: the answer follows (Desk::answer).
+  using Act = std::function<std::optional<Answer>(const Request&)>;
+
+  /// A desk has one topic of answers.
+  Desk(bus::Node& node, const bus::Topic<v1::Answer>& answers);
+
+  void serve(const bus::RequestTopic& topic, std::vector<Functor> functors, Act act);
+
+  /// Carries out what has come. `now`: the newest step of this program.
+  void take(const Stamp& now);
+  /// Says what became of a request that was taken earlier.
+  void answer(std::uint64_t asker, std::uint64_t number, const Answer& answer);
+
+  /// Requests, since the start, that could not be carried out.
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  using Id = std::pair<std::uint64_t, std::uint64_t>;  ///< asker, number
+  struct Counter {
+    bus::Reader<v1::Request> reader;
+    std::vector<Functor> functors;
+    Act act;
+    std::vector<Request> waiting{};  ///< lockstep: whose cycle has not come
+    bool asked = false;              ///< somebody could ask at the last look
+  };
+  void take(Counter& counter);
+  void handle(const Counter& counter, Request request);
+
+  bus::Node& node_;
+  bus::Writer<v1::Answer> writer_;
+  std::vector<std::unique_ptr<Counter>> counters_;
+  Stamp now_;
+  /// The newest requests, with the newest answer to each: oldest first.
+  std::deque<std::pair<Id, std::optional<v1::Answer>>> known_;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace saphira

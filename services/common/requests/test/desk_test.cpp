@@ -1,0 +1,169 @@
+#include "requests/shell/desk.hpp"
+
+#include <gtest/gtest.h>
+
+#include "node_options.hpp"
+#include "requests/shell/convert.hpp"
+#include "saphira/bus/request_client.hpp"
+
+namespace saphira {
+namespace {
+
+constexpr double kPatience = 60.0;  // [s] for what has to come
+
+class DeskTest : public testing::Test {
+ protected:
+  /// A desk that counts what it did.
+  void open(bool lockstep = false) {
+    service.emplace(test::memory_options("registration", lockstep), memory);
+    desk.emplace(*service, bus::topics::kRegistrationAnswers);
+    desk->serve(bus::topics::kRegistrationRequest,
+                {{"count", "counts", {whole_parameter("by", "how far", 0.0, 10.0)}},
+                 {"later", "is answered later"}},
+                [this](const Request& request) -> std::optional<Answer> {
+                  newest = request;
+                  order += request.source;
+                  if (request.functor == "later")
+                    return Answer{AnswerCode::underway, "", {}};
+                  total += number_of(request.arguments, "by");
+                  return Answer{AnswerCode::done, "", {number("total", total)}};
+                });
+  }
+  v1::Answer ask(const v1::Request& request, double patience = kPatience) {
+    return client.ask(request, patience, nullptr, [this] { desk->take(now); });
+  }
+  static v1::Request count(double by) {
+    v1::Request request;
+    request.functor("count");
+    request.arguments({bus::number("by", by)});
+    return request;
+  }
+
+  std::shared_ptr<bus::MemoryBus> memory = bus::make_memory_bus();
+  bus::Node person{test::memory_options("person"), memory};
+  bus::RequestClient client{person, bus::topics::kRegistrationRequest, "a person"};
+  bus::Writer<v1::Request> writer = person.writer<v1::Request>(bus::topics::kRegistrationRequest);
+  bus::Reader<v1::Answer> answers = person.reader(bus::topics::kRegistrationAnswers);
+  std::optional<bus::Node> service;
+  std::optional<Desk> desk;
+  Stamp now{3, 20};
+  double total = 0.0;
+  std::string order;
+  Request newest;
+};
+
+TEST_F(DeskTest, AnswersWithResults) {
+  open();
+  const v1::Answer answer = ask(count(3.0));
+  EXPECT_EQ(answer.code(), v1::ANSWER_DONE);
+  EXPECT_EQ(answer.service(), "registration");
+  EXPECT_EQ(answer.asker(), person.instance());
+  EXPECT_EQ(answer.stamp().cycle(), 20U);
+  EXPECT_EQ(number_of(from_bus(answer).results, "total"), 3.0);
+  EXPECT_EQ(newest.source, "a person");
+  EXPECT_EQ(desk->refused(), 0U);
+}
+
+TEST_F(DeskTest, RefusesWhatIsNotDeclared) {
+  open();
+  EXPECT_EQ(ask(count(11.0)).code(), v1::ANSWER_BAD_ARGUMENT);
+  v1::Request request;
+  request.functor("sing");
+  const v1::Answer answer = ask(request);
+  EXPECT_EQ(answer.code(), v1::ANSWER_UNKNOWN_FUNCTOR);
+  EXPECT_EQ(answer.text(), "functor \"sing\" is not known here: expected count, later");
+  EXPECT_EQ(desk->refused(), 2U);
+  EXPECT_EQ(total, 0.0);
+}
+
+TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
+  open();
+  v1::Request request = count(2.0);
+  request.asker(9);
+  request.number(1);
+  for (int i = 0; i < 3; ++i) {
+    writer.write(request);
+    desk->take(now);
+  }
+  EXPECT_EQ(total, 2.0);
+  const auto told = answers.take();
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_EQ(told[2].data, told[0].data);
+  request.number(2);
+  writer.write(request);
+  desk->take(now);
+  EXPECT_EQ(total, 4.0);
+  request.number(0);  // of somebody who does not count
+  for (int i = 0; i < 2; ++i) {
+    writer.write(request);
+    desk->take(now);
+  }
+  EXPECT_EQ(total, 8.0);
+}
+
+TEST_F(DeskTest, SaysLaterWhatBecameOfIt) {
+  open();
+  v1::Request request;
+  request.functor("later");
+  const v1::Answer answer = client.ask(request, kPatience, nullptr, [this] {
+    desk->take(now);
+    if (newest.functor == "later")
+      desk->answer(newest.asker, newest.number, {AnswerCode::given_up, "too heavy", {}});
+  });
+  EXPECT_EQ(answer.code(), v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(answer.text(), "too heavy");
+}
+
+TEST_F(DeskTest, TheClientSaysWhyThereIsNoAnswer) {
+  const v1::Answer nobody = client.ask(count(1.0), 0.1);
+  EXPECT_EQ(nobody.code(), v1::ANSWER_NOBODY);
+  EXPECT_EQ(nobody.text(), "no program takes what is asked on registration/request");
+  open();
+  v1::Request another = count(1.0);
+  another.service("vision");
+  EXPECT_EQ(ask(another, 0.2).code(), v1::ANSWER_TOO_LATE) << "this one is not meant";
+  v1::Request later;
+  later.functor("later");
+  EXPECT_EQ(ask(later, 0.2).text(), "the request is still under way after 0 s");
+  EXPECT_EQ(total, 0.0);
+}
+
+TEST_F(DeskTest, InLockstepServicesAreHeardInTheSameStepAndOrderInEveryRun) {
+  open(true);
+  const auto write = [&](const char* source, std::uint64_t cycle, std::uint64_t number) {
+    v1::Request request = count(1.0);
+    request.source(source);
+    request.asker(9);
+    request.number(number);
+    request.stamp().epoch(now.epoch);
+    request.stamp().cycle(cycle);
+    writer.write(request);
+  };
+  write("b", 20, 1);
+  write("c", 19, 2);
+  write("a", 20, 3);
+  desk->take(now);
+  EXPECT_EQ(order, "");
+  now.cycle = 21;
+  desk->take(now);
+  EXPECT_EQ(order, "c");
+  now.cycle = 22;
+  desk->take(now);
+  EXPECT_EQ(order, "cab");
+  write("p", 0, 4);  // without cycles: at once
+  desk->take(now);
+  EXPECT_EQ(order, "cabp");
+}
+
+TEST_F(DeskTest, LiveServicesAreHeardAtOnce) {
+  open(false);
+  v1::Request request = count(1.0);
+  request.stamp().epoch(now.epoch);
+  request.stamp().cycle(now.cycle);
+  writer.write(request);
+  desk->take(now);
+  EXPECT_EQ(total, 1.0);
+}
+
+}  // namespace
+}  // namespace saphira

@@ -1,0 +1,192 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saphira/intentions/beliefs.hpp"
+#include "saphira/intentions/forest.hpp"
+#include "saphira/intentions/functions.hpp"
+#include "saphira/intentions/goal.hpp"
+#include "saphira/intentions/journal.hpp"
+#include "saphira/intentions/schema.hpp"
+
+namespace saphira::intentions {
+
+/// What happened to a goal on the bus.
+struct GoalEvent {
+  enum class Kind { kWritten, kDisposed, kWriterLost };
+  Kind kind = Kind::kWritten;
+  Goal goal;         ///< kWritten: whole; otherwise only its id counts
+  std::string by{};  ///< who did it [empty: its requester]
+};
+
+/// What a step is given.
+struct Inputs {
+  std::uint64_t epoch = 0;
+  std::uint64_t cycle = 0;
+  Robot robot;
+  std::vector<BehaviorLevel> behaviors;
+  std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
+  std::vector<GoalEvent> events;      ///< since the last step, oldest first
+  Surroundings around{};
+  std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
+  std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
+  std::string hold{};                       ///< why all goals are to wait; empty: they are not
+  std::string
+      estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
+  /// [cycles] Of what was intended, when the behaviors were computed.
+  std::uint64_t intent_age = 1;
+};
+
+/// What became of the goals since the last time.
+struct News {
+  std::vector<GoalStatus> changed;  ///< to be published, in the order in which it happened
+  std::vector<GoalId> withdrawn;    ///< ended long ago: their status is to be withdrawn
+  std::vector<Placement> placed;    ///< to be remembered over a restart
+  std::vector<Ending> endings;      ///< to be remembered over a restart
+  /// The same, in the place of what was remembered before; none: it is as it was.
+  std::optional<Work> work;
+};
+
+/// What a step gives.
+struct Outputs {
+  std::vector<IntendedBehavior> behaviors;
+  std::vector<IntentionNode> nodes;
+  News news;
+  bool behavior_control = true;      ///< sfBehaviorControl (manual 7.4)
+  std::vector<Said> said;            ///< to people, oldest first
+  std::vector<Request> requests{};   ///< to registration, oldest first
+  std::vector<Request> questions{};  ///< to agents, oldest first; each has its number
+};
+
+struct ExecutorOptions {
+  double keep_ended = 60.0;      ///< [s] of robot time that an ended goal's status stays
+  std::size_t max_shown = 1024;  ///< ended goals whose status stays; the oldest are withdrawn
+  std::size_t max_open = 256;    ///< goals that may be open at once
+  std::size_t max_ended = kMostEndings;
+  bool remembers_work = false;  ///< whether somebody keeps News::work
+  /// Whose conditions are beliefs. None: those of core_functions().
+  std::shared_ptr<const Functions> functions{};
+  ForestOptions forest{};
+};
+
+/// Goals in, intended behaviors out (manual 8, paper 3.3): the executor of PRS-lite with a queue of
+/// goals on top.
+///
+/// At most one goal that drives is underway: the most important, of equals the one that came first.
+/// A more important one interrupts it; it resumes afterwards. Goals of concurrent schemas are
+/// underway beside it. Nothing is intended when no goal is underway, which releases the robot.
+class Executor {
+ public:
+  explicit Executor(Registry registry, const Memory& memory = {}, ExecutorOptions options = {});
+
+  /// One cycle of the robot.
+  Outputs step(const Inputs& inputs);
+
+  /// Takes in events between cycles, so that a requester hears of a refusal also while no robot is
+  /// connected. Starts nothing: for the step that follows it is the same whether the events came
+  /// before or with it.
+  News hear(const std::vector<GoalEvent>& events);
+
+  /// There is no robot any more (no cycles come). Goals wait for it; the next step goes on.
+  News robot_gone();
+
+  /// Puts a schema in, also in the place of an older one: goals that have begun and intentions go
+  /// on with theirs.
+  void add(Schema schema);
+  void remove(std::string_view name);
+  void know_behaviors(std::vector<BehaviorSignature> behaviors);
+  const Registry& registry() const { return *registry_; }
+  const Beliefs& beliefs() const { return *beliefs_; }
+
+  /// Interrupts an intention with all that it has begun, or lets it go on, by the number of its
+  /// node (manual 6.5, sfInterruptProcess). False where there is no such intention.
+  bool interrupt(std::uint32_t node);
+  bool resume(std::uint32_t node);
+  /// What a variable of an intention holds, by the number of its node; until the next step. nullptr
+  /// where there is no such intention or variable.
+  const Value* variable(std::uint32_t node, std::string_view name);
+
+ private:
+  struct Entry {
+    Goal goal;            ///< as it was written, to tell a change from a repetition
+    Arguments arguments;  ///< complete; points in odom once `placed`
+    std::shared_ptr<const Schema> schema;
+    bool fresh = true;  ///< no step since it was heard: acceptance counts from the next one
+    bool placed = false;
+    bool changed = false;               ///< while begun, and its activity does not know yet
+    bool replaced = false;              ///< what it replaces has been ended
+    std::optional<std::uint64_t> odom;  ///< the frame that its points are in; none: it has none
+    std::uint64_t order = 0;
+    Ticks accepted = 0;
+    Ticks ended = 0;
+    std::uint32_t node = 0;  ///< root of its tree; 0: not begun
+    GoalStatus status;
+    bool before = false;  ///< it was accepted before a restart of the service
+    std::string refusal;  ///< of the newest change, which does not count; empty: none
+    std::optional<GoalStatus> published;
+    Ticks published_at = 0;
+    std::deque<double> levels;  ///< of the last cycles, for the trend
+  };
+  using Entries = std::map<GoalId, Entry>;
+
+  void pass_time(const Inputs& inputs);
+  void take_in(const GoalEvent& event);
+  void take_written(const Goal& goal, const std::string& by);
+  void put_up(Entry& entry, const Goal& goal, Arguments complete);
+  static bool depends_on_odom(const Entry& entry, bool placed);
+  void change(Entry& entry, const Goal& goal, const std::string& by);
+  std::string complaint(const Goal& goal, GoalCode& code, Arguments& complete) const;
+  void end(Entry& entry, GoalState state, GoalCode code, std::string reason);
+  void remember(const Ending& ending);
+  void forget_ended();
+  static void wait(Entry& entry, GoalCode code, std::string reason);
+  void suspend(Entry& entry, GoalCode code, std::string reason);
+  void lose_robot(const std::string& hold = {});
+  void meet_odom(std::uint64_t odom);
+  void place(Entry& entry, const Robot& robot);
+  void pass_changes();
+  void check_deadlines(const Robot& robot);
+  void replace();
+  void obey_estop(const std::string& source);
+  std::string step_of(const IntentionNode& node) const;
+  Entry* best();
+  Entry* arbitrate(const World& world);
+  void begin(Entry& entry, const World& world);
+  void take_up(Entry& entry, const World& world);
+  void begin_concurrent(const World& world);
+  void recall(const Inputs& inputs);
+  std::optional<Work> take_work();
+  void measure(Entry& entry);
+  bool collect();
+  News take_news();
+
+  ExecutorOptions options_;
+  std::shared_ptr<Registry> registry_;
+  std::shared_ptr<Beliefs> beliefs_;
+  Forest forest_;
+  Entries entries_;
+  std::map<GoalId, Placement> remembered_places_;
+  Work remembered_work_;
+  std::uint64_t set_revision_ = 0;
+  std::map<GoalId, Ending> remembered_;
+  std::deque<GoalId> remembered_order_;
+  std::deque<GoalId> ended_order_;  ///< of the entries that have ended, the first to end first
+  std::uint64_t next_order_ = 1;
+  Ticks now_ = 0;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t cycle_ = 0;
+  bool robot_here_ = false;
+  std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
+  std::vector<GoalId> withdrawn_;
+  std::vector<Placement> placed_;
+  std::vector<Ending> endings_;
+};
+
+}  // namespace saphira::intentions

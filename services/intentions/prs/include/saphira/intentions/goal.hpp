@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/base/numbers.hpp"
+#include "saphira/requests/argument.hpp"
+
+namespace saphira::intentions {
+
+/// Unique for ever: a writer's random number and its own count.
+struct GoalId {
+  std::uint64_t writer = 0;
+  std::uint64_t number = 0;
+
+  bool operator==(const GoalId&) const = default;
+  bool operator<(const GoalId& other) const {
+    return writer != other.writer ? writer < other.writer : number < other.number;
+  }
+};
+
+enum class WriterLost { kCancel, kKeep };
+
+/// What somebody wants to be true. Writing it again under its id changes it.
+struct Goal {
+  GoalId id;
+  std::string requester;
+  std::string functor;
+  Arguments arguments;
+  int priority = 0;       ///< larger is more important
+  double deadline = 0.0;  ///< [s] of robot time from acceptance; 0: none
+  WriterLost writer_lost = WriterLost::kCancel;
+  double level = 0.0;  ///< [0..1] of satisfaction that is enough; 0: the usual one
+
+  bool operator==(const Goal&) const = default;
+};
+
+enum class GoalState { kWaiting, kRefused, kUnderway, kSuspended, kSucceeded, kFailed, kCanceled };
+
+enum class GoalCode {
+  kNone,
+  kUnknownFunctor,
+  kBadArgument,
+  kChanged,
+  kTooMany,
+  kDeadline,
+  kBlocked,
+  kNoRobot,
+  kNoPosition,
+  kNoRoute,   ///< the map knows no way, or every way is blocked
+  kActivity,  ///< the activity says so
+  kTimeout,   ///< a part of it took longer than it may
+  kDisposed,
+  kWriterLost,
+  kPreempted
+};
+
+/// Of a goal's level, over the last seconds.
+enum class Trend { kSteady, kRising, kFalling };
+
+inline constexpr bool ended(GoalState state) {
+  return state == GoalState::kRefused || state == GoalState::kSucceeded ||
+         state == GoalState::kFailed || state == GoalState::kCanceled;
+}
+
+/// What became of a goal so far.
+struct GoalStatus {
+  GoalId id;
+  std::string requester;
+  std::string functor;
+  GoalState state = GoalState::kWaiting;
+  GoalCode code = GoalCode::kNone;
+  std::string reason;     ///< in words; always given at an end
+  std::string step;       ///< what is being done now
+  double progress = 0.0;  ///< [0..1]
+  double elapsed = 0.0;   ///< [s] of robot time since acceptance
+  double level = 0.0;     ///< [0..1] how far it is satisfied
+  Trend trend = Trend::kSteady;
+  std::string note;  ///< what is worth knowing beside the state; empty: nothing
+
+  bool operator==(const GoalStatus&) const = default;
+};
+
+/// The word that stands for it in files and messages, such as "succeeded".
+const char* name_of(GoalState state);
+const char* name_of(GoalCode code);
+/// "1f3a:2": the id as people type it.
+std::string describe(const GoalId& id);
+
+}  // namespace saphira::intentions

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "saphira/intentions/goal.hpp"
+#include "saphira/requests/request.hpp"
+
+namespace saphira::lps {
+class LocalPerceptualSpace;
+struct Percept;
+struct SeenThing;
+struct SonarReading;
+}  // namespace saphira::lps
+namespace saphira::maps {
+struct Map;
+class Topology;
+}  // namespace saphira::maps
+
+namespace saphira::intentions {
+
+class Beliefs;
+struct Reference;
+class Value;
+
+/// Cycles of 100 ms that the robot has been connected: the only time here. Negative for what
+/// happened before the service began.
+using Ticks = std::int64_t;
+inline constexpr double kTick = 0.1;  ///< [s]
+
+/// What is known of the robot in a cycle.
+struct Robot {
+  bool connected = false;
+  bool has_power = true;   ///< of its motors
+  std::uint64_t odom = 0;  ///< which odom frame
+  Pose pose_in_odom{};
+  double velocity = 0.0;           ///< [m/s]
+  double rotation_velocity = 0.0;  ///< [rad/s]
+  /// The origin of odom on the map; none while the robot does not know where it is on the map.
+  std::optional<Pose> odom_in_map{};
+  bool left_stalled = false;
+  bool right_stalled = false;
+  std::uint16_t bumpers = 0;  ///< as the packet has them
+};
+
+enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
+
+/// Slower than this it is at rest, allowing for the rounding of the packet.
+inline constexpr double kRestVelocity = 0.02;          ///< [m/s]
+inline constexpr double kRestRotation = radians(3.0);  ///< [rad/s]
+
+/// Whether it neither drives nor turns.
+bool at_rest(const Robot& robot);
+
+/// What registration says.
+struct Registered {
+  Localization state = Localization::kNone;  ///< kNone: there is no registration
+  Pose pose_in_map;                          ///< of the robot; where it is lost: the best guess
+  double confidence = 0.0;                   ///< [0..1]
+  std::uint32_t environment = 0;             ///< the artifact that the robot is in; 0: none known
+  bool adds_features = false;                ///< what is seen is put on the map
+  std::set<std::uint32_t> closed_doors;      ///< by id: those that were closed when seen last
+};
+
+/// What is known beside the robot. What is pointed to outlives the step.
+struct Surroundings {
+  const lps::LocalPerceptualSpace* lps = nullptr;       ///< none: nothing is sensed
+  const std::vector<lps::Percept>* percepts = nullptr;  ///< none: no interpretation
+  /// People and colours; none: there is no camera, or nobody looks.
+  const std::vector<lps::SeenThing>* things = nullptr;
+  std::uint64_t cycle = 0;  ///< of the robot, by which what is perceived counts
+  Registered registration;
+  std::shared_ptr<const maps::Topology> topology;  ///< none: no map
+  std::shared_ptr<const maps::Map> map;            ///< what the topology is of
+  /// Of the sonars, that came in this cycle; none: nothing is sensed.
+  const std::vector<lps::SonarReading>* readings = nullptr;
+  std::uint64_t map_revision = 0;
+  /// What agents said to questions, by their numbers; none: nobody is asked.
+  const std::map<std::uint64_t, Answer>* answers = nullptr;
+};
+
+/// All that activities can ask for in a cycle: what the functions of their language look at.
+struct World {
+  const Robot& robot;
+  const Surroundings& around;
+  const Beliefs& beliefs;
+  Ticks now = 0;
+
+  /// The robot on the map; none while it is not known.
+  std::optional<Pose> robot_in_map() const {
+    if (!robot.odom_in_map)
+      return std::nullopt;
+    return compose(*robot.odom_in_map, robot.pose_in_odom);
+  }
+
+  /// It has a place on the map which what it hears does not confirm: too little to say that it is
+  /// anywhere.
+  bool unsure_of_position() const {
+    constexpr double kSure = 0.9;
+    return around.registration.state == Localization::kTracking &&
+           around.registration.confidence < kSure;
+  }
+};
+
+/// The same point in another frame; none where the way goes over the map and the robot does not
+/// know where it is on it.
+std::optional<Pose> in_frame(const Pose& pose, Frame from, Frame to, const Robot& robot);
+
+/// The person or blob of that number, among what is seen now; nullptr where it is gone.
+const lps::SeenThing* seen_thing(const World& world, std::uint64_t id);
+
+/// Whether there is a map, and it is still the one that the reference is of.
+bool current(const World& world, const Reference& reference);
+
+/// What a value is called: what is on the map by its name there.
+std::string name_of(const World& world, const Value& value);
+
+}  // namespace saphira::intentions

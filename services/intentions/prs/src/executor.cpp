@@ -1,0 +1,749 @@
+#include "saphira/intentions/executor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "forest_node.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+/// How often the status of a goal that is not at its end is published anew.
+constexpr Ticks kStatusPeriod = 10;
+/// Goals that may begin in one cycle, each after the one before it ended in its first step.
+constexpr int kBeginsPerCycle = 8;
+
+/// Cycles over which the trend of a level is told, and by how much it has to differ.
+constexpr std::size_t kTrend = 20;
+constexpr double kTrendStep = 0.02;
+
+constexpr const char* kPositionLost =
+    "position lost: the robot's dead reckoning has begun anew since the goal was accepted, so "
+    "where "
+    "the goal is cannot be told";
+
+double seconds(Ticks ticks) {
+  return kTick * static_cast<double>(ticks);
+}
+
+std::string name_of_goal(const Goal& goal) {
+  std::string name = "goal " + describe(goal.id) + " (" + goal.functor + ")";
+  if (!goal.requester.empty())
+    name += " of " + quoted(goal.requester);
+  return name;
+}
+
+/// Whether somebody who watches wants to hear of it at once.
+bool differs(const GoalStatus& a, const GoalStatus& b) {
+  return a.state != b.state || a.code != b.code || a.reason != b.reason || a.step != b.step ||
+         a.requester != b.requester || a.functor != b.functor || a.note != b.note;
+}
+
+bool open(const GoalStatus& status) {
+  return !ended(status.state);
+}
+
+/// A point that is fixed in odom when the goal is accepted. One on the map stays where it is.
+bool to_be_placed(const Argument& argument) {
+  return argument.kind == ArgumentKind::point && argument.frame != Frame::map;
+}
+
+/// Whether these arguments, as they were written, are what was placed.
+bool is_of(const Placement& placement, const Arguments& arguments) {
+  auto point = placement.points.begin();
+  for (const Argument& argument : arguments) {
+    if (!to_be_placed(argument))
+      continue;
+    if (point == placement.points.end() || point->name != argument.name ||
+        point->given != argument.point)
+      return false;
+    ++point;
+  }
+  return point == placement.points.end();
+}
+
+/// To what is remembered of it. Letters of more than one byte stay whole.
+std::string shortened(const std::string& reason) {
+  if (reason.size() <= kLongestReason)
+    return reason;
+  std::size_t end = kLongestReason - 3;
+  while (end > 0 && (static_cast<unsigned char>(reason[end]) & 0xc0U) == 0x80U)
+    --end;
+  return reason.substr(0, end) + "...";
+}
+
+}  // namespace
+
+Executor::Executor(Registry registry, const Memory& memory, ExecutorOptions options)
+    : options_(std::move(options)), registry_(std::make_shared<Registry>(std::move(registry))) {
+  if (!options_.functions)
+    options_.functions = std::make_shared<const Functions>(core_functions());
+  beliefs_ = std::make_shared<Beliefs>(options_.functions.get());
+  forest_ = Forest(registry_, beliefs_, options_.forest);
+  for (const Placement& placement : memory.placements)
+    remembered_places_[placement.id] = placement;
+  remembered_work_ = memory.work;
+  for (const Ending& ending : memory.endings)
+    remember(ending);
+}
+
+void Executor::remember(const Ending& ending) {
+  if (remembered_.insert_or_assign(ending.id, ending).second)
+    remembered_order_.push_back(ending.id);
+  while (remembered_order_.size() > options_.max_ended) {
+    remembered_.erase(remembered_order_.front());
+    remembered_order_.pop_front();
+  }
+}
+
+News Executor::hear(const std::vector<GoalEvent>& events) {
+  for (const GoalEvent& event : events)
+    take_in(event);
+  forget_ended();
+  return take_news();
+}
+
+/// Withdraws what has ended long ago, and the oldest where there are too many: without a robot no
+/// time passes. Not before it has been told.
+void Executor::forget_ended() {
+  while (!ended_order_.empty()) {
+    const auto oldest = entries_.find(ended_order_.front());
+    const std::optional<GoalStatus>& told = oldest->second.published;
+    const bool many = ended_order_.size() > options_.max_shown && told && !open(*told);
+    if (!many && seconds(now_ - oldest->second.ended) < options_.keep_ended)
+      return;
+    withdrawn_.push_back(oldest->first);
+    entries_.erase(oldest);
+    ended_order_.pop_front();
+  }
+}
+
+News Executor::robot_gone() {
+  lose_robot();
+  return take_news();
+}
+
+Outputs Executor::step(const Inputs& inputs) {
+  pass_time(inputs);
+  for (const GoalEvent& event : inputs.events)
+    take_in(event);
+  for (auto& [id, entry] : entries_) {
+    if (std::exchange(entry.fresh, false))
+      entry.accepted = now_;
+    if (open(entry.status))
+      entry.status.elapsed = seconds(now_ - entry.accepted);
+  }
+  robot_here_ = inputs.robot.connected && inputs.hold.empty();
+  if (robot_here_) {
+    meet_odom(inputs.robot.odom);
+    for (auto& [id, entry] : entries_) {
+      if (open(entry.status) && !entry.placed)
+        place(entry, inputs.robot);
+    }
+    pass_changes();
+  } else {
+    lose_robot(inputs.robot.connected ? inputs.hold : std::string());
+  }
+  check_deadlines(inputs.robot);
+  replace();
+  obey_estop(inputs.estop);
+  for (const ClaimEvent& claim : inputs.claims)
+    beliefs_->take(claim, now_);
+  const World world{inputs.robot, inputs.around, *beliefs_, now_};
+  beliefs_->look(world);
+  if (inputs.behaviors_cycle > 0)
+    forest_.hear(inputs.behaviors, now_ - static_cast<Ticks>(inputs.cycle - inputs.behaviors_cycle +
+                                                             inputs.intent_age));
+  forest_.hear(inputs.troubles);
+  if (robot_here_) {
+    arbitrate(world);
+    begin_concurrent(world);
+  }
+  forest_.step(world);
+  // The next goal begins in the cycle in which the one before it ends: without a gap in what is
+  // intended, in which the robot would be released.
+  for (int begun = 0; collect() && robot_here_ && begun < kBeginsPerCycle; ++begun) {
+    if (const Entry* const next = arbitrate(world))
+      forest_.begin(next->node, world);
+  }
+  forget_ended();
+  for (auto& [id, entry] : entries_)
+    measure(entry);
+  Outputs outputs{forest_.behaviors(),        forest_.nodes(),     take_news(),
+                  forest_.behavior_control(), forest_.take_said(), forest_.take_requests(),
+                  forest_.take_questions()};
+  outputs.news.work = take_work();
+  return outputs;
+}
+
+void Executor::pass_time(const Inputs& inputs) {
+  if (epoch_ == 0)
+    recall(inputs);
+  else if (inputs.epoch != epoch_)
+    ++now_;
+  else if (inputs.cycle > cycle_)
+    now_ += static_cast<Ticks>(inputs.cycle - cycle_);
+  epoch_ = inputs.epoch;
+  cycle_ = inputs.cycle;
+}
+
+// --- goals from the bus
+
+void Executor::take_in(const GoalEvent& event) {
+  if (event.kind == GoalEvent::Kind::kWritten) {
+    take_written(event.goal, event.by);
+    return;
+  }
+  const auto found = entries_.find(event.goal.id);
+  if (found == entries_.end() || !open(found->second.status))
+    return;
+  Entry& entry = found->second;
+  if (event.kind == GoalEvent::Kind::kDisposed) {
+    end(entry, GoalState::kCanceled, GoalCode::kDisposed,
+        "withdrawn by " + (event.by.empty() ? "its requester" : event.by));
+  } else if (entry.goal.writer_lost == WriterLost::kCancel) {
+    end(entry, GoalState::kCanceled, GoalCode::kWriterLost,
+        "the program that asked for it is gone");
+  }
+}
+
+void Executor::take_written(const Goal& goal, const std::string& by) {
+  const auto found = entries_.find(goal.id);
+  if (found != entries_.end()) {
+    Entry& entry = found->second;
+    if (!open(entry.status))
+      return;  // an ended goal stays ended: its id is used up
+    if (goal != entry.goal)
+      change(entry, goal, by);
+    else
+      entry.refusal.clear();  // taken back
+    return;
+  }
+  Entry& entry = entries_[goal.id];
+  entry.goal = goal;
+  entry.accepted = now_;
+  entry.order = next_order_++;
+  entry.status.id = goal.id;
+  entry.status.requester = goal.requester;
+  entry.status.functor = goal.functor;
+
+  if (const auto done = remembered_.find(goal.id); done != remembered_.end()) {
+    entry.status.state = done->second.state;
+    entry.status.code = done->second.code;
+    entry.status.reason = done->second.reason;
+    entry.status.progress = done->second.state == GoalState::kSucceeded ? 1.0 : 0.0;
+    entry.ended = now_;
+    ended_order_.push_back(goal.id);
+    return;
+  }
+  GoalCode code = GoalCode::kNone;
+  Arguments complete;
+  std::string wrong = complaint(goal, code, complete);
+  if (wrong.empty()) {
+    const auto count = std::count_if(entries_.begin(), entries_.end(),
+                                     [](const auto& each) { return open(each.second.status); });
+    if (static_cast<std::size_t>(count) > options_.max_open) {
+      code = GoalCode::kTooMany;
+      wrong = "too many goals: " + std::to_string(options_.max_open) + " are open already";
+    }
+  }
+  if (!wrong.empty()) {
+    end(entry, GoalState::kRefused, code, std::move(wrong));
+    return;
+  }
+  put_up(entry, goal, std::move(complete));
+  if (!robot_here_)
+    wait(entry, GoalCode::kNoRobot, "accepted; waits for the robot");
+  else
+    wait(entry, GoalCode::kNone, "accepted");
+}
+
+/// Makes the entry one for this goal, whose arguments are checked.
+void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
+  entry.goal = goal;
+  entry.schema = registry_->share(goal.functor);
+  entry.arguments = std::move(complete);
+  entry.placed = false;
+  entry.odom.reset();
+  // What is in odom is in the one that its writer could know of.
+  if (odom_ && depends_on_odom(entry, false))
+    entry.odom = odom_;
+  entry.status.requester = goal.requester;
+  entry.status.functor = goal.functor;
+}
+
+/// Whether another odom frame would make the arguments mean something else.
+bool Executor::depends_on_odom(const Entry& entry, bool placed) {
+  return std::any_of(entry.arguments.begin(), entry.arguments.end(), [&](const Argument& argument) {
+    if (argument.kind == ArgumentKind::point)
+      return argument.frame == Frame::odom || (placed && argument.frame == Frame::robot);
+    const auto& known = entry.schema->parameters;
+    return std::any_of(known.begin(), known.end(), [&](const Parameter& parameter) {
+      return parameter.in_odom && parameter.name == argument.name;
+    });
+  });
+}
+
+void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
+  GoalCode code = GoalCode::kNone;
+  Arguments complete;
+  const std::string wrong = complaint(goal, code, complete);
+  if (!wrong.empty()) {
+    // What is not understood never replaces what is: the goal goes on as it was.
+    entry.status.code = code;
+    entry.refusal = wrong;
+    if (entry.status.state == GoalState::kUnderway)
+      entry.status.reason.clear();
+    return;
+  }
+  entry.refusal.clear();
+  const bool other = goal.functor != entry.goal.functor;
+  const bool arguments = other || goal.arguments != entry.goal.arguments;
+  if (other && entry.node != 0) {
+    forest_.remove(entry.node);
+    entry.node = 0;
+    entry.replaced = false;
+  }
+  if (arguments) {
+    remembered_places_.erase(goal.id);
+    put_up(entry, goal, std::move(complete));
+    entry.changed = entry.node != 0;
+  } else {
+    entry.goal = goal;
+    entry.status.requester = goal.requester;
+  }
+  entry.status.code = GoalCode::kChanged;
+  entry.status.reason = "changed by " + (by.empty() ? "its requester" : by);
+}
+
+std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& complete) const {
+  const Schema* const schema = registry_->find(goal.functor);
+  if (schema == nullptr) {
+    code = GoalCode::kUnknownFunctor;
+    return "unknown functor " + quoted(goal.functor) + ": " + registry_->instead_of(goal.functor);
+  }
+  code = GoalCode::kBadArgument;
+  if (goal.id == GoalId{})
+    return "expected an id that is unique for ever, got 0:0";
+  if (!(goal.deadline >= 0.0) || !std::isfinite(goal.deadline))
+    return "expected a deadline of 0 (none) or more seconds, got " + plain(goal.deadline);
+  if (!(goal.level >= 0.0 && goal.level <= 1.0))
+    return "expected a level from 0 (the usual one) to 1, got " + plain(goal.level);
+  std::string wrong = check_arguments(*schema, goal.arguments, complete);
+  if (wrong.empty())
+    code = GoalCode::kNone;
+  return wrong;
+}
+
+// --- states
+
+void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string reason) {
+  if (entry.node != 0)
+    forest_.remove(entry.node);
+  entry.node = 0;
+  entry.ended = now_;
+  ended_order_.push_back(entry.goal.id);
+  entry.status.state = state;
+  entry.status.code = code;
+  entry.status.reason = reason.empty() ? name_of(state) : std::move(reason);
+  entry.status.step.clear();
+  if (state == GoalState::kSucceeded)
+    entry.status.progress = 1.0;
+  const Ending ending{entry.goal.id, state, entry.status.code, shortened(entry.status.reason)};
+  remembered_places_.erase(ending.id);
+  remember(ending);
+  endings_.push_back(ending);
+}
+
+void Executor::wait(Entry& entry, GoalCode code, std::string reason) {
+  entry.status.state = GoalState::kWaiting;
+  entry.status.code = code;
+  entry.status.reason = std::move(reason);
+}
+
+void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
+  if (entry.status.state == GoalState::kUnderway && entry.node != 0)
+    forest_.interrupt(entry.node);
+  entry.status.state = GoalState::kSuspended;
+  entry.status.code = code;
+  entry.status.reason = std::move(reason);
+  entry.status.step.clear();
+}
+
+void Executor::lose_robot(const std::string& hold) {
+  robot_here_ = false;
+  const GoalCode code = hold.empty() ? GoalCode::kNoRobot : GoalCode::kNone;
+  for (auto& [id, entry] : entries_) {
+    if (entry.status.state == GoalState::kWaiting)
+      wait(entry, code, hold.empty() ? "waits for the robot" : hold);
+    else if (open(entry.status))
+      suspend(entry, code, hold.empty() ? "the robot is not connected; goes on when it is" : hold);
+  }
+}
+
+void Executor::meet_odom(std::uint64_t odom) {
+  if (odom_ && *odom_ != odom) {
+    for (auto& [id, entry] : entries_) {
+      if (open(entry.status) && entry.odom && *entry.odom != odom)
+        end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+      // What an activity remembers of places is in the odom that was: it begins anew.
+      if (open(entry.status) && entry.node != 0 && entry.schema->program) {
+        forest_.remove(entry.node);
+        entry.node = 0;
+        entry.status.note =
+            "was begun anew at its first step: the robot's dead reckoning has begun anew";
+      }
+    }
+  }
+  odom_ = odom;
+}
+
+/// Fixes the arguments in odom, from where the robot is; after a restart of the service, as they
+/// were fixed before it.
+void Executor::place(Entry& entry, const Robot& robot) {
+  entry.placed = true;
+  const auto found = remembered_places_.find(entry.goal.id);
+  const bool before = found != remembered_places_.end() && is_of(found->second, entry.arguments);
+  Placement placement;
+  entry.before = before;
+  if (before) {
+    placement = found->second;
+    if (placement.epoch == epoch_ && placement.cycle <= cycle_)
+      entry.accepted = now_ - static_cast<Ticks>(cycle_ - placement.cycle);
+    entry.status.elapsed = seconds(now_ - entry.accepted);
+  } else {
+    placement = {entry.goal.id, epoch_, cycle_, robot.odom, {}};
+    for (const Argument& argument : entry.arguments) {
+      if (to_be_placed(argument))
+        placement.points.push_back({argument.name, argument.point,
+                                    argument.frame == Frame::robot
+                                        ? compose(robot.pose_in_odom, argument.point)
+                                        : argument.point});
+    }
+  }
+  auto point = placement.points.begin();
+  for (Argument& argument : entry.arguments) {
+    if (!to_be_placed(argument))
+      continue;
+    argument.point = (point++)->in_odom;
+    argument.frame = Frame::odom;
+  }
+  if (depends_on_odom(entry, true)) {
+    entry.odom = placement.odom;
+    if (placement.odom != robot.odom) {
+      end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
+      return;
+    }
+  }
+  if (!before) {
+    remembered_places_[entry.goal.id] = placement;
+    placed_.push_back(std::move(placement));
+  }
+}
+
+/// Tells the activities that are at work of other arguments.
+void Executor::pass_changes() {
+  for (auto& [id, entry] : entries_) {
+    if (!entry.changed || !entry.placed)
+      continue;
+    entry.changed = false;
+    if (entry.node == 0 || forest_.activity(entry.node).change(entry.arguments))
+      continue;
+    forest_.remove(entry.node);
+    entry.node = 0;
+  }
+}
+
+void Executor::check_deadlines(const Robot& robot) {
+  for (auto& [id, entry] : entries_) {
+    if (!open(entry.status) || entry.goal.deadline <= 0.0)
+      continue;
+    // Half a tick of slack, for the rounding of the sum.
+    if (seconds(now_ - entry.accepted) + 0.5 * kTick < entry.goal.deadline)
+      continue;
+    std::string success;
+    if (entry.status.state == GoalState::kUnderway && entry.node != 0 &&
+        !forest_.held(entry.node, Hold::kPerson))
+      success = forest_.activity(entry.node).at_deadline(robot);
+    if (!success.empty()) {
+      end(entry, GoalState::kSucceeded, GoalCode::kNone, std::move(success));
+      continue;
+    }
+    const GoalStatus& status = entry.status;
+    const std::string& doing = status.state == GoalState::kUnderway ? status.step : status.reason;
+    end(entry, GoalState::kFailed, GoalCode::kDeadline,
+        "not done within its deadline of " + plain(entry.goal.deadline) + " s; it was " +
+            name_of(status.state) + (doing.empty() ? "" : ": " + doing));
+  }
+}
+
+/// Ends what a stop replaces: whatever drives and was asked for before it. A stop is stronger than
+/// any priority.
+void Executor::replace() {
+  for (auto& [id, stop] : entries_) {
+    if (!open(stop.status) || !stop.schema->replaces || stop.replaced)
+      continue;
+    stop.replaced = true;
+    for (auto& [other_id, other] : entries_) {
+      const bool earlier =
+          std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
+      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier)
+        end(other, GoalState::kCanceled, GoalCode::kPreempted,
+            "stopped by " + name_of_goal(stop.goal));
+    }
+  }
+}
+
+/// While an emergency stop is latched no goal is to drive, now or after its reset: what was meant
+/// before does not go on by itself.
+void Executor::obey_estop(const std::string& source) {
+  if (source.empty())
+    return;
+  for (auto& [id, entry] : entries_) {
+    if (open(entry.status) && !entry.schema->concurrent && !entry.schema->replaces)
+      end(entry, GoalState::kCanceled, GoalCode::kPreempted,
+          "emergency stop, pressed by " + quoted(source) +
+              ": saphira estop reset releases it, then ask anew");
+  }
+}
+
+/// What an intention does, for people: one of the language says it in the words of its schema.
+std::string Executor::step_of(const IntentionNode& node) const {
+  const Schema* const schema = registry_->find(node.schema);
+  if (schema == nullptr || schema->program == nullptr)
+    return node.step;
+  if (!schema->summary.empty())
+    return schema->name + ": " + schema->summary;
+  // Its step is what it waits for, or a goal as it is written, which is no reading for people.
+  return node.step.empty() || node.step.front() == '(' ? schema->name : node.step;
+}
+
+Executor::Entry* Executor::best() {
+  const auto rank = [](const Entry& entry) {
+    return std::tuple(-static_cast<std::int64_t>(entry.goal.priority), entry.accepted, entry.order);
+  };
+  Entry* best = nullptr;
+  for (auto& [id, entry] : entries_) {
+    if (open(entry.status) && !entry.schema->concurrent &&
+        (best == nullptr || rank(entry) < rank(*best)))
+      best = &entry;
+  }
+  return best;
+}
+
+/// Gives the robot to the best goal; the one that is underway now, nullptr where there is none.
+Executor::Entry* Executor::arbitrate(const World& world) {
+  Entry* const chosen = best();
+  if (chosen == nullptr)
+    return nullptr;
+  for (auto& [id, entry] : entries_) {
+    if (!open(entry.status) || &entry == chosen || entry.schema->concurrent)
+      continue;
+    const bool more = chosen->goal.priority > entry.goal.priority;
+    const std::string who =
+        name_of_goal(chosen->goal) +
+        (more ? ", which is more important (priority " + std::to_string(chosen->goal.priority) +
+                    " over " + std::to_string(entry.goal.priority) + ")"
+              : ", which came first");
+    if (entry.status.state == GoalState::kWaiting)
+      wait(entry, GoalCode::kNone, "waits for " + who);
+    else
+      suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
+  }
+  begin(*chosen, world);
+  return chosen;
+}
+
+void Executor::begin(Entry& entry, const World& world) {
+  if (entry.status.state != GoalState::kUnderway) {
+    entry.status.state = GoalState::kUnderway;
+    entry.status.code = GoalCode::kNone;
+    entry.status.reason.clear();
+    if (entry.node != 0)
+      forest_.resume(entry.node);
+  }
+  if (entry.node != 0)
+    return;
+  entry.node = forest_.plant(entry.goal.id, describe(entry.goal.id), entry.goal.functor,
+                             entry.schema->make(entry.arguments), entry.schema->priority,
+                             entry.schema->timeout, entry.schema->concurrent);
+  if (std::exchange(entry.before, false))
+    take_up(entry, world);
+}
+
+/// Goes on with what was done of a goal before the service was restarted.
+void Executor::take_up(Entry& entry, const World& world) {
+  const auto done = std::find_if(remembered_work_.goals.begin(), remembered_work_.goals.end(),
+                                 [&](const GoalWork& work) { return work.id == entry.goal.id; });
+  std::string why;
+  try {
+    if (remembered_work_.epoch == 0)
+      throw ActivityError("what had been done of it is not remembered");
+    if (done == remembered_work_.goals.end() || done->functor != entry.goal.functor)
+      return;  // it had not begun
+    if (remembered_work_.odom != world.robot.odom)
+      throw ActivityError("the robot's dead reckoning has begun anew");
+    forest_.restore(entry.node, done->intentions, world);
+    return;
+  } catch (const ActivityError& error) {
+    why = error.what();
+  }
+  // What is built in only needs its arguments, which are places and headings.
+  if (entry.schema->program)
+    entry.status.note = "was begun anew at its first step: intentions was restarted, and " + why;
+}
+
+/// Goes on from before a restart of the service: the clock, and what activities had set.
+void Executor::recall(const Inputs& inputs) {
+  const Work& work = remembered_work_;
+  if (work.epoch == 0)
+    return;
+  const bool same = work.epoch == inputs.epoch && inputs.cycle >= work.cycle;
+  now_ = work.now + (same ? static_cast<Ticks>(inputs.cycle - work.cycle) : 1);
+  for (auto& [id, entry] : entries_) {  // heard before the first step
+    entry.accepted += now_;
+    entry.ended += now_;
+    entry.published_at += now_;
+  }
+  if (work.odom == inputs.robot.odom)
+    for (const Belief& belief : work.beliefs)
+      beliefs_->set(belief.name, belief.value, belief.said_by, belief.since);
+}
+
+std::optional<Work> Executor::take_work() {
+  const bool changed = forest_.take_changed();
+  const bool set = set_revision_ != beliefs_->set_revision();
+  set_revision_ = beliefs_->set_revision();
+  if (!options_.remembers_work || !odom_ || !(changed || set))
+    return std::nullopt;
+  Work work{epoch_, cycle_, *odom_, now_, {}, {}};
+  work.beliefs = beliefs_->set_by_activities();
+  // Who has set it keeps that with what it does.
+  std::erase_if(work.beliefs,
+                [](const Belief& belief) { return normal(belief.name) == kBehaviorControl; });
+  for (const auto& [id, entry] : entries_)
+    if (entry.node != 0)
+      work.goals.push_back({id, entry.goal.functor, forest_.save(entry.node)});
+  // What waits to be taken up is still what was remembered.
+  for (const GoalWork& done : remembered_work_.goals) {
+    const auto entry = entries_.find(done.id);
+    if (!remembered_.contains(done.id) && (entry == entries_.end() || entry->second.before))
+      work.goals.push_back(done);
+  }
+  return work;
+}
+
+/// Those that are underway beside the one that drives, from the cycle on in which they came.
+void Executor::begin_concurrent(const World& world) {
+  for (auto& [id, entry] : entries_) {
+    if (open(entry.status) && entry.schema->concurrent)
+      begin(entry, world);
+  }
+}
+
+void Executor::add(Schema schema) {
+  registry_->add(std::move(schema));
+}
+
+void Executor::remove(std::string_view name) {
+  registry_->remove(name);
+}
+
+void Executor::know_behaviors(std::vector<BehaviorSignature> behaviors) {
+  registry_->know_behaviors(std::move(behaviors));
+}
+
+bool Executor::interrupt(std::uint32_t node) {
+  if (!forest_.is_activity(node))
+    return false;
+  forest_.interrupt(node, Hold::kPerson);
+  return true;
+}
+
+const Value* Executor::variable(std::uint32_t node, std::string_view name) {
+  return forest_.is_activity(node) ? forest_.activity(node).variable(name) : nullptr;
+}
+
+bool Executor::resume(std::uint32_t node) {
+  if (!forest_.is_activity(node) || !forest_.held(node, Hold::kPerson))
+    return false;
+  forest_.resume(node, Hold::kPerson);
+  return true;
+}
+
+/// Takes over how far the goal is satisfied.
+void Executor::measure(Entry& entry) {
+  GoalStatus& status = entry.status;
+  if (status.state != GoalState::kUnderway || entry.node == 0) {
+    if (status.state == GoalState::kSucceeded && entry.goal.level <= 0.0)
+      status.level = 1.0;
+    status.trend = Trend::kSteady;
+    entry.levels.clear();
+    return;
+  }
+  status.level = forest_.level_of(entry.node);
+  entry.levels.push_back(status.level);
+  if (entry.levels.size() > kTrend)
+    entry.levels.pop_front();
+  const double change = status.level - entry.levels.front();
+  status.trend = change > kTrendStep    ? Trend::kRising
+                 : change < -kTrendStep ? Trend::kFalling
+                                        : Trend::kSteady;
+}
+
+/// Takes over what the step made of the goals; true where one has ended.
+bool Executor::collect() {
+  const std::map<std::uint32_t, Outcome> outcomes = forest_.take_ended();
+  bool any = false;
+  for (auto& [id, entry] : entries_) {
+    if (entry.node == 0)
+      continue;
+    if (const auto outcome = outcomes.find(entry.node); outcome != outcomes.end()) {
+      entry.node = 0;
+      const bool success = outcome->second.state == IntentionState::kSuccess;
+      end(entry, success ? GoalState::kSucceeded : GoalState::kFailed, outcome->second.code,
+          outcome->second.reason);
+      any = true;
+    } else if (entry.status.state == GoalState::kUnderway) {
+      entry.status.step = forest_.held(entry.node, Hold::kPerson)
+                              ? "interrupted by a person; waits to be resumed"
+                              : step_of(forest_.foremost(entry.node));
+      entry.status.progress = forest_.progress_of(entry.node);
+      const double level = forest_.level_of(entry.node);
+      if (entry.goal.level > 0.0 && level >= entry.goal.level) {
+        entry.status.level = level;
+        end(entry, GoalState::kSucceeded, GoalCode::kNone,
+            "satisfied to " + plain(level) + ", " + plain(entry.goal.level) + " was asked for");
+        any = true;
+      }
+    }
+  }
+  return any;
+}
+
+News Executor::take_news() {
+  News news;
+  for (auto& [id, entry] : entries_) {
+    std::optional<GoalStatus> refused;
+    if (!entry.refusal.empty()) {
+      refused = entry.status;
+      refused->reason += (refused->reason.empty() ? "goes on unchanged, " : "; ");
+      refused->reason += "the change was refused: " + entry.refusal;
+    }
+    const GoalStatus& status = refused ? *refused : entry.status;
+    const bool due = open(status) && now_ - entry.published_at >= kStatusPeriod;
+    if (entry.published && !due && !differs(*entry.published, status))
+      continue;
+    entry.published = status;
+    entry.published_at = now_;
+    news.changed.push_back(status);
+  }
+  news.withdrawn = std::exchange(withdrawn_, {});
+  news.placed = std::exchange(placed_, {});
+  news.endings = std::exchange(endings_, {});
+  return news;
+}
+
+}  // namespace saphira::intentions

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "saphira/intentions/schema.hpp"
+
+/// What the activities that drive have in common.
+namespace saphira::intentions {
+
+/// Priorities of the behaviors that the functors intend: 0 is the highest (manual 7.3).
+inline constexpr int kAvoid = 0;
+inline constexpr int kKeepOff = 1;
+inline constexpr int kTask = 2;
+inline constexpr int kRest = 3;  ///< what is left where nothing else has a say
+
+/// A number that may be left out.
+inline Parameter quantity(std::string name, std::string unit, double low, double high,
+                          double usual) {
+  Parameter parameter;
+  parameter.name = std::move(name);
+  parameter.unit = std::move(unit);
+  parameter.low = low;
+  parameter.high = high;
+  parameter.usual = usual;
+  return parameter;
+}
+
+}  // namespace saphira::intentions

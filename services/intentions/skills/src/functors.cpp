@@ -1,0 +1,458 @@
+#include "saphira/intentions/functors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "driving.hpp"
+#include "mapping.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+/// Cycles until a robot that had just been told to move would show it.
+constexpr Ticks kOnTheWay = 3;
+
+/// [s] without progress after which a goal is given up.
+constexpr double kPatience = 20.0;
+constexpr double kGround = 0.1;  ///< [m] that driving has to gain within the patience
+constexpr double kFar = 1000.0;  ///< [m] where the point is that stands for a heading
+
+/// Where what is heard does not confirm the place, the robot moves about, so often and so long each
+/// time [s], at this speed [m/s].
+constexpr int kChecks = 3;
+constexpr double kCheckTime = 15.0;
+constexpr double kCheckSpeed = 0.2;
+
+double value_of(const Arguments& arguments, std::string_view name) {
+  const Argument* const argument = find(arguments, name);
+  return argument == nullptr ? 0.0 : argument->number;
+}
+
+std::string format(const char* pattern, double a, double b = 0.0) {
+  char text[96];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+std::string format_point(const Argument& point) {
+  return format("(%.2f, %.2f)", point.point.x, point.point.y) +
+         (point.frame == Frame::map ? " on the map" : "");
+}
+
+double distance(const Pose& a, const Pose& b) {
+  return (a.position() - b.position()).norm();
+}
+
+/// Where a point is in odom now: one on the map is where registration says; none while it does not.
+std::optional<Pose> in_odom(const Argument& point, const Robot& robot) {
+  if (point.frame != Frame::map)
+    return point.point;
+  if (!robot.odom_in_map)
+    return std::nullopt;
+  return relative(*robot.odom_in_map, point.point);
+}
+
+/// Whether something that ought to shrink still does.
+class Watchdog {
+ public:
+  /// step: what counts as progress, in the measure's unit.
+  Watchdog(double step, double patience) : step_(step), patience_(patience) {}
+
+  void restart(double measure, Ticks now) {
+    best_ = measure;
+    since_ = now;
+  }
+  /// True when there has been no progress for too long.
+  bool check(double measure, Ticks now) {
+    if (measure <= best_ - step_)
+      restart(measure, now);
+    return static_cast<double>(now - since_) * kTick >= patience_;
+  }
+  double patience() const { return patience_; }
+  void patience(double seconds) { patience_ = seconds; }
+
+ private:
+  double step_;
+  double patience_;
+  double best_ = std::numeric_limits<double>::infinity();
+  Ticks since_ = 0;
+};
+
+bool begins(const Self& self) {
+  return self.state() == IntentionState::kInit || self.state() == IntentionState::kResumed;
+}
+
+std::string why_not_moving(const Robot& robot) {
+  return robot.has_power ? "" : "; the motors have no power";
+}
+
+/// The robot stands while it does not know where it is on the map, and gives up when that lasts for
+/// longer than its patience.
+void wait_for_position(Self& self, std::optional<Ticks>& since, double patience) {
+  for (const char* label : {"AvoidCollision", "KeepOff", "GoToPos", "ConstantVelocity", "TurnTo"})
+    self.drop_behavior(label);
+  self.intend_behavior("Stop", "Stop", kRest, {});
+  self.say("waits to know where it is on the map");
+  if (!since || begins(self))
+    since = self.now();
+  if (static_cast<double>(self.now() - *since) * kTick >= patience)
+    self.fail(GoalCode::kNoPosition,
+              format("the robot has not known where it is on the map for %.0f s", patience));
+}
+
+/// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop for where none of them has
+/// a say. When it is there, Stop alone until it stands.
+class GoTo : public Activity {
+ public:
+  explicit GoTo(const Arguments& arguments) : watchdog_(0.05, kPatience) { take(arguments); }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const std::optional<Pose> target = in_odom(target_, self.robot());
+    if (!target) {
+      wait_for_position(self, waiting_since_, watchdog_.patience());
+      return;
+    }
+    const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
+    const double left = distance(self.robot().pose_in_odom, *target);
+    const bool begun = new_target_ || begins(self);
+    if (begun) {
+      if (new_target_)
+        whole_way_ = left;
+      new_target_ = false;
+      there_ = false;
+      checking_since_.reset();
+    }
+    const bool checked = checking_since_.has_value();
+    if (checked && move_about(self))
+      return;
+    if (begun || waited || checked)
+      watchdog_.restart(left, self.now());
+    // The behavior's own word, within reason: it may be content a little before the radius.
+    if (left <= radius_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * radius_))
+      there_ = true;
+    if (there_) {
+      self.drop_behavior("AvoidCollision");
+      self.drop_behavior("KeepOff");
+      self.drop_behavior("GoToPos");
+      self.intend_behavior("Stop", "Stop", kRest, {});
+      self.say("stopping at " + format_point(target_));
+      if (!at_rest(self.robot()))
+        return;
+      if (!unsure(self))
+        self.succeed(format("arrived, %.2f m from the point", left));
+      else if (checks_ < kChecks)
+        checking_since_ = self.now();
+      else
+        self.fail(GoalCode::kNoPosition,
+                  format("it may stand %.2f m from the point, but what it hears does not confirm "
+                         "where it is on the map",
+                         left));
+      return;
+    }
+    self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
+    self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
+    self.intend_behavior(
+        "GoToPos", "GoToPos", kTask,
+        {point("goal", *target), number("speed", speed_), number("radius", radius_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say("driving to " + format_point(target_));
+    if (whole_way_ > 0.0)
+      self.progress(1.0 - left / whole_way_);
+    if (watchdog_.check(left, self.now()))
+      self.fail(GoalCode::kBlocked,
+                format("no nearer for %.0f s, %.2f m from the point", watchdog_.patience(), left) +
+                    why_not_moving(self.robot()));
+  }
+
+ private:
+  bool unsure(Self& self) const {
+    return target_.frame == Frame::map && self.world().unsure_of_position();
+  }
+
+  /// A pose that was only told, or that fits badly, is no reason to say that it has arrived: more
+  /// is heard on the move. False when that is over, and the point is to be driven to again.
+  bool move_about(Self& self) {
+    if (!unsure(self) || static_cast<double>(self.now() - *checking_since_) * kTick >= kCheckTime) {
+      ++checks_;
+      checking_since_.reset();
+      self.drop_behavior("ConstantVelocity");
+      there_ = false;
+      return false;
+    }
+    self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
+    self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
+    self.intend_behavior("ConstantVelocity", "ConstantVelocity", kTask,
+                         {number("speed", std::min(speed_, kCheckSpeed))});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say("moving about to confirm where it is");
+    return true;
+  }
+
+  void take(const Arguments& arguments) {
+    target_ = *find(arguments, "position");
+    speed_ = value_of(arguments, "speed");
+    radius_ = value_of(arguments, "radius");
+    watchdog_.patience(value_of(arguments, "patience"));
+    new_target_ = true;
+  }
+
+  Argument target_;
+  std::optional<Ticks> waiting_since_;
+  double speed_ = 0.0;
+  double radius_ = 0.0;
+  Watchdog watchdog_;
+  double whole_way_ = 0.0;
+  bool new_target_ = true;
+  bool there_ = false;
+  std::optional<Ticks> checking_since_;
+  int checks_ = 0;
+};
+
+/// Goes on at a speed around what is in the way. It has no end of its own: its deadline is its
+/// success.
+class Drive : public Activity {
+ public:
+  explicit Drive(const Arguments& arguments) { take(arguments); }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const Pose& pose = self.robot().pose_in_odom;
+    if (begins(self) || restart_) {
+      restart_ = false;
+      anchor_ = pose;
+      anchored_ = self.now();
+    } else {
+      path_ += distance(last_, pose);
+    }
+    last_ = pose;
+    self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
+    self.intend_behavior("ConstantVelocity", "ConstantVelocity", kTask, {number("speed", speed_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say(format("driving at %.2f m/s", speed_));
+    if (distance(anchor_, pose) >= kGround) {
+      anchor_ = pose;
+      anchored_ = self.now();
+    }
+    const double still = static_cast<double>(self.now() - anchored_) * kTick;
+    if (std::abs(speed_) > kRestVelocity && still >= patience_)
+      self.fail(GoalCode::kBlocked,
+                format("has not moved for %.0f s", patience_) + why_not_moving(self.robot()));
+  }
+
+  std::string at_deadline(const Robot& robot) override {
+    static_cast<void>(robot);
+    return format("drove %.2f m until the deadline", path_);
+  }
+
+ private:
+  void take(const Arguments& arguments) {
+    speed_ = value_of(arguments, "speed");
+    patience_ = value_of(arguments, "patience");
+    restart_ = true;
+  }
+
+  double speed_ = 0.0;
+  double patience_ = kPatience;
+  bool restart_ = true;
+  Pose anchor_;
+  Ticks anchored_ = 0;
+  Pose last_;
+  double path_ = 0.0;  ///< [m]
+};
+
+/// Turns on the spot. No behavior looks at obstacles: the robot is round and stays where it is.
+class TurnTo : public Activity {
+ public:
+  explicit TurnTo(const Arguments& arguments) : watchdog_(radians(2.0), kPatience) {
+    take(arguments);
+  }
+
+  bool change(const Arguments& arguments) override {
+    take(arguments);
+    return true;
+  }
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const Pose& pose = self.robot().pose_in_odom;
+    // A heading is a point far away in that direction; it stays where it was first put, so that
+    // the behavior is not changed every cycle.
+    if (new_target_ && heading_)
+      target_ = point("heading", {pose.x + kFar * std::cos(*heading_),
+                                  pose.y + kFar * std::sin(*heading_), 0.0});
+    const std::optional<Pose> target = in_odom(target_, self.robot());
+    if (!target) {
+      wait_for_position(self, waiting_since_, watchdog_.patience());
+      return;
+    }
+    const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
+    const double toward = std::atan2(target->y - pose.y, target->x - pose.x);
+    const double left = std::abs(norm2_angle(toward - pose.th));
+    if (new_target_)
+      whole_turn_ = left;
+    if (std::exchange(new_target_, false) || begins(self) || waited)
+      watchdog_.restart(left, self.now());
+    self.intend_behavior("TurnTo", "TurnTo", kTask,
+                         {point("goal", *target), number("success_angle", angle_),
+                          number("turn_speed", turn_speed_)});
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    self.say(heading_ ? format("turning to %.0f degrees", degrees(*heading_))
+                      : "turning to " + format_point(target_));
+    if (whole_turn_ > 0.0)
+      self.progress(1.0 - left / whole_turn_);
+    const bool satisfied =
+        left <= angle_ || (self.level("TurnTo") >= kSatisfied && left <= 2.0 * angle_);
+    if (satisfied && at_rest(self.robot()))
+      self.succeed(format("turned, %.1f degrees off", degrees(left)));
+    else if (watchdog_.check(left, self.now()))
+      self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.0f degrees off",
+                                           watchdog_.patience(), degrees(left)) +
+                                        why_not_moving(self.robot()));
+  }
+
+ private:
+  void take(const Arguments& arguments) {
+    heading_.reset();
+    if (const Argument* const heading = find(arguments, "heading"))
+      heading_ = heading->number;
+    else
+      target_ = *find(arguments, "position");
+    angle_ = value_of(arguments, "angle");
+    turn_speed_ = value_of(arguments, "turn_speed");
+    watchdog_.patience(value_of(arguments, "patience"));
+    new_target_ = true;
+  }
+
+  std::optional<double> heading_;  ///< [rad] in odom
+  Argument target_;
+  std::optional<Ticks> waiting_since_;
+  double angle_ = 0.0;
+  double turn_speed_ = 0.0;
+  Watchdog watchdog_;
+  double whole_turn_ = 0.0;
+  bool new_target_ = true;
+};
+
+class Halt : public Activity {
+ public:
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted)
+      return;
+    const double velocity = std::abs(self.robot().velocity);
+    if (begins(self)) {
+      first_ = velocity;
+      begun_ = self.now();
+    }
+    self.intend_behavior("Stop", "Stop", kAvoid, {});
+    self.say("stopping");
+    if (first_ > 0.0)
+      self.progress(1.0 - velocity / first_);
+    const Ticks passed = self.now() - begun_;
+    if (at_rest(self.robot()) && passed >= kOnTheWay)
+      self.succeed("the robot is at rest");
+    else if (static_cast<double>(passed) * kTick >= kPatience)
+      self.fail(GoalCode::kBlocked,
+                format("still moving after %.0f s, at %.2f m/s", kPatience, self.robot().velocity));
+  }
+
+ private:
+  double first_ = 0.0;
+  Ticks begun_ = 0;
+};
+
+Parameter patience() {
+  return quantity("patience", "s", 1.0, 3600.0, kPatience);
+}
+
+Parameter place(std::string name, bool required) {
+  Parameter parameter;
+  parameter.name = std::move(name);
+  parameter.kind = ArgumentKind::point;
+  parameter.required = required;
+  return parameter;
+}
+
+template <class T>
+std::unique_ptr<Activity> make(const Arguments& arguments) {
+  return std::make_unique<T>(arguments);
+}
+
+}  // namespace
+
+Registry built_in() {
+  Registry registry;
+
+  Schema go_to;
+  go_to.name = "go_to";
+  go_to.summary = "drives to a position, around what is in the way";
+  go_to.parameters = {place("position", true), quantity("speed", "m/s", 0.02, 2.0, 0.3),
+                      quantity("radius", "m", 0.02, 10.0, 0.15), patience()};
+  go_to.make = make<GoTo>;
+  registry.add(std::move(go_to));
+
+  Schema drive;
+  drive.name = "drive";
+  drive.summary = "drives on at a speed until the deadline, around what is in the way";
+  // Backwards, where few robots have sonars, at a walking pace.
+  Parameter speed = quantity("speed", "m/s", -0.2, 2.0, 0.0);
+  speed.usual.reset();
+  speed.required = true;
+  drive.parameters = {speed, patience()};
+  drive.make = make<Drive>;
+  registry.add(std::move(drive));
+
+  Schema turn_to;
+  turn_to.name = "turn_to";
+  turn_to.summary = "turns on the spot to a heading in odom, or towards a position";
+  Parameter heading = quantity("heading", "rad in odom", -2.0 * kPi, 2.0 * kPi, 0.0);
+  heading.usual.reset();
+  heading.in_odom = true;
+  turn_to.parameters = {heading, place("position", false),
+                        quantity("angle", "rad", radians(1.0), kPi, radians(5.0)),
+                        // Manual Table 7-11: 0.5 is slow, 2.0 is fast.
+                        quantity("turn_speed", "", 0.1, 5.0, 1.0), patience()};
+  turn_to.check = [](const Arguments& arguments) -> std::string {
+    const bool has_heading = find(arguments, "heading") != nullptr;
+    const bool has_position = find(arguments, "position") != nullptr;
+    if (has_heading == has_position)
+      return std::string(
+                 "turn_to: expected either \"heading\" (a number) or \"position\" (a "
+                 "point), got ") +
+             (has_heading ? "both" : "neither");
+    return {};
+  };
+  turn_to.make = make<TurnTo>;
+  registry.add(std::move(turn_to));
+
+  Schema stop;
+  stop.name = "stop";
+  stop.summary = "halts the robot, and ends every earlier goal that is not more important";
+  stop.replaces = true;
+  stop.make = [](const Arguments&) -> std::unique_ptr<Activity> {
+    return std::make_unique<Halt>();
+  };
+  registry.add(std::move(stop));
+  registry.add(explore_unknown());
+
+  return registry;
+}
+
+}  // namespace saphira::intentions

@@ -1,0 +1,162 @@
+#include "mapping.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "driving.hpp"
+#include "saphira/explore/explorer.hpp"
+#include "saphira/maps/map.hpp"
+
+namespace saphira::intentions {
+namespace {
+
+constexpr double kRadius = 0.2;      ///< [m] the point to drive to is moved on before it is reached
+constexpr double kAligned = 0.05;    ///< [rad] the explorer waits for the robot to look that way
+constexpr double kWayStep = 0.4;     ///< [m] between the places of the way that are kept
+constexpr double kSamePoint = 0.02;  ///< [m]
+
+/// The explorer says where to drive, cycle by cycle.
+class ExploreUnknown : public Activity {
+ public:
+  explicit ExploreUnknown(const Arguments& arguments) : speed_(find(arguments, "speed")->number) {}
+
+  void step(Self& self) override {
+    if (self.state() == IntentionState::kInterrupted) {
+      driving_to_.reset();
+      return;
+    }
+    const World& world = self.world();
+    const std::optional<Pose> pose_in_map = world.robot_in_map();
+    self.intend_behavior("Stop", "Stop", kRest, {});
+    if (!pose_in_map || world.around.map == nullptr || world.around.lps == nullptr ||
+        world.around.readings == nullptr) {
+      stand(self);
+      self.say("waits for the map, and to know where it is on it");
+      return;
+    }
+    if (!explorer_) {
+      explore::Settings settings;
+      settings.sonars = world.around.lps->settings().sonars;
+      settings.speed = speed_;
+      explorer_.emplace(std::move(settings));
+    }
+    remember(pose_in_map->position());
+    const explore::Output& next =
+        explorer_->step({static_cast<std::uint64_t>(world.now), *pose_in_map, *world.around.map,
+                         way_, *world.around.readings});
+    self.say(next.reason);
+    if (next.done) {
+      stand(self);
+      const std::vector<std::string> left = explorer_->left(*world.around.map);
+      if (left.empty())
+        self.succeed(next.reason);
+      else
+        self.fail(
+            GoalCode::kBlocked,
+            "not all of the floor could be explored: " + left.front() +
+                (left.size() == 1 ? "" : " and " + std::to_string(left.size() - 1) + " more"));
+      return;
+    }
+    if (next.look_at)
+      turn(self, *next.look_at);
+    else if (next.point_in_map)
+      drive(self, *next.point_in_map, next.speed);
+    else
+      stand(self);
+  }
+
+ private:
+  void stand(Self& self) {
+    for (const char* const behavior : {"AvoidCollision", "KeepOff", "GoToPos", "TurnTo"})
+      self.drop_behavior(behavior);
+    driving_to_.reset();
+  }
+
+  void turn(Self& self, const Vec2& to) {
+    for (const char* const behavior : {"AvoidCollision", "KeepOff", "GoToPos"})
+      self.drop_behavior(behavior);
+    if (aim(self, to))
+      self.intend_behavior("TurnTo", "TurnTo", kTask,
+                           {point("goal", *driving_to_), number("success_angle", kAligned)});
+  }
+
+  void drive(Self& self, const Vec2& to, double speed) {
+    self.drop_behavior("TurnTo");
+    self.intend_behavior("AvoidCollision", "AvoidCollision", kAvoid, {});
+    self.intend_behavior("KeepOff", "KeepOff", kKeepOff, {});
+    if (aim(self, to))
+      self.intend_behavior(
+          "GoToPos", "GoToPos", kTask,
+          {point("goal", *driving_to_), number("speed", speed), number("radius", kRadius)});
+  }
+
+  /// True where that is another place than the behavior has.
+  bool aim(const Self& self, const Vec2& to) {
+    const Pose there = relative(*self.robot().odom_in_map, {to.x(), to.y(), 0.0});
+    const bool turns = explorer_->output().look_at.has_value();
+    if (driving_to_ && turns == turning_ &&
+        (driving_to_->position() - there.position()).norm() < kSamePoint)
+      return false;
+    turning_ = turns;
+    driving_to_ = there;
+    return true;
+  }
+
+  /// The way as places that are well apart, and where it is now.
+  void remember(const Vec2& here) {
+    if (way_.size() > 1 && (way_.back() - way_[way_.size() - 2]).norm() < kWayStep)
+      way_.back() = here;
+    else
+      way_.push_back(here);
+  }
+
+  double speed_;
+  std::optional<explore::Explorer> explorer_;
+  std::vector<Vec2> way_;  ///< [map]
+  std::optional<Pose> driving_to_;
+  bool turning_ = false;
+};
+
+}  // namespace
+
+Schema explore_unknown() {
+  Schema schema;
+  schema.name = "explore_unknown";
+  schema.summary = "drives to where the map ends, until nothing is left";
+  schema.parameters = {quantity("speed", "m/s", 0.05, 1.0, 0.3)};
+  schema.make = [](const Arguments& arguments) -> std::unique_ptr<Activity> {
+    return std::make_unique<ExploreUnknown>(arguments);
+  };
+  return schema;
+}
+
+void add_mapping(Functions& functions) {
+  functions.add(Action{"forget-map", 0, 0,
+                       [](Effects& effects, Values) {
+                         effects.request({"delete"});
+                         return Value();
+                       },
+                       "(forget-map): registration begins with an empty map"});
+  functions.add(Action{"add-features", 1, 1,
+                       [](Effects& effects, Values arguments) {
+                         effects.request({"add_features", {truth("on", arguments[0].truthy())}});
+                         return arguments[0];
+                       },
+                       "(add-features T): whether registration puts what is seen on the map"});
+  functions.add(Condition{
+      "adds-features",
+      [](const World& world) { return Value::truth(world.around.registration.adds_features); },
+      "whether registration puts what is seen on the map"});
+  functions.add(Condition{"map-size",
+                          [](const World& world) {
+                            return Value(
+                                world.around.map == nullptr
+                                    ? 0.0
+                                    : static_cast<double>(world.around.map->features.size()));
+                          },
+                          "how many artifacts the map has"});
+}
+
+}  // namespace saphira::intentions

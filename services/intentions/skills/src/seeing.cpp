@@ -1,0 +1,112 @@
+#include "seeing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saphira::intentions {
+namespace {
+
+using lps::SeenThing;
+using Kind = SeenThing::Kind;
+
+struct Wanted {
+  Kind kind = Kind::person;
+  int channel = -1;  ///< any
+};
+
+std::optional<Wanted> wanted(const std::string& what) {
+  if (what == "person")
+    return Wanted{};
+  if (what == "blob")
+    return Wanted{Kind::blob, -1};
+  if (what.size() == 6 && what.starts_with("blob-") && what[5] >= 'a' && what[5] <= 'c')
+    return Wanted{Kind::blob, what[5] - 'a'};
+  return std::nullopt;
+}
+
+double distance(const World& world, const SeenThing& thing) {
+  return (thing.pose_in_odom.position() - world.robot.pose_in_odom.position()).norm();
+}
+
+/// What an argument refers to; nullptr where it is nil or not seen any more.
+const SeenThing* thing_at(const World& world, Values arguments, std::string_view function) {
+  if (arguments[0].nil())
+    return nullptr;
+  const Reference* const reference = arguments[0].reference();
+  if (reference == nullptr || reference->kind != Reference::Kind::kThing)
+    throw ActivityError(std::string(function) + ": expected a person or blob, found " +
+                        kind_of(arguments[0]));
+  return seen_thing(world, reference->id);
+}
+
+/// A function of one thing that is nil where the thing is gone.
+template <class F>
+Function of_thing(std::string name, std::string summary, F&& value) {
+  const std::string own = name;
+  return {std::move(name), 1, 1,
+          [own, value](const World& world, Values arguments) {
+            const SeenThing* const thing = thing_at(world, arguments, own);
+            return thing == nullptr ? Value() : value(world, *thing);
+          },
+          std::move(summary)};
+}
+
+Value place_in(const World& world, Values arguments) {
+  const SeenThing* const thing = thing_at(world, arguments, "predicted-place");
+  if (thing == nullptr)
+    return {};
+  const double seconds = number_of(arguments, 1, "predicted-place");
+  Pose pose = thing->pose_in_odom;
+  pose.x += seconds * thing->velocity_in_odom.x();
+  pose.y += seconds * thing->velocity_in_odom.y();
+  return Value(Point{pose, Frame::odom});
+}
+
+}  // namespace
+
+std::optional<Value> nearest_seen(const World& world, const std::string& what) {
+  const std::optional<Wanted> kind = wanted(what);
+  if (!kind)
+    return std::nullopt;
+  const SeenThing* best = nullptr;
+  if (world.around.things != nullptr)
+    for (const SeenThing& thing : *world.around.things) {
+      if (thing.kind != kind->kind || (kind->channel >= 0 && thing.channel != kind->channel))
+        continue;
+      if (best == nullptr || distance(world, thing) < distance(world, *best))
+        best = &thing;
+    }
+  return best == nullptr ? Value() : Value(Reference{Reference::Kind::kThing, best->id, 0});
+}
+
+void add_seeing(Functions& functions) {
+  functions.add(of_thing("still-seen", "(still-seen THING): itself, or nil once it is forgotten",
+                         [](const World&, const SeenThing& thing) {
+                           return Value(Reference{Reference::Kind::kThing, thing.id, 0});
+                         }));
+  functions.add(of_thing("seconds-unseen",
+                         "(seconds-unseen THING): since it was seen last [s]; nil once forgotten",
+                         [](const World& world, const SeenThing& thing) {
+                           const double cycles = static_cast<double>(world.around.cycle) -
+                                                 static_cast<double>(thing.seen);
+                           return Value(std::max(0.0, cycles) * kTick);
+                         }));
+  functions.add(of_thing(
+      "speed-of", "(speed-of THING): how fast it moves [m/s]",
+      [](const World&, const SeenThing& thing) { return Value(thing.velocity_in_odom.norm()); }));
+  functions.add(of_thing("area-of", "(area-of THING): how much of the picture a blob fills, 0 to 1",
+                         [](const World&, const SeenThing& thing) { return Value(thing.area); }));
+  functions.add(
+      of_thing("confidence-of", "(confidence-of THING): that there is such a thing, 0 to 1",
+               [](const World&, const SeenThing& thing) { return Value(thing.confidence); }));
+  functions.add(of_thing(
+      "range-known", "(range-known THING): whether its place is known, not only its direction",
+      [](const World&, const SeenThing& thing) { return Value::truth(thing.range_known); }));
+  functions.add(Function{"predicted-place", 2, 2, place_in,
+                         "(predicted-place THING SECONDS): where it will be if it goes on as now"});
+  functions.add(Condition{
+      "can-see", [](const World& world) { return Value::truth(world.around.things != nullptr); },
+      "whether there is a camera and somebody who looks at its pictures"});
+}
+
+}  // namespace saphira::intentions

@@ -1,0 +1,67 @@
+#include "saphira/registration/standing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace saphira::registration {
+namespace {
+
+constexpr int kSonars = 8;
+
+/// Each sonar hears `range`, but `changed` of them what is so far away.
+std::vector<lps::SonarReading> around(double range, int changed = 0, double other = 0.0) {
+  std::vector<lps::SonarReading> readings;
+  for (int sonar = 0; sonar < kSonars; ++sonar)
+    readings.push_back({sonar, sonar < changed ? other : range + 0.1 * sonar, true});
+  return readings;
+}
+
+/// In how many cycles it says that the robot was carried.
+int carried(Standing& standing, const std::vector<lps::SonarReading>& readings, int cycles,
+            const Pose& moved = {}) {
+  int times = 0;
+  for (int i = 0; i < cycles; ++i)
+    times += standing.step(moved, readings) ? 1 : 0;
+  return times;
+}
+
+TEST(Standing, WhereAllAroundIsOtherThanBeforeItWasCarriedAndThatIsSaidOnce) {
+  Standing standing;
+  EXPECT_EQ(carried(standing, around(1.0), 20), 0);
+  EXPECT_EQ(carried(standing, around(2.5), 50), 1);
+}
+
+TEST(Standing, OnePersonBesideItIsNoOtherPlace) {
+  Standing standing;
+  EXPECT_EQ(carried(standing, around(2.0), 20), 0);
+  EXPECT_EQ(carried(standing, around(2.0, 2, 0.6), 300), 0) << "comes, and stays";
+  EXPECT_EQ(carried(standing, around(2.0), 300), 0) << "goes";
+}
+
+TEST(Standing, WhatIsHeardBesidesFromTimeToTimeIsNothingNew) {
+  Standing standing;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<lps::SonarReading> readings = around(1.5);
+    for (lps::SonarReading& reading : readings)
+      reading.echo = (i + reading.sonar) % 3 != 0;
+    EXPECT_FALSE(standing.step({}, readings)) << i;
+  }
+}
+
+TEST(Standing, AlongItsOwnWayEverythingChanges) {
+  Standing standing;
+  for (int i = 0; i < 100; ++i)
+    EXPECT_FALSE(standing.step({0.03, 0.0, 0.0}, around(1.0 + 0.03 * i)));
+}
+
+TEST(Standing, ACopyGoesOnAsTheFirstOne) {
+  Standing standing;
+  carried(standing, around(1.0), 20);
+  Standing copy = standing;
+  EXPECT_EQ(copy, standing);
+  EXPECT_EQ(carried(copy, around(3.0), 4), carried(standing, around(3.0), 4));
+}
+
+}  // namespace
+}  // namespace saphira::registration

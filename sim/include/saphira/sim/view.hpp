@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+#include "saphira/sim/simulation.hpp"
+
+namespace saphira::sim {
+
+// The simulator's own view: what is true, for people who look at the simulator and not through the
+// robot's sensors, and what they may do to it. One JSON object a line, both ways; README, "View".
+
+/// What stands still: the walls and posts of the world, and what else may be loaded.
+struct Choice {
+  std::vector<std::string> worlds;
+  std::vector<std::string> robots;
+  std::string world;  ///< that is loaded, as it is called
+};
+std::string describe_world(const World& world, const Choice& choice);
+
+/// What moves, as it is now. Meters, radians, in the world.
+struct Pacing {
+  bool paused = false;
+  double rate = 1.0;
+};
+std::string describe_scene(const Simulation& simulation, const Pacing& pacing);
+
+/// Why something that was asked for was not done.
+std::string complaint(const std::string& text);
+
+// What somebody may ask for.
+struct PlaceRobot {
+  RobotNumber robot = 0;
+  Pose pose_in_world;
+};
+struct PlacePerson {
+  std::string name;
+  Vec2 at{0.0, 0.0};
+};
+struct PlaceBox {
+  std::string name;
+  Pose pose_in_world;
+};
+struct SetDoor {
+  std::string name;
+  bool open = false;
+};
+struct Pause {
+  bool on = false;
+};
+struct StepOnce {};  ///< one information packet, while time is paused
+struct SetRate {
+  double rate = 1.0;  ///< times real time
+};
+struct Disconnect {
+  RobotNumber robot = 0;
+};
+struct Load {
+  std::string world;  ///< a name of what is shipped [empty: the same]
+  std::string robot;  ///< likewise
+};
+using Wish = std::variant<PlaceRobot, PlacePerson, PlaceBox, SetDoor, Pause, StepOnce, SetRate,
+                          Disconnect, Load>;
+
+/// std::invalid_argument that says what was expected.
+Wish parse_wish(std::string_view text);
+/// Does what concerns the scene. Empty: done; otherwise why not. The other wishes are the host's.
+std::string change_scene(Simulation& simulation, const Wish& wish);
+
+}  // namespace saphira::sim

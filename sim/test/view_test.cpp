@@ -1,0 +1,144 @@
+#include "saphira/sim/view.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "process.hpp"
+#include "saphira/sim/host.hpp"
+
+namespace saphira::sim {
+namespace {
+
+using nlohmann::json;
+
+World small() {
+  return parse_world(
+      "width 10000 height 10000 0 0 10000 0 10000 0 10000 10000 10000 10000 0 10000 0 10000 0 0\n"
+      "person ann 8000 8000 box crate 5000 8000 0 400 600 5 door d 2000 5000 3000 5000 90\n"
+      "post can 6000 2000 60 color red",
+      "small.wld");
+}
+
+TEST(View, TellsWhatIsThere) {
+  const World world = small();
+  Simulation simulation(world);
+  simulation.add({}, Pose{2.0, 2.0, 0.0}, {});
+  const json still = json::parse(describe_world(world, {{"a", "b"}, {"pioneer"}, "a"}));
+  EXPECT_EQ(still.at("walls").size(), 4U);
+  EXPECT_EQ(still.at("posts").at(0).at("color"), "red");
+  EXPECT_EQ(still.at("worlds").size(), 2U);
+  const json scene = json::parse(describe_scene(simulation, {}));
+  EXPECT_EQ(scene.at("robots").at(0).at("x"), 2.0);
+  EXPECT_EQ(scene.at("people").at(0).at("name"), "ann");
+  EXPECT_EQ(scene.at("boxes").at(0).at("corners").size(), 4U);
+  EXPECT_EQ(scene.at("doors").at(0).at("open"), false);
+}
+
+TEST(View, DoesWhatItIsAskedForAndSaysWhyNot) {
+  const World world = small();
+  Simulation simulation(world);
+  simulation.add({}, Pose{2.0, 2.0, 0.0}, {});
+  const auto act = [&](const std::string& text) {
+    return change_scene(simulation, parse_wish(text));
+  };
+  EXPECT_EQ(act(R"({"do":"place","robot":0,"x":4,"y":3,"th":1.5})"), "");
+  EXPECT_EQ(simulation.scene().robot(0).pose_in_world(), (Pose{4.0, 3.0, 1.5}));
+  EXPECT_NE(act(R"({"do":"place","robot":0,"x":0.1,"y":3,"th":0})"), "");
+  EXPECT_NE(act(R"({"do":"place","robot":1,"x":4,"y":3,"th":0})"), "");
+  EXPECT_EQ(act(R"({"do":"person","name":"ann","x":7,"y":7})"), "");
+  EXPECT_EQ(simulation.scene().persons()[0].at, Vec2(7.0, 7.0));
+  EXPECT_NE(act(R"({"do":"person","name":"ann","x":4,"y":3.1})"), "") << "there stands the robot";
+  EXPECT_NE(act(R"({"do":"person","name":"bob","x":7,"y":7})"), "");
+  EXPECT_EQ(act(R"({"do":"box","name":"crate","x":5,"y":6,"th":0.5})"), "");
+  EXPECT_EQ(act(R"({"do":"door","name":"d","open":true})"), "");
+  EXPECT_TRUE(simulation.scene().doors()[0].opens);
+}
+
+TEST(View, WhatIsNoWishIsRefusedWithWhatWasExpected) {
+  for (const char* const text :
+       {"", "[]", "{", R"({"do":"fly"})", R"({"do":"place","robot":0,"x":1e9,"y":0,"th":0})",
+        R"({"do":"place","robot":-1,"x":0,"y":0,"th":0})", R"({"do":"pause","on":1})",
+        R"({"do":"rate","rate":0})", R"({"do":"door","name":3,"open":true})",
+        R"({"do":"load","world":"../../etc/passwd"})"})
+    EXPECT_THROW(parse_wish(text), std::invalid_argument) << text;
+}
+
+/// A viewer on the socket of a host, both in this thread.
+class Viewer {
+ public:
+  explicit Viewer(Host& host, const std::string& path) : host_(host) {
+    fd_ = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    EXPECT_EQ(::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  ~Viewer() { ::close(fd_); }
+  void say(const std::string& text) {
+    const std::string line = text + "\n";
+    EXPECT_EQ(::send(fd_, line.data(), line.size(), 0), static_cast<ssize_t>(line.size()));
+  }
+  /// The next line of that kind.
+  json next(const std::string& type) {
+    for (int i = 0; i < 1000; ++i) {
+      host_.serve(-1, 10);
+      char part[4096];
+      const ssize_t size = ::recv(fd_, part, sizeof part, MSG_DONTWAIT);
+      if (size > 0)
+        heard_.append(part, static_cast<std::size_t>(size));
+      for (auto end = heard_.find('\n'); end != std::string::npos; end = heard_.find('\n')) {
+        json line = json::parse(heard_.substr(0, end));
+        heard_.erase(0, end + 1);
+        if (line.at("type") == type)
+          return line;
+      }
+    }
+    ADD_FAILURE() << "no " << type;
+    return {};
+  }
+
+ private:
+  Host& host_;
+  int fd_;
+  std::string heard_;
+};
+
+TEST(View, PausesStepsAndLoadsAnotherWorldByTheSocket) {
+  const test::TempDir folder;
+  HostOptions options;
+  options.world = test::source("config/worlds/office.wld");
+  options.robot = test::source("config/robots/pioneer.p");
+  options.socket = folder.path("robot");
+  options.view_socket = folder.path("view");
+  options.world_file = [](const std::string& name) {
+    return test::source("config/worlds/" + name + ".wld");
+  };
+  options.robot_file = [](const std::string& name) {
+    return test::source("config/robots/" + name + ".p");
+  };
+  Host host(options);
+  Viewer viewer(host, folder.path("view"));
+  EXPECT_EQ(viewer.next("world").at("world"), "office");
+  viewer.say(R"({"do":"pause","on":true})");
+  json scene;
+  do
+    scene = viewer.next("scene");
+  while (scene.at("paused") == false && !HasFailure());
+  viewer.say(R"({"do":"rate","rate":0})");
+  EXPECT_NE(viewer.next("trouble").at("text").get<std::string>().find("rate"), std::string::npos);
+  viewer.say(R"({"do":"load","world":"nowhere"})");
+  viewer.next("trouble");
+  viewer.say(R"({"do":"load","world":"arena","robot":"p3dx"})");
+  EXPECT_EQ(viewer.next("world").at("world"), "arena");
+  scene = viewer.next("scene");
+  EXPECT_EQ(scene.at("paused"), false);
+  EXPECT_NEAR(scene.at("robots").at(0).at("radius").get<double>(), 0.26, 0.05);
+}
+
+}  // namespace
+}  // namespace saphira::sim

@@ -1,0 +1,109 @@
+// What saphira says of a running robot in situations that are made on purpose (docs/situations.md
+// has those that are made of samples).
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "process.hpp"
+
+namespace saphira {
+namespace {
+
+using std::chrono::seconds;
+
+class Situations : public testing::Test {
+ protected:
+  Situations()
+      : environment_{{"SAPHIRA_ROBOT", test::unique_robot()}, {"SAPHIRA_DOMAIN", test::domain()}},
+        up_(started({"up", "demo"}, "up")) {}
+
+  test::Process started(const std::vector<std::string>& words, const std::string& name) {
+    std::vector<std::string> command{"saphira"};
+    command.insert(command.end(), words.begin(), words.end());
+    return {command, folder_.path(name), environment_};
+  }
+  std::string said(const std::vector<std::string>& words) {
+    test::Process process = started(words, "said" + std::to_string(++asked_));
+    process.wait();
+    return process.output();
+  }
+  /// Asks until the answer has all of that; the last answer.
+  std::string until(const std::vector<std::string>& words, const std::vector<std::string>& parts) {
+    std::string answer;
+    EXPECT_TRUE(test::wait_until(
+        [&] {
+          answer = said(words);
+          for (const std::string& part : parts)
+            if (answer.find(part) == std::string::npos)
+              return false;
+          return true;
+        },
+        seconds(90)))
+        << testing::PrintToString(parts) << "\n"
+        << answer << up_.output();
+    return answer;
+  }
+  pid_t pid_of(const std::string& program) {
+    pid_t pid = 0;
+    EXPECT_TRUE(test::wait_until([&] {
+      const auto status = nlohmann::json::parse(said({"status", "--json"}), nullptr, false);
+      if (status.is_object())
+        for (const auto& one : status.at("programs"))
+          if (one.at("name") == program && one.at("state") != "lost")
+            pid = one.at("pid");
+      return pid != 0;
+    }));
+    return pid;
+  }
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+
+  test::TempDir folder_;
+  std::map<std::string, std::string> environment_;
+  int asked_ = 0;
+  test::Process up_;
+};
+
+TEST_F(Situations, APersonTurnsTheRobotAndLetsGo) {
+  EXPECT_FALSE(
+      has(until({"why"}, {"The robot stands", "nobody has asked for a goal"}), "drives it"));
+  test::Process person =
+      started({"write", "drive/teleop", R"({"rotation_velocity": 0.5})"}, "person");
+  const std::string turns =
+      until({"why"}, {"turn on the spot", "degrees/s to the left", "(teleop)"});
+  EXPECT_FALSE(has(turns, "0.00 m/s")) << turns;
+  until({"why", "not", "turn", "left"}, {"It does turn left"});
+  person.signal(SIGINT);
+  EXPECT_EQ(person.wait(), 0) << person.output();
+  const std::string waits = until({"why"}, {"The robot stands", "saphira drive hand-back"});
+  EXPECT_FALSE(has(waits.substr(0, waits.find('\n')), "saphira write")) << waits;
+  EXPECT_TRUE(has(said({"drive", "hand-back"}), "handed back"));
+  EXPECT_FALSE(has(until({"why"}, {"nobody has asked for a goal"}), "saphira write"));
+}
+
+TEST_F(Situations, AServiceHangsWhileAGoalIsUnderway) {
+  until({"why"}, {"nobody has asked for a goal"});
+  test::Process goal = started({"goal", "go", "9", "0"}, "goal");
+  until({"why"}, {"drive ahead", "go_to"});
+  const pid_t intentions = pid_of("intentions");
+  ASSERT_GT(intentions, 0);
+  kill(intentions, SIGSTOP);
+  const std::string hangs = until({"why"}, {"The robot stands", "intentions"});
+  EXPECT_FALSE(has(hangs, "nobody has asked")) << hangs;
+  EXPECT_FALSE(has(hangs, "no goal")) << hangs;
+  until({"status"}, {"trouble: intentions"});
+  kill(intentions, SIGCONT);
+  // Who hangs for long is started again by the supervisor.
+  goal.signal(SIGINT);
+  goal.wait();
+  until({"why"}, {"The robot stands", "canceled"});
+  // Of a past cycle what was then is told, and not what is now.
+  const std::string past = said({"why", "--cycle", "-20"});
+  EXPECT_FALSE(has(past, "nobody has asked")) << past;
+}
+
+}  // namespace
+}  // namespace saphira

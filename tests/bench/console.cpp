@@ -1,0 +1,145 @@
+// What the console costs with three browsers and a large map, how long a packet takes to the
+// pixels, and how smoothly a page draws.
+#include <stdlib.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench.hpp"
+#include "browser.hpp"
+#include "page_files.hpp"
+#include "saphira/base/places.hpp"
+#include "support/process.hpp"
+#include "support/quantile.hpp"
+
+using namespace saphira;
+
+namespace {
+
+constexpr int kPages = 3;
+
+/// The address with the key, which the console prints.
+std::string address_in(const std::string& output) {
+  const std::size_t begin = output.find("http://");
+  if (begin == std::string::npos)
+    throw std::runtime_error("the console printed no address:\n" + output);
+  return output.substr(begin, output.find('\n', begin) - begin);
+}
+
+/// Of the page, packed as gzip packs.
+double packed_kb() {
+  double bytes = 0.0;
+  for (const console::PageFile& file : console::page_files()) {
+    uLongf size = compressBound(file.content.size());
+    std::vector<Bytef> packed(size);
+    if (compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(file.content.data()),
+                  file.content.size(), Z_BEST_COMPRESSION) != Z_OK)
+      throw std::runtime_error("zlib fails");
+    bytes += static_cast<double>(size);
+  }
+  return bytes / 1000.0;
+}
+
+/// The map of the office with walls beside it, until it has so many artifacts.
+void write_map(const std::string& file, int artifacts) {
+  std::ifstream office(config_folder() + "/maps/office.map");
+  std::ofstream map(file);
+  int count = 0;
+  for (std::string line; std::getline(office, line); map << line << "\n")
+    count += !line.empty() && line.front() != ';' ? 1 : 0;
+  for (int i = count; i < artifacts; ++i)
+    map << "WALL " << 500 * (i % 100) << ", " << 30000 + 500 * (i / 100) << ", " << 30 * (i % 12)
+        << ", 400\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The console with three pages open, live at 10 Hz"};
+  bool json = false;
+  unsigned seconds = 20;
+  app.add_flag("--json", json, "one JSON object on the last line");
+  int artifacts = 5000;
+  app.add_option("--artifacts", artifacts, "of the map")->check(CLI::Range(0, 100000));
+  app.add_option("--seconds", seconds, "how long to watch")->check(CLI::Range(5, 3600));
+  CLI11_PARSE(app, argc, argv);
+
+  setenv("SAPHIRA_DOMAIN", "199", 1);
+  setenv("SAPHIRA_ROBOT", "bench-console", 1);
+  const test::TempDir folder;
+  write_map(folder.path("large.map"), artifacts);
+  test::Process up({"saphira", "up", "demo", "--set", "map=" + folder.path("large.map")},
+                   folder.path("up"));
+  if (!test::wait_until([&] { return up.output().find("#") != std::string::npos; }))
+    throw std::runtime_error("no console:\n" + up.output());
+  const std::string address = address_in(up.output());
+
+  std::vector<std::unique_ptr<console::Browser>> browsers;
+  double first_picture = 0.0;
+  for (int i = 0; i < kPages; ++i) {
+    browsers.push_back(std::make_unique<console::Browser>());
+    browsers.back()->open(1280, 800);
+    browsers.back()->go(address);
+    if (!browsers.back()->wait("!!document.querySelector('.link.live')"))
+      throw std::runtime_error("the page shows no robot:\n" + up.output());
+    first_picture = std::max(first_picture,
+                             browsers.back()
+                                 ->value("performance.getEntriesByName('first-contentful-paint')[0]"
+                                         "?.startTime ?? 0")
+                                 .get<double>());
+  }
+  // It drives somewhere meanwhile: a page that stands still costs less.
+  const bench::Child goal({"saphira", "goal", "go", "16", "1"});
+
+  pid_t gateway = -1;
+  for (const pid_t pid : bench::family(up.pid()))
+    if (bench::name_of(pid) == "saphira-console")
+      gateway = pid;
+  sleep(3);  // maps and grids are there
+  const double features =
+      browsers.front()->value("saphira.data('map')?.artifacts.length ?? 0").get<double>();
+  browsers.front()->value(
+      "saphira.delays.length = 0; window.frames = []; (function next(at) {"
+      " frames.push(at); requestAnimationFrame(next); })(performance.now()); 0");
+  const double before = bench::cpu_seconds(gateway);
+  sleep(seconds);
+  const double cpu = 100.0 * (bench::cpu_seconds(gateway) - before) / seconds;
+  auto delays = browsers.front()->value("saphira.delays").get<std::vector<double>>();
+  auto intervals = browsers.front()
+                       ->value("frames.slice(1).map((at, i) => at - frames[i])")
+                       .get<std::vector<double>>();
+  if (delays.empty() || intervals.empty())
+    throw std::runtime_error("nothing was drawn");
+  const double p50 = test::quantile(delays, 0.5);
+  const double p99 = test::quantile(delays, 0.99);
+  const double frames = static_cast<double>(intervals.size()) / seconds;
+  const double frame_p99 = test::quantile(intervals, 0.99);
+  const double kb = packed_kb();
+  std::printf("gateway with %d pages        %6.2f %% of a core, %.1f MB\n", kPages, cpu,
+              bench::resident_mb(gateway));
+  std::printf("packet to page              %6.1f ms half of them, %.1f ms 99 %% (%zu packets)\n",
+              p50, p99, delays.size());
+  std::printf("frames, %.0f artifacts       %6.1f a second, 99 %% within %.1f ms\n", features,
+              frames, frame_p99);
+  std::printf("page                        %6.1f kB packed, first picture after %.0f ms\n", kb,
+              first_picture);
+  if (json)
+    std::printf("%s\n", nlohmann::json{{"gateway_cpu_percent", cpu},
+                                       {"packet_to_page_ms_p50", p50},
+                                       {"packet_to_page_ms_p99", p99},
+                                       {"artifacts", features},
+                                       {"frames_per_s", frames},
+                                       {"frame_ms_p99", frame_p99},
+                                       {"page_kb_gzip", kb},
+                                       {"first_picture_ms", first_picture}}
+                            .dump()
+                            .c_str());
+  return 0;
+}

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "saphira/geometry/pose.hpp"
+
+namespace saphira::test {
+
+/// A floor of offices that nobody has drawn: a world, its true map, and a way through its
+/// corridors. All lengths in metres, in the frame of the world, which is that of the map.
+struct Floor {
+  std::string world;  ///< text of a world file
+  std::string map;    ///< text of a map file: every corridor, room and door
+  /// The same without the doors that are closed or ajar: what a robot that goes by can notice.
+  std::string open_doors;
+  std::vector<Vec2> tour;  ///< along all corridors; each two that follow see each other
+};
+
+/// The same seed makes the same floor. A spine with branches, some of them slanted, some joined to
+/// a loop; a hall at the end of some. Widths, doors, reveals, leaves and furniture are drawn from
+/// what was measured in office buildings: corridors 1.2 to 2.4 m, door openings 0.8 to 1.2 m,
+/// reveals 0 to 0.35 m, leaves closed, ajar, open at 90 and at 170 degrees (building codes ADA 404
+/// and DIN 18040; maps of ActivMedia's and SRI's offices).
+Floor make_floor(std::uint64_t seed);
+
+}  // namespace saphira::test

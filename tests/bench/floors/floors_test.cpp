@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "floors/floor.hpp"
+#include "saphira/maps/map.hpp"
+#include "saphira/maps/topology.hpp"
+#include "saphira/sim/world.hpp"
+
+namespace saphira::test {
+namespace {
+
+class Floors : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  const Floor floor_ = make_floor(GetParam());
+  const sim::World world_ = sim::parse_world(floor_.world, "floor.wld");
+  const maps::Map map_ = maps::parse_map(floor_.map, "floor.map");
+};
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Floors, testing::Range<std::uint64_t>(1, 41));
+
+TEST_P(Floors, SameSeedMakesTheSameFloor) {
+  const Floor again = make_floor(GetParam());
+  EXPECT_EQ(floor_.world, again.world);
+  EXPECT_EQ(floor_.map, again.map);
+  EXPECT_NE(floor_.world, make_floor(GetParam() + 1).world);
+}
+
+TEST_P(Floors, TheTourIsFree) {
+  ASSERT_GE(floor_.tour.size(), 4U);
+  for (std::size_t i = 1; i < floor_.tour.size(); ++i) {
+    const Vec2 from = floor_.tour[i - 1];
+    const Vec2 to = floor_.tour[i];
+    const sim::Segment way{from, to};
+    for (const sim::Segment& wall : world_.segments)
+      EXPECT_FALSE(sim::intersect(way, wall))
+          << from.transpose() << " to " << to.transpose() << " meets " << wall.from.transpose()
+          << " to " << wall.to.transpose();
+    EXPECT_GT(sim::distance(world_.segments, to), 0.5);
+  }
+}
+
+TEST_P(Floors, DoorsAreOpenings) {
+  int doors = 0;
+  int closed = 0;
+  const maps::Map open = maps::parse_map(floor_.open_doors, "open.map");
+  for (const maps::Feature& door : map_.features) {
+    if (door.type != lps::PointType::door)
+      continue;
+    ++doors;
+    // From the corridor into the room.
+    const sim::Segment way{transform(door.pose_in_map, {0.5, 0.0}),
+                           transform(door.pose_in_map, {-0.7, 0.0})};
+    const bool blocked =
+        std::any_of(world_.segments.begin(), world_.segments.end(),
+                    [&](const sim::Segment& wall) { return sim::intersect(way, wall); });
+    const bool is_open = maps::find(open, door.id) != nullptr;
+    EXPECT_NE(is_open, blocked) << maps::describe(door);
+    closed += is_open ? 0 : 1;
+    // Beside it there is a wall.
+    for (const double side : {-1.0, 1.0}) {
+      const Vec2 beside = transform(door.pose_in_map, {0.0, side * (door.width / 2 + 0.1)});
+      EXPECT_LT(sim::distance(world_.segments, beside), 0.12) << maps::describe(door);
+    }
+  }
+  EXPECT_GE(doors, 3);
+  EXPECT_LT(closed, doors);
+}
+
+TEST_P(Floors, TheMapHangsTogether) {
+  const maps::Topology topology(map_);
+  const auto start = topology.region_at(floor_.tour.front());
+  ASSERT_TRUE(start);
+  std::set<std::size_t> reached{*start};
+  for (std::size_t before = 0; before != reached.size();) {
+    before = reached.size();
+    for (const maps::Link& link : topology.links())
+      if (link.b && (reached.contains(link.a) || reached.contains(*link.b)))
+        reached.insert({link.a, *link.b});
+  }
+  for (std::size_t i = 0; i < topology.regions().size(); ++i)
+    EXPECT_TRUE(reached.contains(i)) << topology.text(i);
+}
+
+TEST_P(Floors, NobodyGetsOut) {
+  // Wherever the tour leads, a ray meets a wall.
+  for (const Vec2& at : floor_.tour)
+    for (int i = 0; i < 720; ++i) {
+      const Vec2 direction = transform(Pose{0.0, 0.0, i * kPi / 360}, {1.0, 0.0});
+      EXPECT_TRUE(sim::cast_ray(world_.segments, at, direction, 60.0).has_value())
+          << at.transpose() << " along " << direction.transpose();
+    }
+}
+
+}  // namespace
+}  // namespace saphira::test

@@ -1,0 +1,367 @@
+// The robot on floors of offices that it was not tuned on: where it believes to be, which doors it
+// notices, what it builds, and whether it says that it has arrived where it has not.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "drive/building.hpp"
+#include "floors/floor.hpp"
+#include "localization/patrol.hpp"
+#include "perception/score.hpp"
+#include "saphira/maps/topology.hpp"
+#include "support/quantile.hpp"
+
+namespace {
+
+using namespace saphira;
+
+struct Options {
+  std::uint64_t first = 3001;
+  int floors = 20;
+  double minutes = 15.0;
+  double building = 45.0;
+  double errors = 1.0;
+  std::string robot = "pioneer";
+  std::string write_to;
+  bool json = false;
+};
+
+/// A floor as the robot has it.
+struct Site {
+  std::uint64_t seed;
+  test::Floor floor;
+  std::shared_ptr<const sim::World> world;
+  std::shared_ptr<const maps::Map> map;
+  maps::Map open_doors;
+};
+
+Site site(std::uint64_t seed) {
+  Site made{seed, test::make_floor(seed), nullptr, nullptr, {}};
+  const std::string name = "floor " + std::to_string(seed);
+  made.world = std::make_shared<sim::World>(sim::parse_world(made.floor.world, name + ".wld"));
+  made.map = std::make_shared<maps::Map>(maps::parse_map(made.floor.map, name + ".map"));
+  made.open_doors = maps::parse_map(made.floor.open_doors, name + ", open doors");
+  return made;
+}
+
+test::DriveOptions drive_of(const Options& options, const Site& site) {
+  test::DriveOptions drive;
+  drive.made_world = site.world;
+  drive.seed = site.seed;
+  drive.errors = options.errors;
+  drive.robot = options.robot;
+  return drive;
+}
+
+/// What a patrol of all corridors shows.
+struct Patrolled {
+  test::Offs offs;
+  int cycles = 0;
+  int tracking = 0;
+  int sure = 0;        ///< cycles with a confidence of 0.9 and more
+  int sure_right = 0;  ///< of these within 0.5 m
+  int doors = 0;
+  int noticed = 0;
+};
+
+Patrolled patrol(const Options& options, const Site& site) {
+  constexpr double kGivenUp = 600.0;  // [cycles] for one point
+  Patrolled result;
+  test::Drive robot(test::registered_on(*site.map, drive_of(options, site)));
+  test::Score score(robot, site.open_doors);
+  test::Tour tour(site.floor.tour, true);
+  std::size_t reached = 0;
+  int since = 0;
+  result.cycles = static_cast<int>(options.minutes * 600.0);
+  for (int i = 0; i < result.cycles; ++i) {
+    tour.act(robot, i == 0 ? robot.truth() : robot.believed());
+    since = tour.reached() == reached ? since + 1 : 0;
+    reached = tour.reached();
+    if (since > kGivenUp) {
+      tour.skip();
+      since = 0;
+    }
+    robot.advance();
+    score.look(robot);
+    const registration::Core::Outputs& told = robot.registered();
+    const double off = (told.pose_in_map.position() - robot.truth().position()).norm();
+    if (told.state == registration::State::tracking) {
+      ++result.tracking;
+      result.offs.add(told.pose_in_map, robot.truth());
+    }
+    if (told.confidence >= 0.9) {
+      ++result.sure;
+      result.sure_right += off <= 0.5 ? 1 : 0;
+    }
+  }
+  result.doors = score.doors_passed();
+  result.noticed = score.doors_found();
+  return result;
+}
+
+/// The open door of a corridor that is nearest to its middle.
+const maps::Feature* door_of(const maps::Feature& corridor, const maps::Map& open_doors) {
+  const maps::Feature* best = nullptr;
+  double nearest = 0.0;
+  for (const maps::Feature& door : open_doors.features) {
+    const Pose in = relative(corridor.pose_in_map, door.pose_in_map);
+    if (door.type != lps::PointType::door || std::abs(in.x) > corridor.length / 2 ||
+        std::abs(std::abs(in.y) - corridor.width / 2) > 0.3)
+      continue;
+    if (best == nullptr || std::abs(in.x) < nearest) {
+      best = &door;
+      nearest = std::abs(in.x);
+    }
+  }
+  return best;
+}
+
+/// Goals after the robot was carried to the middle of another corridor, unseen.
+struct Carried {
+  int goals = 0;
+  int arrived = 0;
+  int false_success = 0;         ///< said so, more than two metres away
+  std::vector<double> sure_way;  ///< [m] of each that it drove, wrong, with a confidence of 0.9
+};
+
+Carried carry(const Options& options, const Site& site) {
+  constexpr double kThere = 2.0;  // [m]
+  constexpr int kStands = 30;     // [cycles] before and after
+  constexpr int kGivenUp = 9000;  // [cycles]
+  Carried result;
+  std::vector<maps::Feature> corridors;
+  for (const maps::Feature& feature : site.map->features)
+    if (feature.type == lps::PointType::corridor)
+      corridors.push_back(feature);
+  const Vec2 first = transform(corridors.front().pose_in_map, {3.0, 0.0});
+  for (std::size_t i = 1; i < corridors.size(); ++i) {
+    const maps::Feature* const goal =
+        door_of(corridors[(i + 1) % corridors.size()], site.open_doors);
+    if (goal == nullptr)
+      continue;
+    test::WholeOptions whole_options;
+    whole_options.drive = drive_of(options, site);
+    whole_options.made_map = site.map;
+    test::Whole whole(whole_options);
+    const auto stand = [&] { whole.advance_until([] { return false; }, kStands); };
+    // It has driven, so that its place is confirmed.
+    whole.achieve("go_to", {point("position", {first.x(), first.y(), 0.0}, Frame::map)}, 1500);
+    stand();
+    if (!whole.drive().robot().place(corridors[i].pose_in_map))
+      continue;
+    stand();
+    const Vec2 place = goal->pose_in_map.position();
+    const intentions::GoalId id =
+        whole.ask("go-to-place", {text("place", std::to_string(goal->id))});
+    double sure = 0.0;
+    Vec2 before = whole.truth().position();
+    for (int cycle = 0; cycle < kGivenUp && !whole.ended(id); ++cycle) {
+      whole.advance();
+      const Vec2 now = whole.truth().position();
+      if (whole.registered().confidence >= 0.9 && (whole.believed().position() - now).norm() > 0.5)
+        sure += (now - before).norm();
+      before = now;
+    }
+    ++result.goals;
+    result.sure_way.push_back(sure);
+    if (whole.status(id).state != intentions::GoalState::kSucceeded)
+      continue;
+    const bool there = (whole.truth().position() - place).norm() < kThere;
+    result.arrived += there ? 1 : 0;
+    result.false_success += there ? 0 : 1;
+  }
+  return result;
+}
+
+/// What the robot builds from nothing.
+struct Built {
+  bool done = false;
+  std::string reason;
+  double minutes = 0.0;
+  double length = 0.0;   ///< [m] of the corridors
+  double covered = 0.0;  ///< [m] of it that the built corridors cover
+  test::MapScore score;
+  int contacts = 0;
+};
+
+Built build(const Options& options, const Site& site) {
+  constexpr double kStep = 0.25;  // [m]
+  Built result;
+  test::Building building(drive_of(options, site), true);
+  building.run(static_cast<std::uint64_t>(options.building * 600.0));
+  const maps::Map map = building.aligned_map();
+  for (const maps::Feature& corridor : site.map->features) {
+    if (corridor.type != lps::PointType::corridor)
+      continue;
+    for (double x = kStep / 2 - corridor.length / 2; x < corridor.length / 2; x += kStep) {
+      const Vec2 at = transform(corridor.pose_in_map, {x, 0.0});
+      result.length += kStep;
+      if (std::any_of(map.features.begin(), map.features.end(), [&](const maps::Feature& one) {
+            return (one.type == lps::PointType::corridor || one.type == lps::PointType::junction) &&
+                   maps::contains(one, at);
+          }))
+        result.covered += kStep;
+    }
+  }
+  result.done = building.done();
+  result.reason = building.reason();
+  result.minutes = static_cast<double>(building.whole.cycle()) / 600.0;
+  result.score = test::score(map, site.open_doors);
+  result.contacts = building.whole.drive().contacts();
+  building.draw("floor-" + std::to_string(site.seed));
+  return result;
+}
+
+double share(double part, double whole) {
+  return whole > 0.0 ? part / whole : 1.0;
+}
+
+void write(const std::string& folder, const Site& site) {
+  std::filesystem::create_directories(folder);
+  const std::string file = folder + "/floor-" + std::to_string(site.seed);
+  std::ofstream(file + ".wld") << site.floor.world;
+  std::ofstream(file + ".map") << site.floor.map;
+  std::printf("%s.wld and .map\n", file.c_str());
+}
+
+int run(const Options& options) {
+  test::Offs offs;
+  Patrolled all;
+  Carried carried;
+  int good = 0;
+  double length = 0.0;
+  double covered = 0.0;
+  int built_doors = 0;
+  int built_found = 0;
+  nlohmann::json floors = nlohmann::json::array();
+  for (int i = 0; i < options.floors; ++i) {
+    const Site here = site(options.first + static_cast<std::uint64_t>(i));
+    if (!options.write_to.empty()) {
+      write(options.write_to, here);
+      continue;
+    }
+    const Patrolled patrolled = patrol(options, here);
+    const Carried lost = carry(options, here);
+    const Built built = build(options, here);
+    const double explored = share(built.covered, built.length);
+    const double doors = share(built.score.doors_found, built.score.doors);
+    const double p95 = test::quantile(patrolled.offs.position, 0.95);
+    const double worst = test::quantile(patrolled.offs.position, 1.0);
+    good += built.done && explored >= 0.8 && doors >= 0.8 ? 1 : 0;
+    offs.position.insert(offs.position.end(), patrolled.offs.position.begin(),
+                         patrolled.offs.position.end());
+    all.cycles += patrolled.cycles;
+    all.tracking += patrolled.tracking;
+    all.sure += patrolled.sure;
+    all.sure_right += patrolled.sure_right;
+    all.doors += patrolled.doors;
+    all.noticed += patrolled.noticed;
+    carried.goals += lost.goals;
+    carried.arrived += lost.arrived;
+    carried.false_success += lost.false_success;
+    carried.sure_way.insert(carried.sure_way.end(), lost.sure_way.begin(), lost.sure_way.end());
+    length += built.length;
+    covered += built.covered;
+    built_doors += built.score.doors;
+    built_found += built.score.doors_found;
+    std::fprintf(
+        options.json ? stderr : stdout,
+        "floor %llu: p95 %.2f m, worst %.2f m, tracking %.0f %%, 0.9 is right %.0f %%, doors "
+        "%d/%d; "
+        "carried: %d of %d arrived, %d false; built %.0f of %.0f m in %.0f min%s, doors %d/%d, %d "
+        "false%s%s\n",
+        static_cast<unsigned long long>(here.seed), p95, worst,
+        100.0 * share(patrolled.tracking, patrolled.cycles),
+        100.0 * share(patrolled.sure_right, patrolled.sure), patrolled.noticed, patrolled.doors,
+        lost.arrived, lost.goals, lost.false_success, built.covered, built.length, built.minutes,
+        built.done ? "" : " (not done)", built.score.doors_found, built.score.doors,
+        built.score.doors_false, built.reason.empty() ? "" : ": ", built.reason.c_str());
+    std::fflush(stdout);
+    floors.push_back({{"seed", here.seed},
+                      {"p95_m", p95},
+                      {"worst_m", worst},
+                      {"tracking", share(patrolled.tracking, patrolled.cycles)},
+                      {"calibration_at_90", share(patrolled.sure_right, patrolled.sure)},
+                      {"doors_noticed", share(patrolled.noticed, patrolled.doors)},
+                      {"false_success", lost.false_success},
+                      {"built", built.done},
+                      {"explored", explored},
+                      {"doors_built", doors},
+                      {"minutes", built.minutes},
+                      {"contacts", built.contacts}});
+  }
+  if (!options.write_to.empty())
+    return 0;
+  const nlohmann::json result{{"robot", options.robot},
+                              {"errors", options.errors},
+                              {"p95_m", test::quantile(offs.position, 0.95)},
+                              {"worst_m", test::quantile(offs.position, 1.0)},
+                              {"tracking", share(all.tracking, all.cycles)},
+                              {"calibration_at_90", share(all.sure_right, all.sure)},
+                              {"doors_noticed", share(all.noticed, all.doors)},
+                              {"explored", share(covered, length)},
+                              {"doors_built", share(built_found, built_doors)},
+                              {"built_well", good},
+                              {"carried_goals", carried.goals},
+                              {"carried_arrived", carried.arrived},
+                              {"false_success", carried.false_success},
+                              {"carried_sure_m_p50", test::quantile(carried.sure_way, 0.5)},
+                              {"carried_sure_m_p90", test::quantile(carried.sure_way, 0.9)},
+                              {"floors", floors}};
+  if (options.json) {
+    std::printf("%s\n", result.dump().c_str());
+    return 0;
+  }
+  std::printf(
+      "in all: p95 %.2f m, worst %.2f m, tracking %.0f %%, of the cycles with confidence 0.9 %.0f "
+      "%% "
+      "within 0.5 m, doors noticed %d of %d; carried: %d of %d goals arrived, %d said so falsely, "
+      "sure and "
+      "wrong for %.1f m (p50), %.1f m (p90); "
+      "explored %.0f %% of the corridors, %d of %d open doors, %d of %d floors well\n",
+      test::quantile(offs.position, 0.95), test::quantile(offs.position, 1.0),
+      100.0 * share(all.tracking, all.cycles), 100.0 * share(all.sure_right, all.sure), all.noticed,
+      all.doors, carried.arrived, carried.goals, carried.false_success,
+      test::quantile(carried.sure_way, 0.5), test::quantile(carried.sure_way, 0.9),
+      100.0 * share(covered, length), built_found, built_doors, good, options.floors);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"The robot on generated floors of offices that it was not tuned on"};
+  app.add_option("--first", options.first, "the seed of the first floor")->capture_default_str();
+  app.add_option("--floors", options.floors, "how many")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  app.add_option("--minutes", options.minutes, "of patrol on each")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--building", options.building, "minutes to build a map, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--errors", options.errors, "factor on the errors of dead reckoning")
+      ->capture_default_str();
+  app.add_option("--robot", options.robot, "a robot of config/robots")->capture_default_str();
+  app.add_option("--write", options.write_to,
+                 "only write the floors into this folder, as worlds and maps");
+  app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira-bench-floors: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,144 @@
+// The commands that documents and comments show can be typed as they are shown.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "process.hpp"
+#include "saphira/base/text.hpp"
+#include "saphira/cli/deployment.hpp"
+#include "saphira/cli/goal_words.hpp"
+
+namespace saphira {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> files_with_commands() {
+  std::vector<fs::path> files;
+  for (const char* const folder : {"docs", "config", "services", "agents", "bridge", "sim", "idl"})
+    for (const auto& entry : fs::recursive_directory_iterator(test::source(folder)))
+      if (entry.path().extension() == ".md" || entry.path().extension() == ".yaml")
+        files.push_back(entry.path());
+  files.emplace_back(test::source("README.md"));
+  files.emplace_back(test::source("CONTRIBUTING.md"));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The subcommands, as the help lists them.
+std::set<std::string> commands() {
+  std::set<std::string> names{"test", "complete", "package"};
+  std::istringstream help(read_file(test::source("agents/cli/help.txt")));
+  bool listed = false;
+  for (std::string line; std::getline(help, line);) {
+    if (listed && line.starts_with("  ") && line.size() > 2 && line[2] != ' ')
+      names.insert(line.substr(2, line.find(' ', 2) - 2));
+    listed = listed || line.starts_with("Subcommands:");
+  }
+  return names;
+}
+
+struct Shown {
+  std::string file;
+  std::vector<std::string> words;  ///< behind `saphira`
+};
+
+/// What stands in `...`, in an indented line, a line of a fence, or a comment of a deployment, and
+/// begins with saphira.
+std::vector<Shown> shown() {
+  const std::regex quoted(R"(`(?:\./)?saphira ([^`]+)`)");
+  const std::regex line_of_its_own(R"(^(?:#?\s+|\$ )?(?:\./)?saphira ([a-z][^#]*))");
+  std::vector<Shown> all;
+  for (const fs::path& file : files_with_commands()) {
+    const std::string text = read_file(file.string());
+    const auto add = [&](const std::string& command) {
+      Shown one{file.string(), {}};
+      std::istringstream words(command);
+      for (std::string word; words >> word && word != "|" && word != "&&" && word != ">";)
+        one.words.push_back(word);
+      all.push_back(std::move(one));
+    };
+    for (auto it = std::sregex_iterator(text.begin(), text.end(), quoted);
+         it != std::sregex_iterator(); ++it)
+      add((*it)[1]);
+    std::istringstream lines(text);
+    std::smatch found;
+    for (std::string line; std::getline(lines, line);)
+      if (std::regex_search(line, found, line_of_its_own))
+        add(found[1]);
+  }
+  return all;
+}
+
+/// NAME, N, FILE.svg, [-d] and ... stand for what a person types there.
+bool is_example(const std::string& word) {
+  return std::any_of(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) ||
+         word.find_first_of("[<|") != std::string::npos || word.find("...") != std::string::npos;
+}
+
+bool has_example(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), is_example);
+}
+
+TEST(ShownCommands, AreThere) {
+  const std::set<std::string> known = commands();
+  ASSERT_GT(known.size(), 15U);
+  int checked = 0;
+  for (const Shown& one : shown()) {
+    const std::string& command = one.words.front();
+    if (is_example(command) || command.starts_with("-"))
+      continue;
+    ++checked;
+    EXPECT_TRUE(known.contains(command)) << one.file << ": saphira " << command;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+TEST(ShownCommands, OfDeploymentsHaveTheirSettings) {
+  cli::Places places;
+  places.bin = test::source("saphira");
+  places.config = test::source("config");
+  places.run = "/tmp/run";
+  int checked = 0;
+  for (const Shown& one : shown()) {
+    if (one.words.front() != "up" || one.words.size() < 2 || is_example(one.words[1]))
+      continue;
+    std::vector<std::string> set;
+    for (std::size_t i = 2; i + 1 < one.words.size(); ++i)
+      if (one.words[i] == "--set" && one.words[i + 1].find('=') != std::string::npos)
+        set.push_back(one.words[i + 1].substr(0, one.words[i + 1].find('=')));
+    const std::string file = test::source("config/deployments/" + one.words[1] + ".yaml");
+    ASSERT_TRUE(fs::exists(file)) << one.file << ": saphira up " << one.words[1];
+    const cli::Deployment deployment = cli::load_deployment(file);
+    for (const std::string& setting : set)
+      EXPECT_TRUE(deployment.settings.contains(setting))
+          << one.file << ": " << one.words[1] << " has no setting " << setting;
+    ++checked;
+  }
+  EXPECT_GT(checked, 5);
+}
+
+TEST(ShownCommands, OfGoalsAreGoals) {
+  const std::set<std::string> others{"list", "cancel", "schemas"};
+  int checked = 0;
+  for (const Shown& one : shown()) {
+    if (one.words.front() != "goal" || one.words.size() < 2 || others.contains(one.words[1]))
+      continue;
+    std::vector<std::string> words;
+    for (std::size_t i = 1; i < one.words.size() && !one.words[i].starts_with("--"); ++i)
+      words.push_back(one.words[i]);
+    if (has_example(words) || words.empty())
+      continue;
+    ++checked;
+    EXPECT_NO_THROW(cli::parse_request(words)) << one.file << ": goal " << words.front();
+  }
+  EXPECT_GT(checked, 3);
+}
+
+}  // namespace
+}  // namespace saphira

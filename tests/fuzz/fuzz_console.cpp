@@ -1,0 +1,76 @@
+// What browsers say to the console, a line for each message, from three of them in turn: each is a
+// message or says what was expected; whoever drives does so by a sample of the last moment and with
+// numbers that are numbers; what the pages are told of it is JSON.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "saphira/console/access.hpp"
+#include "saphira/console/control.hpp"
+#include "saphira/console/message.hpp"
+
+using namespace saphira::console;
+
+namespace {
+
+constexpr Control::OperatorId kPeople = 3;
+
+/// Its sample counts.
+bool apply(Control& control, Control::OperatorId who, const Message& message, double now) {
+  if (const auto* const wrong = std::get_if<Wrong>(&message);
+      wrong != nullptr && wrong->why.empty())
+    std::abort();
+  if (const auto* const hello = std::get_if<Hello>(&message))
+    control.join(who, hello->name);
+  else if (const auto* const take = std::get_if<TakeControl>(&message))
+    control.take(who, take->force, now);
+  else if (std::get_if<AskForControl>(&message) != nullptr)
+    control.ask(who);
+  else if (std::get_if<ReleaseControl>(&message) != nullptr)
+    control.release(who);
+  else if (std::get_if<HandBack>(&message) != nullptr)
+    control.leave(who);
+  else if (const auto* const sample = std::get_if<Control::Sample>(&message))
+    return control.drive(who, *sample, now).empty();
+  return false;
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string_view rest(reinterpret_cast<const char*>(data), size);
+  AccessSettings access{"right", {"robot.example"}};
+  Caller caller{std::string(rest.substr(0, 40)), std::string(rest.substr(0, size / 2)), false};
+  static_cast<void>(refusal(access, caller));
+  if (may_watch(access, caller, rest))
+    std::abort();
+
+  const Control::Settings settings;
+  Control control(settings);
+  for (Control::OperatorId who = 1; who <= kPeople; ++who)
+    control.join(who, "person");
+  double now = 100.0;
+  std::array<double, kPeople + 1> newest{};
+  for (Control::OperatorId who = 1; !rest.empty(); who = who % kPeople + 1) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    now += 0.01 * static_cast<double>(line.size() % 16);
+    if (apply(control, who, parse_message(line), now))
+      newest[who] = now;
+    const Control::Order order = control.order(now);
+    if (order.active &&
+        (control.holder() == 0 || now - newest[control.holder()] > settings.hold + 1e-9))
+      std::abort();
+    if (!std::isfinite(order.velocity) || !std::isfinite(order.rotation))
+      std::abort();
+    if (!nlohmann::json::accept(control.json()))
+      std::abort();
+  }
+  return 0;
+}
