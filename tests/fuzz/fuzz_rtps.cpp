@@ -61,7 +61,8 @@ struct Packet {
 class Loopback {
  public:
   explicit Loopback(unsigned domain)
-      : first_port_(7400 + 250 * domain),
+      // The ports of loopback: see idl/README.md.
+      : first_port_(7525 + 250 * domain),
         heard_(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC, htons(ETH_P_IP))),
         sender_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     if (heard_ < 0)
@@ -127,7 +128,7 @@ class Loopback {
     std::memcpy(&udp, data + header, sizeof udp);
     const unsigned port = ntohs(udp.dest);
     const std::uint8_t* const begin = data + header + sizeof udp;
-    if (port < first_port_ || port >= first_port_ + 250 || ntohs(udp.source) == own_port_ ||
+    if (port < first_port_ || port >= first_port_ + 125 || ntohs(udp.source) == own_port_ ||
         size < header + sizeof udp + 20 || std::memcmp(begin, "RTPS", 4) != 0)
       return false;
     packet.to.sin_family = AF_INET;

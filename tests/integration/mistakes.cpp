@@ -14,7 +14,7 @@ const std::vector<Mistake>& mistakes() {
       {{"status", "--jsn"}, {"--jsn", "--json"}},
       {{"status", "--json", "--watch"}, {"--json", "--watch"}},
       {{"--profile", "wifi", "status"}, {"wifi", "host"}},
-      {{"--domain", "300", "status"}, {"300", "232"}},
+      {{"--domain", "300", "status"}, {"300", "231"}},
       {{"stop", "nothing"}, {"no deployment"}},
       {{"bench", "nothing"}, {"no benchmark", "nothing"}},
       // echo and log

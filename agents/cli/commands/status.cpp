@@ -99,6 +99,8 @@ class StatusView {
       text += "peer " + peer +
               ": nothing is heard from it; there, `saphira up` needs profile wan and domain " +
               std::to_string(node_.options().domain) + ", and a network that lets UDP through\n";
+    for (const auto& wait : node_.network_waits())
+      text += "network: " + wait + "\n";
     return text;
   }
 

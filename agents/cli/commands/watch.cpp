@@ -72,6 +72,25 @@ std::string person(const std::string& program) {
   return user == nullptr ? program : program + " of " + user;
 }
 
+namespace {
+
+/// What else to try where a program is not heard.
+const char* remedy(bus::Profile profile) {
+  switch (profile) {
+    case bus::Profile::host:
+      return "; programs of other machines need --profile lan or wan";
+    case bus::Profile::lan:
+      return "; on a network without multicast (much of WiFi) both sides need profile wan, and one "
+             "the "
+             "other's address (--peer)";
+    case bus::Profile::wan:
+      return "; one side needs the other's address (--peer)";
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes) {
   const auto all = processes.all();
   const std::string where = "robot " + options.robot + ", domain " +
@@ -79,10 +98,12 @@ std::string who_is_there(const bus::NodeOptions& options, const Processes& proce
                             name_of(options.profile);
   if (all.empty())
     return "no program is on the bus (" + where +
-           "): is it up (saphira up demo), and are these the same on both sides?";
+           "): is it up (saphira up demo), and are these the same on both sides?" +
+           remedy(options.profile);
   const std::string missing = missing_services(all);
   if (!missing.empty())
-    return "not heard (" + where + "): " + missing + "; saphira status shows what is";
+    return "not heard (" + where + "): " + missing + "; saphira status shows what is" +
+           remedy(options.profile);
   for (const SeenProcess& process : all)
     if (process.status.state() != v1::SERVICE_RUNNING && !process.status.reason().empty())
       return process.status.name() + " is " + name_of(process.status.state()) + ": " +

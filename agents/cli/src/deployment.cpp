@@ -134,8 +134,8 @@ class Parser {
 
   std::uint32_t domain(const YAML::Node& node) const {
     unsigned value = 0;
-    if (!node.IsScalar() || !YAML::convert<unsigned>::decode(node, value) || value > 232)
-      fail(node.Mark(), "expected a DDS domain between 0 and 232, found " + kind(node));
+    if (!node.IsScalar() || !YAML::convert<unsigned>::decode(node, value) || value > 231)
+      fail(node.Mark(), "expected a DDS domain between 0 and 231, found " + kind(node));
     return value;
   }
 

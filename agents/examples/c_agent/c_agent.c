@@ -26,7 +26,8 @@
 
 static const char* const kThisMachine =
     "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1' "
-    "multicast='true'/></Interfaces></General></Domain></CycloneDDS>";
+    "multicast='true'/></Interfaces></General><Discovery><Ports><Base>7525</Base></Ports>"
+    "</Discovery></Domain></CycloneDDS>";
 
 static volatile sig_atomic_t stopped = 0;
 static void stop(int number) {

@@ -1,6 +1,8 @@
 // The bus over Fast DDS. The only places that know it are the files dds*.
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <fastdds/dds/core/status/StatusMask.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -16,9 +18,12 @@
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/subscriber/qos/SubscriberQos.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "dds_bus.hpp"
@@ -49,7 +54,8 @@ EndpointEntry own_entry(const std::string& robot, const char* topic, const TypeI
   return own;
 }
 
-class DdsWriter : public RawWriter, public Endpoint, public fdds::DataWriterListener {
+/// Where a session is not, or is not to be made yet, an endpoint has no part in it.
+class DdsWriter : public RawWriter, public Endpoint {
  public:
   DdsWriter(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
             const TypeInfo& type)
@@ -57,23 +63,27 @@ class DdsWriter : public RawWriter, public Endpoint, public fdds::DataWriterList
         own_(own_entry(bus_->robot(), topic, type, policies, true)),
         policies_(policies),
         type_(type) {
-    bus_->peers.add(ends_);
+    for (Part& part : parts_) {
+      part.owner = this;
+      bus_->peers.add(part.ends);
+    }
     try {
       bus_->add(*this);
     } catch (...) {
-      bus_->peers.remove(ends_);
+      forget();
       throw;
     }
   }
   ~DdsWriter() override {
     bus_->remove(*this);
-    bus_->peers.remove(ends_);
+    forget();
   }
   DdsWriter(const DdsWriter&) = delete;
   DdsWriter& operator=(const DdsWriter&) = delete;
 
-  void open(Session& session) override {
-    discovery_ = &session.discovery;
+  void open(Session& session, bool after_sleep) override {
+    Part& part = part_of(session);
+    part.discovery = &session.discovery;
     fdds::DataWriterQos qos = fdds::DATAWRITER_QOS_DEFAULT;
     set_common_qos(qos, policies_, policies_.writer_depth);
     qos.reliability().max_blocking_time = milliseconds(100);
@@ -84,39 +94,48 @@ class DdsWriter : public RawWriter, public Endpoint, public fdds::DataWriterList
     if (policies_.heartbeat_ms > 0)
       qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(policies_.heartbeat_ms);
     if (auto* topic = session.topic(own_.topic.c_str(), type_.name))
-      writer_ = session.publisher->create_datawriter(
-          topic, qos, this,
+      part.writer = session.publisher->create_datawriter(
+          topic, qos, &part,
           fdds::StatusMask::publication_matched() << fdds::StatusMask::offered_incompatible_qos());
-    if (writer_ == nullptr)
+    if (part.writer == nullptr)
       throw std::runtime_error("no writer on topic " + own_.topic);
-    own_.id = to_hex(to_id(writer_->guid()));
-    session.discovery.add_own(own_);
-    kept_.each([&](const void* sample) { writer_->write(const_cast<void*>(sample)); });
+    EndpointEntry own = own_;
+    own.id = part.id = to_hex(to_id(part.writer->guid()));
+    session.discovery.add_own(own);
+    if (!after_sleep || policies_.kept_by_session)
+      kept_.each([&](const void* sample) { part.writer->write(const_cast<void*>(sample)); });
   }
   void close(Session& session) override {
-    writer_->set_listener(nullptr);
-    session.publisher->delete_datawriter(writer_);
-    session.discovery.remove_own(own_.id);
-    bus_->peers.restart(ends_);
-    writer_ = nullptr;
+    Part& part = part_of(session);
+    if (part.writer == nullptr)
+      return;
+    part.writer->set_listener(nullptr);
+    session.publisher->delete_datawriter(part.writer);
+    session.discovery.remove_own(part.id);
+    bus_->peers.restart(part.ends);
+    part.writer = nullptr;
   }
 
   // Fast DDS takes a writable pointer and only reads it.
   bool write(const void* sample) override {
     const auto session = bus_->hold();
-    if (policies_.kept_by_session)
+    if (keeps())
       kept_.put(type_, sample, policies_.writer_depth);
-    return writer_->write(const_cast<void*>(sample));
+    return each_part(
+        [&](fdds::DataWriter& writer) { return writer.write(const_cast<void*>(sample)); });
   }
   bool dispose(const void* sample) override {
     const auto session = bus_->hold();
     kept_.erase(type_, sample);
-    // An instance that another writer has written is withdrawn as well: it has to be made known
-    // here first.
-    writer_->register_instance(const_cast<void*>(sample));
-    // Not only dispose(): after that Fast DDS keeps the instance for ever, here and at the readers.
-    return writer_->unregister_instance(const_cast<void*>(sample), fdds::HANDLE_NIL) ==
-           ReturnCode_t::RETCODE_OK;
+    return each_part([&](fdds::DataWriter& writer) {
+      // An instance that another writer has written is withdrawn as well: it has to be made known
+      // here first.
+      writer.register_instance(const_cast<void*>(sample));
+      // Not only dispose(): after that Fast DDS keeps the instance for ever, here and at the
+      // readers.
+      return writer.unregister_instance(const_cast<void*>(sample), fdds::HANDLE_NIL) ==
+             ReturnCode_t::RETCODE_OK;
+    });
   }
   bool wait_acknowledged(int timeout_ms) override {
     // Fast DDS does not say which reader has not acknowledged. One that is gone never will, and the
@@ -126,40 +145,73 @@ class DdsWriter : public RawWriter, public Endpoint, public fdds::DataWriterList
     for (int waited = 0; waited < timeout_ms; waited += kSlice) {
       const auto session = bus_->hold();
       const int slice = std::min(kSlice, timeout_ms - waited);
-      if (writer_->wait_for_acknowledgments(milliseconds(slice)) == ReturnCode_t::RETCODE_OK)
+      if (each_part([&](fdds::DataWriter& writer) {
+            return writer.wait_for_acknowledgments(milliseconds(slice)) == ReturnCode_t::RETCODE_OK;
+          }))
         return true;
-      if (waited + slice >= kHeartbeats && ends_.present() > 0 && bus_->peers.any_absent(ends_))
+      const bool absent = std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+        return bus_->peers.any_absent(part.ends);
+      });
+      if (waited + slice >= kHeartbeats && matched() > 0 && absent)
         return true;
     }
     return false;
   }
-  std::size_t matched() const override { return ends_.present(); }
-
-  void on_publication_matched(fdds::DataWriter* /*writer*/,
-                              const fdds::PublicationMatchedStatus& status) override {
-    const WriterId other = to_id(status.last_subscription_handle);
-    if (status.current_count_change > 0)
-      bus_->peers.match(ends_, other);
-    else
-      bus_->peers.unmatch(ends_, other);
-  }
-  void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
-                                   const fdds::OfferedIncompatibleQosStatus& status) override {
-    discovery_->add_incompatible(own_.topic, own_.writer, status.last_policy_id);
+  std::size_t matched() const override {
+    return parts_[0].ends.present() + parts_[1].ends.present();
   }
 
  private:
+  /// What it is in one session.
+  struct Part : fdds::DataWriterListener {
+    void on_publication_matched(fdds::DataWriter* /*writer*/,
+                                const fdds::PublicationMatchedStatus& status) override {
+      const WriterId other = to_id(status.last_subscription_handle);
+      if (status.current_count_change > 0)
+        owner->bus_->peers.match(ends, other);
+      else
+        owner->bus_->peers.unmatch(ends, other);
+    }
+    void on_offered_incompatible_qos(fdds::DataWriter* /*writer*/,
+                                     const fdds::OfferedIncompatibleQosStatus& status) override {
+      discovery->add_incompatible(owner->own_.topic, true, status.last_policy_id);
+    }
+
+    DdsWriter* owner = nullptr;
+    fdds::DataWriter* writer = nullptr;
+    Discovery* discovery = nullptr;
+    std::string id;
+    Ends ends{Ends::Side::readers};
+  };
+
+  Part& part_of(const Session& session) { return parts_[static_cast<std::size_t>(session.side)]; }
+  /// Whether a later session is told again what it holds.
+  bool keeps() const {
+    return policies_.kept_by_session || (policies_.transient_local && policies_.writer_depth == 1);
+  }
+  /// Loopback first. Whether it went well in all.
+  template <class Do>
+  bool each_part(Do&& act) {
+    bool well = true;
+    for (Part& part : parts_)
+      if (part.writer != nullptr && !act(*part.writer))
+        well = false;
+    return well;
+  }
+  void forget() {
+    for (Part& part : parts_)
+      bus_->peers.remove(part.ends);
+  }
+
   std::shared_ptr<Bus> bus_;
-  EndpointEntry own_;
+  const EndpointEntry own_;
   const Policies policies_;
   const TypeInfo& type_;
-  fdds::DataWriter* writer_ = nullptr;
-  Discovery* discovery_ = nullptr;  // of the session
+  std::array<Part, 2> parts_;  // by Side
   Kept kept_;
-  Ends ends_{Ends::Side::readers};
 };
 
-class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderListener {
+class DdsReader : public RawReader, public Endpoint {
  public:
   DdsReader(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
             const TypeInfo& type)
@@ -168,23 +220,27 @@ class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderList
         policies_(policies),
         type_(type),
         scratch_(type.create(), type.destroy) {
-    bus_->peers.add(ends_);
+    for (Part& part : parts_) {
+      part.owner = this;
+      bus_->peers.add(part.ends);
+    }
     try {
       bus_->add(*this);
     } catch (...) {
-      bus_->peers.remove(ends_);
+      forget();
       throw;
     }
   }
   ~DdsReader() override {
     bus_->remove(*this);
-    bus_->peers.remove(ends_);
+    forget();
   }
   DdsReader(const DdsReader&) = delete;
   DdsReader& operator=(const DdsReader&) = delete;
 
-  void open(Session& session) override {
-    discovery_ = &session.discovery;
+  void open(Session& session, bool /*after_sleep*/) override {
+    Part& part = part_of(session);
+    part.discovery = &session.discovery;
     fdds::DataReaderQos qos = fdds::DATAREADER_QOS_DEFAULT;
     set_common_qos(qos, policies_, policies_.reader_depth);
     if (type_.keyed) {
@@ -194,34 +250,84 @@ class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderList
       qos.resource_limits().allocated_samples = 1;
     }
     if (auto* topic = session.topic(own_.topic.c_str(), type_.name))
-      reader_ = session.subscriber->create_datareader(
-          topic, qos, this,
+      part.reader = session.subscriber->create_datareader(
+          topic, qos, &part,
           fdds::StatusMask::data_available() << fdds::StatusMask::subscription_matched()
                                              << fdds::StatusMask::requested_incompatible_qos());
-    if (reader_ == nullptr)
+    if (part.reader == nullptr)
       throw std::runtime_error("no reader on topic " + own_.topic);
-    own_.id = to_hex(to_id(reader_->guid()));
-    session.discovery.add_own(own_);
+    EndpointEntry own = own_;
+    own.id = part.id = to_hex(to_id(part.reader->guid()));
+    session.discovery.add_own(own);
   }
   void close(Session& session) override {
-    reader_->set_listener(nullptr);
-    session.subscriber->delete_datareader(reader_);
-    session.discovery.remove_own(own_.id);
-    bus_->peers.restart(ends_);
-    reader_ = nullptr;
-    taken_before_ = taken_;
+    Part& part = part_of(session);
+    if (part.reader == nullptr)
+      return;
+    part.reader->set_listener(nullptr);
+    session.subscriber->delete_datareader(part.reader);
+    session.discovery.remove_own(part.id);
+    bus_->peers.restart(part.ends);
+    part.reader = nullptr;
+    begun_anew_ = true;
   }
 
   void take(const std::function<void(const void*, const SampleInfo&)>& each) override {
+    // What was taken before a session ended.
+    if (begun_anew_.exchange(false))
+      taken_before_ = taken_;
+    for (Part& part : parts_)
+      take(part, each);
+  }
+
+  std::vector<WriterId> take_lost() override {
+    std::vector<WriterId> lost = bus_->peers.take_lost(parts_[0].ends);
+    const std::vector<WriterId> more = bus_->peers.take_lost(parts_[1].ends);
+    lost.insert(lost.end(), more.begin(), more.end());
+    return lost;
+  }
+  std::size_t matched() const override {
+    return parts_[0].ends.present() + parts_[1].ends.present();
+  }
+
+ private:
+  using Holder = std::unique_ptr<void, void (*)(void*)>;
+
+  /// What it is in one session.
+  struct Part : fdds::DataReaderListener {
+    void on_data_available(fdds::DataReader* /*reader*/) override { owner->bus_->wake->signal(); }
+    void on_subscription_matched(fdds::DataReader* /*reader*/,
+                                 const fdds::SubscriptionMatchedStatus& status) override {
+      const WriterId other = to_id(status.last_publication_handle);
+      if (status.current_count_change > 0)
+        owner->bus_->peers.match(ends, other);
+      else
+        owner->bus_->peers.unmatch(ends, other);
+    }
+    void on_requested_incompatible_qos(
+        fdds::DataReader* /*reader*/, const fdds::RequestedIncompatibleQosStatus& status) override {
+      discovery->add_incompatible(owner->own_.topic, false, status.last_policy_id);
+    }
+
+    DdsReader* owner = nullptr;
+    fdds::DataReader* reader = nullptr;
+    Discovery* discovery = nullptr;
+    std::string id;
+    Ends ends{Ends::Side::writers};
+  };
+
+  Part& part_of(const Session& session) { return parts_[static_cast<std::size_t>(session.side)]; }
+  void forget() {
+    for (Part& part : parts_)
+      bus_->peers.remove(part.ends);
+  }
+
+  void take(Part& part, const std::function<void(const void*, const SampleInfo&)>& each) {
     fdds::SampleInfo dds_info;
-    while (take_next(dds_info)) {
-      SampleInfo info;
-      info.writer = to_id(dds_info.sample_identity.writer_guid());
-      if (bus_->guard())
-        info.sender = sender_of(dds_info.sample_identity.writer_guid());
-      if (internal::take_malformed()) {
-        add_malformed(dds_info.sample_identity.writer_guid());
-      } else if (was_taken(dds_info.sample_identity)) {
+    SampleInfo info;
+    bool malformed = false;
+    while (take_next(part, dds_info, info, malformed)) {
+      if (malformed || was_taken(dds_info.sample_identity)) {
         continue;
       } else if (dds_info.valid_data) {
         if (type_.keyed)
@@ -240,40 +346,21 @@ class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderList
     }
   }
 
-  std::vector<WriterId> take_lost() override { return bus_->peers.take_lost(ends_); }
-  std::size_t matched() const override { return ends_.present(); }
-
-  void on_data_available(fdds::DataReader* /*reader*/) override { bus_->wake->signal(); }
-  void on_subscription_matched(fdds::DataReader* /*reader*/,
-                               const fdds::SubscriptionMatchedStatus& status) override {
-    const WriterId other = to_id(status.last_publication_handle);
-    if (status.current_count_change > 0)
-      bus_->peers.match(ends_, other);
-    else
-      bus_->peers.unmatch(ends_, other);
-  }
-  void on_requested_incompatible_qos(fdds::DataReader* /*reader*/,
-                                     const fdds::RequestedIncompatibleQosStatus& status) override {
-    discovery_->add_incompatible(own_.topic, own_.writer, status.last_policy_id);
-  }
-
- private:
-  using Holder = std::unique_ptr<void, void (*)(void*)>;
-
   // The session is held for this call alone: who takes may write meanwhile.
-  bool take_next(fdds::SampleInfo& info) {
+  bool take_next(Part& part, fdds::SampleInfo& from, SampleInfo& info, bool& malformed) {
     const auto session = bus_->hold();
-    return reader_->take_next_sample(scratch_.get(), &info) == ReturnCode_t::RETCODE_OK;
-  }
-
-  std::shared_ptr<const Identity> sender_of(const rtps::GUID_t& writer) {
-    const auto session = bus_->hold();
-    return bus_->session().discovery.identity_of(writer);
-  }
-
-  void add_malformed(const rtps::GUID_t& writer) {
-    const auto session = bus_->hold();
-    bus_->session().discovery.add_malformed(own_.topic, writer);
+    if (part.reader == nullptr ||
+        part.reader->take_next_sample(scratch_.get(), &from) != ReturnCode_t::RETCODE_OK)
+      return false;
+    const rtps::GUID_t& writer = from.sample_identity.writer_guid();
+    info = {};
+    info.writer = to_id(writer);
+    if (bus_->guard())
+      info.sender = part.discovery->identity_of(writer);
+    malformed = internal::take_malformed();
+    if (malformed)
+      part.discovery->add_malformed(own_.topic, writer);
+    return true;
   }
 
   // A writer that still lives sends its history again to the reader of a new session.
@@ -302,20 +389,32 @@ class DdsReader : public RawReader, public Endpoint, public fdds::DataReaderList
   static constexpr std::size_t kMostWriters = 1000;
 
   std::shared_ptr<Bus> bus_;
-  EndpointEntry own_;
+  const EndpointEntry own_;
   const Policies policies_;
   const TypeInfo& type_;
-  fdds::DataReader* reader_ = nullptr;
-  Discovery* discovery_ = nullptr;  // of the session
+  std::array<Part, 2> parts_;  // by Side
   Holder scratch_;
   std::map<rtps::InstanceHandle_t, Holder> last_;
   // Of each writer the number of the sample that was taken last: now, and when the session began.
   std::map<rtps::GUID_t, std::uint64_t> taken_;
   std::map<rtps::GUID_t, std::uint64_t> taken_before_;
-  Ends ends_{Ends::Side::writers};
+  std::atomic<bool> begun_anew_{false};
 };
 
 class DdsTransport : public Transport {
+  /// What the discoveries of all sessions say, one after the other.
+  template <class Say>
+  auto from_each(Say say) const {
+    const auto session = bus_->hold();
+    std::invoke_result_t<Say, Discovery&> all;
+    bus_->each_session([&](Session& one) {
+      auto more = std::invoke(say, one.discovery);
+      all.insert(all.end(), std::make_move_iterator(more.begin()),
+                 std::make_move_iterator(more.end()));
+    });
+    return all;
+  }
+
  public:
   DdsTransport(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> wake)
       : bus_(std::make_shared<Bus>(options, instance, std::move(wake))) {}
@@ -330,20 +429,21 @@ class DdsTransport : public Transport {
     check_role(topic, false);
     return std::make_unique<DdsReader>(bus_, topic, policies, type);
   }
-  std::vector<EndpointEntry> endpoints() const override {
-    const auto session = bus_->hold();
-    return bus_->session().discovery.endpoints();
-  }
-  std::vector<std::string> take_troubles() override {
-    const auto session = bus_->hold();
-    return bus_->session().discovery.take_troubles();
-  }
+  std::vector<EndpointEntry> endpoints() const override { return from_each(&Discovery::endpoints); }
+  std::vector<std::string> take_troubles() override { return from_each(&Discovery::take_troubles); }
   Malformed take_malformed() override {
     const auto session = bus_->hold();
-    return bus_->session().discovery.take_malformed();
+    Malformed all;
+    bus_->each_session([&](Session& one) {
+      const Malformed malformed = one.discovery.take_malformed();
+      all.count += malformed.count;
+      all.texts.insert(all.texts.end(), malformed.texts.begin(), malformed.texts.end());
+    });
+    return all;
   }
   void watch_endpoints(bool watch) override { bus_->watch(watch); }
   std::vector<std::string> silent_peers() const override { return bus_->silent_peers(); }
+  std::vector<std::string> network_waits() const override { return bus_->waits(); }
   void renew() override { bus_->renew_soon(); }
   std::optional<Identity> identity() const override {
     return bus_->guard() ? std::optional(bus_->guard()->own()) : std::nullopt;
@@ -351,8 +451,12 @@ class DdsTransport : public Transport {
   std::string expiry() const override { return bus_->guard() ? bus_->guard()->expiry() : ""; }
   bool is_own(const WriterId& writer) const override {
     const auto session = bus_->hold();
-    const WriterId self = to_id(bus_->session().participant->guid());
-    return std::equal(writer.begin(), writer.begin() + 12, self.begin());
+    bool own = false;
+    bus_->each_session([&](Session& one) {
+      const WriterId self = to_id(one.participant->guid());
+      own = own || std::equal(writer.begin(), writer.begin() + 12, self.begin());
+    });
+    return own;
   }
 
  private:

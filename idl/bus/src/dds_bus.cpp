@@ -26,36 +26,60 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-constexpr std::uint32_t kMaxDomain = 232;
+// Above, ports are higher than there are.
+constexpr std::uint32_t kMaxDomain = 231;
 // After so long a silence somebody may be about to drop us, or we somebody.
 constexpr std::chrono::seconds kLongSleep{kLease - std::chrono::seconds(15)};
 // A turn of the thread that took so long was a sleep.
 constexpr std::chrono::seconds kSleep{1};
-// How long a machine that wakes may take until its network is as it was.
-constexpr std::chrono::seconds kNetworkReturns{10};
+// Turns of the thread from one look at the machine's addresses to the next.
+constexpr int kLook = 2;
+// What is waited for is told when it has been for so long.
+constexpr std::chrono::seconds kTellWait{3};
+// Between two attempts to look up the names of peers of which nothing is heard.
+constexpr std::chrono::seconds kLookUp{5};
 
 // The period of returning free memory to the system. It takes some ms, for which other threads may
 // wait when they allocate.
 constexpr std::chrono::seconds kGiveBack{30};
 
-bool is_loopback(const std::string& address) {
-  return address.starts_with("127.");
-}
-
 }  // namespace
 
-Session::Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers,
-                 const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard)
-    : discovery(wake, peers, machines, guard,
-                options.profile == Profile::wan ? kProgramsPerPeer : 0) {
+/// Looks up the addresses of the peers, in a thread that nobody waits for: a lookup may take
+/// seconds.
+struct Bus::Names {
+  static void look_up(std::shared_ptr<Names> names, std::shared_ptr<Machines> machines,
+                      const std::vector<std::string>& peers) {
+    if (peers.empty() || names->busy.exchange(true))
+      return;
+    std::thread([names = std::move(names), machines = std::move(machines), peers] {
+      for (const std::string& peer : peers)
+        if (const std::string address = internal::look_up(peer); !address.empty())
+          machines->name(peer, address);
+      names->busy = false;
+    }).detach();
+  }
+
+  std::atomic<bool> busy{false};
+  BootClock::time_point looked;
+};
+
+Session::Session(const NodeOptions& options, Side the_side, const std::shared_ptr<Wake>& wake,
+                 const Peers& peers, const std::shared_ptr<Machines>& machines,
+                 const std::shared_ptr<Guard>& guard)
+    : side(the_side),
+      // Each side hears of its own programs; those of this machine are heard on loopback.
+      discovery(wake, peers, side == Side::network ? machines : nullptr, guard,
+                side == Side::local && options.profile == Profile::wan ? kProgramsPerPeer : 0) {
   if (options.domain > kMaxDomain)
     throw std::runtime_error("domain " + std::to_string(options.domain) + " is not in [0, " +
                              std::to_string(kMaxDomain) + "]");
   set_up_library();
   auto* factory = fdds::DomainParticipantFactory::get_instance();
-  participant =
-      factory->create_participant(options.domain, participant_qos(options, mute_, machines, guard),
-                                  &discovery, fdds::StatusMask::none());
+  participant = factory->create_participant(
+      options.domain,
+      participant_qos(options, side, mute_, side == Side::network ? machines : nullptr, guard),
+      &discovery, fdds::StatusMask::none());
   if (participant == nullptr)
     throw std::runtime_error("no participant on domain " + std::to_string(options.domain) +
                              ": Fast DDS refused the settings" +
@@ -109,13 +133,16 @@ Bus::Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wak
       peers(wake),
       options_(options),
       guard_(Guard::make(options)),
-      machines_(options.profile == Profile::wan
-                    ? std::make_shared<Machines>(own_addresses(), peer_addresses(options))
-                    : nullptr),
-      session_(std::make_unique<Session>(options, wake, peers, machines_, guard_)),
+      machines_(options.profile == Profile::wan ? std::make_shared<Machines>() : nullptr),
+      names_(options.profile == Profile::wan ? std::make_shared<Names>() : nullptr),
       presence_(std::make_unique<Presence>(peers, instance)),
-      addresses_(own_addresses()) {
+      addresses_(options.interface) {
+  if (machines_)
+    for (const std::string& peer : options.peers)
+      machines_->name(peer, is_address(peer) ? peer : std::string());
+  session(Side::local) = make(Side::local);
   add(*presence_);
+  look_at_network();
   thread_ = std::thread([this] { run(); });
 }
 
@@ -126,25 +153,34 @@ Bus::~Bus() {
   }
   ended_.notify_one();
   thread_.join();
+  if (retiring_.joinable())
+    retiring_.join();
   remove(*presence_);
 }
 
 void Bus::add(Endpoint& endpoint) {
+  const std::scoped_lock list(endpoints_mutex_);
   const std::unique_lock lock(mutex_);
-  endpoint.open(*session_);
+  try {
+    each_session([&](Session& session) { endpoint.open(session, false); });
+  } catch (...) {
+    each_session([&](Session& session) { endpoint.close(session); });
+    throw;
+  }
   endpoints_.push_back(&endpoint);
 }
 
 void Bus::remove(Endpoint& endpoint) {
+  const std::scoped_lock list(endpoints_mutex_);
   const std::unique_lock lock(mutex_);
   std::erase(endpoints_, &endpoint);
-  endpoint.close(*session_);
+  each_session([&](Session& session) { endpoint.close(session); });
 }
 
 void Bus::watch(bool on) {
   const std::unique_lock lock(mutex_);
   watched_ = on;
-  session_->discovery.watch(on);
+  each_session([&](Session& session) { session.discovery.watch(on); });
 }
 
 void Bus::renew_soon() {
@@ -156,19 +192,40 @@ std::vector<std::string> Bus::silent_peers() const {
                    : std::vector<std::string>{};
 }
 
+std::vector<std::string> Bus::waits() const {
+  std::vector<std::string> all;
+  if (options_.profile == Profile::host)
+    return all;
+  {
+    const std::scoped_lock lock(addresses_mutex_);
+    if (std::string wait = addresses_.wait(); !wait.empty())
+      all.push_back(std::move(wait));
+  }
+  if (machines_)
+    for (const std::string& peer : machines_->unknown())
+      all.push_back("the address of peer " + peer +
+                    " is not known: no host of this name was found; it is looked up again");
+  return all;
+}
+
 void Bus::run() {
   std::unique_lock lock(thread_mutex_);
   while (!ends_) {
     lock.unlock();
     presence_->tick();
-    if (machines_)
-      session_->tell_heard(machines_->heard(BootClock::now().time_since_epoch()));
     if (guard_)
       guard_->look(options_.name);
     note_sleep();
     give_back();
-    if (renewal_due_)
-      renew();
+    if (renewal_due_.exchange(false)) {
+      if (machines_)
+        machines_->forget_told();  // by programs that the new session has to find again
+      renew(Side::local, true);
+      renew(Side::network, true);
+      write_log(v1::LOG_WARNING, options_.name + ": began anew on the bus");
+    }
+    if (++turns_ % kLook == 0)
+      look_at_network();
     lock.lock();
     ended_.wait_for(lock, std::chrono::milliseconds(Peers::kTickMs), [this] { return ends_; });
   }
@@ -177,12 +234,63 @@ void Bus::run() {
 void Bus::note_sleep() {
   const auto now = BootClock::now();
   const auto turn = now - std::exchange(last_turn_, now);
-  if (turn < kSleep || renewal_due_)
-    return;
-  if (turn > kLongSleep || presence_->longest_silence(now) > kLongSleep) {
+  if (turn >= kSleep && (turn > kLongSleep || presence_->longest_silence(now) > kLongSleep))
     renewal_due_ = true;
-    due_since_ = now;
+}
+
+// Makes the session on the network when the machine has an address for it, and keeps the names of
+// peers.
+void Bus::look_at_network() {
+  if (options_.profile == Profile::host)
+    return;
+  const auto now = BootClock::now();
+  const auto time = now.time_since_epoch();
+  const std::set<std::string> seen = network_addresses();
+  bool due = false;
+  {
+    const std::scoped_lock lock(addresses_mutex_);
+    due = addresses_.due(seen, time);
   }
+  if (machines_) {
+    machines_->be(seen);
+    if (now - names_->looked >= kLookUp || names_->looked == BootClock::time_point()) {
+      names_->looked = now;
+      std::vector<std::string> sought = machines_->unknown();
+      for (std::string& peer : machines_->silent(time))
+        if (!is_address(peer))
+          sought.push_back(std::move(peer));
+      Names::look_up(names_, machines_, sought);
+    }
+  }
+  if (due)
+    renew(Side::network, false);
+  if (machines_) {
+    const auto lock = hold();
+    if (const auto& network = sessions_[static_cast<std::size_t>(Side::network)])
+      network->tell_heard(machines_->heard(time));
+  }
+  tell_waits(time);
+}
+
+void Bus::tell_waits(std::chrono::nanoseconds now) {
+  std::string text;
+  for (const std::string& wait : waits())
+    text += (text.empty() ? "" : "; ") + wait;
+  if (text == told_) {
+    waits_since_ = {};
+    return;
+  }
+  const BootClock::time_point here{std::chrono::duration_cast<BootClock::duration>(now)};
+  if (waits_since_ == BootClock::time_point())
+    waits_since_ = here;
+  if (!text.empty() && here - waits_since_ < kTellWait)
+    return;
+  waits_since_ = {};
+  told_ = text;
+  if (text.empty())
+    write_log(v1::LOG_INFO, options_.name + ": is on the network");
+  else
+    write_log(v1::LOG_WARNING, options_.name + ": " + text);
 }
 
 // A burst of samples or goals leaves free memory between blocks that are in use. malloc alone never
@@ -196,44 +304,73 @@ void Bus::give_back() {
 #endif
 }
 
-void Bus::renew() {
-  // A machine that has just been woken may have no network yet, and a participant never finds one
-  // that comes later.
-  const auto addresses = own_addresses();
-  const bool as_before =
-      std::includes(addresses.begin(), addresses.end(), addresses_.begin(), addresses_.end());
-  const bool any = std::any_of(addresses.begin(), addresses.end(),
-                               [](const std::string& address) { return !is_loopback(address); });
-  if (options_.profile != Profile::host && !as_before &&
-      (!any || BootClock::now() - due_since_ < kNetworkReturns))
+std::unique_ptr<Session> Bus::make(Side side) const {
+  return std::make_unique<Session>(options_, side, wake, peers, machines_, guard_);
+}
+
+void Bus::renew(Side side, bool after_sleep) {
+  if (side == Side::network && options_.profile == Profile::host)
     return;
-  if (machines_)
-    machines_->forget_told();  // by programs that the new session has to find again
+  if (side == Side::network) {
+    const std::scoped_lock lock(addresses_mutex_);
+    // A machine that has just been woken may have no network yet: look_at_network() will see it.
+    if (addresses_.usable().empty() && after_sleep && !session(side))
+      return;
+  }
   std::unique_ptr<Session> fresh;
   try {
-    fresh = std::make_unique<Session>(options_, wake, peers, machines_, guard_);
+    fresh = make(side);
   } catch (const std::exception& error) {
     write_log(v1::LOG_WARNING, options_.name + ": " + error.what() + "; tried again");
+    if (side == Side::local) {
+      renewal_due_ = true;
+      return;
+    }
+    const std::scoped_lock lock(addresses_mutex_);
+    addresses_.failed(BootClock::now().time_since_epoch());
     return;
   }
+  replace(side, std::move(fresh), after_sleep);
+  if (side == Side::network) {
+    const std::scoped_lock lock(addresses_mutex_);
+    addresses_.made();
+  }
+  wake->signal();
+}
+
+// One endpoint after the other, so that a write waits for one at the most.
+void Bus::replace(Side side, std::unique_ptr<Session> fresh, bool after_sleep) {
+  const std::scoped_lock list(endpoints_mutex_);
+  std::unique_ptr<Session>& current = session(side);
+  if (current)
+    current->mute();
+  fresh->discovery.watch(watched_);
   try {
-    const std::unique_lock lock(mutex_);
-    session_->mute();
-    for (Endpoint* endpoint : endpoints_)
-      endpoint->close(*session_);
-    session_ = std::move(fresh);
-    session_->discovery.watch(watched_);
-    for (Endpoint* endpoint : endpoints_)
-      endpoint->open(*session_);
-    addresses_ = addresses;
-    renewal_due_ = false;
+    for (Endpoint* endpoint : endpoints_) {
+      const std::unique_lock lock(mutex_);
+      if (current)
+        endpoint->close(*current);
+      endpoint->open(*fresh, after_sleep);
+    }
   } catch (const std::exception& error) {
     // Half of the endpoints are better than a program that nobody restarts, and worse than none.
     write_log(v1::LOG_ERROR, options_.name + ": could not begin anew: " + error.what());
     std::_Exit(kExitBroken);
   }
-  write_log(v1::LOG_WARNING, options_.name + ": began anew on the bus");
-  wake->signal();
+  {
+    const std::unique_lock lock(mutex_);
+    std::swap(current, fresh);
+  }
+  retire(std::move(fresh));
+}
+
+// In a thread of its own: it may take as long as the others need not wait.
+void Bus::retire(std::unique_ptr<Session> old) {
+  if (!old)
+    return;
+  if (retiring_.joinable())
+    retiring_.join();
+  retiring_ = std::thread([old = std::move(old)]() mutable { old.reset(); });
 }
 
 }  // namespace saphira::bus::internal

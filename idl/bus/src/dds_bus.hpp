@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -15,8 +17,10 @@
 #include <thread>
 #include <vector>
 
+#include "addresses.hpp"
 #include "dds_discovery.hpp"
 #include "dds_guard.hpp"
+#include "dds_network.hpp"
 #include "machines.hpp"
 #include "peers.hpp"
 #include "saphira/base/boot_clock.hpp"
@@ -26,11 +30,13 @@ namespace saphira::bus::internal {
 
 class Presence;
 
-/// A participant and what is made of it.
+/// A participant on one side, and what is made of it.
 class Session {
  public:
-  Session(const NodeOptions& options, const std::shared_ptr<Wake>& wake, const Peers& peers,
-          const std::shared_ptr<Machines>& machines, const std::shared_ptr<Guard>& guard);
+  /// std::runtime_error where it cannot be made.
+  Session(const NodeOptions& options, Side side, const std::shared_ptr<Wake>& wake,
+          const Peers& peers, const std::shared_ptr<Machines>& machines,
+          const std::shared_ptr<Guard>& guard);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -45,6 +51,7 @@ class Session {
   /// Tells the others from which machines this program hears announcements.
   void tell_heard(const std::string& machines);
 
+  const Side side;
   Discovery discovery;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;
@@ -57,21 +64,26 @@ class Session {
   const std::shared_ptr<std::atomic<bool>> mute_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-/// Something of a session that is made again in the next one.
+/// Something that has a part in each session, made again in the next one.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
-  virtual void open(Session& session) = 0;
-  /// Before the session ends.
+  /// after_sleep: the session before ended because this program slept.
+  virtual void open(Session& session, bool after_sleep) = 0;
+  /// Before the session ends. Also of a session in which it was not opened.
   virtual void close(Session& session) = 0;
 };
 
 /// What the endpoints of a node share; lives as long as the last of them. Ten times a second its
 /// thread tells the others that this program is there, and looks whether they are.
 ///
+/// There is a session on loopback, for the programs of this machine, and with the profiles lan and
+/// wan one on the network, as soon as the machine has an address. When it gets another address,
+/// that one is made anew, and what runs on loopback goes on.
+///
 /// A program that stood still for about as long as the lease of discovery, or longer, may have been
 /// dropped by the others without having dropped them, and would not be heard again by some (Fast
-/// DDS 2.9). It notices that it stood still and begins anew, with a participant that nobody knows.
+/// DDS 2.9). It notices that it stood still and begins anew, with participants that nobody knows.
 class Bus {
  public:
   Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> wake);
@@ -83,9 +95,15 @@ class Bus {
   void add(Endpoint& endpoint);
   void remove(Endpoint& endpoint);
 
-  /// While it is held, the session is the same.
+  /// While it is held, the sessions are the same.
   std::shared_lock<std::shared_mutex> hold() const { return std::shared_lock(mutex_); }
-  Session& session() const { return *session_; }
+  /// Those that there are, under hold().
+  template <class Each>
+  void each_session(Each&& each) const {
+    for (const auto& session : sessions_)
+      if (session)
+        each(*session);
+  }
   const std::string& robot() const { return options_.robot; }
   /// As after a long sleep.
   void renew_soon();
@@ -93,6 +111,8 @@ class Bus {
   const std::shared_ptr<Guard>& guard() const { return guard_; }
   /// Named peers from which nothing was heard lately.
   std::vector<std::string> silent_peers() const;
+  /// In words, what the network side waits for: an address, or that of a named peer.
+  std::vector<std::string> waits() const;
 
   const std::shared_ptr<Wake> wake;
   Peers peers;
@@ -100,29 +120,44 @@ class Bus {
   void watch(bool on);
 
  private:
+  struct Names;
+
   void run();
   void note_sleep();
   void give_back();
-  void renew();
+  void look_at_network();
+  void tell_waits(std::chrono::nanoseconds now);
+  std::unique_ptr<Session> make(Side side) const;
+  void renew(Side side, bool after_sleep);
+  void replace(Side side, std::unique_ptr<Session> fresh, bool after_sleep);
+  void retire(std::unique_ptr<Session> old);
+  std::unique_ptr<Session>& session(Side side) { return sessions_[static_cast<std::size_t>(side)]; }
 
   const NodeOptions options_;
   const std::shared_ptr<Guard> guard_;
   const std::shared_ptr<Machines> machines_;  // wan alone
-  mutable std::shared_mutex mutex_;  // exclusive for who changes the session or the endpoints
-  std::unique_ptr<Session> session_;
+  const std::shared_ptr<Names> names_;        // wan alone
+  mutable std::shared_mutex
+      mutex_;                   // exclusive for who changes a session or an endpoint's part in it
+  std::mutex endpoints_mutex_;  // before mutex_
+  std::array<std::unique_ptr<Session>, 2> sessions_;  // by Side
   std::unique_ptr<Presence> presence_;
   std::vector<Endpoint*> endpoints_;
   bool watched_ = false;
-  std::set<std::string> addresses_;  // of this machine, when the session began
+  mutable std::mutex addresses_mutex_;
+  Addresses addresses_;  // of this machine
+  BootClock::time_point waits_since_;
+  std::string told_;  // of what is waited for
+  int turns_ = 0;
 
   std::mutex thread_mutex_;
   std::condition_variable ended_;
   bool ends_ = false;
   std::atomic<bool> renewal_due_{false};
-  BootClock::time_point due_since_;
   BootClock::time_point last_turn_ = BootClock::now();
   BootClock::time_point gave_back_ = last_turn_;
   std::thread thread_;
+  std::thread retiring_;  // of the session before
 };
 
 }  // namespace saphira::bus::internal

@@ -1,16 +1,24 @@
 #include "dds_network.hpp"
 
+#include <arpa/inet.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/attributes/LibrarySettingsAttributes.h>
-#include <fastrtps/utils/IPFinder.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
+#include <filesystem>
+#include <fstream>
 #include <memory>
-#include <stdexcept>
+#include <mutex>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +27,8 @@
 #include "dds_sieve.hpp"
 #include "internal.hpp"
 #include "log.hpp"
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/fnv1a.hpp"
 
 namespace saphira::bus::internal {
 namespace {
@@ -50,43 +60,105 @@ class DdsLog : public fdds::LogConsumer {
   }
 };
 
-rtps::Locator_t locator(const std::string& address) {
-  rtps::Locator_t result;
-  result.kind = LOCATOR_KIND_UDPv4;
-  result.port = 0;  // the well-known ports of the domain
-  if (rtps::IPLocator::isIPv4(address)) {
-    rtps::IPLocator::setIPv4(result, address);
-    return result;
-  }
-  const auto resolved = rtps::IPLocator::resolveNameDNS(address);
-  if (resolved.first.empty())
-    throw std::runtime_error("peer \"" + address +
-                             "\" is neither an IPv4 address nor a known host");
-  rtps::IPLocator::setIPv4(result, *resolved.first.begin());
-  return result;
+// Loopback has the ports of the other half of a domain's 250: neighbours do not hear the
+// announcements that are for other machines, and the other way round.
+constexpr std::uint16_t kLoopbackPorts = 125;
+
+/// A number of this machine since it was started, or of this network namespace.
+std::uint32_t machine() {
+  static const std::uint32_t number = [] {
+    std::string text;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> text;
+    std::error_code none;
+    text += std::filesystem::read_symlink("/proc/self/ns/net", none).string();
+    Fnv1a hash;
+    hash.add(text);
+    return static_cast<std::uint32_t>(hash.value() ^ (hash.value() >> 32U));
+  }();
+  return number;
 }
 
-void check_interface(const std::string& address) {
-  const auto found = own_addresses();
-  if (found.contains(address))
-    return;
-  std::string all;
-  for (const auto& own : found)
-    all += " " + own;
-  throw std::runtime_error("interface \"" + address +
-                           "\" is not an address of this machine, which has" + all);
+/// Fast DDS makes it of the addresses that the machine has at that moment, so that machines without
+/// one would be the same.
+rtps::GuidPrefix_t new_prefix() {
+  static const std::uint32_t process = std::random_device{}();
+  static std::atomic<std::uint32_t> count{0};
+  const std::array<std::uint32_t, 3> parts{machine(), process, ++count};
+  rtps::GuidPrefix_t prefix;
+  static_assert(sizeof parts == sizeof prefix.value);
+  std::memcpy(prefix.value, parts.data(), sizeof parts);
+  return prefix;
+}
+
+/// Whether an address is one of this machine's, by a look at them that is not older than a second.
+class OwnAddress {
+ public:
+  bool is(const std::string& address) {
+    const std::scoped_lock lock(mutex_);
+    const auto now = BootClock::now();
+    if (own_.contains(address))
+      return true;
+    if (now - looked_ < std::chrono::seconds(1) && others_.contains(address))
+      return false;
+    own_ = network_addresses();
+    own_.insert("127.0.0.1");
+    if (now - looked_ >= std::chrono::seconds(1))
+      others_.clear();
+    looked_ = now;
+    if (own_.contains(address))
+      return true;
+    others_.insert(address);
+    return false;
+  }
+
+ private:
+  std::mutex mutex_;
+  BootClock::time_point looked_;
+  std::set<std::string> own_;
+  std::set<std::string> others_;
+};
+
+/// Programs of this machine are heard on loopback, and would be heard twice. With security the
+/// first bytes of a prefix say who a program is and not where.
+SieveDescriptor::Ignore own_programs(bool secured) {
+  if (!secured)
+    return [](const std::uint8_t* prefix, const rtps::Locator_t& /*from*/) {
+      const std::uint32_t own = machine();
+      return std::memcmp(prefix, &own, sizeof own) == 0;
+    };
+  return [own = std::make_shared<OwnAddress>()](const std::uint8_t* /*prefix*/,
+                                                const rtps::Locator_t& from) {
+    return own->is(rtps::IPLocator::toIPv4string(from));
+  };
 }
 
 }  // namespace
 
-std::set<std::string> own_addresses() {
-  std::vector<rtps::IPFinder::info_IP> found;
-  rtps::IPFinder::getIPs(&found, true);
-  std::set<std::string> addresses;
-  for (const auto& ip : found)
-    if (ip.type == rtps::IPFinder::IP4 || ip.type == rtps::IPFinder::IP4_LOCAL)
-      addresses.insert(ip.name);
-  return addresses;
+std::set<std::string> network_addresses() {
+  std::set<std::string> found;
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0)
+    return found;
+  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET ||
+        (one->ifa_flags & IFF_LOOPBACK) != 0 || (one->ifa_flags & IFF_RUNNING) == 0)
+      continue;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    const auto* const address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    if (inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) != nullptr)
+      found.insert(text.data());
+  }
+  freeifaddrs(all);
+  return found;
+}
+
+bool is_address(const std::string& text) {
+  return rtps::IPLocator::isIPv4(text);
+}
+
+std::string look_up(const std::string& host) {
+  const auto found = rtps::IPLocator::resolveNameDNS(host).first;
+  return found.empty() ? std::string() : *found.begin();
 }
 
 void set_up_library() {
@@ -116,59 +188,50 @@ fdds::UserDataQosPolicy user_data(const std::string& heard) {
   return data;
 }
 
-std::set<std::string> peer_addresses(const NodeOptions& options) {
-  std::set<std::string> addresses;
-  if (options.profile == Profile::wan)
-    for (const auto& peer : options.peers)
-      addresses.insert(rtps::IPLocator::toIPv4string(locator(peer)));
-  return addresses;
-}
-
-fdds::DomainParticipantQos participant_qos(const NodeOptions& options,
+fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side,
                                            std::shared_ptr<const std::atomic<bool>> mute,
                                            std::shared_ptr<Machines> machines,
                                            std::shared_ptr<Guard> guard) {
   fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
   qos.name(options.name);
   qos.user_data() = user_data("");
+  qos.wire_protocol().prefix = new_prefix();
 
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = milliseconds(1000 * static_cast<int>(kLease.count()));
   builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kAnnouncement);
-  std::string own_address = "127.0.0.1";
-  switch (options.profile) {
-    case Profile::host:
-      udp->interfaceWhiteList.push_back(own_address);
-      break;
-    case Profile::lan:
-    case Profile::wan:
-      if (!options.interface.empty()) {
-        check_interface(options.interface);
-        own_address = options.interface;
-        udp->interfaceWhiteList.push_back(own_address);
-      }
-      break;
-  }
   std::vector<std::uint32_t> ports;
-  if (options.profile == Profile::wan) {
-    for (std::uint32_t i = 0; i < kProgramsPerPeer; ++i)
-      ports.push_back(qos.wire_protocol().port.getUnicastPort(options.domain, i));
-    builtin.avoid_builtin_multicast = true;
-    builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kPeerAnnouncement);
-    // A unicast place for discovery, and so no multicast one.
-    rtps::Locator_t here;
-    here.kind = LOCATOR_KIND_UDPv4;
-    here.port = 0;
-    builtin.metatrafficUnicastLocatorList.push_back(here);
-    udp->maxInitialPeersRange = kProgramsPerPeer;
-    builtin.initialPeersList.push_back(locator(own_address));
-    for (const auto& peer : options.peers)
-      builtin.initialPeersList.push_back(locator(peer));
+  SieveDescriptor::Ignore ignore;
+  if (side == Side::local) {
+    udp->interfaceWhiteList.push_back("127.0.0.1");
+    qos.wire_protocol().port.portBase += kLoopbackPorts;
+  } else {
+    ignore = own_programs(guard != nullptr);
+    // A packet that waits for a neighbour's address holds up nobody.
+    udp->non_blocking_send = true;
+    if (!options.interface.empty())
+      udp->interfaceWhiteList.push_back(options.interface);
+    if (machines) {
+      for (std::uint32_t i = 0; i < kProgramsPerPeer; ++i)
+        ports.push_back(qos.wire_protocol().port.getUnicastPort(options.domain, i));
+      builtin.avoid_builtin_multicast = true;
+      builtin.discovery_config.leaseDuration_announcementperiod = milliseconds(kPeerAnnouncement);
+      // A unicast place for discovery, and so no multicast one.
+      rtps::Locator_t here;
+      here.kind = LOCATOR_KIND_UDPv4;
+      here.port = 0;
+      builtin.metatrafficUnicastLocatorList.push_back(here);
+      // Announcements go to the machines (Sieve). Fast DDS makes none where it knows no place for
+      // them.
+      udp->maxInitialPeersRange = 1;
+      rtps::IPLocator::setIPv4(here, options.interface.empty() ? "127.0.0.1" : options.interface);
+      builtin.initialPeersList.push_back(here);
+    }
   }
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(std::make_shared<SieveDescriptor>(
-      udp, std::move(mute), std::move(machines), std::move(ports), guard));
+      udp, std::move(mute), std::move(machines), std::move(ports), guard, std::move(ignore)));
   if (guard)
     guard->secure(qos);
   return qos;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <memory>
@@ -24,23 +25,28 @@ constexpr std::chrono::seconds kLease{60};
 /// Each announces itself to so many places on each peer.
 constexpr std::uint32_t kProgramsPerPeer = 20;
 
-/// The IPv4 addresses of this machine that a participant would use now.
-std::set<std::string> own_addresses();
+/// A program has two sides on the bus, each with a participant of its own: programs of this machine
+/// reach each other by loopback whatever becomes of the network.
+enum class Side : std::size_t { local, network };
+
+/// IPv4 addresses of interfaces that are up and running, without loopback.
+std::set<std::string> network_addresses();
+
+/// Whether a text is an IPv4 address, and no name.
+bool is_address(const std::string& text);
+/// The address of a host by its name [empty: not known]. May take seconds.
+std::string look_up(const std::string& host);
 
 /// Settings of Fast DDS as a whole, before the first participant.
 void set_up_library();
 
-/// How a program finds others and by which addresses. std::runtime_error where a peer or the
-/// interface is not to be had. While `mute` is set it sends nothing. `machines`, `guard`: see
-/// SieveDescriptor.
+/// How a program finds others on one side, and by which addresses. While `mute` is set it sends
+/// nothing. `machines`, `guard`: see SieveDescriptor.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(
-    const NodeOptions& options, std::shared_ptr<const std::atomic<bool>> mute,
+    const NodeOptions& options, Side side, std::shared_ptr<const std::atomic<bool>> mute,
     std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr);
 
 /// The user data of a participant: its host, its process, and the machines that it hears.
 eprosima::fastdds::dds::UserDataQosPolicy user_data(const std::string& heard);
-
-/// The addresses of the peers that the options name; std::runtime_error as above.
-std::set<std::string> peer_addresses(const NodeOptions& options);
 
 }  // namespace saphira::bus::internal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -17,12 +18,12 @@ namespace saphira::bus::internal {
 /// This is about processes that are gone: a program that is slow in one cycle is not, so a thread
 /// beside its loop turns it. Neither Fast DDS's liveliness nor a deadline does it: they take a
 /// program that slept for a witness of everybody else's death.
-class Presence : public Endpoint, public eprosima::fastdds::dds::DataReaderListener {
+class Presence : public Endpoint {
  public:
   /// instance: as in ServiceStatus.
   Presence(Peers& peers, std::uint64_t instance);
 
-  void open(Session& session) override;
+  void open(Session& session, bool after_sleep) override;
   void close(Session& session) override;
 
   /// Ten times a second, from one thread.
@@ -30,17 +31,31 @@ class Presence : public Endpoint, public eprosima::fastdds::dds::DataReaderListe
   /// Of the programs that are expected, the one that was not heard for longest.
   BootClock::duration longest_silence(BootClock::time_point now) const;
 
-  void on_subscription_matched(
-      eprosima::fastdds::dds::DataReader* /*reader*/,
-      const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
-
  private:
+  /// What it has on one side.
+  struct Part : eprosima::fastdds::dds::DataReaderListener {
+    void on_subscription_matched(
+        eprosima::fastdds::dds::DataReader* /*reader*/,
+        const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override {
+      owner->matched(side, status);
+    }
+    Presence* owner = nullptr;
+    Side side = Side::local;
+    eprosima::fastdds::dds::DataWriter* writer = nullptr;
+    eprosima::fastdds::dds::DataReader* reader = nullptr;
+  };
+  void matched(Side side, const eprosima::fastdds::dds::SubscriptionMatchedStatus& status);
+
   Peers& peers_;
   v1::Presence own_;
-  eprosima::fastdds::dds::DataWriter* writer_ = nullptr;
-  eprosima::fastdds::dds::DataReader* reader_ = nullptr;
+  std::mutex parts_mutex_;     // before mutex_
+  std::array<Part, 2> parts_;  // by Side
   mutable std::mutex mutex_;
-  std::map<Peers::Program, BootClock::time_point> heard_;
+  struct Heard {
+    Side side = Side::local;
+    BootClock::time_point last;
+  };
+  std::map<Peers::Program, Heard> heard_;
 };
 
 }  // namespace saphira::bus::internal

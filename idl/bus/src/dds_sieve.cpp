@@ -55,7 +55,8 @@ class Sieve : public transport::ChainingTransport {
                std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     const auto sound = static_cast<std::uint32_t>(sound_length(buffer, size));
-    if (sound == 0 || !plausible(buffer, sound))
+    if (sound == 0 || (descriptor_.ignore && descriptor_.ignore(sender_of(buffer), remote)) ||
+        !plausible(buffer, sound))
       return;
     if (descriptor_.guard) {
       if (descriptor_.guard->revoked(sender_of(buffer)) ||
@@ -86,7 +87,7 @@ class Sieve : public transport::ChainingTransport {
     }
   }
 
-  /// To the machines that nobody named. Fast DDS sends each announcement several times at once.
+  /// To the other machines. Fast DDS sends each announcement several times at once.
   void announce(rtps::SenderResource* low, const rtps::octet* buffer, std::uint32_t size,
                 const std::chrono::steady_clock::time_point& timeout) {
     rtps::LocatorList_t places = due_places();

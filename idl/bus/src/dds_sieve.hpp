@@ -1,10 +1,12 @@
 #pragma once
 
+#include <fastdds/rtps/common/Locator.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,6 +20,9 @@ namespace saphira::bus::internal {
 /// ends the process where it throws: only sound messages pass, and what is thrown at one is caught.
 struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   using Mute = std::shared_ptr<const std::atomic<bool>>;
+  /// Whether a packet is to be dropped, by its sender's GUID prefix and address.
+  using Ignore = std::function<bool(const std::uint8_t* prefix,
+                                    const eprosima::fastrtps::rtps::Locator_t& from)>;
 
   /// While `mute` is set nothing is sent. Where there are `machines`, they hear from where
   /// announcements come, and the program announces itself to them, at each of these ports. With a
@@ -27,18 +32,20 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
                   Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
                   std::vector<std::uint32_t> the_ports = {},
-                  std::shared_ptr<Guard> the_guard = nullptr)
+                  std::shared_ptr<Guard> the_guard = nullptr, Ignore the_ignore = nullptr)
       : ChainingTransportDescriptor(std::move(low)),
         mute(std::move(the_mute)),
         machines(std::move(the_machines)),
         ports(std::move(the_ports)),
-        guard(std::move(the_guard)) {}
+        guard(std::move(the_guard)),
+        ignore(std::move(the_ignore)) {}
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
   Mute mute;
   std::shared_ptr<Machines> machines;
   std::vector<std::uint32_t> ports;
   std::shared_ptr<Guard> guard;
+  Ignore ignore;
 };
 
 }  // namespace saphira::bus::internal

@@ -81,6 +81,7 @@ class Transport {
   virtual void watch_endpoints(bool watch) = 0;
   /// As Node has them.
   virtual std::vector<std::string> silent_peers() const { return {}; }
+  virtual std::vector<std::string> network_waits() const { return {}; }
   /// With security, what this node is, and in words where its certificate expires soon.
   virtual std::optional<Identity> identity() const { return std::nullopt; }
   virtual std::string expiry() const { return {}; }

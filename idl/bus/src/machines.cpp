@@ -20,6 +20,16 @@ bool is_machine(const std::string& text) {
 
 }  // namespace
 
+void Machines::be(Addresses own) {
+  const std::scoped_lock lock(mutex_);
+  own_ = std::move(own);
+}
+
+void Machines::name(const std::string& peer, const std::string& address) {
+  const std::scoped_lock lock(mutex_);
+  named_[peer] = address;
+}
+
 void Machines::hear(const std::string& address, Time now) {
   const std::scoped_lock lock(mutex_);
   if (own_.contains(address) || !is_machine(address))
@@ -65,27 +75,34 @@ Machines::Addresses Machines::others(Time now) const {
   const std::scoped_lock lock(mutex_);
   Addresses all;
   for (const auto& [address, last] : heard_)
-    if (now - last <= kGone && is_new(address))
+    if (now - last <= kGone && !own_.contains(address))
       all.insert(address);
   for (const auto& [program, addresses] : told_)
     for (const auto& address : addresses)
-      if (all.size() < kMost && is_new(address))
+      if (all.size() < kMost && !own_.contains(address))
         all.insert(address);
+  for (const auto& [peer, address] : named_)
+    if (!address.empty() && !own_.contains(address))
+      all.insert(address);
   return all;
 }
 
 std::vector<std::string> Machines::silent(Time now) const {
   const std::scoped_lock lock(mutex_);
   std::vector<std::string> all;
-  std::copy_if(named_.begin(), named_.end(), std::back_inserter(all),
-               [&](const std::string& address) {
-                 return !own_.contains(address) && !is_heard(address, now);
-               });
+  for (const auto& [peer, address] : named_)
+    if (!address.empty() && !own_.contains(address) && !is_heard(address, now))
+      all.push_back(peer);
   return all;
 }
 
-bool Machines::is_new(const std::string& address) const {
-  return !own_.contains(address) && !named_.contains(address);
+std::vector<std::string> Machines::unknown() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::string> all;
+  for (const auto& [peer, address] : named_)
+    if (address.empty())
+      all.push_back(peer);
+  return all;
 }
 
 bool Machines::is_heard(const std::string& address, Time now) const {

@@ -13,7 +13,7 @@
 
 namespace saphira::bus::internal {
 
-/// The machines that a program announces itself to although nobody named them.
+/// The machines that a program announces itself to: those that the options name, and others.
 ///
 /// Each program tells the others from which machines it hears announcements. So two machines that
 /// both know a third one find each other: whoever is told of a machine announces itself there, and
@@ -23,8 +23,10 @@ class Machines {
   using Time = std::chrono::nanoseconds;  ///< since some moment
   using Addresses = std::set<std::string>;
 
-  /// own: the addresses of this machine; named: those of the peers that the options name.
-  Machines(Addresses own, Addresses named) : own_(std::move(own)), named_(std::move(named)) {}
+  /// The addresses of this machine, which change.
+  void be(Addresses own);
+  /// A peer of the options has this address; empty: none is known yet.
+  void name(const std::string& peer, const std::string& address);
 
   /// An announcement came from there.
   void hear(const std::string& address, Time now);
@@ -36,10 +38,12 @@ class Machines {
 
   /// From where announcements come, for other programs.
   std::string heard(Time now) const;
-  /// Where to announce oneself besides the named ones.
+  /// Where to announce oneself.
   Addresses others(Time now) const;
   /// Named ones of which nothing was heard lately.
   std::vector<std::string> silent(Time now) const;
+  /// Named ones that have no known address.
+  std::vector<std::string> unknown() const;
 
   /// What is not heard for so long is not there any more.
   static constexpr std::chrono::seconds kGone{60};
@@ -47,12 +51,11 @@ class Machines {
   static constexpr std::size_t kMost = 16;
 
  private:
-  bool is_new(const std::string& address) const;
   bool is_heard(const std::string& address, Time now) const;
 
-  const Addresses own_;
-  const Addresses named_;
   mutable std::mutex mutex_;
+  Addresses own_;
+  std::map<std::string, std::string> named_;  ///< peer and address
   std::map<std::string, Time> heard_;
   std::map<std::string, Addresses> told_;  ///< by each program
 };

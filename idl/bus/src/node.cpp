@@ -228,6 +228,10 @@ void Node::begin_anew() {
   impl_->transport->renew();
 }
 
+std::vector<std::string> Node::network_waits() const {
+  return impl_->transport->network_waits();
+}
+
 std::vector<std::string> Node::silent_peers() const {
   return impl_->transport->silent_peers();
 }

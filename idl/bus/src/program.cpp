@@ -42,7 +42,7 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain")
       ->envname("SAPHIRA_DOMAIN")
-      ->check(CLI::Range(0, 232))
+      ->check(CLI::Range(0, 231))
       ->capture_default_str();
   static const std::map<std::string, Profile> profiles{
       {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
@@ -58,7 +58,8 @@ void add_node_options(CLI::App& app, NodeOptions& options) {
       ->envname("SAPHIRA_PEERS")
       ->delimiter(',');
   app.add_option("--interface", options.interface, "lan, wan: address of the one interface to use")
-      ->envname("SAPHIRA_INTERFACE");
+      ->envname("SAPHIRA_INTERFACE")
+      ->check(CLI::ValidIPV4);
   options.security = usual_security();
   app.add_option("--security", options.security,
                  "Folder of credentials (saphira security add); none: a bus that is open to all")

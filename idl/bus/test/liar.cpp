@@ -18,7 +18,8 @@ struct Liar::Impl {
       : allowed(std::move(the_allowed)),
         wake(std::make_shared<internal::Wake>()),
         peers(wake),
-        session(options, wake, peers, nullptr, internal::Guard::make(options)) {}
+        session(options, internal::Side::local, wake, peers, nullptr,
+                internal::Guard::make(options)) {}
 
   const std::string allowed;
   const std::shared_ptr<internal::Wake> wake;

@@ -9,11 +9,34 @@ namespace {
 using std::chrono::seconds;
 using Addresses = Machines::Addresses;
 
-TEST(Machines, MachineThatAnotherProgramHearsIsAnnouncedTo) {
-  Machines machines({"127.0.0.1", "10.0.0.2"}, {"10.0.0.1"});
+/// The one at 10.0.0.2, that was given this peer.
+struct Here : Machines {
+  explicit Here(const std::string& peer) {
+    be({"10.0.0.2"});
+    if (!peer.empty())
+      name(peer, peer);
+  }
+};
+
+TEST(Machines, NamedOneIsAnnouncedToWhenItsAddressIsKnown) {
+  Here machines("");
+  machines.name("robot.local", "");
   EXPECT_TRUE(machines.others(seconds(1)).empty());
+  EXPECT_EQ(machines.unknown(), std::vector<std::string>{"robot.local"});
+  EXPECT_TRUE(machines.silent(seconds(1)).empty());
+  machines.name("robot.local", "10.0.0.1");
+  EXPECT_EQ(machines.others(seconds(2)), Addresses{"10.0.0.1"});
+  EXPECT_EQ(machines.silent(seconds(2)), std::vector<std::string>{"robot.local"});
+  machines.name("robot.local", "10.0.0.7");
+  EXPECT_EQ(machines.others(seconds(3)), Addresses{"10.0.0.7"});
+  machines.be({"10.0.0.7"});
+  EXPECT_TRUE(machines.others(seconds(4)).empty()) << "it is this machine";
+}
+
+TEST(Machines, MachineThatAnotherProgramHearsIsAnnouncedTo) {
+  Here machines("");
   machines.tell("robot", "10.0.0.2,10.0.0.1,10.0.0.3");
-  EXPECT_EQ(machines.others(seconds(1)), Addresses{"10.0.0.3"});  // not itself, nor the named one
+  EXPECT_EQ(machines.others(seconds(1)), (Addresses{"10.0.0.1", "10.0.0.3"}));  // not itself
   machines.tell("robot", "10.0.0.2");
   EXPECT_TRUE(machines.others(seconds(2)).empty());
   machines.tell("robot", "10.0.0.4");
@@ -22,7 +45,7 @@ TEST(Machines, MachineThatAnotherProgramHearsIsAnnouncedTo) {
 }
 
 TEST(Machines, MachineThatIsHeardIsToldUntilItFallsSilent) {
-  Machines machines({"127.0.0.1", "10.0.0.2"}, {"10.0.0.1"});
+  Here machines("10.0.0.1");
   machines.hear("10.0.0.2", seconds(1));
   machines.hear("127.0.0.1", seconds(1));
   EXPECT_EQ(machines.heard(seconds(1)), "");
@@ -30,13 +53,14 @@ TEST(Machines, MachineThatIsHeardIsToldUntilItFallsSilent) {
   machines.hear("10.0.0.1", seconds(50));
   EXPECT_EQ(machines.heard(seconds(50)), "10.0.0.1,10.0.0.3");
   // Programs that are begun there later are found even when nobody tells of it any more.
-  EXPECT_EQ(machines.others(seconds(50)), Addresses{"10.0.0.3"});
+  EXPECT_EQ(machines.others(seconds(50)), (Addresses{"10.0.0.1", "10.0.0.3"}));
   EXPECT_EQ(machines.heard(seconds(70)), "10.0.0.1");
-  EXPECT_TRUE(machines.others(seconds(70)).empty());
+  EXPECT_EQ(machines.others(seconds(70)), Addresses{"10.0.0.1"});
 }
 
 TEST(Machines, NamedMachineThatIsNotHeardIsSilent) {
-  Machines machines({"10.0.0.2"}, {"10.0.0.1", "10.0.0.2"});
+  Here machines("10.0.0.1");
+  machines.name("10.0.0.2", "10.0.0.2");
   EXPECT_EQ(machines.silent(seconds(1)), std::vector<std::string>{"10.0.0.1"});
   machines.hear("10.0.0.1", seconds(2));
   EXPECT_TRUE(machines.silent(seconds(3)).empty());
@@ -44,7 +68,7 @@ TEST(Machines, NamedMachineThatIsNotHeardIsSilent) {
 }
 
 TEST(Machines, WhatIsMadeUpIsBounded) {
-  Machines machines({"10.0.0.2"}, {});
+  Here machines("");
   std::string many = "x,,10.0.0,10.0.0.300,127.0.0.5,239.255.0.1,0.0.0.0,255.255.255.255";
   machines.tell("robot", many);
   EXPECT_TRUE(machines.others(seconds(1)).empty());

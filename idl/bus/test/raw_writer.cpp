@@ -70,7 +70,8 @@ RawWriter::RawWriter(std::uint32_t domain, const std::string& robot, const std::
   options.name = "raw";
   auto* factory = fdds::DomainParticipantFactory::get_instance();
   impl_->participant = factory->create_participant(
-      domain, internal::participant_qos(options, std::make_shared<std::atomic<bool>>(false)));
+      domain, internal::participant_qos(options, internal::Side::local,
+                                        std::make_shared<std::atomic<bool>>(false)));
   fdds::TypeSupport(new AnyBytes(type, keyed)).register_type(impl_->participant);
   impl_->participant->enable();
   fdds::PublisherQos publisher_qos = fdds::PUBLISHER_QOS_DEFAULT;

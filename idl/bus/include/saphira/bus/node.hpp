@@ -26,7 +26,7 @@ inline constexpr const char* kOpenBus = "none";
 struct NodeOptions {
   std::string name;               ///< of the program on the bus, such as behaviors
   std::string robot = "pioneer";  ///< the partition; "*" to read every robot
-  std::uint32_t domain = 0;       ///< DDS domain [0, 232]
+  std::uint32_t domain = 0;       ///< DDS domain [0, 231]
   Profile profile = Profile::host;
   std::vector<std::string>
       peers;              ///< wan: addresses of other machines; one that all name is enough
@@ -104,6 +104,9 @@ class Node {
 
   /// wan: addresses of named peers from which no program was heard in the last minute.
   std::vector<std::string> silent_peers() const;
+  /// lan, wan: in words, the address of this machine or of a named peer that is waited for. Until
+  /// it comes, other machines are not reached; the programs of this machine are.
+  std::vector<std::string> network_waits() const;
   /// With security, what this program is; none on an open bus.
   std::optional<Identity> identity() const;
 

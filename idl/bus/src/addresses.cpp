@@ -1,0 +1,39 @@
+#include "addresses.hpp"
+
+#include <algorithm>
+
+namespace saphira::bus::internal {
+
+bool Addresses::due(const Set& seen, Time now) {
+  seen_ = seen;
+  Set usable = seen;
+  if (!only_.empty())
+    std::erase_if(usable, [&](const std::string& address) { return address != only_; });
+  if (usable != usable_ || !looked_) {
+    // Nothing to settle where the program begins.
+    changed_ = looked_ ? now : now - kSettled;
+    looked_ = true;
+    usable_ = std::move(usable);
+  }
+  // A socket that is bound to one address does not outlive it.
+  if (!only_.empty() && usable_.empty())
+    made_with_.clear();
+  const bool has_new =
+      !std::includes(made_with_.begin(), made_with_.end(), usable_.begin(), usable_.end());
+  return has_new && now - changed_ >= kSettled && now >= not_before_;
+}
+
+std::string Addresses::wait() const {
+  if (!usable_.empty())
+    return {};
+  if (only_.empty())
+    return "this machine has no network address yet: only its own programs are reached";
+  std::string all;
+  for (const std::string& address : seen_)
+    all += (all.empty() ? "" : ", ") + address;
+  return "interface " + only_ + " is no address of this machine" +
+         (all.empty() ? ", which has none yet" : ", which has " + all) +
+         ": only its own programs are reached";
+}
+
+}  // namespace saphira::bus::internal
