@@ -22,13 +22,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPeriod{50};        ///< of the commands; the bridge's lease is 300 ms
-constexpr int kReleases = 4;               ///< of the last word: the topic is best effort
-constexpr double kHandBackLimit = 5.0;     ///< [s]
+constexpr milliseconds kPeriod{50};     ///< of the commands; the bridge's lease is 300 ms
+constexpr int kReleases = 4;            ///< of the last word: the topic is best effort
+constexpr double kHandBackLimit = 5.0;  ///< [s]
+constexpr double kRefused = 0.4;      ///< [s] since the bridge has refused a command: it still does
+constexpr double kTellRefusal = 2.0;  ///< [s] that the reason is shown
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
 constexpr const char* kKeys =
     "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
+    "an all stop also stops another person, and gives you the robot\n"
     "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n";
 
 constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
@@ -273,7 +276,10 @@ class Teleop {
   }
 
   void show() {
-    const KeyDrive::Setpoint setpoint = keys_.setpoint(now());
+    KeyDrive::Setpoint setpoint = keys_.setpoint(now());
+    const bool refused = !refusal_.empty() && seconds_since(refused_at_) < kRefused;
+    if (refused)
+      setpoint.velocity = 0.0;  // nothing that is refused is shown as wanted
     std::array<char, 256> text{};
     std::string line;
     if (!robot_ || seconds_since(robot_came_) > 1.0) {
@@ -290,11 +296,14 @@ class Teleop {
       line = text.data();
     }
     const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0;
-    std::string second = !setpoint.active ? "released" : still ? "holding still" : "driving";
+    std::string second = !setpoint.active ? "released"
+                         : refused        ? "NOT driving"
+                         : still          ? "holding still"
+                                          : "driving";
     if (grant_)
       second += "  |  " + describe(*grant_);
     std::string third = note_;
-    if (!refusal_.empty() && seconds_since(refused_at_) < 2.0)
+    if (!refusal_.empty() && seconds_since(refused_at_) < kTellRefusal)
       third = "refused: " + refusal_;
     // Three lines, each cut to the terminal, so that the cursor can go back up over them.
     winsize size{};

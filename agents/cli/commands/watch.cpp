@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <string_view>
+
 #include "saphira/bus/status_words.hpp"
 #include "saphira/cli/printer.hpp"
 
@@ -69,7 +72,15 @@ const char* name_of(bus::Profile profile) {
 
 std::string person(const std::string& program) {
   const char* const user = getlogin();
-  return user == nullptr ? program : program + " of " + user;
+  std::string text = user == nullptr ? program : program + " of " + user;
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) == 0)
+    text += " at " + std::string(host.data());
+  const char* const terminal = ttyname(STDIN_FILENO);
+  if (terminal != nullptr)
+    text += std::string(" (") +
+            (std::string_view(terminal).starts_with("/dev/") ? terminal + 5 : terminal) + ")";
+  return text;
 }
 
 namespace {

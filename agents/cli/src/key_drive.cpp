@@ -104,8 +104,11 @@ void KeyDrive::press(DriveKey key, double now) {
     ++setpoint_.move;  // hold the heading that the robot has now
   const bool repeated = now - last_key_ <= settings_.repeat_gap;
   last_key_ = now;
-  hold_until_ = std::max(repeated ? 0.0 : hold_until_,
-                         now + (repeated ? settings_.repeat_hold : settings_.first_hold));
+  if (key == DriveKey::stop)
+    hold_until_ = now + settings_.stop_hold;
+  else
+    hold_until_ = std::max(repeated || stopped_ ? 0.0 : hold_until_,
+                           now + (repeated ? settings_.repeat_hold : settings_.first_hold));
   setpoint_.active = true;
   stopped_ = key == DriveKey::stop;
 
@@ -154,7 +157,7 @@ void KeyDrive::release() {
 }
 
 KeyDrive::Setpoint KeyDrive::setpoint(double now) {
-  if (setpoint_.active && !stopped_ && now > hold_until_)
+  if (setpoint_.active && now > hold_until_)
     release();
   return setpoint_;
 }

@@ -119,16 +119,22 @@ TEST(KeyDrive, AfterAReleaseTheHeadingIsHeldAnew) {
   EXPECT_EQ(second.heading, 0.0);
 }
 
-TEST(KeyDrive, AllStopHoldsWithoutKeys) {
+TEST(KeyDrive, AllStopHoldsForAMomentAndThenLetsGo) {
   KeyDrive drive;
   drive.press(DriveKey::faster, 0.0);
   drive.press(DriveKey::stop, 0.1);
-  const auto long_after = drive.setpoint(60.0);
-  EXPECT_TRUE(long_after.active);
-  EXPECT_EQ(long_after.velocity, 0.0);
-  drive.press(DriveKey::faster, 61.0);
-  EXPECT_TRUE(drive.setpoint(61.5).active);
-  EXPECT_FALSE(drive.setpoint(62.0).active);
+  const auto after = drive.setpoint(2.0);
+  EXPECT_TRUE(after.active);
+  EXPECT_EQ(after.velocity, 0.0);
+  EXPECT_FALSE(drive.setpoint(2.2).active) << "a forgotten terminal does not keep the role";
+}
+
+TEST(KeyDrive, ATapAfterAnAllStopHoldsAsLongAsAnyTap) {
+  KeyDrive drive;
+  drive.press(DriveKey::stop, 0.0);
+  drive.press(DriveKey::faster, 0.5);
+  EXPECT_TRUE(drive.setpoint(1.2).active);
+  EXPECT_FALSE(drive.setpoint(1.4).active);
 }
 
 TEST(KeyDrive, ReleaseIsAtOnce) {

@@ -114,25 +114,66 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
       }));
     known = numbers_.try_emplace(key).first;
   }
-  known->second = {command.number, ++offers_};
-
-  if (!command.active)
+  Numbers& said = known->second;
+  said.newest = command.number;
+  said.used = ++offers_;
+  if (!command.active) {
+    said.newest_at = kNever;
     return release(command, cycle);
+  }
+  if (said.stops != command.stop || command.received - said.newest_at > settings_.lease + kTick)
+    said.began = command.received;
+  said.stops = command.stop;
+  said.newest_at = command.received;
+
   if (const std::string wrong = stale(command, cycle); !wrong.empty())
     return no(wrong);
   Player& p = player(command.role);
   const bool heard = p.held && p.newest.active && fresh(p, command.received);
-  if (heard && p.newest.writer != command.writer)
-    return no("the role is held by " + p.newest.source);
+  const bool another = heard && p.newest.writer != command.writer;
+  if (another || (command.role == Role::teleop && !command.stop && command.writer != stopper_)) {
+    if (const std::string why = another || said.began <= stopped_at_
+                                    ? held_by_another(command, said.began)
+                                    : std::string();
+        !why.empty())
+      return no(why);
+  }
+  if (another && command.stop) {
+    stopper_ = command.writer;
+    stopper_name_ = command.source;
+    stopped_at_ = command.received;
+  }
   if (command.role == Role::teleop) {
     quiet_heard_ = kNever;
     let_go_first_ = let_go_first_ && heard;
   }
-  if (!heard || command.cycle == 0 || command.cycle > p.newest.cycle)
+  if (!heard || another || command.cycle == 0 || command.cycle > p.newest.cycle)
     p.moved_on = command.received;
   p.held = true;
   p.newest = command;
   return true;
+}
+
+/// Why a command does not take the role from another one who was heard in it; empty where it does.
+/// run_began: when the writer began to say without a pause that it drives, or that it stops.
+std::string Arbiter::held_by_another(const Command& command, double run_began) const {
+  const Player& p = player(command.role);
+  if (command.role != Role::teleop)
+    return "the role is held by " + p.newest.source;
+  const bool over = command.received - run_began > settings_.stop_hold + kTick;
+  if (command.stop) {
+    if (p.newest.stop)
+      return p.newest.source + " has stopped the robot already";
+    return over ? p.newest.source + " drives since: stop again to stop the robot" : std::string();
+  }
+  if (run_began <= stopped_at_)
+    return stopper_name_ + " has stopped the robot: let go, then drive";
+  if (!p.newest.stop)
+    return p.newest.source + " drives: stop first (space), which takes the robot over";
+  const auto stop = numbers_.find({p.newest.role, p.newest.writer});
+  if (stop == numbers_.end() || run_began - stop->second.began > settings_.stop_hold + kTick)
+    return {};
+  return p.newest.source + " has just stopped the robot: let go, then drive in a moment";
 }
 
 /// A release is never refused to the one who drives: whatever is wrong with it, it means stop.

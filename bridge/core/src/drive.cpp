@@ -20,6 +20,18 @@ std::uint64_t driver_of(const authority::WriterId& writer) {
   return hash.value();
 }
 
+/// Whether it asks for zero speed and no turn.
+bool is_stop(const reflector::Motion& motion) {
+  using reflector::Rotation;
+  using reflector::Translation;
+  const bool stands = motion.translation == Translation::none ||
+                      (motion.translation == Translation::velocity && motion.velocity == 0.0);
+  const bool holds = motion.rotation == Rotation::none ||
+                     (motion.rotation == Rotation::velocity && motion.rotation_velocity == 0.0) ||
+                     (motion.rotation == Rotation::relative_heading && motion.heading == 0.0);
+  return stands && holds;
+}
+
 bool drives(Role role) {
   return role != Role::none && role != Role::estop;
 }
@@ -46,6 +58,7 @@ std::string trouble(const reflector::Motion& motion, double contact_speed) {
 void Core::command(const DriveCommand& in, double now) {
   authority::Command command = in.command;
   command.received = time(now);
+  command.stop = command.active && is_stop(in.motion);
   // Whatever else it says: a lockstep that waited for a better answer would wait for ever.
   if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
       command.cycle == session_.stamp.cycle)

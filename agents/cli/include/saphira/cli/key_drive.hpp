@@ -39,6 +39,7 @@ class KeyDrive {
     double first_hold = 0.8;      ///< [s]
     double repeat_hold = 0.3;     ///< [s]
     double repeat_gap = 0.2;      ///< [s]
+    double stop_hold = 2.0;       ///< [s] of an all stop; without keys it is then a release
     double velocity_step = 0.05;  ///< [m/s] of one key
     double velocity_rate = 0.2;   ///< [m/s2] at most, of a key that is held
     double turn_step = 0.2;       ///< [rad] of one key; a held key is always so far ahead
@@ -66,7 +67,7 @@ class KeyDrive {
  private:
   Settings settings_;
   Setpoint setpoint_;
-  bool stopped_ = false;  ///< an all stop holds without keys: standing still is safe
+  bool stopped_ = false;  ///< the last key was an all stop
   double last_key_ = -1e9;
   double last_step_ = -1e9;
   double hold_until_ = -1e9;

@@ -31,6 +31,7 @@ struct Command {
   std::uint64_t cycle = 0;   ///< the same; 0 from a writer without cycles
   std::uint64_t number = 0;  ///< counts the writer's commands
   bool active = false;       ///< the dead-man: false releases
+  bool stop = false;         ///< active, and asks for zero speed and no turn
   bool hand_back = false;    ///< a person's release that lets autonomy drive again
   double received = 0.0;     ///< [s]
 };
@@ -44,6 +45,7 @@ struct Settings {
   /// the person's program has said without a pause for so long that it does not drive.
   double quiet = std::numeric_limits<double>::infinity();
   double oldest = kOldest;  ///< [s] a command that answers an older cycle than this is refused
+  double stop_hold = 2.0;   ///< [s] a person's stop keeps the role from other persons for so long
 };
 
 struct Refusal {
@@ -77,6 +79,10 @@ struct Grant {
 /// Decides who drives the robot: the strongest role whose newest command is younger than its lease.
 /// It keeps what was offered and knows no clock. Refuses, with a reason: a repeated number, another
 /// epoch, an answer to an old cycle, a second writer in a role that is held.
+///
+/// Anybody's stop stops: zero speed and no turn is obeyed from every person, and takes the role
+/// from the one who drives, who has to let go before driving again. It keeps the role for
+/// stop_hold.
 ///
 /// Two things are latched, over connections and, with latches() and restore(), over a restart:
 /// - An emergency stop: nobody drives until it is reset. What asked to drive before the reset does
@@ -130,6 +136,7 @@ class Arbiter {
   void let_go();
   void press(const Command& command);
   bool release(const Command& command, std::uint64_t cycle);
+  std::string held_by_another(const Command& command, double run_began) const;
   std::string stale(const Command& command, std::uint64_t cycle) const;
   bool fresh(const Player& p, double now) const;
   bool live(const Player& p, double now, std::uint64_t cycle) const;
@@ -146,6 +153,10 @@ class Arbiter {
   struct Numbers {
     std::uint64_t newest = 0;
     std::uint64_t used = 0;  ///< which offer that was
+    // Active commands without a pause, all of them stops or none.
+    bool stops = false;
+    double began = 0.0;         ///< [s]
+    double newest_at = -1e300;  ///< [s]
   };
 
   /// Newest number by role and writer. Kept over connections, so that an old command that is sent
@@ -163,6 +174,9 @@ class Arbiter {
   WriterId person_{};                  ///< the person's program that drove last
   double quiet_since_ = 0.0;           ///< it says since then that it does not drive
   double quiet_heard_ = -1e300;        ///< when it said so last
+  WriterId stopper_{};                 ///< the person who has stopped another one last
+  std::string stopper_name_;
+  double stopped_at_ = -1e300;  ///< [s] when
 
   std::vector<Refusal> refused_;
   std::uint64_t refused_count_ = 0;
