@@ -102,15 +102,19 @@ void KeyDrive::press(DriveKey key, double now) {
     return;
   if (!setpoint(now).active)
     ++setpoint_.move;  // hold the heading that the robot has now
-  const bool repeated = now - last_key_ <= settings_.repeat_gap;
+  const double gap = now - last_key_;
   last_key_ = now;
+  // Keys at once are one: a slow line brings several together.
+  if (gap > settings_.burst)
+    slowest_ = gap > settings_.first_hold ? 0.0 : std::max(gap, settings_.forget * slowest_);
   if (key == DriveKey::stop)
     hold_until_ = now + settings_.stop_hold;
+  else if (slowest_ == 0.0)
+    hold_until_ = now + settings_.first_hold;
   else
-    hold_until_ = std::max(repeated || stopped_ ? 0.0 : hold_until_,
-                           now + (repeated ? settings_.repeat_hold : settings_.first_hold));
+    hold_until_ =
+        now + std::clamp(settings_.margin * slowest_, settings_.repeat_hold, settings_.first_hold);
   setpoint_.active = true;
-  stopped_ = key == DriveKey::stop;
 
   const double step =
       std::min(settings_.velocity_step, settings_.velocity_rate * (now - last_step_));
@@ -150,7 +154,7 @@ void KeyDrive::press(DriveKey key, double now) {
 void KeyDrive::release() {
   hold_until_ = -1e9;
   last_key_ = -1e9;
-  stopped_ = false;
+  slowest_ = 0.0;
   setpoint_.active = false;
   setpoint_.velocity = 0.0;
   setpoint_.heading = 0.0;

@@ -119,6 +119,30 @@ TEST(KeyDrive, AfterAReleaseTheHeadingIsHeldAnew) {
   EXPECT_EQ(second.heading, 0.0);
 }
 
+TEST(KeyDrive, KeysThatASlowLineBringsTogetherAreOneDrive) {
+  KeyDrive drive;
+  double velocity = 0.0;
+  for (int burst = 0; burst < 10; ++burst) {
+    for (int key = 0; key < 3; ++key)
+      drive.press(DriveKey::faster, 0.5 * burst + 0.001 * key);
+    for (int i = 1; i < 10; ++i)
+      EXPECT_TRUE(drive.setpoint(0.5 * burst + 0.05 * i).active) << burst;
+    velocity = drive.setpoint(0.5 * burst + 0.49).velocity;
+  }
+  EXPECT_GE(velocity, 0.3);
+  EXPECT_FALSE(drive.setpoint(4.5 + 0.002 + 0.81).active) << "let go";
+}
+
+TEST(KeyDrive, OnAGoodLineItStopsSoonAfterAKeyIsLetGo) {
+  KeyDrive drive;
+  drive.press(DriveKey::faster, 0.0);
+  double now = 0.5;  // the first repeat comes late
+  for (int i = 0; i < 30; ++i, now += 0.033)
+    drive.press(DriveKey::faster, now);
+  EXPECT_TRUE(drive.setpoint(now - 0.033 + 0.29).active);
+  EXPECT_FALSE(drive.setpoint(now - 0.033 + 0.31).active);
+}
+
 TEST(KeyDrive, AllStopHoldsForAMomentAndThenLetsGo) {
   KeyDrive drive;
   drive.press(DriveKey::faster, 0.0);

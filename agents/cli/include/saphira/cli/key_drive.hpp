@@ -30,15 +30,17 @@ std::vector<DriveKey> take_keys(std::string& input);
 /// keep coming. Times are seconds of any steady clock.
 ///
 /// A terminal tells presses and repeats, not releases, and the first repeat of a held key comes
-/// late (0.25 to 0.7 s). So the first press holds for `first_hold`, and once repeats are seen (two
-/// keys within `repeat_gap`) the hold is short. A tap drives for first_hold at most; letting go of
-/// a held key stops after repeat_hold.
+/// late (0.25 to 0.7 s). So the first press holds for `first_hold`, and once repeats are seen the
+/// hold follows the gaps between them: short on a good line, longer on one that brings keys late or
+/// several at once. A tap, and a held key that is let go, drives for first_hold at most.
 class KeyDrive {
  public:
   struct Settings {
     double first_hold = 0.8;      ///< [s]
-    double repeat_hold = 0.3;     ///< [s]
-    double repeat_gap = 0.2;      ///< [s]
+    double repeat_hold = 0.3;     ///< [s] at least
+    double burst = 0.02;          ///< [s] keys so near to each other came at once
+    double margin = 1.5;          ///< of the slowest gap that was seen lately
+    double forget = 0.8;          ///< of that gap, a key
     double stop_hold = 2.0;       ///< [s] of an all stop; without keys it is then a release
     double velocity_step = 0.05;  ///< [m/s] of one key
     double velocity_rate = 0.2;   ///< [m/s2] at most, of a key that is held
@@ -67,8 +69,8 @@ class KeyDrive {
  private:
   Settings settings_;
   Setpoint setpoint_;
-  bool stopped_ = false;  ///< the last key was an all stop
   double last_key_ = -1e9;
+  double slowest_ = 0.0;  ///< [s] between two keys lately; 0: no repeat was seen
   double last_step_ = -1e9;
   double hold_until_ = -1e9;
 };
