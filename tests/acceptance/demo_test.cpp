@@ -1,6 +1,7 @@
 // The demo as a user runs it: the robot arrives, touches nothing, and in lockstep every run of a
 // seed is the same to the last bit, in one process or in many.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <nlohmann/json.hpp>
 
@@ -122,6 +123,29 @@ TEST(Demo, OutOfTimeIsAFailureThatSaysSo) {
   const Outcome late = demo({"--lockstep", "--time-limit", "3"});
   EXPECT_EQ(late.code, 1) << late.text;
   EXPECT_FALSE(late.summary.at("arrived").get<bool>());
+}
+
+// The first thing that a newcomer tries: a second terminal.
+TEST(Demo, CommandsWithoutABusFindIt) {
+  const TempDir folder;
+  const std::map<std::string, std::string> plain{{"SAPHIRA_DOMAIN", ""},
+                                                 {"SAPHIRA_RUN", folder.path()}};
+  int calls = 0;
+  const auto status = [&] {
+    Process process({"saphira", "status"}, folder.path("status" + std::to_string(++calls)), plain);
+    process.wait();
+    return process.output();
+  };
+  {
+    Process demo({"saphira", "demo", "--headless"}, folder.path("demo"), plain);
+    const std::string first = "of the demo that runs here (--robot demo-";
+    EXPECT_TRUE(wait_until([&] {
+      const std::string text = status();
+      return text.find(first) != std::string::npos && text.find("bridge") != std::string::npos;
+    })) << demo.output();
+    demo.signal(SIGKILL);
+  }
+  EXPECT_EQ(status().find("of the demo"), std::string::npos) << "it was killed";
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
-#include <random>
 
 #include "commands.hpp"
 #include "environment.hpp"
@@ -56,25 +55,6 @@ struct Options {
   std::vector<double> goal{kGoalX, kGoalY};
   std::string trace;
 };
-
-std::uint64_t random_number() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32U) | device();
-}
-
-/// A bus of our own: a robot that nobody else has, and unless one was asked for, a domain at
-/// random. (Above 100 the ports of a domain run into those that the kernel gives out.)
-bus::NodeOptions own_bus(bus::NodeOptions options) {
-  if (options.domain == 0 && std::getenv("SAPHIRA_DOMAIN") == nullptr)
-    options.domain = 60 + static_cast<std::uint32_t>(random_number() % 40);
-  options.robot = "demo-" + std::to_string(getpid());
-  options.profile = bus::Profile::host;
-  options.peers.clear();
-  options.interface.clear();
-  options.name = "demo";
-  options.lockstep = false;  // we only watch
-  return options;
-}
 
 /// The console is for people: what is measured, or has nobody before it, goes without.
 bool has_console(const Options& options) {
@@ -299,7 +279,7 @@ class Demo {
  public:
   Demo(const Options& options, const bus::NodeOptions& node_options)
       : options_(options),
-        node_options_(own_bus(node_options)),
+        node_options_(own_bus(node_options, "demo")),
         trace_(options.trace.empty() ? folder_.path() + "/trace.csv" : options.trace),
         supervisor_(programs(options, node_options_, folder_.path(), trace_),
                     [this](auto from, auto line) { keep(from, line); }) {}
@@ -308,6 +288,8 @@ class Demo {
     std::ofstream(trace_).close();
     // Children first: they come up while we make our node.
     supervisor_.start();
+    // Other commands find it by that.
+    const RunningDemo found(node_options_.robot, node_options_.domain);
     drive(stop);
     const bool interrupted = stop.requested();
     if (screen_.on() && !address_.empty() && !interrupted)

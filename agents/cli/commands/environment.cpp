@@ -1,5 +1,10 @@
 #include "environment.hpp"
 
+#include <unistd.h>
+
+#include <cstdlib>
+#include <random>
+
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -14,6 +19,20 @@ std::map<std::string, std::string> as_environment(const bus::NodeOptions& option
           {"SAPHIRA_PEERS", peers},
           {"SAPHIRA_INTERFACE", options.interface},
           {"SAPHIRA_SECURITY", options.security.empty() ? bus::kOpenBus : options.security}};
+}
+
+bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {
+  const char* const given = std::getenv("SAPHIRA_DOMAIN");
+  // Above 100 the ports of a domain run into those that the kernel gives out.
+  if (options.domain == 0 && (given == nullptr || *given == '\0'))
+    options.domain = 60 + std::random_device{}() % 40;
+  options.robot = name + "-" + std::to_string(getpid());
+  options.profile = bus::Profile::host;
+  options.peers.clear();
+  options.interface.clear();
+  options.name = name;
+  options.lockstep = false;  // we only watch
+  return options;
 }
 
 }  // namespace saphira::cli

@@ -1,8 +1,10 @@
 #include <cstdio>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
+#include "run_folder.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/cli/printer.hpp"
 
@@ -23,6 +25,27 @@ int print_help(const CLI::App& root, const std::string& name) {
       stderr, "saphira: no command \"%s\"%s\n", name.c_str(),
       meant.empty() ? "; `saphira help` lists them" : (": did you mean " + meant + "?").c_str());
   return bus::kExitUsage;
+}
+
+/// Where no bus was named and nothing of ours is up but a demonstration, that one is meant.
+bus::NodeOptions with_demo(const CLI::App& root, bus::NodeOptions options) {
+  static const std::set<std::string> others{"demo",  "scenario", "up",       "check", "stop",
+                                            "renew", "log",      "security", "bench", "complete"};
+  for (const char* const option : {"--robot", "--domain", "--profile", "--peer"})
+    if (root.get_option(option)->count() > 0)
+      return options;
+  const auto commands = root.get_subcommands();
+  if (commands.empty() || others.contains(commands.front()->get_name()) ||
+      !running_deployments().empty())
+    return options;
+  const DemoBus demo = running_demo();
+  if (demo.robot.empty())
+    return options;
+  complain("saphira: of the demo that runs here (--robot %s --domain %u)\n", demo.robot.c_str(),
+           demo.domain);
+  options.robot = demo.robot;
+  options.domain = demo.domain;
+  return options;
 }
 
 }  // namespace
@@ -80,7 +103,7 @@ int main(int argc, char** argv) {
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
         if (chosen.run) {
-          const int code = chosen.run(options, stop);
+          const int code = chosen.run(cli::with_demo(*root, options), stop);
           cli::flush_output();
           return code;
         }

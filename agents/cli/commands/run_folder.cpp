@@ -91,6 +91,44 @@ std::vector<Running> running_deployments() {
   return all;
 }
 
+RunningDemo::RunningDemo(const std::string& robot, unsigned domain) {
+  const std::string folder = own_folder() + "/demos";
+  make_own(folder);
+  path_ = folder + "/" + robot;
+  lock_ = lock(path_);
+  const std::string text = robot + " " + std::to_string(domain) + "\n";
+  if (lock_ < 0 || ftruncate(lock_, 0) != 0 || write(lock_, text.data(), text.size()) < 0)
+    throw std::runtime_error(path_ + " cannot be written");
+}
+
+RunningDemo::~RunningDemo() {
+  unlink(path_.c_str());
+  close(lock_);
+}
+
+DemoBus running_demo() {
+  DemoBus newest;
+  std::filesystem::file_time_type at;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(own_folder() + "/demos", none)) {
+    const std::string path = entry.path();
+    // Who can have the lock is the only one: it was killed.
+    if (const int file = lock(path); file >= 0) {
+      unlink(path.c_str());
+      close(file);
+      continue;
+    }
+    DemoBus bus;
+    const auto written = entry.last_write_time(none);
+    if ((std::ifstream(path) >> bus.robot >> bus.domain) &&
+        (newest.robot.empty() || written > at)) {
+      newest = bus;
+      at = written;
+    }
+  }
+  return newest;
+}
+
 std::string log_of(const std::string& name) {
   return own_folder() + "/" + name + ".log";
 }

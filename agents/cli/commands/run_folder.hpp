@@ -35,6 +35,27 @@ std::vector<Running> running_deployments();
 /// What is said by the deployment of that name while it has no terminal.
 std::string log_of(const std::string& name);
 
+/// A demonstration that runs on this machine, with a bus of its own: commands of this user that
+/// name no bus are meant for it, as long as the object lives.
+class RunningDemo {
+ public:
+  RunningDemo(const std::string& robot, unsigned domain);
+  ~RunningDemo();
+  RunningDemo(const RunningDemo&) = delete;
+  RunningDemo& operator=(const RunningDemo&) = delete;
+
+ private:
+  std::string path_;
+  int lock_ = -1;
+};
+
+/// The robot and domain of the newest one; robot empty: none runs.
+struct DemoBus {
+  std::string robot;
+  unsigned domain = 0;
+};
+DemoBus running_demo();
+
 /// That a robot has each of its programs once on this machine, by whatever deployments.
 class ProgramLocks {
  public:

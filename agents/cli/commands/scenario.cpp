@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "commands.hpp"
 #include "environment.hpp"
@@ -82,17 +81,6 @@ class Kept {
  private:
   std::deque<std::string> lines_;
 };
-
-bus::NodeOptions own_bus(bus::NodeOptions options) {
-  std::random_device device;
-  if (options.domain == 0 && std::getenv("SAPHIRA_DOMAIN") == nullptr)
-    options.domain = 60 + device() % 40;
-  options.robot = "flakey-" + std::to_string(getpid());
-  options.profile = bus::Profile::host;
-  options.name = "scenario";
-  options.lockstep = false;
-  return options;
-}
 
 Places places_of(const Run& run) {
   Places places = find_places();
@@ -315,7 +303,8 @@ int scenario(const Options& options, const bus::NodeOptions& given, const bus::S
     casts.push_back(find_file(config_folder() + "/people", name, ".people"));
     story::Cast(read_file(casts.back()), casts.back());  // mistakes are told before anything runs
   }
-  const bus::NodeOptions node = own_bus(given);
+  const bus::NodeOptions node = own_bus(given, "flakey");
+  const RunningDemo found(node.robot, node.domain);
   const bool several = casts.size() * options.seeds > 1;
   Sum sum;
   for (const std::string& cast : casts)
