@@ -1,0 +1,38 @@
+// What a language model's client says to the door, a line for each message: each line is taken or
+// gets an error, each call has arguments that fit, and what is said to the client is JSON.
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "saphira/mcp/session.hpp"
+
+using namespace saphira::mcp;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Tool kTool{
+      "go_to", "goes",
+      Json::parse(R"({"type":"object","additionalProperties":false,"required":["x"],"properties":{
+        "x":{"type":"number","minimum":-100,"maximum":100},"frame":{"type":"string","enum":["map"]}}})")};
+  Session session("saphira", "1", "a robot");
+  session.set_tools({kTool});
+  std::string_view text(reinterpret_cast<const char*>(data), size);
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    session.take(text.substr(0, end));
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    for (const Call& call : session.take_calls()) {
+      if (!misfit(call.arguments, kTool.input).empty())
+        std::abort();
+      session.progress(call.number, 0.5, "half");
+      if (call.number % 2 == 0)
+        session.answer(call.number, {"done", call.arguments, false});
+    }
+    session.take_given_up();
+    for (const std::string& line : session.take_lines())
+      if (!Json::accept(line) || line.find('\n') != std::string::npos)
+        std::abort();
+  }
+  return 0;
+}
