@@ -85,21 +85,18 @@ endfunction()
 # labelled `slow` out.
 set(SAPHIRA_SLOW_TESTS "/tests/(acceptance|bench|clients|drive|fuzz|integration|network)|/explore$|/saphira_c$")
 
-# How much of `ctest -j N` a test takes. N is SAPHIRA_TEST_SHARES for each core (see ./saphira test):
-# a test that computes takes a core, one that mostly waits a third of it.
-set(SAPHIRA_TEST_SHARES 3)
-
-# saphira_test(<name> SOURCES a_test.cpp... LINK t... [DDS] [WAITS] [ALONE] [TIMEOUT s])
-# Tests are exact, or live where one of these three is given: real processes in real time. They have the
-# label `live`, and ./saphira test grants them three attempts.
-# DDS: the test talks on the bus; every attempt has a domain of its own, on loopback.
-# WAITS: the test mostly waits, for time to pass or for processes in real time; more of them run at once.
-# ALONE: no test that computes runs beside it: for what is measured in real time.
+# saphira_test(<name> SOURCES a_test.cpp... LINK t... [BUS] [LIVE filter...] [TIMEOUT s])
+# Tests are exact: pure, in lockstep, or on a bus in memory with a clock that the test moves. One failure
+# is a failure.
+# LIVE: a filter of GoogleTest each, such as Suite.* (*: all tests). The tests that it matches run real
+# processes in real time. Each filter is one case with the label `live`, and ./saphira test grants it
+# three attempts. They cost minutes, so they are few.
+# BUS: each run has a DDS domain of its own, on loopback; so do live tests.
 function(saphira_test name)
   if(NOT SAPHIRA_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "DDS;WAITS;ALONE" "TIMEOUT" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(arg "BUS" "TIMEOUT" "SOURCES;LINK;LIVE" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
@@ -108,27 +105,29 @@ function(saphira_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   set(main GTest::gtest_main)
-  if(arg_DDS)
+  if(arg_BUS OR arg_LIVE)
     set(main saphira_test_live_main)
   endif()
   target_link_libraries(${name} PRIVATE ${arg_LINK} ${main} saphira_warnings)
   set(environment "SAPHIRA_SOURCE_DIR=${CMAKE_SOURCE_DIR};SAPHIRA_BIN_DIR=${CMAKE_BINARY_DIR}/bin;SAPHIRA_BUILD_DIR=${CMAKE_BINARY_DIR};SAPHIRA_SECURITY=none")
   list(APPEND environment ${SAPHIRA_SANITIZER_OPTIONS})
-  set(shares ${SAPHIRA_TEST_SHARES})
-  if(arg_WAITS)
-    set(shares 1)
-  elseif(arg_ALONE)
-    math(EXPR shares "${SAPHIRA_TEST_SHARES} * 2 - 2")
-  endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}." NO_PRETTY_VALUES
-    TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT} PROCESSORS ${shares})
   set(label quick)
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "${SAPHIRA_SLOW_TESTS}")
     set(label slow)
   endif()
-  if(arg_DDS OR arg_WAITS OR arg_ALONE)
-    set(label "${label}\\;live")
+  foreach(filter ${arg_LIVE})
+    string(REPLACE "*" "" case "${name}.${filter}")
+    string(REGEX REPLACE "\\.+$" "" case "${case}")
+    add_test(NAME ${case} COMMAND ${name} --gtest_filter=${filter})
+    set_tests_properties(${case} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${label};live"
+      ENVIRONMENT "${environment}" SKIP_RETURN_CODE 77)
+  endforeach()
+  if("${arg_LIVE}" STREQUAL "*")
+    return()
   endif()
+  string(REPLACE ";" ":" live "${arg_LIVE}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}." NO_PRETTY_VALUES
+    TEST_FILTER "-${live}" TEST_LIST ${name}_tests PROPERTIES TIMEOUT ${arg_TIMEOUT})
   # Apart, since gtest_discover_tests takes a property that is a list to pieces.
   set(setter "${CMAKE_CURRENT_BINARY_DIR}/${name}_environment.cmake")
   file(WRITE "${setter}" "if(${name}_tests)

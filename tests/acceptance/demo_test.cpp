@@ -65,14 +65,6 @@ TEST(Demo, SeparateProcessesAreTheSameEachTime) {
             demo(separate).summary.at("trajectory_hash"));
 }
 
-// A short way: the whole one is driven in lockstep.
-TEST(Demo, LiveArrivesUntouched) {
-  const Outcome live = demo({"--seed", "1", "--goal", "3", "0"});
-  ASSERT_EQ(live.code, 0) << live.text;
-  EXPECT_TRUE(live.summary.at("arrived").get<bool>());
-  EXPECT_EQ(live.summary.at("contacts"), 0);
-}
-
 /// A folder of credentials for all that runs in the demo.
 std::string credentials(const TempDir& folder) {
   const std::string authority = folder.path("authority");

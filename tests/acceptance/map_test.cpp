@@ -198,8 +198,7 @@ TEST_P(PerceptionLoss, AKilledServiceKnowsAgainWhereTheRobotIs) {
             0.3);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachOfThem, PerceptionLoss,
-                         testing::Values("saphira-interpretation", "saphira-registration"));
+INSTANTIATE_TEST_SUITE_P(EachOfThem, PerceptionLoss, testing::Values("saphira-registration"));
 
 }  // namespace
 }  // namespace saphira::test

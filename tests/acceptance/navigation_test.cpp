@@ -1,5 +1,5 @@
-// "Go to room N2" over the whole system: the goal on the bus, the activities from their files, the
-// behaviors that they intend, the map and what is seen.
+// "Go to room N2" over the whole system in lockstep: the goal on the bus, the activities from their
+// files, the behaviors that they intend, the map and what is seen.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,20 +7,28 @@
 #include <optional>
 #include <set>
 
-#include "system.hpp"
+#include "lockstep.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::test {
 namespace {
 
+struct Office : LockstepSystem {
+  Office()
+      : LockstepSystem({.world = read_file(source("config/worlds/office.wld")),
+                        .robot = "pioneer",
+                        .map = "office"}) {}
+};
+
 TEST(NavigationAcceptance, GoesToARoomByItsName) {
-  System system;
-  auto intentions = system.node().reader(bus::topics::kIntentions);
-  auto drawings = system.node().reader(bus::topics::kDrawings);
-  system.start_all();
+  Office system;
+  auto intentions = system.node.reader(bus::topics::kIntentions);
+  auto drawings = system.node.reader(bus::topics::kDrawings);
   v1::Goal goal;
   goal.functor("go-to-place");
   goal.arguments({bus::text("place", "N2")});
-  const v1::GoalId id = system.goals().ask(goal);
+  const v1::GoalId id = system.ask(goal);
+  system.permit(1500);
   std::set<std::string> schemas;
   std::vector<v1::DrawnPoint> way;
   bool erased = false;
@@ -54,38 +62,35 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
     take_drawings();
     return erased;
   }));
-  const Truth truth = system.truth();
+  const sim::TraceRow truth = sim::parse_trace(system.end(), "trace.csv").back();
   EXPECT_EQ(truth.contacts, 0);
-  EXPECT_GT(truth.x, 4.5);
-  EXPECT_LT(truth.x, 9.0);
-  EXPECT_GT(truth.y, 8.0);
-  EXPECT_TRUE(system.wait_still());
+  EXPECT_GT(truth.pose_in_world.x, 4.5);
+  EXPECT_LT(truth.pose_in_world.x, 9.0);
+  EXPECT_GT(truth.pose_in_world.y, 8.0);
 }
 
 // It means contact, and the guard is on: it touches the wall, slowly.
 TEST(NavigationAcceptance, BumpAndGoBumps) {
-  System system;
-  system.start_all();
+  Office system;
   v1::Goal goal;
   goal.functor("turn_to");  // to the corridor's wall, 0.8 m away
   goal.arguments({bus::number("heading", 1.57)});
-  ASSERT_TRUE(system.wait_end(system.goals().ask(goal))) << system.output();
+  const v1::GoalId turn = system.ask(goal);
+  system.permit(200);
+  ASSERT_TRUE(system.wait_end(turn)) << system.output();
   goal.functor("bump-and-go");
   goal.arguments({bus::number("bumps", 1.0)});
-  const v1::GoalId id = system.goals().ask(goal);
-  Truth before;
-  std::optional<double> speed_of_contact;
-  const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
-    const Truth truth = system.truth();
-    if (truth.contacts > 0 && !speed_of_contact)
-      speed_of_contact = before.velocity;
-    before = truth;
-  });
+  const v1::GoalId id = system.ask(goal);
+  system.permit(800);
+  const std::optional<v1::GoalStatus> status = system.wait_end(id);
   ASSERT_TRUE(status) << system.output();
   EXPECT_EQ(status->state(), v1::GOAL_SUCCEEDED) << status->reason() << system.output();
   EXPECT_EQ(status->reason(), "ran into 1 things");
-  ASSERT_TRUE(speed_of_contact) << "it touched nothing";
-  EXPECT_LE(*speed_of_contact, 0.12);
+  const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
+  const auto touch = std::find_if(rows.begin(), rows.end(),
+                                  [](const sim::TraceRow& row) { return row.contacts > 0; });
+  ASSERT_TRUE(touch != rows.end() && touch != rows.begin()) << "it touched nothing";
+  EXPECT_LE(std::prev(touch)->velocity, 0.12);
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST_P(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
   EXPECT_NE(checker.output().find("0 violations"), std::string::npos) << checker.output();
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, UnderTheChecker, ::testing::Values("psos43m", "p2dx", "p3dx-sh"),
+INSTANTIATE_TEST_SUITE_P(Robots, UnderTheChecker, ::testing::Values("psos43m", "p3dx-sh"),
                          [](const auto& robot) {
                            std::string name = robot.param;
                            for (char& c : name)

@@ -153,7 +153,10 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST_F(CliTest, WithoutArgumentsItHelps) {
+/// What needs no bus.
+class Answers : public CliTest {};
+
+TEST_F(Answers, WithoutArgumentsItHelps) {
   const Outcome outcome = run({});
   EXPECT_EQ(outcome.code, 0);
   for (const char* name :
@@ -162,7 +165,7 @@ TEST_F(CliTest, WithoutArgumentsItHelps) {
 }
 
 // The script shows this file where nothing is built yet.
-TEST_F(CliTest, HelpIsWhatTheScriptShowsOfAFreshClone) {
+TEST_F(Answers, HelpIsWhatTheScriptShowsOfAFreshClone) {
   std::ifstream in(test::source("agents/cli/help.txt"));
   std::stringstream file;
   file << in.rdbuf();
@@ -173,7 +176,7 @@ TEST_F(CliTest, HelpIsWhatTheScriptShowsOfAFreshClone) {
   EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
 }
 
-TEST_F(CliTest, WhatIsMistypedGetsAGuess) {
+TEST_F(Answers, WhatIsMistypedGetsAGuess) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
       {{"gaol"}, "did you mean goal?"},
       {{"help", "statsu"}, "did you mean status?"},
@@ -187,7 +190,7 @@ TEST_F(CliTest, WhatIsMistypedGetsAGuess) {
   }
 }
 
-TEST_F(CliTest, WhatIsWrongIsAUsageError) {
+TEST_F(Answers, WhatIsWrongIsAUsageError) {
   const std::vector<std::vector<std::string>> wrong{
       {"fly"},        {"demo", "--seed", "x"}, {"demo", "--goal", "1"},       {"up"},
       {"up", "dmeo"}, {"echo", "robot/stat"},  {"goal", "go", "1"},           {"bench", "nothing"},
@@ -546,7 +549,7 @@ TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
   EXPECT_TRUE(has(up.output(), "all stopped")) << up.output();
 }
 
-TEST_F(CliTest, UpGivesARobotEachOfItsProgramsOnce) {
+TEST_F(Answers, UpGivesARobotEachOfItsProgramsOnce) {
   const std::string programs =
       "programs:\n"
       "  - {name: behaviors, program: sh, arguments: [-c, exec sleep 600]}\n";
@@ -562,14 +565,14 @@ TEST_F(CliTest, UpGivesARobotEachOfItsProgramsOnce) {
   EXPECT_EQ(up.wait(), 0);
 }
 
-TEST_F(CliTest, UpNamesTheMistakeInADeployment) {
+TEST_F(Answers, UpNamesTheMistakeInADeployment) {
   const std::string file = write("bad.yaml", "programs:\n  - program: sh\n    argments: []\n");
   const Outcome outcome = run({"up", file});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_TRUE(has(outcome.text, "bad.yaml:3:5: unknown key \"argments\"")) << outcome.text;
 }
 
-TEST_F(CliTest, UpEndsWhenAProgramDoesNotTakeItsOptions) {
+TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
   const std::string file =
       write("misused.yaml",
             "programs:\n"
@@ -581,7 +584,7 @@ TEST_F(CliTest, UpEndsWhenAProgramDoesNotTakeItsOptions) {
 }
 
 // The files that a deployment gives its programs are read by these, and nothing is started.
-TEST_F(CliTest, CheckSaysWhetherADeploymentWouldStart) {
+TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
   const Outcome good = run({"check", "office"});
   EXPECT_EQ(good.code, 0) << good.text;
   EXPECT_TRUE(has(good.text, "office.yaml would start")) << good.text;
@@ -598,7 +601,7 @@ TEST_F(CliTest, CheckSaysWhetherADeploymentWouldStart) {
   EXPECT_EQ(run({"status"}).code, 1) << "nothing was started";
 }
 
-TEST_F(CliTest, TheDemoSaysWhatIsWrongWithAWorld) {
+TEST_F(Answers, TheDemoSaysWhatIsWrongWithAWorld) {
   const std::string file = write("bad.wld", "wdith 3\n");
   const Outcome outcome = run({"demo", "--headless", "--world", file});
   EXPECT_EQ(outcome.code, 2);

@@ -19,7 +19,7 @@ std::string driving(const std::string& before, const std::string& task) {
   return before + text;
 }
 
-TEST_P(Mistakes, AMicroTaskThatHangsStopsTheRobot) {
+TEST_F(Mistakes, AMicroTaskThatHangsStopsTheRobot) {
   simulate();
   Process program = start(written(
       driving("static void hang(void) { static volatile int n; if (++n > 20) for (;;) ++n; }",
@@ -31,7 +31,7 @@ TEST_P(Mistakes, AMicroTaskThatHangsStopsTheRobot) {
   })) << program.output();
 }
 
-TEST_P(Mistakes, ExitInACallbackStopsTheRobot) {
+TEST_F(Mistakes, ExitInACallbackStopsTheRobot) {
   simulate();
   Process program =
       start(written(driving("static void leave(void) { static int n; if (++n > 20) exit(7); }",
@@ -40,7 +40,7 @@ TEST_P(Mistakes, ExitInACallbackStopsTheRobot) {
   EXPECT_TRUE(test::wait_until([this] { return stands(); }));
 }
 
-TEST_P(Mistakes, KilledWhileDrivingTheRobotStands) {
+TEST_F(Mistakes, KilledWhileDrivingTheRobotStands) {
   simulate();
   Process program = start(written(driving("", "")));
   ASSERT_TRUE(test::wait_until([this] { return moves(); })) << program.output();
@@ -56,7 +56,7 @@ TEST_P(Mistakes, KilledWhileDrivingTheRobotStands) {
   EXPECT_LE(stood, killed + 5);
 }
 
-TEST_P(Mistakes, WrongCallsAreNamedAndDoNothing) {
+TEST_F(Mistakes, WrongCallsAreNamedAndDoNothing) {
   simulate();
   Process program = start(written(driving("", R"(
     sfInitProcess(NULL, "x"); sfSetProcessState(NULL, sfSUSPEND); sfKillBehavior(NULL);
@@ -79,8 +79,6 @@ TEST_P(Mistakes, WrongCallsAreNamedAndDoNothing) {
         "done"})
     EXPECT_NE(said.find(part), std::string::npos) << part << "\n" << said;
 }
-
-INSTANTIATE_TEST_SUITE_P(, Mistakes, testing::Values("c", "c++"), test::language_name);
 
 }  // namespace
 }  // namespace saphira

@@ -36,10 +36,6 @@ inline std::string sanitized() {
   return which.empty() ? "" : " -g -fsanitize=" + which;
 }
 
-inline std::string language_name(const testing::TestParamInfo<const char*>& language) {
-  return std::string(language.param) == "c" ? "C" : "Cpp";
-}
-
 /// A program, compiled by the system's compiler against the installed library.
 inline std::string compiled(const std::string& file, const TempDir& dir, bool cpp) {
   std::string out = dir.path("program");
@@ -54,22 +50,24 @@ inline std::string compiled(const std::string& file, const TempDir& dir, bool cp
 }
 
 /// A simulator and a program that drives in it.
-class Programs : public testing::TestWithParam<const char*> {
+class Programs : public testing::Test {
  protected:
   void simulate_on_line(const std::string& position) {
-    simulator_.emplace(std::vector<std::string>{"saphira-sim", "--world", "simple", "--position",
-                                                position, "--pty", socket(), "--trace",
-                                                dir_.path("trace.csv"), "--seed", "3"},
-                       dir_.path("sim"));
+    simulator_.emplace(
+        std::vector<std::string>{"saphira-sim", "--world", "simple", "--position", position,
+                                 "--pty", socket(), "--trace", dir_.path("trace.csv"), "--seed",
+                                 "3", "--rate", "4"},
+        dir_.path("sim"));
     ASSERT_TRUE(wait_until([this] { return ::access(socket().c_str(), F_OK) == 0; }));
   }
   /// `things`: what stands in the world besides, in the form of its file.
+  /// `rate`: how many times real time.
   void simulate(const std::string& position = "19000 19000 0", const std::string& world = "simple",
-                const std::string& things = "") {
-    std::vector<std::string> argv{"saphira-sim", "--world", world,
-                                  "--position",  position,  "--socket",
-                                  socket(),      "--trace", dir_.path("trace.csv"),
-                                  "--seed",      "3"};
+                const std::string& things = "", const std::string& rate = "4") {
+    std::vector<std::string> argv{
+        "saphira-sim", "--world", world,     "--position",           position,
+        "--socket",    socket(),  "--trace", dir_.path("trace.csv"), "--seed",
+        "3",           "--rate",  rate};
     if (!things.empty()) {
       std::ofstream(dir_.path("things.wld")) << things << "\n";
       argv.insert(argv.end(), {"--things", dir_.path("things.wld")});
@@ -77,8 +75,10 @@ class Programs : public testing::TestWithParam<const char*> {
     simulator_.emplace(argv, dir_.path("sim"));
     ASSERT_TRUE(wait_until([this] { return ::access(socket().c_str(), F_OK) == 0; }));
   }
+  /// As C++, which is to compile as well, and as C, which runs.
   std::string build(const std::string& file) {
-    return compiled(file, dir_, std::string(GetParam()) == "c++");
+    compiled(file, dir_, true);
+    return compiled(file, dir_, false);
   }
   std::string example(const std::string& name) {
     return build(source("agents/saphira_c/examples/" + name + ".c"));

@@ -19,16 +19,10 @@ class Button {
     command_.number(command_.number() + 1);
     writer_.write(command_);
   }
-  void reset() {
-    v1::Request request;
-    request.functor("reset");
-    resets_.send(request);
-  }
 
  private:
   bus::Node node_;
   bus::Writer<v1::MotorCommand> writer_ = node_.writer(bus::topics::kDriveEstop);
-  bus::RequestClient resets_{node_, bus::topics::kEstopReset, "key switch"};
   v1::MotorCommand command_;
 };
 
@@ -90,85 +84,35 @@ TEST(BridgeEstop, HoldsWithoutItsButtonOverANewConnectionAndARestart) {
   EXPECT_NE(scene.status.reason().find("emergency stop, pressed by button"), std::string::npos);
 }
 
-TEST(BridgeEstop, IsReleasedByAResetAloneAndTheOldCommandDoesNotGoOn) {
-  Driving scene;
-  ASSERT_TRUE(scene.moves()) << scene.bridge_log();
-  Button button(scene);
-  ASSERT_TRUE(scene.press(button));
-  // Refused while somebody presses, and said why.
-  ASSERT_TRUE(scene.until([&] {
-    button.say(true);
-    button.reset();
-    const auto& refused = scene.grant.refused();
-    return std::any_of(refused.begin(), refused.end(), [](const v1::Refusal& refusal) {
-      return refusal.source() == "key switch" &&
-             refusal.reason().find("button still presses") != std::string::npos;
-    });
-  }));
-  EXPECT_TRUE(scene.grant.estopped());
-  button.say(false);
-  ASSERT_TRUE(scene.until([&] {
-    button.reset();
-    return !scene.grant.estopped();
-  }));
-  // The driver never let go: it does not drive on.
-  EXPECT_TRUE(scene.grant.waits_for_hand_back());
-  const std::uint64_t reset = scene.state.stamp().cycle();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > reset + 30; }));
-  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
-  EXPECT_TRUE(scene.rests());
-}
-
-TEST(BridgeEstop, IsConfirmedWithoutARobot) {
-  Scene scene;
-  scene.robot_port = scene.folder.path("nobody");
-  scene.start_bridge();
-  Button button(scene);
-  ASSERT_TRUE(scene.until([&] {
-    button.say(true);
-    return scene.grant.estopped();
-  })) << scene.bridge_log();
-  // A robot that is switched on later does not drive.
-  button.say(false);
-  scene.robot_port = scene.folder.path("robot");
-  scene.start_bridge();
-  EXPECT_TRUE(scene.until([&] { return !scene.grant.estopped(); })) << "no --state, no memory";
-}
-
-/// The way from the press to the standstill [m], of a robot at 0.4 m/s.
+/// The way from the press to the standstill [m], of a robot at 0.4 m/s. In lockstep.
 double way_to_standstill(const std::string& robot_file) {
-  Scene scene;
+  Scene scene(true);
   scene.robot_file = robot_file;
   scene.start_simulator();
   scene.start_bridge();
   forward(scene.command, 0.4);
-  scene.drives = true;
-  EXPECT_TRUE(scene.until([&] { return scene.state.velocity() > 0.38; })) << scene.bridge_log();
   Button button(scene);
-  std::uint64_t pressed = 0;
+  scene.permit(50);
+  EXPECT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 50; })) << scene.bridge_log();
+  EXPECT_GT(scene.state.velocity(), 0.38);
   EXPECT_TRUE(scene.until([&] {
     button.say(true);
-    if (pressed == 0 && scene.grant.estopped())
-      pressed = scene.grant.stamp().cycle();
-    return scene.grant.estopped() && scene.rests();
+    return scene.grant.estopped();
   }));
-  double begin = 0.0;
-  double end = 0.0;
-  for (const sim::TraceRow& row : scene.trace()) {
-    if (row.cycle == pressed)
-      begin = row.pose_in_world.x;
-    end = row.pose_in_world.x;
-  }
-  return end - begin;
+  scene.permit(100);
+  EXPECT_TRUE(scene.until([&] { return scene.state.stamp().cycle() == 100; }));
+  EXPECT_TRUE(scene.rests());
+  const std::vector<sim::TraceRow> rows = scene.end();
+  return rows.at(99).pose_in_world.x - rows.at(49).pose_in_world.x;
 }
 
 // By a velocity of zero it would be 0.27 m at the server's 0.3 m/s2.
-TEST(BridgeEstop, BrakesHarderThanAStopWhereTheRobotCan) {
-  EXPECT_LT(way_to_standstill("p3dx.p"), 0.15);
+TEST(BridgeInLockstep, AnEmergencyStopBrakesHarderThanAStopWhereTheRobotCan) {
+  EXPECT_LT(way_to_standstill("p3dx.p"), 0.2);
 }
 
-TEST(BridgeEstop, StopsARobotThatHasNoEmergencyStop) {
-  EXPECT_LT(way_to_standstill("pioneer.p"), 0.15);
+TEST(BridgeInLockstep, AnEmergencyStopStopsARobotThatHasNone) {
+  EXPECT_LT(way_to_standstill("pioneer.p"), 0.2);
 }
 
 Process command_line(const Scene& scene, std::vector<std::string> words) {

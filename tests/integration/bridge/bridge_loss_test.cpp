@@ -99,22 +99,5 @@ TEST(BridgeLoss, AKilledSimulatorComesBackUnderTheSameBridge) {
   EXPECT_NE(scene.state.odom(), odom) << "a robot that was switched off begins anew";
 }
 
-TEST(BridgeLoss, ASilentRobotIsTriedAgain) {
-  Scene scene;
-  start(scene);
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  scene.simulator->signal(SIGSTOP);
-  ASSERT_TRUE(scene.until([&] { return scene.status.reason() == "robot link silent"; }));
-  EXPECT_EQ(scene.status.state(), v1::SERVICE_WAITING);
-  ASSERT_TRUE(scene.until([&] {
-    return scene.bridge_log().find("connection to the robot ended: robot link silent") !=
-           std::string::npos;
-  }));
-  scene.simulator->signal(SIGCONT);
-  EXPECT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
-  })) << scene.bridge_log();
-}
-
 }  // namespace
 }  // namespace saphira::test

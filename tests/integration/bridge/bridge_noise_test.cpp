@@ -13,14 +13,7 @@
 namespace saphira::test {
 namespace {
 
-struct Noise {
-  double to;
-  double from;
-};
-
-class BridgeNoise : public ::testing::TestWithParam<Noise> {};
-
-TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
+TEST(BridgeNoise, NoWrongCommandIsActedOn) {
   Scene scene;
   scene.robot_port = scene.folder.path("line");
   scene.bridge_options = {"--no-guard"};  // which would add speeds of its own
@@ -41,7 +34,7 @@ TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.18; })) << scene.bridge_log();
   EXPECT_EQ(scene.simulator->violations(), "");
   scene.simulator->expect_violations();
-  line.set_probability(GetParam().to, GetParam().from);
+  line.set_probability(0.1, 0.0);
   int moved = 0;
   for (int leg = 0; leg < 24; ++leg) {
     const int speed = static_cast<int>(random.next() % 9) * 50 - 200;
@@ -58,9 +51,7 @@ TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
   EXPECT_TRUE(scene.simulator->running());
   EXPECT_GT(line.hurt(), 50U);
   EXPECT_NE(scene.simulator->violations(), "") << "the checker listens";
-  if (GetParam().from < 0.05) {
-    EXPECT_GT(moved, 12) << "where the robot is heard it still drives";
-  }
+  EXPECT_GT(moved, 12) << "where the robot is heard it still drives";
 
   const auto rows = scene.whole_trace();
   int executed = 0;
@@ -75,10 +66,10 @@ TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
   }
   EXPECT_GT(executed, 0);
   std::printf(
-      "%.0f %% to, %.0f %% from: %zu bytes hurt, %zu of %zu cycles seen, %d cycles driven, %u bad "
+      "%zu bytes hurt, %zu of %zu cycles seen, %d cycles driven, %u bad "
       "packets\n",
-      GetParam().to * 100.0, GetParam().from * 100.0, static_cast<std::size_t>(line.hurt()),
-      scene.states.size(), rows.size(), executed, scene.state.bad_packets());
+      static_cast<std::size_t>(line.hurt()), scene.states.size(), rows.size(), executed,
+      scene.state.bad_packets());
 
   // What the bus was told of the way is what the robot went: no jump, no speed that cannot be.
   const v1::RobotState* last = nullptr;
@@ -93,9 +84,6 @@ TEST_P(BridgeNoise, NoWrongCommandIsActedOn) {
     last = &state;
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Lines, BridgeNoise,
-                         ::testing::Values(Noise{0.01, 0.01}, Noise{0.1, 0.0}, Noise{0.1, 0.1}));
 
 }  // namespace
 }  // namespace saphira::test

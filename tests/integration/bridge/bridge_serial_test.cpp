@@ -114,31 +114,6 @@ TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
     }
 }
 
-TEST(BridgeSerial, ACableThatIsPutBackWakesNothing) {
-  LineScene scene;
-  scene.drive_off();
-  scene.expect_halves();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  scene.line.cut(true);
-  const std::uint64_t cut = scene.trace().back().cycle;
-  scene.drives = false;
-  const int cycles = scene.cycles_to_stand(cut);
-  ASSERT_GE(cycles, 0);
-  ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
-  scene.line.cut(false);
-  ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.stamp().cycle() > 10;
-  })) << scene.bridge_log();
-  bool first = true;
-  for (const sim::TraceRow& row : scene.whole_trace()) {
-    // The rows of the second session count from 1 again.
-    first = first && row.cycle <= cut + static_cast<std::uint64_t>(cycles);
-    if (!first) {
-      ASSERT_EQ(row.velocity, 0.0) << "cycle " << row.cycle;
-    }
-  }
-}
-
 TEST(BridgeSerial, ACableThatIsOutForAMoment) {
   LineScene scene;
   scene.drive_off();
@@ -151,20 +126,6 @@ TEST(BridgeSerial, ACableThatIsOutForAMoment) {
   ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
   EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the session goes on";
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; }));
-}
-
-TEST(BridgeSerial, AnAdapterThatIsPulledAndPutBack) {
-  LineScene scene;
-  scene.drive_off();
-  scene.expect_halves();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  scene.line.remove();
-  ASSERT_TRUE(scene.says("there is no such line (is it plugged in?)")) << scene.status.reason();
-  EXPECT_EQ(scene.grant.role(), v1::ROLE_NONE);
-  scene.line.put_back();
-  ASSERT_TRUE(scene.until([&] {
-    return scene.state.stamp().epoch() > epoch && scene.state.velocity() > 0.28;
-  })) << scene.bridge_log();
 }
 
 TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
@@ -190,24 +151,6 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   EXPECT_EQ(scene.state.ptu(), 0);
   for (const sim::TraceRow& row : scene.trace())
     ASSERT_EQ(row.set_velocity, 0.0) << "nobody told it to drive";
-}
-
-TEST(BridgeSerial, Noise) {
-  LineScene scene;
-  scene.drive_off();
-  scene.expect_halves();
-  scene.line.hurt_one_in(100);
-  const std::size_t before = scene.states.size();
-  scene.watch(milliseconds(4000));
-  scene.line.hurt_one_in(0);
-  EXPECT_GT(scene.line.hurt(), 10U);
-  EXPECT_GT(scene.state.bad_packets(), 3U) << "the user sees how bad the line is";
-  EXPECT_GT(scene.states.size() - before, 10U) << "whole packets still come through";
-  for (const sim::TraceRow& row : scene.whole_trace()) {
-    const bool asked = row.set_velocity == 0.0 || std::abs(row.set_velocity - 0.3) < 1e-9;
-    ASSERT_TRUE(asked) << row.set_velocity;
-  }
-  ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.28; })) << scene.bridge_log();
 }
 
 /// Another bridge with the same port. Of another robot's name, so that its status is not taken for
@@ -256,19 +199,6 @@ TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
   auto states = second.node.reader(bus::topics::kRobotState);
   EXPECT_TRUE(scene.until([&] { return states.take_newest().has_value(); }))
       << second.process.output();
-}
-
-TEST(BridgeSerial, ASecondClientOfTheSimulatorSaysSo) {
-  Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  SecondBridge second(scene);
-  second.wait_reason("has it another client?");
-  const std::uint64_t cycle = scene.state.stamp().cycle();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
-  EXPECT_EQ(scene.state.stamp().epoch(), epoch);
 }
 
 }  // namespace
