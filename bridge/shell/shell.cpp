@@ -300,8 +300,10 @@ void Shell::perform(const DevicesChanged& changed, double) {
 void Shell::perform(const SessionBegan& session, double) {
   if (camera_)
     camera_->connect();
-  description_writer_.write(to_bus(core_.parameters(), session.robot, to_bus(session.stamp),
-                                   link_.address().text(), lockstep_));
+  v1::RobotDescription description = to_bus(
+      core_.parameters(), session.robot, to_bus(session.stamp), link_.address().text(), lockstep_);
+  description.instance(node_.instance());
+  description_writer_.write(description);
 }
 
 void Shell::perform(const CycleBegan& cycle, double now) {

@@ -248,8 +248,15 @@ Bytes Devices::packet(Request request, const Robot& robot) const {
         static_cast<std::uint32_t>(std::llround(way / parameters_.encoder_unit)));
   };
   switch (request) {
-    case kConfig:
-      return encode(config_of(parameters_, name_, "0"));
+    case kConfig: {
+      // As it is set now, whatever the file says.
+      RobotParameters set = parameters_;
+      set.acceleration = robot.acceleration();
+      set.deceleration = robot.deceleration();
+      set.rotation_acceleration = robot.rotation_acceleration();
+      set.rotation_deceleration = robot.rotation_deceleration();
+      return encode(config_of(set, name_, "0"));
+    }
     case kEncoder:
       return encode(EncoderPacket{count(robot.left_way()), count(robot.right_way())});
     case kIo:

@@ -64,9 +64,10 @@ void Arbiter::connect(std::uint64_t epoch) {
   let_go();
 }
 
-void Arbiter::forget(std::uint64_t cycle, double until) {
+void Arbiter::forget(std::uint64_t cycle, double until, std::string why) {
   deaf_cycle_ = cycle;
   deaf_until_ = until;
+  deaf_why_ = std::move(why);
   let_go();
 }
 
@@ -215,7 +216,9 @@ std::string Arbiter::stale(const Command& command, std::uint64_t cycle) const {
   if (command.epoch != epoch_ && (command.epoch != 0 || command.cycle != 0))
     return "answers another epoch";
   if (command.received < deaf_until_)
-    return "received while the robot was silent, or the bridge caught up after a gap";
+    return deaf_why_.empty()
+               ? "received while the robot was silent, or the bridge caught up after a gap"
+               : deaf_why_;
   if (command.cycle != 0) {
     if (command.cycle > cycle)
       return "answers a cycle that has not been";

@@ -104,6 +104,7 @@ void Core::mind_silence(double now) {
   session_.silent = true;
   if (session_.stamp.cycle == 0)
     send(protocol::encode(protocol::Open{}));  // it may have been lost
+  line_.damage(bad_packets());
   arbiter_.forget(session_.stamp.cycle, kForEver);
   reflector_.zero_first();
   decide(now);
@@ -131,9 +132,15 @@ void Core::open(const protocol::RobotParameters& parameters, std::uint64_t epoch
   session_.stamp = {last_epoch_, 0};
   session_.body = authority::body_of(reflector_.parameters());
   session_.bad_before = parser_.counters().bad_packets();
+  line_.begin();
+  // Until it says how it is set: it may not take what it is asked for.
+  own_deceleration_ = parameters.deceleration;
+  session_.body.deceleration = own_deceleration_;
   session_.last_packet = now;
   reflector_.open(time(now), memory_, std::max(last_epoch_, last_odom_ + 1), slack_);
   arbiter_.connect(last_epoch_);
+  if (now < line_.stands_until())
+    arbiter_.forget(0, line_.stands_until(), line_.why_it_stands(now));
   grant_ = {};
   told_ = {};
   guarded_ = {};
@@ -170,6 +177,8 @@ void Core::lost(const std::string& why, double now, Note::Level level) {
       slack_ = reflector_.slack();
     }
   }
+  if (in_session() && !settings_.lockstep)
+    line_.end(now - session_.last_packet, session_.moved, now);
   put(CloseLink{why});
   connection_.end();
   arbiter_.connect(0);
@@ -243,19 +252,38 @@ void Core::other(protocol::ServerPacket any, std::uint8_t type, double now) {
   put(OtherPacket{std::move(any), type, session_.stamp});
 }
 
+/// Of this session.
+std::uint64_t Core::bad_packets() const {
+  return parser_.counters().bad_packets() - session_.bad_before;
+}
+
 /// The robot brakes as it says that it is set, whatever it was asked for.
 void Core::heed(const protocol::ConfigPacket& set) {
+  const bool first = !std::exchange(session_.configured, true);
   const double asked = reflector_.parameters().deceleration;
   const double brakes = set.deceleration * 0.001;
-  if (brakes <= 0.0 || brakes > 0.95 * asked)
+  if (brakes <= 0.0)
     return;
-  if (session_.body.deceleration > brakes) {
+  const double before = std::exchange(session_.body.deceleration, std::min(brakes, asked));
+  if (brakes <= 0.95 * asked && (first || brakes < before)) {
     char text[96];
     std::snprintf(text, sizeof text, "the robot brakes with %.2f m/s2, not with %.2f as asked for",
                   brakes, asked);
     warn(text);
   }
-  session_.body.deceleration = brakes;
+}
+
+/// One that does not say how it is set is reckoned to brake as its parameter file says.
+void Core::mind_brakes() {
+  const double asked = reflector_.parameters().deceleration;
+  if (session_.stamp.cycle != kConfigCycles || session_.configured || own_deceleration_ >= asked)
+    return;
+  char text[192];
+  std::snprintf(text, sizeof text,
+                "the robot does not say how it brakes (CONFIG): it is reckoned to brake with %.2f "
+                "m/s2, as its parameter file says, not with %.2f as asked for",
+                own_deceleration_, asked);
+  warn(text);
 }
 
 void Core::begin_cycle(const protocol::InformationPacket& packet, double now) {
@@ -263,8 +291,10 @@ void Core::begin_cycle(const protocol::InformationPacket& packet, double now) {
   ++session_.stamp.cycle;
   const reflector::State& state =
       reflector_.packet(packet, time(now), std::max(session_.stamp.epoch, last_odom_ + 1));
-  put(CycleBegan{session_.stamp, state,
-                 parser_.counters().bad_packets() - session_.bad_before + session_.doubts.count()});
+  put(CycleBegan{session_.stamp, state, bad_packets() + session_.doubts.count()});
+  session_.unheard = line_.packet(bad_packets(), now - session_.last_packet,
+                                  session_.moved && !settings_.lockstep, now);
+  session_.moved = moves();
   session_.last_packet = now;
 }
 
@@ -272,8 +302,10 @@ void Core::begin_cycle(const protocol::InformationPacket& packet, double now) {
 void Core::finish_cycle(double now) {
   const reflector::State& state = reflector_.state();
   const std::uint64_t odom_before = *std::exchange(session_.odom_before, std::nullopt);
-  if (std::exchange(session_.silent, false))
-    arbiter_.forget(session_.stamp.cycle - 1, now);
+  if (std::exchange(session_.silent, false) || session_.unheard)
+    arbiter_.forget(session_.stamp.cycle - 1, std::max(now, line_.stands_until()),
+                    now < line_.stands_until() ? line_.why_it_stands(now) : "");
+  mind_brakes();
   session_.reacted = false;
   session_.stepping = false;
   session_.stepped = false;

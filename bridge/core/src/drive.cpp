@@ -163,6 +163,7 @@ void Core::guard(reflector::Setpoints& wanted) {
                                 driver(grant_.role).contact_speed);
     guarded_ = authority::slow_for_age(std::move(guarded_), grant_.command_age, kCycle);
   }
+  session_.moved = session_.moved || moves();
   wanted.velocity = guarded_.velocity;
   wanted.rotation_velocity = guarded_.rotation_velocity;
   if (guarded_.action == authority::GuardAction::stop && guarded_.action != before)

@@ -17,5 +17,6 @@ inline constexpr double kHoldOff = 2.0;       // [s] until a robot that is not s
 inline constexpr double kTellKeeper = 10.0;   // [s] that the status tells of a new keeper
 inline constexpr double kTellWait = 3.0;      // [s] that it waits for its robot in silence
 inline constexpr unsigned kMotorsCycles = 10;  // then the motors should be on
+inline constexpr unsigned kConfigCycles = 30;  // then it should have said how it is set
 
 }  // namespace saphira::bridge

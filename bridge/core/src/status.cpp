@@ -49,6 +49,8 @@ Condition Core::robot_condition(double now) const {
   const std::string doubt = session_.doubts.newest(now);
   if (session_.silent && !doubt.empty())
     return {Health::waiting, doubt};
+  if (session_.silent && cycle > 0 && line_.bad())
+    return {Health::waiting, "robot link silent: " + line_.words()};
   if (session_.silent)
     return {Health::waiting, cycle > 0 ? "robot link silent"
                                        : "robot link silent: no packet has come (a simulator in "
@@ -65,6 +67,10 @@ Condition Core::robot_condition(double now) const {
     return {};
   if (!doubt.empty())
     return {Health::degraded, doubt};
+  if (now < line_.stands_until())
+    return {Health::degraded, line_.why_it_stands(now)};
+  if (line_.bad())
+    return {Health::degraded, line_.words()};
   if (reflector_.state().information.emergency_stop.value_or(false))
     return {Health::degraded, "the robot's own emergency stop is pressed"};
   if (motors_off())

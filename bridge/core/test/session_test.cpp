@@ -259,6 +259,106 @@ TEST(Session, ARobotThatBrakesLessIsToldOnce) {
             1);
 }
 
+/// Drives for so long with a robot of which each packet is damaged while it moves; how often it
+/// began to move.
+int lurches(Scene& scene, double seconds, bool damages) {
+  int begun = 0;
+  bool moves = false;
+  for (double t = 0.0; t < seconds; t += 0.1) {
+    protocol::Bytes packet = protocol::encode(scene.shown);
+    if (moves && damages)
+      packet[packet.size() - 1] ^= 0x55;
+    scene.say(packet);
+    scene.pass(0.1);
+    scene.drive(Role::behaviors, 0.3);
+    for (const protocol::Command& command : scene.sent)
+      if (const auto* const velocity = std::get_if<protocol::Velocity>(&command))
+        if (std::exchange(moves, velocity->velocity != 0.0) == false && moves)
+          ++begun;
+    scene.sent.clear();
+  }
+  return begun;
+}
+
+TEST(Session, ARobotThatIsNotHeardWhileItMovesStands) {
+  Driven scene;
+  EXPECT_LE(lurches(scene, 30.0, true), 5);
+  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_EQ(scene.condition().reason.find("the robot is not heard while it moves (4 times now), so "
+                                          "it stands; it may move again in "),
+            0U)
+      << scene.condition().reason;
+  const std::vector<GrantDecided> grants = scene.all<GrantDecided>();
+  EXPECT_TRUE(std::any_of(grants.begin(), grants.end(), [](const GrantDecided& decided) {
+    return std::any_of(decided.refused.begin(), decided.refused.end(), [](const auto& refused) {
+      return refused.reason.find("is not heard while it moves") != std::string::npos;
+    });
+  })) << "the driver hears why";
+  EXPECT_LE(lurches(scene, 300.0, true), 3);
+  // The line is mended: it moves by itself, and goes on.
+  EXPECT_EQ(lurches(scene, 400.0, false), 1);
+  EXPECT_EQ(scene.core.grant().role, Role::behaviors);
+  EXPECT_EQ(scene.condition().health, Health::running) << scene.condition().reason;
+  // What was long ago counts no more.
+  lurches(scene, 0.5, true);
+  EXPECT_EQ(lurches(scene, 2.0, false), 1);
+  EXPECT_EQ(scene.core.grant().role, Role::behaviors);
+}
+
+TEST(Session, ABadLineIsTold) {
+  Driven scene;
+  const auto one_in = [&](int n) {
+    for (int i = 0; i < 60; ++i) {
+      if (i % n == 0) {
+        protocol::Bytes packet = protocol::encode(scene.shown);
+        packet[packet.size() - 1] ^= 0x55;
+        scene.say(packet);
+        scene.pass(0.01);
+      }
+      scene.cycle();
+      scene.drive(Role::behaviors);
+    }
+    return scene.condition();
+  };
+  EXPECT_EQ(one_in(15).health, Health::running);
+  const Condition bad = one_in(7);
+  EXPECT_EQ(bad.health, Health::degraded);
+  EXPECT_EQ(bad.reason.find("the line to the robot is bad: "), 0U) << bad.reason;
+  EXPECT_NE(bad.reason.find(" of its last 50 packets were damaged"), std::string::npos)
+      << bad.reason;
+  EXPECT_EQ(scene.core.grant().role, Role::behaviors) << "it drives on";
+  EXPECT_EQ(one_in(61).health, Health::running);
+}
+
+TEST(Session, UntilARobotSaysHowItBrakesItsParameterFileCounts) {
+  const auto told = [](std::uint16_t config) {
+    Scene scene;
+    scene.robot.deceleration = 0.3;
+    scene.robot.stop_deceleration = 0.6;
+    scene.connect();
+    for (int i = 0; i < 40; ++i) {
+      if (config != 0 && i == 1) {
+        protocol::ConfigPacket set;
+        set.deceleration = config;
+        scene.say(protocol::encode(set));
+      }
+      scene.cycle();
+    }
+    std::string words;
+    for (const Note& note : scene.all<Note>())
+      if (note.text.find("brakes with") != std::string::npos ||
+          note.text.find("brake with") != std::string::npos)
+        words += note.text;
+    return words;
+  };
+  EXPECT_EQ(
+      told(0),
+      "the robot does not say how it brakes (CONFIG): it is reckoned to brake with 0.30 m/s2, "
+      "as its parameter file says, not with 0.60 as asked for");
+  EXPECT_EQ(told(600), "");
+  EXPECT_EQ(told(400), "the robot brakes with 0.40 m/s2, not with 0.60 as asked for");
+}
+
 TEST(Session, HalfAPacketDoesNotHoldBackTheNext) {
   Driven scene;
   scene.say({protocol::kHeader0, protocol::kHeader1, 150});

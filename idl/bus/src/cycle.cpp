@@ -135,7 +135,8 @@ struct Cycle::Impl {
     descriptions.visit([&](const v1::RobotDescription& description, const SampleInfo& info) {
       if (info.disposed || description.stamp().epoch() == 0)
         return;
-      epochs.describe(Peers::program_of(info.writer), description.stamp().epoch());
+      epochs.describe(Peers::program_of(info.writer), description.instance(),
+                      description.stamp().epoch());
       described.push_back(description);
       if (described.size() > kDescriptions)
         described.pop_front();

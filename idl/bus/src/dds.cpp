@@ -36,6 +36,12 @@
 namespace saphira::bus::internal {
 namespace {
 
+std::int64_t nanoseconds_since_1970() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
 namespace fdds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
@@ -355,6 +361,7 @@ class DdsReader : public RawReader, public Endpoint {
     const rtps::GUID_t& writer = from.sample_identity.writer_guid();
     info = {};
     info.writer = to_id(writer);
+    info.age = 1e-9 * static_cast<double>(nanoseconds_since_1970() - from.source_timestamp.to_ns());
     if (bus_->guard())
       info.sender = part.discovery->identity_of(writer);
     malformed = internal::take_malformed();

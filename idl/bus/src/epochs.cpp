@@ -4,26 +4,38 @@
 
 namespace saphira::bus::internal {
 
-void Epochs::describe(const Program& program, std::uint64_t epoch) {
+bool Epochs::followed(const Program& program, const Known& known) const {
+  return bridge_ && (*bridge_ == program || (instance_ != 0 && known.instance == instance_));
+}
+
+void Epochs::describe(const Program& program, std::uint64_t instance, std::uint64_t epoch) {
   // Programs come and go for months; of those that are gone nothing is kept that matters.
   if (described_.size() >= kMostPrograms && !described_.contains(program))
-    std::erase_if(described_, [&](const auto& known) { return known.first != bridge_; });
-  described_[program] = epoch;
+    std::erase_if(described_,
+                  [&](const auto& known) { return !followed(known.first, known.second); });
+  described_[program] = {instance, epoch};
 }
 
 void Epochs::lose(const Program& program) {
   // Its description stays: after a nap it is matched as before, and not told again.
-  if (bridge_ == program)
+  const auto lost = described_.find(program);
+  if (lost != described_.end())
+    lost->second.present = false;
+  if (std::none_of(described_.begin(), described_.end(), [&](const auto& known) {
+        return known.second.present && followed(known.first, known.second);
+      }))
     bridge_.reset();
 }
 
 Epochs::Verdict Epochs::judge(const Program& writer, std::uint64_t epoch) {
   const auto described = described_.find(writer);
-  if (described == described_.end() || described->second != epoch)
+  if (described == described_.end() || described->second.epoch != epoch)
     return left_.contains(epoch) ? Verdict::left : Verdict::wait;
-  if (bridge_ && *bridge_ != writer)
+  if (bridge_ && !followed(writer, described->second))
     return Verdict::foreign;
   bridge_ = writer;
+  instance_ = described->second.instance;
+  described->second.present = true;
   if (epoch == epoch_)
     return Verdict::take;
   if (left_.size() >= kMostLeft)
@@ -42,7 +54,7 @@ bool Epochs::useful(std::uint64_t epoch) const {
     return false;
   // One that nobody has described yet may be our bridge's next.
   return !bridge_ || std::none_of(described_.begin(), described_.end(), [&](const auto& known) {
-    return known.second == epoch && known.first != *bridge_;
+    return known.second.epoch == epoch && !followed(known.first, known.second);
   });
 }
 

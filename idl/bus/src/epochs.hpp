@@ -14,9 +14,12 @@ namespace saphira::bus::internal {
 
 /// An epoch belongs to the bridge that has described its robot for it. A service follows one bridge
 /// until that one is gone; whatever others of the same robot's name write is refused.
+///
+/// A bridge is known by the instance that it describes itself with, not by its participant: it has
+/// one on each side of its machine, and makes them anew after a nap or for another address.
 class Epochs {
  public:
-  using Program = Peers::Program;
+  using Program = Peers::Program;  ///< a participant
   enum class Verdict {
     take,     ///< of the epoch that is followed
     adopt,    ///< the first one of an epoch that is followed from now on
@@ -25,9 +28,10 @@ class Epochs {
     left      ///< of an epoch that was left
   };
 
-  /// A program has described its robot for an epoch.
-  void describe(const Program& program, std::uint64_t epoch);
-  /// A program is gone; when it is the bridge that is followed, another may be.
+  /// The bridge `instance` [0: unknown, each participant is one] has described its robot for an
+  /// epoch by this participant.
+  void describe(const Program& program, std::uint64_t instance, std::uint64_t epoch);
+  /// A participant is gone. Another bridge may be followed when none is left of the one that is.
   void lose(const Program& program);
   /// What is to be done with a state of the robot; follows its bridge where there is none.
   Verdict judge(const Program& writer, std::uint64_t epoch);
@@ -41,9 +45,19 @@ class Epochs {
   static constexpr std::size_t kMostPrograms = 64;
   static constexpr std::size_t kMostLeft = 1000;
 
+  struct Known {
+    std::uint64_t instance = 0;
+    std::uint64_t epoch = 0;
+    bool present = true;
+  };
+  /// Whether it is of the bridge that is followed.
+  bool followed(const Program& program, const Known& known) const;
+
+  /// The participant by which the bridge that is followed was heard last.
   std::optional<Program> bridge_;
+  std::uint64_t instance_ = 0;  ///< that bridge's
   std::uint64_t epoch_ = 0;
-  std::map<Program, std::uint64_t> described_;
+  std::map<Program, Known> described_;
   std::set<std::uint64_t> left_;
 };
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -43,6 +44,7 @@ struct Item {
   WriterId writer;
   bool disposed;
   std::shared_ptr<const Identity> sender;
+  std::chrono::steady_clock::time_point written;
 };
 
 // KEEP_LAST: of each key the newest `depth`.
@@ -173,7 +175,8 @@ bool MemoryWriter::put(const void* sample, bool disposed) {
     return true;
   std::shared_ptr<void> copy(common.type->create(), common.type->destroy);
   common.type->copy(sample, copy.get());
-  const Item item{std::move(copy), common.type->key(sample), id, disposed, sender};
+  const Item item{std::move(copy), common.type->key(sample),        id, disposed,
+                  sender,          std::chrono::steady_clock::now()};
   const std::scoped_lock lock(common.bus->mutex);
   if (disposed) {
     std::erase_if(history, [&](const Item& old) { return old.key == item.key; });
@@ -214,8 +217,10 @@ void MemoryReader::take(const std::function<void(const void*, const SampleInfo&)
     const std::scoped_lock lock(common.bus->mutex);
     items.swap(queue);
   }
+  const auto now = std::chrono::steady_clock::now();
   for (const auto& item : items) {
-    const SampleInfo info{item.writer, item.disposed, item.sender};
+    const SampleInfo info{item.writer, item.disposed, item.sender,
+                          std::chrono::duration<double>(now - item.written).count()};
     if (!item.disposed) {
       if (common.type->keyed)
         last_[item.key] = item.data;

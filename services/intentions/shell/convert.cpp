@@ -28,12 +28,13 @@ constexpr EnumPairs<GoalState, v1::GoalState, 7> kStates{{{
     {GoalState::kFailed, v1::GOAL_FAILED},
     {GoalState::kCanceled, v1::GOAL_CANCELED},
 }}};
-constexpr EnumPairs<GoalCode, v1::GoalCode, 15> kCodes{{{
+constexpr EnumPairs<GoalCode, v1::GoalCode, 16> kCodes{{{
     {GoalCode::kNone, v1::CODE_NONE},
     {GoalCode::kUnknownFunctor, v1::CODE_UNKNOWN_FUNCTOR},
     {GoalCode::kBadArgument, v1::CODE_BAD_ARGUMENT},
     {GoalCode::kChanged, v1::CODE_CHANGED},
     {GoalCode::kTooMany, v1::CODE_TOO_MANY},
+    {GoalCode::kForgotten, v1::CODE_FORGOTTEN},
     {GoalCode::kDeadline, v1::CODE_DEADLINE},
     {GoalCode::kBlocked, v1::CODE_BLOCKED},
     {GoalCode::kNoRobot, v1::CODE_NO_ROBOT},

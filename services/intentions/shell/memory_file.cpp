@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -15,6 +16,11 @@ namespace saphira::intentions {
 namespace {
 
 constexpr const char* kWork = ".work";
+constexpr const char* kLines = ".lines";
+
+std::size_t lines_of(const std::string& content) {
+  return static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n'));
+}
 
 }  // namespace
 
@@ -25,17 +31,31 @@ MemoryFile::MemoryFile(std::string path, std::size_t most) : path_(std::move(pat
     if (!trouble.empty())
       troubles_.push_back(std::move(trouble));
   };
-  note(read_or_set_aside(path_, [this](const std::string& content) {
+  std::size_t expected = 0;
+  note(read_or_set_aside(path_ + kLines, [&](const std::string& content) {
+    expected = std::stoul(std::string(unsealed(content, path_ + kLines)));
+  }));
+  bool found = false;
+  note(read_or_set_aside(path_, [&](const std::string& content) {
+    found = true;
     std::vector<FileError> damaged;
     memory_ = read_journal(path_, content, damaged);
     if (!damaged.empty())
       throw std::runtime_error(std::to_string(damaged.size()) +
                                " of its lines are damaged, the others count; the first:\n" +
                                damaged.front().what());
+    if (lines_of(content) < expected)
+      throw std::runtime_error("it has " + std::to_string(lines_of(content)) + " of its " +
+                               std::to_string(expected) + " lines: its end is missing");
   }));
+  if (!found && expected > 0)
+    note(path_ + " is gone, or empty: it had " + std::to_string(expected) + " lines");
   note(read_or_set_aside(path_ + kWork, [this](const std::string& content) {
     memory_.work = read_work(path_ + kWork, unsealed(content, path_ + kWork));
   }));
+  memory_.condition = !troubles_.empty()                        ? Memory::Condition::kDamaged
+                      : found || std::filesystem::exists(path_) ? Memory::Condition::kWhole
+                                                                : Memory::Condition::kNone;
   if (!begin(memory_))
     throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
 }
@@ -55,18 +75,25 @@ bool MemoryFile::begin(Memory& memory) {
     lines += write_line(placement);
   for (const Ending& ending : endings)
     lines += write_line(ending);
+  const std::size_t count = memory.placements.size() + endings.size();
+  // Before the journal has fewer lines than were counted.
   if (std::fwrite(lines.data(), 1, lines.size(), file.get()) != lines.size() ||
-      std::rename(fresh.c_str(), path_.c_str()) != 0)
+      !keep_count(count) || std::rename(fresh.c_str(), path_.c_str()) != 0)
     return false;
   file_ = std::move(file);
   size_ = static_cast<long>(lines.size());
-  lines_ = memory.placements.size() + endings.size();
+  lines_ = count;
+  begin_anew_at_ = 2 * most_;
   return true;
+}
+
+bool MemoryFile::keep_count(std::size_t lines) const {
+  return replace_file(path_ + kLines, sealed(std::to_string(lines) + "\n"));
 }
 
 void MemoryFile::begin_anew() {
   // Where that fails, on a full disk, the file goes on as it is until it has grown as much again.
-  lines_ = 0;
+  begin_anew_at_ = lines_ + 2 * most_;
   try {
     std::vector<FileError> damaged;
     Memory memory = read_journal(path_, read_file(path_), damaged);
@@ -83,10 +110,10 @@ bool MemoryFile::keep(const Work& work) const {
 bool MemoryFile::append(const std::string& lines) {
   if (!file_ || std::fwrite(lines.data(), 1, lines.size(), file_.get()) == lines.size()) {
     size_ += static_cast<long>(lines.size());
-    lines_ += static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'));
-    if (file_ && lines_ > 2 * most_)
+    lines_ += lines_of(lines);
+    if (file_ && lines_ > begin_anew_at_)
       begin_anew();
-    return true;
+    return !file_ || keep_count(lines_);
   }
   // On a full disk: half a line must not be the beginning of the next one.
   const int why = errno;

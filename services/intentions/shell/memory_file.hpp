@@ -9,7 +9,8 @@
 
 namespace saphira::intentions {
 
-/// The journal on a disk, and beside it (FILE.work) what has been done of the open goals. A killed
+/// The journal on a disk, and beside it what has been done of the open goals (FILE.work) and how
+/// many lines the journal has (FILE.lines), so that a journal that was cut is noticed. A killed
 /// service loses nothing; a computer that loses its power may lose the last few lines, since
 /// nothing waits for the disk.
 class MemoryFile {
@@ -38,10 +39,12 @@ class MemoryFile {
   /// Writes what is to be kept of it beside the file and puts that in its place.
   bool begin(Memory& memory);
   void begin_anew();
+  bool keep_count(std::size_t lines) const;
 
   std::string path_;
   std::size_t most_;
   std::size_t lines_ = 0;
+  std::size_t begin_anew_at_ = 0;  ///< lines
   Memory memory_;
   std::vector<std::string> troubles_;
   std::unique_ptr<std::FILE, Close> file_;

@@ -22,6 +22,7 @@ constexpr std::size_t kMostNodes = 1024;     // the bound of Intentions.nodes
 constexpr std::size_t kMostQuestions = 256;  // to agents, without an answer
 constexpr std::size_t kMostGoals = 1024;     // of GoalStatusSet.goals
 constexpr std::size_t kMostBeliefs = 1024;   // of Beliefs.beliefs
+constexpr double kStarting = 10.0;           // [s] in which goals of before the start come
 
 std::vector<std::string> folders(const Options& options) {
   std::vector<std::string> paths{activities_folder()};
@@ -187,12 +188,17 @@ void Service::take_behavior_schemas() {
 
 void Service::take_goals(Core::Heard& heard) {
   heard.lost_requesters = goals_.take_lost();
+  const double running =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   for (const auto& sample : goals_.take()) {
     Core::Heard::Goal goal;
     goal.event.goal = from_bus(sample.data);
     goal.event.kind = sample.info.disposed ? GoalEvent::Kind::kDisposed : GoalEvent::Kind::kWritten;
     goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
     goal.writer = sample.info.writer;
+    // Later the clocks of other machines would decide what is new.
+    if (running < kStarting)
+      goal.before_start = sample.info.age - running;
     if (const auto& sender = sample.info.sender)
       goal.sender = {sender->name, sender->role == kCommands};
     heard.goals.push_back(std::move(goal));

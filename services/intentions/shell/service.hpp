@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <optional>
 #include <string>
@@ -85,6 +86,7 @@ class Service final : public runtime::Service {
   bus::Reader<v1::Answer> answers_;
   std::map<std::uint64_t, std::uint64_t> questions_;  ///< of the core, by the bus's number
   std::map<GoalId, v1::GoalStatus> told_;             ///< of the goals: what goals/status holds
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   MemoryFile memory_;
   std::shared_ptr<const Functions> functions_;
   ActivityFolders folders_;

@@ -16,12 +16,17 @@ namespace {
 constexpr std::size_t kMostAnswers = 256;  // of agents, that are kept
 constexpr std::uint64_t kGone = 10;        // [cycles] without a word
 constexpr double kSilence = 1.0;
+/// [s] A goal that was asked for so shortly before the start was meant for it: programs of a
+/// deployment start together.
+constexpr double kStartsTogether = 3.0;
 constexpr std::uint64_t kVisionLease = 10;  // [cycles] what was seen before is no news
 
 }  // namespace
 
 Core::Core(Settings settings)
     : lockstep_(settings.lockstep),
+      remembers_(settings.memory.condition == Memory::Condition::kWhole),
+      memory_damaged_(settings.memory.condition == Memory::Condition::kDamaged),
       executor_(
           std::move(settings.registry), settings.memory,
           {.remembers_work = settings.remembers_work, .functions = std::move(settings.functions)}) {
@@ -225,6 +230,11 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
     // One that somebody else changes ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;
+    if (!remembers_ && !lockstep_ && goal.before_start > kStartsTogether)
+      event.forgotten =
+          "was asked for " + plain(goal.before_start) + " s before intentions started, " +
+          (memory_damaged_ ? "whose memory is damaged" : "which has no memory of the time before") +
+          ": it may have been done already. Ask again to have it done";
     events.push_back(std::move(event));
   }
   for (const Writer& lost : heard.lost_requesters) {

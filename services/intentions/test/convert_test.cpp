@@ -47,8 +47,8 @@ TEST(Convert, GoalStatusesRoundTrip) {
   }
   for (const GoalCode code :
        {GoalCode::kNone, GoalCode::kUnknownFunctor, GoalCode::kBadArgument, GoalCode::kChanged,
-        GoalCode::kTooMany, GoalCode::kDeadline, GoalCode::kBlocked, GoalCode::kNoRobot,
-        GoalCode::kDisposed, GoalCode::kWriterLost, GoalCode::kPreempted}) {
+        GoalCode::kTooMany, GoalCode::kForgotten, GoalCode::kDeadline, GoalCode::kBlocked,
+        GoalCode::kNoRobot, GoalCode::kDisposed, GoalCode::kWriterLost, GoalCode::kPreempted}) {
     status.code = code;
     EXPECT_EQ(from_bus(to_bus(status, stamp)), status);
   }

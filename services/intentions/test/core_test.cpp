@@ -201,6 +201,41 @@ TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {
   EXPECT_TRUE(says(told.notes, "refused"));
 }
 
+TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
+  using Condition = Memory::Condition;
+  for (const Condition condition : {Condition::kNone, Condition::kDamaged, Condition::kWhole}) {
+    Memory memory;
+    memory.condition = condition;
+    memory.endings = {{{5, 3}, GoalState::kSucceeded, GoalCode::kNone, "arrived"}};
+    Core core(remembering(memory));
+    for (const std::uint64_t number : {1U, 2U, 3U}) {
+      inputs_.heard.goals.push_back(written(number, kKaren));
+      inputs_.heard.goals.back().before_start = number == 2 ? 2.0 : 60.0;
+    }
+    statuses_.clear();
+    inputs_.stamp.cycle = 0;
+    step(core);
+    step(core);
+    const bool whole = condition == Condition::kWhole;
+    EXPECT_EQ(state(1), whole ? GoalState::kUnderway : GoalState::kRefused);
+    EXPECT_EQ(state(2), whole ? GoalState::kWaiting : GoalState::kUnderway)
+        << "programs of a deployment start together";
+    EXPECT_EQ(state(3), GoalState::kSucceeded) << "it is remembered";
+    if (whole)
+      continue;
+    const GoalStatus& refused = statuses_.at({5, 1});
+    EXPECT_EQ(refused.code, GoalCode::kForgotten);
+    EXPECT_NE(refused.reason.find("60 s before intentions started"), std::string::npos)
+        << refused.reason;
+    EXPECT_EQ(refused.reason.find("damaged") != std::string::npos,
+              condition == Condition::kDamaged);
+    // Asked again it is another goal.
+    inputs_.heard.goals = {written(4, kKaren)};
+    step(core);
+    EXPECT_EQ(state(4), GoalState::kWaiting);
+  }
+}
+
 TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
   inputs_.heard.goals = {written(1, kKaren)};
   step();

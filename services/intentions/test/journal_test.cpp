@@ -73,11 +73,14 @@ TEST(Journal, ALineBreakInAReasonIsNotOneInTheFile) {
   EXPECT_EQ(memory.endings[0].reason, "two lines");
 }
 
-TEST(Journal, SkipsATornLastLine) {
+TEST(Journal, ATornLastLineIsToldAndTheRestCounts) {
   const std::string whole = write_line(kEnding);
-  for (std::size_t length = 0; length < whole.size(); ++length) {
-    const Memory memory = read(whole + whole.substr(0, length));
+  for (std::size_t length = 1; length < whole.size(); ++length) {
+    std::vector<FileError> damaged;
+    const Memory memory = read_journal("memory", whole + whole.substr(0, length), damaged);
     EXPECT_EQ(memory.endings.size(), 1U) << length;
+    ASSERT_EQ(damaged.size(), 1U) << length;
+    EXPECT_EQ(damaged[0].line(), 2);
   }
 }
 
@@ -94,16 +97,15 @@ TEST(Journal, WhatIsDamagedIsToldAndTheRestCounts) {
       const Memory memory = read_journal("memory", content, damaged);
       EXPECT_TRUE(memory.placements.empty() || memory.placements == std::vector{kPlacement});
       EXPECT_TRUE(memory.endings.empty() || memory.endings == std::vector{kEnding});
-      // The last line break is as torn as a last line may be.
-      if (i + 1 < whole.size()) {
-        EXPECT_FALSE(damaged.empty()) << i << " " << bit;
-      }
+      EXPECT_FALSE(damaged.empty()) << i << " " << bit;
       if (i >= first.size()) {
         EXPECT_EQ(memory.placements, std::vector{kPlacement}) << i << " " << bit;
       }
     }
   for (std::size_t length = 0; length <= whole.size(); ++length) {
-    const Memory memory = read(whole.substr(0, length));
+    std::vector<FileError> damaged;
+    const Memory memory = read_journal("memory", whole.substr(0, length), damaged);
+    EXPECT_EQ(damaged.empty(), length == 0 || length == first.size() || length == whole.size());
     EXPECT_EQ(memory.placements.size(), length >= first.size() ? 1U : 0U);
     EXPECT_EQ(memory.endings.size(), length == whole.size() ? 1U : 0U);
   }

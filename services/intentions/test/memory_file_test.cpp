@@ -4,7 +4,9 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "process.hpp"
 #include "saphira/base/text.hpp"
@@ -18,6 +20,7 @@ TEST(MemoryFile, WithoutAPathNothingIsRemembered) {
   MemoryFile memory("");
   EXPECT_TRUE(memory.append("anything\n"));
   EXPECT_EQ(memory.memory(), Memory{});
+  EXPECT_EQ(memory.memory().condition, Memory::Condition::kNone);
 }
 
 TEST(MemoryFile, RemembersOverARestart) {
@@ -36,6 +39,42 @@ TEST(MemoryFile, RemembersOverARestart) {
     // What the ending superseded is not written again.
     EXPECT_EQ(read_file(path).find("placed 1 2"), std::string::npos);
   }
+}
+
+TEST(MemoryFile, OneThatWasCutIsDamaged) {
+  const auto after = [](const std::function<void(const std::string& path)>& cut) {
+    const test::TempDir dir;
+    const std::string path = dir.path("goals.memory");
+    {
+      MemoryFile memory(path);
+      for (std::uint64_t i = 1; i <= 4; ++i)
+        memory.append(write_line(Ending{{1, i}, GoalState::kSucceeded, GoalCode::kNone, "there"}));
+    }
+    cut(path);
+    const MemoryFile memory(path);
+    EXPECT_EQ(memory.memory().condition == Memory::Condition::kDamaged, !memory.troubles().empty());
+    return std::pair(memory.memory().condition, memory.memory().endings.size());
+  };
+  using Condition = Memory::Condition;
+  EXPECT_EQ(after([](const std::string&) {}), std::pair(Condition::kWhole, std::size_t{4}));
+  const auto keep = [](double part) {
+    return [part](const std::string& path) {
+      const std::string content = read_file(path);
+      std::ofstream(path) << content.substr(
+          0, static_cast<std::size_t>(part * static_cast<double>(content.size())));
+    };
+  };
+  // Between two lines, and within one.
+  EXPECT_EQ(after(keep(0.5)), std::pair(Condition::kDamaged, std::size_t{2}));
+  EXPECT_EQ(after(keep(0.4)), std::pair(Condition::kDamaged, std::size_t{1}));
+  EXPECT_EQ(after(keep(0.0)), std::pair(Condition::kDamaged, std::size_t{0}));
+  EXPECT_EQ(after([](const std::string& path) { std::filesystem::remove(path); }),
+            std::pair(Condition::kDamaged, std::size_t{0}));
+  EXPECT_EQ(after([](const std::string& path) {
+              for (const char* const end : {"", ".lines", ".work"})
+                std::filesystem::remove(path + end);
+            }),
+            std::pair(Condition::kNone, std::size_t{0}));
 }
 
 TEST(MemoryFile, GoesOnAfterATornLine) {

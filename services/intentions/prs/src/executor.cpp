@@ -193,7 +193,7 @@ void Executor::pass_time(const Inputs& inputs) {
 
 void Executor::take_in(const GoalEvent& event) {
   if (event.kind == GoalEvent::Kind::kWritten) {
-    take_written(event.goal, event.by);
+    take_written(event);
     return;
   }
   const auto found = entries_.find(event.goal.id);
@@ -209,14 +209,15 @@ void Executor::take_in(const GoalEvent& event) {
   }
 }
 
-void Executor::take_written(const Goal& goal, const std::string& by) {
+void Executor::take_written(const GoalEvent& event) {
+  const Goal& goal = event.goal;
   const auto found = entries_.find(goal.id);
   if (found != entries_.end()) {
     Entry& entry = found->second;
     if (!open(entry.status))
       return;  // an ended goal stays ended: its id is used up
     if (goal != entry.goal)
-      change(entry, goal, by);
+      change(entry, goal, event.by);
     else
       entry.refusal.clear();  // taken back
     return;
@@ -238,9 +239,11 @@ void Executor::take_written(const Goal& goal, const std::string& by) {
     ended_order_.push_back(goal.id);
     return;
   }
-  GoalCode code = GoalCode::kNone;
+  GoalCode code = GoalCode::kForgotten;
   Arguments complete;
-  std::string wrong = complaint(goal, code, complete);
+  std::string wrong = event.forgotten;
+  if (wrong.empty())
+    wrong = complaint(goal, code, complete);
   if (wrong.empty()) {
     const auto count = std::count_if(entries_.begin(), entries_.end(),
                                      [](const auto& each) { return open(each.second.status); });

@@ -36,6 +36,8 @@ const char* name_of(GoalCode code) {
       return "changed";
     case GoalCode::kTooMany:
       return "too_many";
+    case GoalCode::kForgotten:
+      return "forgotten";
     case GoalCode::kDeadline:
       return "deadline";
     case GoalCode::kBlocked:

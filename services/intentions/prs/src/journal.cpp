@@ -147,8 +147,10 @@ Memory read_journal(const std::string& file, std::string_view content,
   int number = 0;
   while (!content.empty()) {
     const std::size_t end = content.find('\n');
-    if (end == std::string_view::npos)
-      break;  // what a crash left of a write
+    if (end == std::string_view::npos) {
+      damaged.emplace_back(file, number + 1, 1, "the file ends within this line", content);
+      break;
+    }
     const std::string_view text = content.substr(0, end);
     content.remove_prefix(end + 1);
     ++number;

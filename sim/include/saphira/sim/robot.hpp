@@ -74,9 +74,13 @@ class Robot {
   // what
   // ---- a robot can do at all.
 
-  void set_max_velocity(double velocity);               ///< [m/s] of move_by
-  void set_acceleration(double acceleration);           ///< [m/s2]
-  void set_deceleration(double deceleration);           ///< [m/s2]
+  void set_max_velocity(double velocity);                                  ///< [m/s] of move_by
+  double acceleration() const { return acceleration_; }                    ///< [m/s2]
+  double deceleration() const { return deceleration_; }                    ///< [m/s2]
+  double rotation_acceleration() const { return rotation_acceleration_; }  ///< [rad/s2]
+  double rotation_deceleration() const { return rotation_deceleration_; }  ///< [rad/s2]
+  void set_acceleration(double acceleration);                              ///< [m/s2]
+  void set_deceleration(double deceleration);                              ///< [m/s2]
   void set_max_rotation_velocity(double velocity);      ///< [rad/s] of turns to a heading
   void set_rotation_acceleration(double acceleration);  ///< [rad/s2]
   void set_rotation_deceleration(double deceleration);  ///< [rad/s2]

@@ -99,8 +99,8 @@ class Arbiter {
   void connect(std::uint64_t epoch);
   /// The caller was deaf for a while (stopped, hung, without packets): nobody holds a grant from
   /// before. What is received before `until`, or answers a cycle up to `cycle`, may have waited in
-  /// a queue and is refused.
-  void forget(std::uint64_t cycle, double until);
+  /// a queue and is refused, with `why` as the reason [empty: the usual one].
+  void forget(std::uint64_t cycle, double until, std::string why = {});
 
   /// Takes a command as it comes, at robot cycle `cycle`. True when it was accepted: it is then the
   /// newest of its role. (Accepted does not mean that it drives: see decide.)
@@ -149,6 +149,7 @@ class Arbiter {
   std::uint64_t epoch_ = 0;
   std::uint64_t deaf_cycle_ = 0;
   double deaf_until_ = -1e300;
+  std::string deaf_why_;
   std::array<Player, 5> players_;
   struct Numbers {
     std::uint64_t newest = 0;

@@ -13,6 +13,7 @@
 #include "saphira/authority/guard.hpp"
 #include "saphira/bridge/doubts.hpp"
 #include "saphira/bridge/events.hpp"
+#include "saphira/bridge/line.hpp"
 #include "saphira/protocol/packet.hpp"
 #include "saphira/reflector/connection.hpp"
 #include "saphira/reflector/reflector.hpp"
@@ -123,6 +124,9 @@ class Core {
     double last_packet = 0.0;      ///< [s]
     double last_heard = 0.0;       ///< [s] an information packet, though it could not be true
     bool silent = false;           ///< the link: nobody drives what nobody sees
+    bool configured = false;       ///< it said how it is set
+    bool moved = false;            ///< it was told to move since the newest packet
+    bool unheard = false;          ///< it was not, again and again: it is to stand
     std::optional<std::uint64_t> odom_before;  ///< a cycle has begun, and is to be gone on with
     bool reacted = true;                       ///< the newest packet was answered
     bool answered = false;                     ///< lockstep: the behaviors answered this cycle
@@ -149,11 +153,15 @@ class Core {
   void begin_cycle(const protocol::InformationPacket& packet, double now);
   void finish_cycle(double now);
   void other(protocol::ServerPacket any, std::uint8_t type, double now);
+  std::uint64_t bad_packets() const;
   void heed(const protocol::ConfigPacket& set);
+  void mind_brakes();
   void lost(const std::string& why, double now, Note::Level level = Note::Level::warning);
 
   void decide(double now);
   void guard(reflector::Setpoints& wanted);
+  /// Whether the robot is told to move.
+  bool moves() const { return guarded_.velocity != 0.0 || guarded_.rotation_velocity != 0.0; }
   void flush(double now);
   void publish_grant();
   void keep_latches(double now);
@@ -182,9 +190,11 @@ class Core {
   std::uint64_t last_odom_ = 0;
   std::optional<reflector::OdometryMemory> memory_;
   reflector::Slack slack_;
-  std::string robot_trouble_;  ///< why a connected robot is not served
-  std::uint64_t permit_ = 0;   ///< lockstep
-  authority::Latches kept_;    ///< as they were told last
+  Line line_;
+  double own_deceleration_ = 0.0;  ///< [m/s2] that its parameter file names
+  std::string robot_trouble_;      ///< why a connected robot is not served
+  std::uint64_t permit_ = 0;       ///< lockstep
+  authority::Latches kept_;        ///< as they were told last
 
   // The decision of now.
   authority::Grant grant_;

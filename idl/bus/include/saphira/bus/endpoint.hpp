@@ -31,6 +31,8 @@ struct SampleInfo {
   WriterId writer{};
   bool disposed = false;  ///< the instance was withdrawn; the data are those that came last
   std::shared_ptr<const Identity> sender = nullptr;  ///< none on an open bus
+  /// [s] since it was written, by the clocks of both machines when it was taken.
+  double age = 0.0;
 };
 
 template <class T>

@@ -47,6 +47,7 @@ class Core {
       GoalEvent event;
       Writer writer{};
       std::optional<Sender> sender{};  ///< none on a bus that is open to all
+      double before_start = 0.0;       ///< [s] that it was written before this start of the service
     };
     struct Claim {
       ClaimEvent event;
@@ -142,6 +143,8 @@ class Core {
   std::string who_is_gone(const Inputs& inputs);
 
   bool lockstep_;
+  bool remembers_ = false;  ///< what was done before this start
+  bool memory_damaged_ = false;
   Executor executor_;
   ProcessTable processes_;
   /// Suspended it lets nothing be intended: the goals are suspended, and the robot is released.

@@ -24,6 +24,9 @@ struct GoalEvent {
   Kind kind = Kind::kWritten;
   Goal goal;         ///< kWritten: whole; otherwise only its id counts
   std::string by{};  ///< who did it [empty: its requester]
+  /// Why a goal that is not known is not to be done, since it may have been done already [empty: it
+  /// is to be done].
+  std::string forgotten{};
 };
 
 /// What a step is given.
@@ -138,7 +141,7 @@ class Executor {
 
   void pass_time(const Inputs& inputs);
   void take_in(const GoalEvent& event);
-  void take_written(const Goal& goal, const std::string& by);
+  void take_written(const GoalEvent& event);
   void put_up(Entry& entry, const Goal& goal, Arguments complete);
   static bool depends_on_odom(const Entry& entry, bool placed);
   void change(Entry& entry, const Goal& goal, const std::string& by);

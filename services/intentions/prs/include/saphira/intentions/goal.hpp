@@ -45,6 +45,7 @@ enum class GoalCode {
   kBadArgument,
   kChanged,
   kTooMany,
+  kForgotten,  ///< older than this start of the service, whose memory is gone
   kDeadline,
   kBlocked,
   kNoRobot,

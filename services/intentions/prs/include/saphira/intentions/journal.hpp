@@ -49,6 +49,12 @@ inline constexpr std::size_t kMostEndings = 8192;
 
 /// What the service remembers over a restart.
 struct Memory {
+  enum class Condition {
+    kNone,     ///< nothing was remembered: a first start, or the file was removed
+    kDamaged,  ///< a part may be missing
+    kWhole
+  };
+  Condition condition = Condition::kNone;
   std::vector<Placement> placements;  ///< of goals that have not ended
   std::vector<Ending> endings;        ///< oldest first
   Work work;                          ///< of goals that have begun
@@ -62,9 +68,8 @@ struct Memory {
 std::string write_line(const Placement& placement);
 std::string write_line(const Ending& ending);
 
-/// Reads those lines; the newest of an id counts. A last line without its line break is what a
-/// crash left of a write: it is skipped. Lines that are not as they were written are skipped and
-/// told.
+/// Reads those lines; the newest of an id counts. Lines that are not as they were written are
+/// skipped and told, as is a last one without its line break.
 Memory read_journal(const std::string& file, std::string_view content,
                     std::vector<FileError>& damaged);
 

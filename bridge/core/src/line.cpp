@@ -1,0 +1,74 @@
+#include "saphira/bridge/line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saphira/base/numbers.hpp"
+
+namespace saphira::bridge {
+
+namespace {
+
+constexpr std::size_t kEnough = 20;  // packets, to say how bad a line is
+constexpr double kUnheard = 0.28;        // [s] without a whole packet; the lease of a driver is 0.3 s
+constexpr int kBegins = 5;           // whole packets in which it begins to move
+constexpr int kGoesOn = 20;          // whole packets in motion: it is heard
+constexpr int kForgiven = 2;         // times
+constexpr double kStands = 20.0;  // [s] at the first time that is not forgiven; then twice that...
+constexpr double kMostStands = 300.0;
+
+}  // namespace
+
+void Line::add(bool damaged) {
+  newest_[next_] = damaged;
+  next_ = (next_ + 1) % kWindow;
+  count_ = std::min(count_ + 1, kWindow);
+}
+
+void Line::damage(std::uint64_t damaged) {
+  for (std::uint64_t i = damaged_; i < damaged && i < damaged_ + kWindow; ++i)
+    add(true);
+  damaged_ = damaged;
+}
+
+bool Line::packet(std::uint64_t damaged, double gap, bool moved, double now) {
+  damage(damaged);
+  add(false);
+  return listen(gap, moved, now);
+}
+
+bool Line::listen(double gap, bool moved, double now) {
+  if (!moved || gap <= kUnheard) {
+    heard_moving_ = moved ? heard_moving_ + 1 : 0;
+    if (heard_moving_ >= kGoesOn)
+      unheard_ = 0;
+    return false;
+  }
+  if (std::exchange(heard_moving_, 0) >= kBegins || ++unheard_ <= kForgiven)
+    return false;
+  stands_until_ = now + std::min(kStands * std::pow(2.0, unheard_ - kForgiven - 1), kMostStands);
+  return true;
+}
+
+std::size_t Line::damaged_in_window() const {
+  return static_cast<std::size_t>(std::count(newest_.begin(), newest_.end(), true));
+}
+
+bool Line::bad() const {
+  return count_ >= kEnough && damaged_in_window() * 10 >= count_;
+}
+
+std::string Line::words() const {
+  return "the line to the robot is bad: " + std::to_string(damaged_in_window()) + " of its last " +
+         std::to_string(count_) +
+         " packets were damaged (is a plug loose, the cable long, the radio weak?)";
+}
+
+std::string Line::why_it_stands(double now) const {
+  return "the robot is not heard while it moves (" + std::to_string(unheard_) +
+         " times now), so it stands; it may move again in " +
+         plain(std::ceil(stands_until_ - now)) + " s" + (bad() ? "; " + words() : "");
+}
+
+}  // namespace saphira::bridge

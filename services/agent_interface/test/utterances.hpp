@@ -1,0 +1,48 @@
+#pragma once
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "saphira/agent_interface/grammar.hpp"
+
+namespace saphira::agent_interface {
+
+/// What people may say, and the meaning that a person would give it: a functor with its slots,
+/// `what?`, `nothing` for what is not meant for the robot, or `ambiguous`.
+struct SaidAndMeant {
+  std::string text;
+  std::string meaning;
+  bool reply = false;  ///< the robot has asked
+};
+
+/// The lines of utterances.txt, "utterance => meaning". std::runtime_error where a line is no such.
+inline std::vector<SaidAndMeant> read_utterances(const std::string& content) {
+  std::vector<SaidAndMeant> phrases;
+  bool replies = false;
+  std::istringstream lines(content);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line[0] == '#') {
+      replies = line == "# Where the robot has asked";
+      continue;
+    }
+    const std::size_t arrow = line.find(" => ");
+    if (arrow == std::string::npos)
+      throw std::runtime_error("expected \"utterance => meaning\", found " + line);
+    phrases.push_back({line.substr(0, arrow), line.substr(arrow + 4), replies});
+  }
+  return phrases;
+}
+
+/// What the grammar takes a phrase for, in the words of those lines.
+inline std::string meaning_of(const Grammar& grammar, const SaidAndMeant& phrase) {
+  const Grammar::Understood understood = grammar.understand(phrase.text, phrase.reply);
+  if (understood.meanings.size() == 1)
+    return describe(understood.meanings.front());
+  if (understood.meanings.size() > 1)
+    return "ambiguous";
+  return understood.addressed ? "what?" : "nothing";
+}
+
+}  // namespace saphira::agent_interface

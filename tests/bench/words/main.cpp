@@ -1,0 +1,70 @@
+// How many utterances have the meaning that a person would give them, and how many are acted on
+// wrongly: those of services/agent_interface/test/utterances.txt, or of a file of your own.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "agent_interface/test/utterances.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
+
+namespace {
+
+using namespace saphira;
+using namespace saphira::agent_interface;
+
+/// Whether the robot would do something.
+bool acts(const std::string& meaning) {
+  return meaning != "what?" && meaning != "nothing" && meaning != "ambiguous";
+}
+
+int run(const std::string& file, const std::string& grammar_file, bool json) {
+  const Grammar grammar(read_file(grammar_file), grammar_file);
+  const std::vector<SaidAndMeant> phrases = read_utterances(read_file(file));
+  int right = 0;
+  int acted_wrongly = 0;
+  for (const SaidAndMeant& phrase : phrases) {
+    const std::string meant = meaning_of(grammar, phrase);
+    if (meant == phrase.meaning) {
+      ++right;
+      continue;
+    }
+    acted_wrongly += acts(meant) ? 1 : 0;
+    if (!json)
+      std::printf("\"%s\": expected %s, understood %s\n", phrase.text.c_str(),
+                  phrase.meaning.c_str(), meant.c_str());
+  }
+  if (json)
+    std::printf("%s\n", nlohmann::json{{"utterances", phrases.size()},
+                                       {"right", right},
+                                       {"acted_wrongly", acted_wrongly}}
+                            .dump()
+                            .c_str());
+  else
+    std::printf("%d of %zu utterances right, %d acted on wrongly\n", right, phrases.size(),
+                acted_wrongly);
+  return acted_wrongly == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("How utterances are understood");
+  std::string file = "services/agent_interface/test/utterances.txt";
+  std::string grammar;
+  bool json = false;
+  app.add_option("--utterances", file, "lines \"utterance => meaning\"")->capture_default_str();
+  app.add_option("--grammar", grammar, "grammar file [the shipped one]");
+  app.add_flag("--json", json, "one JSON object: utterances, right, acted_wrongly");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return run(file, grammar.empty() ? config_folder() + "/grammars/flakey.grammar" : grammar,
+               json);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira-bench-words: %s\n", error.what());
+    return 1;
+  }
+}
