@@ -11,7 +11,7 @@ namespace saphira::bridge {
 namespace {
 
 constexpr std::size_t kEnough = 20;  // packets, to say how bad a line is
-constexpr double kUnheard = 0.28;        // [s] without a whole packet; the lease of a driver is 0.3 s
+constexpr double kUnheard = 0.28;    // [s] without a whole packet; the lease of a driver is 0.3 s
 constexpr int kBegins = 5;           // whole packets in which it begins to move
 constexpr int kGoesOn = 20;          // whole packets in motion: it is heard
 constexpr int kForgiven = 2;         // times
