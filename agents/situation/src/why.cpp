@@ -49,6 +49,12 @@ void Reason::add_conditions(Cause& cause) const {
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
       cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
+  // It serves its robot, and not as it should: a bad line, motors that are off.
+  if (scene_.past)
+    return;
+  for (const Program& program : scene_.programs)
+    if (program.status.name() == "bridge" && program.status.state() == v1::SERVICE_DEGRADED)
+      cause.because.push_back({"program", "bridge is degraded: " + program.status.reason(), {}});
 }
 
 Explanation Reason::stopped() const {
@@ -73,6 +79,8 @@ Explanation Reason::stopped() const {
     reasons.push_back(idle);
     cause.because.front().because.push_back({"goal", idle, {}});
   }
+  if (reasons.empty() && !grant.refused().empty())
+    reasons.push_back("nobody drives it: " + refused(grant.refused().front()));
   if (reasons.empty())
     reasons.push_back("nobody drives it: " + grant.reason());
   for (std::size_t i = 0; i < reasons.size(); ++i)

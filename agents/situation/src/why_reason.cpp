@@ -235,6 +235,11 @@ std::string Reason::wants(const std::vector<Say>& speeds, const std::vector<Say>
   return name_of(behavior) + " wants " + listed(parts);
 }
 
+std::string refused(const v1::Refusal& refusal) {
+  return refusal.source() + " (" + situation::name_of(refusal.role()) +
+         ") was refused: " + refusal.reason();
+}
+
 Cause Reason::grant_cause() const {
   const v1::Grant& grant = *scene_.grant;
   Cause cause{"grant", std::string(situation::name_of(grant.role())), {}};
@@ -247,10 +252,7 @@ Cause Reason::grant_cause() const {
   if (!grant.reason().empty())
     cause.text += ": " + grant.reason();
   for (const v1::Refusal& refusal : grant.refused())
-    cause.because.push_back({"grant",
-                             refusal.source() + " (" + situation::name_of(refusal.role()) +
-                                 ") was refused: " + refusal.reason(),
-                             {}});
+    cause.because.push_back({"grant", refused(refusal), {}});
   return cause;
 }
 

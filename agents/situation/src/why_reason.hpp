@@ -23,6 +23,9 @@ struct Say {
   const v1::RuleState* main_rule = nullptr;
 };
 
+/// "behaviors (behaviors) was refused: ..."
+std::string refused(const v1::Refusal& refusal);
+
 /// Walks over what is known and puts it into words.
 class Reason {
  public:

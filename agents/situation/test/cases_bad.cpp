@@ -232,6 +232,31 @@ void past(std::vector<Case>& all) {
                      {"drive ahead at 0.30 m/s", "GoToPos"}, {"not known", "not on the bus"}));
 }
 
+/// The line to the robot damages packets.
+void bad_line(std::vector<Case>& all) {
+  const std::string words = "the line to the robot is bad: 17 of its last 50 packets were damaged";
+  const Change says = [=](Situation& s) {
+    find(s, "bridge").status.state(v1::SERVICE_DEGRADED);
+    find(s, "bridge").status.reason(words);
+  };
+  all.push_back(when("a third of the robot's packets are damaged", "why tree", driving(), {says},
+                     {"bridge is degraded: " + words}));
+  all.push_back(
+      when("the robot is not heard while it moves", "why", driving(),
+           {stands("nobody asks to drive"),
+            [](Situation& s) {
+              v1::Refusal refusal;
+              refusal.role(v1::ROLE_BEHAVIORS);
+              refusal.source("behaviors");
+              refusal.reason(
+                  "the robot is not heard while it moves (3 times now): it stands for "
+                  "another 20 s");
+              s.grant->refused().push_back(refusal);
+            }},
+           {"The robot stands", "behaviors (behaviors) was refused", "is not heard while it moves"},
+           {"nobody asks"}));
+}
+
 }  // namespace
 
 std::vector<Case> bad_cases() {
@@ -239,6 +264,7 @@ std::vector<Case> bad_cases() {
   intentions_gone(all);
   behaviors_gone(all);
   bridge_gone(all);
+  bad_line(all);
   past(all);
   return all;
 }

@@ -202,7 +202,9 @@ void Core::end(double now) {
 
 void Core::received(protocol::ByteView bytes, double now) {
   last_bytes_ = now;
-  parser_.feed(bytes);
+  // What waited while the bridge stood still tells of a robot as it was.
+  if (now >= stale_until_)
+    parser_.feed(bytes);
 }
 
 bool Core::work(double now) {
@@ -355,6 +357,8 @@ void Core::loop(double now) {
   // A link that was silent before is silent still.
   arbiter_.forget(session_.stamp.cycle, session_.silent ? kForEver : now + kSettle);
   session_.last_packet = now;  // it was the bridge that was silent, not the link
+  stale_until_ = now + kSettle;
+  parser_.reset();
   reflector_.zero_first();
   decide(now);
   flush(now);

@@ -11,10 +11,10 @@ namespace saphira::bridge {
 namespace {
 
 constexpr std::size_t kEnough = 20;  // packets, to say how bad a line is
-constexpr double kUnheard = 0.28;    // [s] without a whole packet; the lease of a driver is 0.3 s
-constexpr int kBegins = 5;           // whole packets in which it begins to move
-constexpr int kGoesOn = 20;          // whole packets in motion: it is heard
-constexpr int kForgiven = 2;         // times
+constexpr double kUnheard =
+    0.35;                   // [s] without a whole packet: the lease of a driver, 0.3 s, has run out
+constexpr int kBegins = 5;  // whole packets in motion, after which it is heard
+constexpr int kForgiven = 2;      // times
 constexpr double kStands = 20.0;  // [s] at the first time that is not forgiven; then twice that...
 constexpr double kMostStands = 300.0;
 
@@ -41,7 +41,7 @@ bool Line::packet(std::uint64_t damaged, double gap, bool moved, double now) {
 bool Line::listen(double gap, bool moved, double now) {
   if (!moved || gap <= kUnheard) {
     heard_moving_ = moved ? heard_moving_ + 1 : 0;
-    if (heard_moving_ >= kGoesOn)
+    if (heard_moving_ >= kBegins)
       unheard_ = 0;
     return false;
   }
@@ -59,16 +59,20 @@ bool Line::bad() const {
   return count_ >= kEnough && damaged_in_window() * 10 >= count_;
 }
 
+std::string Line::damaged_words() const {
+  return std::to_string(damaged_in_window()) + " of its last " + std::to_string(count_) +
+         " packets were damaged";
+}
+
 std::string Line::words() const {
-  return "the line to the robot is bad: " + std::to_string(damaged_in_window()) + " of its last " +
-         std::to_string(count_) +
-         " packets were damaged (is a plug loose, the cable long, the radio weak?)";
+  return "the line to the robot is bad: " + damaged_words() +
+         " (is a plug loose, the cable long, the radio weak?)";
 }
 
 std::string Line::why_it_stands(double now) const {
-  return "the robot is not heard while it moves (" + std::to_string(unheard_) +
-         " times now), so it stands; it may move again in " +
-         plain(std::ceil(stands_until_ - now)) + " s" + (bad() ? "; " + words() : "");
+  return "the robot is not heard while it moves (" + std::to_string(unheard_) + " times now" +
+         (bad() ? ", " + damaged_words() : "") + "): it stands for another " +
+         plain(std::ceil(stands_until_ - now)) + " s";
 }
 
 }  // namespace saphira::bridge

@@ -154,6 +154,20 @@ TEST(Session, AGapOfTheLoopIsAStop) {
   EXPECT_EQ(scene.core.grant().role, Role::teleop);
 }
 
+TEST(Session, PacketsThatWaitedDuringAGapAreDropped) {
+  Driven scene;
+  const std::uint64_t cycle = scene.core.stamp().cycle;
+  for (int i = 0; i < 600; ++i)
+    scene.say(protocol::encode(scene.shown));
+  scene.pass(60.0);
+  EXPECT_TRUE(scene.core.in_session());
+  EXPECT_EQ(scene.core.stamp().cycle, cycle) << "none of a minute's packets is a cycle";
+  scene.pass(0.05);
+  scene.cycles(3, Role::behaviors);
+  EXPECT_EQ(scene.core.stamp().cycle, cycle + 3);
+  EXPECT_EQ(scene.core.grant().role, Role::behaviors);
+}
+
 TEST(Session, AGapDoesNotEndTheSilenceOfTheLink) {
   Driven scene;
   scene.pass_slowly(0.6);
@@ -284,9 +298,7 @@ TEST(Session, ARobotThatIsNotHeardWhileItMovesStands) {
   Driven scene;
   EXPECT_LE(lurches(scene, 30.0, true), 5);
   EXPECT_EQ(scene.condition().health, Health::degraded);
-  EXPECT_EQ(scene.condition().reason.find("the robot is not heard while it moves (4 times now), so "
-                                          "it stands; it may move again in "),
-            0U)
+  EXPECT_EQ(scene.condition().reason.find("the robot is not heard while it moves (4 times now"), 0U)
       << scene.condition().reason;
   const std::vector<GrantDecided> grants = scene.all<GrantDecided>();
   EXPECT_TRUE(std::any_of(grants.begin(), grants.end(), [](const GrantDecided& decided) {

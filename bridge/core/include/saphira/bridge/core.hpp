@@ -208,6 +208,7 @@ class Core {
   std::size_t room_ = SIZE_MAX;
   std::optional<double> last_loop_;  ///< [s]
   double last_bytes_ = 0.0;          ///< [s]
+  double stale_until_ = 0.0;         ///< [s] what comes before waited during a gap
   double hold_off_ = 0.0;            ///< [s] the robot is not asked before
 
   // The status.

@@ -35,6 +35,7 @@ class Line {
   void add(bool damaged);
   bool listen(double gap, bool moved, double now);
   std::size_t damaged_in_window() const;
+  std::string damaged_words() const;
 
   std::array<bool, kWindow> newest_{};  ///< damaged
   std::size_t count_ = 0;               ///< of them, at most kWindow
