@@ -222,6 +222,7 @@ int main(int argc, char** argv) {
                        "local socket of the simulator's own view");
         app.add_option("--robot-file", robot.robot,
                        "parameter file of the simulated robot, or the name of one that is shipped")
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
             ->capture_default_str();
         app.add_option("--seed", robot.seed, "of all that is random")->capture_default_str();
         app.add_flag("--step", robot.step, "single-step from the start");
@@ -259,6 +260,7 @@ int main(int argc, char** argv) {
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         programs.robot.world = find_file(config + "/worlds", programs.robot.world, ".wld");
         programs.robot.robot = find_file(config + "/robots", programs.robot.robot, ".p");
+        programs.link.parameter_file = programs.robot.robot;
         programs.robot.socket = socket;
         programs.link.robot_port = "unix:" + socket;
         programs.robot.log = [](const std::string& line) {

@@ -40,6 +40,9 @@ int main(int argc, char** argv) {
             ->capture_default_str();
         app.add_option("--robots", options.robots_folder, "folder of robot parameter files")
             ->capture_default_str();
+        app.add_option("--robot-file", options.parameter_file,
+                       "parameter file of the robot, or the name of one in that folder (usual: the "
+                       "one that is named after the subclass or class that the robot names)");
         app.add_option("--lease-ms", lease_ms, "a command drives for so long")
             ->capture_default_str();
         app.add_option("--quiet-ms", quiet_ms,

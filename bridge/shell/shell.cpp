@@ -10,6 +10,7 @@
 
 #include "convert.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/bus/notes.hpp"
 #include "saphira/bus/program.hpp"
 #include "saphira/bus/sender.hpp"
@@ -45,13 +46,29 @@ std::string looked_for(const protocol::RobotIdentity& robot) {
 }
 
 protocol::RobotParameters parameters_of(const protocol::RobotIdentity& robot,
-                                        const std::string& folder) {
+                                        const BridgeOptions& options) {
+  const std::string& folder = options.robots_folder;
+  std::string other;
+  if (!options.parameter_file.empty()) {
+    protocol::RobotParameters given = protocol::load_parameters(options.parameter_file);
+    if (given.is_of(robot.robot_class, robot.subclass))
+      return given;
+    other = options.parameter_file + " is for a robot (" + given.robot_class + ", " +
+            given.subclass + ") and not for this one";
+  }
   const std::optional<std::string> path =
       protocol::find_parameter_file(folder, robot.robot_class, robot.subclass);
   if (!path)
     throw std::runtime_error("no parameter file for " + name_of(robot) + ": looked for " +
-                             looked_for(robot) + " in " + folder);
-  return protocol::load_parameters(*path);
+                             looked_for(robot) + " in " + folder +
+                             (other.empty() ? "" : "; " + other) +
+                             ". Copy the file of the most similar robot there, under its subclass");
+  protocol::RobotParameters found = protocol::load_parameters(*path);
+  if (!other.empty())
+    found.warnings.push_back(other + ": takes " + *path);
+  else if (!found.is_of(robot.robot_class, robot.subclass))
+    found.warnings.push_back(name_of(robot) + " has no parameter file of its own: takes " + *path);
+  return found;
 }
 
 std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
@@ -64,6 +81,8 @@ BridgeOptions checked(BridgeOptions options) {
   if (!std::filesystem::is_directory(options.robots_folder))
     throw std::invalid_argument("--robots " + options.robots_folder +
                                 ": expected a folder with robot parameter files");
+  if (!options.parameter_file.empty())
+    options.parameter_file = find_file(options.robots_folder, options.parameter_file, ".p");
   if (!(options.contact_speed >= 0.0) || options.contact_speed > kMostContact)
     throw std::invalid_argument("--contact-speed: expected 0 (never) to 0.15 m/s");
   if (!(options.lease > 0.0) || !(options.quiet >= 0.0))
@@ -280,7 +299,7 @@ void Shell::perform(const Send& send, double now) {
 void Shell::perform(const Identified& identified, double now) {
   protocol::RobotParameters parameters;
   try {
-    parameters = parameters_of(identified.robot, options_.robots_folder);
+    parameters = parameters_of(identified.robot, options_);
   } catch (const std::exception& error) {
     return core_.refuse_robot(error.what(), now);
   }

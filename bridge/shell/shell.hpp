@@ -24,7 +24,10 @@ namespace saphira::bridge {
 
 struct BridgeOptions {
   std::string robot_port = transport::default_address();
-  std::string robots_folder = "config/robots";             ///< of the parameter files
+  std::string robots_folder = "config/robots";  ///< of the parameter files
+  /// The parameter file of a robot that names its class and subclass, or the name of one in that
+  /// folder; empty: none. Other robots get theirs by what they name.
+  std::string parameter_file;
   double lease = 0.3;                                      ///< [s] in lockstep cycles x 0.1
   double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;

@@ -14,6 +14,11 @@ namespace saphira::protocol {
 
 namespace {
 
+/// Whether a subclass of the class Pioneer is one of its first generation.
+bool is_of_the_first(std::string_view subclass) {
+  return subclass.starts_with("psos") || subclass.starts_with("pion");
+}
+
 constexpr double kMillimetre = 0.001;
 constexpr int kMaxSonars = 64;
 
@@ -268,9 +273,9 @@ class Parser {
   // ARIA's files do not say it; the names of the servers' versions do.
   Protocol protocol_of_subclass() const {
     const std::string name = lower(parameters_.subclass);
-    if (name.ends_with("-sh"))
+    if ((name + "-").find("-sh-") != std::string::npos)
       return Protocol::kArcos;
-    return name.starts_with("psos") || name.starts_with("pion") ? Protocol::kPsos : Protocol::kP2os;
+    return is_of_the_first(name) ? Protocol::kPsos : Protocol::kP2os;
   }
 
   // What a file does not say follows from the generation of its server.
@@ -391,19 +396,35 @@ RobotParameters load_parameters(const std::string& path) {
   return parse_parameters(read_file(path), path);
 }
 
+bool RobotParameters::is_of(std::string_view of_class, std::string_view of_subclass) const {
+  return lower(of_class) == lower(robot_class) && lower(of_subclass) == lower(subclass);
+}
+
 std::vector<std::string> parameter_file_names(std::string_view robot_class,
                                               std::string_view subclass) {
   std::vector<std::string> names;
-  for (const std::string_view text : {subclass, robot_class}) {
-    const std::string name = lower(text);
+  const auto add = [&](const std::string& name) {
     const bool plain =
         !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](char c) {
           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
                  c == '+' || c == '.';
         });
-    if (plain && (names.empty() || names[0] != name + ".p"))
+    if (plain && std::find(names.begin(), names.end(), name + ".p") == names.end())
       names.push_back(name + ".p");
+  };
+  std::string name = lower(subclass);
+  add(name);
+  // What is behind a hyphen is a variant: p3dx-sh-lms1xx is a p3dx-sh with a laser.
+  // Without -sh it is another generation.
+  for (std::size_t hyphen = name.rfind('-');
+       hyphen != std::string::npos && name.substr(hyphen) != "-sh"; hyphen = name.rfind('-')) {
+    name.resize(hyphen);
+    add(name);
   }
+  // The file of the class Pioneer is one of the manual's time, with its units.
+  const std::string of_class = lower(robot_class);
+  if (of_class != "pioneer" || is_of_the_first(name) || name.empty())
+    add(of_class);
   return names;
 }
 

@@ -468,6 +468,14 @@ TEST(ParameterFileNames, LowerCaseSubclassElseClass) {
   EXPECT_EQ(parameter_file_names("Pioneer", "PSOS43M"), (Names{"psos43m.p", "pioneer.p"}));
   EXPECT_EQ(parameter_file_names("B21", ""), (Names{"b21.p"}));
   EXPECT_EQ(parameter_file_names("Pioneer", "pioneer"), (Names{"pioneer.p"}));
+  EXPECT_EQ(parameter_file_names("Pioneer", "p3dx-sh-lms1xx"),
+            (Names{"p3dx-sh-lms1xx.p", "p3dx-sh.p"}));
+  EXPECT_EQ(parameter_file_names("Pioneer", "p3at-sh-laser-2"),
+            (Names{"p3at-sh-laser-2.p", "p3at-sh-laser.p", "p3at-sh.p"}));
+  EXPECT_EQ(parameter_file_names("Pioneer", "wheelchair"), (Names{"wheelchair.p"}))
+      << "not the file of the first generation";
+  EXPECT_EQ(parameter_file_names("Pioneer", ""), (Names{"pioneer.p"}));
+  EXPECT_EQ(parameter_file_names("B21", "b21r-laser"), (Names{"b21r-laser.p", "b21r.p", "b21.p"}));
   EXPECT_EQ(parameter_file_names("../../etc/passwd", ".."), Names{});
   EXPECT_EQ(parameter_file_names("", ""), Names{});
 }

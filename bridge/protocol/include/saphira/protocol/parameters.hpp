@@ -32,6 +32,8 @@ struct RobotParameters {
   std::string name;         ///< keyword Name
   std::string robot_class;  ///< Class; the second string of the SYNC2 answer
   std::string subclass;     ///< Subclass
+  /// Whether that is the class and subclass that a robot names, in letters of either case.
+  bool is_of(std::string_view of_class, std::string_view of_subclass) const;
 
   // One unit of the information packet.
   double angle_unit = 0.0061359;      ///< [rad] AngleConvFactor
@@ -117,8 +119,10 @@ RobotParameters parse_parameters(std::string_view text, const std::string& file)
 RobotParameters load_parameters(const std::string& path);
 
 /// Which parameter files fit a robot, the best first (manual 5.4.2): the lower-case subclass, if it
-/// has one, then the lower-case class, each with ".p". The strings come from the robot: what is not
-/// a plain file name is left out.
+/// has one, and that without its variants (p3dx-sh-lms1xx: p3dx-sh), then the lower-case class,
+/// each with ".p". The file of the class Pioneer fits the first generation alone (psos...,
+/// pion...): later ones have other units. The strings come from the robot: what is not a plain file
+/// name is left out.
 std::vector<std::string> parameter_file_names(std::string_view robot_class,
                                               std::string_view subclass);
 /// The first of them that is in `folder`; none where there is none.
