@@ -31,6 +31,16 @@ std::vector<std::string> folders(const Options& options) {
   return paths;
 }
 
+/// Why the behaviors, which ask to, do not drive.
+std::string refusal_of(const v1::Grant& grant) {
+  if (grant.role() == v1::ROLE_BEHAVIORS)
+    return {};
+  for (const v1::Refusal& refusal : grant.refused())
+    if (refusal.role() == v1::ROLE_BEHAVIORS)
+      return refusal.reason();
+  return grant.waits_for_hand_back() ? grant.reason() : std::string();
+}
+
 Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
                         std::shared_ptr<const Functions> functions) {
   return {built_in(), memory.memory(), memory.keeps(), ports.lockstep(), std::move(functions)};
@@ -239,7 +249,8 @@ void Service::take_answers(Core::Heard& heard) {
 void Service::take_estops(Core::Heard& heard) {
   for (const auto& sample : grants_.take())
     if (!sample.info.disposed)
-      heard.estops.push_back({sample.data.estopped(), sample.data.estop_source()});
+      heard.estops.push_back(
+          {sample.data.estopped(), sample.data.estop_source(), refusal_of(sample.data)});
 }
 
 void Service::look() {

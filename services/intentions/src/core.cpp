@@ -51,7 +51,9 @@ Core::Outputs Core::step(Inputs inputs) {
 
   Outputs outputs;
   now.events = events_of(inputs.heard, outputs.notes);
-  const std::string gone = who_is_gone(inputs);
+  std::string gone = who_is_gone(inputs);
+  if (gone.empty() && !lockstep_)
+    gone = refusal_;
   outputs.intended = executor_.step(now);
   if (!gone.empty())
     for (GoalStatus& status : outputs.intended.news.changed)
@@ -314,6 +316,7 @@ void Core::note_estops(const std::vector<Heard::Estop>& estops) {
     else if (!pressed)
       estop_.clear();
     pressed = pressed || estop.pressed;
+    refusal_ = estop.refusal;
   }
 }
 

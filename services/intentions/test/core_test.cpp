@@ -201,6 +201,19 @@ TEST_F(CoreTest, BetweenCyclesGoalsAreHeardButNotBegun) {
   EXPECT_TRUE(says(told.notes, "refused"));
 }
 
+TEST_F(CoreTest, AGoalThatFailsWhileTheBridgeRefusesSaysWhy) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  inputs_.heard.goals[0].event.goal.deadline = 1.0;
+  for (int i = 0; i < 20; ++i) {
+    inputs_.heard.estops = {{false, "", "a person drove last: autonomy waits"}};
+    step();
+  }
+  ASSERT_EQ(state(1), GoalState::kFailed);
+  EXPECT_NE(statuses_.at({5, 1}).reason.find("; a person drove last: autonomy waits"),
+            std::string::npos)
+      << statuses_.at({5, 1}).reason;
+}
+
 TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
   using Condition = Memory::Condition;
   for (const Condition condition : {Condition::kNone, Condition::kDamaged, Condition::kWhole}) {

@@ -57,6 +57,8 @@ class Core {
     struct Estop {
       bool pressed = false;
       std::string source;
+      /// Why the bridge does not let the behaviors drive [empty: it does, or they do not ask].
+      std::string refusal{};
     };
     std::vector<Writer> lost_requesters;
     std::vector<Goal> goals;
@@ -150,7 +152,8 @@ class Core {
   /// Suspended it lets nothing be intended: the goals are suspended, and the robot is released.
   Process& execution_ =
       processes_.add("execute-intentions", "pursues the goals: begins and steps intentions");
-  std::string estop_;  ///< which program pressed the emergency stop that is latched
+  std::string refusal_;  ///< why the bridge does not let the behaviors drive
+  std::string estop_;    ///< which program pressed the emergency stop that is latched
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;
   std::vector<lps::SeenThing> things_;
