@@ -346,7 +346,7 @@ class Teleop {
 
   KeyDrive keys_;
   std::string input_;
-  std::string source_ = person("keyboard");
+  std::string source_ = person("keyboard", true);
   std::uint64_t number_ = 0;
   bool drove_ = false;
   int hand_backs_left_ = 0;

@@ -59,6 +59,47 @@ class Follower {
   std::string last_;
 };
 
+/// Anybody's stop stops: it also ends the driving of a person, who may drive again after letting
+/// go. `source` is who says so, for people.
+void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::Stop& stop) {
+  constexpr int kReleases = 4;  // of the last word: the topic is best effort
+  auto grants = node.reader(bus::topics::kGrant);
+  std::optional<bus::Writer<v1::MotorCommand>> commands;  // not everybody has the right to have one
+  v1::MotorCommand command;
+  command.source(source);
+  command.translation(v1::TRANSLATION_VELOCITY);
+  command.rotation(v1::ROTATION_VELOCITY);
+  const auto say = [&](bool active) {
+    command.number(command.number() + 1);
+    command.active(active);
+    if (!commands)
+      commands = node.writer(bus::topics::kDriveTeleop);
+    commands->write(command);
+  };
+  std::string driver;
+  for (const auto began = Clock::now(); !stop.requested() && seconds_since(began) < 1.0;) {
+    node.wait(milliseconds(50), &stop);
+    const auto grant = grants.take_newest();
+    if (grant && grant->role() == v1::ROLE_TELEOP && grant->source() != source)
+      driver = grant->source();
+    else if (grant && driver.empty())
+      return;
+    else if (grant) {
+      print("stopped, too: %s, who drove and may drive again after letting go\n", driver.c_str());
+      driver.clear();
+      break;
+    }
+    if (!driver.empty())
+      say(true);
+  }
+  for (int i = 0; command.number() > 0 && i < kReleases; ++i) {
+    say(false);
+    node.wait(milliseconds(20));
+  }
+  if (!driver.empty())
+    complain("saphira: %s still drives; saphira estop stops the robot\n", driver.c_str());
+}
+
 int ask(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
   v1::Goal goal;
   try {
@@ -79,6 +120,13 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
   const v1::GoalId id = goals.ask(goal);
   print("goal %s  %s\n", bus::describe(id).c_str(), describe(goal).c_str());
 
+  if (goal.functor() == "stop") {
+    try {
+      stop_whoever_drives(node, person("saphira goal stop"), stop);
+    } catch (const std::exception& error) {  // without the right to drive, it stops goals alone
+      complain("saphira: a person drives, and is not stopped: %s\n", error.what());
+    }
+  }
   Follower follower;
   Latches latches(node);
   const auto began = Clock::now();

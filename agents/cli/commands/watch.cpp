@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <ctime>
 #include <string_view>
 
 #include "saphira/bus/status_words.hpp"
@@ -70,17 +71,24 @@ const char* name_of(bus::Profile profile) {
   return "?";
 }
 
-std::string person(const std::string& program) {
+std::string person(const std::string& program, bool since) {
   const char* const user = getlogin();
   std::string text = user == nullptr ? program : program + " of " + user;
   std::array<char, 256> host{};
   if (gethostname(host.data(), host.size() - 1) == 0)
     text += " at " + std::string(host.data());
-  const char* const terminal = ttyname(STDIN_FILENO);
-  if (terminal != nullptr)
-    text += std::string(" (") +
-            (std::string_view(terminal).starts_with("/dev/") ? terminal + 5 : terminal) + ")";
-  return text;
+  std::string where;
+  if (const char* const terminal = ttyname(STDIN_FILENO); terminal != nullptr)
+    where = std::string_view(terminal).starts_with("/dev/") ? terminal + 5 : terminal;
+  if (since) {
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    std::array<char, 16> time{};
+    if (localtime_r(&now, &local) != nullptr &&
+        std::strftime(time.data(), time.size(), "since %H:%M", &local) > 0)
+      where += (where.empty() ? "" : ", ") + std::string(time.data());
+  }
+  return where.empty() ? text : text + " (" + where + ")";
 }
 
 namespace {

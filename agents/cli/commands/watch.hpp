@@ -60,8 +60,9 @@ class DeploymentWatch {
 /// The profile's word: host, lan, wan.
 const char* name_of(bus::Profile profile);
 
-/// A program of this name and the person who runs it, for people: "keyboard of ann".
-std::string person(const std::string& program);
+/// A program of this name and the person who runs it, for people: "keyboard of ann at laptop
+/// (pts/3)"; with `since`, also the time of day when this was asked: "(pts/3, since 14:02)".
+std::string person(const std::string& program, bool since = false);
 
 /// What is there to hear us, in words, for when nobody answers.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
