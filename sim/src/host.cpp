@@ -589,6 +589,9 @@ struct Host::Parts {
 };
 
 void Host::Parts::add_robots(const HostOptions& options) {
+  if (options.log)
+    for (const std::string& warning : world.warnings)
+      options.log(warning);
   if (!((options.rate > 0.0 && options.rate <= 1000.0) || options.rate == kMaxRate))
     throw std::runtime_error(
         "rate: expected more than 0 and at most 1000 times real time, or \"max\"");

@@ -24,6 +24,12 @@ class Parser {
   /// The text has to outlive the parser.
   void read(std::string_view text, const std::string& file) {
     file_ = file;
+    if (const std::string_view other = other_format(text); !other.empty())
+      throw FileError(file, 1, 1,
+                      "this is " + std::string(other) +
+                          ", and not a world of this simulator, which says \"width MM\", \"height "
+                          "MM\" and then a line \"X Y X Y\" for each wall, in mm (as the lines "
+                          "behind LINES in a 2D-Map do)");
     if (world_.file.empty())
       world_.file = file;
     int last = 1;
@@ -158,8 +164,11 @@ class Parser {
     const double y1 = in.number("y of the first point in mm", -kMax, kMax) * kMillimetre;
     const double x2 = in.number("x of the second point in mm", -kMax, kMax) * kMillimetre;
     const double y2 = in.number("y of the second point in mm", -kMax, kMax) * kMillimetre;
-    if (std::hypot(x2 - x1, y2 - y1) < 0.5 * kMillimetre)
-      in.fail("expected two different points for a segment");
+    if (std::hypot(x2 - x1, y2 - y1) < 0.5 * kMillimetre) {
+      world_.warnings.push_back(file_ + ":" + std::to_string(in.line()) +
+                                ": a segment between a point and itself is left out");
+      return;
+    }
     world_.segments.push_back(
         {transform(frames_.back(), {x1, y1}), transform(frames_.back(), {x2, y2})});
   }

@@ -68,6 +68,13 @@ TEST(World, PushesAreNestedAndPopped) {
 
 using test::Broken;
 
+TEST(World, AWallOfNoLengthIsLeftOutAndTold) {
+  const World world = parse_world("width 10 height 10\n0 0 5 0\n3 3 3 3\n0 0 0 5\n", "mine.wld");
+  EXPECT_EQ(world.segments.size(), 2U);
+  ASSERT_EQ(world.warnings.size(), 1U);
+  EXPECT_TRUE(world.warnings[0].starts_with("mine.wld:3: ")) << world.warnings[0];
+}
+
 class BrokenWorld : public ::testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenWorld, SaysWhereAndWhatWasExpected) {
@@ -77,12 +84,12 @@ TEST_P(BrokenWorld, SaysWhereAndWhatWasExpected) {
 INSTANTIATE_TEST_SUITE_P(
     Files, BrokenWorld,
     ::testing::Values(Broken{"", 1, 1, "expected width"},
+                      Broken{"2D-Map\nLINES\n0 0 1 1\n", 1, 1, "a map of ARIA and MobileSim"},
                       Broken{"width 10\n", 1, 1, "expected height"},
                       Broken{"0 0 1 1\n", 1, 1, "width and height of the world before"},
                       Broken{"width 10\nheight\n", 2, 7, "expected height of the world"},
                       Broken{"width 10 height 10\n0 0 abc 30000\n", 2, 5, "x of the second point"},
                       Broken{"width 10 height 10\n0 0 1\n", 2, 6, "y of the second point"},
-                      Broken{"width 10 height 10\n0 0 0 0\n", 2, 7, "two different points"},
                       Broken{"width 10 height 10\npop\n", 2, 1, "push before this pop"},
                       Broken{"width 10 height 10\npush 0 0\n", 2, 9, "theta"},
                       Broken{"width 10 height 10\nwall 1 2 3 4\n", 2, 1, "found \"wall\""},

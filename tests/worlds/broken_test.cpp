@@ -144,12 +144,6 @@ const Kind kWorldMistakes[] = {
        return Place{line, 0};
      }},
     {"a comma in a number", [](Text& t) { return replace_word(t, start(t), 2, "1,000"); }},
-    {"a segment without length",
-     [](Text& t) {
-       const std::size_t line = segment(t);
-       t.lines[line] = "5 5 5 5";
-       return Place{line, 6};
-     }},
     {"the height left out",
      [](Text& t) {
        // On the line of the width, or on its own: the first that misses it is what comes behind.

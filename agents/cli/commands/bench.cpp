@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "commands.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/cli/deployment.hpp"
 
 namespace saphira::cli {
@@ -39,7 +40,10 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
     return bus::kExitFailed;
   }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    std::cerr << "saphira: no benchmark \"" << name << "\": expected one of";
+    const std::string meant = guess(name, names);
+    std::cerr << "saphira: no benchmark \"" << name
+              << "\": " << (meant.empty() ? "" : "did you mean " + meant + "? ")
+              << "expected one of";
     for (const std::string& known : names)
       std::cerr << ' ' << known;
     std::cerr << '\n';

@@ -131,6 +131,11 @@ int up(const std::string& name, const std::vector<std::string>& set,
                  deployment.file + " (process " + std::to_string(getpid()) + ")");
   }
 
+  for (const std::string& file : deployment.forget) {
+    std::error_code gone;
+    std::filesystem::remove(std::filesystem::path(folder.path()) / file, gone);
+  }
+
   const ServiceManager manager;
   const RenewSignal renew;
   const Supervisor::Print print = prefixed(children);

@@ -106,8 +106,8 @@ TreeLine behavior_line(const std::string& indent, bool blocking, const std::stri
 
 TreeLine intention_line(const std::string& indent, const v1::IntentionNode& node) {
   TreeLine line{indent + (node.blocking() ? "* " : "o ") + node.schema() + " (" +
-                    (node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) + ") " +
-                    node.label(),
+                    (node.name().empty() ? "I" + std::to_string(node.id()) : node.name()) + ")" +
+                    (node.label().empty() ? "" : " then " + node.label()),
                 node.arguments() + (node.arguments().empty() || node.step().empty() ? "" : "; ") +
                     node.step()};
   const char* how = "";

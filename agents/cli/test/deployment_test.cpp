@@ -136,6 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"settings: {run: a}\nprograms: [{program: sh}]\n", 1, 12, "built in"},
         Broken{"programs:\n  - program: sh\n    arguments: [a, \"${wrold}\"]\n", 3, 20,
                "unknown ${wrold}: expected one of config"},
+        Broken{"forget: [a/b]\nprograms: [{program: sh}]\n", 1, 9, "files in ${run}"},
         Broken{"settings:\n  a: \"${b}\"\nprograms: [{program: sh}]\n", 2, 6, "unknown ${b}"},
         Broken{"programs:\n  - program: sh\n    arguments: [\"${run\"]\n", 3, 17, "expected }"},
         Broken{"programs:\n  - program: no-such-program\n", 2, 14, "found no \"no-such-program\""},

@@ -47,14 +47,14 @@ TEST(IntentionsDisplay, IsFigure10) {
                  behavior(3678, false, "Follow", "Follow-To-Target"),
                  behavior(3678, false, "Orient", "Orient-To-Target"),
                  behavior(3678, true, "Keep-Off-With-Target", "Keep-Off")});
-  EXPECT_EQ(intentions_display(all, nullptr), R"(* Avoid (Avoid1) END
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* Avoid (Avoid1) then END
   * Avoid-Collision (Collide) B
-* Deliver-Object (I3674) S171
-  * Plan-And-Execute (I3675) S146
-    o Monitor-Planex (I3676) CLEANUP
-    * Follow-Path (Follow-It) S138
-      * Corridor-To-Junction (I3677) END
-        * Follow-To-Target (I3678) END
+* Deliver-Object (I3674) then S171
+  * Plan-And-Execute (I3675) then S146
+    o Monitor-Planex (I3676) then CLEANUP
+    * Follow-Path (Follow-It) then S138
+      * Corridor-To-Junction (I3677) then END
+        * Follow-To-Target (I3678) then END
           o Follow (Follow-To-Target) B
           o Orient (Orient-To-Target) B
           * Keep-Off-With-Target (Keep-Off) B
@@ -75,9 +75,9 @@ TEST(IntentionsDisplay, SaysBehindItWhatIsBeingDone) {
   state.speed_activity(1.0);
   state.goal(0.25);
   behaviors.behaviors({state});
-  EXPECT_EQ(intentions_display(all, &behaviors), R"(* go_to (go_to1) S1       driving to (3, 1)
-  o watch (w) MONITOR     suspended; waits for *failed*
-  * GoToPos (GoToPos) B   activity 1.00, goal 0.25
+  EXPECT_EQ(intentions_display(all, &behaviors), R"(* go_to (go_to1) then S1     driving to (3, 1)
+  o watch (w) then MONITOR   suspended; waits for *failed*
+  * GoToPos (GoToPos) B      activity 1.00, goal 0.25
 behavior control is off
 )");
   EXPECT_EQ(intentions_display({}, nullptr), "nothing is intended\n");
@@ -91,9 +91,9 @@ TEST(IntentionsDisplay, HasABehaviorThatIsANodeOnce) {
              node(3, 1, false, "Stop", "end", "B")});
   all.nodes()[2].state(v1::INTENTION_SUSPENDED);
   all.behaviors({behavior(2, true, "GoToPos", "GoToPos")});
-  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1) S1
+  EXPECT_EQ(intentions_display(all, nullptr), R"(* go_to (go_to1) then S1
   * GoToPos (GoToPos) B
-  o Stop (end) B          suspended
+  o Stop (end) B           suspended
 )");
 }
 

@@ -8,10 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "saphira/base/text.hpp"
 
@@ -50,6 +52,19 @@ class Words {
     begin_ = from;
     at_ = std::min(row_.text.find_first_of(" \t", from), row_.text.size());
     return row_.text.substr(from, at_ - from);
+  }
+  /// How many words are left, and the second last one of them; empty where there is none.
+  std::pair<std::size_t, std::string_view> rest() const {
+    std::size_t count = 0;
+    std::string_view last;
+    std::string_view before_last;
+    for (std::size_t at = at_; (at = row_.text.find_first_not_of(" \t", at)) != row_.text.npos;) {
+      const std::size_t end = std::min(row_.text.find_first_of(" \t", at), row_.text.size());
+      before_last = std::exchange(last, row_.text.substr(at, end - at));
+      ++count;
+      at = end;
+    }
+    return {count, before_last};
   }
   bool at_end() const { return row_.text.find_first_not_of(" \t", at_) == std::string_view::npos; }
   double number(const char* expected) {
@@ -100,10 +115,15 @@ class Words {
   std::size_t begin_ = 0;
 };
 
+// [degrees] that usual lasers span: a SICK LMS either way, Hokuyos, one that turns.
+constexpr double kFields[] = {100.0, 180.0, 240.0, 270.0, 360.0};
+
 // How the beams of a laser lie that has so many, where the log does not say it: as CARMEN and
 // others configure a SICK LMS, a SICK LMS 1xx or Hokuyo UTM, a Hokuyo URG. An even number is the
-// odd one without the last beam. Any other number is taken to span 180 degrees.
-void lay_beams(LaserScan& scan, double resolution) {
+// odd one without the last beam. Any other number is taken to span 180 degrees. Such a laser is
+// believed more than a `resolution` [degrees] of the log by which it would span what none does;
+// false then.
+bool lay_beams(LaserScan& scan, double resolution) {
   const std::size_t n = scan.ranges.size();
   const auto spans = [&](double first, double step) {
     scan.first_angle = radians(first);
@@ -111,9 +131,8 @@ void lay_beams(LaserScan& scan, double resolution) {
   };
   const auto beams = static_cast<double>(n);
   const double all = resolution * (beams - static_cast<double>(n % 2));
-  if (resolution > 0.0 && n > 1 && all > 30.0 && all <= 360.0)
-    spans(-0.5 * all, resolution);
-  else if (n == 401)
+  bool usual = true;
+  if (n == 401)
     spans(-50.0, 0.25);
   else if (n == 90 || n == 91)
     spans(-90.0, 2.0);
@@ -131,8 +150,20 @@ void lay_beams(LaserScan& scan, double resolution) {
     spans(-135.0, 0.25);
   else if (n == 512 || n == 682 || n == 683 || n == 726 || n == 769)
     spans(-0.5 * 360.0 / 1024.0 * (beams - 1.0), 360.0 / 1024.0);
-  else if (n > 1)
-    spans(-90.0, 180.0 / (beams - 1.0));
+  else {
+    usual = false;
+    if (n > 1)
+      spans(-90.0, 180.0 / (beams - 1.0));
+  }
+  if (resolution <= 0.0 || n < 2)
+    return true;
+  const auto spans_usual = [&](double field) { return std::abs(all - field) < 0.02 * field; };
+  const bool said = usual ? std::abs(radians(resolution) - scan.step) < 1e-6 ||
+                                std::any_of(std::begin(kFields), std::end(kFields), spans_usual)
+                          : all > 30.0 && all <= 360.0;
+  if (said)
+    spans(-0.5 * all, resolution);
+  return said;
 }
 
 // Stamp, host, and the logger's stamp, as far as they stand there.
@@ -152,6 +183,7 @@ struct Parameters {
   double resolution = 0.0;  // [degrees]
   std::optional<Pose> front;
   double longest = 0.0;
+  bool contradicted = false;  // the resolution, by the number of beams
 };
 
 void ranges_of(Words& words, LaserScan& scan) {
@@ -161,11 +193,12 @@ void ranges_of(Words& words, LaserScan& scan) {
 }
 
 // The laser's pose is written as its place until all are known.
-LaserScan old_laser(Words& words, Laser laser, const Parameters& parameters) {
+LaserScan old_laser(Words& words, Laser laser, Parameters& parameters) {
   LaserScan scan;
   scan.laser = laser;
   ranges_of(words, scan);
-  lay_beams(scan, laser == Laser::flaser ? parameters.resolution : 0.0);
+  if (!lay_beams(scan, laser == Laser::flaser ? parameters.resolution : 0.0))
+    parameters.contradicted = true;
   const Pose in_log = words.pose();
   scan.pose = words.pose();
   scan.laser_in_robot = relative(scan.pose, in_log);
@@ -188,9 +221,15 @@ LaserScan new_laser(Words& words, Laser laser, bool with_robot) {
   ranges_of(words, scan);
   if (scan.step == 0.0 && scan.ranges.size() > 1)
     scan.step = field / static_cast<double>(scan.ranges.size() - 1);
-  const std::size_t remissions = words.count("the number of remissions");
-  for (std::size_t i = 0; i < remissions; ++i)
-    words.word("a remission");
+  // Documents of CARMEN have no remissions there, its programs have. Then come two poses and five
+  // numbers, a stamp, a name and a stamp.
+  const auto [left, host] = words.rest();
+  const bool named = !host.empty() && host.find_first_not_of("0123456789+-.eE") != host.npos;
+  if (const std::size_t plain = with_robot ? 14 : 3; left != plain || !named) {
+    const std::size_t remissions = words.count("the number of remissions");
+    for (std::size_t i = 0; i < remissions; ++i)
+      words.word("a remission");
+  }
   if (with_robot) {
     const Pose in_log = words.pose();
     scan.pose = words.pose();
@@ -457,6 +496,16 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
     throw FileError(file, 1, 1,
                     scans.empty() ? "expected a line FLASER, ROBOTLASER1 or RAWLASER1"
                                   : "expected lines ODOM: scans without a pose need them");
+  }
+  if (parameters.contradicted && log.scans.front().laser == Laser::flaser) {
+    const LaserScan& scan = log.scans.front();
+    char said[200];
+    std::snprintf(said, sizeof said,
+                  "laser_front_laser_resolution %g does not fit %zu beams, which usual lasers have "
+                  "%g degrees apart: taken as that, over %.0f degrees",
+                  parameters.resolution, scan.ranges.size(), degrees(scan.step),
+                  degrees(scan.step) * static_cast<double>(scan.ranges.size()));
+    log.notes.emplace_back(said);
   }
   mount(log, parameters);
   const std::optional<double> no_return = find_no_return(log.scans);

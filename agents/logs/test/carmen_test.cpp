@@ -117,6 +117,33 @@ TEST(CarmenBeams, LieAsUsualLasersHaveThem) {
   const CarmenLog said = parse("PARAM laser_front_laser_resolution 0.5 nohost 0\n" +
                                flaser("FLASER", 201, 0, 50.0, " 1 h 1"));
   EXPECT_NEAR(degrees(said.scans[0].first_angle), -50.0, 1e-9);
+  EXPECT_TRUE(said.notes.empty());
+}
+
+TEST(Carmen, AResolutionThatDoesNotFitTheBeamsIsNotBelieved) {
+  // No laser has 180 beams half a degree apart.
+  const CarmenLog log = parse("PARAM laser_front_laser_resolution 0.5 nohost 0\n" +
+                              flaser("FLASER", 180, 0, 50.0, " 1 h 1"));
+  EXPECT_NEAR(degrees(log.scans[0].first_angle), -90.0, 1e-9);
+  EXPECT_NEAR(degrees(log.scans[0].step), 1.0, 1e-9);
+  ASSERT_EQ(log.notes.size(), 1U);
+  EXPECT_NE(log.notes[0].find("resolution 0.5 does not fit 180 beams"), std::string::npos)
+      << log.notes[0];
+}
+
+TEST(Carmen, ARobotLaserWithOrWithoutACountOfRemissions) {
+  const std::string head = "ROBOTLASER1 0 -1.570796 3.141593 0.785398 50 0.01 0 5 1 2 3 4 5";
+  const std::string tail = " 1.1 2 0 1 2 0 0.1 0 1 1 0 10.5 host 10.6\n";
+  for (const char* remissions : {"", " 0", " 2 7 8"}) {
+    const CarmenLog log = parse(head + remissions + tail);
+    ASSERT_TRUE(log.damaged.empty()) << log.damaged.front();
+    ASSERT_EQ(log.scans.size(), 1U);
+    EXPECT_EQ(log.scans[0].ranges.size(), 5U);
+    EXPECT_NEAR(log.scans[0].pose.x, 1.0, 1e-9);
+    EXPECT_NEAR(log.scans[0].laser_in_robot.x, 0.1, 1e-9);
+    EXPECT_EQ(log.scans[0].host, "host");
+    EXPECT_NEAR(log.scans[0].time.ipc, 10.5, 1e-9);
+  }
 }
 
 TEST(CarmenMount, IsWhatAllPosesSay) {

@@ -5,6 +5,7 @@
 
 #include "limits.hpp"
 #include "saphira/authority/robot.hpp"
+#include "saphira/base/age.hpp"
 #include "saphira/protocol/impossible.hpp"
 
 namespace saphira::bridge {
@@ -136,6 +137,7 @@ void Core::open(const protocol::RobotParameters& parameters, std::uint64_t epoch
   // Until it says how it is set: it may not take what it is asked for.
   own_deceleration_ = parameters.deceleration;
   session_.body.deceleration = own_deceleration_;
+  set_delay(connection_.round_trip());
   session_.last_packet = now;
   reflector_.open(time(now), memory_, std::max(last_epoch_, last_odom_ + 1), slack_);
   arbiter_.connect(last_epoch_);
@@ -250,7 +252,7 @@ void Core::other(protocol::ServerPacket any, std::uint8_t type, double now) {
       type == static_cast<std::uint8_t>(protocol::PacketType::kReset2))
     return lost("the robot's controller was reset", now);
   if (const auto* const set = std::get_if<protocol::ConfigPacket>(&any))
-    heed(*set);
+    heed(*set, now);
   put(OtherPacket{std::move(any), type, session_.stamp});
 }
 
@@ -260,7 +262,10 @@ std::uint64_t Core::bad_packets() const {
 }
 
 /// The robot brakes as it says that it is set, whatever it was asked for.
-void Core::heed(const protocol::ConfigPacket& set) {
+void Core::heed(const protocol::ConfigPacket& set, double now) {
+  if (const double asked = std::exchange(session_.delay_asked, now);
+      session_.delay > 0.0 && asked > 0.0)
+    set_delay(std::min(session_.delay, now - asked));
   const bool first = !std::exchange(session_.configured, true);
   const double asked = reflector_.parameters().deceleration;
   const double brakes = set.deceleration * 0.001;
@@ -286,6 +291,39 @@ void Core::mind_brakes() {
                 "m/s2, as its parameter file says, not with %.2f as asked for",
                 own_deceleration_, asked);
   warn(text);
+}
+
+/// How long a packet and its answer take. On a slow line a stop takes effect that much later.
+void Core::set_delay(double round_trip) {
+  const double before = session_.delay;
+  session_.delay = settings_.lockstep || round_trip <= kSlowLine ? 0.0 : round_trip;
+  if (session_.delay == before)
+    return;
+  session_.body.reaction = authority::body_of(reflector_.parameters()).reaction +
+                           std::max(session_.delay - kUsualLine, 0.0);
+  if (session_.delay > 0.0 && before == 0.0)
+    warn(delay_words());
+}
+
+std::string Core::delay_words() const {
+  char text[128];
+  std::snprintf(
+      text, sizeof text,
+      "the line to the robot is slow: an answer takes %.1f s, so it drives at %.2f m/s at "
+      "the most",
+      session_.delay, speed_for_age(session_.delay - kCycle));
+  return text;
+}
+
+/// A machine that was busy when the session began makes a line look slow: it is asked again, where
+/// the robot answers such a question.
+void Core::mind_delay(double now) {
+  if (session_.delay == 0.0 || session_.stamp.cycle == 0 ||
+      reflector_.parameters().protocol == protocol::Protocol::kPsos ||
+      now - session_.delay_asked < kMeasureDelay)
+    return;
+  session_.delay_asked = now;
+  send(protocol::encode(protocol::ConfigRequest{1}));
 }
 
 void Core::begin_cycle(const protocol::InformationPacket& packet, double now) {
@@ -370,6 +408,7 @@ void Core::tick(double now, const Surroundings& around) {
   if (around.link_open && may_connect(now))
     tend_session(now, around);
   if (!settings_.lockstep && in_session()) {
+    mind_delay(now);
     const bool waited = flush_at_ > 0.0 && now >= flush_at_;
     if (waited && grant_.role == Role::behaviors)
       ++late_;

@@ -161,7 +161,8 @@ void Core::guard(reflector::Setpoints& wanted) {
                                 session_.echoes.spots(), wanted.velocity, wanted.rotation_velocity,
                                 reflector_.state().information.rotation_velocity,
                                 driver(grant_.role).contact_speed);
-    guarded_ = authority::slow_for_age(std::move(guarded_), grant_.command_age, kCycle);
+    guarded_ =
+        authority::slow_for_age(std::move(guarded_), grant_.command_age + session_.delay, kCycle);
   }
   session_.moved = session_.moved || moves();
   wanted.velocity = guarded_.velocity;

@@ -16,6 +16,9 @@ inline constexpr double kPacketPause = 0.05;  // [s] no packet pauses so long wi
 inline constexpr double kHoldOff = 2.0;       // [s] until a robot that is not served is tried again
 inline constexpr double kTellKeeper = 10.0;   // [s] that the status tells of a new keeper
 inline constexpr double kTellWait = 3.0;      // [s] that it waits for its robot in silence
+inline constexpr double kSlowLine = 0.25;     // [s] there and back: it is slow
+inline constexpr double kUsualLine = 0.1;     // [s] of it that the guard reckons with anyway
+inline constexpr double kMeasureDelay = 2.0;  // [s] a slow line is measured again
 inline constexpr unsigned kMotorsCycles = 10;  // then the motors should be on
 inline constexpr unsigned kConfigCycles = 30;  // then it should have said how it is set
 

@@ -71,6 +71,8 @@ Condition Core::robot_condition(double now) const {
     return {Health::degraded, line_.why_it_stands(now)};
   if (line_.bad())
     return {Health::degraded, line_.words()};
+  if (session_.delay > 0.0)
+    return {Health::degraded, delay_words()};
   if (reflector_.state().information.emergency_stop.value_or(false))
     return {Health::degraded, "the robot's own emergency stop is pressed"};
   if (motors_off())

@@ -37,6 +37,47 @@ TEST(Session, BeginsWithZeroSetpointsAndADescription) {
   EXPECT_EQ(cycles[0].stamp, (Stamp{1000, 1}));
 }
 
+TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
+  Scene scene;
+  scene.mute = true;
+  scene.around.link_open = true;
+  for (const protocol::Bytes& answer : {protocol::encode_sync(0), protocol::encode_sync(1),
+                                        protocol::encode_sync2_reply({"r", "Pioneer", "p3dx"})}) {
+    scene.pass_slowly(0.8);
+    scene.say(answer);
+    scene.pass(0.01);
+  }
+  ASSERT_TRUE(scene.core.in_session());
+  EXPECT_TRUE(scene.noted("the line to the robot is slow: an answer takes 0.8 s"));
+  scene.forget();
+  scene.cycles(12, Role::behaviors, 0.4);
+  EXPECT_EQ(scene.condition().health, Health::degraded);
+  EXPECT_NE(scene.condition().reason.find("is slow"), std::string::npos);
+  const auto fastest = [&] {
+    double velocity = 0.0;
+    for (const protocol::Command& command : std::exchange(scene.sent, {}))
+      if (const auto* const told = std::get_if<protocol::Velocity>(&command))
+        velocity = std::max(velocity, told->velocity);
+    return velocity;
+  };
+  EXPECT_TRUE(scene.was_sent(protocol::ConfigRequest{1}));
+  const double slow = fastest();
+  EXPECT_GT(slow, 0.1);
+  EXPECT_LT(slow, 0.22);
+  // It was the machine that was busy: the next answer comes at once.
+  protocol::ConfigPacket set;
+  set.deceleration = 600;
+  for (int i = 0; i < 25; ++i) {
+    scene.cycles(1, Role::behaviors, 0.4);
+    if (scene.was_sent(protocol::ConfigRequest{1}))
+      scene.say(protocol::encode(set));
+    scene.sent.clear();
+  }
+  scene.cycles(12, Role::behaviors, 0.4);
+  EXPECT_EQ(scene.condition().health, Health::running) << scene.condition().reason;
+  EXPECT_NEAR(fastest(), 0.4, 1e-9);
+}
+
 TEST(Session, OnASerialLineZeroSetpointsComeBeforeTheFirstSync) {
   Scene scene;
   scene.around.serial = true;

@@ -42,6 +42,7 @@ struct NumberKeyword {
   double unit;  // of the file's number, in SI
   double low;   // in the file's unit
   double high;
+  std::string_view means = "";  // that unit, where a value in another one would pass unnoticed
 };
 
 using P = RobotParameters;
@@ -50,26 +51,30 @@ constexpr double kMaxRotAcceleration = 300.0 * kDegree;   // [rad/s2]
 constexpr double kStopRotDeceleration = 200.0 * kDegree;  // [rad/s2]
 // The later names of the same things are taken as well, so that the files of later robots load.
 constexpr std::array kNumbers{
-    NumberKeyword{"AngleConvFactor", &P::angle_unit, 1.0, 1e-9, 1.0},
-    NumberKeyword{"DistConvFactor", &P::distance_unit, kMillimetre, 1e-6, 1000.0},
-    NumberKeyword{"VelConvFactor", &P::velocity_unit, kMillimetre, 1e-6, 1000.0},
+    NumberKeyword{"AngleConvFactor", &P::angle_unit, 1.0, 1e-6, 0.0246,
+                  "in radians a tick, of which a turn has 256 at least"},
+    NumberKeyword{"DistConvFactor", &P::distance_unit, kMillimetre, 1e-3, 50.0, "in mm a tick"},
+    NumberKeyword{"VelConvFactor", &P::velocity_unit, kMillimetre, 0.01, 100.0, "in mm/s"},
     NumberKeyword{"RangeConvFactor", &P::range_unit, kMillimetre, 0.08, 1000.0},
     NumberKeyword{"DiffConvFactor", &P::rotation_per_difference, 1.0 / kMillimetre, 1e-6, 1.0},
     NumberKeyword{"Vel2Divisor", &P::vel2_unit, kMillimetre, 0.01, 1000.0},
-    NumberKeyword{"RobotRadius", &P::radius, kMillimetre, 1.0, 10000.0},
+    NumberKeyword{"RobotRadius", &P::radius, kMillimetre, 10.0, 10000.0, "in mm"},
     NumberKeyword{"RobotDiagonal", &P::diagonal, kMillimetre, 0.0, 10000.0},
-    NumberKeyword{"MaxVelocity", &P::max_velocity, kMillimetre, 1.0, 10000.0},
-    NumberKeyword{"MaxRVelocity", &P::max_rotation_velocity, kDegree, 1.0, 1000.0},
-    NumberKeyword{"Acceleration", &P::acceleration, kMillimetre, 1.0, 100000.0},
-    NumberKeyword{"TransAccel", &P::acceleration, kMillimetre, 1.0, 100000.0},
-    NumberKeyword{"Deceleration", &P::deceleration, kMillimetre, 1.0, 100000.0},
-    NumberKeyword{"TransDecel", &P::deceleration, kMillimetre, 1.0, 100000.0},
-    NumberKeyword{"RotAcceleration", &P::rotation_acceleration, kDegree, 1.0, 100000.0},
-    NumberKeyword{"RotAccel", &P::rotation_acceleration, kDegree, 1.0, 100000.0},
-    NumberKeyword{"RotDeceleration", &P::rotation_deceleration, kDegree, 1.0, 100000.0},
-    NumberKeyword{"RotDecel", &P::rotation_deceleration, kDegree, 1.0, 100000.0},
-    NumberKeyword{"MaxAcceleration", &P::max_acceleration, kMillimetre, 1.0, 100000.0},
-    NumberKeyword{"MaxRotAcceleration", &P::max_rotation_acceleration, kDegree, 1.0, 100000.0},
+    NumberKeyword{"MaxVelocity", &P::max_velocity, kMillimetre, 20.0, 10000.0, "in mm/s"},
+    NumberKeyword{"MaxRVelocity", &P::max_rotation_velocity, kDegree, 10.0, 1000.0, "in degrees/s"},
+    NumberKeyword{"Acceleration", &P::acceleration, kMillimetre, 10.0, 100000.0, "in mm/s2"},
+    NumberKeyword{"TransAccel", &P::acceleration, kMillimetre, 10.0, 100000.0, "in mm/s2"},
+    NumberKeyword{"Deceleration", &P::deceleration, kMillimetre, 10.0, 100000.0, "in mm/s2"},
+    NumberKeyword{"TransDecel", &P::deceleration, kMillimetre, 10.0, 100000.0, "in mm/s2"},
+    NumberKeyword{"RotAcceleration", &P::rotation_acceleration, kDegree, 10.0, 100000.0,
+                  "in degrees/s2"},
+    NumberKeyword{"RotAccel", &P::rotation_acceleration, kDegree, 10.0, 100000.0, "in degrees/s2"},
+    NumberKeyword{"RotDeceleration", &P::rotation_deceleration, kDegree, 10.0, 100000.0,
+                  "in degrees/s2"},
+    NumberKeyword{"RotDecel", &P::rotation_deceleration, kDegree, 10.0, 100000.0, "in degrees/s2"},
+    NumberKeyword{"MaxAcceleration", &P::max_acceleration, kMillimetre, 10.0, 100000.0, "in mm/s2"},
+    NumberKeyword{"MaxRotAcceleration", &P::max_rotation_acceleration, kDegree, 10.0, 100000.0,
+                  "in degrees/s2"},
     NumberKeyword{"StopDeceleration", &P::stop_deceleration, kMillimetre, 0.0, 100000.0},
     NumberKeyword{"StopRotDeceleration", &P::stop_rotation_deceleration, kDegree, 0.0, 100000.0},
     NumberKeyword{"EncodeJitter", &P::encode_jitter, 1.0, 0.0, 1.0},
@@ -204,7 +209,9 @@ class Parser {
       if (lower(k.name) != name)
         continue;
       to_value(in);
-      parameters_.*k.field = in.number(k.name, k.low, k.high) * k.unit;
+      const std::string what =
+          std::string(k.name) + (k.means.empty() ? "" : " ") + std::string(k.means);
+      parameters_.*k.field = in.number(what, k.low, k.high) * k.unit;
       return;
     }
     for (const FlagKeyword& k : kFlags) {

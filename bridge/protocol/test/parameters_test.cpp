@@ -174,7 +174,7 @@ const Breakage kBreakages[] = {
        l[static_cast<std::size_t>(i)] = "RobotRadius  wide";
        return std::pair{i + 1, 14};
      },
-     "expected a number (RobotRadius)"},
+     "expected a number (RobotRadius in mm)"},
     {"a number with a unit",
      [](Lines& l) {
        const int i = line_with(l, "MaxVelocity");
@@ -431,12 +431,12 @@ TEST_P(BrokenParameters, SayWhereAndWhatWasExpected) {
 INSTANTIATE_TEST_SUITE_P(
     Files, BrokenParameters,
     ::testing::Values(
-        Broken{"RobotRadius abc\n", 1, 13, "expected a number (RobotRadius)"},
+        Broken{"RobotRadius abc\n", 1, 13, "expected a number (RobotRadius in mm)"},
         Broken{"RobotRadius\nSonarNum 0\n", 1, 12, "expected RobotRadius"},
-        Broken{"RobotRadius -5\n", 1, 13, "between"}, Broken{"RobotRadius 1 2\n", 1, 15, "end of"},
+        Broken{"RobotRadius -5\n", 1, 13, "between"}, Broken{"RobotRadius 99 2\n", 1, 16, "end of"},
         Broken{"RobotRadius nan\n", 1, 13, "expected a number"},
         Broken{"Radius 1\n", 1, 1, "expected a keyword"},
-        Broken{"RobotRadius 1\n\nrobotradius 2\n", 3, 1, "line 1"},
+        Broken{"RobotRadius 100\n\nrobotradius 200\n", 3, 1, "line 1"},
         Broken{"SonarNum 2\nSonarUnit 0 1 2 3\n", 1, 10, "SonarUnit 1 is missing"},
         Broken{"SonarNum 1.5\n", 1, 10, "whole number"}, Broken{"SonarNum 65\n", 1, 10, "between"},
         Broken{"SonarUnit 0 1 2 3\n", 1, 18, "SonarNum"},
@@ -446,6 +446,10 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"SonarNum 1\nSonarUnit 0 1 2\n", 2, 16, "bearing"},
         Broken{"SonarNum 1\nSonarUnit 0 1 2 3\nSonarUnit 0 1 2 3\n", 3, 11, "once"},
         Broken{"Class\n", 1, 6, "a word"}, Broken{"DistConvFactor 0\n", 1, 16, "between"},
+        Broken{"AngleConvFactor 0.0879\n", 1, 17, "radians a tick"},
+        Broken{"DistConvFactor 485\n", 1, 16, "in mm a tick"},
+        Broken{"MaxVelocity 0.4\n", 1, 13, "in mm/s"},
+        Broken{"TransAccel 0.3\n", 1, 12, "in mm/s2"},
         Broken{"HasGripper maybe\n", 1, 12, "true or false"},
         Broken{"HasGripper\n", 1, 11, "true or false"},
         Broken{"SwitchToBaudRate 12345\n", 1, 18, "38400"},

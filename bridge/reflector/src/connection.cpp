@@ -1,5 +1,8 @@
 #include "saphira/reflector/connection.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "saphira/protocol/information.hpp"
 
 namespace saphira::reflector {
@@ -8,6 +11,7 @@ namespace {
 
 // The answer to SYNC2 is long: on a bad line it needs many tries.
 constexpr int kTries = 20;
+constexpr std::uint8_t kVelocity = 11;  // the first of the zero setpoints
 
 int sync_of(Connection::State state) {
   return static_cast<int>(state) - static_cast<int>(Connection::State::sync0);
@@ -21,8 +25,10 @@ Packets zero_setpoints() {
 }  // namespace
 
 Packets Connection::go(State state, double now) {
-  if (state != state_)
+  if (state != state_) {
     tries_ = 0;
+    began_ = now;
+  }
   state_ = state;
   sent_ = now;
   ++tries_;
@@ -37,6 +43,7 @@ Packets Connection::go(State state, double now) {
 
 Packets Connection::begin(double now, bool in_session) {
   identity_ = {};
+  nameless_ = false;
   state_ = State::closed;
   in_session_ = in_session;
   answered_ = now;
@@ -58,9 +65,18 @@ Packets Connection::packet(protocol::ByteView body, double now) {
     tries_ = 2;
     return out;
   }
+  if (state_ == State::sync2 && nameless_ && body[0] == kVelocity) {
+    echoes_ = true;
+    return {};
+  }
   if (protocol::sync_number(body) != sync_of(state_))
     return {};
+  const bool nameless = state_ == State::sync2 && body.size() == 1;
+  if (nameless && (echoes_ || !std::exchange(nameless_, true)))
+    return zero_setpoints();
   answered_ = now;
+  if (state_ != State::sync0 && !nameless)
+    round_trip_ = state_ == State::sync1 ? now - began_ : std::min(round_trip_, now - began_);
   switch (state_) {
     case State::sync0:
       return go(State::sync1, now);
@@ -68,6 +84,7 @@ Packets Connection::packet(protocol::ByteView body, double now) {
       return go(State::sync2, now);
     case State::sync2:
       identity_ = protocol::decode_sync2_reply(body).value_or(protocol::RobotIdentity{});
+      echoes_ = false;
       return go(State::open, now);
     default:
       return {};
@@ -85,6 +102,9 @@ bool Connection::is_hopeless(double now) const {
 }
 
 std::string Connection::waiting_for() const {
+  if (echoes_ && !open())
+    return "a robot: the line sends back what it is sent, so there is none behind it (an echo in a "
+           "modem or terminal server, or a plug with its pins joined?)";
   switch (state_) {
     case State::closed:
       return "a link to the robot";

@@ -57,6 +57,56 @@ TEST(Connection, RepeatsWhatIsNotAnswered) {
   EXPECT_NE(c.waiting_for().find("SYNC0"), std::string::npos);
 }
 
+TEST(Connection, ALineThatEchoesIsNoRobot) {
+  Connection c;
+  double now = 1.0;
+  Packets out = c.begin(now);
+  // Everything that is sent comes back at once.
+  for (int i = 0; i < 40; ++i) {
+    const Packets sent = std::exchange(out, {});
+    for (const Bytes& packet : sent)
+      for (Bytes& more : c.packet(body(packet), now))
+        out.push_back(std::move(more));
+    ASSERT_FALSE(c.open());
+    if (out.empty())
+      out = c.tick(now = c.due());
+  }
+  EXPECT_NE(c.waiting_for().find("sends back what it is sent"), std::string::npos);
+  // A robot is put there.
+  c.begin(now);
+  c.packet(Bytes{0}, now);
+  c.packet(Bytes{1}, now);
+  c.packet(identity("Robot", "Pioneer", "PION1M"), now);
+  EXPECT_TRUE(c.open());
+}
+
+TEST(Connection, AnOldServerSaysNoName) {
+  Connection c;
+  c.begin(1.0);
+  c.packet(Bytes{0}, 1.0);
+  c.packet(Bytes{1}, 1.0);
+  EXPECT_EQ(numbers(c.packet(Bytes{2}, 1.0)), (std::vector<int>{11, 21})) << "is it an echo?";
+  EXPECT_FALSE(c.open());
+  EXPECT_EQ(numbers(c.tick(c.due())), std::vector<int>{2});
+  c.packet(Bytes{2}, 1.3);
+  EXPECT_TRUE(c.open());
+  EXPECT_EQ(c.identity().robot_class, "");
+}
+
+TEST(Connection, MeasuresHowSlowTheLineIs) {
+  Connection c;
+  c.begin(1.0);
+  for (double now = 1.2; now < 1.75; now += 0.2)
+    c.tick(now);
+  c.packet(Bytes{0}, 1.8);
+  c.tick(2.0);
+  c.packet(Bytes{0}, 2.0);  // answers to what was sent again
+  c.packet(Bytes{1}, 2.6);
+  EXPECT_NEAR(c.round_trip(), 0.8, 1e-9);
+  c.packet(identity("Robot", "Pioneer", "PION1M"), 3.3);
+  EXPECT_NEAR(c.round_trip(), 0.7, 1e-9);
+}
+
 TEST(Connection, LosesHopeWhenNothingLeadsOn) {
   Connection c;
   EXPECT_FALSE(c.is_hopeless(100.0)) << "nothing was begun";

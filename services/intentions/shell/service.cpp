@@ -131,6 +131,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
     robot_ = lps::settings_from_bus(turn.description);
     inputs.new_robot = &robot_;
   }
+  inputs.robot_radius = turn.description.radius();
   inputs.new_frame = turn.new_frame;
   inputs.robot = from_bus(turn.robot);
   inputs.readings = lps::sonars_from_bus(turn.robot);

@@ -72,7 +72,7 @@ TEST(ActivityErrors, AMissingParenthesisDoesNotTakeTheNextDefinition) {
 
 TEST(ActivityErrors, OfGoals) {
   EXPECT_EQ(troubles(goals("(FLY)")),
-            List({"2:2 unknown goal \"FLY\": expected TEST, EXECUTE, =, WAIT-FOR, ASK, "
+            List({"2:2 unknown goal \"FLY\": expected TEST, EXECUTE, =, WAIT, WAIT-FOR, ASK, "
                   "INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, SUCCEED or FAIL"}));
   EXPECT_EQ(troubles(goals(":plan (TEST t)")),
             List({"2:1 expected a goal-set in parentheses: (:plan goal ...)"}));
@@ -149,6 +149,13 @@ TEST(ActivityErrors, OfParameters) {
                   "\":numbr\""}));
   EXPECT_EQ(troubles("(defintention :a :params ((n :number 9 :high 3)) :goals '((TEST t)))"),
             List({"1:27 expected a default within :low and :high"}));
+  // A default that is a number, a unit or limits make it a number.
+  EXPECT_EQ(troubles("(defintention :a :params ((n 9 :high 3)) :goals '((TEST t)))"),
+            List({"1:27 expected a default within :low and :high"}));
+  EXPECT_EQ(troubles("(defintention :a :params ((n 'x :high 3)) :goals '((TEST t)))").size(), 1U);
+  EXPECT_EQ(troubles("(defintention :a :params ((n :any 'x :low 3)) :goals '((TEST t)))").size(),
+            1U);
+  EXPECT_EQ(troubles("(defintention :a :params ((n :unit m)) :goals '((TEST t)))"), List());
   EXPECT_EQ(troubles("(defintention :a :params (n n) :goals '((TEST t)))"),
             List({"1:29 parameter \"n\" is there twice"}));
 }

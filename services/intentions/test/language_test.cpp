@@ -76,6 +76,18 @@ TEST(Activities, BlockingUntilABehaviorIsSatisfiedWithoutAGap) {
   EXPECT_TRUE(stage.out.behaviors.empty());
 }
 
+TEST(Activities, WaitsThatLong) {
+  Stage stage(activity("(WAIT 2s) (SUCCEED \"waited\")"));
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(19);
+  EXPECT_EQ(stage.status(1).state, GoalState::kUnderway);
+  EXPECT_NE(stage.status(1).step.find("waits for 2s"), std::string::npos) << stage.status(1).step;
+  stage.step(4);
+  EXPECT_EQ(stage.status(1).state, GoalState::kSucceeded);
+  EXPECT_EQ(stage.status(1).reason, "waited");
+}
+
 TEST(Activities, AThresholdLetsGoOnWhileTheBehaviorLasts) {
   Stage stage(
       activity("(INTEND :follow () :blocking 0.6 :name lane)"

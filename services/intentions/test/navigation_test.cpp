@@ -66,7 +66,10 @@ TEST_F(Navigation, APathIsRegionsAndTheWaysBetween) {
   EXPECT_EQ(call("leg", {path("corner")}), Value("corridor-to-point"));
   EXPECT_EQ(call("leg", {path("cross")}), Value("corridor-to-junction"));
   EXPECT_TRUE(path("nowhere").nil());
-  EXPECT_EQ(spoken(call("why-no-path", {Value(), "nowhere"})), "the map has no place \"nowhere\"");
+  EXPECT_EQ(spoken(call("why-no-path", {Value(), "nowhere"})),
+            "the map has no place \"nowhere\": it has hall, cross, north, south, corner");
+  EXPECT_EQ(spoken(call("why-no-place", {"nrth"})),
+            "the map has no place \"nrth\": did you mean \"north\"?");
 }
 
 TEST_F(Navigation, OutOfARoomThroughItsDoor) {
@@ -90,6 +93,22 @@ TEST_F(Navigation, AClosedWayIsLeftOutAndForgottenAfterFiveMinutes) {
   EXPECT_NE(spoken(call("why-no-path", {Value(), "south"})).find("not closed"), std::string::npos);
   now += 3001;
   EXPECT_FALSE(path("south").nil());
+}
+
+TEST_F(Navigation, PeopleCanOpenADoorAndNotMakeItWider) {
+  around.robot_radius = 0.25;
+  const Value north = path("north");
+  ASSERT_FALSE(north.nil());
+  const Value here = condition("*cur-region*");
+  beliefs.set("*closed-ways*", call("closed-ways-with", {north.list()[1]}), "test", now);
+  EXPECT_TRUE(path("north").nil());
+  EXPECT_TRUE(call("could-be-opened", {here, "north"}).truthy());
+  beliefs.unset("*closed-ways*");
+  around.robot_radius = 0.6;
+  EXPECT_TRUE(path("north").nil());
+  EXPECT_FALSE(call("could-be-opened", {here, "north"}).truthy());
+  EXPECT_NE(spoken(call("why-no-path", {here, "north"})).find("the robot needs 1.36 m"),
+            std::string::npos);
 }
 
 TEST_F(Navigation, WhatPeopleWarnOfIsNotOnThePath) {

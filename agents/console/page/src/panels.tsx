@@ -152,7 +152,7 @@ function Tree({intentions}: {intentions: Intentions}) {
     depths.set(node.id, depth);
     return <li key={node.id} class={`depth-${depth}`}>
       <div><span class="marker" title={node.blocking ? 'its parent waits for it' : 'its parent goes on'}>{node.blocking ? '∗' : '○'}</span>
-        <strong>{node.schema}</strong> {node.name !== node.schema && <span class="faint">{node.name}</span>} <span class="chip">{node.label || word(node.state)}</span></div>
+        <strong>{node.schema}</strong> {node.name !== node.schema && <span class="faint">{node.name}</span>} <span class="chip">{node.label ? `then ${node.label}` : word(node.state)}</span></div>
       {node.step && <div class="small">{node.step}</div>}
       {node.arguments && <div class="small faint">{node.arguments}</div>}
     </li>;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "saphira/base/guess.hpp"
+
 namespace saphira {
 
 namespace fs = std::filesystem;
@@ -51,6 +53,9 @@ std::string find_file(const std::string& folder, const std::string& name,
   std::string list;
   for (const std::string& known : names)
     list += " " + known;
+  if (const std::string meant = guess(name, names); !meant.empty())
+    throw std::invalid_argument("no \"" + name + "\" in " + folder + ": did you mean " + meant +
+                                "? There are also:" + list);
   throw std::invalid_argument("no \"" + name + "\" in " + folder +
                               ": expected a file, or one of those that are shipped:" + list);
 }

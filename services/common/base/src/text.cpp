@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 namespace saphira {
 
@@ -135,7 +136,31 @@ std::string read_file(const std::string& path) {
   in.peek();
   if (in.bad())
     throw std::runtime_error(path + ": cannot be read (is it a file?)");
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // as some editors write it
+  if (text.starts_with(kByteOrderMark))
+    text.erase(0, kByteOrderMark.size());
+  return text;
+}
+
+std::string_view other_format(std::string_view text) {
+  constexpr std::pair<std::string_view, std::string_view> kBeginnings[] = {
+      {"2D-Map", "a map of ARIA and MobileSim (2D-Map)"},
+      {"P2", "a picture (PGM), such as occupancy grids are kept in"},
+      {"P5", "a picture (PGM), such as occupancy grids are kept in"},
+      {"\x89PNG", "a picture (PNG)"},
+      {"image:", "the description of an occupancy grid (ROS)"},
+      {"<?xml", "an XML file"},
+      {"<sdf", "a world of Gazebo"},
+      {"#VRML", "a world of Webots"},
+      {"\xFF\xFE", "a text in UTF-16: save it as UTF-8"},
+      {"\xFE\xFF", "a text in UTF-16: save it as UTF-8"},
+  };
+  for (const auto& [beginning, name] : kBeginnings)
+    if (text.starts_with(beginning) && (beginning.size() > 2 || text.size() == 2 ||
+                                        beginning[0] != 'P' || blank(text[2]) || text[2] == '\n'))
+      return name;
+  return {};
 }
 
 }  // namespace saphira

@@ -1,5 +1,7 @@
 #include "saphira/base/watched_folder.hpp"
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -27,11 +29,15 @@ WatchedFolder::Changes WatchedFolder::look() {
     std::error_code gone;  // an editor may have replaced it in this moment
     if (entry.path().extension() != extension_ || !entry.is_regular_file(gone))
       continue;
-    Stamp stamp;
-    stamp.time = entry.last_write_time(gone).time_since_epoch().count();
-    stamp.size = gone ? 0 : entry.file_size(gone);
-    if (!gone)
-      there[entry.path().filename().string()] = stamp;
+    struct stat file {};
+    if (stat(entry.path().c_str(), &file) != 0)
+      continue;
+    const auto nanoseconds = [](const timespec& time) {
+      return static_cast<std::int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+    };
+    there[entry.path().filename().string()] = {nanoseconds(file.st_mtim), nanoseconds(file.st_ctim),
+                                               file.st_ino,
+                                               static_cast<std::uint64_t>(file.st_size)};
   }
   for (const auto& [name, stamp] : there) {
     const auto before = known_.find(name);

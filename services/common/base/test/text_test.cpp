@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "process.hpp"
+
 namespace saphira {
 namespace {
 
@@ -62,6 +66,21 @@ TEST(Text, MissingAndSurplusWordsAreErrors) {
     reader.word("a name");
     EXPECT_THROW(reader.integer("count", 0, 5), FileError) << i;
   }
+}
+
+TEST(Text, AByteOrderMarkIsNoPartOfTheText) {
+  const test::TempDir folder;
+  const std::string path = folder.path("marked.map");
+  std::ofstream(path) << "\xEF\xBB\xBFWALL\n";
+  EXPECT_EQ(read_file(path), "WALL\n");
+}
+
+TEST(Text, FilesOfOtherProgramsAreKnown) {
+  EXPECT_NE(other_format("2D-Map\nLineMinPos: 0 0\n").find("ARIA"), std::string_view::npos);
+  EXPECT_NE(other_format("P5\n10 10\n255\n").find("PGM"), std::string_view::npos);
+  EXPECT_EQ(other_format("POS (1) 0, 0, 0\n"), "");
+  EXPECT_EQ(other_format("P50 0 0\n"), "");
+  EXPECT_EQ(other_format(""), "");
 }
 
 TEST(Text, UnreadableFileIsNamed) {

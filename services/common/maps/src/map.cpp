@@ -234,6 +234,13 @@ std::string line_of(const Feature& feature) {
 Map parse_map(std::string_view text, const std::string& file) {
   Map map;
   std::map<std::uint32_t, int> lines_of_ids;
+  if (const std::string_view other = other_format(text); !other.empty())
+    throw FileError(
+        file, 1, 1,
+        "this is " + std::string(other) +
+            ", and not a map of Saphira's, which has a line for each corridor, door and "
+            "wall (config/maps/README.md). A robot can make one: saphira map build; from "
+            "laser scans: saphira log map");
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     Scanner in(file, text.substr(0, end), number);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "saphira/base/shortest_ways.hpp"
 
@@ -36,10 +37,19 @@ class Search {
   bool blocked(std::uint32_t id) const { return id != 0 && settings_.blocked.contains(id); }
   bool usable(std::size_t link) const {
     const Link& l = topology_.links()[link];
-    return l.b && !blocked(l.id) && !settings_.blocked_links.contains(link) &&
+    return l.b && wide_enough(l) && !blocked(l.id) && !settings_.blocked_links.contains(link) &&
            !blocked(topology_.regions()[l.a].area.id) &&
            !blocked(topology_.regions()[*l.b].area.id);
   }
+  bool too_narrow(const Region& region) const {
+    return region.kind == RegionKind::corridor && region.area.width < settings_.needs_width;
+  }
+  bool wide_enough(const Link& link) const {
+    return (link.kind == LinkKind::meeting || link.width >= settings_.needs_width) &&
+           !too_narrow(topology_.regions()[link.a]) && !too_narrow(topology_.regions()[*link.b]);
+  }
+  std::string narrow_place(const Route& route) const;
+  std::string why_none(const Vec2& from, const std::string& start, const Place& to) const;
   bool wanted(std::size_t region, const Place& to) const {
     return std::find(to.regions.begin(), to.regions.end(), region) != to.regions.end();
   }
@@ -76,6 +86,40 @@ Leg Search::leg(std::size_t region, const Vec2& from, std::optional<std::size_t>
   if (leg.points.empty())
     leg.points.push_back(inside);  // inside is enough
   return leg;
+}
+
+/// The first door, opening or corridor of a route that is too narrow for the robot.
+std::string Search::narrow_place(const Route& route) const {
+  const auto says = [&](std::string what, double width) {
+    char text[96];
+    std::snprintf(text, sizeof text, " is %.2f m wide, and the robot needs %.2f m", width,
+                  settings_.needs_width);
+    return std::move(what) + text;
+  };
+  for (const Leg& leg : route.legs) {
+    const Region& region = topology_.regions()[leg.region];
+    if (too_narrow(region))
+      return says(topology_.text(leg.region), region.area.width);
+    if (leg.link && !wide_enough(topology_.links()[*leg.link])) {
+      const Link& link = topology_.links()[*leg.link];
+      if (link.kind != LinkKind::meeting && link.width < settings_.needs_width)
+        return says((link.kind == LinkKind::door ? "door " : "opening ") + std::to_string(link.id),
+                    link.width);
+    }
+  }
+  return "the robot is too wide";
+}
+
+std::string Search::why_none(const Vec2& from, const std::string& start, const Place& to) const {
+  if (settings_.needs_width > 0.0) {
+    RouteSettings thin = settings_;
+    thin.needs_width = 0.0;
+    if (const RouteResult found = Search(topology_, thin).run(from, to); found.route)
+      return "no way from " + start + " to " + with_article(to) +
+             " is wide enough: " + narrow_place(*found.route);
+  }
+  return "no way from " + start + " to " + with_article(to) + " that is known" +
+         (settings_.blocked.empty() && settings_.blocked_links.empty() ? "" : " and not closed");
 }
 
 RouteResult Search::run(const Vec2& from, const Place& to) {
@@ -138,11 +182,7 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     enter(region, at, ways.cost(*next), *next);
   }
   if (best == states)
-    return {std::nullopt,
-            "no way from " + topology_.text(starts.front()) + " to " + with_article(to) +
-                " that is known" +
-                (settings_.blocked.empty() && settings_.blocked_links.empty() ? ""
-                                                                              : " and not closed")};
+    return {std::nullopt, why_none(from, topology_.text(starts.front()), to)};
 
   Route route;
   Vec2 at = from;
@@ -185,7 +225,7 @@ RouteResult find_route(const Topology& topology, const Vec2& from_in_map,
                        std::string_view to_name_or_id, const RouteSettings& settings) {
   const auto to = topology.place(to_name_or_id);
   if (!to)
-    return {std::nullopt, "the map has no place \"" + std::string(to_name_or_id) + "\""};
+    return {std::nullopt, topology.no_place(to_name_or_id)};
   return find_route(topology, from_in_map, *to, settings);
 }
 
@@ -205,7 +245,7 @@ RouteResult find_route(const Topology& topology, std::string_view from_name_or_i
                        std::string_view to_name_or_id, const RouteSettings& settings) {
   const auto from = topology.place(from_name_or_id);
   if (!from)
-    return {std::nullopt, "the map has no place \"" + std::string(from_name_or_id) + "\""};
+    return {std::nullopt, topology.no_place(from_name_or_id)};
   if (!from->point && from->regions.empty())
     return {std::nullopt, from->name + " is in no corridor, junction or room of the map"};
   const Vec2 at =

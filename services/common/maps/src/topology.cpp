@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
 
 namespace saphira::maps {
@@ -281,6 +282,28 @@ std::optional<std::size_t> Topology::region_at(const Vec2& position_in_map,
     }
   }
   return best;
+}
+
+std::string Topology::no_place(std::string_view name) const {
+  constexpr std::size_t kShown = 10;
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& known) {
+    if (!known.empty() && std::find(names.begin(), names.end(), known) == names.end())
+      names.push_back(known);
+  };
+  for (const Region& region : regions_)
+    add(region.area.name);
+  for (const Feature& position : positions_)
+    add(position.name);
+  std::string out = "the map has no place \"" + std::string(name) + "\"";
+  if (const std::string meant = guess(name, names); !meant.empty())
+    return out + ": did you mean \"" + meant + "\"?";
+  out += names.empty() ? ", and none that has a name" : ": it has ";
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    out += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kShown)
+    out += " and " + std::to_string(names.size() - kShown) + " more (saphira map show)";
+  return out;
 }
 
 std::optional<Place> Topology::place(std::string_view name_or_id) const {

@@ -30,6 +30,29 @@ TEST(Route, ASequenceOfRegionsWithThePointsToDriveThrough) {
         << point.transpose();
 }
 
+TEST(Route, AWideRobotIsNotSentThroughANarrowDoor) {
+  RouteSettings settings;
+  settings.needs_width = 0.85;  // the doors of this floor are 0.9 m wide
+  EXPECT_TRUE(find_route(floor(), Vec2(17.6, 14.0), "EJ-265", settings).route);
+  settings.needs_width = 1.1;
+  const auto none = find_route(floor(), Vec2(17.6, 14.0), "EJ-265", settings);
+  EXPECT_FALSE(none.route);
+  EXPECT_EQ(none.reason,
+            "no way from corridor 2 (central corridor) to room 265 (EJ-265) is wide enough: door "
+            "1265 is 0.90 m "
+            "wide, and the robot needs 1.10 m");
+  // Corridors have a width as well; openings are wider than doors.
+  EXPECT_TRUE(find_route(floor(), Vec2(17.6, 14.0), "library", settings).route);
+  settings.needs_width = 3.5;
+  EXPECT_NE(find_route(floor(), Vec2(17.6, 14.0), "library", settings).reason.find("corridor"),
+            std::string::npos);
+  // Where there is no way at all, the width is not the reason.
+  settings.needs_width = 1.1;
+  settings.blocked = {1265};
+  EXPECT_EQ(find_route(floor(), Vec2(17.6, 14.0), "EJ-265", settings).reason.find("wide"),
+            std::string::npos);
+}
+
 TEST(Route, TheShortestOfSeveral) {
   // From the upper corridor's middle to EJ-271 the east corridor is nearer than the central one.
   const auto by_east = find_route(floor(), Vec2(22.0, 25.0), "EJ-271");
@@ -89,7 +112,7 @@ TEST(Route, BeingThereIsARoute) {
 
 TEST(Route, SaysWhyThereIsNone) {
   EXPECT_EQ(find_route(floor(), Vec2(17.5, 14.0), "EJ-999").reason,
-            "the map has no place \"EJ-999\"");
+            "the map has no place \"EJ-999\": did you mean \"EJ-239\"?");
   EXPECT_EQ(find_route(floor(), Vec2(-7.0, 14.0), "EJ-231").reason,
             "the start, (-7000, 14000) mm, is in no corridor, junction or room of the map");
   RouteSettings closed;

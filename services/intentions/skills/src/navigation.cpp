@@ -26,7 +26,10 @@ constexpr double kForget = 300.0;  ///< [s] after which a closed way may be open
 constexpr double kThere = 0.4;     ///< [m] so near to its point the robot is at a place
 constexpr double kVisited = 1.5;   ///< [m] around where the robot has been
 constexpr double kStep = 0.7;      ///< [m] a nearer point is not worth driving to
-constexpr double kWayIn = 1.0;     ///< [m] behind a door where a room has been visited
+/// [m] that the robot needs on either side of its hull to pass a door or a corridor: what the guard
+/// beside the robot leaves there (bridge/authority, GuardSettings::side_margin).
+constexpr double kBeside = 0.08;
+constexpr double kWayIn = 1.0;  ///< [m] behind a door where a room has been visited
 
 const char* const kClosedWays = "*closed-ways*";
 const char* const kHazards = "hazards";
@@ -83,6 +86,8 @@ std::string hazard_in(const std::vector<Hazard>& hazards, std::size_t region) {
 maps::RouteSettings route_settings(const World& world) {
   maps::RouteSettings settings;
   settings.tolerance = kAstray;
+  if (world.around.robot_radius > 0.0)
+    settings.needs_width = 2.0 * (world.around.robot_radius + kBeside);
   // Out of where it is the robot has to get.
   const std::optional<std::size_t> here = region_here(world);
   for (const Hazard& hazard : hazards(world))
@@ -101,7 +106,8 @@ maps::RouteSettings route_settings(const World& world) {
   return settings;
 }
 
-maps::RouteResult route(const World& world, const Value& from, const Value& to) {
+maps::RouteResult route(const World& world, const Value& from, const Value& to,
+                        bool all_open = false) {
   const maps::Topology& map = map_of(world, "find-path");
   std::optional<Vec2> start;
   if (const std::optional<Pose> robot = world.robot_in_map())
@@ -120,7 +126,11 @@ maps::RouteResult route(const World& world, const Value& from, const Value& to) 
   }
   if (!start)
     return {std::nullopt, "the robot does not know where it is on the map"};
-  const maps::RouteSettings settings = route_settings(world);
+  maps::RouteSettings settings = route_settings(world);
+  if (all_open) {
+    settings.blocked.clear();
+    settings.blocked_links.clear();
+  }
   if (const Reference* const region = to.reference()) {
     maps::Place place;
     place.name = name_of(world, to);
@@ -136,7 +146,7 @@ maps::RouteResult route(const World& world, const Value& from, const Value& to) 
   }
   const std::optional<maps::Place> place = place_named(map, to);
   if (!place)
-    return {std::nullopt, "the map has no place \"" + spoken(to) + "\""};
+    return {std::nullopt, map.no_place(spoken(to))};
   return maps::find_route(map, *start, *place, settings);
 }
 
@@ -286,6 +296,13 @@ void add_paths(Functions& functions) {
                            return Value(reason);
                          },
                          "(why-no-path FROM TO): the reason why find-path gives nil"});
+  functions.add(Function{"could-be-opened", 2, 2,
+                         [](const World& world, Values arguments) {
+                           return Value::truth(
+                               route(world, arguments[0], arguments[1], true).route.has_value());
+                         },
+                         "(could-be-opened FROM TO): whether there would be a way if nothing were "
+                         "closed, blocked or warned of"});
   functions.add(Function{"way-length", 2, 2,
                          [](const World& world, Values arguments) {
                            const maps::RouteResult found = route(world, arguments[0], arguments[1]);
@@ -421,6 +438,14 @@ void add_places(Functions& functions) {
                                                 place_named(*world.around.topology, arguments[0])));
                          },
                          "(place-known NAME): whether the map has it"});
+  functions.add(Function{"why-no-place", 1, 1,
+                         [](const World& world, Values arguments) {
+                           return Value(
+                               world.around.topology == nullptr
+                                   ? "there is no map"
+                                   : world.around.topology->no_place(spoken(arguments[0])));
+                         },
+                         "(why-no-place NAME): that the map does not have it, and what it has"});
   functions.add(Function{
       "name-of", 1, 1,
       [](const World& world, Values arguments) { return Value(name_of(world, arguments[0])); },

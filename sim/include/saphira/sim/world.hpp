@@ -61,6 +61,8 @@ struct World {
   std::vector<Place> robot_places;  ///< of movable.robots
   MovablePlans movable;             ///< what is no wall
   SonarPlan sonar;
+  /// Oddities that do no harm, as lines to print ("file:line: ...").
+  std::vector<std::string> warnings;
 };
 
 /// Reads the text of a world file; `file` names it in errors. What stands or walks in it is

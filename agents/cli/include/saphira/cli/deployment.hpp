@@ -46,6 +46,9 @@ struct Deployment {
   BusOptions bus;
   /// May be set when it is started; with defaults, in which the built-in ${names} count.
   std::map<std::string, Placed> settings;
+  /// Files of ${run} that are removed before it starts: what they remember is of a simulated world,
+  /// which begins anew.
+  std::vector<std::string> forget;
   std::vector<Program> programs;
 };
 

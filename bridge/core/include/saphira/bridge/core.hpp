@@ -121,6 +121,8 @@ class Core {
     authority::EchoMap echoes;
     Doubts doubts;
     std::uint64_t bad_before = 0;  ///< of the parser, when it began
+    double delay = 0.0;            ///< [s] of a slow line, there and back; 0: it is not slow
+    double delay_asked = 0.0;      ///< [s] when it was measured again; 0: no answer is awaited
     double last_packet = 0.0;      ///< [s]
     double last_heard = 0.0;       ///< [s] an information packet, though it could not be true
     bool silent = false;           ///< the link: nobody drives what nobody sees
@@ -154,8 +156,11 @@ class Core {
   void finish_cycle(double now);
   void other(protocol::ServerPacket any, std::uint8_t type, double now);
   std::uint64_t bad_packets() const;
-  void heed(const protocol::ConfigPacket& set);
+  void heed(const protocol::ConfigPacket& set, double now);
   void mind_brakes();
+  void mind_delay(double now);
+  void set_delay(double round_trip);
+  std::string delay_words() const;
   void lost(const std::string& why, double now, Note::Level level = Note::Level::warning);
 
   void decide(double now);

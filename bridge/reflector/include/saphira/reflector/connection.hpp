@@ -14,6 +14,10 @@ using Packets = std::vector<protocol::Bytes>;
 ///
 /// SYNC0 is PULSE to a server that is still in a session: a robot that its watchdog has stopped
 /// would drive on. So zero setpoints go before it, wherever that may be.
+///
+/// A line that sends back what it is sent (a modem, a terminal server, a loose plug) answers every
+/// SYNC. A robot answers SYNC2 with its name, except servers before PSOS 4.1: behind an answer
+/// without one go zero setpoints, which no robot sends back, and only the next answer counts.
 class Connection {
  public:
   enum class State { closed, sync0, sync1, sync2, open };
@@ -37,6 +41,9 @@ class Connection {
   /// Nothing that leads on has come for so long that another connection may do better: a server
   /// that hangs, a half of a network connection whose other half is gone.
   bool is_hopeless(double now) const;
+  /// [s] From SYNC1 or SYNC2 to its answer, the shorter one: how slow the line is. Not exact where
+  /// packets are lost.
+  double round_trip() const { return round_trip_; }
   /// When to call tick next (while neither closed nor open).
   double due() const { return sent_ + kRetry; }
   /// What it waits for, in words.
@@ -50,6 +57,10 @@ class Connection {
   protocol::RobotIdentity identity_;
   double sent_ = 0.0;
   double answered_ = 0.0;  ///< what led on, or the beginning
+  double began_ = 0.0;     ///< the state
+  double round_trip_ = 0.0;
+  bool nameless_ = false;  ///< SYNC2 was answered without a name
+  bool echoes_ = false;    ///< the line sends back what it is sent
   int tries_ = 0;
 };
 

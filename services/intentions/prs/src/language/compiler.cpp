@@ -97,6 +97,7 @@ class Compiler {
     Value usual;
     if (form.is_list()) {
       std::size_t next = 1;
+      bool typed = false;
       if (next < form.items.size() && form.items[next].kind == Form::Kind::kKeyword) {
         const Form& type = form.items[next];
         bool known = true;
@@ -110,7 +111,8 @@ class Compiler {
           known = false;
         if (known)
           parameter.any = false;
-        if (known || type.is("any") || type.is("list"))
+        typed = known || type.is("any") || type.is("list");
+        if (typed)
           ++next;
         else if (!type.is("unit") && !type.is("low") && !type.is("high") && !type.is("doc"))
           definition_.fail(type,
@@ -128,6 +130,22 @@ class Compiler {
         ++next;
       }
       const Parts options = definition_.parts(form, next, {"unit", "low", "high", "doc"});
+      // What has a number as its default, or a unit or limits, is one.
+      const bool is_number = options.option("unit") != nullptr ||
+                             options.option("low") != nullptr ||
+                             options.option("high") != nullptr || usual.number() != nullptr;
+      if (parameter.any && !typed && is_number) {
+        if (!usual.nil() && usual.number() == nullptr)
+          definition_.fail(form.items[1],
+                           "expected a number as the default of a parameter with "
+                           ":unit, :low or :high" +
+                               found(form.items[1]));
+        parameter.any = false;
+        parameter.kind = ArgumentKind::number;
+      } else if (is_number && usual.number() == nullptr &&
+                 (parameter.any || parameter.kind != ArgumentKind::number)) {
+        definition_.fail(form, "expected :unit, :low and :high with :number alone");
+      }
       if (!options.items.empty())
         definition_.fail(*options.items[0],
                          "expected :unit, :low, :high or :doc" + found(*options.items[0]));

@@ -8,7 +8,8 @@ namespace {
 constexpr std::size_t kMostSteps = 4096;  ///< of one activity
 
 constexpr const char* kGoals =
-    "TEST, EXECUTE, =, WAIT-FOR, ASK, INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, MAINTAIN, "
+    "TEST, EXECUTE, =, WAIT, WAIT-FOR, ASK, INTEND, UNINTEND, IF, AND, SPLIT, GOTO, PRESERVE, "
+    "MAINTAIN, "
     "SUCCEED or FAIL";
 
 constexpr const char* kAsk = "(ASK question functor ((slot . value) ...) :timeout seconds)";
@@ -172,6 +173,8 @@ bool Goals::goal(const Form& form) {
   }
   if (op == "=")
     return assign(form);
+  if (op == "wait")
+    return pause(form);
   if (op == "wait-for")
     return wait(form);
   if (op == "ask")
@@ -245,6 +248,22 @@ bool Goals::assign(const Form& form) {
   take(at, form.items[2], false);
   step(at).slot = definition_.slot(name);
   definition_.binds(name);
+  return true;
+}
+
+/// Waits for nothing but the end of its time.
+bool Goals::pause(const Form& form) {
+  const Parts given = definition_.parts(form, 1, {});
+  expect_items(form, given, 1, 1, "(WAIT seconds), such as (WAIT 5s)");
+  const std::size_t at = add(Step::Op::kWait, form);
+  step(at).text = to_text(*given.items[0]);
+  step(at).timeout = expressions_.expression(*given.items[0], false);
+  Form nothing = form;
+  nothing.kind = Form::Kind::kName;
+  nothing.text = "nil";
+  nothing.items.clear();
+  take(at, nothing, false);
+  step(at).other = here();
   return true;
 }
 

@@ -51,6 +51,7 @@ class LineReader {
  public:
   LineReader(std::string file, const Line& line) : file_(std::move(file)), line_(&line) {}
 
+  int line() const { return line_->number; }
   bool at_end() const { return next_ >= line_->words.size(); }
   /// The next word, or FileError "expected <what>".
   std::string_view word(std::string_view what);
@@ -75,7 +76,12 @@ class LineReader {
 /// one, half a line as all of it; so the last line of a file that must be whole has a line break.
 void expect_last_line_break(std::string_view text, const std::string& file);
 
-/// The whole content of a file; std::runtime_error that names it where it cannot be read.
+/// The whole content of a file, without a byte order mark; std::runtime_error that names it where
+/// it cannot be read.
 std::string read_file(const std::string& path);
+
+/// Of a text that begins as a file of another program does, which kind of file that is, in words;
+/// empty where it does not.
+std::string_view other_format(std::string_view text);
 
 }  // namespace saphira

@@ -28,8 +28,10 @@ class WatchedFolder {
 
  private:
   struct Stamp {
-    std::int64_t time = 0;
-    std::uintmax_t size = 0;
+    std::int64_t time = 0;     ///< [ns] of its content
+    std::int64_t changed = 0;  ///< [ns] of anything of it: a copy from a backup keeps the first
+    std::uint64_t file = 0;    ///< which one it is, under this name
+    std::uint64_t size = 0;
 
     bool operator==(const Stamp&) const = default;
   };

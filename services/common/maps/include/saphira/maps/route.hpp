@@ -35,7 +35,10 @@ struct RouteSettings {
   /// Ids of doors that were closed when they were seen last: gone through where any other way is so
   /// much longer.
   std::set<std::uint32_t> closed;
-  double closed_costs = 50.0;   ///< [m]
+  double closed_costs = 50.0;  ///< [m]
+  /// [m] that the robot needs between two posts or walls: narrower doors, openings and corridors
+  /// are not gone through. 0: any will do.
+  double needs_width = 0.0;
   double door_clearance = 0.7;  ///< [m] how far before and behind a door the robot is in line
   double tolerance = 0.5;       ///< [m] how far outside of its region the robot may believe to be
 };

@@ -62,6 +62,8 @@ class Topology {
   /// By the id of an artifact, or by a name: of a region, of a position, of a door, in that order;
   /// letters as they are written first, then either case.
   std::optional<Place> place(std::string_view name_or_id) const;
+  /// That there is no such place, with the nearest name and some of those that there are.
+  std::string no_place(std::string_view name) const;
   /// "corridor 2 (central corridor)".
   std::string text(std::size_t region) const;
 

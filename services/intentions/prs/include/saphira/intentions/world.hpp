@@ -80,6 +80,7 @@ struct Surroundings {
   /// Of the sonars, that came in this cycle; none: nothing is sensed.
   const std::vector<lps::SonarReading>* readings = nullptr;
   std::uint64_t map_revision = 0;
+  double robot_radius = 0.0;  ///< [m] of its hull, a circle; 0: unknown
   /// What agents said to questions, by their numbers; none: nobody is asked.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
 };
