@@ -19,6 +19,7 @@ struct AskOptions {
   std::vector<std::string> arguments;
   std::string agent;
   int answers = 1;
+  bool list = false;
   double patience = 10.0;
 };
 
@@ -98,8 +99,8 @@ int list(const bus::NodeOptions& options, const bus::Stop& stop) {
 void add_ask(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<AskOptions>();
   CLI::App* command = app.add_subcommand("ask", "Ask whichever agent can answer");
-  command->add_option("functor", options->functor, "what is asked for (saphira agents lists it)")
-      ->required();
+  command->add_option("functor", options->functor, "what is asked for");
+  command->add_flag("--list", options->list, "what can be asked for, as saphira agents");
   command->add_option("arguments", options->arguments,
                       "name=value, or name=? for what the answer is to fill");
   command->add_option("--of", options->agent, "the agent that is meant (usual: whichever can)");
@@ -111,8 +112,10 @@ void add_ask(CLI::App& app, Chosen& chosen) {
       ->check(CLI::Range(0.1, 3600.0));
   command->footer("Exit code 0: it was answered; 1: it was not, and why.");
   command->callback([options, &chosen] {
+    if (options->functor.empty() != options->list)
+      throw CLI::ValidationError("ask", "expected a functor, or --list");
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return ask(*options, node, stop);
+      return options->list ? list(node, stop) : ask(*options, node, stop);
     };
   });
 }

@@ -15,6 +15,8 @@
 
 #include "commands.hpp"
 #include "environment.hpp"
+#include "lps/shell/convert.hpp"
+#include "maps/shell/convert.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
@@ -26,6 +28,7 @@
 #include "saphira/cli/supervisor.hpp"
 #include "saphira/cli/trace.hpp"
 #include "saphira/geometry/pose.hpp"
+#include "saphira/maps/topology.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -120,7 +123,9 @@ class Watcher {
       : goal_(goal),
         robots_(node.reader(bus::topics::kRobotState)),
         descriptions_(node.reader(bus::topics::kRobotDescription)),
-        grants_(node.reader(bus::topics::kGrant)) {
+        grants_(node.reader(bus::topics::kGrant)),
+        maps_(node.reader(bus::topics::kMap)),
+        registrations_(node.reader(bus::topics::kRegistration)) {
     picture_.set_goal(goal);
   }
 
@@ -132,6 +137,16 @@ class Watcher {
     }
     if (auto grant = grants_.take_newest())
       grant_ = std::move(grant);
+    if (const auto map = maps_.take_newest()) {
+      map_ = maps::from_bus(*map);
+      place_walls();
+    }
+    if (const auto registration = registrations_.take_newest()) {
+      const bool placed = registration->state() == v1::REGISTRATION_TRACKING;
+      odom_in_map_ =
+          placed ? std::optional(lps::from_bus(registration->odom_in_map())) : std::nullopt;
+      place_walls();
+    }
     bool any = false;
     for (const auto& sample : robots_.take()) {
       any = true;
@@ -180,6 +195,26 @@ class Watcher {
     return {robot.pose_in_odom().x(), robot.pose_in_odom().y(), robot.pose_in_odom().th()};
   }
 
+  /// The map as the robot has it in odom.
+  void place_walls() {
+    std::vector<std::pair<Vec2, Vec2>> walls;
+    if (odom_in_map_)
+      for (const maps::Feature& feature : map_.features) {
+        if (feature.length <= 0.0)
+          continue;
+        std::vector<Vec2> points =
+            feature.width > 0.0 ? maps::corners(feature)
+                                : std::vector{maps::begin_of(feature), maps::end_of(feature)};
+        for (Vec2& point : points)
+          point = to_frame(*odom_in_map_, point);
+        for (std::size_t i = 0; i + 1 < points.size(); ++i)
+          walls.emplace_back(points[i], points[i + 1]);
+        if (points.size() > 2)
+          walls.emplace_back(points.back(), points.front());
+      }
+    picture_.set_walls(std::move(walls));
+  }
+
   void take_echoes(const v1::RobotState& robot) {
     const Pose pose = pose_of(robot);
     picture_.move_robot(pose);
@@ -220,6 +255,10 @@ class Watcher {
   bus::Reader<v1::RobotState> robots_;
   bus::Reader<v1::RobotDescription> descriptions_;
   bus::Reader<v1::Grant> grants_;
+  bus::Reader<v1::FloorMap> maps_;
+  bus::Reader<v1::Registration> registrations_;
+  maps::Map map_;
+  std::optional<Pose> odom_in_map_;
   std::optional<v1::RobotState> robot_;
   std::optional<v1::RobotDescription> description_;
   std::optional<v1::Grant> grant_;
@@ -260,13 +299,21 @@ class Screen {
       page += "\x1b[K" + address.substr(0, static_cast<std::size_t>(columns)) + "\r\n";
       --rows;
     }
-    for (const std::string& line : watcher.picture(columns, rows - 2, utf8_))
+    for (const std::string& line : watcher.picture(columns, rows - 3, utf8_))
       page += line + "\r\n";
+    page += "\x1b[K" + Picture::legend(utf8_) + "\r\n";
     const std::string line = watcher.line(status);
     const auto width = static_cast<std::size_t>(columns);
-    page += "\x1b[K" + line.substr(0, width) + "\r\n\x1b[K";
-    if (line.size() > width)
-      page += line.substr(width, width - 1);
+    // On two lines, between words.
+    std::size_t end = line.size();
+    if (line.size() > width) {
+      end = line.rfind(' ', width);
+      end = end == std::string::npos ? width : end;
+    }
+    const std::size_t next = line.find_first_not_of(' ', end);
+    page += "\x1b[K" + line.substr(0, end) + "\r\n\x1b[K";
+    if (next != std::string::npos)
+      page += line.substr(next, width - 1);
     out().show(page);
   }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 
@@ -82,8 +83,9 @@ void tell(const char* what, const logs::Accuracy& accuracy) {
   if (accuracy.compared < 2)
     std::printf("%-16s no pose to compare\n", what);
   else
-    std::printf("%-16s %.3f m off (rms), %.3f m and %.2f degrees per 10 m\n", what, accuracy.ate,
-                accuracy.drift, degrees(accuracy.drift_heading));
+    std::printf("%-16s %.3f m off (rms), %.1f %% within %.1f m; %.3f m and %.2f degrees per 10 m\n",
+                what, accuracy.ate, 100.0 * accuracy.within, logs::kWithin, accuracy.drift,
+                degrees(accuracy.drift_heading));
 }
 
 int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
@@ -104,22 +106,34 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
     return static_cast<double>(steps) / static_cast<double>(std::max<std::size_t>(1, run.steps));
   };
   if (options.json) {
-    std::printf(
-        "{\"scans\": %zu, \"way_m\": %.1f, \"walls\": %zu, \"reckoned_ate_m\": %.4f, \"ate_m\": "
-        "%.4f, \"per_10m_m\": %.4f, \"per_10m_deg\": %.3f, \"tracking\": %.4f, \"lost\": %.4f, "
-        "\"unplaced\": %.4f, \"matches\": %zu}\n",
-        log.scans.size(), log.odometry.length(), mapped.walls.features.size(),
-        result.dead_reckoning.ate, result.localized.ate, result.localized.drift,
-        degrees(result.localized.drift_heading), share(run.tracking), share(run.lost),
-        share(run.unplaced), run.accepted);
+    nlohmann::json out{{"scans", log.scans.size()},
+                       {"way_m", log.odometry.length()},
+                       {"walls", mapped.walls.features.size()},
+                       {"reckoned_ate_m", result.dead_reckoning.ate},
+                       {"tracking", share(run.tracking)},
+                       {"lost", share(run.lost)},
+                       {"unplaced", share(run.unplaced)},
+                       {"matches", run.accepted}};
+    // Without a pose there is no error to be told: null, and not 0.
+    const logs::Accuracy& at = result.localized;
+    const auto known = [&](double value) {
+      return at.compared < 2 ? nlohmann::json() : nlohmann::json(value);
+    };
+    out["ate_m"] = known(at.ate);
+    out["within_half_a_metre"] = known(at.within);
+    out["per_10m_m"] = known(at.drift);
+    out["per_10m_deg"] = known(degrees(at.drift_heading));
+    std::cout << out.dump() << '\n';
     return bus::kExitOk;
   }
   std::printf("against where the laser says that the robot was:\n");
   tell("dead reckoning", result.dead_reckoning);
   tell("by sonars", result.localized);
-  std::printf("%-16s %.1f %% of the steps, lost %.1f %%, without a pose %.1f %%; %zu matches\n",
-              "tracking", 100.0 * share(run.tracking), 100.0 * share(run.lost),
-              100.0 * share(run.unplaced), run.accepted);
+  std::printf(
+      "%-16s %.1f %% of the steps, takes itself for lost in %.1f %%, has no pose in %.1f %%; "
+      "%zu matches\n",
+      "has a pose in", 100.0 * share(run.tracking), 100.0 * share(run.lost),
+      100.0 * share(run.unplaced), run.accepted);
   return bus::kExitOk;
 }
 

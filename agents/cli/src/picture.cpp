@@ -14,7 +14,7 @@ constexpr double kWakeStep = 0.05;          ///< [m]
 constexpr double kMargin = 0.5;             ///< [m] around what is shown
 
 /// What a character shows; of several, the last in this order.
-enum class Layer { none, echo, wake, goal, robot };
+enum class Layer { none, wall, echo, wake, goal, robot };
 
 struct Look {
   const char* color;
@@ -22,6 +22,8 @@ struct Look {
 };
 Look look(Layer layer) {
   switch (layer) {
+    case Layer::wall:
+      return {"\x1b[90m", ':'};
     case Layer::echo:
       return {"\x1b[37m", '.'};
     case Layer::wake:
@@ -122,6 +124,21 @@ void Picture::clear() {
   order_.clear();
 }
 
+std::string Picture::legend(bool utf8) {
+  std::string text;
+  const auto add = [&](Layer layer, const char* name) {
+    text += (text.empty() ? "" : "   ") + std::string(look(layer).color);
+    text += utf8 ? std::string("\u28ff") : std::string(1, look(layer).letter);
+    text += std::string("\x1b[0m ") + name;
+  };
+  add(Layer::robot, "robot");
+  add(Layer::wake, "its way");
+  add(Layer::goal, "goal");
+  add(Layer::echo, "heard");
+  add(Layer::wall, "map");
+  return text;
+}
+
 std::vector<std::string> Picture::draw(int columns, int rows, bool utf8) const {
   columns = std::max(columns, 1);
   rows = std::max(rows, 1);
@@ -149,6 +166,11 @@ std::vector<std::string> Picture::draw(int columns, int rows, bool utf8) const {
                static_cast<int>(std::floor(2 * rows - (point.y() - middle.y()) / scale)), layer);
   };
 
+  for (const auto& [from, to] : walls_) {
+    const int dots = std::min(static_cast<int>((to - from).norm() / scale), 1000);
+    for (int i = 0; i <= dots; ++i)
+      dot(from + (to - from) * i / std::max(dots, 1), Layer::wall);
+  }
   for (const auto& [i, j] : echoes_)
     dot({(i + 0.5) * kCell, (j + 0.5) * kCell}, Layer::echo);
   for (const Vec2& point : wake_)

@@ -37,6 +37,20 @@ TEST(Picture, HasTheSizeThatWasAskedFor) {
   EXPECT_EQ(Picture().draw(0, 0, true).size(), 1U);
 }
 
+TEST(Picture, ShowsTheWallsOfTheMapWithinWhatElseIsShown) {
+  Picture picture;
+  picture.move_robot({});
+  picture.set_goal({4.0, 0.0});
+  EXPECT_EQ(find(plain(picture.draw(60, 20, false)), ':').first, -1);
+  picture.set_walls({{{-10.0, 1.0}, {10.0, 1.0}}, {{50.0, 0.0}, {50.0, 9.0}}});
+  const auto lines = plain(picture.draw(60, 20, false));
+  const auto [column, row] = find(lines, ':');
+  EXPECT_EQ(column, 0) << "from one side to the other";
+  EXPECT_EQ(lines[static_cast<std::size_t>(row)], std::string(60, ':'));
+  EXPECT_LT(row, find(lines, 'O').second) << "above the robot";
+  EXPECT_NE(Picture::legend(false).find("map"), std::string::npos);
+}
+
 TEST(Picture, XIsToTheRightAndYIsUp) {
   Picture picture;
   picture.move_robot({0, 0, 0});

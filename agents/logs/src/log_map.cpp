@@ -34,6 +34,15 @@ Accuracy accuracy(const std::vector<StampedPose>& poses, const Trajectory& truth
     return result;
   const DriftErrors errors = logs::drift(pairs, kStretch);
   result.ate = ate_rmse(pairs);
+  const Pose align = alignment(pairs);
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < pairs.estimate.size(); ++i)
+    near +=
+        (transform(align, pairs.estimate[i].position()) - pairs.reference[i].position()).norm() <
+                kWithin
+            ? 1U
+            : 0U;
+  result.within = static_cast<double>(near) / static_cast<double>(pairs.estimate.size());
   result.drift = errors.translation.median;
   result.drift_heading = errors.rotation.median;
   return result;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "saphira/base/guess.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::protocol {
@@ -139,15 +140,37 @@ constexpr std::array<std::string_view, 5> kAriaSections{
     "general settings", "conversion factors", "accessories the robot has",
     "movement control parameters", "sonar parameters"};
 
+/// In the case in which they are usually written.
+const std::vector<std::string>& keywords() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names{
+        "SonarUnit",        "SonarNum",         "Name", "Class", "Subclass", "Protocol",
+        "SwitchToBaudRate", "EncoderTicksPerMM"};
+    const auto add = [&names](const auto& table) {
+      for (const auto& each : table)
+        names.emplace_back(each.name);
+    };
+    add(kNumbers);
+    add(kFlags);
+    add(kCounts);
+    return names;
+  }();
+  return all;
+}
+
 bool is_keyword(const std::string& name) {
-  constexpr std::array<std::string_view, 8> others{
-      "sonarunit",        "sonarnum",         "name", "class", "subclass", "protocol",
-      "switchtobaudrate", "encodertickspermm"};
-  const auto is_it = [&name](const auto& k) { return lower(k.name) == name; };
-  return std::any_of(kNumbers.begin(), kNumbers.end(), is_it) ||
-         std::any_of(kFlags.begin(), kFlags.end(), is_it) ||
-         std::any_of(kCounts.begin(), kCounts.end(), is_it) ||
-         std::find(others.begin(), others.end(), name) != others.end();
+  return std::any_of(keywords().begin(), keywords().end(),
+                     [&name](const std::string& known) { return lower(known) == name; });
+}
+
+/// The keyword that a mistyped one may mean.
+std::string keyword_like(const std::string& name) {
+  std::vector<std::string> lowered;
+  for (const std::string& known : keywords())
+    lowered.push_back(lower(known));
+  const std::string meant = guess(name, lowered);
+  const auto found = std::find(lowered.begin(), lowered.end(), meant);
+  return meant.empty() ? "" : keywords()[static_cast<std::size_t>(found - lowered.begin())];
 }
 
 class Parser {
@@ -246,7 +269,11 @@ class Parser {
       to_value(in);
       parameters_.encoder_unit = kMillimetre / in.number("EncoderTicksPerMM", 0.1, 10000.0);
     } else {
-      in.fail("expected a keyword of a robot parameter file (such as RobotRadius or SonarUnit)");
+      const std::string meant = keyword_like(name);
+      in.fail(
+          meant.empty()
+              ? "expected a keyword of a robot parameter file (such as RobotRadius or SonarUnit)"
+              : "expected a keyword of a robot parameter file: did you mean " + meant + "?");
     }
   }
 

@@ -4,17 +4,7 @@
 #include <mutex>
 #include <utility>
 
-#include "agentsPubSubTypes.h"
-#include "behaviorPubSubTypes.h"
-#include "devicePubSubTypes.h"
-#include "intentionPubSubTypes.h"
-#include "mapPubSubTypes.h"
-#include "motionPubSubTypes.h"
-#include "perceptionPubSubTypes.h"
-#include "requestPubSubTypes.h"
-#include "robotPubSubTypes.h"
-#include "systemPubSubTypes.h"
-#include "visionPubSubTypes.h"
+#include "saphira_pub_sub_types.h"
 
 namespace saphira::bus::internal {
 namespace {

@@ -83,7 +83,9 @@ TEST(Executor, OfEqualsTheFirstIsUnderway) {
   bench.step();
   EXPECT_EQ(bench.state(2), GoalState::kUnderway);
   EXPECT_EQ(bench.state(1), GoalState::kWaiting);
-  EXPECT_EQ(bench.status(1).reason, "waits for goal 1:2 (drive) of \"somebody\", which came first");
+  EXPECT_EQ(bench.status(1).reason,
+            "waits for goal 1:2 (drive) of \"somebody\", which came first; with a "
+            "priority of 1 it would go first");
   bench.dispose(2);
   bench.step();
   EXPECT_EQ(bench.state(2), GoalState::kCanceled);
@@ -204,7 +206,7 @@ TEST(Executor, ADeadlineCountsFromAcceptance) {
   EXPECT_EQ(bench.status(2).code, GoalCode::kDeadline);
   EXPECT_EQ(bench.status(2).reason,
             "not done within its deadline of 2 s; it was waiting: waits for goal 1:1 (drive) of "
-            "\"somebody\", which came first");
+            "\"somebody\", which came first; with a priority of 1 it would go first");
   EXPECT_EQ(bench.status(2).elapsed, 2.0);
 }
 
@@ -299,7 +301,9 @@ TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
   bench.step();
   EXPECT_EQ(bench.status(1).reason, "goes on unchanged, " + refused);
   EXPECT_EQ(bench.status(2).reason,
-            "waits for goal 1:1 (go_to) of \"somebody\", which came first; " + refused);
+            "waits for goal 1:1 (go_to) of \"somebody\", which came first; with a priority of 1 it "
+            "would go first; " +
+                refused);
   bench.world.robot.connected = false;
   bench.step();
   EXPECT_EQ(bench.status(1).reason, "the robot is not connected; goes on when it is; " + refused);

@@ -551,7 +551,11 @@ Executor::Entry* Executor::arbitrate(const World& world) {
                     " over " + std::to_string(entry.goal.priority) + ")"
               : ", which came first");
     if (entry.status.state == GoalState::kWaiting)
-      wait(entry, GoalCode::kNone, "waits for " + who);
+      wait(entry, GoalCode::kNone,
+           "waits for " + who +
+               (more ? ""
+                     : "; with a priority of " + std::to_string(chosen->goal.priority + 1) +
+                           " it would go first"));
     else
       suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
   }

@@ -11,8 +11,9 @@
 
 namespace saphira::cli {
 
-/// What the terminal's picture shows, in odom: the echoes that the sonars returned, where the robot
-/// has been, where it is, and where it is to go. After the local perceptual space of manual 2.3.3.
+/// What the terminal's picture shows, in odom: the walls of the map, the echoes that the sonars
+/// returned, where the robot has been, where it is, and where it is to go. After the local
+/// perceptual space of manual 2.3.3.
 class Picture {
  public:
   void set_radius(double radius) { radius_ = radius; }
@@ -21,6 +22,11 @@ class Picture {
   /// An echo; those that fall on the same 5 cm are one.
   void add_echo(const Vec2& point);
   void clear();
+  /// Walls and the sides of rooms and corridors, from point to point, of the map; shown where they
+  /// lie within what else is.
+  void set_walls(std::vector<std::pair<Vec2, Vec2>> walls) { walls_ = std::move(walls); }
+  /// What each character or color is.
+  static std::string legend(bool utf8);
 
   /// Lines of `columns` characters with colors (ANSI), `rows` of them, x of odom to the right.
   /// utf8: Braille dots, eight a character; else one letter a character.
@@ -30,6 +36,7 @@ class Picture {
   Pose robot_;
   double radius_ = 0.22;
   std::optional<Vec2> goal_;
+  std::vector<std::pair<Vec2, Vec2>> walls_;
   std::vector<Vec2> wake_;
   std::set<std::pair<int, int>> echoes_;  ///< in cells
   std::deque<std::pair<int, int>> order_;

@@ -21,12 +21,15 @@ struct LogMap {
 LogMap map_log(
     const DataSet& log, const std::function<bool()>& goes_on = [] { return true; });
 
+inline constexpr double kWithin = 0.5;  ///< [m] so near a pose is right
+
 /// How far from where the laser says the robot was.
 struct Accuracy {
   double ate = 0.0;            ///< [m] root mean square after the best alignment
   double drift = 0.0;          ///< [m] over 10 m of way, median
   double drift_heading = 0.0;  ///< [rad] the same
-  std::size_t compared = 0;    ///< poses
+  double within = 0.0;         ///< [0..1] share of the poses within kWithin, aligned in that way
+  std::size_t compared = 0;    ///< poses; below 2 nothing else is known
 };
 Accuracy accuracy(const std::vector<StampedPose>& poses, const Trajectory& truth);
 

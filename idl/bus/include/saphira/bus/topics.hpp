@@ -1,17 +1,7 @@
 #pragma once
 
-#include "agents.h"
-#include "behavior.h"
-#include "device.h"
-#include "intention.h"
-#include "map.h"
-#include "motion.h"
-#include "perception.h"
-#include "request.h"
-#include "robot.h"
 #include "saphira/bus/qos.hpp"
-#include "system.h"
-#include "vision.h"
+#include "saphira_types.h"
 
 namespace saphira::bus {
 
