@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
@@ -13,6 +14,7 @@
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/key_drive.hpp"
 #include "saphira/cli/printer.hpp"
+#include "saphira/cli/stick_drive.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "watch.hpp"
 
@@ -32,7 +34,10 @@ constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6
 constexpr const char* kKeys =
     "i/up faster   m/down slower   j/left   l/right   k/space all stop   . or return: go on\n"
     "an all stop also stops another person, and gives you the robot\n"
-    "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n";
+    "g constant velocity on/off   c obstacle avoidance   h hand back   q quit\n"
+    "joystick: hold a shoulder button, and push the first stick\n";
+
+constexpr const char* kJoystick = "/dev/input/js0";
 
 constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
 
@@ -75,10 +80,50 @@ class RawTerminal {
 };
 termios RawTerminal::saved{};
 
+/// A joystick of the kernel's. One that is unplugged is gone; it is looked for again once a second.
+class Joystick {
+ public:
+  explicit Joystick(std::string path) : path_(std::move(path)) { open(); }
+  ~Joystick() { close(); }
+  Joystick(const Joystick&) = delete;
+  Joystick& operator=(const Joystick&) = delete;
+
+  int fd() const { return fd_; }
+  bool there() const { return fd_ >= 0; }
+  const std::string& path() const { return path_; }
+  StickDrive& stick() { return stick_; }
+  void open() {
+    if (fd_ < 0)
+      fd_ = ::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  void read(double now) {
+    std::array<char, 512> bytes{};
+    const ssize_t n = ::read(fd_, bytes.data(), bytes.size());
+    if (n > 0)
+      return stick_.take({bytes.data(), static_cast<std::size_t>(n)}, now);
+    if (n < 0 && (errno == EAGAIN || errno == EINTR))
+      return;
+    close();
+    stick_.lost();
+  }
+
+ private:
+  void close() {
+    if (fd_ >= 0)
+      ::close(fd_);
+    fd_ = -1;
+  }
+
+  std::string path_;
+  int fd_ = -1;
+  StickDrive stick_;
+};
+
 class Teleop {
  public:
-  explicit Teleop(const bus::NodeOptions& options)
-      : node_(options),
+  explicit Teleop(const bus::NodeOptions& options, const std::string& joystick = kJoystick)
+      : joystick_(joystick),
+        node_(options),
         processes_(node_),
         goals_(node_, "saphira drive"),
         commands_(node_.writer(bus::topics::kDriveTeleop)),
@@ -95,14 +140,18 @@ class Teleop {
         "hand the robot back (h, or later: saphira drive hand-back).\n\n\n\n");
     auto due = Clock::now();
     while (!stop.requested() && !quit_) {
-      std::array<pollfd, 3> fds{
-          {{STDIN_FILENO, POLLIN, 0}, {stop.fd(), POLLIN, 0}, {node_.wake_fd(), POLLIN, 0}}};
+      std::array<pollfd, 4> fds{{{STDIN_FILENO, POLLIN, 0},
+                                 {stop.fd(), POLLIN, 0},
+                                 {node_.wake_fd(), POLLIN, 0},
+                                 {joystick_.fd(), POLLIN, 0}}};
       const auto left = std::chrono::ceil<milliseconds>(due - Clock::now());
       poll(fds.data(), fds.size(), static_cast<int>(std::max<long>(0, left.count())));
       if ((fds[0].revents & (POLLHUP | POLLERR)) != 0)
         break;  // the terminal is gone
       if ((fds[0].revents & POLLIN) != 0 && !read_keys())
         break;
+      if (fds[3].revents != 0)
+        take_stick();
       node_.clear_wake();
       take();
       if (Clock::now() >= due) {
@@ -167,6 +216,24 @@ class Teleop {
     return true;
   }
 
+  void take_stick() {
+    const bool was = joystick_.stick().setpoint(now()).active;
+    joystick_.read(now());
+    if (!robot_)
+      return joystick_.stick().let_go();  // nobody drives what he has not seen
+    const bool is = joystick_.stick().setpoint(now()).active;
+    if (is == was)
+      return;
+    if (is) {
+      keys_.release();
+      end_constant();
+      note_.clear();
+    }
+    if (!joystick_.there())
+      note_ = "the joystick is gone: the robot is released";
+    send();  // at once: a stop does not wait for the period
+  }
+
   void press(DriveKey key) {
     switch (key) {
       case DriveKey::quit:
@@ -193,6 +260,8 @@ class Teleop {
     if (!robot_)
       return;  // nobody drives what he has not seen
     end_constant();
+    if (key == DriveKey::stop)
+      joystick_.stick().let_go();
     keys_.press(key, now());
     send();  // at once: a stop does not wait for the period
   }
@@ -227,8 +296,14 @@ class Teleop {
       robot_ = *robot;
       robot_came_ = Clock::now();
     }
-    if (const auto description = descriptions_.take_newest())
+    if (const auto description = descriptions_.take_newest()) {
       keys_.set_max_velocity(description->max_velocity());
+      joystick_.stick().set_max_velocity(description->max_velocity());
+    }
+    if (!joystick_.there() && seconds_since(looked_) > 1.0) {
+      joystick_.open();
+      looked_ = Clock::now();
+    }
     if (const auto grant = grants_.take_newest()) {
       grant_ = *grant;
       for (const v1::Refusal& refusal : grant->refused())
@@ -246,10 +321,27 @@ class Teleop {
       }
   }
 
+  struct Wanted {
+    bool active = false;
+    double velocity = 0.0;  ///< [m/s]
+    double heading = 0.0;   ///< [rad] of keys, with `move` as KeyDrive has it
+    std::uint64_t move = 0;
+    bool by_stick = false;
+    double turn = 0.0;  ///< [rad/s] of the stick
+  };
+  /// The keys' all stop is stronger than a stick that is held.
+  Wanted wanted() {
+    const KeyDrive::Setpoint keys = keys_.setpoint(now());
+    const StickDrive::Setpoint stick = joystick_.stick().setpoint(now());
+    if (keys.active || !stick.active)
+      return {keys.active, keys.velocity, keys.heading, keys.move};
+    return {true, stick.velocity, 0.0, 0, true, stick.turn};
+  }
+
   /// Once it has driven, it says until its end that it does not: so the bridge knows that it is
   /// alive, and that a release that got lost was meant.
   void send() {
-    const KeyDrive::Setpoint setpoint = keys_.setpoint(now());
+    const Wanted setpoint = wanted();
     drove_ = drove_ || setpoint.active;
     if (setpoint.active)
       hand_backs_left_ = 0;
@@ -257,7 +349,7 @@ class Teleop {
       write(setpoint, hand_backs_left_ > 0 && hand_backs_left_-- > 0);
   }
 
-  void write(const KeyDrive::Setpoint& setpoint, bool hand_back = false) {
+  void write(const Wanted& setpoint, bool hand_back = false) {
     v1::MotorCommand command;
     // The stamp says which picture of the robot the person has: an old one is refused.
     if (robot_)
@@ -268,15 +360,16 @@ class Teleop {
     command.hand_back(hand_back);
     command.translation(v1::TRANSLATION_VELOCITY);
     command.velocity(setpoint.velocity);
-    command.rotation(v1::ROTATION_RELATIVE_HEADING);
+    command.rotation(setpoint.by_stick ? v1::ROTATION_VELOCITY : v1::ROTATION_RELATIVE_HEADING);
     command.heading(setpoint.heading);
+    command.rotation_velocity(setpoint.turn);
     // Unique over restarts of this program too, or the bridge would take the first for an old one.
     command.move(node_.instance() + setpoint.move);
     commands_.write(command);
   }
 
   void show() {
-    KeyDrive::Setpoint setpoint = keys_.setpoint(now());
+    Wanted setpoint = wanted();
     const bool refused = !refusal_.empty() && seconds_since(refused_at_) < kRefused;
     if (refused)
       setpoint.velocity = 0.0;  // nothing that is refused is shown as wanted
@@ -295,11 +388,14 @@ class Teleop {
           robot_->right_stalled() ? "  RIGHT STALLED" : "");
       line = text.data();
     }
-    const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0;
-    std::string second = !setpoint.active ? "released"
-                         : refused        ? "NOT driving"
-                         : still          ? "holding still"
-                                          : "driving";
+    const bool still = setpoint.velocity == 0.0 && setpoint.heading == 0.0 && setpoint.turn == 0.0;
+    std::string second = !setpoint.active    ? "released"
+                         : refused           ? "NOT driving"
+                         : still             ? "holding still"
+                         : setpoint.by_stick ? "driving by joystick"
+                                             : "driving";
+    if (joystick_.stick().is_silent(now()))
+      note_ = "the joystick is held and says nothing: move it, or press its button again";
     if (grant_)
       second += "  |  " + describe(*grant_);
     std::string third = note_;
@@ -322,6 +418,7 @@ class Teleop {
   /// The robot is released, which stops it. It is not handed back by that.
   void finish() {
     keys_.release();
+    joystick_.stick().lost();
     for (int i = 0; drove_ && i < kReleases; ++i) {
       send();
       node_.wait(milliseconds(20));
@@ -336,6 +433,8 @@ class Teleop {
     }
   }
 
+  Joystick joystick_;
+  Clock::time_point looked_;  ///< for a joystick
   bus::Node node_;
   Processes processes_;
   bus::GoalClient goals_;
@@ -360,25 +459,30 @@ class Teleop {
   std::string note_;
 };
 
-int drive(const bus::NodeOptions& options, const bus::Stop& stop) {
+int drive(const std::string& joystick, const bus::NodeOptions& options, const bus::Stop& stop) {
   if (isatty(STDIN_FILENO) == 0) {
     std::cerr << "saphira: drive needs a terminal for its keys\n";
     return bus::kExitUsage;
   }
-  return Teleop(options).run(stop);
+  return Teleop(options, joystick).run(stop);
 }
 
 }  // namespace
 
 void add_drive(CLI::App& app, Chosen& chosen) {
   CLI::App* command =
-      app.add_subcommand("drive", "Drive by keyboard; the robot moves only while keys come");
+      app.add_subcommand("drive", "Drive by keyboard or joystick, while something is held");
+  auto joystick = std::make_shared<std::string>(kJoystick);
+  command->add_option("--joystick", *joystick, "The kernel's device of a joystick or gamepad")
+      ->capture_default_str();
   CLI::App* back = command->add_subcommand(
       "hand-back", "After a person has driven: lets goals and behaviors drive again");
   command->require_subcommand(0, 1);
   command->footer(std::string("Keys:\n") + kKeys);
-  command->callback([back, &chosen] {
-    chosen.run = drive;
+  command->callback([back, joystick, &chosen] {
+    chosen.run = [joystick](const bus::NodeOptions& options, const bus::Stop& stop) {
+      return drive(*joystick, options, stop);
+    };
     if (back->parsed())
       chosen.run = [](const bus::NodeOptions& options, const bus::Stop& stop) {
         return Teleop(options).hand_back(stop);
