@@ -1,0 +1,101 @@
+#include "saphira/cli/stick_drive.hpp"
+
+#include <gtest/gtest.h>
+#include <linux/joystick.h>
+
+#include <cstring>
+
+namespace saphira::cli {
+namespace {
+
+std::string event(unsigned type, unsigned number, int value) {
+  js_event made{};
+  made.type = static_cast<std::uint8_t>(type);
+  made.number = static_cast<std::uint8_t>(number);
+  made.value = static_cast<std::int16_t>(value);
+  std::string bytes(sizeof made, '\0');
+  std::memcpy(bytes.data(), &made, sizeof made);
+  return bytes;
+}
+std::string button(unsigned number, bool down) {
+  return event(JS_EVENT_BUTTON, number, down);
+}
+std::string axis(unsigned number, int value) {
+  return event(JS_EVENT_AXIS, number, value);
+}
+
+TEST(StickDrive, DrivesWhileAShoulderButtonIsHeld) {
+  StickDrive stick;
+  stick.set_max_velocity(0.8);
+  stick.take(axis(1, -32767) + axis(0, -32767), 1.0);
+  EXPECT_FALSE(stick.setpoint(1.0).active) << "the stick alone does not drive";
+  stick.take(button(5, true), 1.1);
+  EXPECT_TRUE(stick.setpoint(1.1).active);
+  EXPECT_NEAR(stick.setpoint(1.1).velocity, 0.8, 1e-9) << "pushed is ahead";
+  EXPECT_NEAR(stick.setpoint(1.1).turn, 1.0, 1e-9) << "left is left";
+  stick.take(axis(1, 16384) + axis(0, 0), 1.2);
+  EXPECT_LT(stick.setpoint(1.2).velocity, 0.0);
+  EXPECT_GT(stick.setpoint(1.2).velocity, -0.4) << "fine near the middle";
+  stick.take(axis(1, 2000), 1.3);
+  EXPECT_EQ(stick.setpoint(1.3).velocity, 0.0) << "within the dead zone";
+  EXPECT_TRUE(stick.setpoint(1.3).active) << "held, and standing";
+  stick.take(button(5, false), 1.4);
+  EXPECT_FALSE(stick.setpoint(1.4).active);
+}
+
+TEST(StickDrive, OtherButtonsDoNotDrive) {
+  StickDrive stick;
+  for (const unsigned number : {0U, 3U, 8U, 11U, 200U})
+    stick.take(button(number, true), 1.0);
+  EXPECT_FALSE(stick.setpoint(1.0).active);
+}
+
+TEST(StickDrive, AButtonThatIsHeldAtTheStartHasToBePressedAgain) {
+  StickDrive stick;
+  stick.take(event(JS_EVENT_BUTTON | JS_EVENT_INIT, 4, 1), 1.0);
+  stick.take(event(JS_EVENT_AXIS | JS_EVENT_INIT, 1, -32767), 1.0);
+  EXPECT_FALSE(stick.setpoint(1.0).active);
+  stick.take(button(4, false) + button(4, true), 1.5);
+  EXPECT_GT(stick.setpoint(1.5).velocity, 0.3);
+}
+
+TEST(StickDrive, OneThatSaysNothingMayBeOutOfReach) {
+  StickDrive stick;
+  stick.take(button(4, true) + axis(1, -30000), 1.0);
+  EXPECT_TRUE(stick.setpoint(5.9).active);
+  EXPECT_FALSE(stick.setpoint(6.1).active);
+  EXPECT_TRUE(stick.is_silent(6.1));
+  stick.take(axis(1, -29000), 7.0);
+  EXPECT_TRUE(stick.setpoint(7.0).active);
+}
+
+TEST(StickDrive, AfterAStopTheButtonHasToBePressedAgain) {
+  StickDrive stick;
+  stick.take(button(4, true) + axis(1, -32767), 1.0);
+  stick.let_go();
+  EXPECT_FALSE(stick.setpoint(1.0).active);
+  stick.take(axis(1, -32000), 1.1);
+  EXPECT_FALSE(stick.setpoint(1.1).active);
+  stick.take(button(4, false) + button(4, true), 1.2);
+  EXPECT_GT(stick.setpoint(1.2).velocity, 0.3) << "where the stick is, is known";
+}
+
+TEST(StickDrive, ADeviceThatIsGoneHoldsNothing) {
+  StickDrive stick;
+  stick.take(button(4, true) + axis(1, -30000), 1.0);
+  stick.lost();
+  EXPECT_FALSE(stick.setpoint(1.0).active);
+}
+
+TEST(StickDrive, EventsMayComeInPieces) {
+  StickDrive stick;
+  const std::string bytes = button(6, true) + axis(1, -32767);
+  for (const char byte : bytes) {
+    EXPECT_LT(stick.setpoint(1.0).velocity, 0.1);
+    stick.take(std::string(1, byte), 1.0);
+  }
+  EXPECT_NEAR(stick.setpoint(1.0).velocity, 0.4, 1e-9);
+}
+
+}  // namespace
+}  // namespace saphira::cli
