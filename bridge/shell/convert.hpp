@@ -36,7 +36,7 @@ v1::VisionChannels to_bus(const protocol::VisionPacket& packet);
 v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp);
 
-/// What is wrong with a motor command; empty where nothing is. Anybody may write one: a number that
+/// The trouble with a motor command; empty where nothing is. Anybody may write one: a number that
 /// is none, or an enumerator of no contract, is refused here.
 std::string trouble(const v1::MotorCommand& command);
 /// Only for a command without trouble.

@@ -1,4 +1,4 @@
-// Whether a bridge is mute, by the status of the programs that follow its robot.
+// True where a bridge is mute, by the status of the programs that follow its robot.
 #include "audience.hpp"
 
 #include <gtest/gtest.h>

@@ -221,7 +221,7 @@ class Station {
     log("a client has connected");
   }
 
-  /// Whether somebody has the terminal open now.
+  /// True where somebody has the terminal open now.
   void look_at_terminal() {
     if (!terminal_ || terminal_->is_open() == terminal_open_)
       return;

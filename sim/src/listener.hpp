@@ -71,7 +71,7 @@ class Terminal {
   int fd() const { return master_.get(); }
   /// The link, and the device that it leads to.
   std::string name() const { return link_ + " (" + device_ + ")"; }
-  /// Whether a client has it open.
+  /// True where a client has it open.
   bool is_open() const;
   /// Forgets what has been written to it and not been read.
   void forget() const;

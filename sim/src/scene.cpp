@@ -254,7 +254,7 @@ bool Scene::has_robot_within(double reach, const Vec2& point) const {
                      [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
 }
 
-// Whether nothing is in his way that was not already behind him.
+// True where nothing is in his way that was not already behind him.
 bool Scene::lets_pass(const Person& person, const Vec2& to) {
   const double radius = person.plan->radius;
   for (const std::uint32_t i : hulls_near_.near(to, radius + widest_hull_ + kManners)) {

@@ -45,7 +45,7 @@ double widest_cosine(const SonarModel& model) {
   return std::max(0.0, std::cos(angle));
 }
 
-// Whether it is so narrow that it scatters sound more than it mirrors it.
+// True where it is so narrow that it scatters sound more than it mirrors it.
 bool is_strip(double squared_width, double range) {
   return squared_width < kWavelength * range;
 }

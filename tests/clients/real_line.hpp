@@ -22,7 +22,7 @@ class RealLine : public Line {
   void send(const Wire& bytes) override;
   void wait(double seconds) override;
   double now() const override;
-  /// Whether the other end has gone.
+  /// True where the other end has gone.
   bool closed() const { return closed_; }
 
  protected:

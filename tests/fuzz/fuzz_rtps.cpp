@@ -266,7 +266,7 @@ class Campaign {
   }
 
  private:
-  /// Whether a goal of a client that is started now is reached.
+  /// True where a goal of a client that is started now is reached.
   bool goal(const std::string& name) {
     there_ = !there_;
     // In the map: dead reckoning drifts, and after an hour its (2, 0) is in a room beside the

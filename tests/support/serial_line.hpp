@@ -22,8 +22,8 @@ class SerialLine {
   SerialLine(const SerialLine&) = delete;
   SerialLine& operator=(const SerialLine&) = delete;
 
-  /// Whether the robot is switched on. Before, what is sent to it is lost, and then perhaps half a
-  /// packet.
+  /// True where the robot is switched on. Before, what is sent to it is lost, and then perhaps half
+  /// a packet.
   bool has_robot();
   /// The cable out of its socket: nothing comes through either way, and nobody is told.
   void cut(bool out) { cut_[0] = cut_[1] = out; }

@@ -23,7 +23,7 @@ class Reach {
 
   Reach(const sim::World& world, double radius);
 
-  /// Whether the robot gets within a cell of `position`.
+  /// True where the robot gets within a cell of `position`.
   bool at(const Vec2& position) const;
   /// Of the positions in the rectangle of `room` where the robot has room, how many it gets to: 0
   /// to 1; 0 where it has room nowhere.

@@ -74,11 +74,11 @@ class Mind {
 
   /// All that is known of a cycle. `past`: it was asked for, and is not now.
   situation::Situation situation(std::uint64_t cycle, bool past) const;
-  /// Whether there is all that makes a whole of a cycle.
+  /// True where there is all that makes a whole of a cycle.
   bool whole(std::uint64_t cycle) const;
   /// The newest cycle that is whole; else the newest of which anything is known; 0: none.
   std::uint64_t newest_cycle() const;
-  /// Whether it can be said what the robot was told.
+  /// True where it can be said what the robot was told.
   bool some(std::uint64_t cycle) const {
     return robots_.at(cycle) != nullptr && grant_for(cycle) != nullptr;
   }

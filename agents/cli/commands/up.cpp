@@ -191,7 +191,7 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
 /// Starts it in the background, and says what became of the start.
 int detach(const std::string& name, const std::vector<std::string>& set,
            const bus::NodeOptions& options, const bus::Stop& stop) {
-  // What is wrong with the file or the settings is said here, not in a log.
+  // The trouble with the file or the settings is said here, not in a log.
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
   places.run = "/tmp";

@@ -43,7 +43,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-/// Whether the text means to be a point, and so has to be a right one.
+/// True where the text means to be a point, and so has to be a right one.
 bool looks_like_point(std::string_view text) {
   const std::string_view first = text.substr(0, text.find(','));
   return first.size() != text.size() && parse_number(first).has_value();

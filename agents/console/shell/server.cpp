@@ -150,7 +150,7 @@ int Server::Impl::send_http(lws* wsi, Http& http) const {
   return lws_http_transaction_completed(wsi);
 }
 
-/// Whether a WebSocket may be opened: 0, or -1.
+/// True where a WebSocket may be opened: 0, or -1.
 int Server::Impl::filter(lws* wsi) const {
   const std::string why = refusal(access, caller_of(wsi));
   if (!why.empty()) {

@@ -261,7 +261,7 @@ namespace lps = saphira::lps;
 
 namespace {
 
-/// Whether the pointers are there; says which function got NULL.
+/// True where the pointers are there; says which function got NULL.
 template <class... Points>
 bool given(const char* function, const Points*... p) {
   if (((p != nullptr) && ...))

@@ -181,7 +181,7 @@ Explanation Reason::by_behaviors_known() {
     rank = 4;
   }
   if (speeds.empty() && !guarded && !aged) {
-    // What is left of a speed of before comes down by itself.
+    // The rest of a speed of before comes down by itself.
     add(rank, std::abs(told_speed()) >= kNoSpeed
                   ? "it slows down, no behavior wants a speed any more"
                   : "no behavior wants a speed");

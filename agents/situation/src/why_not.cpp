@@ -4,7 +4,7 @@
 
 namespace saphira::situation {
 
-/// Whether what it is told, by whichever program, is just that.
+/// True where what it is told, by whichever program, is just that.
 bool Reason::does(Wish wish) const {
   const double turn = told_turn();
   const double speed = scene_.grant->role() == v1::ROLE_NONE ? 0.0 : told_speed();

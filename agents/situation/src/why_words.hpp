@@ -41,10 +41,10 @@ std::string control_text(const v1::RuleState& rule);
 /// A name without the number behind it that makes it unique: follow of follow#8.
 std::string without_number(const std::string& name);
 std::string plain(const std::string& name);
-/// Whether an instance has its name from its schema: KeepOff#3, keep-off.
+/// True where an instance has its name from its schema: KeepOff#3, keep-off.
 bool nameless(const std::string& name, const std::string& schema);
 std::string intention_name(const v1::IntentionNode& node);
-/// Whether what is believed is about an argument of the intention: "place-of-karen" about
+/// True where what is believed is about an argument of the intention: "place-of-karen" about
 /// "name=karen".
 bool concerns(const v1::Belief& belief, const v1::IntentionNode& node);
 std::string with_arguments(const v1::IntentionNode& node);

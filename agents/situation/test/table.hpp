@@ -25,7 +25,7 @@ std::vector<Case> all_cases();
 
 /// What is said in the situation.
 std::string answer(const Case& one);
-/// What is wrong with the answer; empty: nothing.
+/// The trouble with the answer; empty: nothing.
 std::vector<std::string> faults(const Case& one);
 /// All as one table.
 std::string to_markdown(const std::vector<Case>& cases);

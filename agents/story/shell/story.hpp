@@ -38,9 +38,9 @@ class Story {
   /// Takes what has come, and says what is due. True when the story has come to its end.
   bool step();
 
-  /// Whether the robot knows where it is, and the services run.
+  /// True where the robot knows where it is, and the services run.
   bool ready() const { return waiting_for_.empty() && !place_.empty(); }
-  /// Whether it ended as the cast says.
+  /// True where it ended as the cast says.
   bool well() const { return ended_ && cast_.ends_well(outcome_); }
   /// What the robot said last to the newest line; empty: nothing.
   const std::string& outcome() const { return outcome_; }

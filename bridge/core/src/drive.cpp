@@ -20,7 +20,7 @@ std::uint64_t driver_of(const authority::WriterId& writer) {
   return hash.value();
 }
 
-/// Whether it asks for zero speed and no turn.
+/// True where it asks for zero speed and no turn.
 bool is_stop(const reflector::Motion& motion) {
   using reflector::Rotation;
   using reflector::Translation;

@@ -1,4 +1,4 @@
-// What the status of the service says.
+// The status of the service.
 
 #include "limits.hpp"
 #include "saphira/bridge/core.hpp"

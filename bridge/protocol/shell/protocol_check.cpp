@@ -125,7 +125,7 @@ class Proxy {
   const protocol::Checker& checker() const { return checker_; }
 
  private:
-  // Whether it was stopped.
+  // True where it was stopped.
   bool converse(int client, int stop_fd) {
     const int yes = 1;  // fails on a local socket, where it is not needed
     ::setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);

@@ -127,7 +127,7 @@ std::optional<Pose> read_pose(ByteView body) {
   return Pose{values[0] / 1000.0, values[1] / 1000.0, norm2_angle(radians(values[2]))};
 }
 
-// Whether a command has a type of its own.
+// True where a command has a type of its own.
 bool is_typed(Number number) {
   switch (number) {
     case Number::kPolling:

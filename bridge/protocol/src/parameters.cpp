@@ -15,7 +15,7 @@ namespace saphira::protocol {
 
 namespace {
 
-/// Whether a subclass of the class Pioneer is one of its first generation.
+/// True where a subclass of the class Pioneer is one of its first generation.
 bool is_of_the_first(std::string_view subclass) {
   return subclass.starts_with("psos") || subclass.starts_with("pion");
 }

@@ -191,7 +191,7 @@ class DdsWriter : public RawWriter, public Endpoint {
   };
 
   Part& part_of(const Session& session) { return parts_[static_cast<std::size_t>(session.side)]; }
-  /// Whether a later session is told again what it holds.
+  /// True where a later session is told again what it holds.
   bool keeps() const {
     return policies_.kept_by_session || (policies_.transient_local && policies_.writer_depth == 1);
   }

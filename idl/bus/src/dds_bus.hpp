@@ -116,7 +116,7 @@ class Bus {
 
   const std::shared_ptr<Wake> wake;
   Peers peers;
-  /// Whether a change of endpoints() wakes the node.
+  /// True where a change of endpoints() wakes the node.
   void watch(bool on);
 
  private:

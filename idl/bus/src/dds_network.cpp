@@ -90,7 +90,8 @@ rtps::GuidPrefix_t new_prefix() {
   return prefix;
 }
 
-/// Whether an address is one of this machine's, by a look at them that is not older than a second.
+/// True where an address is one of this machine's, by a look at them that is not older than a
+/// second.
 class OwnAddress {
  public:
   bool is(const std::string& address) {

@@ -32,7 +32,7 @@ enum class Side : std::size_t { local, network };
 /// IPv4 addresses of interfaces that are up and running, without loopback.
 std::set<std::string> network_addresses();
 
-/// Whether a text is an IPv4 address, and no name.
+/// True where a text is an IPv4 address, and no name.
 bool is_address(const std::string& text);
 /// The address of a host by its name [empty: not known]. May take seconds.
 std::string look_up(const std::string& host);

@@ -20,7 +20,7 @@ namespace saphira::bus::internal {
 /// ends the process where it throws: only sound messages pass, and what is thrown at one is caught.
 struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   using Mute = std::shared_ptr<const std::atomic<bool>>;
-  /// Whether a packet is to be dropped, by its sender's GUID prefix and address.
+  /// True where a packet is to be dropped, by its sender's GUID prefix and address.
   using Ignore = std::function<bool(const std::uint8_t* prefix,
                                     const eprosima::fastrtps::rtps::Locator_t& from)>;
 

@@ -35,7 +35,7 @@ class Epochs {
   void lose(const Program& program);
   /// What is to be done with a state of the robot; follows its bridge where there is none.
   Verdict judge(const Program& writer, std::uint64_t epoch);
-  /// Whether what other services write for this epoch is of use, now or soon.
+  /// True where what other services write for this epoch is of use, now or soon.
   bool useful(std::uint64_t epoch) const;
   /// The epoch that is followed; 0 before the first.
   std::uint64_t epoch() const { return epoch_; }
@@ -50,7 +50,7 @@ class Epochs {
     std::uint64_t epoch = 0;
     bool present = true;
   };
-  /// Whether it is of the bridge that is followed.
+  /// True where it is of the bridge that is followed.
   bool followed(const Program& program, const Known& known) const;
 
   /// The participant by which the bridge that is followed was heard last.

@@ -27,7 +27,7 @@ class Handshakes {
   void begin(const Program& program) { pending_.try_emplace(program); }
   /// It is let in, or gone.
   void end(const Program& program) { pending_.erase(program); }
-  /// Whether it is to be forgotten now.
+  /// True where it is to be forgotten now.
   bool announced(const Program& program, Time now);
 
  private:

@@ -77,7 +77,7 @@ class Transport {
   /// Endpoints that did not match one of this node's since the last call, one text each.
   virtual std::vector<std::string> take_troubles() = 0;
   virtual Malformed take_malformed() { return {}; }
-  /// Whether a change of endpoints() wakes the node.
+  /// True where a change of endpoints() wakes the node.
   virtual void watch_endpoints(bool watch) = 0;
   /// As Node has them.
   virtual std::vector<std::string> silent_peers() const { return {}; }
@@ -87,7 +87,7 @@ class Transport {
   virtual std::string expiry() const { return {}; }
   /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
   virtual void renew() {}
-  /// Whether a writer is one of this node's.
+  /// True where a writer is one of this node's.
   virtual bool is_own(const WriterId& writer) const = 0;
 };
 
@@ -100,7 +100,7 @@ std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
                                                  std::shared_ptr<MemoryBus> bus,
                                                  std::shared_ptr<Wake> wake);
 
-/// Whether two partitions, either of them with wildcards, have something in common.
+/// True where two partitions, either of them with wildcards, have something in common.
 bool partitions_meet(const std::string& one, const std::string& other);
 
 std::string host_name();
@@ -115,7 +115,7 @@ inline std::string to_hex(const WriterId& id) {
   return text;
 }
 
-/// Whether a node of this program that has ended was at work: had a cycle of a robot.
+/// True where a node of this program that has ended was at work: had a cycle of a robot.
 std::atomic<bool>& has_worked();
 
 /// A node's transport, for tests that need a QoS that no name has.

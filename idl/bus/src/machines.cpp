@@ -9,7 +9,7 @@ namespace saphira::bus::internal {
 
 namespace {
 
-/// Whether it is the address of one other machine, as one writes it.
+/// True where it is the address of one other machine, as one writes it.
 bool is_machine(const std::string& text) {
   in_addr address{};
   if (inet_pton(AF_INET, text.c_str(), &address) != 1)

@@ -26,7 +26,7 @@ class Neighbours {
 
   /// The program that serves in place of `own`, in words.
   std::optional<std::string> serves_instead(const v1::ServiceStatus& own) const;
-  /// Whether some other program has been stepping without a break since that time, so that its
+  /// True where some other program has been stepping without a break since that time, so that its
   /// robot is heard.
   bool stepping_since(Time since, Time now) const;
 

@@ -72,7 +72,7 @@ class Peers {
   void restart(Ends& ends);
   /// Other ends that are gone since the last call, by discovery or by their program's silence.
   std::vector<WriterId> take_lost(Ends& ends);
-  /// Whether one of them is matched and not there.
+  /// True where one of them is matched and not there.
   bool any_absent(const Ends& ends) const;
 
   // The presence of the others. A program of which none is expected is judged by discovery alone.

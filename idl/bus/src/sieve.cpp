@@ -58,7 +58,7 @@ Submessage submessage(const std::uint8_t* message, std::size_t size, std::size_t
   return result;
 }
 
-/// Whether the inline QoS of data tells what became of its instance, or cannot be read.
+/// True where the inline QoS of data tells what became of its instance, or cannot be read.
 bool may_tell_status(const Submessage& data) {
   constexpr std::uint64_t kEnd = 0x0001;
   constexpr std::uint64_t kStatus = 0x0071;

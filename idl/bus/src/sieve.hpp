@@ -18,7 +18,7 @@ namespace saphira::bus::internal {
 /// (an assertion) where they are not quite as it writes them, and nobody here reads them.
 std::size_t sound_length(const std::uint8_t* packet, std::size_t size);
 
-/// Whether a sound message says that a participant is there.
+/// True where a sound message says that a participant is there.
 bool is_announcement(const std::uint8_t* message, std::size_t size);
 
 /// The GUID prefix of the participant for which a sound message is, where it is part of a handshake
@@ -28,7 +28,7 @@ const std::uint8_t* handshake_for(const std::uint8_t* message, std::size_t size)
 /// The GUID prefix of the participant that a sound message says it is of.
 const std::uint8_t* sender_of(const std::uint8_t* message);
 
-/// Whether a sound message says that a participant has ended, or speaks for another than its
+/// True where a sound message says that a participant has ended, or speaks for another than its
 /// sender. Both are in clear also where all else is encrypted, so that anybody can say so of
 /// anybody.
 bool is_forgeable(const std::uint8_t* message, std::size_t size);
@@ -44,8 +44,8 @@ class Sequences {
  public:
   using Time = BootClock::time_point;
 
-  /// Whether the numbers in a sound message follow what was said before. A leap may be as long as
-  /// the silence before it explains. A longer one is believed when it is said three times, and
+  /// True where the numbers in a sound message follow what was said before. A leap may be as long
+  /// as the silence before it explains. A longer one is believed when it is said three times, and
   /// nothing that follows in between.
   bool plausible(const std::uint8_t* message, std::size_t size, Time now);
 

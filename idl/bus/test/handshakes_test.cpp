@@ -12,7 +12,7 @@ class HandshakesTest : public testing::Test {
  protected:
   HandshakesTest() { handshakes_.begin(kOne); }
 
-  /// Whether one of so many announcements is one too many.
+  /// True where one of so many announcements is one too many.
   bool announce(int times, std::chrono::milliseconds apart = std::chrono::milliseconds(250)) {
     bool due = false;
     for (int i = 0; i < times; ++i)

@@ -22,7 +22,7 @@ v1::ServiceStatus program(std::uint64_t instance, double uptime, v1::ServiceStat
   return status;
 }
 
-/// Whether `own` yields, with that other one beside it.
+/// True where `own` yields, with that other one beside it.
 bool yields(const v1::ServiceStatus& own, const v1::ServiceStatus& other) {
   Neighbours neighbours;
   neighbours.hear({1}, other, {});

@@ -38,9 +38,9 @@ std::string sign(const std::string& text, const KeyPair& authority);
 /// What was signed by this certificate.
 std::string verified(const std::string& document, const std::string& authority_certificate);
 CertificateText read_certificate(const std::string& pem);
-/// Whether an authority has signed a certificate.
+/// True where an authority has signed a certificate.
 void check_signed(const std::string& certificate, const std::string& authority_certificate);
-/// Whether a private key is that of a certificate.
+/// True where a private key is that of a certificate.
 void check_key(const std::string& key, const std::string& certificate);
 
 /// As prefix_head().

@@ -19,7 +19,7 @@ Arguments without(Arguments arguments, const std::string& name) {
   return arguments;
 }
 
-/// What is wrong with the arguments, as complete() says it. A slot that is left open fits.
+/// The trouble with the arguments, as complete() says it. A slot that is left open fits.
 std::string misfit(const Functor& functor, const Arguments& arguments) {
   Functor asked = functor;
   Arguments bound;

@@ -14,7 +14,7 @@ bool finite(const Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.th);
 }
 
-/// What is wrong with the argument; empty when nothing is.
+/// The trouble with the argument; empty when nothing is.
 std::string fault(const ParameterSpec& spec, const Argument& argument) {
   if (argument.kind != spec.kind)
     return std::string("expected ") + describe(spec.kind) + " (" + spec.meaning + ")";

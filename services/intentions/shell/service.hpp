@@ -14,14 +14,14 @@ namespace saphira::intentions {
 
 struct Options {
   std::string memory_file;  ///< what outlives the service; empty: nothing does
-  /// Whether there is a registration service: in lockstep its samples are waited for. Without it,
-  /// what is on a map cannot be found.
+  /// True where there is a registration service: in lockstep its samples are waited for. Without
+  /// it, what is on a map cannot be found.
   bool registration = true;
   /// The same of interpretation. Without it, activities see no doors and corridors but those of the
   /// map.
   bool interpretation = true;
-  /// Whether there is a vision service whose samples are waited for in lockstep. Live it is heard
-  /// without being asked for, as soon as there is one.
+  /// True where there is a vision service whose samples are waited for in lockstep. Live it is
+  /// heard without being asked for, as soon as there is one.
   bool vision = false;
   /// Activities that cover shipped ones of the same name; empty: none.
   std::string folder;

@@ -253,8 +253,8 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
   return events;
 }
 
-/// Whether the sender may do that to the goal: its owner may, who asked for it first, and whoever
-/// commands. Tells the event who it is, where it is another than the owner.
+/// True where the sender may do that to the goal: its owner may, who asked for it first, and
+/// whoever commands. Tells the event who it is, where it is another than the owner.
 bool Core::take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes) {
   if (!goal.sender)
     return true;

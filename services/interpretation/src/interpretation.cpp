@@ -37,7 +37,7 @@ double angle_between(double a, double b) {
   return std::abs(norm2_angle(a - b));
 }
 
-// Whether two percepts may be the same thing, and how far apart they are then.
+// True where two percepts may be the same thing, and how far apart they are then.
 std::optional<double> apart(const Percept& a, const Percept& b) {
   if (a.type != b.type || a.side != b.side)
     return std::nullopt;

@@ -35,7 +35,7 @@ bool is_way(const Feature& feature) {
   return is_region(feature) && maps::traits(feature.type).region != maps::RegionKind::room;
 }
 
-/// Whether one walks from the one into the other where they touch.
+/// True where one walks from the one into the other where they touch.
 bool open_to(const Feature& a, const Feature& b) {
   if (is_way(a) && is_way(b))
     return true;
@@ -70,7 +70,7 @@ std::optional<Interval> clip(const Vec2& start, const Vec2& way, double length,
   return part;
 }
 
-/// What is left of [0, length].
+/// The rest of [0, length].
 std::vector<Interval> without(double length, std::vector<Interval> holes) {
   std::sort(holes.begin(), holes.end(),
             [](const Interval& a, const Interval& b) { return a.from < b.from; });

@@ -325,7 +325,7 @@ void MapBuilder::listen_ahead(const MapBuilderInputs& inputs) {
   }
 }
 
-// Whether a door was there when the robot came by: counted when it has gone on.
+// True where a door was there when the robot came by: counted when it has gone on.
 void MapBuilder::pass() {
   for (std::size_t i = 0; i < known_points_.size(); ++i) {
     Known& known = known_points_[i];

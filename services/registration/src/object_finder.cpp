@@ -74,7 +74,7 @@ ObjectFinder::Candidate* ObjectFinder::candidate_at(const Vec2& position) {
   return &candidates_[home];
 }
 
-/// Whether an echo may be of something that the map has, wherever in the cone it came from.
+/// True where an echo may be of something that the map has, wherever in the cone it came from.
 bool ObjectFinder::is_explained(const maps::Map& map, const Field& field, const Look& look,
                                 std::uint32_t own) const {
   if (!field.known(look.end()))

@@ -77,7 +77,7 @@ bool is_opening(const Feature& feature) {
          feature.type == PointType::junction;
 }
 
-/// Whether a wall has an opening there by the map.
+/// True where a wall has an opening there by the map.
 bool in_an_opening(const maps::Map& map, const Vec2& at) {
   return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& feature) {
     return is_opening(feature) && (feature.pose_in_map.position() - at).norm() <

@@ -18,7 +18,7 @@ bool elsewhere(const Pose& a, const Pose& b) {
   return !same_place(a, b, 0.5, radians(15.0));
 }
 
-/// Whether the map has a wall there.
+/// True where the map has a wall there.
 bool is_wall(const LineMap& lines, const Vec2& position) {
   constexpr double kNear = 0.3;  // [m]
   return std::any_of(lines.surfaces().begin(), lines.surfaces().end(), [&](const Surface& surface) {

@@ -432,7 +432,7 @@ TEST(RegistrationCore, ASuspendedProcessDoesNothingUntilItIsResumed) {
   EXPECT_EQ(ask("test-match", ProcessAction::resume).state, State::tracking);
 }
 
-// What outlives the core.
+// State that outlives the core.
 
 TEST(RegistrationCore, ARestartGoesOnFromWhatWasRemembered) {
   Core core(settings());

@@ -24,7 +24,7 @@ class Pictures {
 
   /// The newest one of no later cycle, and drops those before it.
   std::optional<StereoPicture> take(std::uint64_t cycle);
-  /// Whether that of this cycle, or of a later one, has come.
+  /// True where that of this cycle, or of a later one, has come.
   bool has(std::uint64_t cycle) const;
   bool connected() const;
   /// Why there are no pictures, in words; empty: they come.

@@ -49,7 +49,7 @@ struct Interval {
   double to;
 };
 
-/// Whether two areas overlap by more than `slack`, by the axis that separates them.
+/// True where two areas overlap by more than `slack`, by the axis that separates them.
 bool overlap(const Area& one, const Area& other, double slack) {
   for (const Area* each : {&one, &other})
     for (const double turn : {0.0, kPi / 2}) {

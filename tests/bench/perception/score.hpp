@@ -57,7 +57,7 @@ class Score {
  public:
   /// The surfaces about a place, as they are now.
   using Surfaces = std::function<sim::Things(const Vec2& about)>;
-  /// Whether all that there is at a place is known; what is reported elsewhere is not judged.
+  /// True where all that there is at a place is known; what is reported elsewhere is not judged.
   using Covered = std::function<bool(const Vec2& at)>;
 
   Score(maps::Map map, Surfaces surfaces, Covered covered = {})

@@ -22,13 +22,13 @@ class LaserCells {
   bool occupied(const Vec2& at) const;
   /// Seen through, and nothing within 0.15 m.
   bool free(const Vec2& at) const;
-  /// Whether an occupied cell's middle is so near.
+  /// True where an occupied cell's middle is so near.
   bool near(const Vec2& at, double distance) const;
   /// How far the nearest occupied cell lies in a direction, or against it (negative).
   std::optional<double> beside(const Vec2& at, double direction, double reach) const;
   /// The middles of all occupied cells, by rows.
   std::vector<Vec2> surfaces() const;
-  /// Whether nothing is between the two points, up to 0.15 m before the second one.
+  /// True where nothing is between the two points, up to 0.15 m before the second one.
   bool sees(const Vec2& from, const Vec2& to) const;
   /// For a picture.
   maps::Raster raster() const;

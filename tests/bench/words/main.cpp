@@ -16,7 +16,7 @@ namespace {
 using namespace saphira;
 using namespace saphira::agent_interface;
 
-/// Whether the robot would do something.
+/// True where the robot would do something.
 bool acts(const std::string& meaning) {
   return meaning != "what?" && meaning != "nothing" && meaning != "ambiguous";
 }

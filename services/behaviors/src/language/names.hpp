@@ -31,7 +31,7 @@ struct Quick {
 const Quick* find_quick(std::string_view name);
 const Function* find_function(std::string_view name);
 
-/// Whether it has a meaning that no behavior can give it.
+/// True where it has a meaning that no behavior can give it.
 bool reserved(std::string_view name);
 bool is_function(std::string_view name);
 

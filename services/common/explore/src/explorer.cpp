@@ -81,7 +81,7 @@ bool Explorer::is_tried(const Lead& lead) const {
   });
 }
 
-// Whether a corridor or junction of the map goes on from here that way.
+// True where a corridor or junction of the map goes on from here that way.
 bool Explorer::mapped_along(const maps::Map& map, const Vec2& point, double heading) const {
   const Vec2 there = ahead(point, heading, 2.5);
   return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& f) {

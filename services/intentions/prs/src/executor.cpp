@@ -35,7 +35,7 @@ std::string name_of_goal(const Goal& goal) {
   return name;
 }
 
-/// Whether somebody who watches wants to hear of it at once.
+/// True where somebody who watches wants to hear of it at once.
 bool differs(const GoalStatus& a, const GoalStatus& b) {
   return a.state != b.state || a.code != b.code || a.reason != b.reason || a.step != b.step ||
          a.requester != b.requester || a.functor != b.functor || a.note != b.note;
@@ -50,7 +50,7 @@ bool to_be_placed(const Argument& argument) {
   return argument.kind == ArgumentKind::point && argument.frame != Frame::map;
 }
 
-/// Whether these arguments, as they were written, are what was placed.
+/// True where these arguments, as they were written, are what was placed.
 bool is_of(const Placement& placement, const Arguments& arguments) {
   auto point = placement.points.begin();
   for (const Argument& argument : arguments) {
@@ -277,7 +277,7 @@ void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
   entry.status.functor = goal.functor;
 }
 
-/// Whether another odom frame would make the arguments mean something else.
+/// True where another odom frame would make the arguments mean something else.
 bool Executor::depends_on_odom(const Entry& entry, bool placed) {
   return std::any_of(entry.arguments.begin(), entry.arguments.end(), [&](const Argument& argument) {
     if (argument.kind == ArgumentKind::point)

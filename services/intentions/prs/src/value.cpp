@@ -29,7 +29,7 @@ const char* name_of(Reference::Kind kind) {
   return "?";
 }
 
-/// Whether a text reads back as itself without quotes.
+/// True where a text reads back as itself without quotes.
 bool is_name(const std::string& text) {
   if (text.empty() || text == "t" || text == "nil" || text == "." || text.front() == ':' ||
       text.front() == '+' || text.front() == '-' || text.front() == '.' ||

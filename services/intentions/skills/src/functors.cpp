@@ -56,7 +56,7 @@ std::optional<Pose> in_odom(const Argument& point, const Robot& robot) {
   return relative(*robot.odom_in_map, point.point);
 }
 
-/// Whether something that ought to shrink still does.
+/// True where something that ought to shrink still does.
 class Watchdog {
  public:
   /// step: what counts as progress, in the measure's unit.

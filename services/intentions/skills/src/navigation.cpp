@@ -370,7 +370,8 @@ void add_paths(Functions& functions) {
                "that is none of the points, or nil"});
 }
 
-/// Whether the robot is where a place is: within its region, and near its point where it has one.
+/// True where the robot is where a place is: within its region, and near its point where it has
+/// one.
 bool at_place(const World& world, const Value& place) {
   const std::optional<Pose> robot = world.robot_in_map();
   if (!robot || world.around.topology == nullptr)

@@ -124,7 +124,7 @@ class Scene {
   /// clothes swallow `cloth` [dB] unless the world says otherwise.
   void add_echoes(const Vec2& point, double reach, RobotNumber but, double cloth,
                   Echoes& echoes) const;
-  /// Whether there is anything movable but the robot `but`.
+  /// True where there is anything movable but the robot `but`.
   bool has_movable(RobotNumber but) const {
     return !segments_.empty() || !persons_.empty() || !posts_.empty() ||
            robots_.size() > (but == kNobody ? 0U : 1U);

@@ -30,8 +30,8 @@ struct ServerOptions {
   std::string name = "Simulator";  ///< Table 5-7
   bool trace = false;              ///< whether rows are kept for take_trace()
   SonarModel sonar;
-  /// Whether this server alone lets the scene's time pass, in advance() and by STEP. With several
-  /// servers on one scene a Simulation does that.
+  /// True where this server alone lets the scene's time pass, in advance() and by STEP. With
+  /// several servers on one scene a Simulation does that.
   bool keeps_time = true;
 };
 
@@ -91,11 +91,11 @@ class Server {
 
   bool is_open() const { return state_ == State::kOpen; }
   bool single_step() const { return single_step_; }
-  /// Whether advance() would do anything.
+  /// True where advance() would do anything.
   bool runs() const { return is_open() ? !single_step_ : robot_.moving() || phase_ != 0; }
   /// Ticks until the next information packet.
   int ticks_to_packet() const { return kTicksPerPacket - phase_; }
-  /// Whether bytes of a packet wait for the rest of it.
+  /// True where bytes of a packet wait for the rest of it.
   bool packet_pending() const { return parser_.pending(); }
 
   const Robot& robot() const { return robot_; }

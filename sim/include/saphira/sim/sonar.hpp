@@ -117,7 +117,7 @@ class Sonars {
             const Loss& shape) const;
   // What chance does to the strength of one thing's echo [standard deviations].
   double luck(std::uint8_t number, std::uint32_t thing) const;
-  // Whether nothing stands before that, and it is nearer than what has been heard.
+  // True where nothing stands before that, and it is nearer than what has been heard.
   bool is_first(const Firing& firing, const Vec2& way, double range) const;
   bool in_direct_cone(const Firing& firing, const Vec2& way) const;
   void hear_others(Firing& firing) const;

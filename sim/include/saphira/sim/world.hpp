@@ -97,7 +97,7 @@ inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Whether two segments have a point in common, be it an end; not where one lies upon the other.
+/// True where two segments have a point in common, be it an end; not where one lies upon the other.
 bool intersect(const Segment& a, const Segment& b);
 
 /// The first segment that a ray meets within `range`. `direction` is a unit vector.

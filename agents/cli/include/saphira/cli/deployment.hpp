@@ -38,7 +38,7 @@ struct Program {
   bool restart = true;               ///< whether it is started again when it ends
 };
 
-/// What runs together, as config/deployments/*.yaml states it. The format is in
+/// The programs that run together, as config/deployments/*.yaml states it. The format is in
 /// config/deployments/README.md.
 struct Deployment {
   std::string file;

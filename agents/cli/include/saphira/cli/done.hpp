@@ -23,11 +23,11 @@ struct Move {
 /// What of a way or angle counts as progress [m or rad].
 inline constexpr double kProgress = 0.01;
 
-/// What is wrong with it, in words; empty: nothing.
+/// The trouble with it, in words; empty: nothing.
 std::string trouble_of(const Move& move);
 /// What is to be written again and again until it is done.
 v1::MotorCommand command_of(const Move& move);
-/// What is left of it [m or rad, not negative], by the grant that it holds; 0 of a speed.
+/// The rest of it [m or rad, not negative], by the grant that it holds; 0 of a speed.
 double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
 /// sfDonePosition, sfDoneHeading: it is there, and at rest. A speed is never done.
 bool done(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);

@@ -25,7 +25,7 @@ class Printer {
   void show(std::string_view picture);
   /// Waits until everything is printed; false when the time is up before.
   bool flush(std::chrono::milliseconds limit);
-  /// Whether nobody will ever read: the pipe or the terminal is closed.
+  /// True where nobody will ever read: the pipe or the terminal is closed.
   bool closed() const;
 
  private:

@@ -21,7 +21,7 @@ class SecondDeployment {
 
   /// A message for the person, where there is a new one. `now` [s] is the time of any clock.
   std::optional<std::string> news(const std::vector<SeenProcess>& processes, double now);
-  /// Whether something was seen that is not certain yet.
+  /// True where something was seen that is not certain yet.
   bool doubtful() const { return seen_ != told_; }
 
  private:

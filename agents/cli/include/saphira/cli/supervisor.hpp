@@ -74,7 +74,7 @@ class Supervisor {
   /// A child that ended with a usage error (exit code 2) right after its first start, before it
   /// had proven itself: what it was given is wrong, so to start it again is of no use.
   std::optional<std::string> misused() const;
-  /// Whether no child runs and none will be started again.
+  /// True where no child runs and none will be started again.
   bool finished() const;
 
  private:

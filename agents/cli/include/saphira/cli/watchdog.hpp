@@ -38,7 +38,7 @@ class Watchdog {
   void hear(std::size_t child, const Heartbeat& beat, Time now);
   /// The supervisor stood still itself: what it did not hear meanwhile says nothing.
   void slept(Time now);
-  /// What is wrong with a child, in words.
+  /// The trouble with a child, in words.
   std::optional<std::string> trouble(std::size_t child, Time now) const;
 
  private:
@@ -65,7 +65,7 @@ class Watchdog {
     bool was_deaf() const;
   };
 
-  /// Whether some node of the robot is so; `but` is a child that does not count.
+  /// True where some node of the robot is so; `but` is a child that does not count.
   template <class Is>
   bool any(const std::string& robot, std::optional<std::size_t> but, Is is) const;
   bool deaf(std::size_t child, const Voice& voice, Time now) const;

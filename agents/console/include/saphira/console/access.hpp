@@ -25,7 +25,7 @@ struct Caller {
 /// that a page of somebody else asks.
 std::string refusal(const AccessSettings& settings, const Caller& caller);
 
-/// Whether the key is the right one. Takes as long for a wrong one.
+/// True where the key is the right one. Takes as long for a wrong one.
 bool right_key(const AccessSettings& settings, std::string_view key);
 
 /// Watching from this machine needs no key.

@@ -9,7 +9,8 @@
 
 namespace saphira::console {
 
-/// What a page may say: one JSON object, with "type" as its first word. The list is in README.md.
+/// The messages of a page: one JSON object, with "type" as its first word. The list is in
+/// README.md.
 struct Hello {
   std::string key;
   std::string name;  ///< of the operator, for people

@@ -19,7 +19,7 @@ struct PoseEdge {
   bool doubtful = false;
 };
 
-/// What is left of an edge's disagreement with the poses: squared, in sigmas.
+/// The rest of an edge's disagreement with the poses: squared, in sigmas.
 double chi2(const PoseEdge& edge, const std::vector<Pose>& poses);
 
 struct GraphReport {

@@ -29,9 +29,9 @@ struct Known {
   std::uint64_t newest = 0;
 };
 
-/// What is known of a robot and its programs: of now, or of a cycle that is past. A plain value:
-/// who fills it knows the bus and the clock, who puts it into words does not. What is not known is
-/// left empty.
+/// All that is known of a robot and its programs: of now, or of a cycle that is past. A plain
+/// value: who fills it knows the bus and the clock, who puts it into words does not. What is not
+/// known is left empty.
 struct Situation {
   std::uint64_t cycle = 0;  ///< N, the cycle that it is about
   std::uint64_t now = 0;    ///< the robot's newest cycle
@@ -74,7 +74,7 @@ struct Condition {
   Health health = Health::running;
   std::string words;  ///< behind the program's name, such as "is not heard: ..."
 
-  /// Whether what it said in the cycle can be relied on to be all that it had to say.
+  /// True where what it said in the cycle can be relied on to be all that it had to say.
   bool heard() const { return health <= Health::late; }
 };
 
@@ -82,7 +82,7 @@ struct Condition {
 /// was in the past cycle.
 Condition condition(const Situation& situation, const std::string& program);
 
-/// What is wrong with the programs that make the robot go, in words; empty: nothing.
+/// The trouble with the programs that make the robot go, in words; empty: nothing.
 std::string trouble(const Situation& situation);
 /// Which of them are not on the bus, or not heard, in words such as "behaviors and intentions";
 /// empty: all are there.

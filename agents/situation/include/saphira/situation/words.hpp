@@ -15,16 +15,16 @@ const char* name_of(v1::Role role);
 const char* name_of(v1::GuardAction action);
 const char* name_of(v1::GoalState state);
 
-/// What holds until a person releases it, with the command that does: an emergency stop and which
-/// program pressed it, or that autonomy waits to be handed the robot back. Empty where neither
-/// does.
+/// Stops that hold until a person releases them, with the command that does: an emergency stop and
+/// which program pressed it, or that autonomy waits to be handed the robot back. Empty where
+/// neither does.
 std::string latched(const v1::Grant& grant);
 /// One line: who holds the grant and why, what is latched, and what the guard did.
 std::string describe(const v1::Grant& grant);
 /// The goal as a person reads it: go_to(position=(3, 1) in odom).
 std::string describe(const v1::Goal& goal);
 
-/// Whether the node stands for a behavior: a leaf of the tree.
+/// True where the node stands for a behavior: a leaf of the tree.
 bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions);
 
 /// "0.4 s", "12 s".

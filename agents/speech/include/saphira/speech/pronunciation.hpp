@@ -8,7 +8,7 @@
 
 namespace saphira::speech {
 
-/// Whether a word is a code such as EJ-231, that is spelled.
+/// True where a word is a code such as EJ-231, that is spelled.
 bool is_code(const std::string& word);
 /// "e j two three one"
 std::string spelled(const std::string& word);

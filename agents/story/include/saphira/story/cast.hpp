@@ -40,7 +40,7 @@ class Cast {
   /// What somebody at that place of the map answers to what the robot says; nothing: nobody hears
   /// it, or nobody has an answer. What is handed over changes hands.
   std::optional<Line> answer(const std::string& said, const std::string& place);
-  /// Whether somebody has it.
+  /// True where somebody has it.
   bool has(const std::string& person, const std::string& object) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace saphira::authority {
 
-/// Who may drive, strongest first.
+/// Those who may drive, strongest first.
 enum class Role { none, estop, teleop, direct, behaviors };
 inline constexpr std::array kRoles{Role::estop, Role::teleop, Role::direct, Role::behaviors};
 
@@ -70,7 +70,7 @@ struct Grant {
   Stamp answers;             ///< the robot state that the newest command answers; cycle 0: none
   std::uint64_t number = 0;  ///< of that command
 
-  /// Whether the same one drives (a change means: stop first, then obey).
+  /// True where the same one drives (a change means: stop first, then obey).
   bool same_driver(const Grant& other) const {
     return role == other.role && writer == other.writer;
   }
@@ -115,7 +115,7 @@ class Arbiter {
   const Latches& latches() const { return latches_; }
   void restore(const Latches& latches) { latches_ = latches; }
 
-  /// Who drives now.
+  /// The one who drives now.
   Grant decide(double now, std::uint64_t cycle);
 
   /// Who was refused since the last call, each role, source and reason once; at most 16.

@@ -30,8 +30,9 @@ class EchoMap {
 
   /// Where something is, in the robot's frame as of the last update.
   const std::vector<Vec2>& spots() const { return memory_.points(); }
-  /// Whether some sonar within 60 degrees of straight ahead (or back) has fired in the last second
-  /// (a Pioneer's sonars fire every third cycle). At the beginning they have not had their turn.
+  /// True where some sonar within 60 degrees of straight ahead (or back) has fired in the last
+  /// second (a Pioneer's sonars fire every third cycle). At the beginning they have not had their
+  /// turn.
   bool sees(std::uint64_t cycle, bool ahead) const;
 
  private:

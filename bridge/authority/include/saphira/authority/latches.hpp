@@ -11,7 +11,7 @@ enum class Wait {
   reset,   ///< an emergency stop was reset while autonomy asked to drive, or was not heard
 };
 
-/// What holds until a person releases it, whatever happens to the programs.
+/// Stops that hold until a person releases them, whatever happens to the programs.
 struct Latches {
   bool estopped = false;
   std::string estop_source;  ///< which program pressed it

@@ -9,7 +9,7 @@
 
 namespace saphira::authority {
 
-/// What the guard has to know of a robot.
+/// The guard's view of a robot.
 Body body_of(const protocol::RobotParameters& parameters);
 
 /// The readings of a packet, those of sonars that the parameters place.

@@ -56,7 +56,7 @@ class Core {
 
   // ---- The robot's side.
 
-  /// Whether the link may be opened.
+  /// True where the link may be opened.
   bool may_connect(double now) const { return now >= hold_off_; }
   /// The link is not open (any more).
   void link_closed(const std::string& why, double now);
@@ -114,7 +114,7 @@ class Core {
   reflector::Reflector& reflector() { return reflector_; }
 
  private:
-  /// What is known of one session with the robot, and forgotten with it.
+  /// All that is known of one session with the robot, and forgotten with it.
   struct Session {
     Stamp stamp;
     authority::Body body;
@@ -165,7 +165,7 @@ class Core {
 
   void decide(double now);
   void guard(reflector::Setpoints& wanted);
-  /// Whether the robot is told to move.
+  /// True where the robot is told to move.
   bool moves() const { return guarded_.velocity != 0.0 || guarded_.rotation_velocity != 0.0; }
   void flush(double now);
   void publish_grant();
@@ -190,7 +190,7 @@ class Core {
   std::array<authority::GuardSettings, 5> guards_;  ///< by role
   Session session_;
 
-  // What outlives a session.
+  // State that outlives a session.
   std::uint64_t last_epoch_ = 0;
   std::uint64_t last_odom_ = 0;
   std::optional<reflector::OdometryMemory> memory_;

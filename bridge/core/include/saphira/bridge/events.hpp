@@ -27,14 +27,14 @@ struct DriveCommand {
   std::string wrong;           ///< what could not be converted; empty: nothing
 };
 
-/// What is wrong with the numbers of a motor command; empty where nothing is. Any program may write
+/// The trouble with the numbers of a motor command; empty where nothing is. Any program may write
 /// one.
 std::string trouble(const reflector::Motion& motion, double contact_speed);
 
 /// A robot in words, by what it says of itself.
 std::string name_of(const protocol::RobotIdentity& robot);
 
-/// What the shell sees around it.
+/// The surroundings that the shell sees.
 struct Surroundings {
   bool link_open = false;
   std::string link_trouble;  ///< why it is not open
@@ -109,7 +109,7 @@ struct KeepOdometry {
   reflector::OdometryMemory memory;
 };
 
-/// What the status of the service says.
+/// The status of the service.
 enum class Health { running, degraded, waiting };
 struct Condition {
   Health health = Health::running;

@@ -57,7 +57,7 @@ class PacketParser {
   /// Call next() afterwards: the bytes held back may contain packets.
   void gap();
 
-  /// Whether a packet has begun and is not complete.
+  /// True where a packet has begun and is not complete.
   bool pending() const { return begin_ < buffer_.size(); }
 
   /// Forgets the bytes held; the counters stay. For a new connection.

@@ -25,14 +25,14 @@ enum class Protocol {
   kArcos,  ///< ARCOS: subclasses "...-sh"
 };
 
-/// What a robot parameter file says (manual 3.2 and 10), in SI units. The defaults are the Pioneer
-/// 1's, except that there are no sonars.
+/// The content of a robot parameter file (manual 3.2 and 10), in SI units. The defaults are the
+/// Pioneer 1's, except that there are no sonars.
 struct RobotParameters {
   std::string file;         ///< where it was read
   std::string name;         ///< keyword Name
   std::string robot_class;  ///< Class; the second string of the SYNC2 answer
   std::string subclass;     ///< Subclass
-  /// Whether that is the class and subclass that a robot names, in letters of either case.
+  /// True where that is the class and subclass that a robot names, in letters of either case.
   bool is_of(std::string_view of_class, std::string_view of_subclass) const;
 
   // One unit of the information packet.
@@ -104,7 +104,7 @@ struct RobotParameters {
   bool operator==(const RobotParameters&) const = default;
 };
 
-/// Whether the server has ESTOP, which brakes harder than a velocity of zero.
+/// True where the server has ESTOP, which brakes harder than a velocity of zero.
 inline bool has_emergency_stop(const RobotParameters& parameters) {
   return parameters.protocol != Protocol::kPsos;
 }

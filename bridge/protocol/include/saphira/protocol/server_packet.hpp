@@ -246,7 +246,7 @@ using ServerPacket =
 /// the connection.)
 ServerPacket decode_packet(ByteView body);
 
-/// Whether decode_packet reads the fields of this type.
+/// True where decode_packet reads the fields of this type.
 bool is_read(PacketType type);
 
 /// The whole packet (frame included); what does not fit is left out. AuxPacket's line is clamped to

@@ -43,9 +43,9 @@ class Channels {
   /// An information packet came: a new cycle.
   void cycle(const Shown& shown);
 
-  /// What is to be sent now.
+  /// The commands to be sent now.
   std::vector<Order> due(double now);
-  /// Whether due() would say anything, were it asked at `now`.
+  /// True where due() would say anything, were it asked at `now`.
   bool pending(double now) const;
   /// What was sent last on the translation channel [m/s].
   double sent_velocity() const;

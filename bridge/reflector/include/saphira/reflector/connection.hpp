@@ -46,7 +46,7 @@ class Connection {
   double round_trip() const { return round_trip_; }
   /// When to call tick next (while neither closed nor open).
   double due() const { return sent_ + kRetry; }
-  /// What it waits for, in words.
+  /// The thing that it waits for, in words.
   std::string waiting_for() const;
 
  private:

@@ -36,8 +36,8 @@ class Devices {
 
   /// A connection begins, or ended: what was under way is lost.
   void connect();
-  /// What may be asked of a device (wishes.hpp). A newer request takes the place of an older one of
-  /// the same device and action.
+  /// The requests that a device takes (wishes.hpp). A newer request takes the place of an older one
+  /// of the same device and action.
   void request(const Request& request, const Wish& wish,
                const protocol::RobotParameters& parameters);
   /// What a session begins with: a robot since P2OS switches its motors on when it is told, and
@@ -49,7 +49,7 @@ class Devices {
                bool origin);
   /// A packet of another type came; those that nobody here reads are counted.
   void reflect(const protocol::ServerPacket& packet, std::uint8_t type);
-  /// What is to be sent now, of no more than `room` bytes in all: the rest waits for the line.
+  /// The commands to be sent now, of no more than `room` bytes in all: the rest waits for the line.
   std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const;
 
@@ -66,7 +66,7 @@ class Devices {
     std::map<std::uint8_t, std::uint32_t> unread;  ///< packets of types that nobody reads, by type
   };
   const Reports& reports() const { return reports_; }
-  /// Whether requests() or reports() say something new since the last call.
+  /// True where requests() or reports() say something new since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
   /// Requests that came to a bad end since the last call, in words.
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }

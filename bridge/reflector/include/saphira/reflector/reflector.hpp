@@ -79,7 +79,7 @@ class Reflector {
   }
   Devices& devices() { return devices_; }
 
-  /// What is to be sent now. Includes a PULSE where nothing else was said for half a second.
+  /// The commands to be sent now. Includes a PULSE where nothing else was said for half a second.
   /// `room` [bytes]: what the line takes now of what is asked of the devices.
   std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }

@@ -71,7 +71,7 @@ enum class Device { servo, gripper, output, analog, timer, sonar, sound, server,
 /// A wish in words, such as "servo 1500 us".
 std::string text(const Wish& wish);
 
-/// What may be asked of a device.
+/// The requests that a device takes.
 const std::vector<Functor>& functors(Device device);
 /// What a request asks for that one of functors() can take; std::invalid_argument says what was
 /// expected of the arguments together.

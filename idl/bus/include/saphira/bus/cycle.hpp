@@ -21,7 +21,7 @@ class Input {
   virtual const T* value() const = 0;
 };
 
-/// What a step is for.
+/// The cycle that a step is for.
 struct Step {
   v1::RobotState robot;  ///< of cycle N, from the bridge
   /// The robot of this epoch, as its bridge describes it. Good until the next call of the Cycle.
@@ -141,7 +141,7 @@ class Cycle {
   /// Ends the step that next() began: counts its time.
   void done();
 
-  /// Whether a bridge and a writer of each input have been found.
+  /// True where a bridge and a writer of each input have been found.
   bool connected() const;
 
   /// The stamp for what is published in this step.

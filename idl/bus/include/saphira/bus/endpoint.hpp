@@ -92,7 +92,7 @@ class Writer {
   bool write(const T& sample) { return raw_->write(&sample); }
   /// Withdraws the instance that has the sample's key.
   bool dispose(const T& sample) { return raw_->dispose(&sample); }
-  /// Whether every matched reliable reader has what was written; waits for it.
+  /// True where every matched reliable reader has what was written; waits for it.
   bool wait_acknowledged(int timeout_ms) { return raw_->wait_acknowledged(timeout_ms); }
   std::size_t matched() const { return raw_->matched(); }
 

@@ -44,7 +44,7 @@ class GoalClient {
   /// Takes in what has come on goals/status, and forgets what ended long ago. Call after each
   /// Node::wait.
   void poll();
-  /// What is known of a goal, by anybody; nothing before its first status.
+  /// All that is known of a goal, by anybody; nothing before its first status.
   std::optional<v1::GoalStatus> status(const v1::GoalId& id) const;
   /// Every goal that is known, by id.
   std::vector<v1::GoalStatus> statuses() const;
@@ -70,7 +70,7 @@ class GoalClient {
   std::map<Key, std::optional<Clock::time_point>> own_;
 };
 
-/// Whether a goal in this state has come to its end.
+/// True where a goal in this state has come to its end.
 bool ended(v1::GoalState state);
 /// The state in a word, such as "underway".
 std::string describe(v1::GoalState state);

@@ -53,9 +53,9 @@ v1::Argument truth(const std::string& name, bool value);
 /// Counts the requests of this process: each has a number of its own.
 std::uint64_t next_request_number();
 
-/// Whether a request with this answer has come to its end.
+/// True where a request with this answer has come to its end.
 bool ended(v1::AnswerCode code);
-/// Whether that is a good end, or may become one.
+/// True where that is a good end, or may become one.
 bool well(v1::AnswerCode code);
 
 }  // namespace saphira::bus

@@ -11,9 +11,9 @@ namespace saphira::bus {
 /// Another program of the same name and for the same robot, such as "another bridge, process 12 at
 /// attic,". The reason begins with these words.
 std::string another(const v1::ServiceStatus& other);
-/// Whether the program has found another one of its name for its robot.
+/// True where the program has found another one of its name for its robot.
 bool has_namesake(const v1::ServiceStatus& status);
-/// Whether the program waits for a sample of its robot (robot/...), which the bridge writes.
+/// True where the program waits for a sample of its robot (robot/...), which the bridge writes.
 bool waits_for_robot(const v1::ServiceStatus& status);
 
 }  // namespace saphira::bus

@@ -16,7 +16,7 @@ namespace saphira::agent_interface {
 
 using UtteranceId = std::pair<std::uint64_t, std::uint64_t>;
 
-/// What somebody says to the robot.
+/// An utterance to the robot.
 struct Utterance {
   UtteranceId id{};
   std::string speaker;  ///< empty: unknown
@@ -25,7 +25,7 @@ struct Utterance {
   double time = 0.0;        ///< [s] since 1970; 0: unknown
 };
 
-/// What the robot says.
+/// An utterance of the robot.
 struct Said {
   UtteranceId answers{};  ///< 0, 0: to none
   std::string listener;
@@ -48,14 +48,14 @@ struct WantedGoal {
   bool lasting = false;   ///< a task, which goes on while the dialogue is started again
 };
 
-/// What is claimed to be true, for activities. Empty value: taken back.
+/// A claim of what is true, for activities. Empty value: taken back.
 struct Claimed {
   std::string name;
   std::string value;   ///< a text
   std::string source;  ///< who said what, and when, for people
 };
 
-/// What an artifact of the map is called from now on.
+/// A new name of an artifact of the map.
 struct Naming {
   maps::Feature feature;
 };
@@ -104,7 +104,7 @@ class Dialogue {
   /// What all that is known means for activities: claimed anew after a start.
   std::vector<Claimed> claims() const;
 
-  /// What outlives a restart: the knowledge, which utterances were heard, and lasting goals.
+  /// State that outlives a restart: the knowledge, which utterances were heard, and lasting goals.
   std::string save() const;
   /// The number of lines that could not be read.
   std::size_t restore(std::string_view text);

@@ -11,7 +11,7 @@
 
 namespace saphira::agent_interface {
 
-/// What an utterance means: a functor with slots. Numbers are written as text, such as "1.5".
+/// The meaning of an utterance: a functor with slots. Numbers are written as text, such as "1.5".
 struct Meaning {
   std::string functor;
   std::map<std::string, std::string> slots;
@@ -54,7 +54,8 @@ class Grammar {
     bool addressed = false;         ///< it began with the keyword
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
   };
-  /// What a text means. replies: also what needs no keyword, since the robot has asked something.
+  /// The meaning of a text. replies: also what needs no keyword, since the robot has asked
+  /// something.
   Understood understand(std::string_view text, bool replies = false) const;
 
   /// The meaning in words, for the robot to say before it acts; empty where the file has none.

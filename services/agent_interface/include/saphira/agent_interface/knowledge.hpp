@@ -8,7 +8,7 @@
 
 namespace saphira::agent_interface {
 
-/// What the robot knows because somebody said it (paper 4.5).
+/// Knowledge that the robot has because somebody said it (paper 4.5).
 struct Advice {
   enum class Kind { office_of, person_at, knows_where, hazard };
   std::uint64_t number = 0;

@@ -37,8 +37,8 @@ struct RobotNow {
 
 using lps::Side;
 
-/// What behaviors tell each other within a cycle: lower priorities are updated first, so that those
-/// which avoid know what those below them want. Empty again every cycle.
+/// Values that behaviors tell each other within a cycle: lower priorities are updated first, so
+/// that those which avoid know what those below them want. Empty again every cycle.
 struct Shared {
   /// Where the robot would go if nothing were in the way: [rad] from its heading, and how far [m].
   std::optional<double> goal_bearing;
@@ -47,7 +47,7 @@ struct Shared {
   Side preferred_turn = Side::none;
 };
 
-/// What a behavior sees in its update.
+/// The inputs of a behavior's update.
 struct Context {
   const RobotModel& model;
   const RobotNow& robot;

@@ -120,7 +120,7 @@ class Executive {
   double contact_speed(const std::vector<Blended>& blended) const;
   /// No newer intent has come for the lease.
   bool silent(const Inputs& inputs) const;
-  /// What is wrong with the intent's age; empty where nothing is.
+  /// The trouble with the intent's age; empty where nothing is.
   std::string why_unheard(const Inputs& inputs) const;
   /// Why the behaviors are not to drive; empty where they are.
   std::string why_inactive(const Inputs& inputs, bool running) const;

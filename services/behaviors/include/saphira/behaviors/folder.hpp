@@ -29,7 +29,7 @@ class Folder {
   News look(Registry& registry);
 
   const std::string& path() const { return folder_.path(); }
-  /// What is wrong now with which files; empty: nothing.
+  /// The files with mistakes now, and which; empty: nothing.
   std::string trouble() const;
 
  private:

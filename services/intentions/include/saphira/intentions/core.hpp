@@ -122,7 +122,7 @@ class Core {
 
   /// Takes a map. In lockstep it counts from the step on for which registration had it.
   void know_map(MapNews news) { newer_maps_.push_back(std::move(news)); }
-  /// Whether the map that registration had is known.
+  /// True where the map that registration had is known.
   bool knows_map(std::uint64_t revision) const;
   /// What the behaviors service can evaluate.
   Notes know_behaviors(const std::vector<BehaviorSignature>& behaviors);

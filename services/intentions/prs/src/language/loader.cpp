@@ -9,7 +9,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// What is wrong with one mention in an activity of a schema; nothing where it is right.
+/// The trouble with one mention in an activity of a schema; nothing where it is right.
 void check_mention(const Schema& activity, const Mention& mention, const Registry& registry,
                    std::vector<Diagnostic>& troubles, std::set<std::string>& told) {
   const auto trouble = [&](bool error, int line, int column, std::string message,

@@ -364,7 +364,7 @@ class Machine : public Activity {
     return thread.limit > 0 && self.now() - thread.since >= thread.limit;
   }
 
-  /// Whether what the thread waits for has come.
+  /// True where what the thread waits for has come.
   bool poll(Thread& thread, Self& self) {
     const Step& step = program_->steps[thread.at];
     try {

@@ -64,8 +64,8 @@ class Field {
   };
   Nearest nearest(const Vec2& position_in_map) const;
   double distance(const Vec2& position_in_map) const { return nearest(position_in_map).distance; }
-  /// Whether the map knows what is there: the inside of a corridor, junction, lane or office. In a
-  /// map of walls alone it knows all within them.
+  /// True where the map knows what is there: the inside of a corridor, junction, lane or office. In
+  /// a map of walls alone it knows all within them.
   bool known(const Vec2& position_in_map) const;
   const std::vector<Vec2>& known_cells() const { return known_cells_; }  ///< their middles
   double cell() const { return kCell; }

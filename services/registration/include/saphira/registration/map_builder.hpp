@@ -104,7 +104,7 @@ class MapBuilder {
   const FeatureGraph& graph() const { return graph_; }
 
  private:
-  /// What is known of a line or an opening beside where it is.
+  /// All that is known of a line or an opening beside where it is.
   struct Known {
     lps::PointType type = lps::PointType::wall;  ///< wall, door or junction
     double heading = 0.0;   ///< of an opening: its normal, in the map, as it was seen first

@@ -92,7 +92,7 @@ struct Inputs {
   Pose pose_in_odom;
   const std::vector<lps::Percept>& percepts;
   const std::vector<lps::SonarReading>& readings;  ///< new ones, in firing order
-  /// Whether things are looked for that the map does not have (add_new_features, manual 6.9.2).
+  /// True where things are looked for that the map does not have (add_new_features, manual 6.9.2).
   bool find_objects = false;
 };
 

@@ -10,7 +10,7 @@
 
 namespace saphira::registration {
 
-/// What outlives the service: the pose, and the map as it has become.
+/// State that outlives the service: the pose, and the map as it has become.
 struct Remembered {
   Memory memory;
   std::string option;    ///< the map that the service was started with

@@ -88,7 +88,7 @@ class Search {
   double worth(const Pose& sensor_in_map, double range, bool echo) const;
   /// Follows a place that the robot was told, beside the one that `own` of step() is.
   void suspect(const PoseFilter& filter);
-  /// Whether no other place is worth more than the one that is believed.
+  /// True where no other place is worth more than the one that is believed.
   bool own_is_best() const;
   /// Of the place that is believed and the one that was told: whether it explains what is heard,
   /// better than the other by the margin, and no place in the map does it better by that.

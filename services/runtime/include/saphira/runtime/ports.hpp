@@ -79,7 +79,7 @@ class Asker {
   /// writes after that is known to nobody who does not know of the request, too.
   /// The number by which answers name it.
   std::uint64_t ask(Request request);
-  /// Whether some program takes such requests.
+  /// True where some program takes such requests.
   bool is_taken() const { return writer_.matched() > 0; }
 
  private:

@@ -37,7 +37,7 @@ struct ColorCamera {
 /// direction is known.
 std::vector<Sight> find_blobs(const Channels& channels, const ColorCamera& camera = {});
 
-/// Whether that camera would see something there.
+/// True where that camera would see something there.
 bool in_view(const ColorCamera& camera, const Vec2& place_in_robot);
 
 }  // namespace saphira::vision

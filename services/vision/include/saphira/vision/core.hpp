@@ -46,8 +46,8 @@ class Core {
 
   Outputs step(const Inputs& inputs);
 
-  /// Whether all channels have come that a step for `cycle` sees, by what the robot's state says of
-  /// their number: all before that cycle. True also for who joined too late to know.
+  /// True where all channels have come that a step for `cycle` sees, by what the robot's state says
+  /// of their number: all before that cycle. True also for who joined too late to know.
   bool has_channels(std::uint64_t cycle, unsigned channels_per_s,
                     const std::vector<Seen>& waiting) const;
 

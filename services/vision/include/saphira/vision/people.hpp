@@ -50,8 +50,8 @@ struct PeopleSettings {
 /// flat, where that can be told, and not going on above a head.
 std::vector<Sight> find_people(const Bands& bands, const PeopleSettings& settings = {});
 
-/// Whether a person at a place of the robot's frame would be seen: within the picture, and nothing
-/// that is nearer stands before.
+/// True where a person at a place of the robot's frame would be seen: within the picture, and
+/// nothing that is nearer stands before.
 bool in_view(const Bands& bands, const Vec2& place_in_robot, const PeopleSettings& settings = {});
 
 }  // namespace saphira::vision

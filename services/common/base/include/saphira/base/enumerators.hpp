@@ -8,7 +8,7 @@
 namespace saphira {
 namespace detail {
 
-/// Whether the value has a name: the compiler writes others as a number.
+/// True where the value has a name: the compiler writes others as a number.
 template <class E, E value>
 consteval bool is_enumerator() {
   const std::string_view text = __PRETTY_FUNCTION__;

@@ -25,7 +25,7 @@ struct SonarMount {
   bool operator==(const SonarMount&) const = default;
 };
 
-/// What the LPS has to know of a robot; from its description.
+/// The LPS's view of a robot; from its description.
 struct LpsSettings {
   std::vector<SonarMount> sonars;
   std::size_t front_buffer = 30;  ///< readings

@@ -22,8 +22,9 @@ struct Sameness {
   double angle = radians(15.0);  ///< of headings
 };
 
-/// Whether two features of one type stand for the same thing: walls and corridors by their lines,
-/// which must overlap (a stretch of a corridor is the same as the whole), all else by its middle.
+/// True where two features of one type stand for the same thing: walls and corridors by their
+/// lines, which must overlap (a stretch of a corridor is the same as the whole), all else by its
+/// middle.
 bool same(const Feature& a, const Feature& b, const Sameness& sameness = {});
 
 /// A map that changes while it is used. Every feature has an id as long as the editor lives, walls

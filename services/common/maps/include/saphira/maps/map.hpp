@@ -57,7 +57,7 @@ const Feature* find(const Map& map, std::uint32_t id);
 /// Every feature of that type and name, in the order of the file.
 std::vector<const Feature*> named(const Map& map, lps::PointType type, std::string_view name);
 
-/// Whether a position lies in the rectangle of a corridor, lane, junction, office or object.
+/// True where a position lies in the rectangle of a corridor, lane, junction, office or object.
 bool contains(const Feature& feature, const Vec2& position_in_map);
 
 }  // namespace saphira::maps

@@ -77,7 +77,7 @@ class Topology {
   std::vector<Feature> positions_;
 };
 
-/// Whether two maps have the same regions, ways and places, so that what was planned on the one
+/// True where two maps have the same regions, ways and places, so that what was planned on the one
 /// holds on the other: things and walls may differ.
 bool same_places(const Map& a, const Map& b);
 

@@ -39,7 +39,7 @@ struct Functor {
   std::vector<Parameter> parameters{};
 };
 
-/// What is wrong with the arguments, naming functor and argument, and saying what was expected and
+/// The trouble with the arguments, naming functor and argument, and saying what was expected and
 /// what came; empty where nothing is. Then what is not given has been filled in with what is usual.
 std::string complete(const Functor& functor, Arguments& arguments);
 

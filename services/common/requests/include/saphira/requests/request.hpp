@@ -61,9 +61,9 @@ std::string describe(const Request& request);
 /// leaves out has been filled in with what is usual.
 std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& request);
 
-/// Whether a request may be acted on in a step of `now` so that every run does it in the same one:
-/// in lockstep what a service asked for in its step N is certain to be here in step N+2, since that
-/// one needs what others made of its outputs of N.
+/// True where a request may be acted on in a step of `now` so that every run does it in the same
+/// one: in lockstep what a service asked for in its step N is certain to be here in step N+2, since
+/// that one needs what others made of its outputs of N.
 bool is_due(const Request& request, const Stamp& now);
 
 }  // namespace saphira

@@ -154,8 +154,8 @@ class Activity {
   virtual void step(Self& self) = 0;
   /// A child has ended or is gone, in the cycle in which step() has been called already.
   virtual void child_ended(Self& self) { static_cast<void>(self); }
-  /// Whether it waits for that child's end. Where a behavior cannot be made, an intention that does
-  /// not wait for it fails: the others are not meant to drive without it.
+  /// True where it waits for that child's end. Where a behavior cannot be made, an intention that
+  /// does not wait for it fails: the others are not meant to drive without it.
   virtual bool waits_for(std::uint32_t child) const {
     static_cast<void>(child);
     return false;

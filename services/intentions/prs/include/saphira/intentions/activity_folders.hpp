@@ -31,7 +31,7 @@ class ActivityFolders {
 
   /// From now on a file that names another behavior is wrong.
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
-  /// What is wrong now with which files; empty: nothing.
+  /// The files with mistakes now, and which; empty: nothing.
   std::string trouble() const;
 
  private:

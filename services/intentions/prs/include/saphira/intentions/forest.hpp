@@ -90,7 +90,7 @@ class Forest {
   /// Makes a tree that was planted just now what save() gave. ActivityError where that cannot be
   /// (another version of the schema, a thing that is seen no more): it is then as it was planted.
   void restore(std::uint32_t root, const Value& saved, const World& world);
-  /// Whether what save() gives may have changed since the last call.
+  /// True where what save() gives may have changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
 
   void interrupt(std::uint32_t id, Hold why = Hold::kGoal);
@@ -111,7 +111,7 @@ class Forest {
   void begin(std::uint32_t id, const World& world);
 
   bool contains(std::uint32_t id) const;
-  /// Whether it is an intention and not a behavior.
+  /// True where it is an intention and not a behavior.
   bool is_activity(std::uint32_t id) const;
   std::size_t size() const;
   /// How the roots that have finished ended, since the last call; they are gone.

@@ -10,7 +10,7 @@
 
 namespace saphira::intentions {
 
-/// What is wrong with a file of activities, or only doubtful.
+/// The trouble with a file of activities, or only doubtful.
 struct Diagnostic {
   bool error = true;  ///< the file is not taken; otherwise a warning
   std::string file;

@@ -53,7 +53,7 @@ struct Schema {
   std::shared_ptr<const Program> program;  ///< of one that was compiled
 };
 
-/// What is known of a behavior, which the behaviors service has.
+/// All that is known of a behavior, which the behaviors service has.
 struct BehaviorSignature {
   std::string name;  ///< of the schema, such as FollowCorridor
   std::vector<Parameter> parameters;
@@ -92,7 +92,7 @@ class Registry {
   bool knows_behaviors_ = false;
 };
 
-/// What is wrong with the arguments, in words that say what was expected and what came; empty where
+/// The trouble with the arguments, in words that say what was expected and what came; empty where
 /// nothing is. Where nothing is, `complete` is the arguments with the defaults filled in.
 std::string check_arguments(const Schema& schema, const Arguments& arguments, Arguments& complete);
 

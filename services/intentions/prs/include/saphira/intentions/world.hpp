@@ -33,7 +33,7 @@ class Value;
 using Ticks = std::int64_t;
 inline constexpr double kTick = 0.1;  ///< [s]
 
-/// What is known of the robot in a cycle.
+/// All that is known of the robot in a cycle.
 struct Robot {
   bool connected = false;
   bool has_power = true;   ///< of its motors
@@ -54,7 +54,7 @@ enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
 inline constexpr double kRestVelocity = 0.02;          ///< [m/s]
 inline constexpr double kRestRotation = radians(3.0);  ///< [rad/s]
 
-/// Whether it neither drives nor turns.
+/// True where it neither drives nor turns.
 bool at_rest(const Robot& robot);
 
 /// What registration says.
@@ -115,7 +115,7 @@ std::optional<Pose> in_frame(const Pose& pose, Frame from, Frame to, const Robot
 /// The person or blob of that number, among what is seen now; nullptr where it is gone.
 const lps::SeenThing* seen_thing(const World& world, std::uint64_t id);
 
-/// Whether there is a map, and it is still the one that the reference is of.
+/// True where there is a map, and it is still the one that the reference is of.
 bool current(const World& world, const Reference& reference);
 
 /// What a value is called: what is on the map by its name there.
