@@ -134,7 +134,7 @@ std::string way_of_building(bool single_process) {
       },
       std::chrono::minutes(2)))
       << system.output();
-  EXPECT_EQ(newest.reason(), "builds the map");
+  EXPECT_EQ(newest.reason(), "builds the map") << system.output();
   return system.end();
 }
 

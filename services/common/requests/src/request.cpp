@@ -26,8 +26,8 @@ std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& req
 }
 
 bool is_due(const Request& request, const Stamp& now) {
-  return request.stamp.cycle == 0 || request.stamp.epoch != now.epoch ||
-         request.stamp.cycle + 2 <= now.cycle;
+  return request.stamp.cycle == 0 || request.stamp.epoch < now.epoch ||
+         (request.stamp.epoch == now.epoch && request.stamp.cycle + 2 <= now.cycle);
 }
 
 }  // namespace saphira

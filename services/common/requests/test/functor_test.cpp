@@ -105,6 +105,8 @@ TEST(Requests, OfAServiceAreDueTwoCyclesLater) {
   EXPECT_FALSE(is_due(request, {5, 11}));
   EXPECT_TRUE(is_due(request, {5, 12}));
   EXPECT_TRUE(is_due(request, {6, 1})) << "its epoch is over";
+  EXPECT_FALSE(is_due(request, {0, 0})) << "its epoch has not begun here";
+  EXPECT_FALSE(is_due(request, {4, 100}));
 }
 
 }  // namespace
