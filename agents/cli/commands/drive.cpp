@@ -90,7 +90,6 @@ class Joystick {
 
   int fd() const { return fd_; }
   bool there() const { return fd_ >= 0; }
-  const std::string& path() const { return path_; }
   StickDrive& stick() { return stick_; }
   void open() {
     if (fd_ < 0)

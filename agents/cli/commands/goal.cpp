@@ -59,8 +59,8 @@ class Follower {
   std::string last_;
 };
 
-/// Anybody's stop stops: it also ends the driving of a person, who may drive again after letting
-/// go. `source` is who says so, for people.
+/// A stop from anybody also ends the driving of a person, who then has to let go before driving on.
+/// `source` names the one who stops, for people.
 void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::Stop& stop) {
   constexpr int kReleases = 4;  // of the last word: the topic is best effort
   auto grants = node.reader(bus::topics::kGrant);

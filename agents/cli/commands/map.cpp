@@ -37,13 +37,16 @@ class View {
         options_(options),
         grants_(node.reader(bus::topics::kGrant)),
         maps_(node.reader(bus::topics::kMap)),
-        registrations_(node.reader(bus::topics::kRegistration)) {}
+        registrations_(node.reader(bus::topics::kRegistration)),
+        descriptions_(node.reader(bus::topics::kRobotDescription)) {}
 
   /// True where a new sample of registration came.
   bool poll() {
     deployments.poll();
     if (const auto grant = grants_.take_newest())
       holds = latched(*grant);
+    if (const auto description = descriptions_.take_newest())
+      radius = description->radius();
     if (auto newest = maps_.take_newest()) {
       sample = std::move(newest);
       map = maps::from_bus(*sample);
@@ -89,6 +92,7 @@ class View {
   std::optional<v1::FloorMap> sample;
   maps::Map map;
   std::optional<v1::Registration> registration;
+  std::optional<double> radius;  ///< [m] of the robot
   bus::RequestClient registration_client{node, bus::topics::kRegistrationRequest, "saphira map"};
   std::string holds;  ///< what is latched, in words
 
@@ -97,6 +101,7 @@ class View {
   bus::Reader<v1::Grant> grants_;
   bus::Reader<v1::FloorMap> maps_;
   bus::Reader<v1::Registration> registrations_;
+  bus::Reader<v1::RobotDescription> descriptions_;
 };
 
 int look(const bus::NodeOptions& options, const bus::Stop& stop, bool follow) {
@@ -346,6 +351,8 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   const maps::Topology topology(view.map);
   maps::RouteSettings settings;
   settings.closed = view.closed_doors();
+  if (view.radius)
+    settings.needs_width = maps::needed_width(*view.radius);
   const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
   if (!found.route) {
     std::cerr << "saphira: " << found.reason << '\n';

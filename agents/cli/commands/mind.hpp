@@ -78,7 +78,7 @@ class Mind {
   bool whole(std::uint64_t cycle) const;
   /// The newest cycle that is whole; else the newest of which anything is known; 0: none.
   std::uint64_t newest_cycle() const;
-  /// True where it can be said what the robot was told.
+  /// True where the commands to the robot are known.
   bool some(std::uint64_t cycle) const {
     return robots_.at(cycle) != nullptr && grant_for(cycle) != nullptr;
   }

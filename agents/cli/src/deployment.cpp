@@ -49,32 +49,24 @@ class Parser {
     }
     if (!root.IsMap())
       fail(root.Mark(), "expected a deployment (keys such as programs:), found " + kind(root));
-    keys(
-        root,
-        {{"robot", [this](const auto& n) { deployment_.bus.robot = robot(n); }},
-         {"domain", [this](const auto& n) { deployment_.bus.domain = domain(n); }},
-         {"profile", [this](const auto& n) { deployment_.bus.profile = profile(n); }},
-         {"peers",
-          [this](const auto& n) {
-            for (const Placed& peer : words(n, "a list of addresses"))
-              deployment_.bus.peers.push_back(peer.text);
-          }},
-         {"interface",
-          [this](const auto& n) {
-            deployment_.bus.interface = word(n, "the address of an interface");
-          }},
-         {"security", [this](const auto& n) { deployment_.bus.security = security(n); }},
-         {"lockstep", [this](const auto& n) { deployment_.bus.lockstep = boolean(n, "lockstep"); }},
-         {"settings", [this](const auto& n) { settings(n); }},
-         {"forget",
-          [this](const auto& n) {
-            for (const Placed& file : words(n, "a list of files in ${run}")) {
-              if (file.text.find('/') != std::string::npos || file.text.starts_with('.'))
-                fail(n.Mark(), "expected names of files in ${run}, found \"" + file.text + "\"");
-              deployment_.forget.push_back(file.text);
-            }
-          }},
-         {"programs", [this](const auto& n) { programs(n); }}});
+    keys(root, {{"robot", [this](const auto& n) { deployment_.bus.robot = robot(n); }},
+                {"domain", [this](const auto& n) { deployment_.bus.domain = domain(n); }},
+                {"profile", [this](const auto& n) { deployment_.bus.profile = profile(n); }},
+                {"peers",
+                 [this](const auto& n) {
+                   for (const Placed& peer : words(n, "a list of addresses"))
+                     deployment_.bus.peers.push_back(peer.text);
+                 }},
+                {"interface",
+                 [this](const auto& n) {
+                   deployment_.bus.interface = word(n, "the address of an interface");
+                 }},
+                {"security", [this](const auto& n) { deployment_.bus.security = security(n); }},
+                {"lockstep",
+                 [this](const auto& n) { deployment_.bus.lockstep = boolean(n, "lockstep"); }},
+                {"settings", [this](const auto& n) { settings(n); }},
+                {"forget", [this](const auto& n) { forget(n); }},
+                {"programs", [this](const auto& n) { programs(n); }}});
     if (deployment_.programs.empty())
       fail(root.Mark(), "expected programs: with at least one program");
     return std::move(deployment_);
@@ -188,6 +180,14 @@ class Parser {
                          entry.second.Mark().column + 1};
       if (!deployment_.settings.emplace(name, value).second)
         fail(entry.first.Mark(), "the setting \"" + name + "\" is there already");
+    }
+  }
+
+  void forget(const YAML::Node& node) {
+    for (const Placed& file : words(node, "a list of files in ${run}")) {
+      if (file.text.find('/') != std::string::npos || file.text.starts_with('.'))
+        fail(node.Mark(), "expected names of files in ${run}, found \"" + file.text + "\"");
+      deployment_.forget.push_back(file.text);
     }
   }
 

@@ -37,16 +37,16 @@ class Search {
   bool blocked(std::uint32_t id) const { return id != 0 && settings_.blocked.contains(id); }
   bool usable(std::size_t link) const {
     const Link& l = topology_.links()[link];
-    return l.b && wide_enough(l) && !blocked(l.id) && !settings_.blocked_links.contains(link) &&
-           !blocked(topology_.regions()[l.a].area.id) &&
+    return l.b && wide_enough(l) && !too_narrow(topology_.regions()[l.a]) &&
+           !too_narrow(topology_.regions()[*l.b]) && !blocked(l.id) &&
+           !settings_.blocked_links.contains(link) && !blocked(topology_.regions()[l.a].area.id) &&
            !blocked(topology_.regions()[*l.b].area.id);
   }
   bool too_narrow(const Region& region) const {
     return region.kind == RegionKind::corridor && region.area.width < settings_.needs_width;
   }
   bool wide_enough(const Link& link) const {
-    return (link.kind == LinkKind::meeting || link.width >= settings_.needs_width) &&
-           !too_narrow(topology_.regions()[link.a]) && !too_narrow(topology_.regions()[*link.b]);
+    return link.kind == LinkKind::meeting || link.width >= settings_.needs_width;
   }
   std::string narrow_place(const Route& route) const;
   std::string why_none(const Vec2& from, const std::string& start, const Place& to) const;
@@ -100,12 +100,12 @@ std::string Search::narrow_place(const Route& route) const {
     const Region& region = topology_.regions()[leg.region];
     if (too_narrow(region))
       return says(topology_.text(leg.region), region.area.width);
-    if (leg.link && !wide_enough(topology_.links()[*leg.link])) {
-      const Link& link = topology_.links()[*leg.link];
-      if (link.kind != LinkKind::meeting && link.width < settings_.needs_width)
-        return says((link.kind == LinkKind::door ? "door " : "opening ") + std::to_string(link.id),
-                    link.width);
-    }
+    if (!leg.link)
+      continue;
+    const Link& link = topology_.links()[*leg.link];
+    if (!wide_enough(link) && link.kind != LinkKind::meeting)
+      return says((link.kind == LinkKind::door ? "door " : "opening ") + std::to_string(link.id),
+                  link.width);
   }
   return "the robot is too wide";
 }

@@ -554,7 +554,8 @@ Executor::Entry* Executor::arbitrate(const World& world) {
       wait(entry, GoalCode::kNone,
            "waits for " + who +
                (more ? ""
-                     : "; with a priority of " + std::to_string(chosen->goal.priority + 1) +
+                     : "; with a priority of " +
+                           std::to_string(std::int64_t{chosen->goal.priority} + 1) +
                            " it would go first"));
     else
       suspend(entry, GoalCode::kPreempted, "interrupted by " + who);

@@ -26,10 +26,7 @@ constexpr double kForget = 300.0;  ///< [s] after which a closed way may be open
 constexpr double kThere = 0.4;     ///< [m] so near to its point the robot is at a place
 constexpr double kVisited = 1.5;   ///< [m] around where the robot has been
 constexpr double kStep = 0.7;      ///< [m] a nearer point is not worth driving to
-/// [m] that the robot needs on either side of its hull to pass a door or a corridor: what the guard
-/// beside the robot leaves there (bridge/authority, GuardSettings::side_margin).
-constexpr double kBeside = 0.08;
-constexpr double kWayIn = 1.0;  ///< [m] behind a door where a room has been visited
+constexpr double kWayIn = 1.0;     ///< [m] behind a door where a room has been visited
 
 const char* const kClosedWays = "*closed-ways*";
 const char* const kHazards = "hazards";
@@ -87,7 +84,7 @@ maps::RouteSettings route_settings(const World& world) {
   maps::RouteSettings settings;
   settings.tolerance = kAstray;
   if (world.around.robot_radius > 0.0)
-    settings.needs_width = 2.0 * (world.around.robot_radius + kBeside);
+    settings.needs_width = maps::needed_width(world.around.robot_radius);
   // Out of where it is the robot has to get.
   const std::optional<std::size_t> here = region_here(world);
   for (const Hazard& hazard : hazards(world))

@@ -38,7 +38,7 @@ struct Program {
   bool restart = true;               ///< whether it is started again when it ends
 };
 
-/// The programs that run together, as config/deployments/*.yaml states it. The format is in
+/// The programs that run together, as config/deployments/*.yaml states them. The format is in
 /// config/deployments/README.md.
 struct Deployment {
   std::string file;

@@ -15,7 +15,7 @@ struct DeviceCommand {
   Request request;
 };
 
-/// The requests that a device takes, as people type it; one line each.
+/// The requests that a device takes, as people type them; one line each.
 extern const char* const kDeviceWords;
 
 /// A device command as a person types it: the device and what it is to do (kDeviceWords).

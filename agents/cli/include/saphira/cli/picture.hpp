@@ -11,7 +11,7 @@
 
 namespace saphira::cli {
 
-/// What the terminal's picture shows, in odom: the walls of the map, the echoes that the sonars
+/// The content of the terminal's picture, in odom: the walls of the map, the echoes that the sonars
 /// returned, where the robot has been, where it is, and where it is to go. After the local
 /// perceptual space of manual 2.3.3.
 class Picture {
@@ -25,7 +25,7 @@ class Picture {
   /// Walls and the sides of rooms and corridors, from point to point, of the map; shown where they
   /// lie within what else is.
   void set_walls(std::vector<std::pair<Vec2, Vec2>> walls) { walls_ = std::move(walls); }
-  /// What each character or color is.
+  /// The meaning of each character and color.
   static std::string legend(bool utf8);
 
   /// Lines of `columns` characters with colors (ANSI), `rows` of them, x of odom to the right.

@@ -22,14 +22,11 @@ class StickDrive {
     double turn = 0.0;      ///< [rad/s] counter-clockwise
   };
 
-  StickDrive() = default;
-  explicit StickDrive(Settings settings) : settings_(settings) {}
-
   void set_max_velocity(double limit) { settings_.max_velocity = limit; }
   /// Bytes of the device, which may end within an event. A button that is held when the device is
   /// opened counts when it is pressed again.
   void take(std::string_view bytes, double now);
-  /// What is held has to be pressed again.
+  /// A button that is held has to be pressed again.
   void let_go() { held_ = 0; }
   /// The device is gone: nothing is held.
   void lost();

@@ -30,8 +30,8 @@ struct Known {
 };
 
 /// All that is known of a robot and its programs: of now, or of a cycle that is past. A plain
-/// value: who fills it knows the bus and the clock, who puts it into words does not. What is not
-/// known is left empty.
+/// value: the code that fills it knows the bus and the clock, the code that puts it into words does
+/// not. What is not known is left empty.
 struct Situation {
   std::uint64_t cycle = 0;  ///< N, the cycle that it is about
   std::uint64_t now = 0;    ///< the robot's newest cycle

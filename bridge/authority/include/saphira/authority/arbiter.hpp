@@ -13,7 +13,7 @@
 
 namespace saphira::authority {
 
-/// Those who may drive, strongest first.
+/// The roles that may drive, strongest first.
 enum class Role { none, estop, teleop, direct, behaviors };
 inline constexpr std::array kRoles{Role::estop, Role::teleop, Role::direct, Role::behaviors};
 
@@ -115,7 +115,7 @@ class Arbiter {
   const Latches& latches() const { return latches_; }
   void restore(const Latches& latches) { latches_ = latches; }
 
-  /// The one who drives now.
+  /// The writer that drives now.
   Grant decide(double now, std::uint64_t cycle);
 
   /// Who was refused since the last call, each role, source and reason once; at most 16.

@@ -20,7 +20,7 @@ struct Body {
   bool sees_ahead = true;    ///< the same of straight ahead
 };
 
-/// The guard's limits for one role. The limits are those of people: what a sonar hears of a person
+/// The guard's limits for one role. They come from what a person is: what a sonar hears of a person
 /// is a shin, and the person reaches some 0.2 m farther than that, ahead and aside.
 struct GuardSettings {
   bool enabled = true;

@@ -29,7 +29,7 @@ class Folder {
   News look(Registry& registry);
 
   const std::string& path() const { return folder_.path(); }
-  /// The files with mistakes now, and which; empty: nothing.
+  /// The files that have mistakes now, and which mistakes; empty: none.
   std::string trouble() const;
 
  private:

@@ -29,6 +29,13 @@ struct Route {
   std::vector<Vec2> points() const;
 };
 
+/// [m] Between two posts or walls a robot, a circle of this radius [m], needs its diameter and what
+/// the guard beside it leaves on each side (bridge/authority, GuardSettings::side_margin).
+inline double needed_width(double radius) {
+  constexpr double kBeside = 0.08;
+  return 2.0 * (radius + kBeside);
+}
+
 struct RouteSettings {
   std::set<std::uint32_t> blocked;  ///< ids of doors, breaks and regions that are not to be used
   std::set<std::size_t> blocked_links;  ///< by index: also those that have no id

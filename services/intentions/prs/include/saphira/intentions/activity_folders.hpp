@@ -31,7 +31,7 @@ class ActivityFolders {
 
   /// From now on a file that names another behavior is wrong.
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
-  /// The files with mistakes now, and which; empty: nothing.
+  /// The files that have mistakes now, and which mistakes; empty: none.
   std::string trouble() const;
 
  private:

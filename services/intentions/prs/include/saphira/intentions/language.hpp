@@ -10,7 +10,7 @@
 
 namespace saphira::intentions {
 
-/// The trouble with a file of activities, or only doubtful.
+/// A mistake in a file of activities, or a doubtful place.
 struct Diagnostic {
   bool error = true;  ///< the file is not taken; otherwise a warning
   std::string file;
