@@ -17,10 +17,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         "x":{"type":"number","minimum":-100,"maximum":100},"frame":{"type":"string","enum":["map"]}}})")};
   Session session("saphira", "1", "a robot");
   session.set_tools({kTool});
+  std::uint64_t count = 0;
   std::string_view text(reinterpret_cast<const char*>(data), size);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
-    session.take(text.substr(0, end));
+    ++count;
+    // Lines, and requests of HTTP in turn, of which each third is closed.
+    const Headers headers{count % 4 == 0 ? Session::kModern : "", "tools/call", "go_to"};
+    session.set_time(0.01 * static_cast<double>(count));
+    session.take(text.substr(0, end), count, count % 2 == 0 ? &headers : nullptr);
+    if (count % 3 == 0)
+      session.close(count);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     for (const Call& call : session.take_calls()) {
       if (!misfit(call.arguments, kTool.input).empty())
@@ -30,8 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         session.answer(call.number, {"done", call.arguments, false});
     }
     session.take_given_up();
-    for (const std::string& line : session.take_lines())
-      if (!Json::accept(line) || line.find('\n') != std::string::npos)
+    for (const Line& line : session.take_lines())
+      if (!Json::accept(line.text) || line.text.find('\n') != std::string::npos)
         std::abort();
   }
   return 0;

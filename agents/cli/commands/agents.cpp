@@ -59,7 +59,7 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   return bus::well(end.code()) ? bus::kExitOk : bus::kExitFailed;
 }
 
-int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Processes processes(node);
   auto agents = node.reader(bus::topics::kAgents);
@@ -115,7 +115,7 @@ void add_ask(CLI::App& app, Chosen& chosen) {
     if (options->functor.empty() != options->list)
       throw CLI::ValidationError("ask", "expected a functor, or --list");
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return options->list ? list(node, stop) : ask(*options, node, stop);
+      return options->list ? list_agents(node, stop) : ask(*options, node, stop);
     };
   });
 }
@@ -125,7 +125,7 @@ void add_agents(CLI::App& app, Chosen& chosen) {
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
   command->callback([&chosen] {
     chosen.run = [](const bus::NodeOptions& node, const bus::Stop& stop) {
-      return list(node, stop);
+      return list_agents(node, stop);
     };
   });
 }

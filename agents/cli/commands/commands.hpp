@@ -62,6 +62,7 @@ void add_complete(CLI::App& app, Chosen& chosen);
 void add_write(CLI::App& app, Chosen& chosen);
 void add_wiring(CLI::App& app, Chosen& chosen);
 void add_console(CLI::App& app, Chosen& chosen);
+void add_mcp(CLI::App& app, Chosen& chosen);
 void add_bench(CLI::App& app, Chosen& chosen);
 
 }  // namespace saphira::cli

@@ -12,12 +12,13 @@ namespace saphira::cli {
 
 namespace {
 
-/// The program in our place, with the bus that was asked for here.
-int console(const bus::NodeOptions& options, const std::vector<std::string>& arguments) {
+/// Another program in our place, with the bus that was asked for here.
+int become(const std::string& program, const bus::NodeOptions& options,
+           const std::vector<std::string>& arguments) {
   for (const auto& [name, value] : as_environment(options))
     if (!value.empty())
       setenv(name.c_str(), value.c_str(), 1);
-  std::vector<std::string> words{program_folder() + "/saphira-console"};
+  std::vector<std::string> words{program_folder() + "/" + program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words)
@@ -27,18 +28,32 @@ int console(const bus::NodeOptions& options, const std::vector<std::string>& arg
   throw std::system_error(errno, std::generic_category(), words[0]);
 }
 
+/// A command that is a program of its own; its options are its own, too.
+void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* summary,
+                 const std::string& footer) {
+  CLI::App* command = app.add_subcommand(name, summary);
+  command->allow_extras();
+  const std::string program = std::string("saphira-") + name;
+  command->footer("What it takes: " + program + " --help. " + footer);
+  command->callback([command, program, &chosen] {
+    chosen.run = [program, rest = command->remaining()](const bus::NodeOptions& options,
+                                                        const bus::Stop&) {
+      return become(program, options, rest);
+    };
+  });
+}
+
 }  // namespace
 
 void add_console(CLI::App& app, Chosen& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "console", "See the robot think and drive it, in a browser; or --screenshot FILE");
-  command->allow_extras();
-  command->footer("What it takes: saphira-console --help. Deployments such as demo start one.");
-  command->callback([command, &chosen] {
-    chosen.run = [rest = command->remaining()](const bus::NodeOptions& options, const bus::Stop&) {
-      return console(options, rest);
-    };
-  });
+  add_program(app, chosen, "console",
+              "See the robot think and drive it, in a browser; or --screenshot FILE",
+              "Deployments such as demo start one.");
+}
+
+void add_mcp(CLI::App& app, Chosen& chosen) {
+  add_program(app, chosen, "mcp", "Let a language model send the robot (Model Context Protocol)",
+              "A client such as a desktop assistant starts it, and ends it.");
 }
 
 }  // namespace saphira::cli

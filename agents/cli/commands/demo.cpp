@@ -41,11 +41,11 @@ using std::chrono::milliseconds;
 /// past the cupboards of the corridor, the pillar and the crate.
 constexpr double kGoalX = 16.0;
 constexpr double kGoalY = 1.0;
-constexpr double kTimeLimit = 180.0;  ///< [s] of robot time
-constexpr double kPatience = 20.0;    ///< [s] of wall time without any news
+constexpr double kTimeLimit = 180.0;    ///< [s] of robot time
+constexpr double kNewsPatience = 20.0;  ///< [s] of wall time without any news
 constexpr std::size_t kKeptLines = 60;
 
-struct Options {
+struct DemoOptions {
   bool headless = false;
   bool lockstep = false;
   bool single_process = false;
@@ -60,11 +60,11 @@ struct Options {
 };
 
 /// The console is for people: what is measured, or has nobody before it, goes without.
-bool has_console(const Options& options) {
+bool has_console(const DemoOptions& options) {
   return !options.headless && !options.json && !options.lockstep && !options.single_process;
 }
 
-std::vector<ChildSpec> programs(const Options& options, const bus::NodeOptions& node,
+std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptions& node,
                                 const std::string& run, const std::string& trace) {
   Places places = find_places();
   places.run = run;
@@ -324,7 +324,7 @@ class Screen {
 
 class Demo {
  public:
-  Demo(const Options& options, const bus::NodeOptions& node_options)
+  Demo(const DemoOptions& options, const bus::NodeOptions& node_options)
       : options_(options),
         node_options_(own_bus(node_options, "demo")),
         trace_(options.trace.empty() ? folder_.path() + "/trace.csv" : options.trace),
@@ -454,9 +454,9 @@ class Demo {
   }
 
   bool gave_up(Clock::time_point last_news, const Processes& processes) {
-    if (seconds_since(last_news) < kPatience)
+    if (seconds_since(last_news) < kNewsPatience)
       return false;
-    trouble_ = "nothing was heard for " + std::to_string(static_cast<int>(kPatience)) +
+    trouble_ = "nothing was heard for " + std::to_string(static_cast<int>(kNewsPatience)) +
                " s: " + who_is_there(node_options_, processes);
     return true;
   }
@@ -504,7 +504,7 @@ class Demo {
     return summary.arrived && !crashed ? bus::kExitOk : bus::kExitFailed;
   }
 
-  Options options_;
+  DemoOptions options_;
   bus::NodeOptions node_options_;
   RunFolder folder_;
   std::string trace_;
@@ -521,7 +521,7 @@ class Demo {
 }  // namespace
 
 void add_demo(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DemoOptions>();
   CLI::App* command = app.add_subcommand("demo", "A simulated robot drives to a goal in an office");
   command->add_flag("--headless", options->headless, "lines in place of the picture");
   command->add_option("--seed", options->seed, "of the simulator's noise")->capture_default_str();

@@ -15,8 +15,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kPatience = 10.0;   ///< [s] a request is given up by the bridge after 5
-constexpr double kAnswerTime = 1.0;  ///< [s] for what hangs on a serial port
+constexpr double kDevicePatience = 10.0;  ///< [s] a request is given up by the bridge after 5
+constexpr double kAnswerTime = 1.0;       ///< [s] for what hangs on a serial port
 
 /// The robot's devices as they are on the bus.
 class Watch {
@@ -50,7 +50,7 @@ int nobody(const bus::NodeOptions& options, const Watch& watch) {
   return bus::kExitFailed;
 }
 
-int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+int list_devices(const bus::NodeOptions& options, const bus::Stop& stop) {
   Watch watch(options);
   const auto began = Clock::now();
   // The devices are latched: they come with the discovery, as the state does.
@@ -122,7 +122,7 @@ int ask(const DeviceCommand& command, const bus::NodeOptions& options, const bus
   auto serial = watch.node.reader(bus::topics::kSerialData);
   bus::RequestClient bridge(watch.node, *command.topic, "saphira device");
   const v1::Answer answer =
-      bridge.ask(to_bus(command.request), kPatience, &stop, [&] { watch.poll(); });
+      bridge.ask(to_bus(command.request), kDevicePatience, &stop, [&] { watch.poll(); });
   if (answer.code() == v1::ANSWER_NOBODY && answer.service().empty())
     return nobody(options, watch);
   if (answer.code() == v1::ANSWER_TOO_LATE && answer.service().empty()) {
@@ -141,7 +141,7 @@ int ask(const DeviceCommand& command, const bus::NodeOptions& options, const bus
 int device(const std::vector<std::string>& words, const bus::NodeOptions& options,
            const bus::Stop& stop) {
   if (words.empty() || words == std::vector<std::string>{"list"})
-    return list(options, stop);
+    return list_devices(options, stop);
   if (words == std::vector<std::string>{"follow"})
     return follow(options, stop);
   try {

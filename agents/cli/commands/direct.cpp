@@ -168,14 +168,14 @@ int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
   return code;
 }
 
-struct Options {
+struct DirectOptions {
   double value = 0.0;
   double speed = 0.0;
   double seconds = 0.0;
 };
 
 CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, const char* help,
-              const char* value, const std::shared_ptr<Options>& options) {
+              const char* value, const std::shared_ptr<DirectOptions>& options) {
   CLI::App* command = app.add_subcommand(name, help);
   command->add_option("value", options->value, value)->required()->check(CLI::Number);
   command->footer(
@@ -199,15 +199,15 @@ CLI::App* add(CLI::App& app, Chosen& chosen, Move::Kind kind, const char* name, 
 }  // namespace
 
 void add_direct(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::move, "move", "Drive so far straight on, and say when it is done",
       "METERS, below 0: back", options)
       ->add_option("--speed", options->speed, "[m/s] at most")
       ->check(above_zero());
-  options = std::make_shared<Options>();
+  options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::turn, "turn", "Turn on the spot, and say when it is done",
       "DEGREES to the left, below 0: to the right", options);
-  options = std::make_shared<Options>();
+  options = std::make_shared<DirectOptions>();
   add(app, chosen, Move::Kind::speed, "speed", "Drive at a speed, until Ctrl-C", "METERS a second",
       options)
       ->add_option("--for", options->seconds, "[s] so long")

@@ -25,7 +25,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPeriod{50};     ///< of the commands; the bridge's lease is 300 ms
-constexpr int kReleases = 4;            ///< of the last word: the topic is best effort
+constexpr int kDriveReleases = 4;       ///< of the last word: the topic is best effort
 constexpr double kHandBackLimit = 5.0;  ///< [s]
 constexpr double kRefused = 0.4;      ///< [s] since the bridge has refused a command: it still does
 constexpr double kTellRefusal = 2.0;  ///< [s] that the reason is shown
@@ -248,7 +248,7 @@ class Teleop {
         return;
       case DriveKey::hand_back:
         keys_.release();
-        hand_backs_left_ = kReleases;
+        hand_backs_left_ = kDriveReleases;
         drove_ = true;
         note_ = "handed back: autonomy may drive";
         return;
@@ -277,7 +277,7 @@ class Teleop {
     goal.functor("drive");
     goal.arguments({bus::number("speed", kConstantVelocity)});
     constant_ = goals_.ask(goal);
-    hand_backs_left_ = kReleases;
+    hand_backs_left_ = kDriveReleases;
     drove_ = true;
     note_ = "constant velocity on: the behaviors drive, avoiding what is in the way";
   }
@@ -418,7 +418,7 @@ class Teleop {
   void finish() {
     keys_.release();
     joystick_.stick().lost();
-    for (int i = 0; drove_ && i < kReleases; ++i) {
+    for (int i = 0; drove_ && i < kDriveReleases; ++i) {
       send();
       node_.wait(milliseconds(20));
     }

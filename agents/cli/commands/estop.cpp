@@ -10,10 +10,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kAgain{20};  ///< between two commands: the topic is best effort
-constexpr double kPatience = 2.0;   ///< [s] then it is said that nothing confirms
+constexpr milliseconds kAgain{20};        ///< between two commands: the topic is best effort
+constexpr double kConfirmPatience = 2.0;  ///< [s] then it is said that nothing confirms
 constexpr double kResetLimit = 5.0;
-constexpr int kReleases = 4;
+constexpr int kStopReleases = 4;
 
 /// A stop button of the terminal.
 class Button {
@@ -35,7 +35,7 @@ class Button {
       poll();
       if (grant_ && grant_->estopped()) {
         // Latched: the bridge holds it without us. Let go, so that it can be reset.
-        for (int i = 0; i < kReleases; ++i) {
+        for (int i = 0; i < kStopReleases; ++i) {
           write(false);
           node_.wait(milliseconds(5));
         }
@@ -43,7 +43,7 @@ class Button {
               node_.options().robot.c_str(), latched(*grant_).c_str(), seconds_since(began_));
         return bus::kExitOk;
       }
-      if (seconds_since(began_) < told + kPatience)
+      if (seconds_since(began_) < told + kConfirmPatience)
         continue;
       told = seconds_since(began_);
       complain(

@@ -15,7 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-struct Options {
+struct GoalOptions {
   std::vector<std::string> words;
   int priority = 0;
   double deadline = 0.0;
@@ -100,7 +100,7 @@ void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::
     complain("saphira: %s still drives; saphira estop stops the robot\n", driver.c_str());
 }
 
-int ask(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
   v1::Goal goal;
   try {
     goal = parse_request(options.words);
@@ -169,7 +169,8 @@ int ask(const Options& options, const bus::NodeOptions& node_options, const bus:
   }
 }
 
-int cancel(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+int cancel(const GoalOptions& options, const bus::NodeOptions& node_options,
+           const bus::Stop& stop) {
   const auto id = options.words.size() == 2 ? bus::parse_goal_id(options.words[1]) : std::nullopt;
   if (!id) {
     std::cerr << "saphira: expected goal cancel ID, such as 1f3a:2 (saphira goal list)"
@@ -202,7 +203,7 @@ int cancel(const Options& options, const bus::NodeOptions& node_options, const b
   return bus::kExitFailed;
 }
 
-int list(const bus::NodeOptions& node_options, const bus::Stop& stop) {
+int list_goals(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   bus::Node node(node_options);
   Processes processes(node);
   DeploymentWatch deployments(node, processes);
@@ -223,7 +224,7 @@ int list(const bus::NodeOptions& node_options, const bus::Stop& stop) {
   return bus::kExitOk;
 }
 
-const char* describe(v1::ParameterKind kind) {
+const char* kind_word(v1::ParameterKind kind) {
   switch (kind) {
     case v1::PARAMETER_ANY:
       return "anything";
@@ -237,11 +238,11 @@ const char* describe(v1::ParameterKind kind) {
   return "?";
 }
 
-void print(const v1::ActivitySchema& schema) {
+void print_schema(const v1::ActivitySchema& schema) {
   std::printf("%s  %s%s%s\n", schema.name().c_str(), schema.summary().c_str(),
               schema.source().empty() ? "" : "  ", schema.source().c_str());
   for (const v1::ActivityParameter& parameter : schema.parameters()) {
-    std::printf("  %s  %s", parameter.name().c_str(), describe(parameter.kind()));
+    std::printf("  %s  %s", parameter.name().c_str(), kind_word(parameter.kind()));
     if (parameter.kind() == v1::PARAMETER_NUMBER && parameter.low() < parameter.high())
       std::printf(", %g to %g", parameter.low(), parameter.high());
     if (!parameter.unit().empty())
@@ -253,7 +254,8 @@ void print(const v1::ActivitySchema& schema) {
 }
 
 /// What can be asked for.
-int schemas(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
+            const bus::Stop& stop) {
   if (options.words.size() > 2) {
     std::cerr << "saphira: expected goal schemas [FUNCTOR]\n";
     return bus::kExitUsage;
@@ -277,7 +279,7 @@ int schemas(const Options& options, const bus::NodeOptions& node_options, const 
   for (const v1::ActivitySchema& schema : known->schemas()) {
     if (options.words.size() == 2 && schema.name() != options.words[1])
       continue;
-    print(schema);
+    print_schema(schema);
     any = true;
   }
   if (!known->trouble().empty())
@@ -290,7 +292,7 @@ int schemas(const Options& options, const bus::NodeOptions& node_options, const 
 }  // namespace
 
 void add_goal(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GoalOptions>();
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
   command->add_option("words", options->words,
                       "go X Y [m, in odom] | go PLACE | drive SPEED | turn DEGREES | stop | "
@@ -309,7 +311,7 @@ void add_goal(CLI::App& app, Chosen& chosen) {
       if (!options->words.empty() && options->words[0] == "cancel")
         return cancel(*options, node, stop);
       if (options->words == std::vector<std::string>{"list"})
-        return list(node, stop);
+        return list_goals(node, stop);
       if (!options->words.empty() && options->words[0] == "schemas")
         return schemas(*options, node, stop);
       return ask(*options, node, stop);

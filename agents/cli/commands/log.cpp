@@ -12,8 +12,8 @@ namespace saphira::cli {
 
 namespace {
 
-constexpr double kPatience = 3.0;  ///< [s] for the first line
-constexpr double kQuiet = 0.7;     ///< [s] after the last one all that was said before has come
+constexpr double kLogPatience = 3.0;  ///< [s] for the first line
+constexpr double kQuiet = 0.7;        ///< [s] after the last one all that was said before has come
 
 std::string clock_time(std::int64_t time_ns) {
   const std::time_t seconds = time_ns / 1'000'000'000;
@@ -26,7 +26,7 @@ std::string clock_time(std::int64_t time_ns) {
   return text.data();
 }
 
-std::string line_of(const v1::LogRecord& record) {
+std::string record_line(const v1::LogRecord& record) {
   return clock_time(record.time_ns()) + "  " + name_of(record.level()) + "  " + record.name() +
          "  " + record.text() + "\n";
 }
@@ -38,11 +38,11 @@ int newest(std::uint64_t count, const bus::NodeOptions& options, const bus::Stop
   std::multimap<std::int64_t, std::string> lines;  // by time: each program tells its own in order
   const auto began = Clock::now();
   auto came = began;
-  while (!stop.requested() && seconds_since(began) < kPatience &&
+  while (!stop.requested() && seconds_since(began) < kLogPatience &&
          (lines.empty() || seconds_since(came) < kQuiet)) {
     for (const auto& sample : reader.take())
       if (!sample.info.disposed) {
-        lines.emplace(sample.data.time_ns(), line_of(sample.data));
+        lines.emplace(sample.data.time_ns(), record_line(sample.data));
         came = Clock::now();
       }
     node.wait(std::chrono::milliseconds(50), &stop);
@@ -63,7 +63,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
   while (!stop.requested()) {
     for (const auto& sample : reader.take())
       if (!sample.info.disposed)
-        std::cout << line_of(sample.data);
+        std::cout << record_line(sample.data);
     std::cout.flush();
     if (!std::cout)
       return bus::kExitOk;

@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 /// period of 250 ms and its round trips.
 constexpr milliseconds kDiscovery{1000};
 
-std::string describe(const bus::EndpointEntry& endpoint) {
+std::string describe_endpoint(const bus::EndpointEntry& endpoint) {
   std::string text = endpoint.program.empty() ? "?" : endpoint.program;
   if (endpoint.pid != 0)
     text += "[" + std::to_string(endpoint.pid) + "]";
@@ -39,7 +39,7 @@ std::string qos_of(const bus::EndpointEntry& endpoint) {
   return text;
 }
 
-int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+int list_topics(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   const bus::Census census(node);
   const auto end = Clock::now() + kDiscovery;
@@ -58,14 +58,15 @@ int list(const bus::NodeOptions& options, const bus::Stop& stop) {
           qos = entry.qos;
       std::cout << topic << "  " << endpoint.type << "  (" << qos << ")\n";
     }
-    std::cout << (endpoint.writer ? "  writer  " : "  reader  ") << describe(endpoint) << "  "
-              << endpoint.robot << "  " << qos_of(endpoint)
+    std::cout << (endpoint.writer ? "  writer  " : "  reader  ") << describe_endpoint(endpoint)
+              << "  " << endpoint.robot << "  " << qos_of(endpoint)
               << (endpoint.known_type ? "" : "  TYPE " + endpoint.type) << '\n';
   }
   const auto mismatches = census.mismatches();
   for (const bus::Mismatch& mismatch : mismatches)
-    std::cout << "MISMATCH on " << mismatch.writer.topic << ": " << describe(mismatch.writer)
-              << " is not heard by " << describe(mismatch.reader) << ": " << mismatch.why << '\n';
+    std::cout << "MISMATCH on " << mismatch.writer.topic << ": "
+              << describe_endpoint(mismatch.writer) << " is not heard by "
+              << describe_endpoint(mismatch.reader) << ": " << mismatch.why << '\n';
   if (!any) {
     std::cout << "nobody is on the bus\n";
     return bus::kExitFailed;
@@ -117,7 +118,7 @@ int echo(const std::string& topic, std::uint64_t count, double timeout,
 
 void add_list(CLI::App& app, Chosen& chosen) {
   app.add_subcommand("list", "Topics, types, writers and readers with their QoS, and mismatches")
-      ->callback([&chosen] { chosen.run = list; });
+      ->callback([&chosen] { chosen.run = list_topics; });
 }
 
 void add_echo(CLI::App& app, Chosen& chosen) {

@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
         cli::add_stop(app, chosen);
         cli::add_renew(app, chosen);
         cli::add_console(app, chosen);
+        cli::add_mcp(app, chosen);
         cli::add_security(app, chosen);
         cli::add_estop(app, chosen);
         cli::add_status(app, chosen);
@@ -97,9 +98,11 @@ int main(int argc, char** argv) {
         app.add_subcommand("help", "This text; with a command's name: what that takes")
             ->add_option("command", about, "name of a command");
         // --robot and the like may stand behind the subcommand as well.
-        // (Those of a benchmark and of the console are their own.)
-        for (CLI::App* command : app.get_subcommands({}))
-          command->fallthrough(command->get_name() != "bench" && command->get_name() != "console");
+        // (Programs of their own have options of their own.)
+        for (CLI::App* command : app.get_subcommands({})) {
+          const std::string name = command->get_name();
+          command->fallthrough(name != "bench" && name != "console" && name != "mcp");
+        }
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
         if (chosen.run) {

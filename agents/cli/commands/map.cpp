@@ -24,8 +24,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kPatience = 5.0;  ///< [s] for the map, and for an answer
-constexpr double kAllHeard = 0.5;  ///< [s] until every program of this robot has been found
+constexpr double kMapPatience = 5.0;  ///< [s] for the map, and for an answer
+constexpr double kAllHeard = 0.5;     ///< [s] until every program of this robot has been found
 
 /// The map and the robot on it as they are on the bus.
 class View {
@@ -61,7 +61,7 @@ class View {
   /// Waits until the map is there, and the registration where it is asked for.
   bool wait_for_map(const bus::Stop& stop, bool and_registration = true) {
     const auto began = Clock::now();
-    while (!stop.requested() && seconds_since(began) < kPatience) {
+    while (!stop.requested() && seconds_since(began) < kMapPatience) {
       poll();
       if (sample && (registration || !and_registration) && seconds_since(began) >= kAllHeard) {
         deployments.settle(stop);
@@ -321,7 +321,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
 /// Asks registration and waits for its answer; says what came, and what did not.
 bool ask(View& view, const Request& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
   const v1::Answer answer =
-      view.registration_client.ask(to_bus(asked), kPatience, &stop, [&] { view.poll(); });
+      view.registration_client.ask(to_bus(asked), kMapPatience, &stop, [&] { view.poll(); });
   if (answer.service().empty()) {
     std::cerr << "saphira: registration did not answer; " << who_is_there(options, view.processes)
               << '\n';

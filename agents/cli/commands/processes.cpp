@@ -14,10 +14,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kListen{1300};  // the status comes once a second
-constexpr double kPatience = 4.0;      // [s] for an answer
+constexpr milliseconds kProcessesListen{1300};  // the status comes once a second
+constexpr double kAnswerPatience = 4.0;         // [s] for an answer
 
-struct Options {
+struct ProcessesOptions {
   std::vector<std::string> words;
   std::uint32_t cycles = 0;
 };
@@ -61,10 +61,10 @@ class Watch {
   std::map<std::uint64_t, v1::ProcessSet> services_;
 };
 
-int list(const bus::NodeOptions& options, const bus::Stop& stop) {
+int list_processes(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Watch watch(node);
-  watch.listen(kListen, stop);
+  watch.listen(kProcessesListen, stop);
   const std::string text = processes_table(watch.services());
   if (text.empty()) {
     std::cerr << "saphira: no service tells its processes; "
@@ -75,7 +75,7 @@ int list(const bus::NodeOptions& options, const bus::Stop& stop) {
   return bus::kExitOk;
 }
 
-int ask(const Options& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
+int ask(const ProcessesOptions& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Watch watch(node);
   bus::RequestClient services(node, bus::topics::kProcessRequest, "saphira processes");
@@ -85,7 +85,7 @@ int ask(const Options& asked, const bus::NodeOptions& options, const bus::Stop& 
   request.arguments({bus::text("process", asked.words[2])});
   if (asked.words[0] == "suspend")
     request.arguments().push_back(bus::number("cycles", asked.cycles));
-  const v1::Answer answer = services.ask(request, kPatience, &stop, [&] { watch.poll(); });
+  const v1::Answer answer = services.ask(request, kAnswerPatience, &stop, [&] { watch.poll(); });
   if (bus::well(answer.code())) {
     // Its state is told in the cycle after that.
     watch.listen(milliseconds(300), stop);
@@ -106,10 +106,11 @@ int ask(const Options& asked, const bus::NodeOptions& options, const bus::Stop& 
   return bus::kExitFailed;
 }
 
-int processes(const Options& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
+int processes(const ProcessesOptions& asked, const bus::NodeOptions& options,
+              const bus::Stop& stop) {
   const auto& words = asked.words;
   if (words.empty())
-    return list(options, stop);
+    return list_processes(options, stop);
   const bool action = words[0] == "interrupt" || words[0] == "resume" || words[0] == "suspend";
   if (!action || words.size() != 3) {
     std::cerr << "saphira: expected processes, or processes interrupt | resume | suspend SERVICE "
@@ -122,7 +123,7 @@ int processes(const Options& asked, const bus::NodeOptions& options, const bus::
 }  // namespace
 
 void add_processes(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ProcessesOptions>();
   CLI::App* command =
       app.add_subcommand("processes", "The micro-tasks of the services: list, interrupt, resume");
   command->add_option("words", options->words, "interrupt | resume | suspend SERVICE PROCESS");

@@ -58,7 +58,7 @@ RunFolder::RunFolder(const std::string& name) {
     throw std::runtime_error("this deployment is running already: " + path_ +
                              "/lock is held; saphira stop ends it");
   const std::string pid = std::to_string(getpid());
-  if (ftruncate(lock_, 0) != 0 || write(lock_, pid.data(), pid.size()) < 0)
+  if (ftruncate(lock_, 0) != 0 || ::write(lock_, pid.data(), pid.size()) < 0)
     throw std::runtime_error(path_ + "/lock cannot be written");
 }
 
@@ -97,7 +97,7 @@ RunningDemo::RunningDemo(const std::string& robot, unsigned domain) {
   path_ = folder + "/" + robot;
   lock_ = lock(path_);
   const std::string text = robot + " " + std::to_string(domain) + "\n";
-  if (lock_ < 0 || ftruncate(lock_, 0) != 0 || write(lock_, text.data(), text.size()) < 0)
+  if (lock_ < 0 || ftruncate(lock_, 0) != 0 || ::write(lock_, text.data(), text.size()) < 0)
     throw std::runtime_error(path_ + " cannot be written");
 }
 
@@ -153,7 +153,7 @@ void ProgramLocks::hold(const std::string& program, const std::string& robot, un
                              ": stop that one, or take another --robot or --domain");
   }
   locks_.push_back(file);
-  if (ftruncate(file, 0) != 0 || write(file, holder.data(), holder.size()) < 0)
+  if (ftruncate(file, 0) != 0 || ::write(file, holder.data(), holder.size()) < 0)
     throw std::runtime_error(path + " cannot be written");
 }
 

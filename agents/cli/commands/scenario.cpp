@@ -30,7 +30,7 @@ using std::chrono::milliseconds;
 constexpr std::size_t kKeptLines = 40;
 constexpr double kStart = 60.0;  // [s] for the programs to be there
 
-struct Options {
+struct ScenarioOptions {
   std::vector<std::string> casts{"introduction"};
   std::uint64_t seed = 1;
   std::uint64_t seeds = 1;
@@ -104,7 +104,7 @@ Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Pla
   return deployment;
 }
 
-std::vector<ChildSpec> programs(const Options& options, const Run& run,
+std::vector<ChildSpec> programs(const ScenarioOptions& options, const Run& run,
                                 const bus::NodeOptions& node) {
   const Places places = places_of(run);
   std::vector<ChildSpec> children =
@@ -116,7 +116,7 @@ std::vector<ChildSpec> programs(const Options& options, const Run& run,
 }
 
 /// All of it in one process, with the people.
-std::vector<ChildSpec> one_program(const Options& options, const Run& run,
+std::vector<ChildSpec> one_program(const ScenarioOptions& options, const Run& run,
                                    const bus::NodeOptions& node) {
   const Places places = places_of(run);
   Deployment deployment = deployment_of(run, node, places);
@@ -136,8 +136,8 @@ std::vector<ChildSpec> one_program(const Options& options, const Run& run,
   return children;
 }
 
-Ending play_live(const Options& options, const Run& run, const bus::NodeOptions& node_options,
-                 const bus::Stop& stop) {
+Ending play_live(const ScenarioOptions& options, const Run& run,
+                 const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Kept kept;
   Supervisor supervisor(
       programs(options, run, node_options),
@@ -173,8 +173,8 @@ Ending play_live(const Options& options, const Run& run, const bus::NodeOptions&
           said};
 }
 
-Ending play_in_lockstep(const Options& options, const Run& run, const bus::NodeOptions& node,
-                        const bus::Stop& stop) {
+Ending play_in_lockstep(const ScenarioOptions& options, const Run& run,
+                        const bus::NodeOptions& node, const bus::Stop& stop) {
   Kept kept;
   Ending ending;
   std::string said;
@@ -236,7 +236,7 @@ void write_audio(const std::string& folder, const std::string& said, const bus::
     kept.show("saphira-speech wrote no sound");
 }
 
-Ending play(const Options& options, const std::string& cast, std::uint64_t seed,
+Ending play(const ScenarioOptions& options, const std::string& cast, std::uint64_t seed,
             const bus::NodeOptions& node, const bus::Stop& stop) {
   const RunFolder folder;
   const Run run{cast, seed, folder.path()};
@@ -297,7 +297,7 @@ class Sum {
   Fnv1a driven_;
 };
 
-int scenario(const Options& options, const bus::NodeOptions& given, const bus::Stop& stop) {
+int scenario(const ScenarioOptions& options, const bus::NodeOptions& given, const bus::Stop& stop) {
   std::vector<std::string> casts;
   for (const std::string& name : options.casts) {
     casts.push_back(find_file(config_folder() + "/people", name, ".people"));
@@ -325,7 +325,7 @@ int scenario(const Options& options, const bus::NodeOptions& given, const bus::S
 }  // namespace
 
 void add_scenario(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ScenarioOptions>();
   CLI::App* command = app.add_subcommand(
       "scenario",
       "A robot follows its supervisor through an office, is told who is where, and gets a report");

@@ -30,7 +30,7 @@ std::string user() {
   return name == nullptr || *name == '\0' ? "somebody" : name;
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string words_in_line(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words)
     text += (text.empty() ? "" : " ") + word;
@@ -68,7 +68,7 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
   utterance.id().writer(node.instance());
   utterance.id().number(1);
   utterance.speaker(say_options.speaker.empty() ? user() : say_options.speaker);
-  utterance.text(joined(say_options.words));
+  utterance.text(words_in_line(say_options.words));
   utterance.means(v1::UTTERANCE_TYPED);
   utterance.confidence(1.0);
   utterance.time(

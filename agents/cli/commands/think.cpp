@@ -16,8 +16,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kPatience = 3.0;     // [s] for the first word
-constexpr milliseconds kOthers{300};  // for programs that are heard after the services
+constexpr double kMindPatience = 3.0;  // [s] for the first word
+constexpr milliseconds kOthers{300};   // for programs that are heard after the services
 
 struct WatchOptions {
   bool once = false;
@@ -49,7 +49,7 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
   while (!stop.requested() && !text) {
     mind.listen(milliseconds(50), stop);
     text = draw(mind);
-    if (!text && seconds_since(began) > kPatience)
+    if (!text && seconds_since(began) > kMindPatience)
       return nobody(options, mind, what);
   }
   if (!watch.live() && text) {
@@ -198,7 +198,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
     const double waited = seconds_since(began);
     if (!past) {
       cycle = mind.newest_cycle();
-      if ((mind.whole(cycle) && mind.knows_goals()) || waited > kPatience)
+      if ((mind.whole(cycle) && mind.knows_goals()) || waited > kMindPatience)
         break;
       if (mind.whole(cycle) && waited > 1.0)
         break;
@@ -212,7 +212,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
       cycle = known.second - static_cast<std::uint64_t>(-why_options.cycle);
     if (cycle != 0 && mind.whole(cycle) && (mind.knows_goals() || waited > 1.0))
       break;
-    if (waited > kPatience && seconds_since(grown) > 1.0)
+    if (waited > kMindPatience && seconds_since(grown) > 1.0)
       break;
   }
   if (stop.requested())
@@ -273,7 +273,7 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
   const v1::BeliefClaim sample = claim_of(name);
   const auto began = Clock::now();
   bool taken_back = false;
-  while (!stop.requested() && seconds_since(began) < kPatience) {
+  while (!stop.requested() && seconds_since(began) < kMindPatience) {
     mind.listen(milliseconds(300), stop);
     if (mind.beliefs() == nullptr)
       continue;
@@ -327,7 +327,7 @@ int claim(const std::string& name, const std::string& value, bool hold,
       }
       return bus::kExitOk;
     }
-    if (seconds_since(began) > kPatience) {
+    if (seconds_since(began) > kMindPatience) {
       std::cerr << "saphira: nobody has taken it for true (saphira log says why); "
                 << who_is_there(options, mind.processes()) << '\n';
       return bus::kExitFailed;

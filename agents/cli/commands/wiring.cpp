@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 /// The status comes once a second.
 constexpr milliseconds kListen{1300};
 
-struct Options {
+struct WiringOptions {
   bool table = false;
   std::string drawing;
 };
@@ -31,7 +31,8 @@ void find_trouble(std::vector<runtime::Unit>& units, const std::vector<SeenProce
   }
 }
 
-int wiring(const Options& options, const bus::NodeOptions& node_options, const bus::Stop& stop) {
+int wiring(const WiringOptions& options, const bus::NodeOptions& node_options,
+           const bus::Stop& stop) {
   std::vector<runtime::Unit> units = system::units();
   if (options.table) {
     std::fputs(runtime::wiring_table(units).c_str(), stdout);
@@ -66,7 +67,7 @@ int wiring(const Options& options, const bus::NodeOptions& node_options, const b
 }  // namespace
 
 void add_wiring(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WiringOptions>();
   CLI::App* command =
       app.add_subcommand("wiring", "Which program writes which topic and which reads it");
   command->add_option("--draw", options->drawing, "as a drawing (SVG) into this file");

@@ -28,7 +28,7 @@ constexpr double kNobodyReads = 3.0;  ///< [s]
 constexpr double kAnswer = 20.0;      ///< [s] for an answer to a request
 constexpr int kDelivered = 2000;      ///< [ms]
 
-struct Options {
+struct WriteOptions {
   std::string topic;
   std::string json;
   double seconds = 0.0;
@@ -97,7 +97,7 @@ v1::MotorCommand motor_command(const std::string& text) {
 }
 
 /// Drives for as long as it lives: a command is good for a fraction of a second.
-int drive(const Options& options, const bus::Topic<v1::MotorCommand>& topic,
+int drive(const WriteOptions& options, const bus::Topic<v1::MotorCommand>& topic,
           const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Samples samples(options.json);
   // A mistake on the command line moves nothing.
@@ -123,7 +123,7 @@ int drive(const Options& options, const bus::Topic<v1::MotorCommand>& topic,
   return bus::kExitOk;
 }
 
-int ask(const Options& options, const bus::RequestTopic& topic,
+int ask(const WriteOptions& options, const bus::RequestTopic& topic,
         const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Samples samples(options.json);
   bus::Node node(node_options);
@@ -160,7 +160,7 @@ std::string completed(const std::string& topic, const std::string& text, const b
 }
 
 /// What is declared (goals, latched) holds until Ctrl-C; what happens once is written once.
-int tell(const Options& options, const std::string& qos, const bus::NodeOptions& node_options,
+int tell(const WriteOptions& options, const std::string& qos, const bus::NodeOptions& node_options,
          const bus::Stop& stop) {
   const bool holds = qos == "goal" || qos == "latched";
   Samples samples(options.json);
@@ -199,7 +199,7 @@ int tell(const Options& options, const std::string& qos, const bus::NodeOptions&
   return bus::kExitOk;
 }
 
-int write(const Options& options, const bus::NodeOptions& node, const bus::Stop& stop) {
+int write(const WriteOptions& options, const bus::NodeOptions& node, const bus::Stop& stop) {
   if (const auto unknown = unknown_topic(options.topic)) {
     std::cerr << "saphira: " << *unknown << '\n';
     return bus::kExitUsage;
@@ -227,7 +227,7 @@ int write(const Options& options, const bus::NodeOptions& node, const bus::Stop&
 }  // namespace
 
 void add_write(CLI::App& app, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WriteOptions>();
   CLI::App* command = app.add_subcommand("write", "Write on a topic, as JSON");
   command->add_option("topic", options->topic, "such as drive/direct")->required();
   command

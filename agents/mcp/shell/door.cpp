@@ -1,9 +1,10 @@
 #include "door.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <stdexcept>
 
-#include "saphira/situation/words.hpp"
+#include "saphira/bus/agent.hpp"
+#include "saphira/cli/talk_words.hpp"
 
 namespace saphira::mcp {
 
@@ -11,69 +12,17 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kWait = 20.0;         // [s] that a call waits for the end of its goal, at most
 constexpr double kDeadline = 600.0;    // [s] of a goal that names none
 constexpr std::size_t kMostGoals = 4;  // underway at once
-constexpr double kReply = 10.0;        // [s] for what the robot says
-constexpr double kStill = 0.01;        // [m/s], [rad/s]
+constexpr double kReply = 10.0;        // [s] for what the robot or an agent says
 
-Json object(Json properties, const std::vector<std::string>& required = {}) {
-  return {{"type", "object"},
-          {"properties", properties.is_null() ? Json::object() : std::move(properties)},
-          {"required", required},
-          {"additionalProperties", false}};
-}
-
-Json wait_of(double most) {
-  return {{"type", "number"},
-          {"minimum", 0},
-          {"maximum", most},
-          {"description", "[s] to wait for the end before this answers; 20 where it is not given"}};
-}
-
-std::string tool_name(std::string name) {
-  for (char& c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_')
-      c = '_';
-  return name.substr(0, 64);
-}
-
-Json schema_of(const v1::ActivityParameter& parameter) {
-  const std::string unit = parameter.unit().empty() ? "" : " [" + parameter.unit() + "]";
-  Json json{
-      {"description", parameter.name() + unit +
-                          (parameter.usual().empty() ? "" : "; usually " + parameter.usual())}};
-  switch (parameter.kind()) {
-    case v1::PARAMETER_NUMBER:
-      json["type"] = "number";
-      if (parameter.low() < parameter.high() && std::isfinite(parameter.low()) &&
-          std::isfinite(parameter.high())) {
-        json["minimum"] = parameter.low();
-        json["maximum"] = parameter.high();
-      }
-      break;
-    case v1::PARAMETER_TEXT:
-      json["type"] = "string";
-      break;
-    case v1::PARAMETER_POINT:
-      json = object({{"x", {{"type", "number"}, {"description", "[m]"}}},
-                     {"y", {{"type", "number"}, {"description", "[m]"}}},
-                     {"heading", {{"type", "number"}, {"description", "[rad] counter-clockwise"}}},
-                     {"frame",
-                      {{"type", "string"},
-                       {"enum", {"map", "odom", "robot"}},
-                       {"description",
-                        "of the map; of where the robot began; of the robot: x ahead, y left. "
-                        "robot where it is not given"}}}},
-                    {"x", "y"});
-      break;
-    case v1::PARAMETER_ANY:
-      break;
-  }
-  return json;
+milliseconds seconds_of(double seconds) {
+  return milliseconds(static_cast<int>(1000 * seconds));
 }
 
 v1::Argument argument(const std::string& name, const Json& value) {
+  if (value.is_boolean())
+    return bus::truth(name, value.get<bool>());
   if (value.is_number())
     return bus::number(name, value.get<double>());
   if (value.is_object()) {
@@ -97,88 +46,93 @@ Json json_of(const v1::GoalStatus& status) {
           {"progress", status.progress()}};
 }
 
+Json json_of(const v1::Argument& argument) {
+  switch (argument.kind()) {
+    case v1::ARGUMENT_NUMBER:
+      return argument.number();
+    case v1::ARGUMENT_TEXT:
+      return argument.text();
+    case v1::ARGUMENT_POINT:
+      return {{"x", argument.point().x()},
+              {"y", argument.point().y()},
+              {"heading", argument.point().th()},
+              {"frame", argument.frame() == v1::FRAME_MAP    ? "map"
+                        : argument.frame() == v1::FRAME_ODOM ? "odom"
+                                                             : "robot"}};
+    case v1::ARGUMENT_TRUTH:
+      return argument.number() != 0.0;
+    case v1::ARGUMENT_UNBOUND:
+      break;
+  }
+  return nullptr;
+}
+
+/// What an agent has answered. Several results of one name are a list.
+Result result_of(const v1::Answer& answer) {
+  Json value = Json::object();
+  for (const v1::Argument& result : answer.results()) {
+    Json& place = value[result.name()];
+    if (place.is_null())
+      place = json_of(result);
+    else if (place.is_array())
+      place.push_back(json_of(result));
+    else
+      place = Json::array({place, json_of(result)});
+  }
+  return {cli::line_of(answer), std::move(value), !bus::well(answer.code())};
+}
+
 }  // namespace
 
-Door::Door(bus::Node& node, Session& session, const std::string& who)
+Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who)
     : node_(node),
+      robot_(robot),
       session_(session),
       who_(who),
-      mind_(node, false),
       goals_(node, who),
-      schema_reader_(node.reader(bus::topics::kActivitySchemas)),
+      requests_(node, bus::topics::kSolve, who),
       said_reader_(node.reader(bus::topics::kSaid)),
       heard_writer_(node.writer(bus::topics::kHeard)),
       stop_writer_(node.writer(bus::topics::kDriveEstop)) {
-  take_schemas();
+  session_.set_tools(robot_.tools());
 }
 
-/// A tool for each activity, and those that are always there.
-void Door::take_schemas() {
-  const auto newest = schema_reader_.take_newest();
-  if (!newest && !session_.tools().empty())
-    return;
-  std::vector<Tool> tools{
-      {"robot_status", "Who drives the robot, what is underway, what is missing", object(nullptr),
-       true},
-      {"why", "Why the robot does what it does now, in a sentence and as a tree", object(nullptr),
-       true},
-      {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
-      {"goal", "What became of one goal; waits for its end",
-       object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
-      {"cancel", "Withdraws a goal of yours, or all of them, and says whether the robot stands",
-       object(
-           {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
-       false},
-      {"say",
-       "Says a sentence to the robot, such as: Flakey, go to Karen's office. Answers what the "
-       "robot says",
-       object({{"text", {{"type", "string"}}}}, {"text"}), false},
-      {"emergency_stop", "Stops the robot by the hardest means. Only a person can release it",
-       object(nullptr), false}};
-  if (newest) {
-    schemas_.clear();
-    for (const v1::ActivitySchema& schema : newest->schemas()) {
-      const std::string name = tool_name(schema.name());
-      // The fixed ones have no rivals.
-      if (name.empty() ||
-          std::any_of(tools.begin(), tools.end(), [&](const Tool& t) { return t.name == name; }))
-        continue;
-      Json properties;
-      std::vector<std::string> required;
-      for (const v1::ActivityParameter& parameter : schema.parameters()) {
-        properties[parameter.name()] = schema_of(parameter);
-        if (parameter.required())
-          required.push_back(parameter.name());
-      }
-      properties["wait_s"] = wait_of(kWait);
-      tools.push_back({name, schema.summary(), object(std::move(properties), required), false});
-      schemas_[name] = schema;
-    }
-  }
-  session_.set_tools(std::move(tools));
-}
-
-void Door::turn() {
-  mind_.poll();
+/// What the robot says, and what agents answer.
+void Door::hear() {
   goals_.poll();
-  take_schemas();
   for (const auto& sample : said_reader_.take())
     for (auto& [number, waiting] : waiting_)
       if (waiting.what == Waiting::For::words &&
           sample.data.answers().writer() == node_.instance() &&
-          sample.data.answers().number() == waiting.words) {
+          sample.data.answers().number() == waiting.number) {
         waiting.said += (waiting.said.empty() ? "" : "\n") + sample.data.text();
         if (sample.data.end())
           waiting.until = Clock::now();
       }
+  for (const v1::Answer& answer : requests_.poll())
+    for (auto& [number, waiting] : waiting_)
+      if (waiting.what == Waiting::For::request && waiting.number == answer.number() &&
+          bus::ended(answer.code()))
+        waiting.result = result_of(answer);
+}
+
+void Door::turn() {
+  session_.set_time(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
+  session_.set_tools(robot_.tools());
+  hear();
   for (const std::uint64_t number : session_.take_given_up())
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
       if (found->second.what == Waiting::For::goal && found->second.goal)
         goals_.cancel(*found->second.goal);
       waiting_.erase(found);
     }
-  for (const Call& call : session_.take_calls())
-    begin(call);
+  for (const Call& call : session_.take_calls()) {
+    try {
+      begin(call);
+    } catch (const std::exception& error) {  // the bus did not take it
+      session_.answer(call.number, {std::string("not done: ") + error.what(), nullptr, true});
+    }
+  }
   if (std::any_of(waiting_.begin(), waiting_.end(),
                   [](const auto& each) { return each.second.what == Waiting::For::stop; }))
     press();
@@ -187,48 +141,65 @@ void Door::turn() {
 }
 
 void Door::begin(const Call& call) {
-  if (const auto schema = schemas_.find(call.tool); schema != schemas_.end())
-    return ask(call, schema->second);
   const auto now = Clock::now();
-  if (call.tool == "emergency_stop") {
+  if (const v1::ActivitySchema* const activity = robot_.activity(call.tool)) {
+    ask(call, *activity);
+  } else if (const v1::Capability* const capability = robot_.capability(call.tool)) {
+    request(call, *capability);
+  } else if (call.tool == "emergency_stop") {
     waiting_[call.number] = {.what = Waiting::For::stop, .until = now + std::chrono::seconds(10)};
   } else if (call.tool == "cancel") {
     cancel(call);
   } else if (call.tool == "say") {
-    v1::Utterance utterance;
-    utterance.id().writer(node_.instance());
-    utterance.id().number(++utterances_);
-    utterance.speaker(who_);
-    utterance.text(call.arguments.value("text", ""));
-    utterance.means(v1::UTTERANCE_TYPED);
-    utterance.confidence(1.0);
-    utterance.time(
-        std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
-    heard_writer_.write(utterance);
-    waiting_[call.number] = {.what = Waiting::For::words,
-                             .words = utterances_,
-                             .until = now + milliseconds(static_cast<int>(1000 * kReply))};
+    say(call);
   } else if (call.tool == "goal") {
     const auto id = bus::parse_goal_id(call.arguments.value("goal", ""));
     if (!id || !goals_.status(*id))
       return session_.answer(
           call.number, {"nothing is known of this goal; the tool goals lists them", nullptr, true});
-    waiting_[call.number] = {
-        .goal = id,
-        .until =
-            now + milliseconds(static_cast<int>(1000 * call.arguments.value("wait_s", kWait)))};
-  } else {
-    look(call);
+    waiting_[call.number] = {.goal = id,
+                             .until = now + seconds_of(call.arguments.value("wait_s", kWait))};
+  } else if (call.tool == "goals") {
+    session_.answer(call.number, {goals().dump(), {{"goals", goals()}}, false});
+  } else if (call.tool == "robot_status") {
+    Result result = robot_.status();
+    result.value["goals"] = goals();
+    session_.answer(call.number, result);
+  } else if (call.tool == "why") {
+    session_.answer(call.number, robot_.why());
+  } else {  // it went between the call and now
+    session_.answer(call.number, {"not done: nobody offers this tool now", nullptr, true});
   }
 }
 
-void Door::look(const Call& call) {
-  if (call.tool == "goals")
-    return session_.answer(call.number, {goals().dump(), {{"goals", goals()}}, false});
-  if (call.tool == "robot_status")
-    return session_.answer(call.number, status());
-  const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
-  session_.answer(call.number, {situation::to_text(why), {{"sentence", why.sentence}}, false});
+void Door::say(const Call& call) {
+  v1::Utterance utterance;
+  utterance.id().writer(node_.instance());
+  utterance.id().number(bus::next_request_number());
+  utterance.speaker(who_);
+  utterance.text(call.arguments.value("text", ""));
+  utterance.means(v1::UTTERANCE_TYPED);
+  utterance.confidence(1.0);
+  utterance.time(
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+  heard_writer_.write(utterance);
+  waiting_[call.number] = {.what = Waiting::For::words,
+                           .number = utterance.id().number(),
+                           .until = Clock::now() + seconds_of(kReply)};
+}
+
+/// Asks whichever agent can. A parameter that is not given is what the answer is to say.
+void Door::request(const Call& call, const v1::Capability& capability) {
+  v1::Request request;
+  request.functor(capability.functor());
+  request.deadline(kReply);
+  for (const v1::CapabilityParameter& parameter : capability.parameters())
+    request.arguments().push_back(call.arguments.contains(parameter.name())
+                                      ? argument(parameter.name(), call.arguments[parameter.name()])
+                                      : bus::open(parameter.name()));
+  waiting_[call.number] = {.what = Waiting::For::request,
+                           .number = requests_.send(std::move(request)),
+                           .until = Clock::now() + seconds_of(kReply + 1.0)};
 }
 
 void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
@@ -250,9 +221,7 @@ void Door::ask(const Call& call, const v1::ActivitySchema& schema) {
   const v1::GoalId id = goals_.ask(goal);
   own_.push_back(id);
   waiting_[call.number] = {
-      .goal = id,
-      .until = Clock::now() +
-               milliseconds(static_cast<int>(1000 * call.arguments.value("wait_s", kWait)))};
+      .goal = id, .until = Clock::now() + seconds_of(call.arguments.value("wait_s", kWait))};
 }
 
 void Door::cancel(const Call& call) {
@@ -296,18 +265,26 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
         const auto status = goals_.status(id);
         return !meant || (status && bus::ended(status->state()));
       });
-      if (!late && (!ended || moves()))
+      if (!late && (!ended || robot_.moves()))
         return false;
       const std::string robot =
-          moves() ? "the robot still moves: somebody else may drive it, or it is stopping"
-                  : "the robot stands";
+          robot_.moves() ? "the robot still moves: somebody else may drive it, or it is stopping"
+                         : "the robot stands";
       session_.answer(
           number,
           {std::string(ended ? "withdrawn; " : "withdrawn, and not heard to have ended; ") + robot,
-           {{"ended", ended}, {"moves", moves()}},
+           {{"ended", ended}, {"moves", robot_.moves()}},
            !ended});
       return true;
     }
+    case Waiting::For::request:
+      if (!late && !waiting.result)
+        return false;
+      session_.answer(
+          number, waiting.result.value_or(
+                      Result{"no answer: saphira-facilitator may not run (robot_status says more)",
+                             nullptr, true}));
+      return true;
     case Waiting::For::words:
       if (!late)
         return false;
@@ -318,17 +295,18 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
                        waiting.said.empty()});
       return true;
     case Waiting::For::stop: {
-      const bool latched = mind_.grant() != nullptr && mind_.grant()->estopped();
+      const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();
       if (!late && !latched)
         return false;
       if (latched)
         press();  // lets go, so that a person can release it
       session_.answer(
           number,
-          {latched ? "the emergency stop is latched, pressed by " + mind_.grant()->estop_source() +
+          {latched ? "the emergency stop is latched, pressed by " +
+                         robot_.mind().grant()->estop_source() +
                          "; a person releases it: saphira estop reset"
                    : "NOT CONFIRMED: no bridge has answered; the robot has a switch of its own",
-           {{"latched", latched}, {"moves", moves()}},
+           {{"latched", latched}, {"moves", robot_.moves()}},
            !latched});
       return true;
     }
@@ -339,11 +317,11 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
 /// Says that it presses until the bridge has latched it, and then that it lets go. The topic is
 /// best effort.
 void Door::press() {
-  const bool latched = mind_.grant() != nullptr && mind_.grant()->estopped();
+  const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();
   v1::MotorCommand command;
   command.source(who_);
   for (int i = 0; i < 4; ++i) {
-    command.number(++utterances_);
+    command.number(bus::next_request_number());
     command.active(!latched);
     stop_writer_.write(command);
   }
@@ -370,34 +348,13 @@ Json Door::goals() const {
   return all;
 }
 
-Result Door::status() const {
-  const situation::Situation now = mind_.situation(mind_.newest_cycle(), false);
-  std::string text = situation::driver(now);
-  if (const std::string trouble = situation::trouble(now); !trouble.empty())
-    text += "\n" + trouble;
-  Json value{{"robot", node_.options().robot},
-             {"drive", situation::driver(now)},
-             {"trouble", situation::trouble(now)},
-             {"goals", goals()}};
-  if (const v1::RobotState* const robot = mind_.robot()) {
-    value["pose_in_odom"] = {{"x", robot->pose_in_odom().x()},
-                             {"y", robot->pose_in_odom().y()},
-                             {"heading", robot->pose_in_odom().th()}};
-    value["velocity"] = robot->velocity();
-    value["battery"] = robot->battery();
-  }
-  return {text, value, false};
-}
-
-bool Door::moves() const {
-  const v1::RobotState* const robot = mind_.robot();
-  return robot != nullptr &&
-         (std::abs(robot->velocity()) > kStill || std::abs(robot->rotation_velocity()) > kStill);
-}
-
 void Door::close() {
   for (const v1::GoalId& id : own_)
     goals_.cancel(id);
+}
+
+void Door::close_and_wait() {
+  close();
   if (!own_.empty())
     goals_.delivered(1000);
 }

@@ -13,56 +13,90 @@
 
 namespace saphira::mcp {
 
-/// Carries out the calls of one session on the bus: goals, questions, words, and the emergency
-/// stop. What it asked for ends with it, also when it is killed (Goal.writer_lost).
+constexpr double kWait = 20.0;  ///< [s] that a call waits for the end of its goal, at most
+
+/// The robot as all clients of this program see it: what is on the bus, and the tools that come of
+/// it. For one thread.
+class Robot {
+ public:
+  explicit Robot(bus::Node& node);
+
+  /// Takes what has come on the bus.
+  void poll();
+  const std::vector<Tool>& tools() const { return tools_; }
+  /// What the tool of this name asks for; null: it is none of an activity, of a capability.
+  const v1::ActivitySchema* activity(const std::string& tool) const;
+  const v1::Capability* capability(const std::string& tool) const;
+  const cli::Mind& mind() const { return mind_; }
+  bool moves() const;
+  /// Who drives, what is underway, what is missing.
+  Result status() const;
+  Result why() const;
+
+ private:
+  void make_tools();
+
+  bus::Node& node_;
+  cli::Mind mind_;
+  bus::Reader<v1::ActivitySchemas> schema_reader_;
+  bus::Reader<v1::Agent> agent_reader_;
+  std::vector<v1::ActivitySchema> schemas_;
+  std::map<std::uint64_t, v1::Agent> agents_;
+  std::vector<Tool> tools_;
+  std::map<std::string, v1::ActivitySchema> activities_;  ///< by the tool's name
+  std::map<std::string, v1::Capability> capabilities_;    ///< likewise
+};
+
+/// Carries out the calls of one client on the bus: goals, requests, words, and the emergency stop.
+/// What it asked for ends with it, also when it is killed (Goal.writer_lost).
 class Door {
  public:
-  Door(bus::Node& node, Session& session, const std::string& who);
+  Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
 
-  /// Takes what has come on the bus and from the client. Call after each wait, ten times a second
-  /// at least.
+  /// Takes what has come on the bus and from the client. Call after each wait and Robot::poll, ten
+  /// times a second at least.
   void turn();
-  /// Withdraws every goal of this session, and waits until that is heard.
+  /// Withdraws every goal of this client.
   void close();
+  /// Waits until that is heard, for a second at most.
+  void close_and_wait();
 
  private:
   using Clock = std::chrono::steady_clock;
 
   /// A call that waits for something.
   struct Waiting {
-    enum class For { goal, cancel, words, stop } what = For::goal;
+    enum class For { goal, cancel, request, words, stop } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;
-    std::uint64_t words = 0;  ///< number of the utterance
+    std::uint64_t number = 0;  ///< of the utterance or the request
     Clock::time_point until = {};
     double told = -1.0;  ///< progress
     std::string said = {};
+    std::optional<Result> result = std::nullopt;  ///< of the request
   };
 
-  void take_schemas();
+  void hear();
   void begin(const Call& call);
   void ask(const Call& call, const v1::ActivitySchema& schema);
+  void request(const Call& call, const v1::Capability& capability);
   void cancel(const Call& call);
-  void look(const Call& call);
+  void say(const Call& call);
   bool is_over(std::uint64_t number, Waiting& waiting);
   void press();
   Result outcome(const v1::GoalId& id) const;
-  Result status() const;
   Json goals() const;
-  bool moves() const;
 
   bus::Node& node_;
+  const Robot& robot_;
   Session& session_;
   const std::string who_;
-  cli::Mind mind_;
   bus::GoalClient goals_;
-  bus::Reader<v1::ActivitySchemas> schema_reader_;
+  bus::RequestClient requests_;
   bus::Reader<v1::Utterance> said_reader_;
   bus::Writer<v1::Utterance> heard_writer_;
   bus::Writer<v1::MotorCommand> stop_writer_;
-  std::map<std::string, v1::ActivitySchema> schemas_;  ///< by the tool's name
-  std::map<std::uint64_t, Waiting> waiting_;           ///< by the call
+  std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
   std::vector<v1::GoalId> own_;
-  std::uint64_t utterances_ = 0;
 };
 
 }  // namespace saphira::mcp

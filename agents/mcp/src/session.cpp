@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace saphira::mcp {
 
 namespace {
 
-constexpr std::array kRevisions{"2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05"};
+constexpr std::array kRevisions{Session::kLegacy, "2025-06-18", "2025-03-26", "2024-11-05"};
 constexpr int kParseError = -32700;
 constexpr int kBadRequest = -32600;
 constexpr int kNoMethod = -32601;
 constexpr int kBadParameters = -32602;
+constexpr int kBadHeader = -32020;
+constexpr int kBadVersion = -32022;
+const std::string kMeta = "io.modelcontextprotocol/";
+constexpr std::size_t kMostListeners = 16;
 constexpr std::size_t kDeepest = 16;
 
 bool is_id(const Json& id) {
@@ -88,117 +93,296 @@ std::string misfit(const Json& arguments, const Json& schema) {
   return misfit_at({}, arguments, schema);
 }
 
+Sender sender_of(std::string_view message) {
+  Sender sender;
+  if (message.size() > Session::kLongestLine)
+    return sender;
+  const Json json = Json::parse(message.begin(), message.end(), nullptr, false);
+  if (!json.is_object())
+    return sender;
+  sender.begins = member(json, "method") == "initialize";
+  const Json parameters = member(json, "params");
+  const Json meta = parameters.is_object() ? member(parameters, "_meta") : Json();
+  if (!meta.is_object())
+    return sender;
+  sender.modern = meta.contains(kMeta + "protocolVersion");
+  sender.client = member(meta, (kMeta + "clientInfo").c_str())
+                      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return sender;
+}
+
 void Session::set_tools(std::vector<Tool> tools) {
   std::sort(tools.begin(), tools.end(),
             [](const Tool& a, const Tool& b) { return a.name < b.name; });
   if (tools == tools_)
     return;
   tools_ = std::move(tools);
+  const Json changed{{"jsonrpc", "2.0"}, {"method", "notifications/tools/list_changed"}};
   if (begun_)
-    send({{"jsonrpc", "2.0"}, {"method", "notifications/tools/list_changed"}});
+    send(changed, 0);
+  for (const Request& listener : listeners_) {
+    Json told = changed;
+    told["params"]["_meta"][kMeta + "subscriptionId"] = listener.id;
+    send(told, listener.exchange);
+  }
 }
 
-void Session::reply(const Json& id, Json result) {
-  send({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
+void Session::reply(const Request& request, Json result) {
+  if (request.modern) {
+    result["resultType"] = "complete";
+    result["_meta"][kMeta + "serverInfo"] = {{"name", name_}, {"version", version_}};
+  }
+  send({{"jsonrpc", "2.0"}, {"id", request.id}, {"result", std::move(result)}}, request.exchange,
+       true);
 }
 
-void Session::error(const Json& id, int code, const std::string& text) {
-  send({{"jsonrpc", "2.0"}, {"id", id}, {"error", {{"code", code}, {"message", text}}}});
+void Session::error(const Request& request, int code, const std::string& text, Json data) {
+  Json error{{"code", code}, {"message", text}};
+  if (!data.is_null())
+    error["data"] = std::move(data);
+  Json message{{"jsonrpc", "2.0"}, {"error", std::move(error)}};
+  // A client of the newer era expects no id where none could be read.
+  if (!request.modern || !request.id.is_null())
+    message["id"] = request.id;
+  send(message, request.exchange, true,
+       request.id.is_null() ? 400
+       : !request.modern    ? 200
+       : code == kNoMethod  ? 404
+                            : 400);
 }
 
-void Session::take(std::string_view line) {
-  if (line.find_first_not_of(" \t\r") == std::string_view::npos)
-    return;
-  if (line.size() > kLongestLine)
-    return error(nullptr, kBadRequest,
-                 "a message has at most " + std::to_string(kLongestLine) + " bytes");
+bool Session::take(std::string_view text, std::uint64_t exchange, const Headers* headers) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos && headers == nullptr)
+    return false;
+  Request request{nullptr, exchange, headers != nullptr && headers->version == kModern};
+  const auto wrong = [&](int code, const std::string& why) {
+    error(request, code, why);
+    return true;
+  };
+  if (text.size() > kLongestLine)
+    return wrong(kBadRequest, "a message has at most " + std::to_string(kLongestLine) + " bytes");
   bool deep = false;
   const Json message = Json::parse(
-      line.begin(), line.end(),
+      text.begin(), text.end(),
       [&deep](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
         deep = deep || depth > static_cast<int>(kDeepest);
         return !deep;
       },
       false);
   if (message.is_discarded() || deep)
-    return error(nullptr, kParseError,
-                 deep ? "nested too deeply" : "this is no JSON: one message a line is expected");
+    return wrong(kParseError,
+                 deep ? "nested too deeply" : "this is no JSON: one message is expected");
   const Json method = message.is_object() ? member(message, "method") : Json();
-  const Json id = message.is_object() ? member(message, "id") : Json();
+  if (const Json id = message.is_object() ? member(message, "id") : Json(); is_id(id))
+    request.id = id;
+  const bool has_id = message.is_object() && message.contains("id");
   if (!method.is_string()) {
     // An answer to a request: none was made.
-    if (!message.is_object() || !(message.contains("result") || message.contains("error")))
-      error(is_id(id) ? id : Json(), kBadRequest, "expected a request with a method");
-    return;
+    if (message.is_object() && (message.contains("result") || message.contains("error")))
+      return false;
+    return wrong(kBadRequest, "expected a request with a method");
   }
   Json parameters = member(message, "params");
   if (parameters.is_null())
     parameters = Json::object();
   if (!parameters.is_object())
-    return error(is_id(id) ? id : Json(), kBadParameters, "params: expected an object");
-  if (id.is_null()) {
+    return wrong(kBadParameters, "params: expected an object");
+  if (!has_id || message["id"].is_null()) {
     if (method == "notifications/cancelled")
-      give_up(parameters);
-    return;
+      give_up(parameters, exchange);
+    return false;
   }
-  if (!is_id(id))
-    return error(nullptr, kBadRequest, "id: expected a text or a whole number");
-  request(method, id, parameters);
+  if (request.id.is_null())
+    return wrong(kBadRequest, "id: expected a text or a whole number");
+  const Json meta = member(parameters, "_meta");
+  request.modern = request.modern || (meta.is_object() && meta.contains(kMeta + "protocolVersion"));
+  if (headers != nullptr && !fits(method, request, parameters, *headers))
+    return true;
+  if (request.modern)
+    ask_modern(method, request, parameters);
+  else
+    ask(method, request, parameters);
+  return true;
 }
 
-void Session::request(const std::string& method, const Json& id, const Json& parameters) {
+/// True where the headers say what the message says; else the client is told.
+bool Session::fits(const std::string& method, const Request& request, const Json& parameters,
+                   const Headers& headers) {
+  if (!request.modern) {
+    // Before `initialize` is answered a client cannot know the version.
+    if (headers.version.empty() ||
+        std::find(kRevisions.begin(), kRevisions.end(), headers.version) != kRevisions.end())
+      return true;
+    send({{"jsonrpc", "2.0"},
+          {"id", request.id},
+          {"error",
+           {{"code", kBadRequest},
+            {"message",
+             "MCP-Protocol-Version: there is no version " + headers.version.substr(0, 40)}}}},
+         request.exchange, true, 400);
+    return false;
+  }
+  const auto wrong = [&](const std::string& header, const std::string& found,
+                         const Json& expected) {
+    error(request, kBadHeader,
+          header + ": " + (found.empty() ? "missing" : "\"" + found.substr(0, 70) + "\"") +
+              ", and the message says " + expected.dump().substr(0, 70));
+    return false;
+  };
+  const Json meta = member(parameters, "_meta");
+  const Json version =
+      meta.is_object() ? member(meta, (kMeta + "protocolVersion").c_str()) : Json();
+  if (version.is_string() && version != headers.version)
+    return wrong("MCP-Protocol-Version", headers.version, version);
+  if (method != headers.method)
+    return wrong("Mcp-Method", headers.method, method);
+  if (const Json name = member(parameters, "name");
+      method == "tools/call" && name.is_string() && name != headers.name)
+    return wrong("Mcp-Name", headers.name, name);
+  return true;
+}
+
+void Session::ask(const std::string& method, const Request& request, const Json& parameters) {
   if (method == "initialize") {
     const Json asked = member(parameters, "protocolVersion");
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
     begun_ = true;
-    return reply(id, {{"protocolVersion", known ? asked : Json(kRevisions.front())},
-                      {"capabilities", {{"tools", {{"listChanged", true}}}}},
-                      {"serverInfo", {{"name", name_}, {"version", version_}}},
-                      {"instructions", instructions_}});
+    return reply(request, {{"protocolVersion", known ? asked : Json(kLegacy)},
+                           {"capabilities", {{"tools", {{"listChanged", true}}}}},
+                           {"serverInfo", {{"name", name_}, {"version", version_}}},
+                           {"instructions", instructions_}});
   }
   if (method == "ping")
-    return reply(id, Json::object());
-  if (method == "tools/list") {
-    Json list = Json::array();
-    for (const Tool& tool : tools_)
-      list.push_back(describe(tool));
-    return reply(id, {{"tools", std::move(list)}});
-  }
+    return reply(request, Json::object());
+  if (method == "tools/list")
+    return list_tools(request);
   if (method == "tools/call")
-    return call(id, parameters);
-  error(id, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
+    return call(request, parameters);
+  error(request, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
 }
 
-void Session::call(const Json& id, const Json& parameters) {
+void Session::ask_modern(const std::string& method, const Request& request,
+                         const Json& parameters) {
+  const Json meta = member(parameters, "_meta");
+  const Json version =
+      meta.is_object() ? member(meta, (kMeta + "protocolVersion").c_str()) : Json();
+  if (!version.is_string())
+    return error(request, kBadParameters, "_meta: " + kMeta + "protocolVersion is missing");
+  if (version != kModern)
+    return error(request, kBadVersion, "Unsupported protocol version",
+                 {{"supported", {kModern}}, {"requested", version}});
+  if (!member(meta, (kMeta + "clientCapabilities").c_str()).is_object())
+    return error(request, kBadParameters, "_meta: " + kMeta + "clientCapabilities is missing");
+  if (method == "server/discover")
+    return reply(request, {{"supportedVersions", {kModern}},
+                           {"capabilities", {{"tools", {{"listChanged", true}}}}},
+                           {"instructions", instructions_},
+                           {"ttlMs", 3600000},
+                           {"cacheScope", "public"}});
+  if (method == "tools/list")
+    return list_tools(request);
+  if (method == "tools/call")
+    return call(request, parameters);
+  if (method == "subscriptions/listen")
+    return listen(request, parameters);
+  error(request, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
+}
+
+void Session::list_tools(const Request& request) {
+  Json list = Json::array();
+  for (const Tool& tool : tools_)
+    list.push_back(describe(tool));
+  Json result{{"tools", std::move(list)}};
+  if (request.modern) {
+    result["ttlMs"] = 0;  // what can be done changes with the programs that run
+    result["cacheScope"] = "private";
+  }
+  reply(request, std::move(result));
+}
+
+/// A request that stays open: what changes is told to it.
+void Session::listen(const Request& request, const Json& parameters) {
+  if (listeners_.size() >= kMostListeners)
+    return error(request, kBadRequest, "too many subscriptions are open");
+  const Json wanted = member(parameters, "notifications");
+  const bool tools = wanted.is_object() && member(wanted, "toolsListChanged") == true;
+  if (tools)
+    listeners_.push_back(request);
+  Json honoured = Json::object();
+  if (tools)
+    honoured["toolsListChanged"] = true;
+  send({{"jsonrpc", "2.0"},
+        {"method", "notifications/subscriptions/acknowledged"},
+        {"params",
+         {{"_meta", {{kMeta + "subscriptionId", request.id}}},
+          {"notifications", std::move(honoured)}}}},
+       request.exchange);
+}
+
+/// [s] until a further call may come; 0: now, which counts it.
+double Session::too_soon() {
+  allowed_ = std::min(kMostAtOnce, allowed_ + (time_ - counted_) * kMostASecond);
+  counted_ = time_;
+  if (allowed_ < 1.0)
+    return (1.0 - allowed_) / kMostASecond;
+  allowed_ -= 1.0;
+  return 0.0;
+}
+
+void Session::call(const Request& request, const Json& parameters) {
   const Json name = member(parameters, "name");
   const auto tool = std::find_if(tools_.begin(), tools_.end(),
                                  [&](const Tool& each) { return name == each.name; });
   if (tool == tools_.end())
-    return error(id, kBadParameters, "there is no tool " + name.dump().substr(0, 70));
+    return error(request, kBadParameters, "there is no tool " + name.dump().substr(0, 70));
   Json arguments = member(parameters, "arguments");
   if (arguments.is_null())
     arguments = Json::object();
   const std::uint64_t number = ++count_;
   const Json meta = member(parameters, "_meta");
-  open_[number] = {id, meta.is_object() ? member(meta, "progressToken") : Json()};
+  open_[number] = {request, meta.is_object() ? member(meta, "progressToken") : Json()};
+  const auto refuse = [&](const std::string& why) {
+    answer(number, {"not done: " + why, nullptr, true});
+  };
   if (const std::string why = misfit(arguments, tool->input); !why.empty())
-    return answer(number, {"not done: " + why, nullptr, true});
-  if (open_.size() > kMostOpen)
-    return answer(number, {"not done: too many calls are not answered yet; wait for one of them",
-                           nullptr, true});
+    return refuse(why);
+  if (!tool->always) {
+    if (open_.size() > kMostOpen)
+      return refuse("too many calls are not answered yet; wait for one of them");
+    if (const double wait = too_soon(); wait > 0.0)
+      return refuse("at most 5 calls a second; again in " + Json(std::ceil(wait * 10) / 10).dump() +
+                    " s");
+  }
   calls_.push_back({number, tool->name, std::move(arguments)});
 }
 
-void Session::give_up(const Json& parameters) {
-  const Json id = member(parameters, "requestId");
-  const auto found = std::find_if(open_.begin(), open_.end(),
-                                  [&](const auto& each) { return each.second.id == id; });
-  if (found == open_.end())
-    return;
-  const std::uint64_t number = found->first;
-  open_.erase(found);
+void Session::erase(std::uint64_t number) {
+  open_.erase(number);
   std::erase_if(calls_, [&](const Call& each) { return each.number == number; });
   given_up_.push_back(number);
+}
+
+void Session::give_up(const Json& parameters, std::uint64_t exchange) {
+  const Json id = member(parameters, "requestId");
+  std::erase_if(listeners_,
+                [&](const Request& each) { return each.id == id && each.exchange == exchange; });
+  const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& each) {
+    const Request& request = each.second.request;
+    // Clients of the newer era may share this session, so an id is theirs within a connection.
+    return request.id == id && (!request.modern || request.exchange == exchange);
+  });
+  if (found != open_.end())
+    erase(found->first);
+}
+
+void Session::close(std::uint64_t exchange) {
+  std::erase_if(listeners_, [&](const Request& each) { return each.exchange == exchange; });
+  std::vector<std::uint64_t> gone;
+  for (const auto& [number, each] : open_)
+    if (each.request.modern && each.request.exchange == exchange)
+      gone.push_back(number);
+  for (const std::uint64_t number : gone)
+    erase(number);
 }
 
 void Session::answer(std::uint64_t call, const Result& result) {
@@ -208,7 +392,7 @@ void Session::answer(std::uint64_t call, const Result& result) {
   Json json{{"content", {{{"type", "text"}, {"text", result.text}}}}, {"isError", result.is_error}};
   if (result.value.is_object())
     json["structuredContent"] = result.value;
-  reply(found->second.id, std::move(json));
+  reply(found->second.request, std::move(json));
   open_.erase(found);
 }
 
@@ -219,7 +403,8 @@ void Session::progress(std::uint64_t call, double value, const std::string& text
   send({{"jsonrpc", "2.0"},
         {"method", "notifications/progress"},
         {"params",
-         {{"progressToken", found->second.token}, {"progress", value}, {"message", text}}}});
+         {{"progressToken", found->second.token}, {"progress", value}, {"message", text}}}},
+       found->second.request.exchange);
 }
 
 std::vector<Call> Session::take_calls() {
@@ -230,7 +415,7 @@ std::vector<std::uint64_t> Session::take_given_up() {
   return std::exchange(given_up_, {});
 }
 
-std::vector<std::string> Session::take_lines() {
+std::vector<Line> Session::take_lines() {
   return std::exchange(lines_, {});
 }
 

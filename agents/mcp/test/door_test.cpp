@@ -1,10 +1,15 @@
 // A client by lines, before a running robot.
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -100,6 +105,113 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
     client.call(1, "emergency_stop", json::object());
     EXPECT_EQ(client.result(1)["structuredContent"]["latched"], true);
   }
+  EXPECT_EQ(system.truth().contacts, 0);
+}
+
+/// What a request of HTTP is answered, until the server closes.
+std::string http(int port, const std::string& head, const std::string& body = {}) {
+  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string answer;
+  if (connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+    const std::string text = head + "\r\nHost: localhost\r\nConnection: close\r\nContent-Length: " +
+                             std::to_string(body.size()) + "\r\n\r\n" + body;
+    EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    char buffer[4096];
+    for (ssize_t n = read(fd, buffer, sizeof buffer); n > 0; n = read(fd, buffer, sizeof buffer))
+      answer.append(buffer, static_cast<std::size_t>(n));
+  }
+  close(fd);
+  return answer;
+}
+
+/// The message in an answer of HTTP, or in the last event of a stream.
+json message_of(const std::string& answer) {
+  const std::size_t event = answer.rfind("data: ");
+  const std::size_t body = answer.find("\r\n\r\n");
+  return json::parse(answer.substr(event != std::string::npos ? event + 6 : body + 4), nullptr,
+                     false);
+}
+
+std::string value_of(const std::string& answer, const std::string& header) {
+  const std::size_t at = answer.find(header);
+  return at == std::string::npos
+             ? ""
+             : answer.substr(at + header.size(), answer.find('\r', at) - at - header.size());
+}
+
+TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
+  System system;
+  system.start_all();
+  const std::string file = system.folder().path("token");
+  Process server({program("saphira-mcp"), "--http", "0", "--token-file", file},
+                 system.folder().path("http.out"), {{"SAPHIRA_ROBOT", system.robot()}});
+  int port = 0;
+  ASSERT_TRUE(wait_until([&] {
+    return std::sscanf(server.output().c_str(), "http://127.0.0.1:%d/mcp", &port) == 1;
+  })) << server.output();
+  std::string token;
+  std::ifstream(file) >> token;
+  const std::string post = "POST /mcp HTTP/1.1\r\nAuthorization: Bearer " + token;
+
+  EXPECT_TRUE(http(port, "POST /mcp HTTP/1.1", "{}").starts_with("HTTP/1.1 401"));
+  EXPECT_TRUE(http(port, post + "x", "{}").starts_with("HTTP/1.1 401"));
+  EXPECT_TRUE(
+      http(port, post + "\r\nOrigin: http://evil.example", "{}").starts_with("HTTP/1.1 403"));
+  EXPECT_TRUE(http(port, post, std::string(70000, ' ')).starts_with("HTTP/1.1 413"));
+  EXPECT_TRUE(http(port, post, R"({"id":1,"method":"ping"})").starts_with("HTTP/1.1 400"));
+
+  // The older era, with a session.
+  const std::string begun = http(
+      port, post, R"({"id":1,"method":"initialize","params":{"protocolVersion":"2025-11-25"}})");
+  EXPECT_EQ(message_of(begun)["result"]["protocolVersion"], "2025-11-25") << begun;
+  const std::string session = post + "\r\nMcp-Session-Id: " + value_of(begun, "mcp-session-id: ");
+  EXPECT_TRUE(
+      http(port, session, R"({"method":"notifications/initialized"})").starts_with("HTTP/1.1 202"));
+  ASSERT_TRUE(wait_until([&] {
+    return http(port, session, R"({"id":2,"method":"tools/list"})").find("\"go_to\"") !=
+           std::string::npos;
+  }));
+  const auto go = [](double x, double wait) {
+    return json{{"name", "go_to"}, {"arguments", {{"position", point(x, 0.0)}, {"wait_s", wait}}}};
+  };
+  const auto call = [&](const json& parameters) {
+    return message_of(
+        http(port, session,
+             json{{"id", 3}, {"method", "tools/call"}, {"params", parameters}}.dump()))["result"];
+  };
+  EXPECT_EQ(call(go(0.8, 20))["structuredContent"]["state"], "succeeded");
+
+  // The newer one, whose connection is the call: it is closed here after it has begun.
+  json modern = go(5.0, 20);
+  modern["_meta"] = {{"io.modelcontextprotocol/protocolVersion", "2026-07-28"},
+                     {"io.modelcontextprotocol/clientCapabilities", json::object()}};
+  const std::string body = json{{"id", 1}, {"method", "tools/call"}, {"params", modern}}.dump();
+  const std::string head = post +
+                           "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: tools/call\r\n"
+                           "Mcp-Name: go_to\r\nHost: localhost\r\nContent-Length: " +
+                           std::to_string(body.size()) + "\r\n\r\n" + body;
+  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(write(fd, head.data(), head.size()), static_cast<ssize_t>(head.size()));
+  EXPECT_TRUE(system.wait_moving());
+  close(fd);
+  EXPECT_TRUE(system.wait_still());
+
+  // A goal that goes on without its call ends with its session.
+  call(go(5.0, 0));
+  EXPECT_TRUE(system.wait_moving());
+  std::string end = session;
+  EXPECT_TRUE(http(port, end.replace(0, 4, "DELETE")).starts_with("HTTP/1.1 200"));
+  EXPECT_TRUE(system.wait_still());
+  EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
   EXPECT_EQ(system.truth().contacts, 0);
 }
 

@@ -23,8 +23,8 @@ struct Client {
   }
   std::vector<Json> heard() {
     std::vector<Json> all;
-    for (const std::string& line : session.take_lines())
-      all.push_back(Json::parse(line));
+    for (const Line& line : session.take_lines())
+      all.push_back(Json::parse(line.text));
     return all;
   }
   Json one(const std::string& line) {
@@ -131,6 +131,158 @@ TEST(McpSession, MistakesGetTheirCodeAndEndNothing) {
   EXPECT_TRUE(client.say("").empty());
   EXPECT_TRUE(client.say(R"({"id":9,"result":{}})").empty());
   EXPECT_EQ(client.one(R"({"id":2,"method":"ping"})")["id"], 2);
+}
+
+/// A request of the newer era.
+std::string modern(const std::string& id, const std::string& method,
+                   Json parameters = Json::object()) {
+  parameters["_meta"]["io.modelcontextprotocol/protocolVersion"] = Session::kModern;
+  parameters["_meta"]["io.modelcontextprotocol/clientCapabilities"] = Json::object();
+  return Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump();
+}
+
+TEST(McpSession, TheNewerEraNeedsNoBeginning) {
+  Client client;
+  const Json discovered = client.one(modern("d", "server/discover"))["result"];
+  EXPECT_EQ(discovered["supportedVersions"], Json({Session::kModern}));
+  EXPECT_EQ(discovered["resultType"], "complete");
+  const Json list = client.one(modern("l", "tools/list"))["result"];
+  EXPECT_EQ(list["tools"][0]["name"], "go_to");
+  EXPECT_EQ(list["ttlMs"], 0);
+  EXPECT_EQ(list["cacheScope"], "private");
+  client.say(modern("c", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));
+  client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
+  const Json answer = client.heard().at(0)["result"];
+  EXPECT_EQ(answer["resultType"], "complete");
+  EXPECT_EQ(answer["content"][0]["text"], "there");
+  // The older era on the same stream stays what it is.
+  EXPECT_FALSE(client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})")["result"].contains(
+      "resultType"));
+}
+
+TEST(McpSession, TheNewerEraRefusesByItsOwnCodes) {
+  Client client;
+  Json other = Json::parse(modern("v", "tools/list"));
+  other["params"]["_meta"]["io.modelcontextprotocol/protocolVersion"] = "2099-01-01";
+  const Json error = client.one(other.dump())["error"];
+  EXPECT_EQ(error["code"], -32022);
+  EXPECT_EQ(error["data"]["supported"], Json({Session::kModern}));
+  EXPECT_EQ(error["data"]["requested"], "2099-01-01");
+  other["params"]["_meta"].erase("io.modelcontextprotocol/clientCapabilities");
+  other["params"]["_meta"]["io.modelcontextprotocol/protocolVersion"] = Session::kModern;
+  EXPECT_EQ(client.one(other.dump())["error"]["code"], -32602);
+  for (const char* method : {"initialize", "ping", "logging/setLevel", "prompts/list"}) {
+    client.session.take(modern("m", method), 7);
+    const auto lines = client.session.take_lines();
+    ASSERT_EQ(lines.size(), 1U) << method;
+    EXPECT_EQ(lines[0].status, 404);
+    EXPECT_EQ(Json::parse(lines[0].text)["error"]["code"], -32601);
+  }
+}
+
+TEST(McpSession, AListenerHearsThatTheToolsChange) {
+  Client client;
+  const Json first = client.one(
+      modern("l1", "subscriptions/listen",
+             {{"notifications", {{"toolsListChanged", true}, {"resourcesListChanged", true}}}}));
+  EXPECT_EQ(first["method"], "notifications/subscriptions/acknowledged");
+  EXPECT_EQ(first["params"]["notifications"], Json({{"toolsListChanged", true}}));
+  client.session.set_tools({});
+  const Json changed = client.heard().at(0);
+  EXPECT_EQ(changed["method"], "notifications/tools/list_changed");
+  EXPECT_EQ(changed["params"]["_meta"]["io.modelcontextprotocol/subscriptionId"], "l1");
+  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":"l1"}})");
+  client.session.set_tools({go_to()});
+  EXPECT_TRUE(client.heard().empty());
+}
+
+TEST(McpSession, HeadersHaveToSayWhatTheMessageSays) {
+  const std::string call =
+      modern("c", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}});
+  struct Case {
+    Headers headers;
+    const char* names;  // empty: it fits
+  };
+  for (const auto& [headers, names] :
+       {Case{{Session::kModern, "tools/call", "go_to"}, ""},
+        Case{{"", "tools/call", "go_to"}, "MCP-Protocol-Version: missing"},
+        Case{{"2025-11-25", "tools/call", "go_to"}, "MCP-Protocol-Version"},
+        Case{{Session::kModern, "", "go_to"}, "Mcp-Method: missing"},
+        Case{{Session::kModern, "tools/list", "go_to"}, "Mcp-Method"},
+        Case{{Session::kModern, "tools/call", "stop"}, "Mcp-Name"}}) {
+    Client client;
+    client.session.take(call, 1, &headers);
+    const auto lines = client.session.take_lines();
+    if (std::string(names).empty()) {
+      EXPECT_TRUE(lines.empty());
+      EXPECT_EQ(client.session.take_calls().size(), 1U);
+      continue;
+    }
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_EQ(lines[0].status, 400);
+    EXPECT_EQ(Json::parse(lines[0].text)["error"]["code"], -32020);
+    EXPECT_NE(lines[0].text.find(names), std::string::npos) << lines[0].text;
+  }
+  Client client;
+  const Headers unknown{"1999-01-01", "", ""};
+  client.session.take(R"({"jsonrpc":"2.0","id":1,"method":"ping"})", 1, &unknown);
+  EXPECT_EQ(client.session.take_lines().at(0).status, 400);
+}
+
+TEST(McpSession, AConnectionThatClosesEndsTheCallsOfTheNewerEraAlone) {
+  Client client;
+  client.session.take(modern("a", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}), 1);
+  // Another client may have chosen the same id.
+  client.session.take(modern("a", "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 2}}}}), 2);
+  client.session.take(
+      R"({"jsonrpc":"2.0","id":"b","method":"tools/call","params":{"name":"go_to","arguments":{"x":3}}})",
+      3);
+  const auto calls = client.session.take_calls();
+  ASSERT_EQ(calls.size(), 3U);
+  client.session.close(1);
+  client.session.close(3);
+  EXPECT_EQ(client.session.take_given_up(), std::vector<std::uint64_t>{calls[0].number});
+  client.session.answer(calls[1].number, {"there", nullptr, false});
+  const auto lines = client.session.take_lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].exchange, 2U);
+  EXPECT_TRUE(lines[0].last);
+}
+
+TEST(McpSession, AFloodIsHeldBackAndAStopIsNot) {
+  Client client;
+  const Tool stop{"stop", "stops", {{"type", "object"}}, false, true};
+  client.session.set_tools({go_to(), stop});
+  const std::string go =
+      R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"go_to","arguments":{"x":1}}})";
+  const auto send = [&](const std::string& text) {
+    client.session.take(text);
+    for (const Call& call : client.session.take_calls()) {
+      client.session.answer(call.number, {"done", nullptr, false});
+    }
+    return client.heard().at(0)["result"];
+  };
+  client.session.set_time(1000.0);
+  for (int i = 0; i < 20; ++i)
+    EXPECT_EQ(send(go)["isError"], false) << i;
+  EXPECT_EQ(send(go)["content"][0]["text"], "not done: at most 5 calls a second; again in 0.2 s");
+  EXPECT_EQ(
+      send(R"({"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"stop"}})")["isError"],
+      false);
+  client.session.set_time(1000.21);
+  EXPECT_EQ(send(go)["isError"], false);
+  EXPECT_EQ(send(go)["isError"], true);
+}
+
+TEST(McpSession, ASenderIsKnownByWhatItSays) {
+  EXPECT_TRUE(sender_of(R"({"id":1,"method":"initialize"})").begins);
+  EXPECT_FALSE(sender_of(R"({"id":1,"method":"initialize"})").modern);
+  Json meta = Json::parse(modern("x", "tools/list"));
+  meta["params"]["_meta"]["io.modelcontextprotocol/clientInfo"] = {{"name", "desk"}};
+  EXPECT_TRUE(sender_of(meta.dump()).modern);
+  EXPECT_EQ(sender_of(meta.dump()).client, R"({"name":"desk"})");
+  for (const char* text : {"", "[]", "{", "3", R"({"params":[]})", R"({"params":{"_meta":1}})"})
+    EXPECT_FALSE(sender_of(text).begins || sender_of(text).modern) << text;
 }
 
 }  // namespace

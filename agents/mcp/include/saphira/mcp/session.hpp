@@ -17,6 +17,7 @@ struct Tool {
   std::string description;  ///< for the model
   Json input;               ///< JSON Schema of its arguments: an object
   bool reads = false;       ///< changes nothing
+  bool always = false;      ///< no limit holds it back: it stops the robot
   bool operator==(const Tool&) const = default;
 };
 
@@ -34,9 +35,33 @@ struct Result {
       false;  ///< what it asked for was not done; the text says why, and what would help
 };
 
-/// The server's side of the Model Context Protocol, over lines of JSON-RPC: the revisions
-/// 2024-11-05 to 2025-11-25. Pure: lines in, lines and calls out. A line that is wrong gets an
-/// error and ends nothing.
+/// A message for the client.
+struct Line {
+  std::string text;
+  std::uint64_t exchange = 0;  ///< of the request that it belongs to
+  bool last = false;           ///< it answers that request
+  int status = 200;            ///< of HTTP, where it is the whole answer
+};
+
+/// The headers of HTTP that repeat what a message says.
+struct Headers {
+  std::string version;  ///< MCP-Protocol-Version [empty: not given]
+  std::string method;   ///< Mcp-Method
+  std::string name;     ///< Mcp-Name
+};
+
+/// Which client a message of HTTP comes from, as far as the message says it.
+struct Sender {
+  bool begins = false;  ///< it is `initialize`
+  bool modern = false;  ///< the newer era, where no session exists
+  std::string client;   ///< what the newer era's client says of itself, as JSON
+};
+Sender sender_of(std::string_view message);
+
+/// The server's side of the Model Context Protocol, for one client. Two eras, which a client may
+/// mix: the revisions 2024-11-05 to 2025-11-25, which begin with `initialize`, and 2026-07-28,
+/// where each request says its version. Pure: messages in, messages and calls out. A message that
+/// is wrong gets an error and ends nothing.
 class Session {
  public:
   /// name, version: of the server. instructions: what the model is told of it.
@@ -48,9 +73,14 @@ class Session {
   /// What can be asked for from now on. The client is told when it changes.
   void set_tools(std::vector<Tool> tools);
   const std::vector<Tool>& tools() const { return tools_; }
+  /// The clock of the limit on calls [s]; it may begin anywhere.
+  void set_time(double time) { time_ = time; }
 
-  /// A line of the client, without its end.
-  void take(std::string_view line);
+  /// A message of the client. exchange: the HTTP request that brought it [0: a line of a stream];
+  /// headers: of that request. False: nothing answers this message.
+  bool take(std::string_view message, std::uint64_t exchange = 0, const Headers* headers = nullptr);
+  /// The client has closed the connection of a request. Of the newer era that cancels the request.
+  void close(std::uint64_t exchange);
 
   /// Since the last call: tools that were called, and calls that the client has given up. Of those
   /// nothing more is to be answered.
@@ -62,24 +92,44 @@ class Session {
   void progress(std::uint64_t call, double value, const std::string& text);
 
   /// For the client, since the last call.
-  std::vector<std::string> take_lines();
+  std::vector<Line> take_lines();
+  /// Calls that are not answered.
+  std::size_t open() const { return open_.size(); }
 
   static constexpr std::size_t kLongestLine = 65536;
-  static constexpr std::size_t kMostOpen = 64;  ///< calls that are not answered
+  static constexpr std::size_t kMostOpen = 64;          ///< calls that are not answered
+  static constexpr double kMostASecond = 5.0;           ///< calls, over some seconds
+  static constexpr double kMostAtOnce = 20.0;           ///< calls, after a silence
+  static constexpr const char* kLegacy = "2025-11-25";  ///< the newest revision with `initialize`
+  static constexpr const char* kModern = "2026-07-28";
 
  private:
-  struct Open {
+  /// A request, as far as its answer needs it.
+  struct Request {
     Json id;
+    std::uint64_t exchange = 0;
+    bool modern = false;
+  };
+  struct Open {
+    Request request;
     Json token;  ///< of progress; null: none is wanted
   };
-  void send(const Json& message) {
-    lines_.push_back(message.dump(-1, ' ', false, Json::error_handler_t::replace));
+  void send(const Json& message, std::uint64_t exchange, bool last = false, int status = 200) {
+    lines_.push_back(
+        {message.dump(-1, ' ', false, Json::error_handler_t::replace), exchange, last, status});
   }
-  void reply(const Json& id, Json result);
-  void error(const Json& id, int code, const std::string& text);
-  void request(const std::string& method, const Json& id, const Json& parameters);
-  void call(const Json& id, const Json& parameters);
-  void give_up(const Json& parameters);
+  void reply(const Request& request, Json result);
+  void error(const Request& request, int code, const std::string& text, Json data = nullptr);
+  void ask(const std::string& method, const Request& request, const Json& parameters);
+  void ask_modern(const std::string& method, const Request& request, const Json& parameters);
+  bool fits(const std::string& method, const Request& request, const Json& parameters,
+            const Headers& headers);
+  void list_tools(const Request& request);
+  void listen(const Request& request, const Json& parameters);
+  void call(const Request& request, const Json& parameters);
+  double too_soon();
+  void give_up(const Json& parameters, std::uint64_t exchange);
+  void erase(std::uint64_t call);
 
   const std::string name_;
   const std::string version_;
@@ -88,9 +138,13 @@ class Session {
   bool begun_ = false;
   std::uint64_t count_ = 0;
   std::map<std::uint64_t, Open> open_;
+  std::vector<Request> listeners_;  ///< those who want to hear when the tools change
   std::vector<Call> calls_;
   std::vector<std::uint64_t> given_up_;
-  std::vector<std::string> lines_;
+  std::vector<Line> lines_;
+  double time_ = 0.0;
+  double allowed_ = kMostAtOnce;  ///< calls that may come at once
+  double counted_ = 0.0;          ///< [s] when `allowed_` was true
 };
 
 /// Why arguments do not fit a schema, in words that name the argument; empty where they do. Of JSON

@@ -1,0 +1,369 @@
+#include "http.hpp"
+
+#include <libwebsockets.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace saphira::mcp {
+
+namespace {
+
+constexpr unsigned kMostDescriptors = 128;
+constexpr int kTick = 50'000;         // [us]
+constexpr int kTicksOfSilence = 100;  // then a stream says that it lives
+constexpr std::size_t kLongestHeader = 1024;
+constexpr std::size_t kLongestQueue = 1024 * 1024;  // of a client that does not read
+constexpr int kUnauthorized = 401;
+
+std::string header(lws* wsi, lws_token_indexes which) {
+  std::array<char, kLongestHeader> text{};
+  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
+  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+/// Without blanks round it. Text that is no ASCII comes as =?base64?...?=.
+std::string header(lws* wsi, const char* name) {
+  std::array<char, kLongestHeader> text{};
+  if (lws_hdr_custom_copy(wsi, text.data(), static_cast<int>(text.size()), name,
+                          static_cast<int>(std::strlen(name))) <= 0)
+    return {};
+  std::string value = text.data();
+  const std::size_t first = value.find_first_not_of(" \t");
+  if (first == std::string::npos)
+    return {};
+  value = value.substr(first, value.find_last_not_of(" \t") - first + 1);
+  if (!value.starts_with("=?base64?") || !value.ends_with("?=") || value.size() < 11)
+    return value;
+  std::array<char, kLongestHeader> decoded{};
+  const int size = lws_b64_decode_string(value.substr(9, value.size() - 11).c_str(), decoded.data(),
+                                         static_cast<int>(decoded.size()));
+  return size > 0 ? std::string(decoded.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+}  // namespace
+
+struct HttpServer::Impl {
+  /// What libwebsockets keeps for each connection; it begins as zeros.
+  struct Connection {
+    Exchange exchange;
+  };
+  struct Open {
+    lws* wsi = nullptr;
+    HttpRequest request;
+    bool too_long = false;
+    bool has_come = false;
+    bool is_only = false;  // the client wants no further answer by this connection
+    int status = 0;        // of the answer [0: there is none yet]
+    std::string type;
+    std::string session;
+    std::string body;  // what is to be sent
+    bool streams = false;
+    bool begun = false;  // the headers are sent
+    bool complete = false;
+    int silent = 0;  // ticks
+  };
+
+  Events events;
+  lws_context* context = nullptr;
+  lws_vhost* vhost = nullptr;
+  std::map<Exchange, Open> open;
+  Exchange last = 0;
+  bool stopping = false;
+  struct Timer {
+    lws_sorted_usec_list_t list{};
+    Impl* impl = nullptr;
+  } ticker;
+
+  int begin(lws* wsi, Connection& connection, const char* path);
+  int take(const Connection& connection, const char* data, std::size_t size);
+  int complete(const Connection& connection);
+  int send(lws* wsi, Connection& connection);
+  int finish(lws* wsi, Connection& connection);
+  static bool send_headers(lws* wsi, const Open& answer);
+  void closed(Connection& connection);
+  void tick();
+  void schedule_tick();
+
+  static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
+  static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+  static int descriptor(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                        std::size_t size);
+  static int ending(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+};
+
+/// The headers of a request have come.
+int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) {
+  connection.exchange = ++last;
+  Open& exchange = open[connection.exchange];
+  exchange.wsi = wsi;
+  HttpRequest& request = exchange.request;
+  request.path = path;
+  exchange.is_only = header(wsi, WSI_TOKEN_CONNECTION) == "close";
+  request.method = lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0     ? "POST"
+                   : lws_hdr_total_length(wsi, WSI_TOKEN_DELETE_URI) > 0 ? "DELETE"
+                                                                         : "GET";
+  request.caller = {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN), true};
+  request.authorization = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
+  request.session = header(wsi, "mcp-session-id:");
+  request.version = header(wsi, "mcp-protocol-version:");
+  request.mcp_method = header(wsi, "mcp-method:");
+  request.mcp_name = header(wsi, "mcp-name:");
+  const bool has_body = request.method == "POST" &&
+                        header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) != "0" &&
+                        lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0;
+  return has_body ? 0 : complete(connection);
+}
+
+int HttpServer::Impl::take(const Connection& connection, const char* data, std::size_t size) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end())
+    return -1;
+  std::string& body = found->second.request.body;
+  found->second.too_long = found->second.too_long || body.size() + size > kLongestBody;
+  if (!found->second.too_long)
+    body.append(data, size);
+  return 0;
+}
+
+int HttpServer::Impl::complete(const Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end() || found->second.has_come)
+    return found == open.end() ? -1 : 0;
+  found->second.has_come = true;
+  lws_set_timeout(found->second.wsi, NO_PENDING_TIMEOUT, 0);  // its answer may take its time
+  if (found->second.too_long) {
+    found->second.status = HTTP_STATUS_REQ_ENTITY_TOO_LARGE;
+    found->second.type = "text/plain";
+    found->second.body = "a message has at most 65536 bytes\n";
+    found->second.complete = true;
+    lws_callback_on_writable(found->second.wsi);
+    return 0;
+  }
+  events.came(connection.exchange, std::move(found->second.request));
+  return 0;
+}
+
+bool HttpServer::Impl::send_headers(lws* wsi, const Open& answer) {
+  std::array<unsigned char, LWS_PRE + 2048> buffer{};
+  unsigned char* const start = buffer.data() + LWS_PRE;
+  unsigned char* at = start;
+  unsigned char* const end = buffer.data() + buffer.size() - 1;
+  const auto add = [&](const char* name, const std::string& value) {
+    return lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(name),
+                                       reinterpret_cast<const unsigned char*>(value.c_str()),
+                                       static_cast<int>(value.size()), &at, end) == 0;
+  };
+  const lws_filepos_t length = answer.streams ? LWS_ILLEGAL_HTTP_CONTENT_LEN : answer.body.size();
+  return lws_add_http_common_headers(wsi, static_cast<unsigned>(answer.status), answer.type.c_str(),
+                                     length, &at, end) == 0 &&
+         add("cache-control:", "no-cache") && add("x-accel-buffering:", "no") &&
+         add("x-content-type-options:", "nosniff") &&
+         (answer.session.empty() || add("mcp-session-id:", answer.session)) &&
+         (answer.status != kUnauthorized || add("www-authenticate:", "Bearer")) &&
+         (answer.status != HTTP_STATUS_METHOD_NOT_ALLOWED || add("allow:", "POST, DELETE")) &&
+         lws_finalize_write_http_header(wsi, start, &at, end) == 0;
+}
+
+int HttpServer::Impl::send(lws* wsi, Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end() || found->second.status == 0)
+    return 0;
+  Open& answer = found->second;
+  if (!answer.begun) {
+    answer.begun = true;
+    if (!send_headers(wsi, answer))
+      return -1;
+    if (!answer.complete || !answer.body.empty()) {
+      lws_callback_on_writable(wsi);
+      return 0;
+    }
+    return finish(wsi, connection);
+  }
+  if (answer.body.empty() && !answer.complete)
+    return 0;
+  const std::string body = std::exchange(answer.body, {});
+  std::vector<unsigned char> buffer(LWS_PRE + body.size());
+  std::memcpy(buffer.data() + LWS_PRE, body.data(), body.size());
+  const bool final = answer.complete;
+  if (lws_write(wsi, buffer.data() + LWS_PRE, body.size(),
+                final ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) < static_cast<int>(body.size()))
+    return -1;
+  return final ? finish(wsi, connection) : 0;
+}
+
+/// The answer is sent. The end of a stream is the end of its connection.
+int HttpServer::Impl::finish(lws* wsi, Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  const bool ends = found->second.streams || found->second.is_only;
+  open.erase(found);
+  connection.exchange = 0;
+  return ends ? -1 : lws_http_transaction_completed(wsi);
+}
+
+void HttpServer::Impl::closed(Connection& connection) {
+  const auto found = open.find(connection.exchange);
+  if (found == open.end())
+    return;
+  const Exchange exchange = found->first;
+  const bool is_known = found->second.has_come;
+  open.erase(found);
+  connection.exchange = 0;
+  if (is_known)
+    events.lost(exchange);
+}
+
+void HttpServer::Impl::tick() {
+  events.tick();
+  for (auto& [exchange, answer] : open) {
+    if (!answer.streams || answer.complete || !answer.body.empty() ||
+        ++answer.silent < kTicksOfSilence)
+      continue;
+    answer.silent = 0;
+    answer.body = ": \r\n";  // so that a client which has left is noticed
+    lws_callback_on_writable(answer.wsi);
+  }
+}
+
+void HttpServer::Impl::schedule_tick() {
+  lws_sul_schedule(
+      context, 0, &ticker.list,
+      [](lws_sorted_usec_list_t* list) {
+        Impl& impl = *reinterpret_cast<Timer*>(list)->impl;
+        impl.tick();
+        impl.schedule_tick();
+      },
+      kTick);
+}
+
+int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                           std::size_t size) {
+  auto* const connection = static_cast<Connection*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_HTTP:
+      return of(wsi).begin(wsi, *connection, static_cast<const char*>(in));
+    case LWS_CALLBACK_HTTP_BODY:
+      return of(wsi).take(*connection, static_cast<const char*>(in), size);
+    case LWS_CALLBACK_HTTP_BODY_COMPLETION:
+      return of(wsi).complete(*connection);
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+      return of(wsi).send(wsi, *connection);
+    case LWS_CALLBACK_CLOSED_HTTP:
+      if (connection != nullptr)
+        of(wsi).closed(*connection);
+      return 0;
+    default:
+      return lws_callback_http_dummy(wsi, reason, user, in, size);
+  }
+}
+
+int HttpServer::Impl::descriptor(lws* wsi, lws_callback_reasons reason, void* /*user*/,
+                                 void* /*in*/, std::size_t /*size*/) {
+  if (reason == LWS_CALLBACK_RAW_RX_FILE)
+    of(wsi).events.readable();
+  return 0;
+}
+
+int HttpServer::Impl::ending(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
+                             std::size_t /*size*/) {
+  if (reason == LWS_CALLBACK_RAW_RX_FILE)
+    of(wsi).stopping = true;
+  return 0;
+}
+
+HttpServer::HttpServer(int port, Events events) : impl_(std::make_unique<Impl>()) {
+  impl_->events = std::move(events);
+  lws_set_log_level(0, nullptr);
+  static const std::array<lws_protocols, 4> protocols{
+      {{"http", Impl::http, sizeof(Impl::Connection), 0, 0, nullptr, 0},
+       {"descriptor", Impl::descriptor, 0, 0, 0, nullptr, 0},
+       {"ending", Impl::ending, 0, 0, 0, nullptr, 0},
+       {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  lws_context_creation_info info{};
+  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+  info.fd_limit_per_thread = kMostDescriptors;
+  info.user = impl_.get();
+  info.gid = static_cast<gid_t>(-1);
+  info.uid = static_cast<uid_t>(-1);
+  impl_->context = lws_create_context(&info);
+  if (impl_->context == nullptr)
+    throw std::runtime_error("the web server could not be made");
+  info.protocols = protocols.data();
+  info.iface = "127.0.0.1";
+  info.port = port;
+  info.timeout_secs = 5;  // for who connects and says nothing whole
+  info.keepalive_timeout = 30;
+  info.vhost_name = "mcp";
+  impl_->vhost = lws_create_vhost(impl_->context, &info);
+  if (impl_->vhost == nullptr) {
+    lws_context_destroy(impl_->context);
+    throw std::runtime_error("cannot listen on 127.0.0.1 port " + std::to_string(port) +
+                             ": another program has it");
+  }
+}
+
+HttpServer::~HttpServer() {
+  lws_context_destroy(impl_->context);
+}
+
+int HttpServer::port() const {
+  return lws_get_vhost_listen_port(impl_->vhost);
+}
+
+void HttpServer::watch(int fd) {
+  lws_sock_file_fd_type file{};
+  file.filefd = dup(fd);  // libwebsockets closes it at the end
+  if (lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC, file, "descriptor",
+                                 nullptr) == nullptr)
+    throw std::runtime_error("the web server cannot wait for the bus");
+}
+
+void HttpServer::answer(Exchange exchange, int status, const std::string& type, std::string body,
+                        const std::string& session) {
+  const auto found = impl_->open.find(exchange);
+  if (found == impl_->open.end() || found->second.status != 0)
+    return;
+  Impl::Open& answer = found->second;
+  answer.status = status;
+  answer.type = type;
+  answer.body = std::move(body);
+  answer.session = session;
+  answer.complete = true;
+  lws_callback_on_writable(answer.wsi);
+}
+
+void HttpServer::event(Exchange exchange, const std::string& message, bool last) {
+  const auto found = impl_->open.find(exchange);
+  if (found == impl_->open.end() || found->second.complete)
+    return;
+  Impl::Open& answer = found->second;
+  answer.status = HTTP_STATUS_OK;
+  answer.type = "text/event-stream";
+  answer.streams = true;
+  answer.silent = 0;
+  answer.complete = last;
+  answer.body += "event: message\ndata: " + message + "\n\n";
+  if (answer.body.size() > kLongestQueue)
+    lws_set_timeout(answer.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+  lws_callback_on_writable(answer.wsi);
+}
+
+void HttpServer::run(int stop) {
+  lws_sock_file_fd_type file{};
+  file.filefd = dup(stop);
+  if (lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC, file, "ending", nullptr) ==
+      nullptr)
+    throw std::runtime_error("the web server cannot wait for its end");
+  impl_->ticker.impl = impl_.get();
+  impl_->schedule_tick();
+  while (!impl_->stopping)
+    if (lws_service(impl_->context, 0) < 0)
+      throw std::runtime_error("the web server has failed");
+}
+
+}  // namespace saphira::mcp

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "saphira/console/access.hpp"
+
+namespace saphira::mcp {
+
+/// A request of HTTP that has come whole.
+struct HttpRequest {
+  std::string method;  ///< GET, POST, DELETE
+  std::string path;
+  console::Caller caller;
+  std::string authorization;
+  std::string session;  ///< Mcp-Session-Id
+  std::string version;  ///< MCP-Protocol-Version
+  std::string mcp_method;
+  std::string mcp_name;
+  std::string body;
+};
+
+/// HTTP on this machine (127.0.0.1) by libwebsockets, in one thread. Bounded: connections, sizes,
+/// times without a word.
+class HttpServer {
+ public:
+  using Exchange = std::uint64_t;  ///< a request and its answer; from 1
+
+  /// What happens. Each is called from run() alone.
+  struct Events {
+    std::function<void(Exchange, HttpRequest)> came;
+    /// The connection went before the request was answered whole.
+    std::function<void(Exchange)> lost;
+    std::function<void()> readable;  ///< the file descriptor of watch()
+    std::function<void()> tick;      ///< 20 times a second
+  };
+
+  /// port 0: any that is free. std::runtime_error where the port is taken.
+  HttpServer(int port, Events events);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  int port() const;
+  void watch(int fd);
+
+  /// Answers whole. session: becomes the header Mcp-Session-Id [empty: none].
+  void answer(Exchange exchange, int status, const std::string& type, std::string body,
+              const std::string& session = {});
+  /// A message of a stream of events, which begins with the first one. last: the stream ends.
+  void event(Exchange exchange, const std::string& message, bool last);
+
+  /// Until `stop` is readable.
+  void run(int stop);
+
+  static constexpr std::size_t kLongestBody = 65536;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace saphira::mcp

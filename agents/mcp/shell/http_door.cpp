@@ -1,0 +1,160 @@
+#include "http_door.hpp"
+
+#include "key.hpp"
+#include "saphira/base/boot_clock.hpp"
+
+namespace saphira::mcp {
+
+namespace {
+
+constexpr double kLeave = 30.0;  // [s]
+constexpr std::size_t kMostClients = 8;
+constexpr const char* kPath = "/mcp";
+constexpr const char* kJson = "application/json";
+
+double now() {
+  return BootClock::seconds();
+}
+
+}  // namespace
+
+HttpDoor::HttpDoor(bus::Node& node, HttpDoorOptions options)
+    : node_(node),
+      options_(std::move(options)),
+      access_{options_.token, {}},
+      robot_(node),
+      server_(options_.port, events()) {
+  server_.watch(node.wake_fd());
+}
+
+HttpServer::Events HttpDoor::events() {
+  return {[this](Exchange exchange, const HttpRequest& request) { came(exchange, request); },
+          [this](Exchange exchange) { lost(exchange); },
+          [this] {
+            node_.clear_wake();
+            turn();
+          },
+          [this] { tick(); }};
+}
+
+void HttpDoor::refuse(Exchange exchange, int status, const std::string& text) {
+  server_.answer(exchange, status, "text/plain", text + "\n");
+}
+
+/// The session that a request belongs to. Null: the request is refused.
+HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& request,
+                                      std::string& id) {
+  const Sender sender = sender_of(request.body);
+  const bool modern = sender.modern || request.version == Session::kModern;
+  const bool begins = !modern && sender.begins;
+  // In the newer era no session exists: clients are told apart by what they say they are.
+  id = modern ? "client " + sender.client : begins ? console::new_key() : request.session;
+  if (const auto found = clients_.find(id); found != clients_.end())
+    return found->second.get();
+  if (!modern && !begins) {
+    if (id.empty())
+      refuse(exchange, 400, "Mcp-Session-Id is missing: a session begins with initialize");
+    else
+      refuse(exchange, 404, "there is no such session any more: begin with initialize");
+    return nullptr;
+  }
+  if (clients_.size() >= kMostClients) {
+    refuse(exchange, 503, "8 clients are here; one that is silent for 30 s makes room");
+    return nullptr;
+  }
+  auto& client = clients_[id];
+  client = std::make_unique<Client>(node_, robot_, options_);
+  client->is_new = begins;
+  return client.get();
+}
+
+void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
+  if (const std::string why = console::refusal(access_, request.caller); !why.empty())
+    return refuse(exchange, 403, why);
+  if (request.path != kPath)
+    return refuse(exchange, 404, "there is only /mcp");
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string_view given = request.authorization;
+  if (!given.starts_with(kBearer) || !console::right_key(access_, given.substr(kBearer.size())))
+    return refuse(exchange, 401, "expected the header Authorization: Bearer TOKEN");
+  if (request.method == "DELETE") {
+    const auto found = clients_.find(request.session);
+    if (found == clients_.end())
+      return refuse(exchange, 404, "there is no such session");
+    found->second->door.close();
+    clients_.erase(found);
+    return server_.answer(exchange, 200, "text/plain", "");
+  }
+  if (request.method != "POST")
+    return refuse(exchange, 405, "messages come by POST");
+  std::string id;
+  Client* const client = client_of(exchange, request, id);
+  if (client == nullptr)
+    return;
+  client->heard = now();
+  const Headers headers{request.version, request.mcp_method, request.mcp_name};
+  client->waits[exchange] = false;
+  robot_.poll();
+  client->door.turn();
+  if (!client->session.take(request.body, exchange, &headers)) {
+    client->waits.erase(exchange);
+    server_.answer(exchange, 202, kJson, "");
+  }
+  client->door.turn();
+  tell(id, *client);
+}
+
+/// Sends what a client is to be told. What concerns none of its requests has nowhere to go.
+void HttpDoor::tell(const std::string& id, Client& client) {
+  for (const Line& line : client.session.take_lines()) {
+    const auto waits = client.waits.find(line.exchange);
+    if (waits == client.waits.end())
+      continue;
+    if (line.last && !waits->second) {
+      server_.answer(line.exchange, line.status, kJson, line.text, client.is_new ? id : "");
+      client.is_new = false;
+    } else {
+      server_.event(line.exchange, line.text, line.last);
+      waits->second = true;
+    }
+    if (line.last)
+      client.waits.erase(waits);
+  }
+}
+
+void HttpDoor::lost(Exchange exchange) {
+  for (const auto& [id, client] : clients_)
+    if (client->waits.erase(exchange) > 0)
+      client->session.close(exchange);
+}
+
+void HttpDoor::turn() {
+  robot_.poll();
+  for (const auto& [id, client] : clients_) {
+    client->door.turn();
+    tell(id, *client);
+  }
+}
+
+void HttpDoor::tick() {
+  turn();
+  for (auto each = clients_.begin(); each != clients_.end();) {
+    Client& client = *each->second;
+    if (!client.waits.empty())
+      client.heard = now();
+    if (now() - client.heard < kLeave) {
+      ++each;
+      continue;
+    }
+    client.door.close();
+    each = clients_.erase(each);
+  }
+}
+
+void HttpDoor::run(const bus::Stop& stop) {
+  server_.run(stop.fd());
+  for (const auto& [id, client] : clients_)
+    client->door.close_and_wait();
+}
+
+}  // namespace saphira::mcp

@@ -1,0 +1,242 @@
+// The robot as a language model sees it: tools, and what they ask for.
+#include <algorithm>
+#include <cmath>
+
+#include "door.hpp"
+#include "saphira/situation/words.hpp"
+
+namespace saphira::mcp {
+
+namespace {
+
+constexpr double kStill = 0.01;  // [m/s], [rad/s]
+constexpr std::size_t kMostTools = 250;
+constexpr std::size_t kLongestText = 300;  // of another agent
+
+Json object(Json properties, const std::vector<std::string>& required = {}) {
+  return {{"type", "object"},
+          {"properties", properties.is_null() ? Json::object() : std::move(properties)},
+          {"required", required},
+          {"additionalProperties", false}};
+}
+
+Json wait_of(double most) {
+  return {{"type", "number"},
+          {"minimum", 0},
+          {"maximum", most},
+          {"description", "[s] to wait for the end before this answers; 20 where it is not given"}};
+}
+
+std::string tool_name(std::string name) {
+  for (char& c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_')
+      c = '_';
+  return name.substr(0, 64);
+}
+
+Json point() {
+  return object({{"x", {{"type", "number"}, {"description", "[m]"}}},
+                 {"y", {{"type", "number"}, {"description", "[m]"}}},
+                 {"heading", {{"type", "number"}, {"description", "[rad] counter-clockwise"}}},
+                 {"frame",
+                  {{"type", "string"},
+                   {"enum", {"map", "odom", "robot"}},
+                   {"description",
+                    "of the map; of where the robot began; of the robot: x ahead, y left. robot "
+                    "where it is not given"}}}},
+                {"x", "y"});
+}
+
+Json schema_of(const v1::ActivityParameter& parameter) {
+  const std::string unit = parameter.unit().empty() ? "" : " [" + parameter.unit() + "]";
+  Json json{
+      {"description", parameter.name() + unit +
+                          (parameter.usual().empty() ? "" : "; usually " + parameter.usual())}};
+  switch (parameter.kind()) {
+    case v1::PARAMETER_NUMBER:
+      json["type"] = "number";
+      if (parameter.low() < parameter.high() && std::isfinite(parameter.low()) &&
+          std::isfinite(parameter.high())) {
+        json["minimum"] = parameter.low();
+        json["maximum"] = parameter.high();
+      }
+      break;
+    case v1::PARAMETER_TEXT:
+      json["type"] = "string";
+      break;
+    case v1::PARAMETER_POINT:
+      json = point();
+      break;
+    case v1::PARAMETER_ANY:
+      break;
+  }
+  return json;
+}
+
+Json schema_of(const v1::CapabilityParameter& parameter) {
+  Json json;
+  switch (parameter.kind()) {
+    case v1::ARGUMENT_NUMBER:
+      json["type"] = "number";
+      if (parameter.low() < parameter.high()) {
+        json["minimum"] = parameter.low();
+        json["maximum"] = parameter.high();
+      }
+      break;
+    case v1::ARGUMENT_TEXT:
+      json["type"] = "string";
+      if (!parameter.choices().empty())
+        json["enum"] = parameter.choices();
+      break;
+    case v1::ARGUMENT_POINT:
+      json = point();
+      break;
+    case v1::ARGUMENT_TRUTH:
+      json["type"] = "boolean";
+      break;
+    case v1::ARGUMENT_UNBOUND:
+      break;
+  }
+  json["description"] = parameter.meaning().substr(0, kLongestText) +
+                        (parameter.required() ? "" : "; left out, the answer says it");
+  return json;
+}
+
+/// The tools that are always there.
+std::vector<Tool> fixed_tools() {
+  return {{"robot_status", "Who drives the robot, what is underway, what is missing",
+           object(nullptr), true},
+          {"why", "Why the robot does what it does now, in a sentence and as a tree",
+           object(nullptr), true},
+          {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
+          {"goal", "What became of one goal; waits for its end",
+           object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
+          {"cancel", "Withdraws a goal of yours, or all of them, and says whether the robot stands",
+           object({{"goal",
+                    {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
+           false},
+          {"say",
+           "Says a sentence to the robot, such as: Flakey, go to Karen's office. Answers what the "
+           "robot says",
+           object({{"text", {{"type", "string"}}}}, {"text"}), false},
+          {.name = "emergency_stop",
+           .description = "Stops the robot by the hardest means. Only a person can release it",
+           .input = object(nullptr),
+           .always = true}};
+}
+
+}  // namespace
+
+Robot::Robot(bus::Node& node)
+    : node_(node),
+      mind_(node, false),
+      schema_reader_(node.reader(bus::topics::kActivitySchemas)),
+      agent_reader_(node.reader(bus::topics::kAgents)) {
+  make_tools();
+}
+
+void Robot::poll() {
+  mind_.poll();
+  bool changed = false;
+  if (const auto newest = schema_reader_.take_newest()) {
+    schemas_ = newest->schemas();
+    changed = true;
+  }
+  for (const auto& sample : agent_reader_.take()) {
+    if (sample.info.disposed)
+      agents_.erase(sample.data.id());
+    else
+      agents_[sample.data.id()] = sample.data;
+    changed = true;
+  }
+  if (changed)
+    make_tools();
+}
+
+/// The fixed ones have no rivals, and an activity goes before a capability of its name.
+void Robot::make_tools() {
+  tools_ = fixed_tools();
+  activities_.clear();
+  capabilities_.clear();
+  const auto is_new = [&](const std::string& name) {
+    return !name.empty() && tools_.size() < kMostTools &&
+           std::none_of(tools_.begin(), tools_.end(),
+                        [&](const Tool& tool) { return tool.name == name; });
+  };
+  for (const v1::ActivitySchema& schema : schemas_) {
+    const std::string name = tool_name(schema.name());
+    if (!is_new(name))
+      continue;
+    Json properties;
+    std::vector<std::string> required;
+    for (const v1::ActivityParameter& parameter : schema.parameters()) {
+      properties[parameter.name()] = schema_of(parameter);
+      if (parameter.required())
+        required.push_back(parameter.name());
+    }
+    properties["wait_s"] = wait_of(kWait);
+    tools_.push_back({name,
+                      schema.summary().empty() ? "The activity " + schema.name() : schema.summary(),
+                      object(std::move(properties), required)});
+    activities_[name] = schema;
+  }
+  for (const auto& [id, agent] : agents_)
+    for (const v1::Capability& capability : agent.capabilities()) {
+      const std::string name = tool_name(capability.functor());
+      if (!is_new(name))
+        continue;
+      Json properties;
+      std::vector<std::string> required;
+      for (const v1::CapabilityParameter& parameter : capability.parameters()) {
+        properties[parameter.name()] = schema_of(parameter);
+        if (parameter.required())
+          required.push_back(parameter.name());
+      }
+      tools_.push_back({name,
+                        capability.summary().substr(0, kLongestText) + " (agent " +
+                            agent.name().substr(0, kLongestText) + ")",
+                        object(std::move(properties), required), !capability.acts()});
+      capabilities_[name] = capability;
+    }
+}
+
+const v1::ActivitySchema* Robot::activity(const std::string& tool) const {
+  const auto found = activities_.find(tool);
+  return found == activities_.end() ? nullptr : &found->second;
+}
+
+const v1::Capability* Robot::capability(const std::string& tool) const {
+  const auto found = capabilities_.find(tool);
+  return found == capabilities_.end() ? nullptr : &found->second;
+}
+
+Result Robot::status() const {
+  const situation::Situation now = mind_.situation(mind_.newest_cycle(), false);
+  std::string text = situation::driver(now);
+  if (const std::string trouble = situation::trouble(now); !trouble.empty())
+    text += "\n" + trouble;
+  Json value{{"robot", node_.options().robot},
+             {"drive", situation::driver(now)},
+             {"trouble", situation::trouble(now)}};
+  if (const v1::RobotState* const robot = mind_.robot()) {
+    value["pose_in_odom"] = {{"x", robot->pose_in_odom().x()},
+                             {"y", robot->pose_in_odom().y()},
+                             {"heading", robot->pose_in_odom().th()}};
+    value["velocity"] = robot->velocity();
+    value["battery"] = robot->battery();
+  }
+  return {text, value, false};
+}
+
+Result Robot::why() const {
+  const situation::Explanation why = situation::why(mind_.situation(mind_.newest_cycle(), false));
+  return {situation::to_text(why), {{"sentence", why.sentence}}, false};
+}
+
+bool Robot::moves() const {
+  const v1::RobotState* const robot = mind_.robot();
+  return robot != nullptr &&
+         (std::abs(robot->velocity()) > kStill || std::abs(robot->rotation_velocity()) > kStill);
+}
+
+}  // namespace saphira::mcp
