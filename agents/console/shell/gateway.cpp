@@ -40,6 +40,8 @@ AccessSettings access_of(const GatewayOptions& options, const Kept& kept) {
   AccessSettings access{kept.key, options.names};
   access.names.push_back(host_name());
   access.names.push_back(host_name() + ".local");
+  if (options.dial)
+    access.names.push_back(options.dial->host);
   return access;
 }
 
@@ -94,6 +96,17 @@ Gateway::Gateway(const bus::NodeOptions& node, const GatewayOptions& options, co
     simulator_.emplace(options.simulator);
   show_control();
   server_.watch(node_.wake_fd());
+  if (options.dial)
+    dialer_.emplace(
+        DialOptions{*options.dial, options.dial_token, options.dial_authority, server_.port()},
+        [host = options.dial->host, key = access_.key](int port) {
+          std::printf("open https://%s:%d/#%s\n", host.c_str(), port, key.c_str());
+          std::fflush(stdout);
+        },
+        [host = options.dial->host](const std::string& why) {
+          std::fprintf(stderr, "the relay %s is not reached (%s); it is dialled again and again\n",
+                       host.c_str(), why.c_str());
+        });
 }
 
 Server::Events Gateway::events() {

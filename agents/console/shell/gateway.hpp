@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dialer.hpp"
 #include "key.hpp"
 #include "mind.hpp"
 #include "saphira/bus/goal_client.hpp"
@@ -22,8 +23,11 @@ namespace saphira::console {
 
 struct GatewayOptions {
   ServerOptions server;
-  std::vector<std::string> names;  ///< further host names of this machine
-  std::string simulator;           ///< socket of a simulator's own view; empty: there is none
+  std::vector<std::string> names;      ///< further host names of this machine
+  std::string simulator;               ///< socket of a simulator's own view; empty: there is none
+  std::optional<relay::Address> dial;  ///< a relay by which this is reached, too
+  std::string dial_token;              ///< what it knows us by
+  std::string dial_authority;          ///< PEM file that its certificate is checked by
   std::string key_file;  ///< keeps key and port over a restart; empty: a new key each time
 };
 
@@ -142,6 +146,7 @@ class Gateway {
   std::optional<SimulatorLink> simulator_;
 
   Server server_;
+  std::optional<Dialer> dialer_;
 };
 
 }  // namespace saphira::console

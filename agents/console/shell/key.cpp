@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -62,6 +63,17 @@ Kept keep(const std::string& file) {
   if (!written)
     throw std::runtime_error(file + ": the console's key cannot be written");
   return kept;
+}
+
+std::string read_secret(const std::string& file) {
+  std::ifstream in(file);
+  struct stat state {};
+  std::string secret;
+  if (!(in >> secret) || stat(file.c_str(), &state) != 0)
+    throw std::runtime_error(file + ": expected a token");
+  if ((state.st_mode & 077U) != 0)
+    throw std::runtime_error(file + ": others may read the token; chmod 600 it");
+  return secret;
 }
 
 void keep_port(const std::string& file, const Kept& kept, int port) {

@@ -17,6 +17,8 @@ struct Kept {
 /// alone to read. Without a file a new one. std::runtime_error that names the file where it is open
 /// to others or cannot be written.
 Kept keep(const std::string& file);
+/// The first word of a file that only its owner may read. std::runtime_error that names the file.
+std::string read_secret(const std::string& file);
 /// The port that was found is kept as well. std::runtime_error that names the file.
 void keep_port(const std::string& file, const Kept& kept, int port);
 

@@ -37,6 +37,8 @@ int picture(console::Gateway& gateway, const console::ScreenshotOptions& options
 int main(int argc, char** argv) {
   console::GatewayOptions options;
   console::ScreenshotOptions screenshot;
+  std::string dial;
+  std::string token_file;
   return bus::run_program(
       argc, argv, "console", "Shows the robot in a browser, and lets people drive it from there.",
       [&](CLI::App& app) {
@@ -56,6 +58,17 @@ int main(int argc, char** argv) {
                                       ->needs(key);
         key->needs(certificate);
         app.add_option("--host-name", options.names, "a further name of this machine");
+        auto* const token = app.add_option("--dial-token-file", token_file,
+                                           "file with the token that the relay knows this robot by")
+                                ->check(CLI::ExistingFile);
+        app.add_option("--dial", dial,
+                       "wss://HOST[:PORT]/ROBOT of a relay (saphira-relay) by which the page is "
+                       "reached, too, where this machine has no address of its own")
+            ->needs(token, certificate);
+        app.add_option("--dial-authority", options.dial_authority,
+                       "PEM file that the relay's certificate is checked by, in the place of the "
+                       "system's authorities")
+            ->check(CLI::ExistingFile);
         app.add_option("--simulator", options.simulator,
                        "socket of a simulator's own view (saphira-sim --view-socket), for the page "
                        "/simulator.html");
@@ -74,6 +87,10 @@ int main(int argc, char** argv) {
             ->capture_default_str();
       },
       [&](const bus::NodeOptions& node, const bus::Stop& stop) {
+        if (!dial.empty()) {
+          options.dial = relay::parse_address(dial);
+          options.dial_token = console::read_secret(token_file);
+        }
         if (node.dry_run)  // its files are there, as the options ask
           return static_cast<int>(bus::kExitOk);
         if (!screenshot.file.empty())

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dialer.hpp"
+
 namespace saphira::console {
 
 namespace {
@@ -38,9 +40,11 @@ std::string header(lws* wsi, lws_token_indexes which) {
 Caller caller_of(lws* wsi) {
   std::array<char, 64> peer{};
   lws_get_peer_simple(wsi, peer.data(), peer.size());
-  const std::string address = peer.data();
+  std::string_view address = peer.data();
+  if (address.starts_with("::ffff:"))
+    address.remove_prefix(7);
   return {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN),
-          address.starts_with("127.") || address == "::1" || address.starts_with("::ffff:127.")};
+          address != kRelayed && (address.starts_with("127.") || address == "::1")};
 }
 
 Channel channel_of(const char* protocol) {
@@ -299,6 +303,7 @@ Server::Server(const ServerOptions& options, const AccessSettings& access,
   info.keepalive_timeout = 5;
   info.retry_and_idle_policy = &patience;
   info.vhost_name = "console";
+  info.alpn = "http/1.1";  // a browser would choose HTTP/2, which has other headers and WebSockets
   if (!options.certificate.empty()) {
     info.ssl_cert_filepath = options.certificate.c_str();
     info.ssl_private_key_filepath = options.certificate_key.c_str();

@@ -1,0 +1,317 @@
+#include "dialer.hpp"
+
+#include <libwebsockets.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "splice.hpp"
+
+namespace saphira::console {
+
+namespace {
+
+using relay::Splice;
+
+constexpr const char* kDial = "saphira.dial";
+constexpr const char* kCarry = "saphira.carry";
+constexpr std::size_t kMostVisitors = 64;
+constexpr int kLongestPause = 30;  // [s] until it dials again
+
+}  // namespace
+
+struct Dialer::Impl {
+  /// A connection of ours, as libwebsockets gives it back: of a visitor, or to the relay (0).
+  struct Leg {
+    Impl* impl = nullptr;
+    std::uint64_t visitor = 0;
+  };
+  struct Visitor {
+    Leg leg;
+    Splice splice;  ///< near: the relay, far: our server
+  };
+
+  DialOptions options;
+  std::function<void(int)> reached;
+  std::function<void(const std::string&)> lost;
+  lws_context* context = nullptr;
+  lws_vhost* vhost = nullptr;
+  int stop = -1;
+  bool stopping = false;
+  std::map<std::uint64_t, Visitor> visitors;
+  std::uint64_t last = 0;
+  Leg dial{this, 0};
+  int pause = 1;  // [s]
+  bool is_lost = false;
+  struct Timer {
+    lws_sorted_usec_list_t list{};
+    Impl* impl = nullptr;
+  } redial;
+  std::thread thread;
+
+  void run();
+  bool connect(const std::string& path, const char* protocol, Leg& leg);
+  void dial_now();
+  void dial_later(const std::string& why);
+  void heard(std::string_view line);
+  void fetch(const std::string& ticket);
+  void ended(std::uint64_t visitor, Splice::Side side);
+  bool authorize(lws* wsi, void* in, std::size_t size) const;
+
+  static Leg& leg_of(lws* wsi) { return *static_cast<Leg*>(lws_get_opaque_user_data(wsi)); }
+  Visitor* visitor_of(lws* wsi);
+  static int on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+  static int on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                      std::size_t size);
+  static int on_server(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                       std::size_t size);
+  static int on_end(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+};
+
+/// A WebSocket to the relay.
+bool Dialer::Impl::connect(const std::string& path, const char* protocol, Leg& leg) {
+  static const lws_retry_bo_t patience{nullptr, 0, 0, 5, 12, 0};
+  lws_client_connect_info info{};
+  info.context = context;
+  info.vhost = vhost;
+  info.address = options.address.host.c_str();
+  info.host = info.address;
+  info.origin = info.address;
+  info.port = options.address.port;
+  info.path = path.c_str();
+  info.protocol = protocol;
+  info.local_protocol_name = protocol;
+  info.ssl_connection = options.address.encrypted ? LCCSCF_USE_SSL : 0;
+  info.opaque_user_data = &leg;
+  info.retry_and_idle_policy = &patience;
+  return lws_client_connect_via_info(&info) != nullptr;
+}
+
+void Dialer::Impl::dial_now() {
+  if (!connect("/dial/" + options.address.robot, kDial, dial))
+    dial_later("it cannot be dialled");
+}
+
+void Dialer::Impl::dial_later(const std::string& why) {
+  if (!is_lost)
+    lost(why);
+  is_lost = true;
+  redial.impl = this;
+  lws_sul_schedule(
+      context, 0, &redial.list,
+      [](lws_sorted_usec_list_t* list) { reinterpret_cast<Timer*>(list)->impl->dial_now(); },
+      static_cast<lws_usec_t>(pause) * LWS_US_PER_SEC);
+  pause = std::min(kLongestPause, 2 * pause);
+}
+
+/// "port NUMBER", and "fetch TICKET" for each visitor.
+void Dialer::Impl::heard(std::string_view line) {
+  if (line.starts_with("port ")) {
+    pause = 1;
+    is_lost = false;
+    reached(std::atoi(std::string(line.substr(5, 5)).c_str()));
+  } else if (line.starts_with("fetch ")) {
+    fetch(std::string(line.substr(6, 64)));
+  }
+}
+
+void Dialer::Impl::fetch(const std::string& ticket) {
+  if (visitors.size() >= kMostVisitors)
+    return;
+  const std::uint64_t number = ++last;
+  Visitor& visitor = visitors[number];
+  visitor.leg = {this, number};
+  lws_client_connect_info local{};
+  local.context = context;
+  local.vhost = vhost;
+  local.address = "127.0.0.1";
+  local.port = options.port;
+  local.iface = kRelayed;
+  local.method = "RAW";
+  local.local_protocol_name = "server";
+  local.opaque_user_data = &visitor.leg;
+  if (lws_client_connect_via_info(&local) == nullptr) {
+    ended(number, Splice::kFar);
+    return;  // a failure may have ended it already
+  }
+  if (visitors.contains(number) &&
+      !connect("/carry/" + options.address.robot + "/" + ticket, kCarry, visitors[number].leg))
+    ended(number, Splice::kNear);
+}
+
+/// A side of a visitor is closed, or never came to be.
+void Dialer::Impl::ended(std::uint64_t number, Splice::Side side) {
+  const auto visitor = visitors.find(number);
+  if (visitor == visitors.end())
+    return;
+  visitor->second.splice.closed(side);
+  if (visitor->second.splice.is_over())
+    visitors.erase(visitor);
+}
+
+Dialer::Impl::Visitor* Dialer::Impl::visitor_of(lws* wsi) {
+  const auto visitor = visitors.find(leg_of(wsi).visitor);
+  return visitor == visitors.end() ? nullptr : &visitor->second;
+}
+
+bool Dialer::Impl::authorize(lws* wsi, void* in, std::size_t size) const {
+  auto** const at = static_cast<unsigned char**>(in);
+  const std::string value = "Bearer " + options.token;
+  return lws_add_http_header_by_token(wsi, WSI_TOKEN_HTTP_AUTHORIZATION,
+                                      reinterpret_cast<const unsigned char*>(value.data()),
+                                      static_cast<int>(value.size()), at, *at + size) == 0;
+}
+
+int Dialer::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
+                          std::size_t size) {
+  const auto text = [&] {
+    return in == nullptr ? std::string_view() : std::string_view(static_cast<char*>(in), size);
+  };
+  switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:
+      return leg_of(wsi).impl->authorize(wsi, in, size) ? 0 : -1;
+    case LWS_CALLBACK_CLIENT_RECEIVE:
+      leg_of(wsi).impl->heard(text());
+      return 0;
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+      leg_of(wsi).impl->dial_later(text().empty() ? "no answer" : std::string(text()));
+      return 0;
+    case LWS_CALLBACK_CLIENT_CLOSED:
+      leg_of(wsi).impl->dial_later("the connection has ended");
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+int Dialer::Impl::on_carry(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
+                           std::size_t size) {
+  Impl* impl = nullptr;
+  Visitor* visitor = nullptr;
+  if (lws_get_opaque_user_data(wsi) != nullptr) {
+    impl = leg_of(wsi).impl;
+    visitor = impl->visitor_of(wsi);
+  }
+  if (visitor == nullptr)
+    return 0;
+  switch (reason) {
+    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:
+      return impl->authorize(wsi, in, size) ? 0 : -1;
+    case LWS_CALLBACK_CLIENT_ESTABLISHED:
+      visitor->splice.attach(Splice::kNear, wsi, true);
+      return 0;
+    case LWS_CALLBACK_CLIENT_RECEIVE:
+      visitor->splice.came(Splice::kNear, {static_cast<const char*>(in), size});
+      return 0;
+    case LWS_CALLBACK_CLIENT_WRITEABLE:
+      return visitor->splice.write(Splice::kNear);
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+    case LWS_CALLBACK_CLIENT_CLOSED:
+      lws_set_opaque_user_data(wsi, nullptr);
+      impl->ended(visitor->leg.visitor, Splice::kNear);
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+int Dialer::Impl::on_server(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
+                            std::size_t size) {
+  Impl* impl = nullptr;
+  Visitor* visitor = nullptr;
+  if (lws_get_opaque_user_data(wsi) != nullptr) {
+    impl = leg_of(wsi).impl;
+    visitor = impl->visitor_of(wsi);
+  }
+  if (visitor == nullptr)
+    return 0;
+  switch (reason) {
+    case LWS_CALLBACK_RAW_CONNECTED:
+      visitor->splice.attach(Splice::kFar, wsi, false);
+      return 0;
+    case LWS_CALLBACK_RAW_RX:
+      visitor->splice.came(Splice::kFar, {static_cast<const char*>(in), size});
+      return 0;
+    case LWS_CALLBACK_RAW_WRITEABLE:
+      return visitor->splice.write(Splice::kFar);
+    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
+    case LWS_CALLBACK_RAW_CLOSE:
+      lws_set_opaque_user_data(wsi, nullptr);
+      impl->ended(visitor->leg.visitor, Splice::kFar);
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+int Dialer::Impl::on_end(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
+                         std::size_t /*size*/) {
+  if (reason == LWS_CALLBACK_RAW_RX_FILE)
+    static_cast<Impl*>(lws_context_user(lws_get_context(wsi)))->stopping = true;
+  return 0;
+}
+
+void Dialer::Impl::run() {
+  dial_now();
+  while (!stopping && lws_service(context, 0) >= 0) {
+  }
+}
+
+Dialer::Dialer(DialOptions options, std::function<void(int)> reached,
+               std::function<void(const std::string&)> lost)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->options = std::move(options);
+  impl_->reached = std::move(reached);
+  impl_->lost = std::move(lost);
+  static const std::array<lws_protocols, 5> protocols{
+      {{kDial, Impl::on_dial, 0, 4096, 0, nullptr, 0},
+       {kCarry, Impl::on_carry, 0, 16384, 0, nullptr, 0},
+       {"server", Impl::on_server, 0, 16384, 0, nullptr, 0},
+       {"ending", Impl::on_end, 0, 0, 0, nullptr, 0},
+       {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  lws_context_creation_info info{};
+  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+  info.user = impl_.get();
+  info.gid = static_cast<gid_t>(-1);
+  info.uid = static_cast<uid_t>(-1);
+  impl_->context = lws_create_context(&info);
+  if (impl_->context == nullptr)
+    throw std::runtime_error("the dialer could not be made");
+  info.port = CONTEXT_PORT_NO_LISTEN;
+  info.protocols = protocols.data();
+  info.vhost_name = "dialer";
+  if (!impl_->options.authority.empty())
+    info.client_ssl_ca_filepath = impl_->options.authority.c_str();
+  impl_->vhost = lws_create_vhost(impl_->context, &info);
+  impl_->stop = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  lws_sock_file_fd_type file{};
+  file.filefd = dup(impl_->stop);
+  if (impl_->vhost == nullptr || lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC,
+                                                            file, "ending", nullptr) == nullptr) {
+    lws_context_destroy(impl_->context);
+    throw std::runtime_error("the dialer could not be made: " + impl_->options.authority +
+                             " may be no certificate");
+  }
+  impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+Dialer::~Dialer() {
+  const std::uint64_t one = 1;
+  if (write(impl_->stop, &one, sizeof one) == sizeof one)
+    impl_->thread.join();
+  else
+    impl_->thread.detach();
+  lws_context_destroy(impl_->context);
+  close(impl_->stop);
+}
+
+}  // namespace saphira::console

@@ -1,0 +1,77 @@
+// saphira-relay: lets a robot that has no reachable address be watched and driven. README.md.
+#include <pthread.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <sys/stat.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "relay.hpp"
+
+namespace {
+
+using namespace saphira;
+
+/// Readable when the program shall end.
+int stop_on_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
+}
+
+std::vector<relay::Robot> read_robots(const std::string& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  struct stat state {};
+  if (!in || stat(file.c_str(), &state) != 0)
+    throw std::runtime_error(file + ": cannot be read");
+  if ((state.st_mode & 077U) != 0)
+    throw std::runtime_error(file + ": others may read the robots' tokens; chmod 600 it");
+  return relay::parse_robots(file, text.str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Lets robots without a reachable address be watched and driven from a browser");
+  relay::RelayOptions options;
+  std::string robots;
+  app.add_option("--robots", robots, "file with a line for each robot: NAME PORT TOKEN")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--dial-port", options.dial_port, "where the robots' consoles dial in")
+      ->required()
+      ->check(CLI::Range(1, 65535));
+  app.add_option("--listen", options.address, "address to listen on; 0.0.0.0: every one")
+      ->capture_default_str();
+  auto* const key =
+      app.add_option("--certificate-key", options.certificate_key, "PEM file, of the certificate")
+          ->check(CLI::ExistingFile);
+  auto* const certificate =
+      app.add_option("--certificate", options.certificate,
+                     "PEM file, of the dial port; without it robots of this machine alone dial in")
+          ->check(CLI::ExistingFile)
+          ->needs(key);
+  key->needs(certificate);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const int stop = stop_on_signals();
+    relay::Relay server(options, read_robots(robots));
+    std::printf("listens for robots on port %d\n", options.dial_port);
+    std::fflush(stdout);
+    server.run(stop);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "saphira-relay: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

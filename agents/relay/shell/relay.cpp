@@ -1,0 +1,392 @@
+#include "relay.hpp"
+
+#include <libwebsockets.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "saphira/base/boot_clock.hpp"
+#include "splice.hpp"
+
+namespace saphira::relay {
+
+namespace {
+
+constexpr unsigned kMostDescriptors = 1024;
+constexpr int kTick = 500'000;  // [us]
+constexpr const char* kDial = "saphira.dial";
+constexpr const char* kCarry = "saphira.carry";
+constexpr std::string_view kBearer = "Bearer ";
+
+std::string header(lws* wsi, lws_token_indexes which) {
+  std::array<char, 300> text{};
+  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
+  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+/// Nobody can guess it.
+std::string new_ticket() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw std::runtime_error("no random numbers for a ticket");
+  std::string text;
+  for (const unsigned char byte : bytes)
+    for (const int half : {byte >> 4, byte & 15})
+      text += "0123456789abcdef"[half];
+  return text;
+}
+
+/// /dial/ROBOT and /carry/ROBOT/TICKET, in words.
+std::array<std::string, 3> words_of(const std::string& path) {
+  std::array<std::string, 3> words;
+  std::size_t at = 0;
+  for (std::string& word : words) {
+    if (at >= path.size() || path[at] != '/')
+      break;
+    const std::size_t end = path.find('/', at + 1);
+    word = path.substr(at + 1, end == std::string::npos ? end : end - at - 1);
+    at = end == std::string::npos ? path.size() : end;
+  }
+  return words;
+}
+
+}  // namespace
+
+struct Relay::Impl {
+  using Visitor = Rendezvous::Visitor;
+
+  /// What libwebsockets keeps for each connection; it begins as zeros.
+  struct Leg {
+    Visitor visitor;  ///< whom it carries; 0: nobody
+    const Robot* dialled;
+  };
+  /// A gateway that has dialled in.
+  struct Gateway {
+    lws* wsi = nullptr;
+    std::vector<std::string> out;
+  };
+
+  explicit Impl(std::vector<Robot> robots) : rendezvous(std::move(robots)) {}
+
+  Rendezvous rendezvous;
+  lws_context* context = nullptr;
+  lws_vhost* dial = nullptr;
+  std::map<const lws_vhost*, const Robot*> doors;
+  std::map<std::string, Gateway> gateways;  ///< by robot
+  std::map<Visitor, Splice> splices;        ///< near: the visitor, far: the gateway
+  Visitor last = 0;
+  bool stopping = false;
+  struct Timer {
+    lws_sorted_usec_list_t list{};
+    Impl* impl = nullptr;
+  } ticker;
+
+  static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
+  const Robot* robot_of(const std::string& name) const;
+  bool refuses(lws* wsi, const std::string& path) const;
+  int dialled(lws* wsi, Leg& leg);
+  int tell(lws* wsi, const Leg& leg);
+  void hung_up(lws* wsi, const Leg& leg);
+  int arrived(lws* wsi, Leg& leg);
+  int fetched(lws* wsi, Leg& leg);
+  int writable(const Leg& leg, Splice::Side side);
+  void came(const Leg& leg, Splice::Side side, std::string_view bytes);
+  void left(const Leg& leg, Splice::Side side);
+  void tick();
+  void schedule_tick();
+
+  static int on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+  static int on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                      std::size_t size);
+  static int on_visitor(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                        std::size_t size);
+  static int on_end(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
+};
+
+const Robot* Relay::Impl::robot_of(const std::string& name) const {
+  for (const Robot& robot : rendezvous.robots())
+    if (robot.name == name)
+      return &robot;
+  return nullptr;
+}
+
+/// Only a gateway that knows its robot's token gets beyond the handshake.
+bool Relay::Impl::refuses(lws* wsi, const std::string& path) const {
+  const std::string given = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
+  if (given.starts_with(kBearer) &&
+      rendezvous.knows(words_of(path)[1], std::string_view(given).substr(kBearer.size())))
+    return false;
+  lws_return_http_status(wsi, HTTP_STATUS_UNAUTHORIZED, "no such robot, or another token");
+  return true;
+}
+
+/// A gateway dials in. One of that robot that was there before is forgotten: it may be gone.
+int Relay::Impl::dialled(lws* wsi, Leg& leg) {
+  leg.dialled = robot_of(words_of(header(wsi, WSI_TOKEN_GET_URI))[1]);
+  if (leg.dialled == nullptr)
+    return -1;
+  Gateway& gateway = gateways[leg.dialled->name];
+  if (gateway.wsi != nullptr)
+    lws_set_timeout(gateway.wsi, PENDING_TIMEOUT_CLOSE_SEND, LWS_TO_KILL_ASYNC);
+  gateway = {wsi, {"port " + std::to_string(leg.dialled->port)}};
+  lws_callback_on_writable(wsi);
+  std::printf("%s has dialled in\n", leg.dialled->name.c_str());
+  std::fflush(stdout);
+  return 0;
+}
+
+int Relay::Impl::tell(lws* wsi, const Leg& leg) {
+  const auto found = leg.dialled == nullptr ? gateways.end() : gateways.find(leg.dialled->name);
+  if (found == gateways.end() || found->second.wsi != wsi || found->second.out.empty())
+    return 0;
+  const std::string line = found->second.out.front();
+  found->second.out.erase(found->second.out.begin());
+  std::vector<unsigned char> buffer(LWS_PRE + line.size());
+  std::copy(line.begin(), line.end(), buffer.begin() + LWS_PRE);
+  if (lws_write(wsi, buffer.data() + LWS_PRE, line.size(), LWS_WRITE_TEXT) < 0)
+    return -1;
+  if (!found->second.out.empty())
+    lws_callback_on_writable(wsi);
+  return 0;
+}
+
+void Relay::Impl::hung_up(lws* wsi, const Leg& leg) {
+  if (leg.dialled == nullptr)
+    return;
+  const auto found = gateways.find(leg.dialled->name);
+  if (found == gateways.end() || found->second.wsi != wsi)
+    return;
+  gateways.erase(found);
+  std::printf("%s has hung up\n", leg.dialled->name.c_str());
+  std::fflush(stdout);
+}
+
+/// Somebody has come to the port of a robot.
+int Relay::Impl::arrived(lws* wsi, Leg& leg) {
+  const auto door = doors.find(lws_get_vhost(wsi));
+  const auto gateway = door == doors.end() ? gateways.end() : gateways.find(door->second->name);
+  if (gateway == gateways.end())
+    return -1;  // nobody has dialled in
+  const auto ticket =
+      rendezvous.arrive(door->second->name, last + 1, new_ticket(), BootClock::seconds());
+  if (!ticket)
+    return -1;
+  leg.visitor = ++last;
+  const int one = 1;
+  setsockopt(lws_get_socket_fd(wsi), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
+  splices[leg.visitor].attach(Splice::kNear, wsi, false);
+  gateway->second.out.push_back("fetch " + *ticket);
+  lws_callback_on_writable(gateway->second.wsi);
+  return 0;
+}
+
+/// The gateway has opened a connection for a visitor.
+int Relay::Impl::fetched(lws* wsi, Leg& leg) {
+  const auto words = words_of(header(wsi, WSI_TOKEN_GET_URI));
+  const auto visitor = rendezvous.fetch(words[1], words[2]);
+  const auto splice = visitor ? splices.find(*visitor) : splices.end();
+  if (splice == splices.end())
+    return -1;
+  leg.visitor = *visitor;
+  splice->second.attach(Splice::kFar, wsi, true);
+  return 0;
+}
+
+int Relay::Impl::writable(const Leg& leg, Splice::Side side) {
+  const auto splice = splices.find(leg.visitor);
+  return splice == splices.end() ? -1 : splice->second.write(side);
+}
+
+void Relay::Impl::came(const Leg& leg, Splice::Side side, std::string_view bytes) {
+  if (const auto splice = splices.find(leg.visitor); splice != splices.end())
+    splice->second.came(side, bytes);
+}
+
+void Relay::Impl::left(const Leg& leg, Splice::Side side) {
+  const auto splice = splices.find(leg.visitor);
+  if (splice == splices.end())
+    return;
+  splice->second.closed(side);
+  // One who leaves while waiting is never fetched.
+  if (splice->second.is_over() ||
+      !splice->second.is_attached(side == Splice::kNear ? Splice::kFar : Splice::kNear)) {
+    rendezvous.leave(leg.visitor);
+    splices.erase(splice);
+  }
+}
+
+void Relay::Impl::tick() {
+  for (const Visitor visitor : rendezvous.expire(BootClock::seconds()))
+    if (const auto splice = splices.find(visitor); splice != splices.end())
+      splice->second.close();
+}
+
+void Relay::Impl::schedule_tick() {
+  lws_sul_schedule(
+      context, 0, &ticker.list,
+      [](lws_sorted_usec_list_t* list) {
+        Impl& impl = *reinterpret_cast<Timer*>(list)->impl;
+        impl.tick();
+        impl.schedule_tick();
+      },
+      kTick);
+}
+
+int Relay::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                         std::size_t size) {
+  auto* const leg = static_cast<Leg*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+      return of(wsi).refuses(wsi, header(wsi, WSI_TOKEN_GET_URI)) ? -1 : 0;
+    case LWS_CALLBACK_ESTABLISHED:
+      return of(wsi).dialled(wsi, *leg);
+    case LWS_CALLBACK_SERVER_WRITEABLE:
+      return of(wsi).tell(wsi, *leg);
+    case LWS_CALLBACK_RECEIVE:
+      return -1;  // a gateway has nothing to say here
+    case LWS_CALLBACK_CLOSED:
+      of(wsi).hung_up(wsi, *leg);
+      return 0;
+    case LWS_CALLBACK_HTTP:
+      lws_return_http_status(wsi, HTTP_STATUS_NOT_FOUND,
+                             "a relay: gateways of robots dial in here");
+      return -1;
+    default:
+      return lws_callback_http_dummy(wsi, reason, user, in, size);
+  }
+}
+
+int Relay::Impl::on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                          std::size_t size) {
+  auto* const leg = static_cast<Leg*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+      return of(wsi).refuses(wsi, header(wsi, WSI_TOKEN_GET_URI)) ? -1 : 0;
+    case LWS_CALLBACK_ESTABLISHED:
+      return of(wsi).fetched(wsi, *leg);
+    case LWS_CALLBACK_SERVER_WRITEABLE:
+      return of(wsi).writable(*leg, Splice::kFar);
+    case LWS_CALLBACK_RECEIVE:
+      of(wsi).came(*leg, Splice::kFar, {static_cast<const char*>(in), size});
+      return 0;
+    case LWS_CALLBACK_CLOSED:
+      of(wsi).left(*leg, Splice::kFar);
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+int Relay::Impl::on_visitor(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                            std::size_t size) {
+  auto* const leg = static_cast<Leg*>(user);
+  switch (reason) {
+    case LWS_CALLBACK_RAW_ADOPT:
+      return of(wsi).arrived(wsi, *leg);
+    case LWS_CALLBACK_RAW_RX:
+      of(wsi).came(*leg, Splice::kNear, {static_cast<const char*>(in), size});
+      return 0;
+    case LWS_CALLBACK_RAW_WRITEABLE:
+      return of(wsi).writable(*leg, Splice::kNear);
+    case LWS_CALLBACK_RAW_CLOSE:
+      if (leg != nullptr)
+        of(wsi).left(*leg, Splice::kNear);
+      return 0;
+    default:
+      return 0;
+  }
+}
+
+int Relay::Impl::on_end(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
+                        std::size_t /*size*/) {
+  if (reason == LWS_CALLBACK_RAW_RX_FILE)
+    of(wsi).stopping = true;
+  return 0;
+}
+
+Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
+    : impl_(std::make_unique<Impl>(std::move(robots))) {
+  lws_set_log_level(0, nullptr);
+  static const std::array<lws_protocols, 4> dial_protocols{
+      {{kDial, Impl::on_dial, sizeof(Impl::Leg), 4096, 0, nullptr, 0},
+       {kCarry, Impl::on_carry, sizeof(Impl::Leg), 16384, 0, nullptr, 0},
+       {"ending", Impl::on_end, 0, 0, 0, nullptr, 0},
+       {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  static const std::array<lws_protocols, 2> door_protocols{
+      {{"visitor", Impl::on_visitor, sizeof(Impl::Leg), 16384, 0, nullptr, 0},
+       {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  // A gateway that does not answer is forgotten: it dials in again.
+  static const lws_retry_bo_t patience{nullptr, 0, 0, 5, 12, 0};
+
+  lws_context_creation_info info{};
+  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+  if (!options.certificate.empty())
+    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+  info.fd_limit_per_thread = kMostDescriptors;
+  info.user = impl_.get();
+  info.gid = static_cast<gid_t>(-1);
+  info.uid = static_cast<uid_t>(-1);
+  impl_->context = lws_create_context(&info);
+  if (impl_->context == nullptr)
+    throw std::runtime_error("the relay could not be made");
+  const auto listen = [&](int port, const char* name, const std::string& address) {
+    info.iface = address == "0.0.0.0" ? nullptr : address.c_str();
+    info.port = port;
+    info.vhost_name = name;
+    lws_vhost* const vhost = lws_create_vhost(impl_->context, &info);
+    if (vhost == nullptr) {
+      lws_context_destroy(impl_->context);
+      throw std::runtime_error("cannot listen on " + address + " port " + std::to_string(port) +
+                               " (" + name +
+                               "): another program has it, it is no address of this machine, or "
+                               "certificate and key do not fit");
+    }
+    return vhost;
+  };
+  // The doors first: they have no certificate, since what comes by them is not for us to read.
+  info.options |= LWS_SERVER_OPTION_ADOPT_APPLY_LISTEN_ACCEPT_CONFIG;
+  info.listen_accept_role = "raw-skt";
+  info.listen_accept_protocol = "visitor";
+  info.protocols = door_protocols.data();
+  for (const Robot& robot : impl_->rendezvous.robots())
+    impl_->doors[listen(robot.port, robot.name.c_str(), options.address)] = &robot;
+  info.options &= ~static_cast<std::uint64_t>(LWS_SERVER_OPTION_ADOPT_APPLY_LISTEN_ACCEPT_CONFIG);
+  info.listen_accept_role = nullptr;
+  info.listen_accept_protocol = nullptr;
+  info.protocols = dial_protocols.data();
+  info.timeout_secs = 5;
+  info.retry_and_idle_policy = &patience;
+  if (!options.certificate.empty()) {
+    info.ssl_cert_filepath = options.certificate.c_str();
+    info.ssl_private_key_filepath = options.certificate_key.c_str();
+  }
+  // Without a certificate the tokens would cross the network in the clear.
+  impl_->dial = listen(options.dial_port, "dial",
+                       options.certificate.empty() ? "127.0.0.1" : options.address);
+}
+
+Relay::~Relay() {
+  lws_context_destroy(impl_->context);
+}
+
+void Relay::run(int stop) {
+  lws_sock_file_fd_type file{};
+  file.filefd = dup(stop);  // libwebsockets closes it at the end
+  if (lws_adopt_descriptor_vhost(impl_->dial, LWS_ADOPT_RAW_FILE_DESC, file, "ending", nullptr) ==
+      nullptr)
+    throw std::runtime_error("the relay cannot wait for its end");
+  impl_->ticker.impl = impl_.get();
+  impl_->schedule_tick();
+  while (!impl_->stopping)
+    if (lws_service(impl_->context, 0) < 0)
+      throw std::runtime_error("the relay has failed");
+}
+
+}  // namespace saphira::relay

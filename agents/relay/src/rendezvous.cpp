@@ -1,0 +1,143 @@
+#include "saphira/relay/rendezvous.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <stdexcept>
+
+namespace saphira::relay {
+
+namespace {
+
+constexpr std::size_t kShortestToken = 16;
+
+bool is_name(std::string_view text) {
+  return !text.empty() && text.size() <= 64 &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) {
+           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                  c == '_' || c == '-' || c == '.';
+         });
+}
+
+/// 1 to 65535; 0: it is none.
+int port_of(std::string_view text) {
+  int port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return error == std::errc() && end == text.data() + text.size() && port > 0 && port < 65536 ? port
+                                                                                              : 0;
+}
+
+}  // namespace
+
+std::vector<Robot> parse_robots(const std::string& file, std::string_view text) {
+  std::vector<Robot> robots;
+  std::istringstream lines{std::string(text)};
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::vector<std::string> found;
+    for (std::string word; words >> word;)
+      found.push_back(word);
+    if (found.empty())
+      continue;
+    const auto wrong = [&](const std::string& why) {
+      return std::invalid_argument(file + ":" + std::to_string(number) + ": " + why);
+    };
+    if (found.size() != 3)
+      throw wrong("expected NAME PORT TOKEN");
+    Robot robot{found[0], port_of(found[1]), found[2]};
+    if (!is_name(robot.name))
+      throw wrong("a name has letters, digits, and _ - .");
+    if (robot.port == 0)
+      throw wrong("expected a port, 1 to 65535, found " + found[1]);
+    if (robot.token.size() < kShortestToken)
+      throw wrong("a token has at least 16 characters, such as `openssl rand -hex 24` makes");
+    for (const Robot& other : robots)
+      if (other.name == robot.name || other.port == robot.port)
+        throw wrong("robot " + other.name + " has this name or port already");
+    robots.push_back(std::move(robot));
+  }
+  if (robots.empty())
+    throw std::invalid_argument(file + ": expected a line for each robot, NAME PORT TOKEN");
+  return robots;
+}
+
+Address parse_address(std::string_view text) {
+  const auto wrong = [&](const std::string& why) {
+    return std::invalid_argument("\"" + std::string(text.substr(0, 100)) + "\": " + why +
+                                 "; expected wss://HOST[:PORT]/ROBOT");
+  };
+  Address address;
+  address.encrypted = text.starts_with("wss://");
+  if (!address.encrypted && !text.starts_with("ws://"))
+    throw wrong("it begins otherwise");
+  std::string_view rest = text.substr(address.encrypted ? 6 : 5);
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string_view::npos || !is_name(rest.substr(slash + 1)))
+    throw wrong("no robot is named");
+  address.robot = rest.substr(slash + 1);
+  rest = rest.substr(0, slash);
+  if (const std::size_t colon = rest.find(':'); colon != std::string_view::npos) {
+    address.port = port_of(rest.substr(colon + 1));
+    if (address.port == 0)
+      throw wrong("no port");
+    rest = rest.substr(0, colon);
+  } else if (!address.encrypted) {
+    address.port = 80;
+  }
+  if (!is_name(rest))
+    throw wrong("no host is named");
+  address.host = rest;
+  if (!address.encrypted && address.host != "localhost" && address.host != "127.0.0.1")
+    throw wrong("without encryption the token crosses the network in the clear");
+  return address;
+}
+
+bool Rendezvous::knows(std::string_view robot, std::string_view token) const {
+  bool known = false;
+  for (const Robot& each : robots_) {
+    unsigned difference = each.name == robot && each.token.size() == token.size() ? 0 : 1;
+    for (std::size_t i = 0; i < std::min(each.token.size(), token.size()); ++i)
+      difference |=
+          static_cast<unsigned char>(each.token[i]) ^ static_cast<unsigned char>(token[i]);
+    known = known || difference == 0;
+  }
+  return known;
+}
+
+std::optional<std::string> Rendezvous::arrive(const std::string& robot, Visitor visitor,
+                                              const std::string& ticket, double now) {
+  const auto there = std::count_if(guests_.begin(), guests_.end(),
+                                   [&](const auto& each) { return each.second.robot == robot; });
+  if (static_cast<std::size_t>(there) >= kMost)
+    return std::nullopt;
+  guests_[visitor] = {robot, ticket, now, true};
+  return ticket;
+}
+
+std::optional<Rendezvous::Visitor> Rendezvous::fetch(const std::string& robot,
+                                                     const std::string& ticket) {
+  for (auto& [visitor, guest] : guests_)
+    if (guest.waits && guest.robot == robot && guest.ticket == ticket) {
+      guest.waits = false;
+      return visitor;
+    }
+  return std::nullopt;
+}
+
+void Rendezvous::leave(Visitor visitor) {
+  guests_.erase(visitor);
+}
+
+std::vector<Rendezvous::Visitor> Rendezvous::expire(double now) {
+  std::vector<Visitor> gone;
+  for (const auto& [visitor, guest] : guests_)
+    if (guest.waits && now - guest.since > kPatience)
+      gone.push_back(visitor);
+  for (const Visitor visitor : gone)
+    guests_.erase(visitor);
+  return gone;
+}
+
+}  // namespace saphira::relay
