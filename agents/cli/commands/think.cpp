@@ -149,6 +149,8 @@ std::optional<std::string> behaviors_text(const std::string& name, const Mind& m
     if (const auto found =
             find_behavior(name, program->behaviors(), &program->intended(), mind, names))
       return text + *found;
+  if (const v1::BehaviorSchema* const schema = mind.schema(name))
+    return text + schema_display(*schema);
   return text + "no behavior " + name + "; there are " + (names.empty() ? "none now" : names) +
          "\n";
 }

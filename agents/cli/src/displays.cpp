@@ -244,6 +244,27 @@ std::string behaviors_display(const v1::BehaviorSet& behaviors) {
   return text;
 }
 
+std::string schema_display(const v1::BehaviorSchema& schema) {
+  std::string text = schema.name() + (schema.summary().empty() ? "" : ": " + schema.summary()) +
+                     "\nIt is loaded" +
+                     (schema.source().empty() ? "" : " from " + schema.source()) +
+                     ", and no goal or activity intends it now.\n\nParams\n";
+  for (const v1::BehaviorParameter& parameter : schema.parameters()) {
+    text += "  " + parameter.name();
+    if (parameter.required())
+      text += "  required";
+    else if (parameter.kind() == v1::ARGUMENT_NUMBER)
+      text += format("  usually %.4g", parameter.usual());
+    else if (!parameter.choices().empty())
+      text += "  usually " + parameter.choices().front();
+    text += (parameter.meaning().empty() ? "" : "  " + parameter.meaning()) + "\n";
+  }
+  text += "\nRules\n";
+  for (const v1::RuleText& rule : schema.rules())
+    text += "  " + rule.name() + "   if " + rule.antecedent() + " then " + rule.action() + "\n";
+  return text;
+}
+
 std::string behavior_display(const v1::BehaviorState& behavior,
                              const v1::IntendedBehavior* intended,
                              const v1::BehaviorSchema* schema) {

@@ -206,6 +206,37 @@ Fuzzy variables
   EXPECT_NE(behavior_display(keep_off(), nullptr, nullptr), "");
 }
 
+TEST(SchemaDisplay, SaysWhatABehaviorThatIsNotIntendedTakesAndDoes) {
+  v1::BehaviorSchema schema;
+  schema.name("KeepOff");
+  schema.summary("steers off what is ahead");
+  schema.source("keep-off.beh");
+  v1::BehaviorParameter parameter;
+  parameter.name("distance");
+  parameter.usual(0.75);
+  parameter.meaning("[m] at which it begins");
+  schema.parameters().push_back(parameter);
+  parameter.name("goal");
+  parameter.required(true);
+  parameter.meaning("");
+  schema.parameters().push_back(parameter);
+  v1::RuleText rule;
+  rule.name("caution");
+  rule.antecedent("front");
+  rule.action("Slow Down");
+  schema.rules().push_back(rule);
+  EXPECT_EQ(schema_display(schema), R"(KeepOff: steers off what is ahead
+It is loaded from keep-off.beh, and no goal or activity intends it now.
+
+Params
+  distance  usually 0.75  [m] at which it begins
+  goal  required
+
+Rules
+  caution   if front then Slow Down
+)");
+}
+
 TEST(BeliefsTable, SaysWhoSaidSoAndHowLongAgo) {
   v1::BeliefSet all;
   all.stamp().cycle(100);

@@ -209,9 +209,9 @@ void Interpretation::find_walls(std::size_t number) {
     std::vector<bool> from_taken(wall.stretches.size(), false);
     std::vector<bool> to_taken(wall.stretches.size(), false);
     for (const Opening& opening : wall.openings) {
-      const double width =
-          wall.stretches[opening.after].from.u - wall.stretches[opening.before].to.u;
-      if (width < side_settings.min_door || width > side_settings.max_junction)
+      const double width = opening.to.u - opening.from.u;
+      if (width < side_settings.min_door ||
+          width > (opening.depth > 0.0 ? side_settings.max_door : side_settings.max_junction))
         continue;
       if (breaks)
         stand(opening_percept(wall, opening, side), lines);
@@ -350,10 +350,11 @@ Percept Interpretation::end_percept(const Wall& wall, const Stretch& stretch, bo
 
 Percept Interpretation::opening_percept(const Wall& wall, const Opening& opening, Side side) const {
   const Line& line = wall.fit.line;
-  const End& from = wall.stretches[opening.before].to;
-  const End& to = wall.stretches[opening.after].from;
+  const End& from = opening.from;
+  const End& to = opening.to;
   Percept percept;
   percept.side = side;
+  percept.length = opening.depth;
   percept.width = to.u - from.u;
   percept.type = percept.width <= settings_.side.max_door ? PointType::door : PointType::junction;
   const double u = (from.u + to.u) / 2.0;

@@ -29,7 +29,7 @@ constexpr double kPostAgree = 0.06;
 constexpr double kPostWay = 4.0;
 constexpr double kPostTurn = 0.6;
 
-enum class Says { wall, through, other };
+enum class Says { wall, back, through, other };
 
 struct Event {
   double u = 0.0;
@@ -231,6 +231,9 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
       if (!sure)
         continue;
       event.says = Says::through;
+    } else if (sure && firing.range > d + settings_.min_back - settings_.back_agree &&
+               firing.range < d + settings_.max_back + settings_.back_agree) {
+      event.says = Says::back;
     }
     events.push_back(event);
   }
@@ -307,7 +310,10 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
     return sum / std::max(1.0, count);
   };
   for (std::size_t k = 0; k + 1 < ranges.size(); ++k) {
-    Opening opening{k, k + 1, {}};
+    const Stretch& before = wall.stretches[k];
+    const Stretch& after = wall.stretches[k + 1];
+    Opening opening{k, k + 1, before.to, after.from, {}, 0.0};
+    Opening recess = opening;
     std::size_t other = 0;
     double widest = 0.0;
     double last = events[ranges[k].last].u;
@@ -316,18 +322,49 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
       last = events[i].u;
       if (events[i].says == Says::through)
         opening.through.push_back(events[i].firing);
+      else if (events[i].says == Says::back)
+        recess.through.push_back(events[i].firing);
       else if (i < ranges[k + 1].first)
         ++other;
     }
+    if (widest >= kUnseen || !is_more(before) || !is_more(after) ||
+        std::abs(off(before, before.to.u) - off(after, after.from.u)) > settings_.max_step)
+      continue;
     if (opening.through.size() >= static_cast<std::size_t>(settings_.min_through) &&
-        4 * other <= opening.through.size() && widest < kUnseen && wall.stretches[k].to.open &&
-        wall.stretches[k + 1].from.open && is_more(wall.stretches[k]) &&
-        is_more(wall.stretches[k + 1]) &&
-        std::abs(off(wall.stretches[k], wall.stretches[k].to.u) -
-                 off(wall.stretches[k + 1], wall.stretches[k + 1].from.u)) <= settings_.max_step)
+        4 * (other + recess.through.size()) <= opening.through.size() && opening.from.open &&
+        opening.to.open) {
       wall.openings.push_back(std::move(opening));
+      continue;
+    }
+    if (!has_door_in(line, recess, other + opening.through.size()))
+      continue;
+    const std::vector<const Return*> backwards(recess.through.rbegin(), recess.through.rend());
+    recess.from = recess.to = {};
+    place_end(line, before, true, recess.through, others, recess.from);
+    place_end(line, after, false, backwards, others, recess.to);
+    if (recess.from.open && recess.to.open)
+      wall.openings.push_back(std::move(recess));
   }
   walls_.push_back(std::move(wall));
+}
+
+/// True where what stands back is flat, and deep enough to be a door in its frame: a closed one.
+/// others: readings there of anything else.
+bool SideView::has_door_in(const Line& line, Opening& opening, std::size_t others) const {
+  const auto& echoes = opening.through;
+  if (echoes.size() < static_cast<std::size_t>(settings_.min_back_echoes) ||
+      4 * others > echoes.size())
+    return false;
+  std::vector<double> depths;
+  for (const Return* echo : echoes)
+    depths.push_back(echo->range - line.distance(echo->sonar));
+  std::sort(depths.begin(), depths.end());
+  opening.depth = depths[depths.size() / 2];
+  const auto agree = std::count_if(depths.begin(), depths.end(), [&](double depth) {
+    return std::abs(depth - opening.depth) < settings_.back_agree;
+  });
+  return 5 * static_cast<std::size_t>(agree) >= 4 * echoes.size() &&
+         opening.depth >= settings_.min_back && opening.depth <= settings_.max_back;
 }
 
 void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,

@@ -91,6 +91,14 @@ Corridor::Range opening(double from, double to) {
   };
 }
 
+/// The same with a closed door in it, which stands back.
+Corridor::Range recess(double from, double to, double depth) {
+  return [=, open = opening(from, to)](double x) {
+    const double range = open(x);
+    return range == 0.0 ? 1.0 + depth : range;
+  };
+}
+
 std::vector<Percept> of(const Output& output, PointType type) {
   std::vector<Percept> found;
   std::copy_if(output.percepts.begin(), output.percepts.end(), std::back_inserter(found),
@@ -130,6 +138,32 @@ TEST(Interpretation, AWallThatBendsIsNoLongerThanItIsStraight) {
         most = std::max(most, std::abs(at.y() - there(at.x())));
       }
   EXPECT_LT(most, 0.05);
+}
+
+TEST(Interpretation, AClosedDoorThatStandsBackIsADoor) {
+  for (const double depth : {0.15, 0.2, 0.26, 0.35}) {
+    Corridor corridor(recess(2.0, 2.9, depth), nothing);
+    const auto doors = of(corridor.drive(4.5), PointType::door);
+    ASSERT_EQ(doors.size(), 1U) << depth;
+    EXPECT_TRUE(doors[0].is_closed());
+    EXPECT_NEAR(doors[0].length, depth, 0.02);
+    EXPECT_NEAR(doors[0].pose_in_odom.x, 2.45, 0.06);
+    EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
+    EXPECT_NEAR(doors[0].width, 0.9, 0.1);
+    // It is no end of a wall.
+    EXPECT_TRUE(of(corridor.drive(4.6), PointType::breach).empty());
+  }
+}
+
+TEST(Interpretation, AFrameOrANicheIsNoDoor) {
+  // A door flush with the wall but for its frame; a niche too wide, too narrow, too uneven.
+  for (const auto& range : {recess(2.0, 2.9, 0.06), recess(2.0, 4.0, 0.2), recess(2.0, 2.45, 0.2),
+                            Corridor::Range([flat = recess(2.0, 2.9, 0.2)](double x) {
+                              return flat(x) > 1.15 ? flat(x) + 0.3 * (x - 2.45) : flat(x);
+                            })}) {
+    Corridor corridor(range, nothing);
+    EXPECT_TRUE(of(corridor.drive(5.5), PointType::door).empty());
+  }
 }
 
 TEST(Interpretation, SeesOneEndAtOnceAndTheDoorWhenItIsPassed) {

@@ -519,7 +519,8 @@ void Registration::Self::look_for_news(const Inputs& inputs,
   for (const Match& match : now_.output.matches)
     if (match.accepted &&
         std::any_of(inputs.percepts.begin(), inputs.percepts.end(), [&](const Percept& percept) {
-          return percept.id == match.percept && percept.type == PointType::door;
+          return percept.id == match.percept && percept.type == PointType::door &&
+                 !percept.is_closed();
         }))
       open.push_back(match.artifact);
   now_.output.presence =

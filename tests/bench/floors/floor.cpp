@@ -122,7 +122,8 @@ class Builder {
   void wall(const Vec2& from, const Vec2& to) { lines_.push_back({from, to}); }
   std::string world(const Vec2& size, const Pose& start) const;
   void feature(const std::string& type, std::uint32_t id, const Pose& pose, double length,
-               double width, const std::string& name, bool is_seen = true);
+               double width, const std::string& name, bool is_open = true,
+               bool is_recessed = false);
 
   Random random_;
   std::vector<Corridor> corridors_;
@@ -133,10 +134,11 @@ class Builder {
   std::vector<Vec2> tour_;
   std::ostringstream map_;
   std::ostringstream open_doors_;
+  std::ostringstream recessed_doors_;
 };
 
 void Builder::feature(const std::string& type, std::uint32_t id, const Pose& pose, double length,
-                      double width, const std::string& name, bool is_seen) {
+                      double width, const std::string& name, bool is_open, bool is_recessed) {
   std::ostringstream line;
   line << std::fixed << std::setprecision(1) << type;
   if (id != 0)
@@ -149,8 +151,10 @@ void Builder::feature(const std::string& type, std::uint32_t id, const Pose& pos
     line << " \"" << name << '"';
   line << '\n';
   map_ << line.str();
-  if (is_seen)
+  if (is_open)
     open_doors_ << line.str();
+  if (is_recessed)
+    recessed_doors_ << line.str();
 }
 
 void Builder::branch(double along, double side) {
@@ -304,7 +308,7 @@ void Builder::lay_door(const Corridor& corridor, double side, const Area& room,
   const Vec2 middle = at(0.0, 0.0);
   feature("DOOR", 1000 + static_cast<std::uint32_t>(rooms_.size()),
           {middle.x(), middle.y(), corridor.area.in_world.th - side * kPi / 2}, 0.0, opening, name,
-          leaf > radians(80.0));
+          leaf > radians(80.0), leaf == 0.0 && reveal >= 0.15);
   // A desk at the far wall.
   if (room.length > 3.5 && room.width > 2.6)
     box(compose(room.in_world, {room.length - 0.9, between(-0.3, 0.3), 0.0}), 0.8, 1.6);
@@ -459,7 +463,7 @@ Floor Builder::make() {
   const Pose start{tour_.front().x(), tour_.front().y(), 0.0};
   feature("POS", 90, start, 0.0, 0.0, "start");
   const Vec2 size = most + moved + Vec2(kRoom, kRoom);
-  return {world(size, start), map_.str(), open_doors_.str(), tour_};
+  return {world(size, start), map_.str(), open_doors_.str(), recessed_doors_.str(), tour_};
 }
 
 }  // namespace

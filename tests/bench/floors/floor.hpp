@@ -13,8 +13,10 @@ namespace saphira::test {
 struct Floor {
   std::string world;  ///< text of a world file
   std::string map;    ///< text of a map file: every corridor, room and door
-  /// The same without the doors that are closed or ajar: what a robot that goes by can notice.
+  /// The same without the doors that are closed or ajar.
   std::string open_doors;
+  /// The doors that are closed and stand back from the corridor's wall by 0.15 m and more, alone.
+  std::string recessed_doors;
   std::vector<Vec2> tour;  ///< along all corridors; each two that follow see each other
 };
 

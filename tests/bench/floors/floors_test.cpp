@@ -68,6 +68,15 @@ TEST_P(Floors, DoorsAreOpenings) {
   }
   EXPECT_GE(doors, 3);
   EXPECT_LT(closed, doors);
+  for (const maps::Feature& door :
+       maps::parse_map(floor_.recessed_doors, "recessed.map").features) {
+    EXPECT_NE(maps::find(map_, door.id), nullptr);
+    EXPECT_EQ(maps::find(open, door.id), nullptr);
+    // Flat, and so far back.
+    const double back = sim::distance(world_.segments, transform(door.pose_in_map, Vec2(0.0, 0.0)));
+    EXPECT_GT(back, 0.149) << maps::describe(door);
+    EXPECT_LT(back, 0.351) << maps::describe(door);
+  }
 }
 
 TEST_P(Floors, TheMapHangsTogether) {

@@ -42,14 +42,19 @@ struct Site {
   std::shared_ptr<const sim::World> world;
   std::shared_ptr<const maps::Map> map;
   maps::Map open_doors;
+  maps::Map recessed_doors;
+  maps::Map noticeable;  ///< both
 };
 
 Site site(std::uint64_t seed) {
-  Site made{seed, test::make_floor(seed), nullptr, nullptr, {}};
+  Site made{seed, test::make_floor(seed), nullptr, nullptr, {}, {}, {}};
   const std::string name = "floor " + std::to_string(seed);
   made.world = std::make_shared<sim::World>(sim::parse_world(made.floor.world, name + ".wld"));
   made.map = std::make_shared<maps::Map>(maps::parse_map(made.floor.map, name + ".map"));
   made.open_doors = maps::parse_map(made.floor.open_doors, name + ", open doors");
+  made.recessed_doors =
+      maps::parse_map(made.floor.recessed_doors, name + ", doors that stand back");
+  made.noticeable = maps::parse_map(made.floor.open_doors + made.floor.recessed_doors, name);
   return made;
 }
 
@@ -71,13 +76,18 @@ struct Patrolled {
   int sure_right = 0;  ///< of these within 0.5 m
   int doors = 0;
   int noticed = 0;
+  int recessed = 0;  ///< of these, closed ones that stand back
+  int recessed_noticed = 0;
+  int reported = 0;  ///< hypotheses of doors
+  int real = 0;
 };
 
 Patrolled patrol(const Options& options, const Site& site) {
   constexpr double kGivenUp = 600.0;  // [cycles] for one point
   Patrolled result;
   test::Drive robot(test::registered_on(*site.map, drive_of(options, site)));
-  test::Score score(robot, site.open_doors);
+  test::Score score(robot, site.noticeable);
+  test::Score recessed(robot, site.recessed_doors);
   test::Tour tour(site.floor.tour, true);
   std::size_t reached = 0;
   int since = 0;
@@ -92,6 +102,7 @@ Patrolled patrol(const Options& options, const Site& site) {
     }
     robot.advance();
     score.look(robot);
+    recessed.look(robot);
     const registration::Core::Outputs& told = robot.registered();
     const double off = (told.pose_in_map.position() - robot.truth().position()).norm();
     if (told.state == registration::State::tracking) {
@@ -105,6 +116,10 @@ Patrolled patrol(const Options& options, const Site& site) {
   }
   result.doors = score.doors_passed();
   result.noticed = score.doors_found();
+  result.recessed = recessed.doors_passed();
+  result.recessed_noticed = recessed.doors_found();
+  result.reported = score.doors().reported;
+  result.real = score.doors().real;
   return result;
 }
 
@@ -190,6 +205,7 @@ struct Built {
   double length = 0.0;   ///< [m] of the corridors
   double covered = 0.0;  ///< [m] of it that the built corridors cover
   test::MapScore score;
+  test::MapScore recessed;
   int contacts = 0;
 };
 
@@ -215,7 +231,8 @@ Built build(const Options& options, const Site& site) {
   result.done = building.done();
   result.reason = building.reason();
   result.minutes = static_cast<double>(building.whole.cycle()) / 600.0;
-  result.score = test::score(map, site.open_doors);
+  result.score = test::score(map, site.noticeable);
+  result.recessed = test::score(map, site.recessed_doors);
   result.contacts = building.whole.drive().contacts();
   building.draw("floor-" + std::to_string(site.seed));
   return result;
@@ -242,6 +259,9 @@ int run(const Options& options) {
   double covered = 0.0;
   int built_doors = 0;
   int built_found = 0;
+  int built_recessed = 0;
+  int recessed_found = 0;
+  int built_false = 0;
   nlohmann::json floors = nlohmann::json::array();
   for (int i = 0; i < options.floors; ++i) {
     const Site here = site(options.first + static_cast<std::uint64_t>(i));
@@ -273,6 +293,13 @@ int run(const Options& options) {
     covered += built.covered;
     built_doors += built.score.doors;
     built_found += built.score.doors_found;
+    built_recessed += built.recessed.doors;
+    recessed_found += built.recessed.doors_found;
+    built_false += built.score.doors_false;
+    all.recessed += patrolled.recessed;
+    all.recessed_noticed += patrolled.recessed_noticed;
+    all.reported += patrolled.reported;
+    all.real += patrolled.real;
     std::fprintf(
         options.json ? stderr : stdout,
         "floor %llu: p95 %.2f m, worst %.2f m, tracking %.0f %%, 0.9 is right %.0f %%, doors "
@@ -308,6 +335,10 @@ int run(const Options& options) {
                               {"tracking", share(all.tracking, all.cycles)},
                               {"calibration_at_90", share(all.sure_right, all.sure)},
                               {"doors_noticed", share(all.noticed, all.doors)},
+                              {"recessed_noticed", share(all.recessed_noticed, all.recessed)},
+                              {"doors_precision", share(all.real, all.reported)},
+                              {"recessed_built", share(recessed_found, built_recessed)},
+                              {"doors_false", built_false},
                               {"explored", share(covered, length)},
                               {"doors_built", share(built_found, built_doors)},
                               {"built_well", good},
@@ -324,15 +355,19 @@ int run(const Options& options) {
   std::printf(
       "in all: p95 %.2f m, worst %.2f m, tracking %.0f %%, of the cycles with confidence 0.9 %.0f "
       "%% "
-      "within 0.5 m, doors noticed %d of %d; carried: %d of %d goals arrived, %d said so falsely, "
+      "within 0.5 m, doors noticed %d of %d (%d of %d closed ones that stand back; %d of %d "
+      "hypotheses real); carried: %d of %d goals arrived, %d said so falsely, "
       "sure and "
       "wrong for %.1f m (p50), %.1f m (p90); "
-      "explored %.0f %% of the corridors, %d of %d open doors, %d of %d floors well\n",
+      "explored %.0f %% of the corridors, %d of %d doors (%d of %d that stand back; %d false), %d "
+      "of "
+      "%d floors well\n",
       test::quantile(offs.position, 0.95), test::quantile(offs.position, 1.0),
       100.0 * share(all.tracking, all.cycles), 100.0 * share(all.sure_right, all.sure), all.noticed,
-      all.doors, carried.arrived, carried.goals, carried.false_success,
-      test::quantile(carried.sure_way, 0.5), test::quantile(carried.sure_way, 0.9),
-      100.0 * share(covered, length), built_found, built_doors, good, options.floors);
+      all.doors, all.recessed_noticed, all.recessed, all.real, all.reported, carried.arrived,
+      carried.goals, carried.false_success, test::quantile(carried.sure_way, 0.5),
+      test::quantile(carried.sure_way, 0.9), 100.0 * share(covered, length), built_found,
+      built_doors, recessed_found, built_recessed, built_false, good, options.floors);
   return 0;
 }
 

@@ -316,11 +316,13 @@ void add_corridors(Functions& functions) {
       "whether it is in one"});
   functions.add(Condition{"door-ahead",
                           [](const World& world) {
-                            return seen_value(nearest(
-                                world, PointType::door, [](const lps::Percept&, const Pose& in) {
-                                  return in.x > 0.0 && std::hypot(in.x, in.y) < 2.5 &&
-                                         std::abs(std::atan2(in.y, in.x)) < radians(75.0);
-                                }));
+                            return seen_value(nearest(world, PointType::door,
+                                                      [](const lps::Percept& door, const Pose& in) {
+                                                        return !door.is_closed() && in.x > 0.0 &&
+                                                               std::hypot(in.x, in.y) < 2.5 &&
+                                                               std::abs(std::atan2(in.y, in.x)) <
+                                                                   radians(75.0);
+                                                      }));
                           },
                           "the nearest door that is seen within 2.5 m before the robot"});
   functions.add(Condition{

@@ -42,6 +42,12 @@ struct SideSettings {
   double max_door = 1.4;      ///< [m] wider ones are junctions
   double max_junction = 4.5;  ///< [m]
   double end_run = 0.6;       ///< [m] of wall that a single end stands at
+  /// [m] what a closed door stands back from its wall (reveals of DIN 18040, ADA 404): less is no
+  /// more than a frame, more is seen through.
+  double min_back = 0.14;
+  double max_back = 0.4;
+  double back_agree = 0.04;  ///< [m] its echoes agree with each other to this
+  int min_back_echoes = 5;
 };
 
 /// One end of a stretch of wall.
@@ -65,11 +71,14 @@ struct Stretch {
 /// What of it is straight, from where it was heard last.
 Stretch straight_part(const Line& line, const Stretch& stretch, const SideSettings& settings);
 
-/// What is between two stretches, seen through.
+/// What is between two stretches: seen through, or a door that stands back from the wall.
 struct Opening {
   std::size_t before = 0;  ///< the stretches
   std::size_t after = 0;
-  std::vector<const Return*> through;
+  End from;                            ///< the ends of the wall: of the stretch before it,
+  End to;                              ///< and of the one after it
+  std::vector<const Return*> through;  ///< readings through it, or from what stands back
+  double depth = 0.0;                  ///< [m] that it stands back; 0: seen through
 };
 
 /// A wall as it is seen from one side: a line, and where it is.
@@ -110,6 +119,7 @@ class SideView {
   void assign();
   void seek();
   void describe(const Candidate& candidate, const std::deque<Return>& others);
+  bool has_door_in(const Line& line, Opening& opening, std::size_t others) const;
   void place_end(const Line& line, const Stretch& stretch, bool upper,
                  const std::vector<const Return*>& beyond, const std::deque<Return>& others,
                  End& end) const;

@@ -27,15 +27,18 @@ struct ReadingId {
 struct Percept {
   std::uint32_t id = 0;  ///< stays while it is the same thing that is seen; never used again
   /// wall: a stretch of surface. breach: one end of an opening (a wall ends here). door: an opening
-  /// of a door's width. junction: a wider one. corridor: two parallel walls.
+  /// of a door's width, or a closed door that stands back from the wall. junction: a wider opening.
+  /// corridor: two parallel walls.
   PointType type = PointType::invalid;
   Side side = Side::none;
   /// The middle; of a breach, the end of the wall. The heading is along a wall or corridor, roughly
   /// as the robot went when it saw it; of a door, junction or breach it is the normal of the
   /// opening, towards the side where the robot saw it from.
   Pose pose_in_odom;
-  double length = 0.0;  ///< [m] of walls and corridors
-  double width = 0.0;   ///< [m] of corridors, and of openings
+  /// [m] of walls and corridors; of a door what it stands back from the wall, 0: it is seen
+  /// through.
+  double length = 0.0;
+  double width = 0.0;  ///< [m] of corridors, and of openings
   /// One sigma, in the percept's own frame: along and across its heading [m], and of it [rad].
   double sigma_along = 0.0;
   double sigma_across = 0.0;
@@ -45,6 +48,8 @@ struct Percept {
   std::uint64_t seen = 0;   ///< cycle of the newest reading that made it
   std::vector<ReadingId> readings;
 
+  /// A door that is closed.
+  bool is_closed() const { return type == PointType::door && length > 0.0; }
   /// A hypothesis of an object, not only a feature.
   bool is_hypothesis() const {
     return type == PointType::door || type == PointType::junction || type == PointType::corridor;
