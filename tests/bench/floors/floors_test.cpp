@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <set>
 #include <string>
 
+#include "drive/drive.hpp"
 #include "floors/floor.hpp"
+#include "localization/patrol.hpp"
+#include "perception/score.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/sim/world.hpp"
@@ -102,6 +106,50 @@ TEST_P(Floors, NobodyGetsOut) {
       EXPECT_TRUE(sim::cast_ray(world_.segments, at, direction, 60.0).has_value())
           << at.transpose() << " along " << direction.transpose();
     }
+}
+
+/// Of the doors of floors that nobody tuned it on, those that are closed and stand back from the
+/// wall.
+TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
+  int passed = 0;
+  int found = 0;
+  int reported = 0;
+  int real = 0;
+  std::size_t on_map = 0;
+  std::size_t all_matched = 0;
+  for (std::uint64_t seed = 3001; seed < 3007; ++seed) {
+    const Floor floor = make_floor(seed);
+    const maps::Map map = maps::parse_map(floor.map, "floor.map");
+    DriveOptions options;
+    options.made_world = std::make_shared<sim::World>(sim::parse_world(floor.world, "floor.wld"));
+    options.seed = seed;
+    Drive robot(registered_on(map, options));
+    const maps::Map closed = maps::parse_map(floor.recessed_doors, "recessed.map");
+    std::set<std::uint32_t> matched;
+    Score recessed(robot, closed);
+    Score any(robot, map);
+    Tour tour(floor.tour, true);
+    for (int cycle = 0; cycle < 6000; ++cycle) {
+      tour.act(robot, robot.truth());
+      robot.advance();
+      recessed.look(robot);
+      any.look(robot);
+      for (const registration::Core::Matched& match : robot.registered().matches)
+        if (match.accepted && maps::find(closed, match.artifact) != nullptr)
+          matched.insert(match.artifact);
+    }
+    on_map += closed.features.size();
+    all_matched += matched.size();
+    passed += recessed.doors_passed();
+    found += recessed.doors_found();
+    reported += any.doors().reported;
+    real += any.doors().real;
+  }
+  EXPECT_GE(passed, 6);
+  EXPECT_GE(found, 0.9 * passed);
+  EXPECT_GE(real, 0.98 * reported) << reported;
+  // On the map, they say where the robot is.
+  EXPECT_GE(all_matched, on_map - 1) << on_map;
 }
 
 }  // namespace
