@@ -49,7 +49,7 @@ struct ContactSettings {
   double reaction = 0.6;    ///< [s] from the sound to the brakes, at the worst
   double near_gap = 0.1;    ///< [m]
   double near_speed = 0.2;  ///< [m/s]
-  // What a sonar is expected to hear, in truth, whether it has heard it or not.
+  // The true range for a sonar, whether it has heard it or not.
   double lobe = radians(9.0);  ///< [rad] to either side of the axis
   double least_range = 0.2;    ///< [m]
   double most_range = 2.0;     ///< [m]
@@ -79,14 +79,14 @@ class ContactWatch {
     Vec2 nearest{0.0, 0.0};  // its point that is nearest to the robot
     double gap = std::numeric_limits<double>::infinity();
   };
-  // What the robot has with it now.
+  // The present contact with it.
   struct State {
     ThingKind kind = ThingKind::kWall;
     std::size_t number = 0;
     bool touches = false;
     bool near = false;
   };
-  // What has been, for the seconds that count.
+  // The past, for the seconds that count.
   struct Past {
     Pose robot_in_world;
     std::vector<Vec2> persons;  // two shins each

@@ -20,7 +20,7 @@ struct Corner {
 /// to each other than 2 mm are one.
 std::vector<Corner> find_corners(const std::vector<Segment>& segments);
 
-/// What a corner is to somebody who stands on one side of it.
+/// The kind of a corner, seen from one side of it.
 enum class CornerShape {
   kNone,   ///< smooth (a partition meets the wall from behind), or an inner corner that is not
            ///< square

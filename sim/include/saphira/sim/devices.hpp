@@ -60,7 +60,7 @@ class FastTrack {
   std::array<Channel, 3> channels_{{{{}, "red"}, {{}, "green"}, {{}, "blue"}}};
 };
 
-/// What a robot has besides wheels and sonars, and the packets about it that clients ask for:
+/// The devices of a robot besides wheels and sonars, and the packets about it that clients ask for:
 /// configuration, encoders, I/O, gripper, gyro, joystick, battery. A request says 0 (no more), 1
 /// (one, at once) or 2 (one with each information packet).
 class Devices {
@@ -76,7 +76,7 @@ class Devices {
   Answer act(const protocol::Command& command, const Robot& robot, protocol::Bytes& out);
 
   void cycle();  ///< 100 ms
-  /// What was asked for with each information packet.
+  /// The packets that were asked for with each information packet.
   void add_packets(const Robot& robot, protocol::Bytes& out) const;
   /// Fills in its fields of the information packet.
   void reflect(protocol::InformationPacket& packet) const;
@@ -87,7 +87,7 @@ class Devices {
   const Gripper& gripper() const { return gripper_; }
   int bump_stall() const { return bump_stall_; }  ///< bit 0: the front bumpers stall, 1: the rear
 
-  // What the world does to it.
+  // Effects of the world on it.
   void set_digital_input(std::uint8_t bits) { digital_input_ = bits; }
   void set_analog(std::uint8_t value) { analog_ = value; }  ///< [5 V / 255]
 

@@ -59,7 +59,7 @@ struct HostOptions {
   std::optional<std::string> stereo_socket;
   /// Local socket of the simulator's own view (view.hpp): what is true, and what people do to it.
   std::optional<std::string> view_socket;
-  /// What the view may load, by name; empty: nothing.
+  /// The files that the view may load, by name; empty: none.
   std::vector<std::string> worlds;
   std::vector<std::string> robots;
   /// The file of such a world or robot.

@@ -10,7 +10,7 @@
 
 namespace saphira::sim {
 
-// What a world file says of things that are no walls; README, "Worlds". Positions in the world.
+// Things of a world file that are no walls; README, "Worlds". Positions in the world.
 
 /// How high they are without the directive tall [m].
 inline constexpr double kPersonHeight = 1.75;
@@ -20,7 +20,7 @@ inline constexpr double kPostHeight = 0.5;
 /// Walls, which have no such directive.
 inline constexpr double kWallHeight = 2.5;
 
-/// What vision knows a thing by.
+/// The appearance of a thing to vision.
 struct Look {
   std::string name;
   std::string color;    ///< directive color; empty: none that anybody looks for

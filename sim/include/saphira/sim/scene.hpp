@@ -18,7 +18,7 @@
 
 namespace saphira::sim {
 
-/// Who looks or moves, among the robots of a scene, so that nobody meets himself.
+/// The robot that looks or moves, among those of a scene, so that none meets itself.
 using RobotNumber = std::size_t;
 inline constexpr RobotNumber kNobody = std::numeric_limits<RobotNumber>::max();
 
@@ -58,7 +58,7 @@ struct Surface {
   std::uint32_t id = 0;  ///< of the thing; that of a segment is followed by those of its ends
 };
 
-/// What a sonar may hear of what moves.
+/// The moving things that a sonar may hear.
 struct Echoes {
   Things things;
   std::vector<Surface> segments;  ///< of things.segments; what follows are walls
@@ -91,7 +91,7 @@ class Scene {
                    std::uint64_t seed);
 
   void tick();
-  /// What sees the truth of every tick, after it (contacts.hpp).
+  /// An observer of the truth after every tick (contacts.hpp).
   void set_watch(std::function<void()> watch) { watch_ = std::move(watch); }
   std::uint64_t ticks() const { return ticks_; }  ///< since the beginning
 

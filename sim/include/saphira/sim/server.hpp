@@ -35,7 +35,7 @@ struct ServerOptions {
   bool keeps_time = true;
 };
 
-/// What the client has sent, since the simulator started.
+/// The counts of the client's packets, since the simulator started.
 struct ServerCounters {
   std::uint64_t commands = 0;
   std::uint64_t unknown_commands = 0;  ///< of no known number, or not to be read; ignored
@@ -84,7 +84,7 @@ class Server {
   /// The connection has been closed in single step: the robot shall come to rest at once.
   bool rest_asked() const { return rest_asked_ && runs(); }
 
-  /// What goes to the client.
+  /// The bytes for the client.
   protocol::Bytes take_output();
   /// Rows since the last call; none unless ServerOptions::trace.
   std::vector<TraceRow> take_trace();

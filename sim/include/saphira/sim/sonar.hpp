@@ -115,7 +115,7 @@ class Sonars {
   template <class Loss>
   void hear(const Vec2& way, double range, const Surface& surface, Firing& firing,
             const Loss& shape) const;
-  // What chance does to the strength of one thing's echo [standard deviations].
+  // Random variation of the strength of one thing's echo [standard deviations].
   double luck(std::uint8_t number, std::uint32_t thing) const;
   // True where nothing stands before that, and it is nearer than what has been heard.
   bool is_first(const Firing& firing, const Vec2& way, double range) const;

@@ -45,10 +45,10 @@ struct StereoPair {
   GreyImage right;
 };
 
-/// What the two cameras of a robot see: walls, doors, people, boxes, posts, other robots, floor and
-/// ceiling, each with a texture of its own that is fast to it, so that a point of the world looks
-/// alike to both. People are a body with a head on it. No shadows, no mirrors, no blur. `random` is
-/// for the noise of the pixels alone.
+/// The pictures of the two cameras of a robot: walls, doors, people, boxes, posts, other robots,
+/// floor and ceiling, each with a texture of its own that is fast to it, so that a point of the
+/// world looks alike to both. People are a body with a head on it. No shadows, no mirrors, no blur.
+/// `random` is for the noise of the pixels alone.
 StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig& rig,
                          Random& random);
 

@@ -10,7 +10,7 @@
 
 namespace saphira::sim {
 
-/// What was true at the end of one cycle.
+/// The truth at the end of one cycle.
 struct TraceRow {
   bool first = false;       ///< the first since OPEN
   std::uint64_t cycle = 0;  ///< information packets since OPEN; counts on after a close

@@ -14,7 +14,7 @@ namespace saphira::sim {
 // The simulator's own view: what is true, for people who look at the simulator and not through the
 // robot's sensors, and what they may do to it. One JSON object a line, both ways; README, "View".
 
-/// What stands still: the walls and posts of the world, and what else may be loaded.
+/// The part that stands still: walls and posts of the world, and the files that may be loaded.
 struct Choice {
   std::vector<std::string> worlds;
   std::vector<std::string> robots;
@@ -22,7 +22,7 @@ struct Choice {
 };
 std::string describe_world(const World& world, const Choice& choice);
 
-/// What moves, as it is now. Meters, radians, in the world.
+/// The part that moves, as it is now. Meters, radians, in the world.
 struct Pacing {
   bool paused = false;
   double rate = 1.0;
@@ -32,7 +32,7 @@ std::string describe_scene(const Simulation& simulation, const Pacing& pacing);
 /// Why something that was asked for was not done.
 std::string complaint(const std::string& text);
 
-// What somebody may ask for.
+// Requests.
 struct PlaceRobot {
   RobotNumber robot = 0;
   Pose pose_in_world;

@@ -59,8 +59,8 @@ struct StereoCamera {
 /// found, or where it is too far for a disparity.
 using RangeBand = std::vector<std::optional<double>>;
 
-/// What a stereo system makes of the scene: a range for each column at three heights. Ranges come
-/// in steps of disparity. `random` is the robot's own, for noise and what is not matched.
+/// The result of a stereo system for the scene: a range for each column at three heights. Ranges
+/// come in steps of disparity. `random` is the robot's own, for noise and what is not matched.
 std::array<RangeBand, 3> see_bands(const Scene& scene, RobotNumber robot,
                                    const StereoCamera& camera, Random& random);
 

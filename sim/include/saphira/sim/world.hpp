@@ -23,13 +23,13 @@ struct Disc {
   double radius = 0.0;    ///< [m]
 };
 
-/// What stands somewhere.
+/// An obstacle of the world.
 struct Things {
   std::vector<Segment> segments;
   std::vector<Disc> discs;
 };
 
-/// What a ray meets.
+/// The surface that a ray meets.
 struct Hit {
   double range = 0.0;      ///< [m]
   double incidence = 0.0;  ///< [rad] 0: along the normal of the segment, pi/2: grazing
@@ -41,7 +41,7 @@ struct Place {
   int column = 1;
 };
 
-/// What a world file says of how sonars hear in it (directive sonar); else SonarModel's.
+/// The parameters of sonars that a world file sets (directive sonar); else SonarModel's.
 struct SonarPlan {
   std::optional<double> strength;  ///< [dB]
   std::optional<double> cloth;     ///< [dB]

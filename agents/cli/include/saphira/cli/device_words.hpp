@@ -9,7 +9,7 @@
 
 namespace saphira::cli {
 
-/// What is asked of a device, and the topic that it is asked on.
+/// A request to a device, and its topic.
 struct DeviceCommand {
   const bus::RequestTopic* topic = nullptr;
   Request request;
@@ -22,7 +22,7 @@ extern const char* const kDeviceWords;
 /// std::invalid_argument that says what was expected where it is none.
 DeviceCommand parse_device(const std::vector<std::string>& words);
 
-/// What the robot shows of its devices: name and value, those that it has. A robot without
+/// The state of the robot's devices: name and value, of those that it has. A robot without
 /// robot/devices (an older bridge) shows what is in its state.
 std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
                                                   const std::optional<v1::Devices>& devices);

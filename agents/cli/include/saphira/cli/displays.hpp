@@ -26,7 +26,7 @@ std::string behavior_display(const v1::BehaviorState& behavior,
                              const v1::IntendedBehavior* intended,
                              const v1::BehaviorSchema* schema);
 
-/// What is known of a behavior that is not intended: parameters and rules, as its file has them.
+/// The window of a behavior that is not intended: parameters and rules, as its file has them.
 std::string schema_display(const v1::BehaviorSchema& schema);
 
 /// The beliefs whose name holds `part` (all: empty), with who said so and how long ago.

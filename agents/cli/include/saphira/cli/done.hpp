@@ -20,12 +20,12 @@ struct Move {
   double speed = 0.0;  ///< [m/s] of a move, at most [0: the robot's own]
 };
 
-/// What of a way or angle counts as progress [m or rad].
+/// The least change of a way or angle that counts as progress [m or rad].
 inline constexpr double kProgress = 0.01;
 
 /// The trouble with it, in words; empty: nothing.
 std::string trouble_of(const Move& move);
-/// What is to be written again and again until it is done.
+/// The command to repeat until it is done.
 v1::MotorCommand command_of(const Move& move);
 /// The rest of it [m or rad, not negative], by the grant that it holds; 0 of a speed.
 double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);

@@ -8,7 +8,7 @@
 
 namespace saphira::cli {
 
-/// What a key of manual Table 2-1 does, and those that a terminal needs besides.
+/// The actions of the keys of manual Table 2-1, and of those that a terminal needs besides.
 enum class DriveKey {
   faster,     ///< i, up
   slower,     ///< m, down
@@ -48,7 +48,7 @@ class KeyDrive {
     double max_velocity = 0.4;    ///< [m/s]
   };
 
-  /// What to send now.
+  /// The command to send now.
   struct Setpoint {
     bool active = false;
     double velocity = 0.0;   ///< [m/s]

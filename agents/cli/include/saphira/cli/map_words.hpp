@@ -9,7 +9,7 @@
 
 namespace saphira::cli {
 
-/// What is asked of registration by the words after `saphira map`. A map file is read here, so that
+/// The request to registration for the words after `saphira map`. A map file is read here, so that
 /// it may be on another machine than the service. std::invalid_argument that says what was
 /// expected; FileError or std::runtime_error of a file.
 /// Throws std::invalid_argument where the words can be seen to be wrong without the map.

@@ -23,7 +23,7 @@ std::string describe(const v1::Agent& agent);
 /// "ann: every 5 s: note()"
 std::string describe(const v1::Trigger& trigger);
 
-/// What the robot was told, each with its number, speaker and time.
+/// The advice to the robot, each with its number, speaker and time.
 std::string knowledge_table(const v1::Knowledge& knowledge);
 
 }  // namespace saphira::cli

@@ -6,8 +6,8 @@
 
 namespace saphira::cli {
 
-/// What the simulator's trace says of a drive. The trace is the ground truth: true poses, not those
-/// that the robot believes.
+/// The figures of a drive, from the simulator's trace. The trace is the ground truth: true poses,
+/// not those that the robot believes.
 struct Track {
   std::uint64_t cycles = 0;    ///< of the last connection, until the cut
   double path = 0.0;           ///< [m] that the robot's center moved
@@ -24,7 +24,7 @@ struct Track {
 /// the simulator was still writing it. FileError where a line is not one of a trace.
 Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std::string& file);
 
-/// What a demo has shown.
+/// The result of a demo.
 struct Summary {
   bool arrived = false;
   double time = 0.0;  ///< [s] of robot time from the goal's acceptance to its end

@@ -8,7 +8,7 @@
 
 namespace saphira::cli {
 
-// What is said of the robot and its programs has the same words in every command.
+// One wording for the robot and its programs in every command.
 using situation::describe;
 using situation::kLostAge;
 using situation::latched;

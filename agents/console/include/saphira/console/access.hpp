@@ -6,14 +6,14 @@
 
 namespace saphira::console {
 
-/// Who may connect. A browser carries the pages of strangers to this program as well, so what it
-/// says of the page that asks is checked before anything else.
+/// The rules for who may connect. A browser carries the pages of strangers to this program as well,
+/// so what it says of the page that asks is checked before anything else.
 struct AccessSettings {
   std::string key;                 ///< what everybody needs who does more than watch from here
   std::vector<std::string> names;  ///< host names that this machine is known by
 };
 
-/// What a browser says of itself when it opens a connection.
+/// The headers by which a browser opens a connection.
 struct Caller {
   std::string host;       ///< the header Host, such as localhost:8642
   std::string origin;     ///< the header Origin [empty: no browser, or a page's own request]

@@ -13,7 +13,7 @@ namespace saphira::console {
 /// A place on the board: the topic's rank (lower ones are sent first) and the instance's key.
 using Place = std::pair<int, std::string>;
 
-/// What a browser has of the board.
+/// The state of the board in a browser.
 struct Viewer {
   std::map<Place, std::uint64_t> has;  ///< the version of each item that was sent
   std::uint64_t sent = 0;              ///< frames
@@ -43,7 +43,7 @@ class Board {
   void withdraw(int topic, const std::string& key);
   std::size_t size() const { return items_.size(); }
 
-  /// What is news to a viewer, as one JSON text:
+  /// The news for a viewer, as one JSON text:
   ///   {"seq": 7, "now": 12.345, "items": [{"t": topic, "k": key, "a": age [ms], "d": {...}}, ...]}
   /// "d" is null where the item was withdrawn. Nothing while too many frames are on their way, or
   /// where there is no news and the viewer has heard something lately.

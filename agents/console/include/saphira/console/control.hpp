@@ -32,7 +32,7 @@ class Control {
     std::uint64_t cycle = 0;   ///< of the robot state that the operator sees
   };
 
-  /// What the robot is to be told now.
+  /// The command for the robot now.
   struct Order {
     bool active = false;
     double velocity = 0.0;
@@ -58,7 +58,7 @@ class Control {
   /// Why the sample is refused, in words; empty where it counts.
   std::string drive(OperatorId id, const Sample& sample, double now);
 
-  /// What holds now. Call it at least ten times a second: it notices what stays out.
+  /// The present order. Call it at least ten times a second: it notices what stays out.
   Order order(double now);
 
   OperatorId holder() const { return holder_; }

@@ -45,7 +45,7 @@ struct LogFiles {
 /// alone there.
 std::vector<LogFiles> find_logs(const std::string& folder);
 
-/// What a log says by one of its clocks, scans in the log's order.
+/// The records of a log by one of its clocks, scans in the log's order.
 DataSet data_set_of(const std::string& name, const CarmenLog& log, Clock clock);
 
 DataSet load_data_set(const std::string& name, const LogFiles& files);

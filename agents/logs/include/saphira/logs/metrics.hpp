@@ -31,7 +31,7 @@ class Trajectory {
 /// scan, bent so that it ends where the next scan is.
 Trajectory densify(const Trajectory& scans, const Trajectory& odometry);
 
-/// What dead reckoning does wrong all the time, as a person finds it out by driving.
+/// The systematic error of dead reckoning, as a person finds it by driving.
 struct OdometryErrors {
   double turn_per_metre = 0.0;  ///< [rad/m] it misses
   double turn_scale = 1.0;      ///< true by measured

@@ -37,8 +37,8 @@ struct ScanMapSettings {
   double loop_reach_limit = 20.0;
   double loop_turn = radians(8.0);
   double loop_turn_limit = radians(30.0);
-  // What matched scans drift, one sigma after one metre, growing with the root of the way: by what
-  // real lasers do, which see floors that are not even and walls that are not plumb.
+  // The drift of matched scans, one sigma after one metre, growing with the root of the way: by
+  // what real lasers do, which see floors that are not even and walls that are not plumb.
   double drift = 0.05;
   double drift_turn = radians(0.5);
   std::size_t loop_points = 150;  ///< the least that is seen of a place
@@ -49,7 +49,7 @@ struct ScanMapSettings {
   double loop_agree_chi2 = 11.3;
 };
 
-/// What ScanMapper counted.
+/// The counts of ScanMapper.
 struct ScanMapReport {
   std::size_t scans = 0;
   std::size_t nodes = 0;
@@ -100,7 +100,7 @@ class ScanMapper {
   Eigen::Matrix3d odom_information(const Pose& step) const;
   // Of the newest node's step, for what the graph knows.
   Eigen::Matrix3d step_covariance(const Pose& step) const;
-  /// What the graph knows of where nodes are, seen from another: by the surest way through it.
+  /// The covariance of nodes, seen from another: by the surest way through it.
   std::vector<Eigen::Matrix3d> covariances(std::size_t from,
                                            const std::vector<std::size_t>& of) const;
   std::optional<Closure> find_closure(std::size_t pass, std::size_t here,

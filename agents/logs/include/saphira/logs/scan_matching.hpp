@@ -87,7 +87,7 @@ struct SearchResult {
   double score = 0.0;  ///< [0..1] mean likelihood of the scan's points
 };
 
-/// What a scan says about points that were seen from elsewhere.
+/// The evidence of a scan about points that were seen from elsewhere.
 struct Sight {
   std::size_t agree = 0;    ///< it saw something there too
   std::size_t through = 0;  ///< it saw through them

@@ -30,7 +30,7 @@ struct Perceived {
   std::size_t stamp = 0;  ///< which of the drive's
   const interpretation::Output* output = nullptr;
   const std::vector<lps::SonarReading>* readings = nullptr;
-  /// What this stamp brought is in it. Where all readings are of one moment, the way to it is a
+  /// It holds the readings of this stamp. Where all readings are of one moment, the way to it is a
   /// step of its own, before.
   bool complete = true;
 };

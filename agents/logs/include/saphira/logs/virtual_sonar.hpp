@@ -7,7 +7,7 @@
 
 namespace saphira::logs {
 
-/// What sonars would have heard where a laser scanned: the nearest surface in a sonar's cone that
+/// The readings of sonars, from the scans of a laser: the nearest surface in a sonar's cone that
 /// does not mirror the sound away.
 struct SonarRing {
   std::vector<lps::SonarMount> mounts;

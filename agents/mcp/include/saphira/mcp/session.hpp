@@ -70,7 +70,7 @@ class Session {
         version_(std::move(version)),
         instructions_(std::move(instructions)) {}
 
-  /// What can be asked for from now on. The client is told when it changes.
+  /// The tools from now on. The client is told when it changes.
   void set_tools(std::vector<Tool> tools);
   const std::vector<Tool>& tools() const { return tools_; }
   /// The clock of the limit on calls [s]; it may begin anywhere.

@@ -94,8 +94,8 @@ std::string suspended(const Situation& situation);
 /// The one line about which program drives.
 std::string driver(const Situation& situation);
 
-/// What `status` shows, as one JSON object on one line: programs with their health, drive, goals,
-/// trouble.
+/// The contents of `status`, as one JSON object on one line: programs with their health, drive,
+/// goals, trouble.
 std::string to_json(const Situation& situation);
 
 }  // namespace saphira::situation

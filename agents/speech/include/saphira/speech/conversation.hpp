@@ -9,8 +9,8 @@
 
 namespace saphira::speech {
 
-/// What the microphone is listened for, and when: half duplex, so that the robot does not hear
-/// itself, and with replies while it waits for one. Time is that of the sound.
+/// The words that the microphone is listened for, and when: half duplex, so that the robot does not
+/// hear itself, and with replies while it waits for one. Time is that of the sound.
 class Conversation {
  public:
   Conversation(Recognizer& recognizer, agent_interface::Grammar grammar);

@@ -11,7 +11,7 @@
 
 namespace saphira::speech {
 
-/// What was made of an utterance.
+/// The result of recognizing an utterance.
 enum class Outcome {
   command,     ///< all of it is in the grammar
   addressed,   ///< it began with the keyword, and the rest is not understood
@@ -24,7 +24,7 @@ struct Heard {
   std::string text;  ///< as the grammar reads it: "flakey turn left"; of the addressed the keyword
 };
 
-/// What comes out of a stretch of sound.
+/// The result for a stretch of sound.
 struct Event {
   enum class Kind {
     begins,  ///< somebody speaks

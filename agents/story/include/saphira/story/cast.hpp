@@ -28,7 +28,7 @@ class Cast {
   /// FileError where the text is wrong.
   Cast(std::string_view text, const std::string& file);
 
-  /// What the people say to the robot of themselves, in order.
+  /// The sentences that people say to the robot of themselves, in order.
   const std::vector<Line>& lines() const { return lines_; }
   /// How the story has to end: with what the robot says last, from its first letter on.
   bool ends_well(const std::string& last) const { return last.starts_with(end_); }
@@ -37,8 +37,8 @@ class Cast {
   const std::string& deployment() const { return deployment_; }
   /// A file for the simulator, with whom of them sensors can see; empty: nobody.
   const std::string& things() const { return things_; }
-  /// What somebody at that place of the map answers to what the robot says; nothing: nobody hears
-  /// it, or nobody has an answer. What is handed over changes hands.
+  /// The answer of somebody at that place of the map to a sentence of the robot; nothing: nobody
+  /// hears it, or nobody has an answer. What is handed over changes hands.
   std::optional<Line> answer(const std::string& said, const std::string& place);
   /// True where somebody has it.
   bool has(const std::string& person, const std::string& object) const;

@@ -21,7 +21,7 @@ const char* name(Role role);
 
 using WriterId = std::array<std::uint8_t, 16>;
 
-/// What arbitration looks at of a motor command. Times are seconds of the caller's clock: the
+/// The part of a motor command that arbitration needs. Times are seconds of the caller's clock: the
 /// steady clock live, cycles x 0.1 s in lockstep.
 struct Command {
   Role role = Role::none;
@@ -118,7 +118,7 @@ class Arbiter {
   /// The writer that drives now.
   Grant decide(double now, std::uint64_t cycle);
 
-  /// Who was refused since the last call, each role, source and reason once; at most 16.
+  /// Drivers that were refused since the last call, each role, source and reason once; at most 16.
   std::vector<Refusal> take_refused();
   /// The number of refused commands since the start.
   std::uint64_t refused_count() const { return refused_count_; }

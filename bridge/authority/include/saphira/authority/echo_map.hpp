@@ -16,7 +16,7 @@ struct Reading {
   std::optional<double> range;  ///< [m] of the echo; none: silence
 };
 
-/// What the sonars have heard round the robot. An echo comes from somewhere on an arc across its
+/// Echoes of the sonars round the robot. An echo comes from somewhere on an arc across its
 /// sonar's axis, and what enters a gap between two beams is still there: the memory is that of the
 /// behaviors (saphira/lps), and forgets more slowly.
 class EchoMap {

@@ -62,7 +62,7 @@ class Core {
   void link_closed(const std::string& why, double now);
   /// Bytes came. work() says what they mean.
   void received(protocol::ByteView bytes, double now);
-  /// What the line takes now of what is asked of the devices [bytes].
+  /// Room on the line for requests to the devices [bytes].
   void room(std::size_t bytes) { room_ = bytes; }
   /// Does the next piece of work that is waiting: the rest of a cycle, or the next packet. False
   /// where there is none.

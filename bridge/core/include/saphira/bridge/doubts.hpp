@@ -16,7 +16,7 @@ class Doubts {
   void add(const protocol::Impossible& impossible, double now);
 
   std::uint64_t count() const { return count_; }
-  /// What was said last, within the last seconds; empty: nothing.
+  /// The newest doubt, of the last seconds; empty: none.
   std::string newest(double now) const;
   /// Once for what is new, and not more often than a person reads.
   std::optional<std::string> take_words(double now);

@@ -70,7 +70,7 @@ struct CycleBegan {
   reflector::State state;
   std::uint64_t bad_packets = 0;  ///< of this session
 };
-/// What the one who drives wants of the wheels, before the guard.
+/// The driver's setpoints, before the guard.
 struct Told {
   reflector::Setpoints setpoints;
   double distance_left = 0.0;  ///< [m] of a position

@@ -53,7 +53,7 @@ class Checker {
   std::size_t violations() const { return violations_; }
   const std::optional<RobotIdentity>& identity() const { return identity_; }
 
-  /// What has passed, by command's number and packet's type.
+  /// The counts of what has passed, by command's number and packet's type.
   const std::map<std::uint8_t, std::uint64_t>& commands() const { return commands_; }
   const std::map<std::uint8_t, std::uint64_t>& packets() const { return packets_; }
   /// Both of them, and the number of findings, as lines to print.

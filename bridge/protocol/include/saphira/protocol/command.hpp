@@ -266,7 +266,7 @@ struct TruePose {
   bool operator==(const TruePose&) const = default;
 };
 
-/// What the argument of GRIPPER says to a later server.
+/// The meanings of GRIPPER's argument for a later server.
 enum class GripperAction : std::uint8_t {
   kOpen = 1,
   kClose = 2,

@@ -12,7 +12,8 @@ namespace saphira::protocol {
 inline constexpr int kShortestPulse = 400;  ///< [us]
 inline constexpr int kLongestPulse = 2600;  ///< [us]
 
-/// What a robot with these parameters cannot have meant, though the checksum is right.
+/// A value that a robot with these parameters cannot have meant, though the checksum is
+/// right.
 struct Impossible {
   std::string what;    ///< in words, with the file where its limits are
   bool whole = false;  ///< nothing in the packet is to be believed

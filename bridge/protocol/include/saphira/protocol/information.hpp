@@ -22,7 +22,8 @@ struct RawSonar {
   bool operator==(const RawSonar&) const = default;
 };
 
-/// What ARCOS appends. A packet may end behind any of them: those behind are missing then.
+/// The fields that ARCOS appends. A packet may end behind any of them: those behind are missing
+/// then.
 struct TrailingFields {
   std::optional<std::uint16_t> battery;         ///< [0.1 V]
   std::optional<std::uint8_t> charge_state;     ///< the charger's; 0: not charging

@@ -27,7 +27,7 @@ std::uint16_t checksum(ByteView body);
 /// std::length_error where the body is empty or longer than kMaxBody.
 Bytes frame(ByteView body);
 
-/// What a parser has seen since it was made.
+/// The counts of a parser since it was made.
 struct ParserCounters {
   std::uint64_t packets = 0;        ///< good ones
   std::uint64_t bad_checksums = 0;  ///< a header and a count, but the checksum is wrong

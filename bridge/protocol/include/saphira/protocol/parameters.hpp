@@ -45,7 +45,7 @@ struct RobotParameters {
   /// [m/s] Vel2Divisor: the unit of the command VEL2.
   double vel2_unit = 0.004;
 
-  // What the server's generation can do.
+  // Abilities of the server's generation.
   Protocol protocol = Protocol::kPsos;  ///< Protocol: psos, p2os or arcos
   bool move_command = false;            ///< HasMoveCommand; true by itself from p2os on
   bool settable_velocities = false;     ///< SettableVelMaxes; likewise

@@ -173,8 +173,8 @@ struct BatteryPacket {
   bool operator==(const BatteryPacket&) const = default;
 };
 
-/// What the camera has found in one channel (manual 9.2, struct vinfo). Pixels, the image's centre
-/// is (0, 0).
+/// The blob that the camera has found in one channel (manual 9.2, struct vinfo). Pixels, the
+/// image's centre is (0, 0).
 struct VisionChannel {
   enum class Mode : std::uint8_t { kBlob = 0, kLine = 1, kBlobWithBox = 2 };
   Mode mode = Mode::kBlob;
@@ -264,7 +264,7 @@ Bytes encode(const SimLaserPacket& packet);
 Bytes encode(const SimStatusPacket& packet);
 Bytes encode(const OtherPacket& packet);
 
-/// What the type is called; empty for a type that nobody has named.
+/// The name of the type; empty for a type without one.
 std::string_view packet_type_name(std::uint8_t type);
 
 /// How many packets of each type have come, and how many there were that nobody knows.
@@ -280,7 +280,7 @@ class PacketCounters {
   std::uint64_t unknown_ = 0;
 };
 
-/// What a robot with these parameters says of itself. host_baud as HOSTBAUD counts.
+/// The configuration packet of a robot with these parameters. host_baud as HOSTBAUD counts.
 ConfigPacket config_of(const RobotParameters& parameters, const std::string& name,
                        const std::string& serial);
 

@@ -17,7 +17,7 @@ struct Order {
 };
 protocol::Command to_command(const Order& order);
 
-/// What the server shows of the two channels in an information packet, in the server's frame.
+/// The state of the two channels in an information packet, in the server's frame.
 struct Shown {
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
@@ -47,7 +47,7 @@ class Channels {
   std::vector<Order> due(double now);
   /// True where due() would say anything, were it asked at `now`.
   bool pending(double now) const;
-  /// What was sent last on the translation channel [m/s].
+  /// The newest setpoint of the translation channel [m/s].
   double sent_velocity() const;
 
  private:

@@ -16,7 +16,7 @@
 
 namespace saphira::reflector {
 
-/// What was asked of a device, and what became of it.
+/// A request to a device, and its state.
 struct DeviceRequest {
   std::uint64_t asker = 0;
   std::uint64_t number = 0;
@@ -40,8 +40,8 @@ class Devices {
   /// of the same device and action.
   void request(const Request& request, const Wish& wish,
                const protocol::RobotParameters& parameters);
-  /// What a session begins with: a robot since P2OS switches its motors on when it is told, and
-  /// says what it is like. No answer does no harm.
+  /// The commands at the start of a session: a robot since P2OS switches its motors on when it is
+  /// told, and says what it is like. No answer does no harm.
   void begin(const protocol::RobotParameters& parameters);
   /// An information packet came. `origin`: its raw pose is (0, 0, 0) within what a moving robot
   /// makes of it.
@@ -57,7 +57,7 @@ class Devices {
   std::vector<DeviceRequest> requests() const;
   /// Those of which something new is to be told since the last call, in that order.
   std::vector<DeviceRequest> take_answered() { return std::exchange(answered_, {}); }
-  /// What the packets besides the information packet said last, in this session.
+  /// The newest contents of the packets besides the information packet, in this session.
   struct Reports {
     std::optional<protocol::ConfigPacket> configuration;
     std::optional<protocol::EncoderPacket> encoders;
@@ -72,7 +72,7 @@ class Devices {
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }
 
  private:
-  /// What shows that a request was heard.
+  /// The sign that a request was heard.
   enum class Proof { once, thrice, output, servo, origin, motors, sonar, analog, packet };
   struct Item {
     DeviceRequest request;

@@ -11,7 +11,7 @@ namespace saphira::reflector {
 enum class Translation { none, velocity, position };
 enum class Rotation { none, velocity, heading, relative_heading };
 
-/// What a driver wants of the two channels (manual 6.4). They are independent.
+/// A driver's setpoints for the two channels (manual 6.4). They are independent.
 struct Motion {
   Translation translation = Translation::none;
   double velocity = 0.0;   ///< [m/s] setpoint; the greatest speed of a position [0: robot's own]

@@ -16,7 +16,7 @@ struct RawPose {
   double th = 0.0;      ///< [rad] in the server's own frame
 };
 
-/// What has to be known to go on with an odom frame later: over a reconnection, or a restart of the
+/// The state by which an odom frame goes on later: over a reconnection, or a restart of the
 /// bridge.
 struct OdometryMemory {
   std::uint64_t odom = 0;  ///< the frame's number

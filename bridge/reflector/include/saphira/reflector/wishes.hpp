@@ -7,7 +7,7 @@
 
 #include "saphira/requests/request.hpp"
 
-// What may be asked of the robot's devices. SI units, but where a number is the robot's own.
+// Requests to the robot's devices. SI units, but where a number is the robot's own.
 namespace saphira::reflector {
 
 struct ServoWish {
@@ -73,7 +73,7 @@ std::string text(const Wish& wish);
 
 /// The requests that a device takes.
 const std::vector<Functor>& functors(Device device);
-/// What a request asks for that one of functors() can take; std::invalid_argument says what was
+/// The wish of a request that one of functors() can take; std::invalid_argument says what was
 /// expected of the arguments together.
 Wish wish_of(const Request& request);
 

@@ -27,7 +27,7 @@ class Link {
   State state() const { return state_; }
   /// -1 while closed.
   int fd() const { return fd_; }
-  /// What to poll the fd for.
+  /// The events to poll the fd for.
   short poll_events() const;
   /// Why it is not open, in words.
   const std::string& trouble() const { return trouble_; }

@@ -22,10 +22,10 @@ namespace saphira::bus {
 ///             [&](const v1::Request& request) { return done({text("place", "library")}); });
 ///   while (!stop.requested()) { node.wait(500ms, &stop); agent.poll(); }
 ///
-/// What it can do ends with it, also when it is killed.
+/// Its capabilities end with it, also when it is killed.
 class Agent {
  public:
-  /// What it says to a request whose arguments fit. ANSWER_UNDERWAY: the end follows by answer().
+  /// Its answer to a request whose arguments fit. ANSWER_UNDERWAY: the end follows by answer().
   using Answerer = std::function<v1::Answer(const v1::Request&)>;
 
   Agent(Node& node, std::string name, std::string summary);
@@ -78,7 +78,7 @@ v1::Capability capability(const std::string& functor, const std::string& summary
 /// Something that is done: one agent is asked, once.
 v1::Capability action(const std::string& functor, const std::string& summary,
                       std::vector<v1::CapabilityParameter> parameters);
-/// What must be given, and what may be left open for the answer to fill.
+/// Parameters that must be given, and ones that may be left open for the answer to fill.
 v1::CapabilityParameter text_slot(const std::string& name, const std::string& meaning,
                                   bool required = false);
 v1::CapabilityParameter number_slot(const std::string& name, const std::string& meaning,

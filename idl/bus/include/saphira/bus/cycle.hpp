@@ -32,7 +32,7 @@ struct Step {
 
 namespace detail {
 
-/// What the clockwork does with an input, whatever its type.
+/// An input, as the clockwork needs it, whatever its type.
 class InputSlot {
  public:
   virtual ~InputSlot() = default;
@@ -125,7 +125,7 @@ class Cycle {
     return result;
   }
 
-  /// What a step needs beside the inputs, and what lockstep waits for: empty where it is here, or
+  /// Further conditions of a step, which lockstep waits for: empty where it is here, or
   /// what is missing, in words. Asked when the inputs of that state are there and can be read.
   using Gate = std::function<std::string(const v1::RobotState& state)>;
   void gate(Gate missing);

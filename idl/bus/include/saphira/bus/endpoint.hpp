@@ -12,12 +12,12 @@
 
 namespace saphira::bus {
 
-/// Who wrote a sample: the writer's identity on the bus, unique for ever.
+/// The writer of a sample: its identity on the bus, unique for ever.
 using WriterId = std::array<std::uint8_t, 16>;
 /// The key of a keyed sample, at most 16 bytes; all zero for a type without key.
 using InstanceKey = std::array<std::uint64_t, 2>;
 
-/// Who a program is, by its certificate: the receiver has checked it.
+/// The identity of a program by its certificate, which the receiver has checked.
 struct Identity {
   std::string name;  ///< of the machine or person, such as karen [empty: nobody that is known]
   std::string role;  ///< such as operator
@@ -41,7 +41,7 @@ struct Sample {
   SampleInfo info;
 };
 
-/// What a transport needs to know of a type. One object a type, made by type_of<T>().
+/// The description of a type for a transport. One object a type, made by type_of<T>().
 struct TypeInfo {
   const char* name;  ///< as on the wire, such as saphira::v1::Goal
   bool keyed;

@@ -65,8 +65,8 @@ class GoalClient {
   Reader<v1::GoalStatus> reader_;
   std::map<Key, v1::GoalStatus> known_;
   std::chrono::milliseconds keep_;
-  /// What this client asked for, and since when that is over. Its status is kept though the service
-  /// has withdrawn it.
+  /// The goals that this client asked for, and since when each is over. Its status is kept though
+  /// the service has withdrawn it.
   std::map<Key, std::optional<Clock::time_point>> own_;
 };
 

@@ -92,8 +92,8 @@ struct Mismatch {
   std::string why;  ///< such as "reliability: offered best effort, requested reliable"
 };
 
-/// Who is on the bus, but for this node itself. Discovery goes on in the background: what is there
-/// after some tenths of a second on one machine is usually all.
+/// The participants of the bus, without this node. Discovery goes on in the background: what is
+/// there after some tenths of a second on one machine is usually all.
 class Census {
  public:
   /// From now on a change of the census wakes the node too.

@@ -53,7 +53,7 @@ Wake& wake_of(Node& node);
 }  // namespace internal
 std::shared_ptr<MemoryBus> make_memory_bus();
 
-/// What a node counts and tells about itself.
+/// The counts that a node publishes about itself.
 struct NodeHealth {
   std::uint32_t incompatible = 0;  ///< endpoints that did not match for their QoS or their type
   std::string incompatible_text;   ///< the newest of them in words: topic, policy, who

@@ -20,7 +20,7 @@ enum Exit : int {
   kExitBroken = 3,  ///< could not run: no bus, no memory, our own bug
 };
 
-/// What programs say to --version: "saphira 0.1.0, contract 0f1e2d3c". Programs with another
+/// The text of --version: "saphira 0.1.0, contract 0f1e2d3c". Programs with another
 /// contract (its types and topics, as a digest) do not understand each other.
 const char* version();
 

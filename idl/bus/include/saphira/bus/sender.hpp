@@ -6,7 +6,7 @@
 
 namespace saphira::bus {
 
-/// Who has written a sample, for people: what it says of itself, and with security before that who
+/// The writer of a sample, for people: what it says of itself, and with security before that who
 /// it is: "karen (operator), saphira drive".
 inline std::string named(const std::string& says, const SampleInfo& info) {
   if (!info.sender)

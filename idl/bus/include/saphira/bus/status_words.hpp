@@ -6,7 +6,7 @@
 
 namespace saphira::bus {
 
-// What programs say in the reason of their status and readers of the status act upon.
+// Words in the reason of a status that readers act upon.
 
 /// Another program of the same name and for the same robot, such as "another bridge, process 12 at
 /// attic,". The reason begins with these words.

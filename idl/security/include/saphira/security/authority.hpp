@@ -12,7 +12,7 @@ namespace saphira::security {
 /// The authority of a site: a folder with its key, the roles, and a folder to carry for each
 /// member. All that it writes is replaced durably; keys are readable by its user alone.
 ///
-/// What a person gives that is wrong is std::invalid_argument, or FileError for a file.
+/// A wrong value from a person is std::invalid_argument, or FileError for a file.
 class Authority {
  public:
   /// Makes one where there is none. `roles`: the text of a file of roles.

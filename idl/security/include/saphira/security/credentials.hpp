@@ -11,7 +11,7 @@
 
 namespace saphira::security {
 
-/// What every GUID prefix of a subject's participants begins with. PKI-DH makes it of the subject's
+/// The beginning of every GUID prefix of a subject's participants. PKI-DH makes it of the subject's
 /// hash (DDS Security 1.1, 9.3.3), and checks it with the certificate in each handshake.
 using PrefixHead = std::array<std::uint8_t, 6>;
 PrefixHead prefix_head(const Subject& subject);
@@ -25,7 +25,7 @@ struct CredentialFiles {
   std::string permissions;
 };
 
-/// What a program shows that it is, checked: the files are there, belong together, hold now and are
+/// The credentials of a program, checked: the files are there, belong together, hold now and are
 /// signed by the authority of the site.
 struct Credentials {
   CredentialFiles files;

@@ -8,13 +8,13 @@
 
 namespace saphira::security {
 
-/// What every program of a site asks of every other (DDS Security 1.1, 9.4.1.2): who is not
-/// authenticated is not heard; every topic has its readers and writers; discovery and every message
-/// of a topic are encrypted, with a key that only those have who may read the topic.
+/// The rules that every program of a site demands of every other (DDS Security 1.1, 9.4.1.2): who
+/// is not authenticated is not heard; every topic has its readers and writers; discovery and every
+/// message of a topic are encrypted, with a key that only those have who may read the topic.
 std::string governance();
 
-/// What a member may do, until when [s since 1970, UTC] (DDS Security 1.1, 9.4.1.3). `robot`: the
-/// only one whose topics it may write and read [empty: those of all].
+/// The permissions of a member, until when [s since 1970, UTC] (DDS Security 1.1, 9.4.1.3).
+/// `robot`: the only one whose topics it may write and read [empty: those of all].
 struct Grant {
   Subject subject;
   std::string robot;

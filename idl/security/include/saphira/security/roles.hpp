@@ -7,7 +7,7 @@
 
 namespace saphira::security {
 
-/// What somebody may be on the bus.
+/// The roles on the bus.
 struct Role {
   std::string name;
   std::string about;                  ///< for people

@@ -60,14 +60,14 @@ struct Naming {
   maps::Feature feature;
 };
 
-/// What the dialogue knows of the world beside what it is told.
+/// The world as the dialogue knows it, beside the advice.
 struct Situation {
   std::optional<Pose> pose_in_map;  ///< of the robot; none: not known
   maps::Map map;
   std::string asked_about;  ///< what an activity has asked people about; empty: nothing
 };
 
-/// What a goal that the dialogue wanted has come to.
+/// The state of a goal that the dialogue asked for.
 struct Outcome {
   std::uint64_t tag = 0;
   bool success = false;
@@ -101,7 +101,7 @@ class Dialogue {
   Outputs forget(std::uint64_t number);
 
   const Knowledge& knowledge() const { return knowledge_; }
-  /// What all that is known means for activities: claimed anew after a start.
+  /// Claims for activities that follow from all advice: made anew after a start.
   std::vector<Claimed> claims() const;
 
   /// State that outlives a restart: the knowledge, which utterances were heard, and lasting goals.

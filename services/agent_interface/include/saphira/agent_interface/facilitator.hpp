@@ -57,7 +57,7 @@ class Facilitator {
   explicit Facilitator(std::uint64_t self) : self_(self) {}
 
   void announce(const AgentInfo& agent);
-  /// What it owed is asked of another agent, or answered with the reason.
+  /// Its open requests go to another agent, or are answered with the reason.
   void leave(std::uint64_t agent);
 
   void set(const Trigger& trigger, double now);
@@ -66,7 +66,7 @@ class Facilitator {
 
   /// A request as it came; one that is known is not taken twice.
   void ask(const Request& request, double now);
-  /// What the agent at an address said.
+  /// The answer of the agent at an address.
   void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
             const Answer& answer, double now);
 

@@ -61,7 +61,7 @@ class Grammar {
   /// The meaning in words, for the robot to say before it acts; empty where the file has none.
   std::string paraphrase(const Meaning& meaning) const;
   const std::vector<std::string>& keywords() const { return keywords_; }
-  /// What may be heard as the name of a person, place or thing; `{slot}` takes any other one in
+  /// Words that may be the name of a person, place or thing; `{slot}` takes any other one in
   /// writing, too.
   const std::vector<std::string>& names() const { return names_; }
 

@@ -34,7 +34,7 @@ class Knowledge {
   const Advice* find(Advice::Kind kind, std::string_view about, std::string_view place = {}) const;
   /// Takes the place of what was known of the same; gives it its number.
   const Advice& learn(Advice advice);
-  /// What is known no more; nothing where it never was.
+  /// The advice that is forgotten now; nothing where it was never known.
   std::optional<Advice> forget(std::uint64_t number);
   const std::vector<Advice>& all() const { return all_; }
 

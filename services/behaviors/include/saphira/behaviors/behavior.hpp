@@ -16,7 +16,7 @@
 
 namespace saphira::behaviors {
 
-/// What the behaviors have to know of the robot that they drive; from its description.
+/// The properties of the robot that behaviors need; from its description.
 struct RobotModel {
   double radius = 0.22;                 ///< [m] of the hull
   double max_velocity = 0.4;            ///< [m/s]
@@ -96,7 +96,7 @@ struct Area {
 struct Evaluation {
   std::vector<Rule> rules;
   Activity activity;
-  /// What the update found, as far as the antecedents of the rules and the activity name it.
+  /// The variables of the update that the rules' antecedents and the activity name.
   std::vector<std::pair<std::string, double>> variables = {};
   std::optional<Lane> lane = {};
   std::vector<Area> areas = {};

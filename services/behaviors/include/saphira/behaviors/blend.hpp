@@ -10,7 +10,7 @@ namespace saphira::behaviors {
 struct Blended {
   int priority = 0;
   Evaluation evaluation;
-  // What the blend finds:
+  // Results of the blend:
   double turn_weight = 0.0;   ///< [0..1] activity after the suppression by higher priorities
   double speed_weight = 0.0;  ///< [0..1]
   bool recommends_turn = false;
@@ -31,8 +31,8 @@ struct Blend {
 /// On each channel the activity of a behavior counts for what the higher priorities have left of
 /// it: after each group of equal priority, the rest is multiplied by 1 - the group's highest
 /// activity. The control value is the average of the rules' values by strength times that weight.
-/// What is missing to a whole in the turn rules' weights is "straight on"; the speed is an average
-/// of what is recommended, with nothing missing, else the robot would creep.
+/// Where the turn rules' weights sum to less than one, the rest counts as "straight on"; the speed
+/// is an average of what is recommended, with nothing missing, else the robot would creep.
 Blend blend(std::vector<Blended>& behaviors, double velocity);
 
 }  // namespace saphira::behaviors

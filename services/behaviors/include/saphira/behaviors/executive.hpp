@@ -23,7 +23,7 @@ struct Intended {
   bool operator==(const Intended&) const = default;
 };
 
-/// What is intended, the whole of it, as of some cycle.
+/// All that is intended, as of some cycle.
 struct Intent {
   std::uint64_t cycle = 0;
   bool control = false;  ///< sfBehaviorControl (manual 7.4)
@@ -72,8 +72,8 @@ struct Output {
   double input_age = 0.0;     ///< [s] of the intent
   double speed_limit = -1.0;  ///< [m/s] that the age of all that it acts on allows; below 0: none
   std::string limit_reason;   ///< empty: the speed was not limited
-  /// What is slow, and how slow, while the robot has to drive more slowly for it; empty: nothing
-  /// is.
+  /// The input that is late, and by how much, while the robot has to drive more slowly for it;
+  /// empty: nothing is.
   std::string slow;
 };
 
@@ -90,7 +90,7 @@ struct ExecutiveSettings {
 /// While one that is to run cannot be made the others do not drive: it may be the one that looks
 /// out.
 ///
-/// What it acts on may be old: the intent when it comes over a slow network, and the robot's state
+/// Its inputs may be old: the intent when it comes over a slow network, and the robot's state
 /// when the network lies between the robot and this. The older, the slower the robot
 /// (saphira/base/age.hpp), and behaviors see the robot where it will be when the command works.
 class Executive {
@@ -139,7 +139,7 @@ class Executive {
   ExecutiveSettings settings_;
   lps::LocalPerceptualSpace lps_;
   std::vector<Instance> instances_;
-  // What the instances were made from, and what was wrong with it.
+  // The intent that the instances were made from, and its mistakes.
   std::vector<Intended> reconciled_;
   std::uint64_t reconciled_revision_ = 0;
   std::string reconcile_trouble_;

@@ -16,7 +16,7 @@ class Folder {
  public:
   explicit Folder(std::string path) : folder_(std::move(path), ".beh") {}
 
-  /// What a look has found to be new.
+  /// The changes that a look has found.
   struct News {
     bool changed = false;             ///< schemas came, changed or went, or the trouble is another
     std::vector<std::string> taken;   ///< files

@@ -11,7 +11,7 @@
 // it is described in services/behaviors/LANGUAGE.md.
 namespace saphira::behaviors {
 
-/// What became of a text in the behavior language.
+/// The result of compiling a text in the behavior language.
 struct Compiled {
   std::vector<Schema> schemas;      ///< in the order of the text; none where there are errors
   std::vector<FileError> errors;    ///< in the order of the text, at most twenty

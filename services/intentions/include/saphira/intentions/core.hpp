@@ -35,10 +35,10 @@ class Core {
   };
   explicit Core(Settings settings);
 
-  /// What has come in a cycle or between two. Writers that are lost count before what has come:
+  /// The events of a cycle, or between two. Writers that are lost count before what has come:
   /// what they have written earlier is among it.
   struct Heard {
-    /// Who wrote it, as the bus has checked.
+    /// Its writer, as the bus has checked.
     struct Sender {
       std::string name;       ///< empty: nobody that is known
       bool commands = false;  ///< may change and cancel what others asked for
@@ -66,7 +66,7 @@ class Core {
     std::vector<Claim> claims;
     /// As the bridge's grants have it. For steps alone: all since the last one together.
     std::vector<Estop> estops;
-    /// What agents said, by the number of the question (intentions::Outputs). For steps alone.
+    /// Answers of agents, by the number of the question (intentions::Outputs). For steps alone.
     std::vector<std::pair<std::uint64_t, Answer>> answers;
   };
 
@@ -75,7 +75,7 @@ class Core {
     std::uint64_t revision = 0;
     std::shared_ptr<const maps::Map> map;
   };
-  /// What a vision service saw.
+  /// A result of a vision service.
   struct Vision {
     Stamp stamp;
     std::uint64_t odom = 0;
@@ -112,7 +112,7 @@ class Core {
   };
   Outputs step(Inputs inputs);
 
-  /// What is told between cycles.
+  /// Outputs between cycles.
   struct Told {
     News news;
     Notes notes;
@@ -124,7 +124,7 @@ class Core {
   void know_map(MapNews news) { newer_maps_.push_back(std::move(news)); }
   /// True where the map that registration had is known.
   bool knows_map(std::uint64_t revision) const;
-  /// What the behaviors service can evaluate.
+  /// The schemas that the behaviors service can evaluate.
   Notes know_behaviors(const std::vector<BehaviorSignature>& behaviors);
 
   Executor& executor() { return executor_; }

@@ -86,7 +86,7 @@ class Interpretation {
 
   const Settings& settings() const { return settings_; }
   const Grid& grid() const { return grid_; }
-  /// What is seen to the left and to the right.
+  /// The views to the left and to the right.
   const SideView& left() const { return sides_[0]; }
   const SideView& right() const { return sides_[1]; }
 

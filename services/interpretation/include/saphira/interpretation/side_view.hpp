@@ -10,7 +10,7 @@
 
 namespace saphira::interpretation {
 
-/// What is taken for a wall, and for an opening in it.
+/// Limits for walls, and for openings in them.
 struct SideSettings {
   double aperture = 5.0;   ///< [m] of travel over which readings are put together
   double turn_cost = 0.3;  ///< [m/rad] a turn counts as so much travel: it costs dead reckoning too
@@ -68,10 +68,11 @@ struct Stretch {
   bool own = true;
 };
 
-/// What of it is straight, from where it was heard last.
+/// The straight part of it, from where it was heard last.
 Stretch straight_part(const Line& line, const Stretch& stretch, const SideSettings& settings);
 
-/// What is between two stretches: seen through, or a door that stands back from the wall.
+/// A gap between two stretches: one that is seen through, or a closed door that stands back from
+/// the wall.
 struct Opening {
   std::size_t before = 0;  ///< the stretches
   std::size_t after = 0;

@@ -24,9 +24,9 @@ std::optional<Pose> start_pose(const std::string& start, const maps::Map& map);
 
 /// All that a Core has learnt, been told and decided, as one value, apart from what follows from
 /// it: a copy that is put into another Core goes on to the last bit as the first one would have.
-/// What a step leaves for a later one belongs here.
+/// State that a step leaves for a later one belongs here.
 struct CoreState {
-  /// What the core has by itself.
+  /// State of the core itself.
   struct Own {
     std::string option;  ///< the map that the service was started with
     maps::Editor editor;
@@ -84,7 +84,7 @@ class Core {
     std::vector<lps::Percept> percepts;       ///< of the cycle before, in this odom frame
     std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
   };
-  /// What became of a percept.
+  /// The result of matching a percept.
   struct Matched {
     std::uint32_t percept = 0;
     std::uint32_t artifact = 0;  ///< 0: none
@@ -107,7 +107,7 @@ class Core {
   /// The first step has to bring a robot.
   Outputs step(const Inputs& inputs);
 
-  /// What may be asked of it.
+  /// The requests that it takes.
   static const std::vector<Functor>& functors();
   /// In a cycle or between two: a request that functors() can take. What is refused has changed
   /// nothing. The result "id" is that of the artifact that was put or removed.
@@ -123,7 +123,7 @@ class Core {
   bool snaps() const { return now_.snaps; }
   /// While what is seen is added to the map; nullptr otherwise.
   const MapBuilder* builder() const { return now_.builder ? &*now_.builder : nullptr; }
-  /// What a restart takes over; none before the first robot.
+  /// State that a restart takes over; none before the first robot.
   std::optional<Remembered> remembered() const;
 
   /// Its micro-tasks. They are stepped before the core, for the same cycle.

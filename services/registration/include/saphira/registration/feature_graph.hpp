@@ -82,7 +82,8 @@ struct FeatureGraph {
   /// Of the newest node's pose in the map (x, y, th), by the last optimization.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
-  /// What dead reckoning adds to the covariance of a pose on a way, in the frame where it begins.
+  /// The growth that dead reckoning adds to the covariance of a pose on a way, in the frame where
+  /// it begins.
   Eigen::Matrix3d way_covariance(const Pose& way) const;
   /// Moves everything to where it fits best. Returns the largest correction of a node [m].
   double optimize(int iterations = 5);

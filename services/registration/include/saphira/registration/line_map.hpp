@@ -30,7 +30,7 @@ struct Opening {
   std::size_t feature = 0;  ///< the door, break or junction; else the corridor that begins here
 };
 
-/// What a map's artifacts say of where sound comes back from: a corridor is its two sides and its
+/// The surfaces that reflect sound, by a map's artifacts: a corridor is its two sides and its
 /// ends, an office its four sides, without doors and breaks, and without what lies before another
 /// corridor, a junction or another part of the same office.
 class LineMap {

@@ -8,7 +8,7 @@
 
 namespace saphira::registration {
 
-/// What a sonar heard, and where it was.
+/// A reading of a sonar, and where the sonar was.
 struct Look {
   Pose sensor_in_map;
   double range = 0.0;  ///< [m]

@@ -25,7 +25,7 @@ struct MapBuilderSettings {
   double node_turn = radians(20.0);
   double again_way = 2.0;  ///< [m] of way after which a wall that is still seen counts once more
 
-  // What is the same thing.
+  // Limits for two sightings of the same thing.
   double same_heading = radians(6.0);  ///< and three sigmas of the pose, up to...
   double most_heading = radians(25.0);
   double same_wall = 0.15;     ///< [m] across; likewise
@@ -34,7 +34,7 @@ struct MapBuilderSettings {
   double wall_gap = 5.5;       ///< [m] between stretches of one wall
   double closure_way = 15.0;   ///< [m] of way after which seeing something again closes a loop
 
-  // What is a corridor.
+  // Limits for a corridor.
   double min_width = 1.0;
   double max_width = 3.6;
   double min_both = 1.2;    ///< [m] with a wall on either side

@@ -28,7 +28,7 @@ struct MatchSettings {
   double most_turned = radians(30.0);  ///< [rad] between a percept and what it may be
 };
 
-/// What became of a percept.
+/// The result of matching a percept.
 struct Match {
   std::uint32_t percept = 0;
   std::optional<std::size_t> feature;  ///< in the map: the nearest one of its kind

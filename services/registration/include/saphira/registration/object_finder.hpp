@@ -36,8 +36,8 @@ class ObjectFinder {
  public:
   explicit ObjectFinder(ObjectFinderSettings settings = {}) : settings_(settings) {}
 
-  /// What is new (id 0), or is seen more clearly now (with its id), to be put on the map: that is
-  /// how the finder knows that it is there.
+  /// Objects to put on the map, new ones (id 0) and ones that are seen more clearly now (with their
+  /// id): that is how the finder knows that it is there.
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
 

@@ -46,7 +46,7 @@ class ParticleCloud {
     for (Particle& p : particles_)
       p.log_weight += worth(compose(p.pose, sensor_in_robot));
   }
-  /// What a filter with this pose before and after it learnt of a measurement, all particles learn.
+  /// Gives all particles the correction that a filter made between these two poses.
   void learn(const Pose& before, const Eigen::Matrix3d& covariance_before, const Pose& after,
              const Eigen::Matrix3d& covariance_after);
   /// Lets the unlikely ones die when there are too many of them.

@@ -35,10 +35,10 @@ struct PresenceSettings {
   bool operator==(const PresenceSettings&) const = default;
 };
 
-/// What should be seen and is not (paper 3.2.2), by kind. OBJECTs, which people carry about, are
-/// gone where what is behind them is heard. So are walls and breaks that the robot has put down
-/// itself; what a person wrote stays, and so do corridors, junctions and rooms. A door is not gone
-/// but closed, until it is seen open again. A pure function of its inputs' history.
+/// Artifacts that should be seen and are not (paper 3.2.2), by kind. OBJECTs, which people carry
+/// about, are gone where what is behind them is heard. So are walls and breaks that the robot has
+/// put down itself; what a person wrote stays, and so do corridors, junctions and rooms. A door is
+/// not gone but closed, until it is seen open again. A pure function of its inputs' history.
 class Presence {
  public:
   explicit Presence(PresenceSettings settings = {}) : settings_(settings) {}
@@ -51,7 +51,7 @@ class Presence {
     bool operator==(const News&) const = default;
   };
 
-  /// What was heard from where the robot is sure to be; `seen` are the artifacts that percepts of
+  /// Readings from a pose that is sure; `seen` are the artifacts that percepts of
   /// open doors have been matched to.
   News step(const maps::Map& map, std::uint64_t cycle, const Vec2& robot_in_map,
             const std::vector<Look>& looks, const std::vector<std::uint32_t>& seen);

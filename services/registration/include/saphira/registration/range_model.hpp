@@ -5,10 +5,10 @@
 
 namespace saphira::registration {
 
-/// What a sonar would hear at a place of the map. Surfaces are mirrors to it (sim/README.md,
-/// "Against real sonars"): one that is met at a right angle is heard, one that is met at a slant
-/// mostly is not, and then the echo comes from a corner, a door post, or something that is not in
-/// the map.
+/// The range that a sonar would measure at a place of the map. Surfaces are mirrors to it
+/// (sim/README.md, "Against real sonars"): one that is met at a right angle is heard, one that is
+/// met at a slant mostly is not, and then the echo comes from a corner, a door post, or something
+/// that is not in the map.
 struct RangeModelSettings {
   double facing = radians(15.0);  ///< [rad] a surface whose normal is not more off is heard
   double cone = radians(10.0);    ///< [rad] half of it, for what is heard besides

@@ -71,7 +71,7 @@ struct Settings {
   double dense = 0.5;                   ///< [m] one sigma of a cloud that says where it is...
   double dense_turned = radians(12.0);  ///< [rad] ...and of its heading
 
-  // What is missed and what is new, from a pose that is sure.
+  // Missing and new artifacts, from a pose that is sure.
   double sure_position = 0.2;  ///< [m] one sigma of it
   PresenceSettings presence;
   ObjectFinderSettings objects;
@@ -106,14 +106,15 @@ struct Output {
   /// The feature of the map that the robot is in: junction before corridor before lane before
   /// office. current_environment of manual 8.1.2.
   std::optional<std::size_t> environment;
-  /// What of the map is gone, closed or open again, and what is new, for whoever has the map.
+  /// Artifacts of the map that are gone, closed or open again, and new ones, for the owner of the
+  /// map.
   Presence::News presence;
   std::vector<maps::Feature> objects;
 
   bool operator==(const Output&) const = default;
 };
 
-/// What a restart takes over.
+/// State that a restart takes over.
 struct Memory {
   std::uint64_t odom = 0;
   Pose pose_in_odom;
@@ -162,7 +163,7 @@ class Registration {
   /// Goes on from there: `state` is of a Registration with the same map and settings.
   void set_state(RegistrationState state);
 
-  /// What the service remembers over a restart: much less.
+  /// The part that the service keeps over a restart: much less.
   Memory save() const;
   /// Goes on from there in the same odometry frame. In another one the pose is a guess, beside
   /// `start`: State::lost until the readings fit one of them and not the other.

@@ -41,7 +41,7 @@ struct SearchSettings {
   double hopeless = 25.0;  ///< below the best one's score: given up
 };
 
-/// What a search has learnt.
+/// Results of a search.
 struct SearchState {
   /// A place that is followed.
   struct Hypothesis {

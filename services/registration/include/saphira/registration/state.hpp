@@ -21,8 +21,8 @@ namespace saphira::registration {
 /// settings. A value: a copy that is put back, or put into another Registration with the same map
 /// and settings, goes on to the last bit as the first one would have.
 ///
-/// What a step leaves for a later one belongs here. A map edit keeps this whole, so that no member
-/// can be forgotten.
+/// State that a step leaves for a later one belongs here. A map edit keeps this whole, so that no
+/// member can be forgotten.
 struct RegistrationState {
   /// A percept that has been matched.
   struct Done {
@@ -62,7 +62,7 @@ struct RegistrationState {
   double turned = 0.0;                                 ///< [rad] ever, either way
   std::deque<std::pair<std::uint64_t, double>> turns;  ///< the same by cycle, of late
 
-  // What has corrected the pose.
+  // Corrections of the pose.
   std::vector<Done> done;
   std::set<std::pair<std::uint64_t, int>> used;  ///< readings of accepted percepts
   double since_readings = 0.0;                   ///< [m] of way since readings corrected it

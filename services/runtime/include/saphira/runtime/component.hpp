@@ -20,7 +20,8 @@ struct Component {
   Shell::Make make;
 };
 
-/// What a component reads and writes, found by making it on a bus of its own, without starting it.
+/// The topics that a component reads and writes, found by making it on a bus of its own, without
+/// starting it.
 std::vector<Port> ports_of(const Component& component);
 
 /// The main() of a component's program (bus::run_program).

@@ -33,7 +33,7 @@ struct Port {
 /// How a topic is used, in a word or two, for people.
 const char* word(Port::Use use);
 
-/// What a sample is stamped with: the newest step of its service.
+/// The stamp of a sample: the newest step of its service.
 class Stamper {
  public:
   explicit Stamper(const bus::Cycle& cycle) : cycle_(&cycle) {}
@@ -136,7 +136,7 @@ class Ports {
   /// For the shell: carries out what was asked for.
   void take_requests();
 
-  /// What else a step needs, and lockstep waits for (bus::Cycle::gate).
+  /// Further conditions of a step, which lockstep waits for (bus::Cycle::gate).
   void gate(bus::Cycle::Gate missing) { cycle_.gate(std::move(missing)); }
 
   /// Lets the shell look at the gates again: from any thread, when what they wait for may be here.

@@ -13,7 +13,7 @@ namespace saphira::runtime {
 /// and carries out requests. For the node's own thread.
 class ProcessesOnBus {
  public:
-  /// What else can be asked for by a name that is none of the table's: empty where it was done,
+  /// Handles requests for a name that is not in the table: empty where it was done,
   /// the reason where not; nothing where there is no such thing either.
   using Others = std::function<std::optional<std::string>(
       const std::string& name, ProcessAction action, std::uint32_t cycles)>;

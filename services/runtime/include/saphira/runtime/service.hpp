@@ -27,7 +27,7 @@ class Service {
 
   /// The core's micro-tasks.
   virtual ProcessTable& processes() = 0;
-  /// What may be interrupted or resumed by a name that is no process's: empty where it was done,
+  /// Handles interrupt and resume for a name that is no process's: empty where it was done,
   /// the reason where not; nothing where there is no such thing either.
   virtual std::optional<std::string> ask(const std::string& /*name*/, ProcessAction /*action*/,
                                          std::uint32_t /*cycles*/) {

@@ -10,8 +10,8 @@
 
 namespace saphira::vision {
 
-/// What a Fast Track camera says of one channel (manual 9.2). Pixels, from the picture's middle; x
-/// is positive to the right, y up.
+/// The report of a Fast Track camera on one channel (manual 9.2). Pixels, from the picture's
+/// middle; x is positive to the right, y up.
 struct Patch {
   int x = 0;  ///< centre of mass
   int y = 0;

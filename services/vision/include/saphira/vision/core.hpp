@@ -18,7 +18,7 @@ class Core {
  public:
   explicit Core(const ColorCamera& camera = {}) : vision_(camera) {}
 
-  /// What the camera's own system saw, with where the robot was then.
+  /// A result of the camera's own system, with the pose of the robot at that time.
   struct Seen {
     std::uint64_t cycle = 0;
     std::uint64_t odom = 0;

@@ -17,7 +17,7 @@ inline constexpr std::array<double, 3> kTorso{1.0, 1.2, 1.4};
 /// robot [m]; nothing where no match was found.
 using Band = std::vector<std::optional<Vec2>>;
 
-/// What stereo says at the heights of a torso.
+/// Ranges of stereo at the heights of a torso.
 struct Bands {
   std::array<Band, kTorso.size()> bands;
   Band above;                ///< likewise above people's heads; empty: not looked at

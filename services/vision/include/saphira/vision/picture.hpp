@@ -31,7 +31,7 @@ struct Rig {
   bool operator==(const Rig&) const = default;
 };
 
-/// What both cameras saw in one cycle: the left picture on the left of one.
+/// The pictures of both cameras in one cycle: the left picture on the left of one.
 struct StereoPicture {
   std::uint64_t cycle = 0;
   Rig rig;

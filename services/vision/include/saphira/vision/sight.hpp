@@ -5,7 +5,7 @@
 
 namespace saphira::vision {
 
-/// What one picture shows, without reference to others (paper 3.2.3).
+/// A sighting: the content of one picture, without reference to others (paper 3.2.3).
 struct Sight {
   lps::SeenThing::Kind kind = lps::SeenThing::Kind::person;
   int channel = -1;  ///< of a blob

@@ -31,13 +31,13 @@ class Tracker {
  public:
   explicit Tracker(const TrackerSettings& settings = {}) : settings_(settings) {}
 
-  /// What was seen in `cycle` from there; of one kind alone, so that a picture of one camera does
+  /// Sightings of `cycle` from there; of one kind alone, so that a picture of one camera does
   /// not count against what the other sees. `in_view`: whether something at a place of the robot's
   /// frame would have been seen. Cycles never go back.
   void see(lps::SeenThing::Kind kind, std::uint64_t cycle, const Pose& robot_in_odom,
            const std::vector<Sight>& sights, const std::function<bool(const Vec2&)>& in_view);
 
-  /// What there is, where it is believed to be in a cycle, by id.
+  /// All tracks, at their estimated places in a cycle, by id.
   std::vector<lps::SeenThing> things(std::uint64_t cycle, const Pose& robot_in_odom) const;
 
   /// Another origin of odom: places mean nothing any more. Ids go on.

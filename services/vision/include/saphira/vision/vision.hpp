@@ -17,11 +17,11 @@ class Vision {
   explicit Vision(const ColorCamera& camera = {}) : camera_(camera) {}
 
   void see(const StereoPicture& picture, const Pose& robot_in_odom);
-  /// What a stereo system has made of it already.
+  /// The result of a stereo system, where there is one.
   void see(const Bands& bands, std::uint64_t cycle, const Pose& robot_in_odom);
   void see(const Channels& channels, std::uint64_t cycle, const Pose& robot_in_odom);
 
-  /// What there is, where it is believed to be in that cycle, by id.
+  /// All tracks, at their estimated places in that cycle, by id.
   std::vector<lps::SeenThing> things(std::uint64_t cycle, const Pose& robot_in_odom) const {
     return tracker_.things(cycle, robot_in_odom);
   }

@@ -5,20 +5,20 @@
 #include <string>
 #include <string_view>
 
-/// What programs keep on the disk for themselves, over a restart or a crash. A file that was
+/// Files that programs keep for themselves over a restart or a crash. A file that was
 /// damaged (a bad disk, a power cut, somebody's editor) is noticed by its sums, set aside and begun
 /// anew: no state is worth not starting for.
 namespace saphira {
 
 /// The line behind the sum of its letters: "9ae16a3b placed ...".
 std::string sealed_line(std::string_view line);
-/// What was sealed; none where it is another now.
+/// The sealed text; none where it has changed.
 std::optional<std::string_view> unsealed_line(std::string_view line);
 
 /// A text that ends with a line break, and a last line with its sum. The line is a comment of our
 /// files: "; sum 1f2e3d4c5b6a7988".
 std::string sealed(std::string text);
-/// What was sealed. FileError where it is another now, or not whole.
+/// The sealed text. FileError where it has changed or is not whole.
 std::string_view unsealed(std::string_view text, const std::string& file);
 
 /// Gives the content of a file to `understand`. Where that throws, or the file cannot be read, the

@@ -4,7 +4,7 @@
 
 namespace saphira {
 
-/// What a node says of itself to the supervisor that started its process, by a pipe, whenever it
+/// The sign of life of a node for the supervisor that started its process, by a pipe, whenever it
 /// publishes its status: over the bus a program that is deaf could not be told from one that is
 /// not heard. The pipe is named by the environment: kHeartbeatVariable is "descriptor:inode".
 struct Heartbeat {

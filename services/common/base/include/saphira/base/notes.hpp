@@ -15,7 +15,7 @@ struct Note {
   friend bool operator==(const Note&, const Note&) = default;
 };
 
-/// What a core has to say of one step, in order.
+/// The log messages of one step of a core, in order.
 class Notes {
  public:
   void info(std::string text) { lines_.push_back({Note::Level::info, std::move(text)}); }

@@ -11,8 +11,8 @@ std::string program_folder();
 /// (share/saphira), otherwise that of the source tree. std::runtime_error where there is neither.
 std::string config_folder();
 
-/// What a user keeps of Saphira: $XDG_CONFIG_HOME/saphira, or ~/.config/saphira. Empty where there
-/// is no home.
+/// The folder for a user's own files: $XDG_CONFIG_HOME/saphira, or ~/.config/saphira. Empty where
+/// there is no home.
 std::string user_folder();
 
 /// The file that a person means by `name`: a path, or a file of `folder`, with or without its

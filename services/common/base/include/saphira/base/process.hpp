@@ -40,7 +40,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   const std::string& name() const { return name_; }
-  /// What it does, for people.
+  /// A description, for people.
   const std::string& effect() const { return effect_; }
   int state() const { return now_.state; }
   /// Cycle in which it came to its state; sleeping does not count anew in each.
@@ -73,7 +73,7 @@ class Process {
   Progress now_;
 };
 
-/// What somebody can ask for from outside.
+/// Requests from outside.
 enum class ProcessAction { interrupt, suspend, resume };
 
 /// The micro-tasks of a service, round robin: each gets its turn once a cycle, in the order in

@@ -100,7 +100,7 @@ class Explorer {
   std::optional<double> heard(double bearing) const;
   /// To both sides a wall has been heard of late.
   bool walled() const;
-  /// What is ahead leaves room to the left or right, as far as can be heard.
+  /// True where the obstacle ahead leaves room to the left or right, as far as can be heard.
   bool passable() const;
   void finish(const Inputs& inputs);  ///< with the lead
   void leave(const Lead& lead, const std::string& why);

@@ -115,7 +115,7 @@ class LocalPerceptualSpace {
 
  private:
   void take(const SonarReading& reading, const Pose& robot_in_odom);
-  /// What is remembered, in the frame of the robot where it is now.
+  /// The remembered obstacles, in the present frame of the robot.
   void register_readings();
   void register_artifacts();
 

@@ -24,7 +24,8 @@ struct MemorySettings {
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
 
-/// What the sonars have seen around the robot, for as long as nothing speaks against it.
+/// The obstacles that the sonars have seen around the robot, for as long as nothing contradicts
+/// them.
 ///
 /// The manual's buffers forget by count: an obstacle that leaves the front sonars' sight while the
 /// robot rounds it (a Pioneer sees nothing between 45 and 75 degrees) is gone from the front buffer

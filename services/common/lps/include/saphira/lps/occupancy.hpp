@@ -7,7 +7,7 @@
 
 namespace saphira::lps {
 
-/// What the occupancy functions return where nothing is seen: 5000 mm in manual 6.6.2.
+/// The result of the occupancy functions where nothing is seen: 5000 mm in manual 6.6.2.
 inline constexpr double kNothing = 5.0;
 
 /// The answer of an occupancy function.

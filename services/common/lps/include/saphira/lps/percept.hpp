@@ -19,7 +19,7 @@ struct ReadingId {
   bool operator==(const ReadingId&) const = default;
 };
 
-/// What sensor interpretation found: a feature (a stretch of wall, one end of an opening) or an
+/// A finding of sensor interpretation: a feature (a stretch of wall, one end of an opening) or an
 /// object hypothesis (a door, a junction, a corridor), paper 3.2.1. It says which readings made it,
 /// how sure it is, and since when it is seen.
 ///

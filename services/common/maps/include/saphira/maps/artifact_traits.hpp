@@ -13,13 +13,13 @@ namespace saphira::maps {
 
 enum class RegionKind { corridor, junction, room };
 
-/// What distinguishes the types of artifacts, as far as a map and registration ask: the one place
+/// The properties of the types of artifacts that a map and registration need: the one place
 /// to say so. Maps, their files, pictures and routes, and what registration makes of them, follow.
 struct ArtifactTraits {
   lps::PointType type;
   std::string_view word;  ///< on a line of a map file; empty: no map holds it
 
-  // What stands on its line.
+  // Its fields in a map file.
   bool id = false;
   bool length = false;
   bool width = false;
@@ -30,7 +30,7 @@ struct ArtifactTraits {
   bool gate = false;      ///< an opening in a wall, a way from one region into another
   bool straight = false;  ///< goes on along its heading, and is the same from either end
 
-  /// What becomes of one that is seen to be missing (paper 3.2.2).
+  /// The consequence for one that is seen to be missing (paper 3.2.2).
   enum class Missing {
     stays,    ///< it is never looked for
     learned,  ///< one that the robot has put down itself is looked for; what a person wrote stays

@@ -58,7 +58,7 @@ struct DrawnRobot {
   double xy = 0.0;
 };
 
-/// What a picture of a map shows. All but the map may be left empty.
+/// The contents of a picture of a map. All but the map may be left empty.
 struct Drawing {
   Map map;
   std::string title;

@@ -37,7 +37,7 @@ struct Link {
   std::optional<std::size_t> b;  ///< none: the map does not say what is behind it
 };
 
-/// What a person means by a name or an id.
+/// The region or link that a name or an id stands for.
 struct Place {
   std::string name;                  ///< as it is called in a message
   std::vector<std::size_t> regions;  ///< any of them will do

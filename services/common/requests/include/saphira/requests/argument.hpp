@@ -76,7 +76,7 @@ std::string describe(const Arguments& arguments);
 /// "a number"
 const char* describe(ArgumentKind kind);
 
-/// What somebody wrote, in quotes, made fit for a message: cut to 40 characters, no control
+/// A user's text, in quotes, made fit for a message: cut to 40 characters, no control
 /// characters.
 std::string quoted(std::string_view text);
 

@@ -7,7 +7,7 @@
 
 namespace saphira {
 
-/// What a functor takes under a name.
+/// A parameter of a functor.
 struct Parameter {
   std::string name;
   ArgumentKind kind = ArgumentKind::number;

@@ -10,7 +10,7 @@
 
 namespace saphira {
 
-/// What somebody asks for once.
+/// A request: asked for once.
 struct Request {
   std::string functor;
   Arguments arguments{};
@@ -45,7 +45,7 @@ inline bool well(AnswerCode code) {
   return code <= AnswerCode::sent;
 }
 
-/// What became of a request.
+/// The state of a request.
 struct Answer {
   AnswerCode code = AnswerCode::done;
   std::string text{};  ///< in words; empty: there is nothing to say beside the code

@@ -30,7 +30,7 @@ struct BehaviorTrouble {
   std::string reason;
 };
 
-/// What an intention is begun with by another (paper 3.4, Intend).
+/// The arguments and options by which one intention begins another (paper 3.4, Intend).
 struct Start {
   std::string_view schema;  ///< an activity or a behavior
   std::string_view name;    ///< empty: to be assigned
@@ -79,7 +79,8 @@ inline constexpr bool finished(IntentionState state) {
 
 class Activity;
 
-/// What an activity sees and does in its step. Given by the forest for one step of one intention.
+/// The view and the means of an activity in its step. Given by the forest for one step of one
+/// intention.
 class Self {
  public:
   virtual ~Self() = default;
@@ -134,9 +135,9 @@ class Self {
   virtual std::uint64_t ask(Request request) = 0;  ///< agents; the number of the question
   virtual void believe(const std::string& name, Value value) = 0;  ///< an environment variable
 
-  /// What is being done now, for people: short, and the same from cycle to cycle.
+  /// The present step, for people: short, and the same from cycle to cycle.
   virtual void say(std::string step) = 0;
-  /// What Activity::save() gives is another than before.
+  /// Tells that Activity::save() gives another value than before.
   virtual void moved_on() = 0;
   virtual void progress(double done) = 0;  ///< [0..1]
   virtual void succeed(std::string reason) = 0;
@@ -163,8 +164,8 @@ class Activity {
   /// While it is interrupted its children are interrupted too, and resumed with it; otherwise they
   /// are removed.
   virtual bool keeps_children() const { return false; }
-  /// What it has done, to go on from after a restart of the service; nil: its arguments are all
-  /// that it needs.
+  /// The work that is done, to go on from after a restart of the service; nil: its arguments are
+  /// all that it needs.
   virtual Value save() const { return {}; }
   /// Goes on from what save() gave. `children`: their numbers now, by those they had. ActivityError
   /// where it cannot: then it is as if it had not been called.
@@ -172,7 +173,7 @@ class Activity {
     static_cast<void>(saved);
     static_cast<void>(children);
   }
-  /// What a parameter or variable of its own holds now; nullptr where it has none of that name.
+  /// The value of a parameter or variable of its own; nullptr where it has none of that name.
   virtual const Value* variable(std::string_view name) const {
     static_cast<void>(name);
     return nullptr;

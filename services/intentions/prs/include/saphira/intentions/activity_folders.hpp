@@ -19,7 +19,7 @@ class ActivityFolders {
   ActivityFolders(const std::vector<std::string>& paths, std::shared_ptr<const Functions> functions,
                   Registry base);
 
-  /// What a look has found to be new.
+  /// The changes that a look has found.
   struct News {
     bool changed = false;              ///< also where only the trouble is another
     std::vector<Schema> taken;         ///< new, or another than before

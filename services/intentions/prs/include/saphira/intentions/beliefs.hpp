@@ -24,7 +24,7 @@ struct Belief {
   bool operator==(const Belief&) const = default;
 };
 
-/// What a third party says on the bus, or takes back.
+/// A claim that a third party makes on the bus, or takes back.
 struct ClaimEvent {
   enum class Kind { kSaid, kWithdrawn };
   Kind kind = Kind::kSaid;
@@ -51,11 +51,11 @@ class Beliefs {
   /// nil where nothing is known.
   Value get(std::string_view name, const World& world) const;
   bool known(std::string_view name) const;
-  /// What activities have set or others claim under a name, the newest of it; nullptr: nothing.
+  /// The newest value that activities have set or others claim under a name; nullptr: nothing.
   const Belief* stored(std::string_view name) const;
   /// By name.
   std::vector<Belief> all() const;
-  /// What activities have set, by name.
+  /// The values that activities have set, by name.
   std::vector<Belief> set_by_activities() const;
   /// Larger whenever that has changed.
   std::uint64_t set_revision() const { return set_revision_; }

@@ -18,7 +18,7 @@
 
 namespace saphira::intentions {
 
-/// What happened to a goal on the bus.
+/// An event of a goal on the bus.
 struct GoalEvent {
   enum class Kind { kWritten, kDisposed, kWriterLost };
   Kind kind = Kind::kWritten;
@@ -29,7 +29,7 @@ struct GoalEvent {
   std::string forgotten{};
 };
 
-/// What a step is given.
+/// The inputs of a step.
 struct Inputs {
   std::uint64_t epoch = 0;
   std::uint64_t cycle = 0;
@@ -47,7 +47,7 @@ struct Inputs {
   std::uint64_t intent_age = 1;
 };
 
-/// What became of the goals since the last time.
+/// The changes of goals since the last call.
 struct News {
   std::vector<GoalStatus> changed;  ///< to be published, in the order in which it happened
   std::vector<GoalId> withdrawn;    ///< ended long ago: their status is to be withdrawn
@@ -57,7 +57,7 @@ struct News {
   std::optional<Work> work;
 };
 
-/// What a step gives.
+/// The outputs of a step.
 struct Outputs {
   std::vector<IntendedBehavior> behaviors;
   std::vector<IntentionNode> nodes;
@@ -112,8 +112,8 @@ class Executor {
   /// node (manual 6.5, sfInterruptProcess). False where there is no such intention.
   bool interrupt(std::uint32_t node);
   bool resume(std::uint32_t node);
-  /// What a variable of an intention holds, by the number of its node; until the next step. nullptr
-  /// where there is no such intention or variable.
+  /// The value of a variable of an intention, by the number of its node; until the next step.
+  /// nullptr where there is no such intention or variable.
   const Value* variable(std::uint32_t node, std::string_view name);
 
  private:

@@ -42,7 +42,7 @@ struct Outcome {
   std::string reason;
 };
 
-/// What an intention says to people.
+/// A message of an intention to people.
 struct Said {
   std::uint32_t intention = 0;
   std::string schema;
@@ -65,8 +65,8 @@ enum class Hold : unsigned { kGoal = 1, kActivity = 2, kPerson = 4 };
 /// step does at most one thing for each of them, which is what keeps the whole reactive.
 ///
 /// In a step each intention is stepped once, those of higher priority first, then the older ones.
-/// What they begin by start() is stepped as well, and whose child ended is told so: an end is
-/// passed up, and what comes after it is begun, within the cycle.
+/// Intentions that they begin by start() are stepped as well, and the parent of one that ended is
+/// told: an end is passed up, and what comes after it is begun, within the cycle.
 ///
 /// The removal rules are manual 8.4's: an intention goes when it is removed, when it has finished
 /// and has no parent that is still at work, and when its parent goes.
@@ -84,7 +84,7 @@ class Forest {
   std::uint32_t plant(const GoalId& goal, std::string_view name, std::string_view schema,
                       std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0,
                       bool concurrent = false);
-  /// What has been done in the tree of a root, to go on from after a restart of the service; nil
+  /// The work that is done in the tree of a root, to go on from after a restart of the service; nil
   /// where it is more than can be remembered.
   Value save(std::uint32_t root) const;
   /// Makes a tree that was planted just now what save() gave. ActivityError where that cannot be
@@ -132,7 +132,7 @@ class Forest {
   /// nil (sfBehaviorControl, manual 7.4).
   bool behavior_control() const;
 
-  /// What is intended now, in the order in which it was.
+  /// The behaviors that are intended now, in the order in which they were.
   std::vector<IntendedBehavior> behaviors() const;
   /// Parents before children.
   std::vector<IntentionNode> nodes() const;

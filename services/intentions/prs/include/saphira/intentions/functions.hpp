@@ -14,7 +14,7 @@
 
 namespace saphira::intentions {
 
-/// What a function or action throws where it cannot do its work: the goal that called it fails with
+/// Thrown by a function or action that cannot do its work: the goal that called it fails with
 /// this code and reason.
 class ActivityError : public std::runtime_error {
  public:
@@ -28,7 +28,7 @@ class ActivityError : public std::runtime_error {
 
 using Values = std::span<const Value>;
 
-/// What an action may do to the world outside of its activity.
+/// The ways in which an action may change the world outside of its activity.
 class Effects {
  public:
   virtual ~Effects() = default;
@@ -57,7 +57,7 @@ struct Action {
   std::string summary;
 };
 
-/// What is true of the robot or the LPS in a cycle, under a fixed name, such as `stalled` or
+/// A fact of the robot or the LPS in a cycle, under a fixed name, such as `stalled` or
 /// *cur-region*. Asked for at most once a cycle for the list of beliefs, and when a condition names
 /// it.
 struct Condition {

@@ -23,7 +23,7 @@ struct GoalId {
 
 enum class WriterLost { kCancel, kKeep };
 
-/// What somebody wants to be true. Writing it again under its id changes it.
+/// A goal: a state of the world that somebody asks for. Writing it again under its id changes it.
 struct Goal {
   GoalId id;
   std::string requester;
@@ -66,7 +66,7 @@ inline constexpr bool ended(GoalState state) {
          state == GoalState::kFailed || state == GoalState::kCanceled;
 }
 
-/// What became of a goal so far.
+/// The state of a goal.
 struct GoalStatus {
   GoalId id;
   std::string requester;

@@ -47,7 +47,7 @@ inline constexpr std::size_t kLongestReason = 120;
 /// Endings that are remembered; the oldest are forgotten.
 inline constexpr std::size_t kMostEndings = 8192;
 
-/// What the service remembers over a restart.
+/// State that the service keeps over a restart.
 struct Memory {
   enum class Condition {
     kNone,     ///< nothing was remembered: a first start, or the file was removed

@@ -23,7 +23,7 @@ struct Diagnostic {
   std::string text() const;
 };
 
-/// What became of files of activities.
+/// The result of loading files of activities.
 struct Loaded {
   /// Those of the files without an error.
   std::vector<Schema> schemas;

@@ -16,7 +16,7 @@ namespace saphira::intentions {
 
 struct Program;
 
-/// What a schema's parameter takes.
+/// A parameter of a schema.
 struct Parameter {
   std::string name;
   ArgumentKind kind = ArgumentKind::number;
@@ -36,7 +36,7 @@ struct Schema {
   std::string name;
   std::string summary;  ///< one line for people
   std::vector<Parameter> parameters;
-  /// What the parameters together have to satisfy; the complaint, or empty. May be absent.
+  /// Checks the parameters together: the complaint, or empty. May be absent.
   std::function<std::string(const Arguments&)> check;
   /// Makes an instance. The arguments are checked and complete, their points in odom or on the map.
   std::function<std::unique_ptr<Activity>(const Arguments&)> make;

@@ -11,7 +11,7 @@
 
 namespace saphira::intentions {
 
-/// What has been done of a goal that has begun.
+/// The progress of a goal that has begun.
 struct GoalWork {
   GoalId id;
   std::string functor;
@@ -20,8 +20,8 @@ struct GoalWork {
   bool operator==(const GoalWork&) const = default;
 };
 
-/// What has been done of all goals that are open, and what activities have set: what the service
-/// goes on from after a restart.
+/// The progress of all open goals, and the values that activities have set: the memory that the
+/// service goes on from after a restart.
 struct Work {
   std::uint64_t epoch = 0;  ///< when it was so; 0: nothing is known
   std::uint64_t cycle = 0;

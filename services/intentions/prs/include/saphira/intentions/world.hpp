@@ -57,7 +57,7 @@ inline constexpr double kRestRotation = radians(3.0);  ///< [rad/s]
 /// True where it neither drives nor turns.
 bool at_rest(const Robot& robot);
 
-/// What registration says.
+/// Registration's output.
 struct Registered {
   Localization state = Localization::kNone;  ///< kNone: there is no registration
   Pose pose_in_map;                          ///< of the robot; where it is lost: the best guess
@@ -67,7 +67,7 @@ struct Registered {
   std::set<std::uint32_t> closed_doors;      ///< by id: those that were closed when seen last
 };
 
-/// What is known beside the robot. What is pointed to outlives the step.
+/// Knowledge beside the robot's state. What is pointed to outlives the step.
 struct Surroundings {
   const lps::LocalPerceptualSpace* lps = nullptr;       ///< none: nothing is sensed
   const std::vector<lps::Percept>* percepts = nullptr;  ///< none: no interpretation
@@ -81,7 +81,7 @@ struct Surroundings {
   const std::vector<lps::SonarReading>* readings = nullptr;
   std::uint64_t map_revision = 0;
   double robot_radius = 0.0;  ///< [m] of its hull, a circle; 0: unknown
-  /// What agents said to questions, by their numbers; none: nobody is asked.
+  /// Answers of agents, by the number of the question; none: nobody is asked.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
 };
 
@@ -118,7 +118,7 @@ const lps::SeenThing* seen_thing(const World& world, std::uint64_t id);
 /// True where there is a map, and it is still the one that the reference is of.
 bool current(const World& world, const Reference& reference);
 
-/// What a value is called: what is on the map by its name there.
+/// The name of a value; an artifact has its name on the map.
 std::string name_of(const World& world, const Value& value);
 
 }  // namespace saphira::intentions

@@ -7,8 +7,8 @@
 
 namespace saphira::intentions {
 
-/// What activities need to find their way: regions, doors and paths of the map, corridors and doors
-/// as the LPS has them, what is in the way. The table in the README.
+/// The functions by which activities find their way: regions, doors and paths of the map, corridors
+/// and doors as the LPS has them, what is in the way. The table in the README.
 ///
 /// A path is a list of what is to be gone through: region, way out, region, ..., region, and a
 /// point where the place has one. It is good for one revision of the map. Ways that proved closed
