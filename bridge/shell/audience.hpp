@@ -21,7 +21,7 @@ class Audience {
   void hear(const bus::WriterId& writer, const v1::ServiceStatus& status, double now);
   void lose(const bus::WriterId& writer) { programs_.erase(writer); }
 
-  /// Whether to begin anew now: some program waits for the robot, none hears it, and that for
+  /// True where to begin anew now: some program waits for the robot, none hears it, and that for
   /// kMute. At most once in kAgain.
   bool begins_anew(double now);
 

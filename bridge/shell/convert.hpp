@@ -47,7 +47,7 @@ authority::Command to_command(const v1::MotorCommand& command, authority::Role r
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer);
 
-/// What a writer says of itself: anybody may write anything, so no more than the contract's text.
+/// A writer's name for itself: anybody may write anything, so no more than the contract's text.
 template <class Sample>
 std::string source_of(const Sample& sample) {
   return sample.source().substr(0, 255);

@@ -14,7 +14,7 @@ class LatchFile {
   explicit LatchFile(std::string path) : path_(std::move(path)) {}
 
   const std::string& path() const { return path_; }
-  /// What is latched. A file that is there and cannot be read means an emergency stop.
+  /// The latched stop. A file that is there and cannot be read means an emergency stop.
   authority::Latches read() const;
   /// Why it could not be kept, in words; empty where it was.
   std::string write(const authority::Latches& latches) const;

@@ -8,7 +8,7 @@
 
 namespace saphira::bridge {
 
-/// What the status of the other programs means for the bridge. Other bridges that have a robot of
+/// The meaning of the other programs' status for the bridge. Other bridges that have a robot of
 /// this name: whoever follows that name would obey them and this one. And the services: where none
 /// of them hears this bridge, it begins anew on the bus.
 class OtherPrograms {

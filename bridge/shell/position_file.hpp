@@ -16,9 +16,9 @@ class PositionFile {
   PositionFile(const PositionFile&) = delete;
   PositionFile& operator=(const PositionFile&) = delete;
 
-  /// What was in it; nothing where it is new, or nothing is kept.
+  /// Its content; nothing where it is new, or nothing is kept.
   const std::optional<reflector::OdometryMemory>& found() const { return found_; }
-  /// What was wrong with it, and what became of it; empty: nothing.
+  /// Its damage, and the consequence; empty: none.
   const std::string& trouble() const { return trouble_; }
   /// Why it could not be kept, in words, and empty where it was. After that it is given up.
   std::string write(const reflector::OdometryMemory& memory);

@@ -303,7 +303,7 @@ void Shell::perform(const Identified& identified, double now) {
   } catch (const std::exception& error) {
     return core_.refuse_robot(error.what(), now);
   }
-  // What was said before there was a robot is heard, and refused, before there is one.
+  // Requests from before there was a robot are heard, and refused, before there is one.
   take_all(now);
   core_.open(parameters, milliseconds_since_1970(), now);
 }

@@ -36,7 +36,7 @@ struct BridgeOptions {
   /// empty: none.
   std::string state_file;
   bool free_step = false;  ///< lockstep: step without a permit
-  /// What is said to the camera of a Fast Track vision system at the start (manual 9.1), such as
+  /// The commands to the camera of a Fast Track vision system at the start (manual 9.1), such as
   /// "pioneer_a_mode=2"; empty: it is not asked for packets.
   std::vector<std::string> vision;
   bool keeper = true;
@@ -55,15 +55,15 @@ class Shell {
 
   // ---- The same in steps that never wait, for a caller with a loop of its own.
 
-  /// What has come.
+  /// Its inputs.
   struct Ready {
     bool link = true;
     bool bus = true;
   };
   /// Takes what has come, and does all that is due.
   void advance(Ready ready);
-  /// What to poll before the next advance: the link (a descriptor below 0 while it is closed), and
-  /// the bus.
+  /// The descriptors to poll before the next advance: the link (a descriptor below 0 while it is
+  /// closed), and the bus.
   std::array<pollfd, 2> descriptors() const;
   /// When to call advance again, whatever comes [ms].
   int timeout_ms() const;

@@ -12,7 +12,7 @@
 
 namespace saphira::system {
 
-/// What the robot's server says in a cycle, as the bridge publishes it.
+/// The robot's state in a cycle, as the bridge publishes it.
 struct RobotCycle {
   std::uint64_t cycle = 0;
   std::uint64_t odom = 1;  ///< which odom frame
@@ -39,7 +39,7 @@ class Cores {
     /// [s] Measures what the services take. None: nothing is measured.
     std::function<double()> clock;
   };
-  /// What the services said for a cycle. Of those that are not there: nothing.
+  /// The outputs of the services for a cycle; of those that are not there: nothing.
   struct Said {
     behaviors::Core::Outputs behaviors;
     std::vector<lps::Percept> percepts;
@@ -58,7 +58,7 @@ class Cores {
   const Said& step(const RobotCycle& robot);
   const Said& said() const { return said_; }
 
-  /// What is intended from now on, where no intentions service is there.
+  /// The intent from now on, where no intentions service is there.
   void intend(std::vector<behaviors::Intended> behaviors, bool control);
   /// The same behaviors, and whether they drive (sfBehaviorControl, manual 7.4).
   void set_control(bool control);
@@ -100,7 +100,7 @@ class Cores {
   double registration_took_ = 0.0;
 };
 
-/// What the behaviors service announces.
+/// The announcement of the behaviors service.
 std::vector<intentions::BehaviorSignature> signatures_of(const behaviors::Registry& behaviors);
 
 }  // namespace saphira::system

@@ -62,7 +62,7 @@ void set_robots(saphira::sim::HostOptions& options, const std::vector<std::strin
   }
 }
 
-/// What is shipped may be loaded by the view.
+/// Shipped files may be loaded by the view.
 void offer(saphira::sim::HostOptions& options, const std::string& config) {
   const auto names = [](const std::string& folder, const std::string& extension) {
     std::vector<std::string> found;

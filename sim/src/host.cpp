@@ -230,7 +230,7 @@ class Station {
   }
 
   void read_client() {
-    // What was said before this was heard, in that order.
+    // Earlier messages were heard before this one, in that order.
     if (line() >= 0)
       send(server().take_output());
     if (line() < 0)
@@ -406,7 +406,7 @@ class Serving {
     return true;
   }
 
-  /// What somebody at the view wants to have instead of this world, these robots.
+  /// The world or robots that somebody at the view asks for instead.
   std::optional<Load> take_load() { return std::exchange(load_, std::nullopt); }
 
   void end() {

@@ -46,7 +46,7 @@ class Listener {
 
   int fd() const { return fd_.get(); }
   const std::string& name() const { return name_; }
-  /// Who has connected, not blocking; nobody where the descriptor is none.
+  /// A client that has connected, not blocking; none where the descriptor is none.
   Fd accept() const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 constexpr double kHeadingDeadband = 0.001;  // [rad]
 constexpr double kWayDeadband = 0.0005;     // [m]
 
-// What rubber holds on a floor: four tenths of its weight.
+// The grip of rubber on a floor: four tenths of its weight.
 constexpr double kGrip = 4.0;  // [m/s2]
 
 // The motors' short circuit.
@@ -41,7 +41,7 @@ constexpr double kLookout = 1.0;  // [m]
 // A contact is over when the hull is this far away.
 constexpr double kContactEnds = 0.005;  // [m]
 
-// What a client may set.
+// Settings of a client.
 constexpr double kLeastAcceleration = 0.001;         // [m/s2]
 constexpr double kLeastRotationAcceleration = 0.01;  // [rad/s2]
 
@@ -289,7 +289,7 @@ void Robot::tick() {
     emergency_ = false;
 }
 
-// What the robot might touch.
+// Things that the robot might touch.
 const Things& Robot::around() {
   const Vec2 at = pose_in_world_.position();
   around_.segments = near_.around(at);

@@ -343,7 +343,7 @@ bool Server::simulate(const Command& command) {
                     command);
 }
 
-// What fires: the polling sequence without the arrays that are off.
+// The sonars that fire: the polling sequence without the arrays that are off.
 void Server::set_sonars() {
   std::vector<std::uint8_t> sequence;
   for (const std::uint8_t number : polling_)
@@ -494,7 +494,7 @@ InformationPacket Server::information() const {
   return packet;
 }
 
-// What the packets of P2OS and ARCOS say besides.
+// Further contents of the packets of P2OS and ARCOS.
 void Server::add_later_fields(InformationPacket& packet) const {
   const RobotParameters& p = parameters_;
   const unsigned front = robot_.bumpers(p.front_bumpers, false);

@@ -18,10 +18,10 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
   return far;
 }
 
-// What stands nearer than this before a thing hides it [m]: not its own sides.
+// A surface nearer than this before a thing hides it [m]: not its own sides.
 constexpr double kBefore = 0.01;
 
-// What chance adds to the strength of an echo stays for so long.
+// A random change of the strength of an echo stays for so long.
 constexpr double kLuckLasts = 0.3;  // [s]
 // More standard deviations than matter.
 constexpr double kSure = 4.0;
@@ -148,7 +148,7 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   return {number, std::max(range, model_.min_range)};
 }
 
-// What is before the sonar and near enough.
+// Things before the sonar and near enough.
 void Sonars::gather(const Vec2& robot, const Firing& firing) {
   in_beam_.things.segments.clear();
   in_beam_.things.discs.clear();
@@ -293,7 +293,7 @@ bool Sonars::in_direct_cone(const Firing& firing, const Vec2& way) const {
   return along >= 0.0 && along * along >= direct_cosine_ * direct_cosine_ * way.squaredNorm();
 }
 
-// What other robots send comes straight, so it is loud, and from half as far as it seems.
+// The sound of other robots comes straight, so it is loud, and from half as far as it seems.
 void Sonars::hear_others(Firing& firing) const {
   for (const Ping& ping : scene_->pings()) {
     const Vec2 way = ping.origin - firing.origin;

@@ -226,7 +226,7 @@ class Faces {
   int things_ = 0;
 };
 
-// What all columns have in common of a row: where it meets the floor or the ceiling.
+// The part of a row that all columns share: where it meets the floor or the ceiling.
 struct Row {
   double slope = 0.0;  // [m] upward for each of depth
   double depth = 0.0;  // [m]

@@ -24,7 +24,7 @@ class StereoFeed {
 
   void add_to(std::vector<pollfd>& fds) const;
   /// Takes on who has come, sends on what waits, and the picture of `cycle` where it is a new one.
-  /// Who has so many waiting that he has not taken does not get it. Where more than one may wait,
+  /// A viewer with so many waiting does not get it. Where more than one may wait,
   /// who comes later gets the pictures before as well.
   void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle, std::size_t waiting);
 

@@ -17,7 +17,7 @@ struct Layer {
 
 const std::string kNoColor;
 
-// What stands within the range of a viewer; walls and things.
+// Walls and things within the range of a viewer.
 class View {
  public:
   View(const Scene& scene, RobotNumber self, const Vec2& eye, double range)
@@ -90,7 +90,7 @@ struct Strip {
   int high = 0;
 };
 
-// What adds up to a blob.
+// The pixels of a blob.
 struct Patch {
   long area = 0;
   long x = 0;

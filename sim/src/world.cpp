@@ -54,7 +54,7 @@ class Parser {
 
  private:
   using Trouble = std::function<std::optional<std::string>(const World&)>;
-  // What a line says that can be right or wrong only when all walls are known.
+  // The checks of a line that need all walls.
   struct Claim {
     std::string file;
     Place place;
@@ -113,7 +113,7 @@ class Parser {
     }
   }
 
-  // What the directive that has been read claims; nothing where it cannot be wrong.
+  // The claim of the directive that has been read; nothing where it cannot be wrong.
   Trouble trouble_of(std::string_view word) const {
     const MovablePlans& plans = movable_.plans();
     if (word == "robot")

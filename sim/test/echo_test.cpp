@@ -1,4 +1,4 @@
-// What the sonars hear of thin, round and clothed things.
+// Echoes of thin, round and clothed things.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenLine{"box b 0 0 0 600", 16, "width"}, BrokenLine{"box b 0 0 0 600 0 5", 17, "width"},
         BrokenLine{"post p 0 0", 11, "radius"}, BrokenLine{"color red", 1, "before this color"},
         BrokenLine{"robot 0 0", 10, "theta"}, BrokenLine{"tall 5", 1, "before this tall"},
-        // What the walls make wrong.
+        // Mistakes with respect to the walls.
         BrokenLine{"position 5000 -10 0", 1, "in the world"},
         BrokenLine{"robot 10001 5000 0", 1, "in the world"},
         BrokenLine{"position 5 5000 0", 1, "not in a wall"},

@@ -126,7 +126,7 @@ TEST(Robot, WheelVelocities) {
   EXPECT_EQ(robot.rotation_velocity(), 0.0);
 }
 
-// What the fastest motion straight on or on the spot needs.
+// The time of the fastest motion straight on or on the spot.
 double wheel_limit(const RobotParameters& p) {
   return std::max(p.max_velocity, p.max_rotation_velocity / p.rotation_per_difference);
 }

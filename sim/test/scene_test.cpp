@@ -188,7 +188,7 @@ TEST_F(SimulationTest, AStepIsMadeWhenAllHaveAskedForIt) {
   EXPECT_EQ(simulation.scene().ticks(), 0U) << "before the second robot is open";
   open(simulation, 1);
   EXPECT_EQ(simulation.scene().ticks(), 0U);
-  // What comes behind a STEP waits for it.
+  // Messages behind a STEP wait for it.
   send(simulation, 0, protocol::Velocity{0.4});
   EXPECT_EQ(simulation.server(0).robot().target_velocity(), 0.0);
   send(simulation, 1, protocol::Step{});
@@ -201,7 +201,7 @@ TEST_F(SimulationTest, AStepIsMadeWhenAllHaveAskedForIt) {
   send(simulation, 0, protocol::Step{});
   EXPECT_EQ(simulation.scene().ticks(), 30U);
   EXPECT_GT(simulation.server(0).robot().velocity(), 0.0);
-  // Who has gone is not waited for, and comes to rest with the others' steps.
+  // A client that has gone is not waited for, and its robot comes to rest with the others' steps.
   simulation.disconnect(0);
   EXPECT_GT(simulation.server(0).robot().velocity(), 0.0);
   for (int i = 0; i < 5; ++i)

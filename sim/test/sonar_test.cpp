@@ -99,7 +99,7 @@ TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
   EXPECT_NEAR(*echo.range, 1.0 / std::cos(radians(57.5)), 1e-9);
 }
 
-// What a sonar hears of a corridor's wall that it looks along is its door posts.
+// A sonar that looks along a corridor's wall hears its door posts.
 TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
   // A wall along y = 1 with a door in it, and a partition that meets it from behind at x = 5.
   const World world = parse_world(

@@ -56,7 +56,7 @@ Channel channel_of(const char* protocol) {
 }  // namespace
 
 struct Server::Impl {
-  /// What libwebsockets keeps for each connection; it begins as zeros.
+  /// The record that libwebsockets keeps for each connection; it begins as zeros.
   struct Http {
     const PageFile* file;
   };

@@ -49,7 +49,7 @@ std::string header(lws* wsi, const char* name) {
 }  // namespace
 
 struct HttpServer::Impl {
-  /// What libwebsockets keeps for each connection; it begins as zeros.
+  /// The record that libwebsockets keeps for each connection; it begins as zeros.
   struct Connection {
     Exchange exchange;
   };

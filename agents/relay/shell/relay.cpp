@@ -62,7 +62,7 @@ std::array<std::string, 3> words_of(const std::string& path) {
 struct Relay::Impl {
   using Visitor = Rendezvous::Visitor;
 
-  /// What libwebsockets keeps for each connection; it begins as zeros.
+  /// The record that libwebsockets keeps for each connection; it begins as zeros.
   struct Leg {
     Visitor visitor;  ///< whom it carries; 0: nobody
     const Robot* dialled;

@@ -51,7 +51,7 @@ struct Expected {
   bool there = false;
 };
 
-/// What a program says in each cycle; nothing: it is not known of this one.
+/// The topic of a program that comes in each cycle; nothing: it is not known of this one.
 std::optional<Expected> expected(const Situation& s, const std::string& program) {
   if (program == "behaviors")
     return Expected{s.behaviors_known, s.cycle, s.behaviors.has_value()};
@@ -83,7 +83,7 @@ Condition past_condition(const Situation& s, const std::string& program) {
 
 Condition present_condition(const Situation& s, const std::string& name) {
   const Program* const program = find(s.programs, name);
-  // What is there may not have spoken yet.
+  // A program that is there may not have spoken yet.
   if (program == nullptr)
     return s.listened < kListened
                ? Condition{}

@@ -86,7 +86,7 @@ Explanation Reason::why_not(Wish wish) {
   };
   const std::vector<Say> say = says(channel);
   for (const v1::BehaviorState& behavior : all.behaviors()) {
-    // What the rules of one that does not run would say is not known.
+    // The rules of a behavior that does not run are not known.
     if (!behavior.running())
       continue;
     for (const v1::RuleState& rule : behavior.rules()) {

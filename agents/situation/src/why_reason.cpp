@@ -77,7 +77,7 @@ double Reason::told_turn() const {
                       : 0.0;
 }
 
-/// What the wheels are told.
+/// The setpoints of the wheels.
 std::string Reason::told() const {
   const double speed = told_speed();
   const double turn = told_turn();
@@ -222,7 +222,7 @@ std::string Reason::of_say(const Say& say, Channel channel, bool with_rule) cons
          (with_rule && say.main_rule != nullptr ? " (rule " + say.main_rule->name() + ")" : "");
 }
 
-/// What a behavior wants on both channels, as far as it is to be mentioned.
+/// A behavior's recommendation on both channels, as far as it is to be mentioned.
 std::string Reason::wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
                           const v1::BehaviorState& behavior, bool with_rules) const {
   std::vector<std::string> parts;
@@ -323,7 +323,7 @@ std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
   return cause;
 }
 
-/// What people have told the robot of what the intention is about: each once, where it counts
+/// The advice of people on the subject of the intention: each once, where it counts
 /// first.
 void Reason::add_advice(const v1::IntentionNode& of, Cause& cause) {
   for (const v1::Belief& belief : scene_.beliefs)

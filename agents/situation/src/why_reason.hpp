@@ -46,7 +46,7 @@ class Reason {
   std::string name_of(const v1::BehaviorState& behavior) const;
   std::vector<Say> says(Channel channel) const;
   std::string told() const;
-  /// What the robot does, where that is not what it is told; else empty.
+  /// The robot's motion, where it differs from its setpoints; else empty.
   std::string meanwhile() const;
   std::string of_say(const Say& say, Channel channel, bool with_rule) const;
   std::string wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
@@ -70,7 +70,7 @@ class Reason {
 
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
-  /// What is old of what the behaviors act on, and what that does to the speed.
+  /// The old inputs of the behaviors, and their effect on the speed.
   std::optional<Cause> age_cause() const;
   Cause rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
   Cause behavior_cause(const Say& say, Channel channel);

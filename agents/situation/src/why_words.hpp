@@ -34,7 +34,7 @@ Channel channel_of(const v1::RuleState& rule);
 double weight_of(const v1::BehaviorState& behavior, Channel channel);
 double activity_of(const v1::BehaviorState& behavior, Channel channel);
 bool recommends(const v1::BehaviorState& behavior, Channel channel);
-/// What a behavior alone would have.
+/// The setpoints of a behavior alone.
 std::string wish_of(const v1::BehaviorState& behavior, Channel channel);
 
 std::string control_text(const v1::RuleState& rule);

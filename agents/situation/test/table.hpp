@@ -23,7 +23,7 @@ std::vector<Case> bad_cases();
 /// Both.
 std::vector<Case> all_cases();
 
-/// What is said in the situation.
+/// The sentences in the situation.
 std::string answer(const Case& one);
 /// The trouble with the answer; empty: nothing.
 std::vector<std::string> faults(const Case& one);

@@ -27,7 +27,7 @@ bool is_safe(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '+' || c == '_';
 }
 
-/// What a command says on its standard output. `words` have passed is_safe().
+/// The standard output of a command. `words` have passed is_safe().
 std::string output_of(const std::string& command) {
   FILE* const pipe = popen(command.c_str(), "r");
   if (pipe == nullptr)

@@ -42,7 +42,7 @@ class Story {
   bool ready() const { return waiting_for_.empty() && !place_.empty(); }
   /// True where it ended as the cast says.
   bool well() const { return ended_ && cast_.ends_well(outcome_); }
-  /// What the robot said last to the newest line; empty: nothing.
+  /// The robot's last answer to the newest line; empty: none.
   const std::string& outcome() const { return outcome_; }
   double time() const { return time_; }  ///< [s] of the robot
   std::size_t utterances() const { return utterances_; }
@@ -78,7 +78,7 @@ class Story {
   std::size_t next_ = 0;      ///< line of the cast
   std::uint64_t number_ = 0;  ///< of the newest utterance
   std::uint64_t line_ = 0;    ///< number of the newest line of the cast
-  /// What the robot is about while it is told more, such as to follow somebody. Where it gives up
+  /// The robot's task while it is told more, such as to follow somebody. Where it gives up
   /// too soon it is told again.
   struct Errand {
     Cast::Line line;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kWords = "PERSON, HAS, KNOWS, SAYS, NEAR, DEPLOYMENT, THINGS or ENDS";
 
-/// What stands between two texts: "karen" in "Is karen here?".
+/// The text between two others: "karen" in "Is karen here?".
 std::optional<std::string> between(std::string_view text, std::string_view before,
                                    std::string_view after) {
   if (text.size() <= before.size() + after.size() || !text.starts_with(before) ||

@@ -363,7 +363,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   if (role == Role::none) {
     for (const Role each : kDriving) {
       const Player& p = player(each);
-      // Who has let go is no reason: a person who drove minutes ago least of all.
+      // A driver that has let go is no reason: a person who drove minutes ago least of all.
       if (p.held && p.newest.active)
         grant.reason = why_not(p, now, cycle);
     }

@@ -14,7 +14,7 @@ constexpr double kDeceleration = 0.3;  // [m/s2] of a robot that does not say it
 constexpr double kSameWay = radians(3.0);
 // [m] A robot whose sonars reach less keeps this share of their reach as margin.
 constexpr double kShareOfReach = 0.25;
-// What comes closer takes no more than this share of the reach until the robot brakes.
+// A thing that comes closer takes no more than this share of the reach until the robot brakes.
 constexpr double kShareOfWay = 0.1;
 
 std::string text(const char* format, double a, double b) {
@@ -38,7 +38,7 @@ double free_distance(const std::vector<Vec2>& points, double radius, double side
   for (const Vec2& point : points) {
     const double ahead = forward ? point.x() : -point.x();
     const double aside = std::abs(point.y());
-    // What is beside or behind is left by driving on. Within 60 degrees of the path it is ahead.
+    // A thing beside or behind is left by driving on. Within 60 degrees of the path it is ahead.
     if (aside >= width || ahead <= 0.0 || aside > std::sqrt(3.0) * ahead)
       continue;
     const double nose = aside < radius ? std::sqrt(radius * radius - aside * aside) : 0.0;
@@ -60,7 +60,7 @@ double approach_speed(double distance, double end, double reaction, double decel
 
 namespace {
 
-/// What the points allow of a motion straight ahead (or back).
+/// The speed that the points allow straight ahead (or back).
 struct Allowed {
   double free = std::numeric_limits<double>::infinity();   // [m] of the hull's path
   double speed = std::numeric_limits<double>::infinity();  // [m/s] past what stands beside it...

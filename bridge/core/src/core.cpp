@@ -15,8 +15,8 @@ namespace {
 using authority::Role;
 using State = reflector::Connection::State;
 
-/// What stops a robot in a session at once: zero setpoints, and the server's emergency stop where
-/// it should have one. Both, since some servers of that generation do not know it.
+/// The commands that stop a robot in a session at once: zero setpoints, and the server's emergency
+/// stop where it should have one. Both, since some servers of that generation do not know it.
 protocol::Bytes stop_packets(const protocol::RobotParameters& robot) {
   protocol::Bytes out = protocol::encode(protocol::Velocity{0.0});
   const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
@@ -204,7 +204,7 @@ void Core::end(double now) {
 
 void Core::received(protocol::ByteView bytes, double now) {
   last_bytes_ = now;
-  // What waited while the bridge stood still tells of a robot as it was.
+  // Packets that waited while the bridge stood still tell of a robot as it was.
   if (now >= stale_until_)
     parser_.feed(bytes);
 }

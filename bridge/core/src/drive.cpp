@@ -1,4 +1,4 @@
-// Who drives, and what the robot is sent.
+// The driver, and the commands to the robot.
 
 #include <cmath>
 
@@ -102,8 +102,8 @@ void Core::answer(double now) {
   keep_latches(now);
 }
 
-/// What is latched, to be kept and to everybody, when it has changed. Neither waits for a cycle of
-/// the robot: there may be none.
+/// The latched stop, to the file and to everybody, when it has changed. Neither waits for a cycle
+/// of the robot: there may be none.
 void Core::keep_latches(double now) {
   const authority::Latches& latches = arbiter_.latches();
   if (latches == kept_)
@@ -137,12 +137,12 @@ void Core::decide(double now) {
   reflector::Setpoints wanted = reflector_.motion().setpoints();
   told_ = {wanted, reflector_.motion().distance_left()};
   guard(wanted);
-  // Who presses an emergency stop, and a robot that is not heard any more, want the hardest stop.
+  // A pressed emergency stop, and a robot that is not heard any more, need the hardest stop.
   if (grant_.role == Role::estop || session_.silent)
     reflector_.emergency_stop();
   else
     reflector_.hold(wanted);
-  // What is latched does not expire.
+  // A latched stop does not expire.
   expires_at_ = grant_.role == Role::estop ? kForEver : t + grant_.expires_in + 1e-4;
   if (changed && grant_.role != Role::estop) {
     words_.push_back(grant_.role == Role::none

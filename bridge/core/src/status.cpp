@@ -81,7 +81,7 @@ Condition Core::robot_condition(double now) const {
   return {};
 }
 
-/// What keeps it from its robot for a while is told in the log, once.
+/// The obstacle that keeps it from its robot for a while is told in the log, once.
 void Core::tell_wait(const Condition& now_is, double now) {
   const bool waits = now_is.health == Health::waiting && !settings_.lockstep;
   if (!waits || wait_.reason != now_is.reason)

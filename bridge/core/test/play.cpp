@@ -14,7 +14,7 @@ namespace {
 
 using authority::Role;
 
-/// What happens next, byte by byte; zeros at the end.
+/// The next events, byte by byte; zeros at the end.
 class Script {
  public:
   explicit Script(protocol::ByteView bytes) : bytes_(bytes) {}
@@ -107,7 +107,7 @@ class Player {
   protocol::InformationPacket shown_;
 };
 
-/// What the robot's server makes of what it is sent: it answers SYNC, and moves as it is told.
+/// The robot's server: it answers SYNC, and moves as it is told.
 void Player::hear(const protocol::Bytes& sent) {
   protocol::PacketParser parser;
   parser.feed(sent);
@@ -264,7 +264,7 @@ void Player::information(bool strange) {
   to_bridge_.insert(to_bridge_.end(), bytes.begin(), bytes.end());
 }
 
-/// What happens most of the time.
+/// The most frequent events.
 void Player::cycle() {
   information(false);
   pass(0.1);

@@ -71,7 +71,7 @@ class Rules {
   bool answered_ = false;  ///< this cycle, by the behaviors
   bool stepping_ = false;
 
-  // What the robot was told.
+  // The robot's commands.
   bool zero_velocity_ = false;  ///< since zero setpoints were due first
   bool zero_turn_ = false;
   bool velocity_is_zero_ = true;

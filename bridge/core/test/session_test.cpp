@@ -352,7 +352,7 @@ TEST(Session, ARobotThatIsNotHeardWhileItMovesStands) {
   EXPECT_EQ(lurches(scene, 400.0, false), 1);
   EXPECT_EQ(scene.core.grant().role, Role::behaviors);
   EXPECT_EQ(scene.condition().health, Health::running) << scene.condition().reason;
-  // What was long ago counts no more.
+  // Old events count no more.
   lurches(scene, 0.5, true);
   EXPECT_EQ(lurches(scene, 2.0, false), 1);
   EXPECT_EQ(scene.core.grant().role, Role::behaviors);

@@ -278,7 +278,7 @@ void Checker::argument(const CommandRule& rule, ByteView body) {
                                  (rule.unit.empty() ? "" : " ") + std::string(rule.unit));
 }
 
-// What changes what the server may send.
+// Commands that change what the server may send.
 void Checker::remember(const Command& command) {
   const auto ask = [this](PacketType type, int mode) {
     Asked& asked = asked_[type];

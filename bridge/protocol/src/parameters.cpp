@@ -120,8 +120,8 @@ constexpr std::array kCounts{
     CountKeyword{"SideBuffer", &P::side_buffer, 1, 200},
 };
 
-// What a robot cannot do without. The manual's own file (chapter 10) names no class and says less:
-// it is a Pioneer 1's, and so are the defaults.
+// Parameters that every robot needs. The manual's own file (chapter 10) names no class and says
+// less: it is a Pioneer 1's, and so are the defaults.
 struct NeededKeyword {
   std::string_view name;
   bool with_class_only;
@@ -312,7 +312,7 @@ class Parser {
     return is_of_the_first(name) ? Protocol::kPsos : Protocol::kP2os;
   }
 
-  // What a file does not say follows from the generation of its server.
+  // Missing parameters follow from the generation of the server.
   void finish_protocol() {
     if (aria_ && !seen_.contains("protocol"))
       parameters_.protocol = protocol_of_subclass();
@@ -448,7 +448,7 @@ std::vector<std::string> parameter_file_names(std::string_view robot_class,
   };
   std::string name = lower(subclass);
   add(name);
-  // What is behind a hyphen is a variant: p3dx-sh-lms1xx is a p3dx-sh with a laser.
+  // The part behind a hyphen is a variant: p3dx-sh-lms1xx is a p3dx-sh with a laser.
   // Without -sh it is another generation.
   for (std::size_t hyphen = name.rfind('-');
        hyphen != std::string::npos && name.substr(hyphen) != "-sh"; hyphen = name.rfind('-')) {

@@ -132,7 +132,7 @@ TEST(PacketParser, AGapEndsAPacketThatIsNotComplete) {
   EXPECT_EQ(all(parser), std::vector<Bytes>{Bytes{7}});
   EXPECT_EQ(parser.counters().abandoned, 1U);
   EXPECT_FALSE(parser.pending());
-  // What comes after the gap is waited for again.
+  // Bytes after the gap are waited for again.
   const Bytes next = encode(Velocity{0.3});
   parser.feed(ByteView(next).first(4));
   EXPECT_FALSE(parser.next());

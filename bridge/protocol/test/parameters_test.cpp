@@ -48,7 +48,7 @@ TEST(Parameters, EveryShippedFileLoads) {
   EXPECT_GT(count, 0);
 }
 
-// What ARIA's and Player's parameters say of each subclass: a robot of it connects with our file.
+// Each subclass of ARIA's and Player's parameters: a robot of it connects with our file.
 struct Subclass {
   const char* name;
   double angle, distance, velocity, range, difference, vel2;
@@ -329,7 +329,7 @@ TEST(Parameters, KeywordsInAnyCaseAndOrder) {
   EXPECT_EQ(p.sonars.size(), 1U);
 }
 
-// What ARIA writes: sections, units of other equipment, columns beyond ours, comments that are
+// A file of ARIA's: sections, units of other equipment, columns beyond ours, comments that are
 // broken over two lines, and zeros for what the robot is to decide.
 constexpr const char* kAriaForm =
     "ConfigVersion 2.0\n"

@@ -56,7 +56,7 @@ void Channels::brake(bool on) {
   if (!on) {
     brake_.reset();
   } else if (!brake_) {
-    // What was sent before means nothing after it: when the brake ends, setpoints go out anew.
+    // Earlier setpoints mean nothing after it: when the brake ends, setpoints go out anew.
     connect();
     brake_ = Channel{{kEstop, 0}, {}, 0.0, false, false};
   }

@@ -53,7 +53,7 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
                                std::uint64_t fresh) {
   state_.information = protocol::interpret(packet, parameters_);
   const RawPose raw{packet.x, packet.y, state_.information.th};
-  // What the robot went since it was told to begin at the origin is at most one cycle's way.
+  // The way since it was told to begin at the origin is at most one cycle's.
   const double unit = parameters_.distance_unit;
   const bool origin = std::abs(protocol::position_difference(0, packet.x)) * unit < 0.1 &&
                       std::abs(protocol::position_difference(0, packet.y)) * unit < 0.1 &&

@@ -16,7 +16,7 @@ Odometry::Settings settings() {
   return s;
 }
 
-/// What a server sends for a pose in its own frame.
+/// The packet of a server for a pose in its own frame.
 RawPose raw_of(const Pose& pose) {
   const auto counts = [](double m) {
     return static_cast<std::uint16_t>(static_cast<long long>(std::floor(m / kUnit + 0.5)) & 0x7FFF);

@@ -12,7 +12,7 @@
 namespace saphira::reflector {
 namespace {
 
-/// What the request means, or what is wrong with it.
+/// The meaning of the request, or its mistake.
 std::string meant(Request request) {
   for (const Device device : kEnumerators<Device>) {
     const auto refused = refusal(functors(device), request);

@@ -64,7 +64,7 @@ bool make_raw(int fd, const Address& address) {
   return tcsetattr(fd, TCSANOW, &line) == 0 && tcflush(fd, TCIOFLUSH) == 0;
 }
 
-/// Who holds the lock on a file, in words; from /proc/locks, lines such as
+/// The holder of the lock on a file, in words; from /proc/locks, lines such as
 /// "1: FLOCK  ADVISORY  WRITE 1234 00:18:5 0 EOF".
 std::string holder(int fd) {
   struct stat about {};
@@ -90,7 +90,7 @@ std::string holder(int fd) {
 
 }  // namespace
 
-/// What a thread finds; written before `done`, read behind it.
+/// The result of a thread; written before `done`, read behind it.
 struct Link::LookUp {
   struct Place {
     sockaddr_storage address{};

@@ -32,7 +32,7 @@ struct Robot {
       ::close(ends[0]);
     ::close(ends[1]);
   }
-  /// What came within the time; empty where nothing did, "end" at the end.
+  /// The bytes within the time; empty where nothing came, "end" at the end.
   std::string hear(int ms) const {
     pollfd ready{ends[1], POLLIN, 0};
     if (::poll(&ready, 1, ms) != 1)

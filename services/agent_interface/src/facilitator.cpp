@@ -315,7 +315,7 @@ Facilitator::Outputs Facilitator::step(double now) {
     if (armed.trigger.kind == TriggerKind::event || now < armed.next ||
         (armed.trigger.times != 0 && armed.fired >= armed.trigger.times))
       continue;
-    // What was missed while this program slept is not made up for.
+    // Events that this program slept through are not made up for.
     armed.next = now + armed.trigger.period;
     if (armed.trigger.kind == TriggerKind::time) {
       fire(armed, {}, now);

@@ -439,7 +439,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
         Meaning meaning = rule.meaning;
         for (const auto& [slot, value] : match.slots)
           meaning.slots[slot] = value;
-        // What explains more of the words by itself explains them better.
+        // The meaning that explains more of the words by itself is better.
         if (match.literal > best)
           result.meanings.clear();
         best = match.literal;

@@ -25,7 +25,7 @@ class DialogueOnTheBus : public testing::Test {
     service.emplace(test::memory_options("dialogue"), memory);
     dialogue = std::make_unique<DialogueShell>(*service, options);
   }
-  /// What the robot says to that.
+  /// The robot's answer.
   std::vector<std::string> say(const std::string& text) {
     v1::Utterance utterance;
     utterance.id().writer(5);
@@ -149,7 +149,7 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   messages.write(message);
   dialogue->step();
   EXPECT_EQ(answers(), std::vector<std::string>{"Is anybody here?"});
-  // What was said before, its writer keeps.
+  // The writer keeps earlier sentences.
   start();
   message.stamp().cycle(52);
   message.text("Please give me the mail");

@@ -31,7 +31,7 @@ struct DialogueTest : testing::Test {
     last = dialogue.hear(utterance, situation);
     return last;
   }
-  /// What the robot says to it, in one line.
+  /// The robot's answer, in one line.
   std::string said(const std::string& text, const std::string& speaker = "Alice") {
     std::string all;
     for (const Said& one : hear(text, speaker).said)

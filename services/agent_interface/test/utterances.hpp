@@ -9,7 +9,7 @@
 
 namespace saphira::agent_interface {
 
-/// What people may say, and the meaning that a person would give it: a functor with its slots,
+/// Sentences, and the meaning that a person would give them: a functor with its slots,
 /// `what?`, `nothing` for what is not meant for the robot, or `ambiguous`.
 struct SaidAndMeant {
   std::string text;
@@ -35,7 +35,7 @@ inline std::vector<SaidAndMeant> read_utterances(const std::string& content) {
   return phrases;
 }
 
-/// What the grammar takes a phrase for, in the words of those lines.
+/// The grammar's meaning of a phrase, in the words of those lines.
 inline std::string meaning_of(const Grammar& grammar, const SaidAndMeant& phrase) {
   const Grammar::Understood understood = grammar.understand(phrase.text, phrase.reply);
   if (understood.meanings.size() == 1)

@@ -217,7 +217,7 @@ void Executive::limit_speed(const Inputs& inputs, Output& output) {
     why = "intentions are " + seconds(old) + " old" + (why.empty() ? "" : ", " + why);
   if (output.speed_limit < std::max(std::abs(output.speed), model_.max_velocity))
     output.slow = kSlow + why;
-  // What stands in the way was seen from where the robot was then.
+  // Obstacles were seen from where the robot was then.
   if (inputs.delay > 0.0 && output.speed != 0.0) {
     const double free =
         free_path(lps_.obstacles(), output.speed > 0.0 ? 0.0 : kPi, model_.radius, kFarEnough);

@@ -33,7 +33,7 @@ TEST(Blend, FullActivitySuppressesLowerPriorities) {
   EXPECT_EQ(result.speed, 0.0);
   EXPECT_EQ(b[1].turn_weight, 0.0);
   EXPECT_EQ(b[1].speed_weight, 0.0);
-  // What it would do is still told.
+  // Its recommendation is still told.
   EXPECT_EQ(b[1].turn, -0.9);
   EXPECT_EQ(b[1].speed, 0.4);
 }

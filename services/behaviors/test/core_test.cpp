@@ -39,7 +39,7 @@ TEST_F(CoreTest, DrivesAsIsIntendedAndNumbersItsCommands) {
   EXPECT_EQ(first.notes.lines()[0], (Note{Note::Level::info, "drives"}));
 }
 
-// What was intended before is a place in another frame.
+// The earlier intent is a place in another frame.
 TEST_F(CoreTest, AnIntentOfAnotherOdomFrameDoesNotDrive) {
   step();
   EXPECT_TRUE(step().output.active);

@@ -6,7 +6,7 @@
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/behaviors/foresight.hpp"
 
-// What the executive makes of inputs that are old.
+// The executive with old inputs.
 namespace saphira::behaviors {
 namespace {
 
@@ -28,7 +28,7 @@ TEST(Foresight, TurnsNoFurtherThanItWasTold) {
   for (const double side : {1.0, -1.0}) {
     const RobotNow robot{{0.0, 0.0, kPi}, 0.0, side, norm2_angle(kPi + side * 0.2)};
     EXPECT_NEAR(norm2_angle(foresee(robot, 0.5).pose_in_odom.th - kPi), side * 0.2, 1e-12);
-    // What it turns beyond, or against, is on its way to an end.
+    // A turn beyond that, or against it, is coming to an end.
     const RobotNow past{{0.0, 0.0, 0.0}, 0.0, side, -side * 0.1};
     EXPECT_EQ(foresee(past, 0.5).pose_in_odom.th, 0.0);
   }

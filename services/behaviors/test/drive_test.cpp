@@ -3,7 +3,7 @@
 #include "closed_loop.hpp"
 #include "process.hpp"
 
-// What the behaviors are worth: the executive drives the simulated Pioneer, with the noise of its
+// The behaviors at work: the executive drives the simulated Pioneer, with the noise of its
 // sonars and its dead reckoning, through worlds that a reactive robot has to manage. Ten seeds
 // each.
 namespace saphira::behaviors {

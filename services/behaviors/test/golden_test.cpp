@@ -11,7 +11,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/folder.hpp"
 
-// What each shipped behavior does in a scripted world, cycle by cycle, beside what it did when
+// The output of each shipped behavior in a scripted world, cycle by cycle, beside its output when
 // test/golden was written. A change there is to be meant: SAPHIRA_GOLDEN=renew writes the files
 // anew.
 namespace saphira::behaviors {

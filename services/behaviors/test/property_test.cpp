@@ -5,7 +5,7 @@
 #include "saphira/base/random.hpp"
 #include "saphira/behaviors/blend.hpp"
 
-// What must hold of every blend, tried on many that are made by chance.
+// Properties of every blend, tried on many random ones.
 namespace saphira::behaviors {
 namespace {
 
@@ -42,7 +42,7 @@ bool turns(const Rule& r) {
   return r.action == Action::turn_left || r.action == Action::turn_right;
 }
 
-/// What one rule asks for by itself.
+/// The recommendation of one rule by itself.
 double asked(const Rule& one, double velocity) {
   Blended alone;
   alone.evaluation.rules = {one};

@@ -47,13 +47,13 @@ ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind);
 
 /// The age [cycles] from which on a sample of registration or interpretation says nothing any more.
 inline constexpr std::uint64_t kRegistrationLease = 20;
-/// What it says, for the step of `cycle`: where the sample is too old, nothing.
+/// Its content, for the step of `cycle`: where the sample is too old, nothing.
 Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle);
 /// Where the origin of that odom frame is on the map, for the step of `cycle`; none where
 /// registration does not know, speaks of another odom frame, or has not been heard.
 std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,
                                          std::uint64_t odom);
-/// What interpretation sees, for the step of `cycle`: none where the sample is too old; of another
+/// The percepts for the step of `cycle`: none where the sample is too old; of another
 /// odom frame, nothing.
 std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception& perception,
                                                            std::uint64_t cycle, std::uint64_t odom);

@@ -21,7 +21,7 @@ class MemoryFile {
   explicit MemoryFile(std::string path, std::size_t most = kMostEndings);
 
   const Memory& memory() const { return memory_; }
-  /// What was damaged, in words.
+  /// The damage, in words.
   const std::vector<std::string>& troubles() const { return troubles_; }
   bool keeps() const { return !path_.empty(); }
   /// In the place of what was kept before. False where it could not be written.

@@ -91,7 +91,7 @@ std::string Service::missing() {
     take_behavior_schemas();
   if (!knows_behaviors_)
     return bus::topics::kBehaviorSchemas.name;
-  // What is asked of registration before it is heard of would be lost.
+  // A request to registration before it is heard of would be lost.
   if (registration_ != nullptr && !map_requests_.is_taken())
     return std::string("registration, for ") + bus::topics::kRegistrationRequest.name;
   take_maps();

@@ -130,7 +130,7 @@ Core::Told Core::between(const Heard& heard, double silence) {
   return told;
 }
 
-/// What is known beside the robot, from what came for the cycle before.
+/// Knowledge beside the robot's state, from the inputs of the cycle before.
 void Core::look_around(const Inputs& inputs, Surroundings& around) {
   if (inputs.new_robot != nullptr)
     lps_.emplace(*inputs.new_robot);

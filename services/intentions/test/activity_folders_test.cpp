@@ -71,7 +71,7 @@ TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
   ASSERT_FALSE(news.errors.empty());
   EXPECT_NE(news.errors[0].find((shipped / "a.act").string() + ":"), std::string::npos);
   EXPECT_NE(folders->trouble().find("a.act"), std::string::npos);
-  // Who names what the broken file has is not wrong for that.
+  // A file that names definitions of the broken one is not wrong for that.
   EXPECT_EQ(folders->trouble().find("b.act"), std::string::npos);
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 3s)"));
   EXPECT_EQ(look(), Names{"one"});

@@ -60,7 +60,7 @@ class Bench {
       journal += write_line(each);
   }
 
-  /// What a service remembers that is started now.
+  /// The memory of a service that is started now.
   Memory memory() const {
     std::vector<FileError> damaged;
     return read_journal("memory", journal, damaged);

@@ -406,7 +406,7 @@ class InLockstep : public CoreTest {
   InLockstep() : CoreTest(true) {}
 };
 
-// What is planned must not depend on when the map came.
+// Plans must not depend on when the map came.
 TEST_F(InLockstep, AMapCountsFromTheStepOnForWhichRegistrationHadIt) {
   const auto map = std::make_shared<const maps::Map>();
   core_.know_map({1, map});

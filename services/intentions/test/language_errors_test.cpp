@@ -3,7 +3,7 @@
 #include "language_bench.hpp"
 #include "saphira/base/text.hpp"
 
-// What the compiler says to people.
+// The compiler's messages.
 
 namespace saphira::intentions {
 namespace {

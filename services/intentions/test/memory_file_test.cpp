@@ -36,7 +36,7 @@ TEST(MemoryFile, RemembersOverARestart) {
     MemoryFile memory(path);
     EXPECT_EQ(memory.memory().endings, std::vector{kEnding});
     ASSERT_EQ(memory.memory().placements.size(), 1U);
-    // What the ending superseded is not written again.
+    // Entries that the ending superseded are not written again.
     EXPECT_EQ(read_file(path).find("placed 1 2"), std::string::npos);
   }
 }

@@ -123,7 +123,7 @@ TEST(Modality, AReasonThatCannotBeComputedFails) {
   EXPECT_EQ(stage.messages.size(), 1U);
 }
 
-// What a SPLIT has begun ends, and is interrupted, with the goal that it stands in.
+// The intentions of a SPLIT end, and are interrupted, with the goal that it stands in.
 TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
   const std::string aside = "(SPLIT (SEQ (INTEND :Watch () :blocking nil) (INTEND :Follow ())))";
   const std::string rest = "(WAIT-FOR *x* :forever t)";

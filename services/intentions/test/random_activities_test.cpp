@@ -108,7 +108,7 @@ std::string schemas(Random& random) {
   return text;
 }
 
-/// What has to hold after every cycle, of what the executor shows.
+/// Properties of the executor's output that hold after every cycle.
 void check(const Stage& stage, std::size_t most) {
   std::map<std::uint32_t, const IntentionNode*> nodes;
   for (const IntentionNode& node : stage.out.nodes) {

@@ -59,7 +59,7 @@ TEST(Schema, RefusesWhatIsNoNumber) {
   }
 }
 
-// What a file that remembers goals could not be read with again, also where every kind is taken.
+// Values with which a file of goals could not be read again, also where every kind is taken.
 TEST(Schema, RefusesPointsThatAreNowhere) {
   Schema schema;
   schema.name = "it";

@@ -1,4 +1,4 @@
-// What activities can ask about the people and colours that a camera sees.
+// Functions about the people and colours that a camera sees.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -333,7 +333,7 @@ TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
   EXPECT_EQ(believed->value(), "(a b 2.5)");
   EXPECT_EQ(believed->said_by(), "a person");
   EXPECT_TRUE(find("connected"));
-  // What cannot be read changes nothing.
+  // A file that cannot be read changes nothing.
   claim.value("(a");
   claims.write(claim);
   cycle();

@@ -15,7 +15,7 @@
 #include "saphira/intentions/language.hpp"
 #include "scripted_robot.hpp"
 
-// What has been done is not done again: the service is killed and restarted at every cycle of a
+// Finished work is not done again: the service is killed and restarted at every cycle of a
 // run, and the robot does all in all what it does without that.
 namespace saphira::intentions {
 namespace {

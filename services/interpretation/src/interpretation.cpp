@@ -116,7 +116,7 @@ bool Interpretation::works(Process* Tasks::*task) const {
   return tasks_ == nullptr || (tasks_->*task)->works();
 }
 
-// What a suspended task has found is not kept up any more: it is taken back.
+// Percepts of a suspended task are not kept up any more: they are taken back.
 void Interpretation::mind_tasks() {
   if (!works(&Tasks::sides_)) {
     for (SideView& side : sides_)

@@ -19,7 +19,7 @@ constexpr std::size_t kStretch = 3;
 constexpr std::size_t kBent = 4;
 /// Nobody looked between readings farther apart than this [m].
 constexpr double kUnseen = 0.45;
-/// What stands beside an opening [m].
+/// The wall beside an opening [m].
 constexpr double kBeside = 0.8;
 /// A post that is heard from elsewhere is where the wall seems to end, to this [m]...
 constexpr double kPostNear = 0.2;

@@ -86,7 +86,7 @@ LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near,
   fit.rms = std::sqrt(squares / all);
   const double scale = std::max(1.0, std::sqrt(squares / std::max(1.0, n - 2.0)));
   fit.sigma_offset = scale / std::sqrt(all);
-  // What dead reckoning has strayed since is the same for all of them: it does not average out.
+  // The drift of dead reckoning since then is the same for all of them: it does not average out.
   const double strayed = spread > 0.0 ? error.heading_variance(way / spread, turn / spread) : 0.0;
   fit.sigma_heading = spread > 0.0 ? std::sqrt(scale * scale / spread + strayed) : kPi;
   return fit;

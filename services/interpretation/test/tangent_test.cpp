@@ -10,8 +10,8 @@
 namespace saphira::interpretation {
 namespace {
 
-/// What a sonar at `at` that looks to the left, askew by `tilt`, hears of the wall y = offset + x
-/// tan(slope).
+/// The reading of a sonar at `at` that looks to the left, askew by `tilt`, for the wall y = offset
+/// + x tan(slope).
 Return heard(const Vec2& at, double offset, double slope, double tilt, double noise = 0.0) {
   Return firing;
   firing.sonar = at;

@@ -161,7 +161,7 @@ std::vector<Corridor> Finder::parted(const std::vector<Corridor>& groups) const 
       corridor.from = part.front().first;
       corridor.to = part.back().second;
       for (const auto& w : group.walls) {
-        // What goes on beyond a wall ahead is another corridor's.
+        // A wall that goes on beyond a wall ahead is another corridor's.
         const auto drove = [&](double from, double to) {
           return std::any_of(driven.begin(), driven.end(),
                              [&](const auto& d) { return d.first <= from && d.second >= to; });

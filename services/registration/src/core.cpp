@@ -27,7 +27,7 @@ bool needs_a_map(const std::string& functor) {
          functor == "switch";
 }
 
-/// What may be put on a map, by its word there.
+/// The artifacts that may be put on a map, by their word there.
 std::vector<std::string> artifact_words() {
   std::vector<std::string> words;
   for (const maps::ArtifactTraits& traits : maps::kArtifactTraits)
@@ -227,7 +227,7 @@ Core::Outputs Core::built(const Inputs& inputs) {
   return outputs;
 }
 
-/// What is gone is taken from the map, what is new is put onto it; true where it has become
+/// Takes missing artifacts from the map and puts new ones onto it; true where it has become
 /// another.
 bool Core::amend(const Presence::News& news, const std::vector<maps::Feature>& objects,
                  Notes& notes) {

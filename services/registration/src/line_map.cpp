@@ -127,7 +127,7 @@ std::array<Side, 4> sides(const Feature& box) {
 LineMap::LineMap(const maps::Map& map) {
   for (std::size_t i = 0; i < map.features.size(); ++i) {
     const Feature& feature = map.features[i];
-    // What was put down by the pose that is to be corrected corrects nothing.
+    // An artifact that was placed by the pose that is to be corrected corrects nothing.
     if (feature.type == PointType::object && feature.learned)
       continue;
     if (feature.type == PointType::wall) {
@@ -255,7 +255,8 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
         offer(static_cast<int>(*i % static_cast<std::size_t>(columns_)),
               static_cast<int>(*i / static_cast<std::size_t>(columns_)),
               static_cast<std::uint16_t>(k));
-  // What is nearest to a neighbour may be so here: sweeps to and fro (Danielsson 1980).
+  // The nearest surface of a neighbour may be the nearest here: sweeps to and fro (Danielsson
+  // 1980).
   const auto spread = [&](int column, int row, int dc, int dr) {
     const int c = column + dc;
     const int r = row + dr;

@@ -306,7 +306,7 @@ bool MapBuilder::take(const lps::Percept& percept, std::uint64_t cycle) {
   }
 }
 
-// What a sonar hears straight ahead may be the end of a corridor.
+// An echo straight ahead may be the end of a corridor.
 void MapBuilder::listen_ahead(const MapBuilderInputs& inputs) {
   for (const lps::SonarReading& reading : inputs.readings) {
     if (!reading.echo || reading.range > kAhead)

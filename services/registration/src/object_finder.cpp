@@ -43,7 +43,7 @@ void ObjectFinder::follow_map(const maps::Map& map) {
   });
 }
 
-/// What an echo from there is of: best of something that has been told. Echoes that have not been
+/// The object of an echo from there: best one that has been told. Echoes that have not been
 /// told join it.
 ObjectFinder::Candidate* ObjectFinder::candidate_at(const Vec2& position) {
   std::vector<std::size_t> near;

@@ -15,7 +15,7 @@ using maps::Feature;
 constexpr double kMoved = 0.2;      // [m] what is farther off than before is another thing
 constexpr double kOnTheWall = 0.3;  // [m] an opening so near to a wall is one in it
 
-/// What is watched, and what becomes of it.
+/// The artifacts that are watched, and the consequence.
 enum class Kind { none, thing, door };
 
 Kind kind_of(const Feature& feature) {
@@ -186,7 +186,7 @@ Presence::News Presence::step(const maps::Map& map, std::uint64_t cycle, const V
       news.opened.push_back(feature.id);
     }
   }
-  // What the map has no more is no news.
+  // An artifact that the map has lost is no news.
   if (!closed_.empty())
     std::erase_if(closed_, [&](std::uint32_t id) { return maps::find(map, id) == nullptr; });
   return news;

@@ -112,7 +112,7 @@ class Registration::Self {
   Search search_;  // works on now_.search
 };
 
-/// What was heard from a pose, or of a map, that did not hold says nothing.
+/// Discards evidence that was gathered at a wrong pose, or with a wrong map.
 void Registration::Self::forget_looks() {
   now_.presence.recall(now_.presence.closed());
   now_.objects = ObjectFinder(settings_.objects);
@@ -307,7 +307,7 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
       const Pose since = relative(last->pose_in_odom, inputs.pose_in_odom);
       const bool point = percept.type == PointType::door || percept.type == PointType::junction ||
                          percept.type == PointType::breach;
-      // What was seen of an opening does not get better by driving on; a wall is seen anew.
+      // An opening is not seen better by driving on; a wall is seen anew.
       if (point ? std::abs(last->width - percept.width) < 0.05
                 : std::hypot(since.x, since.y) < settings_.again &&
                       std::abs(since.th) < settings_.again_turned)
@@ -504,7 +504,7 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
   now_.filter->widen(0.1, radians(3.0));
 }
 
-/// What is missed of the map, and what stands where it has nothing.
+/// Missing artifacts of the map, and objects where the map has none.
 void Registration::Self::look_for_news(const Inputs& inputs,
                                        const std::vector<PlacedReading>& readings) {
   if (now_.state != State::tracking || now_.search.own_score < settings_.sure ||

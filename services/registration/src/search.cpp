@@ -119,7 +119,7 @@ void Search::count_own(double worth) {
   now_.own_recent += worth;
 }
 
-/// What an object that is there, or is not, says of a place.
+/// The evidence of an object that is there, or is not, for a place.
 double Search::worth(const lps::Percept& percept, const Match& match,
                      const Pose& robot_in_map) const {
   if (!percept.is_hypothesis() || match.ambiguous)

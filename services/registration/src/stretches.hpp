@@ -22,7 +22,7 @@ inline Stretches joined(Stretches stretches, double gap) {
   return out;
 }
 
-/// What both have.
+/// The part that both have.
 inline Stretches common(const Stretches& a, const Stretches& b) {
   Stretches out;
   for (const auto& x : a)

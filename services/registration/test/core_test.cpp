@@ -502,7 +502,7 @@ TEST(RegistrationCore, WhileAMapIsBuiltTheBuildersPoseIsRemembered) {
   EXPECT_EQ(remembered->map, core.map());
 }
 
-/// What happens to a core on its way, by cycle.
+/// The events of a core on its way, by cycle.
 void happen(int cycle, Core& core, Robot& robot) {
   switch (cycle) {
     case 40:

@@ -27,7 +27,7 @@ maps::Map corridor() {
   return map;
 }
 
-/// What a sonar hears of a box of 0.6 by 0.4 m by the left wall at x = 1, and of that wall.
+/// The reading of a sonar for a box of 0.6 by 0.4 m by the left wall at x = 1, and of that wall.
 double range_of(const Pose& sensor, bool box) {
   const double to_wall = 1.5 - sensor.y;
   if (!box)

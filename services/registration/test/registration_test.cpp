@@ -107,7 +107,7 @@ class Robot {
   std::vector<lps::Percept> percepts_;
 };
 
-/// What is matched of a wall whose readings are older than a turn of 60 degrees.
+/// The match of a wall whose readings are older than a turn of 60 degrees.
 std::size_t matches_after_a_turn(const std::function<void(Registration&)>& then) {
   Registration registration(settings(), kMap, Pose{10.0, 0.0, 0.0});
   Pose odom;

@@ -24,7 +24,7 @@
 
 namespace {
 
-/// What was brought to the disk, and what the file that is named there held then.
+/// The bytes on the disk, and the content of the file that is named there, at that time.
 struct Synced {
   std::string path;
   std::string target;  ///< the content of the file that is to be replaced
@@ -224,7 +224,7 @@ class RegistrationShell : public testing::Test {
       newest_map = maps::from_bus(*newest);
     return newest_map;
   }
-  /// What the robot has put down where the crate stands.
+  /// The object that the robot has put on the map where the crate stands.
   const maps::Feature* crate() {
     for (const maps::Feature& feature : known_map().features)
       if (feature.type == lps::PointType::object && feature.learned &&
@@ -480,7 +480,7 @@ TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
   EXPECT_FALSE(map->changed());
   EXPECT_EQ(map->artifacts().size(), 2U);
   EXPECT_NEAR(registration.pose_in_map().x(), -3.0, 0.1);
-  // What was asked for on the command line counts again when it is another.
+  // An option of the command line counts again when it has changed.
   Options other = given;
   other.map_file = map_path("loop");
   restart(given);

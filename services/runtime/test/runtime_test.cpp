@@ -7,7 +7,7 @@
 namespace saphira::runtime {
 namespace {
 
-/// What a service saw.
+/// The inputs that a service saw.
 struct Seen {
   std::vector<Stamp> steps;
   std::vector<bool> new_robot;

@@ -25,7 +25,7 @@ std::string names(const std::vector<Line::End>& ends, const std::vector<Unit>& u
   return text;
 }
 
-// What people and other programs outside the robot write.
+// Topics that people and other programs outside the robot write.
 const std::set<std::string> kFromOutside{
     "drive/estop",   "drive/estop/reset", "drive/teleop", "drive/direct",   "lockstep/permit",
     "goals",         "beliefs/said",      "device/servo", "device/gripper", "device/output",

@@ -24,7 +24,7 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// What lies together in one band.
+// Neighbouring columns of a band at one range.
 struct Shape {
   std::size_t first = 0;  // columns
   std::size_t last = 0;
@@ -123,7 +123,7 @@ class Shapes {
     return 3 * on > run.size();
   }
 
-  // What is beside a shape: 1 farther (or nothing), -1 nearer, 0 as far, or the picture's end.
+  // The range beside a shape: 1 farther (or nothing), -1 nearer, 0 as far, or the picture's end.
   int background(std::size_t from, int direction, double range) const {
     const double edge = bearing(from);
     for (auto column = static_cast<std::ptrdiff_t>(from) + direction;; column += direction) {

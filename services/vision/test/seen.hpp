@@ -20,7 +20,7 @@ inline sim::World room(const std::string& things) {
       "room.wld");
 }
 
-/// What a robot's cameras see, as it comes over the line.
+/// The view of a robot's cameras, as it comes over the line.
 inline StereoPicture picture(const sim::Scene& scene, Random& random, std::uint64_t cycle = 1) {
   const sim::StereoRig rig;
   PictureStream stream;

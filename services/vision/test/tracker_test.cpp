@@ -114,7 +114,7 @@ TEST(Tracker, OneSightIsNobody) {
   EXPECT_TRUE(tracker.things(9, {}).empty());
 }
 
-// What is seen from two places in two directions has a range.
+// A thing that is seen from two places in two directions has a range.
 TEST(Tracker, DirectionsFromSeveralPlacesMakeAPlace) {
   Tracker tracker;
   const Vec2 blob(3.0, 1.0);

@@ -29,7 +29,7 @@ class Assembler {
     zero_ = constant(0.0);
   }
 
-  /// What is emitted from now on goes there.
+  /// Instructions go there from now on.
   void write_to(std::vector<Instruction>& code) { code_ = &code; }
   /// Beyond the limits the program is thrown away in the end.
   bool full() const;

@@ -16,7 +16,7 @@ class CParser {
   Statement statement(int depth = 0);
   /// Past the end of a statement that could not be read, where the cursor is at it.
   bool after_statement();
-  /// What the sentence that is being read declares or sets; a parameter is told here as well.
+  /// The variable that the present sentence declares or sets; a parameter is told here as well.
   std::vector<std::string>& naming() { return naming_; }
 
  private:

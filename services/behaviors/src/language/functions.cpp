@@ -427,7 +427,7 @@ const std::vector<Function>& functions() {
        {},
        [](Call& c, D, double* o) { *o = static_cast<double>(c.context->cycle); },
        "number of the cycle; ten are a second"},
-      // What behaviors tell those of higher priority.
+      // Values that behaviors give to those of higher priority.
       {"sfGoalKnown",
        kI,
        {},

@@ -23,7 +23,7 @@ class Lexer {
       skip_blanks();
       Token token = next();
       const bool end = token.kind == TokenKind::end;
-      // What is missing at the end is missing after the last word.
+      // A word that is missing at the end is missing after the last one.
       if (end && !tokens.empty()) {
         const Token& last = tokens.back();
         const bool text = last.kind == TokenKind::text;

@@ -7,7 +7,7 @@
 
 #include "assembler.hpp"
 
-// What the names in a behavior stand for.
+// The meanings of the names in a behavior.
 namespace saphira::behaviors::language {
 
 struct Variable {

@@ -21,7 +21,7 @@ struct Way {
   double cost = 1e9;       ///< [rad]
 };
 
-/// What the functions of the language see in one update.
+/// The view of the language's functions in one update.
 struct Call {
   const Context* context = nullptr;
   Evaluation* evaluation = nullptr;

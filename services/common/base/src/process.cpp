@@ -119,7 +119,7 @@ bool ProcessTable::take_changed() {
   told_.resize(processes_.size(), kInit);
   for (std::size_t i = 0; i < processes_.size(); ++i) {
     const int state = processes_[i]->now_.state;
-    // Who sleeps and wakes by itself is the same all the time.
+    // A process that sleeps and wakes by itself is the same all the time.
     if (!all && (state < 0 || state == kResume))
       continue;
     const int shown = state < 0 ? -1 : state;

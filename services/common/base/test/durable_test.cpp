@@ -95,7 +95,7 @@ TEST(Durable, AFileIsReplacedWhole) {
   EXPECT_FALSE(std::filesystem::exists(path + ".new"));
   EXPECT_FALSE(replace_file(folder.path("nowhere/state"), "three"));
   EXPECT_EQ(errno, ENOENT);
-  // What cannot be replaced leaves nothing beside it.
+  // A file that cannot be replaced leaves nothing beside it.
   std::filesystem::create_directories(folder.path("full/of"));
   EXPECT_FALSE(replace_file(folder.path("full"), "four"));
   EXPECT_EQ(errno, EISDIR);

@@ -162,7 +162,7 @@ TEST(ProcessTable, TellsOfChangesButNotOfNaps) {
     table.step(cycle);
     EXPECT_FALSE(table.take_changed());
   }
-  // What somebody asked for is shown: the sleep, and its end.
+  // A request is shown: the sleep, and its end.
   EXPECT_EQ(table.request("grid", ProcessAction::suspend, 2), "");
   EXPECT_TRUE(table.take_changed());
   table.step(7);

@@ -17,7 +17,7 @@ using maps::Feature;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 // Two places of the driven way that are so near one another hang together [m].
 constexpr double kStep = 0.8;
-// What was heard longer ago [cycles] is not of here.
+// Readings longer ago [cycles] are not of here.
 constexpr std::uint64_t kFresh = 10;
 constexpr double kStraight = radians(10.0);  // of a sonar that looks ahead
 constexpr double kHalfWidth = 1.0;           // [m] of corridors, about
@@ -105,7 +105,7 @@ std::vector<Explorer::Lead> Explorer::leads(const Inputs& inputs) const {
       for (const bool upper : {true, false}) {
         const Vec2 end = upper ? maps::end_of(f) : maps::begin_of(f);
         const double heading = upper ? f.pose_in_map.th : norm2_angle(f.pose_in_map.th + kPi);
-        // What ends where another corridor comes from the side may go on behind it.
+        // A corridor that ends where another comes from the side may go on behind it.
         const auto junction =
             std::find_if(junctions.begin(), junctions.end(),
                          [&](const Feature* j) { return maps::distance_to(*j, end) < 0.6; });
@@ -218,7 +218,7 @@ void Explorer::choose(const Inputs& inputs) {
     }
   }
   if (!best && !shut_.empty() && reopened_ < settings_.reopen) {
-    // What closed the only way may have been the robot's own clumsiness.
+    // The only way may have been closed by the robot's own clumsiness.
     ++reopened_;
     shut_.clear();
     home_ = false;  // also the way home

@@ -33,7 +33,7 @@ TEST(OccupancyBox, NothingIsFiveMetres) {
   const Occupancy nothing = occupancy_box(kFigure62, Axis::front, -3.0, 0.0, 1.0, 1.0);
   EXPECT_EQ(nothing.distance, 5.0);
   EXPECT_FALSE(nothing.point);
-  // What is further looks the same as nothing.
+  // A farther reading looks the same as none.
   EXPECT_FALSE(occupancy_box({{6.0, 0.0}}, Axis::front, 6.0, 0.0, 1.0, 1.0).point);
 }
 

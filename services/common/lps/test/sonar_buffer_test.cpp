@@ -104,7 +104,7 @@ TEST(SonarBuffers, AreAsLongAsTheyAreSet) {
   EXPECT_EQ(lps.front().entries().size(), 2U);
   EXPECT_EQ(lps.left().entries().size(), 1U);
   EXPECT_EQ(lps.right().entries().size(), 1U);
-  // What was set outlives what was heard.
+  // Settings outlive readings.
   lps.reset();
   EXPECT_TRUE(lps.front().entries().empty());
   EXPECT_EQ(lps.front().limit(), 2U);

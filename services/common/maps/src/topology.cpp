@@ -199,7 +199,7 @@ void Topology::meet(std::size_t a, std::size_t b) {
   const bool lane = first.area.type == PointType::lane || second.area.type == PointType::lane;
   if (first.kind == RegionKind::junction && second.kind == RegionKind::junction)
     return;
-  // What divides a room from what lies beside it is a wall, unless it is the same room. A lane is a
+  // A wall divides a room from its neighbour, unless it is the same room. A lane is a
   // way through a room.
   if (room && !lane &&
       (first.kind != second.kind || first.area.name.empty() || first.area.name != second.area.name))

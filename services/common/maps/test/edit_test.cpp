@@ -38,7 +38,7 @@ TEST(Editor, IdsStayAndAreNotGivenAgain) {
   EXPECT_TRUE(editor.change(7, door));
   EXPECT_EQ(find(editor.map(), 7)->width, 1.2);
   EXPECT_FALSE(editor.change(9, door));
-  // What was removed and what was there before: the file says the same, but for the wall's id.
+  // A removed artifact that was there before: the file is the same, but for the wall's id.
   EXPECT_NO_THROW(parse_map(to_text(editor.map()), "m"));
 }
 

@@ -105,7 +105,7 @@ TEST(Map, WhatIsWrittenIsReadAgain) {
       EXPECT_NEAR(a.length, b.length, 1e-6);
     }
   }
-  // What a file can hold is kept for good.
+  // Everything in a file is kept.
   EXPECT_EQ(to_text(again), text);
   EXPECT_EQ(parse_map(to_text(again), "m"), again);
   EXPECT_EQ(to_text(parse_map(kManualsExample, "m")),
@@ -184,7 +184,7 @@ TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
   std::remove(path.c_str());
 }
 
-// What README.md says of another type: with its traits it is read, written, drawn and driven
+// Another type, as README.md shows it: with its traits it is read, written, drawn and driven
 // through.
 TEST(ArtifactTraits, AreAllThatMapsAskOfAType) {
   std::set<std::string_view> words;

@@ -9,8 +9,8 @@
 
 namespace saphira::intentions {
 
-/// What an activity has given to a behavior: points that are on the map, and things that move, are
-/// where they are in odom now, for as long as the behavior lasts.
+/// The parameters that an activity has given to a behavior: points that are on the map, and things
+/// that move, are where they are in odom now, for as long as the behavior lasts.
 class BehaviorParameters {
  public:
   BehaviorParameters() = default;

@@ -8,7 +8,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// What third parties may claim at once; more is not heard.
+/// Claims of third parties at once; more are not heard.
 constexpr std::size_t kMostClaims = 1024;
 constexpr std::size_t kMostSet = 4096;
 

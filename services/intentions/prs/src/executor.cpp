@@ -270,7 +270,7 @@ void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
   entry.arguments = std::move(complete);
   entry.placed = false;
   entry.odom.reset();
-  // What is in odom is in the one that its writer could know of.
+  // Places in odom are in the frame that their writer could know of.
   if (odom_ && depends_on_odom(entry, false))
     entry.odom = odom_;
   entry.status.requester = goal.requester;
@@ -294,7 +294,7 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
   Arguments complete;
   const std::string wrong = complaint(goal, code, complete);
   if (!wrong.empty()) {
-    // What is not understood never replaces what is: the goal goes on as it was.
+    // A change that is not understood leaves the goal as it was.
     entry.status.code = code;
     entry.refusal = wrong;
     if (entry.status.state == GoalState::kUnderway)
@@ -391,7 +391,7 @@ void Executor::meet_odom(std::uint64_t odom) {
     for (auto& [id, entry] : entries_) {
       if (open(entry.status) && entry.odom && *entry.odom != odom)
         end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
-      // What an activity remembers of places is in the odom that was: it begins anew.
+      // An activity remembers places in the earlier odom: it begins anew.
       if (open(entry.status) && entry.node != 0 && entry.schema->program) {
         forest_.remove(entry.node);
         entry.node = 0;
@@ -512,7 +512,7 @@ void Executor::obey_estop(const std::string& source) {
   }
 }
 
-/// What an intention does, for people: one of the language says it in the words of its schema.
+/// The work of an intention, for people: one of the language says it in the words of its schema.
 std::string Executor::step_of(const IntentionNode& node) const {
   const Schema* const schema = registry_->find(node.schema);
   if (schema == nullptr || schema->program == nullptr)
@@ -598,7 +598,7 @@ void Executor::take_up(Entry& entry, const World& world) {
   } catch (const ActivityError& error) {
     why = error.what();
   }
-  // What is built in only needs its arguments, which are places and headings.
+  // A built-in only needs its arguments, which are places and headings.
   if (entry.schema->program)
     entry.status.note = "was begun anew at its first step: intentions was restarted, and " + why;
 }
@@ -628,13 +628,13 @@ std::optional<Work> Executor::take_work() {
     return std::nullopt;
   Work work{epoch_, cycle_, *odom_, now_, {}, {}};
   work.beliefs = beliefs_->set_by_activities();
-  // Who has set it keeps that with what it does.
+  // Its setter keeps that with its own progress.
   std::erase_if(work.beliefs,
                 [](const Belief& belief) { return normal(belief.name) == kBehaviorControl; });
   for (const auto& [id, entry] : entries_)
     if (entry.node != 0)
       work.goals.push_back({id, entry.goal.functor, forest_.save(entry.node)});
-  // What waits to be taken up is still what was remembered.
+  // A goal that waits to be taken up is still the remembered one.
   for (const GoalWork& done : remembered_work_.goals) {
     const auto entry = entries_.find(done.id);
     if (!remembered_.contains(done.id) && (entry == entries_.end() || entry->second.before))

@@ -187,7 +187,7 @@ void Forest::suspend(Node& node) {
     return;
   node.suspended = true;
   node.suspended_at = now_;
-  // What was never begun has nothing to put away.
+  // An intention that was never begun has nothing to put away.
   const bool put_away = node.activity != nullptr && node.shown.state != IntentionState::kInit;
   node.shown.state = put_away ? IntentionState::kInterrupted : IntentionState::kSuspended;
   if (node.activity == nullptr || !node.activity->keeps_children())
@@ -270,8 +270,8 @@ Forest::Node* Forest::child_of(const Node& parent, std::string_view label) const
   return nullptr;
 }
 
-/// What has that name among what `top` has begun, the nearest to it first, of those the newest; not
-/// `seeker` itself.
+/// The intention of that name among those that `top` has begun, the nearest to it first, of those
+/// the newest; not `seeker` itself.
 Forest::Node* Forest::named(const Node& top, std::string_view name, const Node& seeker) const {
   std::deque<const Node*> open = {&top};
   while (!open.empty()) {
@@ -350,7 +350,7 @@ void Forest::step(const World& world) {
     sort();
   for (Node* const node : behaviors_)
     watch(*node, world);
-  // What comes to be in the course of the step is not in the order yet; what goes is marked.
+  // New intentions of the step are not in the order yet; ended ones are marked.
   for (Node* const node : order_) {
     if (!node->gone)
       step_one(*node, world);
@@ -394,7 +394,7 @@ void Forest::step_one(Node& node, const World& world) {
   conclude(node, interrupted, world);
 }
 
-/// What a step has made of the intention.
+/// The result of a step of the intention.
 void Forest::conclude(Node& node, bool interrupted, const World& world) {
   if (finished(node.outcome.state)) {
     node.shown.state = node.outcome.state;

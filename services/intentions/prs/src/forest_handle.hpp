@@ -8,7 +8,7 @@
 
 namespace saphira::intentions {
 
-/// What an activity gets hold of: one node for one step.
+/// The handle of an activity: one node for one step.
 class Forest::Handle : public Self {
  public:
   Handle(Forest& forest, Node& node, const World& world)

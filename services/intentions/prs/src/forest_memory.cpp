@@ -12,7 +12,7 @@
 #include "saphira/intentions/forest.hpp"
 #include "saved.hpp"
 
-// What has been done in a tree, over a restart of the service. Activities whose children are their
+// The progress of a tree, over a restart of the service. Activities whose children are their
 // own affair (those built in) begin anew with their arguments, which are places and headings by
 // then.
 namespace saphira::intentions {
@@ -21,7 +21,7 @@ namespace {
 /// Intentions of one goal: of more than these, what has been done is not remembered.
 constexpr std::size_t kMostRemembered = 256;
 
-/// What is remembered of one intention.
+/// The memory of one intention.
 struct SavedNode {
   std::uint32_t id = 0;
   std::uint32_t parent = 0;

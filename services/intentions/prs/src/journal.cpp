@@ -80,7 +80,7 @@ Ending read_ending(LineReader& reader, const Line& line) {
   return ending;
 }
 
-/// What is behind the id.
+/// The rest of the line, behind the id.
 void read_placement(LineReader& reader, Placement& placement) {
   placement.epoch = read_count(reader, "the epoch of acceptance", 10);
   placement.cycle = read_count(reader, "the cycle of acceptance", 10);

@@ -11,7 +11,7 @@
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/value.hpp"
 
-/// What intentions keep over a restart of the service is a value of the language: lists within
+/// Intentions keep a value of the language over a restart of the service: lists within
 /// lists.
 namespace saphira::intentions {
 

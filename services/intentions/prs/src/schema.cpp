@@ -173,7 +173,7 @@ std::string check_arguments(const Schema& schema, const Arguments& arguments, Ar
       return "argument " + quoted(argument->name) + " is given twice";
     Argument taken = *argument;
     taken.name = parameter->name;
-    // Who types 265 for a place means its name.
+    // A number that is typed for a place is its name.
     if (!parameter->any && parameter->kind == ArgumentKind::text &&
         taken.kind == ArgumentKind::number)
       taken = text(parameter->name, plain(taken.number));
@@ -222,7 +222,7 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
     throw ActivityError(schema.name + ": argument " + quoted(others.front().first) + " cannot be " +
                             kind_of(others.front().second),
                         GoalCode::kBadArgument);
-  // What the check cannot see counts as given.
+  // An argument that the check cannot see counts as given.
   Schema rest = schema;
   if (schema.bind) {
     for (const auto& each_fixed : fixed) {

@@ -5,7 +5,7 @@
 
 #include "saphira/intentions/schema.hpp"
 
-/// What the activities that drive have in common.
+/// Common parts of the activities that drive.
 namespace saphira::intentions {
 
 /// Priorities of the behaviors that the functors intend: 0 is the highest (manual 7.3).

@@ -47,7 +47,8 @@ std::vector<std::pair<Reference, double>> closed_ways(const Value& value) {
   return ways;
 }
 
-/// What people warn of, by the belief `hazards`: "water leak at upper corridor; fire at EJ-231".
+/// Hazards that people warn of, by the belief `hazards`: "water leak at upper corridor; fire at
+/// EJ-231".
 struct Hazard {
   std::string text;
   std::vector<std::size_t> regions;
@@ -167,7 +168,7 @@ Value path_of(const World& world, const maps::Route& route, const Value& to) {
   return Value(std::move(path));
 }
 
-/// What is to be done with the beginning of a path, for follow-path to choose by: the name of a
+/// The kind of the first step of a path, for follow-path to choose by: the name of a
 /// schema, or done.
 Value leg_of(const World& world, Values arguments) {
   const Value::List& path = arguments[0].list();

@@ -8,7 +8,7 @@
 #include "saphira/lps/percept.hpp"
 #include "saphira/maps/topology.hpp"
 
-/// What a value of the activity language means on the map, and a place on the map as such a value.
+/// The place on the map that a value of the activity language means, and a place as such a value.
 /// A `function` is named by the ActivityError where it does not mean what it has to.
 namespace saphira::intentions {
 
@@ -25,13 +25,13 @@ const maps::Region& region_of(const World& world, Values arguments, std::size_t 
                               std::string_view function);
 const maps::Link& link_of(const World& world, Values arguments, std::size_t index,
                           std::string_view function);
-/// What is seen under that number; nullptr where it is no more.
+/// The percept of that number; nullptr where it is gone.
 const lps::Percept* percept(const World& world, std::uint64_t id);
 /// Where the argument is: a point is itself; regions and ways out by the map; what is seen in odom.
 Point point_at(const World& world, Values arguments, std::size_t index, std::string_view function);
 /// The same; none where it has no place.
 std::optional<Point> place_of(const World& world, const Value& value);
-/// What a person or an activity means by a place.
+/// The place that a person or an activity means.
 std::optional<maps::Place> place_named(const maps::Topology& map, const Value& value);
 
 Value region_value(const World& world, std::size_t index);

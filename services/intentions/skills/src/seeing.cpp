@@ -28,7 +28,7 @@ double distance(const World& world, const SeenThing& thing) {
   return (thing.pose_in_odom.position() - world.robot.pose_in_odom.position()).norm();
 }
 
-/// What an argument refers to; nullptr where it is nil or not seen any more.
+/// The thing that an argument refers to; nullptr where it is nil or not seen any more.
 const SeenThing* thing_at(const World& world, Values arguments, std::string_view function) {
   if (arguments[0].nil())
     return nullptr;

@@ -13,7 +13,7 @@ namespace saphira::intentions {
 /// that is seen, as a reference, or nil. None where `what` names no such kind.
 std::optional<Value> nearest_seen(const World& world, const std::string& what);
 
-/// What there is to ask about people and colours that a camera sees.
+/// Functions about people and colours that a camera sees.
 void add_seeing(Functions& functions);
 
 }  // namespace saphira::intentions

@@ -130,7 +130,7 @@ class Compiler {
         ++next;
       }
       const Parts options = definition_.parts(form, next, {"unit", "low", "high", "doc"});
-      // What has a number as its default, or a unit or limits, is one.
+      // A parameter with a number as its default, or with a unit or limits, is a number.
       const bool is_number = options.option("unit") != nullptr ||
                              options.option("low") != nullptr ||
                              options.option("high") != nullptr || usual.number() != nullptr;

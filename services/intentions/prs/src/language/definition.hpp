@@ -28,7 +28,8 @@ bool starred(std::string_view name);
 /// ", found ...": the end of a message.
 std::string found(const Form& form);
 
-/// What is being compiled, one (defintention ...): its program, its variables, the mistakes in it.
+/// The definition that is being compiled, one (defintention ...): its program, its variables, the
+/// mistakes in it.
 class Definition {
  public:
   Definition(const Reader& reader, const Functions& functions, std::vector<Diagnostic>& troubles)

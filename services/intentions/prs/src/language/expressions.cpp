@@ -3,7 +3,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// What looks like a function and is about the intention itself, or evaluates only some arguments.
+/// Special forms: they are about the intention itself, or evaluate only some arguments.
 struct Special {
   const char* name;
   Expression::Kind kind;

@@ -80,7 +80,7 @@ void Goals::body(const Form& goals) {
 
 void Goals::check_reached(const std::vector<bool>& completes,
                           const std::vector<const Form*>& places) {
-  // What can be reached, from the first set on.
+  // The goals that can be reached, from the first set on.
   std::vector<bool> reached(places.size(), false);
   std::vector<std::size_t> open = {0};
   while (!open.empty()) {

@@ -126,7 +126,7 @@ class Machine : public Activity {
     bool has_failed = false;
   };
 
-  /// What expressions can ask of this intention, and what actions do through it.
+  /// The queries of expressions about this intention, and the effects of actions through it.
   class View : public Own, public Effects {
    public:
     View(const Machine& machine, Self& self) : machine_(machine), self_(self) {}
@@ -533,7 +533,8 @@ class Machine : public Activity {
     return true;
   }
 
-  /// What the branches have begun and is left goes on as the parent's, and stands where it stands.
+  /// Intentions that the branches have begun and left go on as the parent's, and stand where it
+  /// stands.
   void join(Thread& thread) {
     for (Thread& each : threads_) {
       if (each.owner != thread.id)
@@ -549,7 +550,7 @@ class Machine : public Activity {
     }
   }
 
-  /// What a thread that is over has begun goes on as that of another, with which it ends: one that
+  /// Intentions of a thread that is over go on as those of another, with which they end: one that
   /// is waited for where it stood, or the main thread.
   void bequeath(Thread& dead) {
     if (dead.children.empty())
@@ -628,7 +629,7 @@ class Machine : public Activity {
         failure(thread, code, step.text + " could not be restored" + why, self);
         return true;
       }
-      // What was begun to restore it is not needed any more.
+      // The intentions that were begun to restore it are not needed any more.
       for (Thread& each : threads_) {
         if (each.owner == thread.id && each.restores)
           end(each, self);
@@ -662,7 +663,7 @@ class Machine : public Activity {
     reason_ = reason;
     cut(thread, self);
     const Step& step = program_->steps[thread.at];
-    // What was waited for in vain does not go on beside what comes instead of it.
+    // An intention that was waited for in vain does not go on beside its replacement.
     if (thread.child != 0 && !finished(self.child_state(thread.child)))
       self.remove_child(thread.child);
     thread.child = 0;

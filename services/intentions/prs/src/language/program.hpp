@@ -16,7 +16,7 @@ namespace saphira::intentions {
 
 inline constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
-/// What an intention knows of itself and its children, for expressions.
+/// The knowledge of an intention about itself and its children, for expressions.
 class Own {
  public:
   virtual ~Own() = default;
@@ -66,7 +66,7 @@ struct Scope {
 /// ActivityError where a function cannot do its work.
 Value evaluate(const Expression& expression, Scope& scope);
 
-/// What an INTEND names.
+/// The target of an INTEND.
 struct Intend {
   std::string schema;  ///< as it was written
   std::vector<std::pair<std::string, Expression>> arguments;

@@ -8,7 +8,7 @@
 
 namespace saphira::intentions {
 
-/// What stands in a file of activities: a list or an atom, with where it stands.
+/// An expression in a file of activities: a list or an atom, with its place.
 struct Form {
   enum class Kind { kList, kNumber, kText, kName, kKeyword };
   Kind kind = Kind::kList;
