@@ -8,8 +8,8 @@
 
 namespace saphira::sim {
 
-// The mistake of a start, a person, a leg of her way, a door, a box or a post whose numbers are each
-// valid by themselves; nothing where there is none.
+// The mistake of a start, a person, a leg of her way, a door, a box or a post whose numbers are
+// each valid by themselves; nothing where there is none.
 
 std::optional<std::string> trouble_of_start(const World& world, const Pose& start_in_world);
 std::optional<std::string> trouble_of_person(const World& world, std::size_t person);

@@ -8,6 +8,7 @@ namespace saphira::mcp {
 namespace {
 
 constexpr double kLeave = 30.0;  // [s]
+constexpr double kBroken = 2.0;  // [s] likewise, of one that may have been killed
 constexpr std::size_t kMostClients = 8;
 constexpr const char* kPath = "/mcp";
 constexpr const char* kJson = "application/json";
@@ -92,6 +93,7 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   if (client == nullptr)
     return;
   client->heard = now();
+  client->broken = false;
   const Headers headers{request.version, request.mcp_method, request.mcp_name};
   client->waits[exchange] = false;
   robot_.poll();
@@ -124,8 +126,11 @@ void HttpDoor::tell(const std::string& id, Client& client) {
 
 void HttpDoor::lost(Exchange exchange) {
   for (const auto& [id, client] : clients_)
-    if (client->waits.erase(exchange) > 0)
+    if (client->waits.erase(exchange) > 0) {
       client->session.close(exchange);
+      client->heard = now();
+      client->broken = true;
+    }
 }
 
 void HttpDoor::turn() {
@@ -142,7 +147,7 @@ void HttpDoor::tick() {
     Client& client = *each->second;
     if (!client.waits.empty())
       client.heard = now();
-    if (now() - client.heard < kLeave) {
+    if (now() - client.heard < (client.broken ? kBroken : kLeave)) {
       ++each;
       continue;
     }

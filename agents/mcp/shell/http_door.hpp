@@ -18,7 +18,8 @@ struct HttpDoorOptions {
 };
 
 /// Streamable HTTP: any number of clients up to 8, each with a door of its own. A client that
-/// neither asks nor waits for an answer for 30 s has left, and its goals end.
+/// neither asks nor waits for an answer for 30 s has left, and its goals end; likewise one that
+/// breaks a connection on which it waits, and does not ask again for 2 s.
 class HttpDoor {
  public:
   HttpDoor(bus::Node& node, HttpDoorOptions options);
@@ -35,8 +36,9 @@ class HttpDoor {
           door(node, robot, session, options.who) {}
     Session session;
     Door door;
-    double heard = 0.0;              ///< [s] when it last asked
-    bool is_new = false;             ///< its first answer names its session
+    bool broken = false;  ///< its connection has ended before an answer, since it last asked
+    double heard = 0.0;   ///< [s] when it last asked
+    bool is_new = false;  ///< its first answer names its session
     std::map<Exchange, bool> waits;  ///< requests that are not answered, and whether one streams
   };
 

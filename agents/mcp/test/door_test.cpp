@@ -108,22 +108,26 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
   EXPECT_EQ(system.truth().contacts, 0);
 }
 
-/// What a request of HTTP is answered, until the server closes.
-std::string http(int port, const std::string& head, const std::string& body = {}) {
+int connected(int port) {
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  return fd;
+}
+
+/// The answer to a request of HTTP, until the server closes.
+std::string http(int port, const std::string& head, const std::string& body = {}) {
+  const int fd = connected(port);
+  const std::string text = head + "\r\nHost: localhost\r\nConnection: close\r\nContent-Length: " +
+                           std::to_string(body.size()) + "\r\n\r\n" + body;
+  EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   std::string answer;
-  if (connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
-    const std::string text = head + "\r\nHost: localhost\r\nConnection: close\r\nContent-Length: " +
-                             std::to_string(body.size()) + "\r\n\r\n" + body;
-    EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
-    char buffer[4096];
-    for (ssize_t n = read(fd, buffer, sizeof buffer); n > 0; n = read(fd, buffer, sizeof buffer))
-      answer.append(buffer, static_cast<std::size_t>(n));
-  }
+  char buffer[4096];
+  for (ssize_t n = read(fd, buffer, sizeof buffer); n > 0; n = read(fd, buffer, sizeof buffer))
+    answer.append(buffer, static_cast<std::size_t>(n));
   close(fd);
   return answer;
 }
@@ -165,10 +169,13 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   EXPECT_TRUE(http(port, post, R"({"id":1,"method":"ping"})").starts_with("HTTP/1.1 400"));
 
   // The older era, with a session.
-  const std::string begun = http(
-      port, post, R"({"id":1,"method":"initialize","params":{"protocolVersion":"2025-11-25"}})");
-  EXPECT_EQ(message_of(begun)["result"]["protocolVersion"], "2025-11-25") << begun;
-  const std::string session = post + "\r\nMcp-Session-Id: " + value_of(begun, "mcp-session-id: ");
+  const auto begin = [&] {
+    const std::string begun = http(
+        port, post, R"({"id":1,"method":"initialize","params":{"protocolVersion":"2025-11-25"}})");
+    EXPECT_EQ(message_of(begun)["result"]["protocolVersion"], "2025-11-25") << begun;
+    return post + "\r\nMcp-Session-Id: " + value_of(begun, "mcp-session-id: ");
+  };
+  std::string session = begin();
   EXPECT_TRUE(
       http(port, session, R"({"method":"notifications/initialized"})").starts_with("HTTP/1.1 202"));
   ASSERT_TRUE(wait_until([&] {
@@ -185,27 +192,32 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   };
   EXPECT_EQ(call(go(0.8, 20))["structuredContent"]["state"], "succeeded");
 
-  // The newer one, whose connection is the call: it is closed here after it has begun.
+  // A client that is killed in a call: its connection closes. In the newer era, which has no
+  // session, the connection is the call.
   json modern = go(5.0, 20);
   modern["_meta"] = {{"io.modelcontextprotocol/protocolVersion", "2026-07-28"},
                      {"io.modelcontextprotocol/clientCapabilities", json::object()}};
-  const std::string body = json{{"id", 1}, {"method", "tools/call"}, {"params", modern}}.dump();
-  const std::string head = post +
-                           "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: tools/call\r\n"
-                           "Mcp-Name: go_to\r\nHost: localhost\r\nContent-Length: " +
-                           std::to_string(body.size()) + "\r\n\r\n" + body;
-  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ASSERT_EQ(connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  ASSERT_EQ(write(fd, head.data(), head.size()), static_cast<ssize_t>(head.size()));
-  EXPECT_TRUE(system.wait_moving());
-  close(fd);
-  EXPECT_TRUE(system.wait_still());
+  const auto drive_and_break = [&](const std::string& head, const json& parameters) {
+    const std::string body =
+        json{{"id", 1}, {"method", "tools/call"}, {"params", parameters}}.dump();
+    const std::string text =
+        head + "\r\nHost: localhost\r\nContent-Length: " + std::to_string(body.size()) +
+        "\r\n\r\n" + body;
+    const int fd = connected(port);
+    EXPECT_EQ(write(fd, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    EXPECT_TRUE(system.wait_moving());
+    close(fd);
+    EXPECT_TRUE(system.wait_still());
+  };
+  drive_and_break(post +
+                      "\r\nMCP-Protocol-Version: 2026-07-28\r\nMcp-Method: tools/call\r\n"
+                      "Mcp-Name: go_to",
+                  modern);
+  drive_and_break(session, go(5.0, 20));
+  EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
 
   // A goal that goes on without its call ends with its session.
+  session = begin();
   call(go(5.0, 0));
   EXPECT_TRUE(system.wait_moving());
   std::string end = session;
