@@ -1,10 +1,7 @@
 // saphira-sim: a simulated robot behind a local socket or a TCP port.
 
-#include <pthread.h>
-#include <signal.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/signalfd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,6 +10,7 @@
 #include <iostream>
 
 #include "saphira/base/places.hpp"
+#include "saphira/base/stop_signals.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/host.hpp"
@@ -22,17 +20,6 @@
 namespace {
 
 constexpr int kExitUsage = 2;
-
-// Readable when the program shall end. SIGPIPE is answered where a write fails.
-int stop_on_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  signal(SIGPIPE, SIG_IGN);
-  return signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
-}
 
 saphira::Pose parse_position(const std::string& text) {
   const auto lines = saphira::split_lines(text);
@@ -193,7 +180,7 @@ int main(int argc, char** argv) {
     }
     const auto logger = spdlog::stderr_color_mt("sim");
     options.log = [&logger](const std::string& text) { logger->info("{}", text); };
-    saphira::sim::run(options, stop_on_signals());
+    saphira::sim::run(options, saphira::stop_on_signals());
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "saphira-sim: " << error.what() << '\n';

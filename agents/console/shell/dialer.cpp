@@ -1,6 +1,5 @@
 #include "dialer.hpp"
 
-#include <libwebsockets.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -9,11 +8,13 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
 #include <utility>
 
+#include "loop.hpp"
 #include "splice.hpp"
 
 namespace saphira::console {
@@ -24,7 +25,7 @@ using relay::Splice;
 
 constexpr const char* kDial = "saphira.dial";
 constexpr const char* kCarry = "saphira.carry";
-constexpr std::size_t kMostVisitors = 64;
+constexpr unsigned kMostVisitors = 64;
 constexpr int kLongestPause = 30;  // [s] until it dials again
 
 }  // namespace
@@ -43,10 +44,9 @@ struct Dialer::Impl {
   DialOptions options;
   std::function<void(int)> reached;
   std::function<void(const std::string&)> lost;
-  lws_context* context = nullptr;
+  std::optional<web::Loop> loop;
   lws_vhost* vhost = nullptr;
   int stop = -1;
-  bool stopping = false;
   std::map<std::uint64_t, Visitor> visitors;
   std::uint64_t last = 0;
   Leg dial{this, 0};
@@ -68,20 +68,20 @@ struct Dialer::Impl {
   bool authorize(lws* wsi, void* in, std::size_t size) const;
 
   static Leg& leg_of(lws* wsi) { return *static_cast<Leg*>(lws_get_opaque_user_data(wsi)); }
-  Visitor* visitor_of(lws* wsi);
+  enum class What { handshake, attached, came, writable, gone };
+  static int on_leg(lws* wsi, Splice::Side side, What what, void* in, std::size_t size);
   static int on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
   static int on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                       std::size_t size);
   static int on_server(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                        std::size_t size);
-  static int on_end(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
 };
 
 /// A WebSocket to the relay.
 bool Dialer::Impl::connect(const std::string& path, const char* protocol, Leg& leg) {
   static const lws_retry_bo_t patience{nullptr, 0, 0, 5, 12, 0};
   lws_client_connect_info info{};
-  info.context = context;
+  info.context = loop->context();
   info.vhost = vhost;
   info.address = options.address.host.c_str();
   info.host = info.address;
@@ -107,7 +107,7 @@ void Dialer::Impl::dial_later(const std::string& why) {
   is_lost = true;
   redial.impl = this;
   lws_sul_schedule(
-      context, 0, &redial.list,
+      loop->context(), 0, &redial.list,
       [](lws_sorted_usec_list_t* list) { reinterpret_cast<Timer*>(list)->impl->dial_now(); },
       static_cast<lws_usec_t>(pause) * LWS_US_PER_SEC);
   pause = std::min(kLongestPause, 2 * pause);
@@ -131,7 +131,7 @@ void Dialer::Impl::fetch(const std::string& ticket) {
   Visitor& visitor = visitors[number];
   visitor.leg = {this, number};
   lws_client_connect_info local{};
-  local.context = context;
+  local.context = loop->context();
   local.vhost = vhost;
   local.address = "127.0.0.1";
   local.port = options.port;
@@ -140,8 +140,8 @@ void Dialer::Impl::fetch(const std::string& ticket) {
   local.local_protocol_name = "server";
   local.opaque_user_data = &visitor.leg;
   if (lws_client_connect_via_info(&local) == nullptr) {
-    ended(number, Splice::kFar);
-    return;  // a failure may have ended it already
+    visitors.erase(number);  // its other side is not begun
+    return;
   }
   if (visitors.contains(number) &&
       !connect("/carry/" + options.address.robot + "/" + ticket, kCarry, visitors[number].leg))
@@ -156,11 +156,6 @@ void Dialer::Impl::ended(std::uint64_t number, Splice::Side side) {
   visitor->second.splice.closed(side);
   if (visitor->second.splice.is_over())
     visitors.erase(visitor);
-}
-
-Dialer::Impl::Visitor* Dialer::Impl::visitor_of(lws* wsi) {
-  const auto visitor = visitors.find(leg_of(wsi).visitor);
-  return visitor == visitors.end() ? nullptr : &visitor->second;
 }
 
 bool Dialer::Impl::authorize(lws* wsi, void* in, std::size_t size) const {
@@ -193,32 +188,47 @@ int Dialer::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* /*user*/,
   }
 }
 
+int Dialer::Impl::on_leg(lws* wsi, Splice::Side side, What what, void* in, std::size_t size) {
+  if (lws_get_opaque_user_data(wsi) == nullptr)
+    return 0;
+  Impl& impl = *leg_of(wsi).impl;
+  const auto found = impl.visitors.find(leg_of(wsi).visitor);
+  if (found == impl.visitors.end())
+    return 0;
+  Splice& splice = found->second.splice;
+  switch (what) {
+    case What::handshake:
+      return impl.authorize(wsi, in, size) ? 0 : -1;
+    case What::attached:
+      splice.attach(side, wsi, side == Splice::kNear);
+      return 0;
+    case What::came:
+      splice.came(side, {static_cast<const char*>(in), size});
+      return 0;
+    case What::writable:
+      return splice.write(side);
+    case What::gone:
+      lws_set_opaque_user_data(wsi, nullptr);
+      impl.ended(found->first, side);
+      return 0;
+  }
+  return 0;
+}
+
 int Dialer::Impl::on_carry(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
                            std::size_t size) {
-  Impl* impl = nullptr;
-  Visitor* visitor = nullptr;
-  if (lws_get_opaque_user_data(wsi) != nullptr) {
-    impl = leg_of(wsi).impl;
-    visitor = impl->visitor_of(wsi);
-  }
-  if (visitor == nullptr)
-    return 0;
   switch (reason) {
     case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER:
-      return impl->authorize(wsi, in, size) ? 0 : -1;
+      return on_leg(wsi, Splice::kNear, What::handshake, in, size);
     case LWS_CALLBACK_CLIENT_ESTABLISHED:
-      visitor->splice.attach(Splice::kNear, wsi, true);
-      return 0;
+      return on_leg(wsi, Splice::kNear, What::attached, in, size);
     case LWS_CALLBACK_CLIENT_RECEIVE:
-      visitor->splice.came(Splice::kNear, {static_cast<const char*>(in), size});
-      return 0;
+      return on_leg(wsi, Splice::kNear, What::came, in, size);
     case LWS_CALLBACK_CLIENT_WRITEABLE:
-      return visitor->splice.write(Splice::kNear);
+      return on_leg(wsi, Splice::kNear, What::writable, in, size);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
     case LWS_CALLBACK_CLIENT_CLOSED:
-      lws_set_opaque_user_data(wsi, nullptr);
-      impl->ended(visitor->leg.visitor, Splice::kNear);
-      return 0;
+      return on_leg(wsi, Splice::kNear, What::gone, in, size);
     default:
       return 0;
   }
@@ -226,43 +236,27 @@ int Dialer::Impl::on_carry(lws* wsi, lws_callback_reasons reason, void* /*user*/
 
 int Dialer::Impl::on_server(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* in,
                             std::size_t size) {
-  Impl* impl = nullptr;
-  Visitor* visitor = nullptr;
-  if (lws_get_opaque_user_data(wsi) != nullptr) {
-    impl = leg_of(wsi).impl;
-    visitor = impl->visitor_of(wsi);
-  }
-  if (visitor == nullptr)
-    return 0;
   switch (reason) {
     case LWS_CALLBACK_RAW_CONNECTED:
-      visitor->splice.attach(Splice::kFar, wsi, false);
-      return 0;
+      return on_leg(wsi, Splice::kFar, What::attached, in, size);
     case LWS_CALLBACK_RAW_RX:
-      visitor->splice.came(Splice::kFar, {static_cast<const char*>(in), size});
-      return 0;
+      return on_leg(wsi, Splice::kFar, What::came, in, size);
     case LWS_CALLBACK_RAW_WRITEABLE:
-      return visitor->splice.write(Splice::kFar);
+      return on_leg(wsi, Splice::kFar, What::writable, in, size);
     case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
     case LWS_CALLBACK_RAW_CLOSE:
-      lws_set_opaque_user_data(wsi, nullptr);
-      impl->ended(visitor->leg.visitor, Splice::kFar);
-      return 0;
+      return on_leg(wsi, Splice::kFar, What::gone, in, size);
     default:
       return 0;
   }
 }
 
-int Dialer::Impl::on_end(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
-                         std::size_t /*size*/) {
-  if (reason == LWS_CALLBACK_RAW_RX_FILE)
-    static_cast<Impl*>(lws_context_user(lws_get_context(wsi)))->stopping = true;
-  return 0;
-}
-
 void Dialer::Impl::run() {
   dial_now();
-  while (!stopping && lws_service(context, 0) >= 0) {
+  try {
+    loop->run(vhost, stop);
+  } catch (const std::exception& error) {
+    lost(error.what());
   }
 }
 
@@ -276,31 +270,21 @@ Dialer::Dialer(DialOptions options, std::function<void(int)> reached,
       {{kDial, Impl::on_dial, 0, 4096, 0, nullptr, 0},
        {kCarry, Impl::on_carry, 0, 16384, 0, nullptr, 0},
        {"server", Impl::on_server, 0, 16384, 0, nullptr, 0},
-       {"ending", Impl::on_end, 0, 0, 0, nullptr, 0},
+       web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  impl_->loop.emplace(impl_.get(), 3 * kMostVisitors, true);
   lws_context_creation_info info{};
-  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-  info.user = impl_.get();
-  info.gid = static_cast<gid_t>(-1);
-  info.uid = static_cast<uid_t>(-1);
-  impl_->context = lws_create_context(&info);
-  if (impl_->context == nullptr)
-    throw std::runtime_error("the dialer could not be made");
+  info.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
   info.port = CONTEXT_PORT_NO_LISTEN;
   info.protocols = protocols.data();
   info.vhost_name = "dialer";
   if (!impl_->options.authority.empty())
     info.client_ssl_ca_filepath = impl_->options.authority.c_str();
-  impl_->vhost = lws_create_vhost(impl_->context, &info);
-  impl_->stop = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  lws_sock_file_fd_type file{};
-  file.filefd = dup(impl_->stop);
-  if (impl_->vhost == nullptr || lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC,
-                                                            file, "ending", nullptr) == nullptr) {
-    lws_context_destroy(impl_->context);
-    throw std::runtime_error("the dialer could not be made: " + impl_->options.authority +
+  impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);
+  if (impl_->vhost == nullptr)
+    throw std::runtime_error("the relay cannot be dialled: " + impl_->options.authority +
                              " may be no certificate");
-  }
+  impl_->stop = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   impl_->thread = std::thread([this] { impl_->run(); });
 }
 
@@ -310,7 +294,7 @@ Dialer::~Dialer() {
     impl_->thread.join();
   else
     impl_->thread.detach();
-  lws_context_destroy(impl_->context);
+  impl_->loop.reset();  // its callbacks need the rest
   close(impl_->stop);
 }
 

@@ -8,8 +8,8 @@
 
 namespace saphira::console {
 
-/// From this address of its own the dialer connects to the server: who comes from there is no
-/// neighbour on this machine.
+/// The dialer connects to the server from this address of its own: a connection from there comes
+/// from elsewhere, and not from this machine.
 constexpr const char* kRelayed = "127.0.0.77";
 
 struct DialOptions {
@@ -20,13 +20,12 @@ struct DialOptions {
   int port = 0;   ///< of our server
 };
 
-/// Keeps a connection to a relay, and for everybody who comes to the relay opens one to our server.
-/// In a thread of its own. Where the relay is lost it dials again, after 1 s, then later, 30 s at
-/// most.
+/// Keeps a connection to a relay, and opens one to our server for each visitor of the relay. In a
+/// thread of its own. Dials again after a loss: after 1 s, then later, 30 s at most.
 class Dialer {
  public:
-  /// Both are called from the dialer's thread. reached: the relay is there, and this is the port of
-  /// the robot there. lost: what is wrong, once until it is reached again.
+  /// Both are called from the dialer's thread. reached: with the robot's port at the relay. lost:
+  /// with the reason, once for each loss.
   Dialer(DialOptions options, std::function<void(int port)> reached,
          std::function<void(const std::string& why)> lost);
   ~Dialer();

@@ -1,8 +1,6 @@
 #include "server.hpp"
 
-#include <libwebsockets.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,10 +10,13 @@
 #include <utility>
 
 #include "dialer.hpp"
+#include "loop.hpp"
 
 namespace saphira::console {
 
 namespace {
+
+using web::header;
 
 constexpr std::size_t kMostConnections = 96;  // WebSockets; a page has two, one that drives four
 constexpr unsigned kMostDescriptors = 192;
@@ -30,12 +31,6 @@ constexpr const char* kSecurityPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
     "img-src 'self' data:; manifest-src 'self'; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";
-
-std::string header(lws* wsi, lws_token_indexes which) {
-  std::array<char, 300> text{};
-  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
-  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
-}
 
 Caller caller_of(lws* wsi) {
   std::array<char, 64> peer{};
@@ -71,19 +66,17 @@ struct Server::Impl {
   AccessSettings access;
   std::vector<PageFile> files;
   Events events;
-  lws_context* context = nullptr;
+  std::optional<web::Loop> loop;
   lws_vhost* vhost = nullptr;
   std::map<Connection, Open> open;
   Connection last = 0;
-  bool stopping = false;
   bool soon = false;
 
-  // The timers of libwebsockets, with the way back to us.
+  // A timer of libwebsockets, with the way back to us.
   struct Timer {
     lws_sorted_usec_list_t list{};
     Impl* impl = nullptr;
   };
-  Timer ticker;
   Timer together;
 
   int answer_http(lws* wsi, Http& http, const char* path);
@@ -95,14 +88,10 @@ struct Server::Impl {
   void closed(const Socket& socket);
 
   static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
-  void schedule_tick();
   void want_all();
 
   static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
   static int socket(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
-  static int descriptor(lws* wsi, lws_callback_reasons reason, void* user, void* in,
-                        std::size_t size);
-  static int ending(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
   static Impl& of(lws_sorted_usec_list_t* list) { return *reinterpret_cast<Timer*>(list)->impl; }
 };
 
@@ -202,18 +191,6 @@ void Server::Impl::closed(const Socket& socket) {
     events.closed(socket.id);
 }
 
-void Server::Impl::schedule_tick() {
-  lws_sul_schedule(
-      context, 0, &ticker.list,
-      [](lws_sorted_usec_list_t* list) {
-        Impl& impl = Impl::of(list);
-        impl.events.tick();
-        impl.want_all();
-        impl.schedule_tick();
-      },
-      kTick);
-}
-
 void Server::Impl::want_all() {
   for (const auto& [id, connection] : open)
     lws_callback_on_writable(connection.wsi);
@@ -252,51 +229,27 @@ int Server::Impl::socket(lws* wsi, lws_callback_reasons reason, void* user, void
   }
 }
 
-int Server::Impl::descriptor(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
-                             std::size_t /*size*/) {
-  if (reason == LWS_CALLBACK_RAW_RX_FILE)
-    of(wsi).events.readable();
-  return 0;
-}
-
-int Server::Impl::ending(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
-                         std::size_t /*size*/) {
-  if (reason == LWS_CALLBACK_RAW_RX_FILE)
-    of(wsi).stopping = true;
-  return 0;
-}
-
 Server::Server(const ServerOptions& options, const AccessSettings& access,
                std::vector<PageFile> files, Events events)
     : impl_(std::make_unique<Impl>()) {
   impl_->access = access;
   impl_->files = std::move(files);
   impl_->events = std::move(events);
-  lws_set_log_level(0, nullptr);  // what goes wrong is told by us
-
-  static const std::array<lws_protocols, 7> protocols{
+  static const std::array<lws_protocols, 6> protocols{
       {{"http", Impl::http, sizeof(Impl::Http), 0, 0, nullptr, 0},
        {kTelemetry, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
        {kCommands, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
        {kSimulator, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
-       {"descriptor", Impl::descriptor, 0, 0, 0, nullptr, 0},
-       {"ending", Impl::ending, 0, 0, 0, nullptr, 0},
+       web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
   // A browser that sleeps or is cut off is let go after half a minute.
   static const lws_retry_bo_t patience{nullptr, 0, 0, 10, 30, 0};
 
+  const bool encrypts = !options.certificate.empty();
+  impl_->loop.emplace(impl_.get(), kMostDescriptors, encrypts);
   lws_context_creation_info info{};
-  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
-  info.fd_limit_per_thread = kMostDescriptors;
-  info.user = impl_.get();
-  info.gid = static_cast<gid_t>(-1);
-  info.uid = static_cast<uid_t>(-1);
-  if (!options.certificate.empty())
-    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-  impl_->context = lws_create_context(&info);
-  if (impl_->context == nullptr)
-    throw std::runtime_error("the web server could not be made");
-
+  if (encrypts)
+    info.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
   info.protocols = protocols.data();
   info.iface = options.address == "0.0.0.0" ? nullptr : options.address.c_str();
   info.timeout_secs = 5;  // for who connects and says nothing whole
@@ -304,33 +257,30 @@ Server::Server(const ServerOptions& options, const AccessSettings& access,
   info.retry_and_idle_policy = &patience;
   info.vhost_name = "console";
   info.alpn = "http/1.1";  // a browser would choose HTTP/2, which has other headers and WebSockets
-  if (!options.certificate.empty()) {
+  if (encrypts) {
     info.ssl_cert_filepath = options.certificate.c_str();
     info.ssl_private_key_filepath = options.certificate_key.c_str();
   }
   const int count = options.port == 0 ? 1 : std::max(1, options.ports);
   const auto listen = [&](int port) {
     info.port = port;
-    impl_->vhost = lws_create_vhost(impl_->context, &info);
+    impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);
   };
   if (options.before > options.port && options.before < options.port + count)
     listen(options.before);
   for (int i = 0; i < count && impl_->vhost == nullptr; ++i)
     listen(options.port + i);
-  if (impl_->vhost == nullptr) {
-    lws_context_destroy(impl_->context);
+  if (impl_->vhost == nullptr)
     throw std::runtime_error(
         "cannot listen on " + options.address + " port " + std::to_string(options.port) +
         (count > 1 ? " or the " + std::to_string(count - 1) + " after it" : "") +
         (options.certificate.empty()
              ? ": another program has it, or it is no address of this machine"
              : ": another program has it, or certificate and key do not fit"));
-  }
 }
 
 Server::~Server() {
-  if (impl_->context != nullptr)
-    lws_context_destroy(impl_->context);
+  impl_->loop.reset();  // its callbacks need the rest
 }
 
 int Server::port() const {
@@ -338,11 +288,7 @@ int Server::port() const {
 }
 
 void Server::watch(int fd) {
-  lws_sock_file_fd_type file{};
-  file.filefd = dup(fd);  // libwebsockets closes it at the end
-  if (lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC, file, "descriptor",
-                                 nullptr) == nullptr)
-    throw std::runtime_error("the web server cannot wait for the bus");
+  impl_->loop->watch(impl_->vhost, fd, [this] { impl_->events.readable(); });
 }
 
 void Server::want(Connection connection) {
@@ -356,7 +302,7 @@ void Server::want_all_soon() {
   impl_->soon = true;
   impl_->together.impl = impl_.get();
   lws_sul_schedule(
-      impl_->context, 0, &impl_->together.list,
+      impl_->loop->context(), 0, &impl_->together.list,
       [](lws_sorted_usec_list_t* list) {
         Impl& impl = Impl::of(list);
         impl.soon = false;
@@ -371,16 +317,11 @@ void Server::close(Connection connection) {
 }
 
 void Server::run(int stop) {
-  lws_sock_file_fd_type file{};
-  file.filefd = dup(stop);
-  if (lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC, file, "ending", nullptr) ==
-      nullptr)
-    throw std::runtime_error("the web server cannot wait for its end");
-  impl_->ticker.impl = impl_.get();
-  impl_->schedule_tick();
-  while (!impl_->stopping)
-    if (lws_service(impl_->context, 0) < 0)
-      throw std::runtime_error("the web server has failed");
+  impl_->loop->every(kTick, [this] {
+    impl_->events.tick();
+    impl_->want_all();
+  });
+  impl_->loop->run(impl_->vhost, stop);
 }
 
 }  // namespace saphira::console

@@ -67,7 +67,7 @@ Json json_of(const v1::Argument& argument) {
   return nullptr;
 }
 
-/// What an agent has answered. Several results of one name are a list.
+/// The answer of an agent. Several results of one name are a list.
 Result result_of(const v1::Answer& answer) {
   Json value = Json::object();
   for (const v1::Argument& result : answer.results()) {
@@ -97,7 +97,7 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
   session_.set_tools(robot_.tools());
 }
 
-/// What the robot says, and what agents answer.
+/// Takes sentences of the robot and answers of agents.
 void Door::hear() {
   goals_.poll();
   for (const auto& sample : said_reader_.take())
@@ -188,7 +188,7 @@ void Door::say(const Call& call) {
                            .until = Clock::now() + seconds_of(kReply)};
 }
 
-/// Asks whichever agent can. A parameter that is not given is what the answer is to say.
+/// Asks whichever agent can. The answer fills the parameters that are not given.
 void Door::request(const Call& call, const v1::Capability& capability) {
   v1::Request request;
   request.functor(capability.functor());

@@ -15,16 +15,15 @@ namespace saphira::mcp {
 
 constexpr double kWait = 20.0;  ///< [s] that a call waits for the end of its goal, at most
 
-/// The robot as all clients of this program see it: what is on the bus, and the tools that come of
-/// it. For one thread.
+/// The robot as all clients of this program see it, and the tools that it offers. For one thread.
 class Robot {
  public:
   explicit Robot(bus::Node& node);
 
-  /// Takes what has come on the bus.
+  /// Takes the newest samples.
   void poll();
   const std::vector<Tool>& tools() const { return tools_; }
-  /// What the tool of this name asks for; null: it is none of an activity, of a capability.
+  /// The activity or capability behind the tool of this name; null: another kind of tool.
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
   const cli::Mind& mind() const { return mind_; }
@@ -53,7 +52,7 @@ class Door {
  public:
   Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
 
-  /// Takes what has come on the bus and from the client. Call after each wait and Robot::poll, ten
+  /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, ten
   /// times a second at least.
   void turn();
   /// Withdraws every goal of this client.

@@ -1,14 +1,14 @@
 #include "http.hpp"
 
-#include <libwebsockets.h>
-#include <unistd.h>
-
 #include <array>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
+
+#include "loop.hpp"
 
 namespace saphira::mcp {
 
@@ -21,14 +21,10 @@ constexpr std::size_t kLongestHeader = 1024;
 constexpr std::size_t kLongestQueue = 1024 * 1024;  // of a client that does not read
 constexpr int kUnauthorized = 401;
 
-std::string header(lws* wsi, lws_token_indexes which) {
-  std::array<char, kLongestHeader> text{};
-  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
-  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
-}
+using web::header;
 
 /// Without blanks round it. Text that is no ASCII comes as =?base64?...?=.
-std::string header(lws* wsi, const char* name) {
+std::string custom_header(lws* wsi, const char* name) {
   std::array<char, kLongestHeader> text{};
   if (lws_hdr_custom_copy(wsi, text.data(), static_cast<int>(text.size()), name,
                           static_cast<int>(std::strlen(name))) <= 0)
@@ -70,15 +66,10 @@ struct HttpServer::Impl {
   };
 
   Events events;
-  lws_context* context = nullptr;
+  std::optional<web::Loop> loop;
   lws_vhost* vhost = nullptr;
   std::map<Exchange, Open> open;
   Exchange last = 0;
-  bool stopping = false;
-  struct Timer {
-    lws_sorted_usec_list_t list{};
-    Impl* impl = nullptr;
-  } ticker;
 
   int begin(lws* wsi, Connection& connection, const char* path);
   int take(const Connection& connection, const char* data, std::size_t size);
@@ -88,13 +79,9 @@ struct HttpServer::Impl {
   static bool send_headers(lws* wsi, const Open& answer);
   void closed(Connection& connection);
   void tick();
-  void schedule_tick();
 
   static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
   static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
-  static int descriptor(lws* wsi, lws_callback_reasons reason, void* user, void* in,
-                        std::size_t size);
-  static int ending(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
 };
 
 /// The headers of a request have come.
@@ -110,10 +97,10 @@ int HttpServer::Impl::begin(lws* wsi, Connection& connection, const char* path) 
                                                                          : "GET";
   request.caller = {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN), true};
   request.authorization = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
-  request.session = header(wsi, "mcp-session-id:");
-  request.version = header(wsi, "mcp-protocol-version:");
-  request.mcp_method = header(wsi, "mcp-method:");
-  request.mcp_name = header(wsi, "mcp-name:");
+  request.session = custom_header(wsi, "mcp-session-id:");
+  request.version = custom_header(wsi, "mcp-protocol-version:");
+  request.mcp_method = custom_header(wsi, "mcp-method:");
+  request.mcp_name = custom_header(wsi, "mcp-name:");
   const bool has_body = request.method == "POST" &&
                         header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) != "0" &&
                         lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0;
@@ -230,17 +217,6 @@ void HttpServer::Impl::tick() {
   }
 }
 
-void HttpServer::Impl::schedule_tick() {
-  lws_sul_schedule(
-      context, 0, &ticker.list,
-      [](lws_sorted_usec_list_t* list) {
-        Impl& impl = *reinterpret_cast<Timer*>(list)->impl;
-        impl.tick();
-        impl.schedule_tick();
-      },
-      kTick);
-}
-
 int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                            std::size_t size) {
   auto* const connection = static_cast<Connection*>(user);
@@ -262,53 +238,28 @@ int HttpServer::Impl::http(lws* wsi, lws_callback_reasons reason, void* user, vo
   }
 }
 
-int HttpServer::Impl::descriptor(lws* wsi, lws_callback_reasons reason, void* /*user*/,
-                                 void* /*in*/, std::size_t /*size*/) {
-  if (reason == LWS_CALLBACK_RAW_RX_FILE)
-    of(wsi).events.readable();
-  return 0;
-}
-
-int HttpServer::Impl::ending(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
-                             std::size_t /*size*/) {
-  if (reason == LWS_CALLBACK_RAW_RX_FILE)
-    of(wsi).stopping = true;
-  return 0;
-}
-
 HttpServer::HttpServer(int port, Events events) : impl_(std::make_unique<Impl>()) {
   impl_->events = std::move(events);
-  lws_set_log_level(0, nullptr);
-  static const std::array<lws_protocols, 4> protocols{
+  static const std::array<lws_protocols, 3> protocols{
       {{"http", Impl::http, sizeof(Impl::Connection), 0, 0, nullptr, 0},
-       {"descriptor", Impl::descriptor, 0, 0, 0, nullptr, 0},
-       {"ending", Impl::ending, 0, 0, 0, nullptr, 0},
+       web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
+  impl_->loop.emplace(impl_.get(), kMostDescriptors, false);
   lws_context_creation_info info{};
-  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
-  info.fd_limit_per_thread = kMostDescriptors;
-  info.user = impl_.get();
-  info.gid = static_cast<gid_t>(-1);
-  info.uid = static_cast<uid_t>(-1);
-  impl_->context = lws_create_context(&info);
-  if (impl_->context == nullptr)
-    throw std::runtime_error("the web server could not be made");
   info.protocols = protocols.data();
   info.iface = "127.0.0.1";
   info.port = port;
   info.timeout_secs = 5;  // for who connects and says nothing whole
   info.keepalive_timeout = 30;
   info.vhost_name = "mcp";
-  impl_->vhost = lws_create_vhost(impl_->context, &info);
-  if (impl_->vhost == nullptr) {
-    lws_context_destroy(impl_->context);
+  impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);
+  if (impl_->vhost == nullptr)
     throw std::runtime_error("cannot listen on 127.0.0.1 port " + std::to_string(port) +
                              ": another program has it");
-  }
 }
 
 HttpServer::~HttpServer() {
-  lws_context_destroy(impl_->context);
+  impl_->loop.reset();  // its callbacks need the rest
 }
 
 int HttpServer::port() const {
@@ -316,11 +267,7 @@ int HttpServer::port() const {
 }
 
 void HttpServer::watch(int fd) {
-  lws_sock_file_fd_type file{};
-  file.filefd = dup(fd);  // libwebsockets closes it at the end
-  if (lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC, file, "descriptor",
-                                 nullptr) == nullptr)
-    throw std::runtime_error("the web server cannot wait for the bus");
+  impl_->loop->watch(impl_->vhost, fd, [this] { impl_->events.readable(); });
 }
 
 void HttpServer::answer(Exchange exchange, int status, const std::string& type, std::string body,
@@ -354,16 +301,8 @@ void HttpServer::event(Exchange exchange, const std::string& message, bool last)
 }
 
 void HttpServer::run(int stop) {
-  lws_sock_file_fd_type file{};
-  file.filefd = dup(stop);
-  if (lws_adopt_descriptor_vhost(impl_->vhost, LWS_ADOPT_RAW_FILE_DESC, file, "ending", nullptr) ==
-      nullptr)
-    throw std::runtime_error("the web server cannot wait for its end");
-  impl_->ticker.impl = impl_.get();
-  impl_->schedule_tick();
-  while (!impl_->stopping)
-    if (lws_service(impl_->context, 0) < 0)
-      throw std::runtime_error("the web server has failed");
+  impl_->loop->every(kTick, [this] { impl_->tick(); });
+  impl_->loop->run(impl_->vhost, stop);
 }
 
 }  // namespace saphira::mcp

@@ -102,6 +102,19 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
   return json;
 }
 
+/// The input of a tool that takes these parameters.
+template <class Parameters>
+Json input_of(const Parameters& parameters) {
+  Json properties;
+  std::vector<std::string> required;
+  for (const auto& parameter : parameters) {
+    properties[parameter.name()] = schema_of(parameter);
+    if (parameter.required())
+      required.push_back(parameter.name());
+  }
+  return object(std::move(properties), required);
+}
+
 /// The tools that are always there.
 std::vector<Tool> fixed_tools() {
   return {{"robot_status", "Who drives the robot, what is underway, what is missing",
@@ -167,17 +180,11 @@ void Robot::make_tools() {
     const std::string name = tool_name(schema.name());
     if (!is_new(name))
       continue;
-    Json properties;
-    std::vector<std::string> required;
-    for (const v1::ActivityParameter& parameter : schema.parameters()) {
-      properties[parameter.name()] = schema_of(parameter);
-      if (parameter.required())
-        required.push_back(parameter.name());
-    }
-    properties["wait_s"] = wait_of(kWait);
+    Json input = input_of(schema.parameters());
+    input["properties"]["wait_s"] = wait_of(kWait);
     tools_.push_back({name,
                       schema.summary().empty() ? "The activity " + schema.name() : schema.summary(),
-                      object(std::move(properties), required)});
+                      std::move(input)});
     activities_[name] = schema;
   }
   for (const auto& [id, agent] : agents_)
@@ -185,17 +192,10 @@ void Robot::make_tools() {
       const std::string name = tool_name(capability.functor());
       if (!is_new(name))
         continue;
-      Json properties;
-      std::vector<std::string> required;
-      for (const v1::CapabilityParameter& parameter : capability.parameters()) {
-        properties[parameter.name()] = schema_of(parameter);
-        if (parameter.required())
-          required.push_back(parameter.name());
-      }
       tools_.push_back({name,
                         capability.summary().substr(0, kLongestText) + " (agent " +
                             agent.name().substr(0, kLongestText) + ")",
-                        object(std::move(properties), required), !capability.acts()});
+                        input_of(capability.parameters()), !capability.acts()});
       capabilities_[name] = capability;
     }
 }

@@ -1,7 +1,4 @@
 // saphira-relay: lets a robot that has no reachable address be watched and driven. README.md.
-#include <pthread.h>
-#include <signal.h>
-#include <sys/signalfd.h>
 #include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
@@ -11,21 +8,11 @@
 #include <stdexcept>
 
 #include "relay.hpp"
+#include "saphira/base/stop_signals.hpp"
 
 namespace {
 
 using namespace saphira;
-
-/// Readable when the program shall end.
-int stop_on_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  signal(SIGPIPE, SIG_IGN);
-  return signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
-}
 
 std::vector<relay::Robot> read_robots(const std::string& file) {
   std::ifstream in(file);

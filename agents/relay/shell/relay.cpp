@@ -1,17 +1,17 @@
 #include "relay.hpp"
 
-#include <libwebsockets.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/random.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
+#include "loop.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "splice.hpp"
 
@@ -25,11 +25,7 @@ constexpr const char* kDial = "saphira.dial";
 constexpr const char* kCarry = "saphira.carry";
 constexpr std::string_view kBearer = "Bearer ";
 
-std::string header(lws* wsi, lws_token_indexes which) {
-  std::array<char, 300> text{};
-  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
-  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
-}
+using web::header;
 
 /// Nobody can guess it.
 std::string new_ticket() {
@@ -64,8 +60,8 @@ struct Relay::Impl {
 
   /// The record that libwebsockets keeps for each connection; it begins as zeros.
   struct Leg {
-    Visitor visitor;  ///< whom it carries; 0: nobody
-    const Robot* dialled;
+    Visitor visitor;       ///< whom it carries; 0: nobody
+    const Robot* dialled;  ///< whose gateway it is; null: none
   };
   /// A gateway that has dialled in.
   struct Gateway {
@@ -76,17 +72,12 @@ struct Relay::Impl {
   explicit Impl(std::vector<Robot> robots) : rendezvous(std::move(robots)) {}
 
   Rendezvous rendezvous;
-  lws_context* context = nullptr;
+  std::optional<web::Loop> loop;
   lws_vhost* dial = nullptr;
   std::map<const lws_vhost*, const Robot*> doors;
   std::map<std::string, Gateway> gateways;  ///< by robot
   std::map<Visitor, Splice> splices;        ///< near: the visitor, far: the gateway
   Visitor last = 0;
-  bool stopping = false;
-  struct Timer {
-    lws_sorted_usec_list_t list{};
-    Impl* impl = nullptr;
-  } ticker;
 
   static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
   const Robot* robot_of(const std::string& name) const;
@@ -100,14 +91,12 @@ struct Relay::Impl {
   void came(const Leg& leg, Splice::Side side, std::string_view bytes);
   void left(const Leg& leg, Splice::Side side);
   void tick();
-  void schedule_tick();
 
   static int on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
   static int on_carry(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                       std::size_t size);
   static int on_visitor(lws* wsi, lws_callback_reasons reason, void* user, void* in,
                         std::size_t size);
-  static int on_end(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
 };
 
 const Robot* Relay::Impl::robot_of(const std::string& name) const {
@@ -174,15 +163,15 @@ int Relay::Impl::arrived(lws* wsi, Leg& leg) {
   const auto gateway = door == doors.end() ? gateways.end() : gateways.find(door->second->name);
   if (gateway == gateways.end())
     return -1;  // nobody has dialled in
-  const auto ticket =
-      rendezvous.arrive(door->second->name, last + 1, new_ticket(), BootClock::seconds());
-  if (!ticket)
+  const std::string ticket = new_ticket();
+  if (gateway->second.out.size() > Rendezvous::kMost ||
+      !rendezvous.arrive(door->second->name, last + 1, ticket, BootClock::seconds()))
     return -1;
   leg.visitor = ++last;
   const int one = 1;
   setsockopt(lws_get_socket_fd(wsi), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
   splices[leg.visitor].attach(Splice::kNear, wsi, false);
-  gateway->second.out.push_back("fetch " + *ticket);
+  gateway->second.out.push_back("fetch " + ticket);
   lws_callback_on_writable(gateway->second.wsi);
   return 0;
 }
@@ -226,17 +215,6 @@ void Relay::Impl::tick() {
   for (const Visitor visitor : rendezvous.expire(BootClock::seconds()))
     if (const auto splice = splices.find(visitor); splice != splices.end())
       splice->second.close();
-}
-
-void Relay::Impl::schedule_tick() {
-  lws_sul_schedule(
-      context, 0, &ticker.list,
-      [](lws_sorted_usec_list_t* list) {
-        Impl& impl = *reinterpret_cast<Timer*>(list)->impl;
-        impl.tick();
-        impl.schedule_tick();
-      },
-      kTick);
 }
 
 int Relay::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void* in,
@@ -304,20 +282,12 @@ int Relay::Impl::on_visitor(lws* wsi, lws_callback_reasons reason, void* user, v
   }
 }
 
-int Relay::Impl::on_end(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
-                        std::size_t /*size*/) {
-  if (reason == LWS_CALLBACK_RAW_RX_FILE)
-    of(wsi).stopping = true;
-  return 0;
-}
-
 Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
     : impl_(std::make_unique<Impl>(std::move(robots))) {
-  lws_set_log_level(0, nullptr);
   static const std::array<lws_protocols, 4> dial_protocols{
       {{kDial, Impl::on_dial, sizeof(Impl::Leg), 4096, 0, nullptr, 0},
        {kCarry, Impl::on_carry, sizeof(Impl::Leg), 16384, 0, nullptr, 0},
-       {"ending", Impl::on_end, 0, 0, 0, nullptr, 0},
+       web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
   static const std::array<lws_protocols, 2> door_protocols{
       {{"visitor", Impl::on_visitor, sizeof(Impl::Leg), 16384, 0, nullptr, 0},
@@ -325,29 +295,21 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
   // A gateway that does not answer is forgotten: it dials in again.
   static const lws_retry_bo_t patience{nullptr, 0, 0, 5, 12, 0};
 
+  const bool encrypts = !options.certificate.empty();
+  impl_->loop.emplace(impl_.get(), kMostDescriptors, encrypts);
   lws_context_creation_info info{};
-  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
-  if (!options.certificate.empty())
-    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
-  info.fd_limit_per_thread = kMostDescriptors;
-  info.user = impl_.get();
-  info.gid = static_cast<gid_t>(-1);
-  info.uid = static_cast<uid_t>(-1);
-  impl_->context = lws_create_context(&info);
-  if (impl_->context == nullptr)
-    throw std::runtime_error("the relay could not be made");
+  if (encrypts)
+    info.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
   const auto listen = [&](int port, const char* name, const std::string& address) {
     info.iface = address == "0.0.0.0" ? nullptr : address.c_str();
     info.port = port;
     info.vhost_name = name;
-    lws_vhost* const vhost = lws_create_vhost(impl_->context, &info);
-    if (vhost == nullptr) {
-      lws_context_destroy(impl_->context);
+    lws_vhost* const vhost = lws_create_vhost(impl_->loop->context(), &info);
+    if (vhost == nullptr)
       throw std::runtime_error("cannot listen on " + address + " port " + std::to_string(port) +
                                " (" + name +
                                "): another program has it, it is no address of this machine, or "
                                "certificate and key do not fit");
-    }
     return vhost;
   };
   // The doors first: they have no certificate, since what comes by them is not for us to read.
@@ -363,30 +325,21 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
   info.protocols = dial_protocols.data();
   info.timeout_secs = 5;
   info.retry_and_idle_policy = &patience;
-  if (!options.certificate.empty()) {
+  if (encrypts) {
     info.ssl_cert_filepath = options.certificate.c_str();
     info.ssl_private_key_filepath = options.certificate_key.c_str();
   }
   // Without a certificate the tokens would cross the network in the clear.
-  impl_->dial = listen(options.dial_port, "dial",
-                       options.certificate.empty() ? "127.0.0.1" : options.address);
+  impl_->dial = listen(options.dial_port, "dial", encrypts ? options.address : "127.0.0.1");
 }
 
 Relay::~Relay() {
-  lws_context_destroy(impl_->context);
+  impl_->loop.reset();  // its callbacks need the rest
 }
 
 void Relay::run(int stop) {
-  lws_sock_file_fd_type file{};
-  file.filefd = dup(stop);  // libwebsockets closes it at the end
-  if (lws_adopt_descriptor_vhost(impl_->dial, LWS_ADOPT_RAW_FILE_DESC, file, "ending", nullptr) ==
-      nullptr)
-    throw std::runtime_error("the relay cannot wait for its end");
-  impl_->ticker.impl = impl_.get();
-  impl_->schedule_tick();
-  while (!impl_->stopping)
-    if (lws_service(impl_->context, 0) < 0)
-      throw std::runtime_error("the relay has failed");
+  impl_->loop->every(kTick, [this] { impl_->tick(); });
+  impl_->loop->run(impl_->dial, stop);
 }
 
 }  // namespace saphira::relay

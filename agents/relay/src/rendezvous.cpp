@@ -106,14 +106,14 @@ bool Rendezvous::knows(std::string_view robot, std::string_view token) const {
   return known;
 }
 
-std::optional<std::string> Rendezvous::arrive(const std::string& robot, Visitor visitor,
-                                              const std::string& ticket, double now) {
+bool Rendezvous::arrive(const std::string& robot, Visitor visitor, const std::string& ticket,
+                        double now) {
   const auto there = std::count_if(guests_.begin(), guests_.end(),
                                    [&](const auto& each) { return each.second.robot == robot; });
   if (static_cast<std::size_t>(there) >= kMost)
-    return std::nullopt;
+    return false;
   guests_[visitor] = {robot, ticket, now, true};
-  return ticket;
+  return true;
 }
 
 std::optional<Rendezvous::Visitor> Rendezvous::fetch(const std::string& robot,

@@ -2,7 +2,7 @@
 // the operator and the gateway say is encrypted between them. What happened is read from the simulator's
 // trace. It needs no browser: this is the page's side of the two connections.
 import assert from 'node:assert/strict';
-import {execFileSync, spawn} from 'node:child_process';
+import {execFileSync} from 'node:child_process';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import https from 'node:https';
 import net from 'node:net';
@@ -10,33 +10,14 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import tls from 'node:tls';
+import {end, ended, output, sleep, start, trace, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
-const limit = 30_000;        // [ms] generous: for broken runs
 const token = '0123456789abcdef0123456789abcdef';
 const folder = mkdtempSync(join(tmpdir(), 'saphira-relay-'));
 const file = name => join(folder, name);
-const bin = name => join(process.env.SAPHIRA_BIN_DIR, name);
-let simulator, bridge, gateway, relay, ports, key, output = '';
+let simulator, bridge, gateway, relay, ports, key;
 
-const sleep = time => new Promise(resolve => setTimeout(resolve, time));
-async function until(what, condition) {
-  const end = Date.now() + limit;
-  while (Date.now() < end) {
-    const value = await condition();
-    if (value) return value;
-    await sleep(20);
-  }
-  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${output.slice(-2000)}`);
-}
-function start(...command) {
-  const [program, ...words] = command;
-  const child = spawn(bin(program), words);
-  for (const stream of [child.stdout, child.stderr]) stream.on('data', data => { output += data; });
-  return child;
-}
-const ended = child => child.exitCode !== null || child.signalCode !== null
-  ? undefined : new Promise(resolve => child.on('exit', resolve));
 async function freePorts(count) {
   const servers = [...Array(count)].map(() => net.createServer());
   await Promise.all(servers.map(server => new Promise(resolve => server.listen(0, '127.0.0.1', resolve))));
@@ -69,24 +50,11 @@ before(async () => {
   bridge = start('saphira-bridge', '--robot', robot, '--link', line);
 });
 after(async () => {
-  for (const child of [gateway, relay, bridge, simulator])
-    if (child) {
-      child.kill('SIGCONT');
-      child.kill('SIGTERM');
-      await ended(child);
-    }
+  for (const child of [gateway, relay, bridge, simulator]) await end(child);
   rmSync(folder, {recursive: true, force: true});
 });
 
-const rows = () => readFileSync(file('trace.csv'), 'utf8').split('\n').slice(1, -1)
-  .map(row => row.split(',').map(Number)).map(row => ({cycle: row[0], velocity: row[4], rotation: row[5]}));
-const speed = () => Math.abs(rows().at(-1)?.velocity ?? 0);
-const now = () => rows().at(-1)?.cycle ?? 0;
-// [s] from a cycle on; undefined while it moves.
-function stood(from) {
-  const found = rows().find(row => row.cycle >= from && Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02);
-  return found && (found.cycle - from) / 10;
-}
+const {now, speed, stood} = trace(file('trace.csv'));
 
 // The page's side, with a key held.
 async function operator() {
@@ -131,17 +99,17 @@ const answered = (headers = {}) => new Promise(resolve => {
 
 test('a gateway with another token is not let in, and says so', async () => {
   relay = startRelay();
-  await until('the relay', () => output.includes('listens for robots'));
+  await until('the relay', () => output().includes('listens for robots'));
   gateway = startGateway(robot, 'wrong');
-  await until('the refusal', () => output.includes('is not reached'));
-  assert.doesNotMatch(output, /has dialled in/);
+  await until('the refusal', () => output().includes('is not reached'));
+  assert.doesNotMatch(output(), /has dialled in/);
   gateway.kill('SIGTERM');
   await ended(gateway);
 });
 
 test('the page comes by the relay, end to end encrypted', async () => {
   gateway = startGateway(robot, 'token');
-  key = (await until('the address', () => output.match(new RegExp(`open https://localhost:${ports[1]}/#(\\w+)`))))[1];
+  key = (await until('the address', () => output().match(new RegExp(`open https://localhost:${ports[1]}/#(\\w+)`))))[1];
   assert.equal(await answered(), 200);
   assert.equal(await answered({Origin: 'https://evil.example'}), 403);
   // A browser offers HTTP/2, of which the gateway has no WebSockets.
@@ -196,9 +164,9 @@ test('it is driven by the relay; the relay hangs, and dies: the robot stands, an
   await sleep(500);
   assert.ok(speed() < 0.01);
 
-  const before = output.length;
+  const before = output().length;
   relay = startRelay();
-  await until('the gateway dials again', () => output.slice(before).includes('has dialled in'));
+  await until('the gateway dials again', () => output().slice(before).includes('has dialled in'));
   ann = await operator();
   ann.velocity = -0.2;
   await until('it drives after that', () => speed() > 0.1);

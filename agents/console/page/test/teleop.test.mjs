@@ -2,70 +2,36 @@
 // the robot is the simulator's, and what happened is read from its trace. It needs no browser: this is
 // the page's side of the two connections, with a key that is held all the time.
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
-import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {mkdtempSync, rmSync} from 'node:fs';
 import net from 'node:net';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
+import {end, output, sleep, start, trace, until} from './processes.mjs';
 import {socketTo} from './socket.mjs';
 
-const limit = 30_000;        // [ms] generous: for broken runs
 const period = 50;           // [ms] of the samples
 const wanted = 0.3;          // [m/s]
 const resend = 200;          // [ms] until TCP sends again what was lost, besides the delay
 const folder = mkdtempSync(join(tmpdir(), 'saphira-teleop-'));
-const bin = name => join(process.env.SAPHIRA_BIN_DIR, name);
 const table = [];
-let simulator, bridge, gateway, port, key, output = '';
-
-const sleep = time => new Promise(resolve => setTimeout(resolve, time));
-async function until(what, condition) {
-  const end = Date.now() + limit;
-  while (Date.now() < end) {
-    const value = await condition();
-    if (value) return value;
-    await sleep(20);
-  }
-  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${output.slice(-2000)}`);
-}
-function start(...command) {
-  const [program, ...words] = command;
-  const child = spawn(bin(program), words);
-  for (const stream of [child.stdout, child.stderr]) stream.on('data', data => { output += data; });
-  return child;
-}
+let simulator, bridge, gateway, port, key;
 
 before(async () => {
   const robot = `teleop-${process.pid}`, line = join(folder, 'robot');
   simulator = start('saphira-sim', '--world', 'arena', '--socket', line, '--trace', join(folder, 'trace.csv'));
   bridge = start('saphira-bridge', '--robot', robot, '--link', line);
   gateway = start('saphira-console', '--robot', robot, '--port', '0');
-  const address = await until('the address', () => output.match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
+  const address = await until('the address', () => output().match(/open http:\/\/localhost:(\d+)\/#(\w+)/));
   [port, key] = [Number(address[1]), address[2]];
 });
 after(async () => {
-  for (const child of [gateway, bridge, simulator]) {
-    child.kill('SIGCONT');
-    child.kill('SIGTERM');
-    await new Promise(resolve => child.on('exit', resolve));
-  }
+  for (const child of [gateway, bridge, simulator]) await end(child);
   rmSync(folder, {recursive: true, force: true});
   console.log(`\n| link | speed [m/s] | what happens | until it stands [s] | afterwards |\n| --- | --- | --- | --- | --- |\n${table.join('\n')}`);
 });
 
-// What is true, a row for each cycle of 0.1 s.
-function truth() {
-  const lines = readFileSync(join(folder, 'trace.csv'), 'utf8').split('\n').slice(1, -1);
-  return lines.map(line => line.split(',').map(Number)).map(row => ({cycle: row[0], velocity: row[4], rotation: row[5]}));
-}
-const now = () => truth().at(-1)?.cycle ?? 0;
-const speed = () => Math.abs(truth().at(-1)?.velocity ?? 0);
-// [s] from a cycle on; undefined while it moves.
-function stood(from) {
-  const found = truth().find(row => row.cycle >= from && Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02);
-  return found && (found.cycle - from) / 10;
-}
+const {now, speed, stood} = trace(join(folder, 'trace.csv'));
 
 // The same losses in each run.
 function chance(seed) {

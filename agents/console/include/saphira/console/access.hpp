@@ -6,8 +6,8 @@
 
 namespace saphira::console {
 
-/// The rules for who may connect. A browser carries the pages of strangers to this program as well,
-/// so what it says of the page that asks is checked before anything else.
+/// The rules of access. A browser carries the pages of strangers to this program as well, so the
+/// origin of a request is checked before anything else.
 struct AccessSettings {
   std::string key;                 ///< what everybody needs who does more than watch from here
   std::vector<std::string> names;  ///< host names that this machine is known by

@@ -43,7 +43,7 @@ struct Line {
   int status = 200;            ///< of HTTP, where it is the whole answer
 };
 
-/// The headers of HTTP that repeat what a message says.
+/// The headers of HTTP that repeat a part of the message.
 struct Headers {
   std::string version;  ///< MCP-Protocol-Version [empty: not given]
   std::string method;   ///< Mcp-Method
@@ -93,8 +93,6 @@ class Session {
 
   /// For the client, since the last call.
   std::vector<Line> take_lines();
-  /// Calls that are not answered.
-  std::size_t open() const { return open_.size(); }
 
   static constexpr std::size_t kLongestLine = 65536;
   static constexpr std::size_t kMostOpen = 64;          ///< calls that are not answered

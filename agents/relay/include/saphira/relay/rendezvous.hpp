@@ -42,10 +42,9 @@ class Rendezvous {
   /// True where this is the token of that robot. Takes as long for a wrong one.
   bool knows(std::string_view robot, std::string_view token) const;
 
-  /// Somebody has come to the port of a robot: the ticket with which its gateway is to fetch them.
-  /// Nothing: too many wait, or are there.
-  std::optional<std::string> arrive(const std::string& robot, Visitor visitor,
-                                    const std::string& ticket, double now);
+  /// Somebody has come to the port of a robot, and is fetched by this ticket. False: too many are
+  /// there.
+  bool arrive(const std::string& robot, Visitor visitor, const std::string& ticket, double now);
   /// The gateway of that robot fetches the visitor of a ticket. Nothing: nobody of that ticket
   /// waits.
   std::optional<Visitor> fetch(const std::string& robot, const std::string& ticket);

@@ -1,0 +1,49 @@
+// Programs of the product, and waiting for conditions.
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {readFileSync} from 'node:fs';
+import {join} from 'node:path';
+
+const limit = 30_000;        // [ms] generous: for broken runs
+let said = '';
+
+export const output = () => said;
+export const sleep = time => new Promise(resolve => setTimeout(resolve, time));
+export async function until(what, condition) {
+  const end = Date.now() + limit;
+  while (Date.now() < end) {
+    const value = await condition();
+    if (value) return value;
+    await sleep(20);
+  }
+  assert.fail(`not seen within ${limit / 1000} s: ${what}\n${said.slice(-2000)}`);
+}
+export function start(program, ...words) {
+  const child = spawn(join(process.env.SAPHIRA_BIN_DIR, program), words);
+  for (const stream of [child.stdout, child.stderr]) stream.on('data', data => { said += data; });
+  return child;
+}
+export const ended = child => child.exitCode !== null || child.signalCode !== null
+  ? undefined : new Promise(resolve => child.on('exit', resolve));
+// Also one that is stopped.
+export async function end(child) {
+  if (!child) return;
+  child.kill('SIGCONT');
+  child.kill('SIGTERM');
+  await ended(child);
+}
+
+// The simulator's trace (--trace): what is true, a row for each cycle of 0.1 s.
+export function trace(file) {
+  const rows = () => readFileSync(file, 'utf8').split('\n').slice(1, -1)
+    .map(row => row.split(',').map(Number)).map(row => ({cycle: row[0], velocity: row[4], rotation: row[5]}));
+  return {
+    now: () => rows().at(-1)?.cycle ?? 0,
+    speed: () => Math.abs(rows().at(-1)?.velocity ?? 0),
+    // [s] from a cycle on; undefined while it moves.
+    stood: from => {
+      const found = rows().find(row => row.cycle >= from && Math.abs(row.velocity) < 0.01 && Math.abs(row.rotation) < 0.02);
+      return found && (found.cycle - from) / 10;
+    },
+  };
+}
