@@ -45,7 +45,8 @@ if(SAPHIRA_WITH_DDS)
   # The generated headers include each other by their bare names, such as "robot.h": a folder of
   # their own keeps them out of everybody's way.
   set(saphira_generated_dir ${CMAKE_INSTALL_INCLUDEDIR}/saphira/generated)
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev})
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/idl/bus/include/ ${CMAKE_SOURCE_DIR}/services/common/command_line/include/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${saphira_dev})
   install(DIRECTORY ${CMAKE_BINARY_DIR}/idl/generated/ DESTINATION ${saphira_generated_dir}
           ${saphira_dev} FILES_MATCHING PATTERN "*.h" PATTERN "tmp" EXCLUDE)
   # The contract itself, for agents in other languages and of other vendors: the types, the topics
@@ -56,7 +57,7 @@ if(SAPHIRA_WITH_DDS)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/saphira/idl ${saphira_dev})
   target_include_directories(saphira_idl SYSTEM INTERFACE
     $<INSTALL_INTERFACE:${saphira_generated_dir}>)
-  saphira_component(bus idl security bus)
+  saphira_component(bus idl security command_line bus)
 endif()
 
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/saphira-config.cmake.in

@@ -4,7 +4,6 @@
 
 #include <poll.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -27,6 +26,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/bus/gateway.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/sim/host.hpp"
 #include "story/shell/story.hpp"
 #include "system/system.hpp"
@@ -208,31 +208,28 @@ int main(int argc, char** argv) {
   programs.link.keeper = false;
   programs.services = system::services();
   std::string socket = sim::default_socket();
-  bool sees = false;
+  std::optional<Option> vision;
+  std::optional<Option> stereo;
   return bus::run_program(
       argc, argv, "all", "A simulated robot and all services in one process",
-      [&](CLI::App& app) {
+      [&](CommandLine& app) {
         sim::HostOptions& robot = programs.robot;
         app.add_option("--world", robot.world,
-                       "world file of the simulator, or the name of one that is shipped")
-            ->capture_default_str();
+                       "world file of the simulator, or the name of one that is shipped");
         app.add_option("--things", robot.things,
                        "file of the same form with what stands and walks in that world besides");
         app.add_option("--view-socket", robot.view_socket,
                        "local socket of the simulator's own view");
         app.add_option("--robot-file", robot.robot,
                        "parameter file of the simulated robot, or the name of one that is shipped")
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-            ->capture_default_str();
-        app.add_option("--seed", robot.seed, "of all that is random")->capture_default_str();
+            .last_wins();
+        app.add_option("--seed", robot.seed, "of all that is random");
         app.add_flag("--step", robot.step, "single-step from the start");
-        app.add_option("--rate", robot.rate, "times real time")->capture_default_str();
+        app.add_option("--rate", robot.rate, "times real time");
         app.add_option("--trace", robot.trace, "file for the true state of every cycle, CSV");
         app.add_option("--socket,--link", socket, "local socket between simulator and bridge")
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)
-            ->capture_default_str();
-        app.add_option("--robots", programs.link.robots_folder, "folder of robot parameter files")
-            ->capture_default_str();
+            .last_wins();
+        app.add_option("--robots", programs.link.robots_folder, "folder of robot parameter files");
         app.add_option("--state", programs.link.state_file,
                        "file that keeps the robot's position over a restart");
         app.add_flag("--free-step", programs.link.free_step, "lockstep: step without a permit");
@@ -242,26 +239,25 @@ int main(int argc, char** argv) {
         app.add_option("--people", programs.talk.people,
                        "the people of a story, who speak to the robot: a name of config/people, or "
                        "a file; it ends with the story, and its last line tells how, as JSON")
-            ->needs("--grammar");
-        app.add_option("--time-limit", programs.talk.time_limit, "[s] of robot time, for the story")
-            ->capture_default_str();
+            .needs(app.option("--grammar"));
+        app.add_option("--time-limit", programs.talk.time_limit,
+                       "[s] of robot time, for the story");
         for (const runtime::Component& service : programs.services)
-          service.add_options(app);
-        app.get_option("--vision")->description("vision runs as well");
-        app.get_option("--stereo-socket")
-            ->description("local socket on which the simulator sends stereo pictures to vision")
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-        app.parse_complete_callback([&] {
-          sees = app.count("--vision") > 0;
-          if (app.count("--stereo-socket") > 0)
-            robot.stereo_socket = app.get_option("--stereo-socket")->as<std::string>();
-        });
+          if (service.add_options)
+            service.add_options(app);
+        vision = app.option("--vision").describe("vision runs as well");
+        stereo =
+            app.option("--stereo-socket")
+                .describe("local socket on which the simulator sends stereo pictures to vision")
+                .last_wins();
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         programs.robot.world = find_file(config + "/worlds", programs.robot.world, ".wld");
         programs.robot.robot = find_file(config + "/robots", programs.robot.robot, ".p");
         programs.link.parameter_file = programs.robot.robot;
         programs.robot.socket = socket;
+        if (stereo->given())
+          programs.robot.stereo_socket = stereo->text();
         programs.link.robot_port = "unix:" + socket;
         programs.robot.log = [](const std::string& line) {
           std::fprintf(stderr, "sim: %s\n", line.c_str());
@@ -274,7 +270,7 @@ int main(int argc, char** argv) {
         }
         if (!talk.people.empty())
           talk.people = find_file(config + "/people", talk.people, ".people");
-        if (!sees)
+        if (!vision->given())
           std::erase_if(programs.services, [](const auto& one) { return one.name == "vision"; });
         if (options.lockstep)
           run_in_turn(programs, options, stop);

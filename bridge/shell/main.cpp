@@ -1,9 +1,9 @@
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/transport/address.hpp"
 #include "shell.hpp"
@@ -32,27 +32,23 @@ int main(int argc, char** argv) {
   std::vector<std::string> said;
   return saphira::bus::run_program(
       argc, argv, "bridge", "Connects one robot server to the bus and decides who drives it.",
-      [&](CLI::App& app) {
+      [&](saphira::CommandLine& app) {
         app.add_option(
-               "--robot-port,--link", options.robot_port,
-               "the robot: /dev/tty...[@baud], serial:/path, unix:/path, a path of either, or "
-               "tcp:host:port")
-            ->capture_default_str();
-        app.add_option("--robots", options.robots_folder, "folder of robot parameter files")
-            ->capture_default_str();
+            "--robot-port,--link", options.robot_port,
+            "the robot: /dev/tty...[@baud], serial:/path, unix:/path, a path of either, or "
+            "tcp:host:port");
+        app.add_option("--robots", options.robots_folder, "folder of robot parameter files");
         app.add_option("--robot-file", options.parameter_file,
                        "parameter file of the robot, or the name of one in that folder (usual: the "
                        "one that is named after the subclass or class that the robot names)");
-        app.add_option("--lease-ms", lease_ms, "a command drives for so long")
-            ->capture_default_str();
+        app.add_option("--lease-ms", lease_ms, "a command drives for so long");
         app.add_option("--quiet-ms", quiet_ms,
                        "after a person has driven, autonomy drives again when the person's program "
                        "has said for so long that it does not drive (usual: never, only when it is "
                        "handed back)");
         app.add_flag("--no-guard", no_guard, "do not stop before what the sonars see");
         app.add_option("--contact-speed", options.contact_speed,
-                       "m/s at the most, up to 0.15, where a driver means contact; 0: never")
-            ->capture_default_str();
+                       "m/s at the most, up to 0.15, where a driver means contact; 0: never");
         app.add_option("--state", options.state_file,
                        "file that keeps the robot's position over a restart");
         app.add_flag("--free-step", options.free_step, "lockstep: step without a permit");
@@ -63,7 +59,7 @@ int main(int argc, char** argv) {
         app.add_option("--vision-say", said,
                        "further words to it (manual 9.1), such as pioneer_a_color=orange for a "
                        "simulator's channel A")
-            ->needs("--vision");
+            .needs(app.option("--vision"));
       },
       [&](const saphira::bus::NodeOptions& node, const saphira::bus::Stop& stop) {
         options.lease = lease_ms / 1000.0;

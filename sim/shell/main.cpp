@@ -3,8 +3,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,6 +12,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/stop_signals.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/host.hpp"
 #include "saphira/sim/trace.hpp"
@@ -20,6 +21,12 @@
 namespace {
 
 constexpr int kExitUsage = 2;
+
+bool is_rate(const std::string& text) {
+  double rate = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
+  return error == std::errc() && end == text.data() + text.size() && rate >= 1e-6 && rate <= 1000.0;
+}
 
 saphira::Pose parse_position(const std::string& text) {
   const auto lines = saphira::split_lines(text);
@@ -83,7 +90,7 @@ void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"A simulated robot: a robot server as the Saphira manual describes it"};
+  saphira::CommandLine app{"A simulated robot: a robot server as the Saphira manual describes it"};
   saphira::sim::HostOptions options;
   std::vector<std::string> robots;
   std::vector<std::string> positions;
@@ -91,43 +98,44 @@ int main(int argc, char** argv) {
   std::string rate = "1";
   std::vector<std::string> plot_files;
   options.world = "office";
-  app.add_option("--world", options.world, "World file, or the name of one that is shipped")
-      ->capture_default_str();
+  app.add_option("--world", options.world, "World file, or the name of one that is shipped");
   app.add_option("--things", options.things,
                  "File of the same form with what stands and walks in that world besides: people, "
                  "doors, boxes, posts")
-      ->check(CLI::ExistingFile);
+      .existing_file();
   app.add_option("--robot,--robot-file", robots,
                  "Robot parameter file, or the name of one that is shipped (default: pioneer); "
                  "again for each further robot, which listens on the next port, or on the socket "
                  "with \"-2\" (\"-3\"...) behind it")
-      ->allow_extra_args(false);
+      .one_value_each();
   app.add_option("--robots", count, "How many robots; those without a file are as the last one")
-      ->check(CLI::Range(1, 1000));
-  auto* socket = app.add_option("--socket", options.socket,
-                                "Local socket to listen on (default: $ROBOT_SOCKET, otherwise "
-                                "/tmp/saphira-robot-<uid>)");
-  auto* tcp = app.add_option("--tcp", options.tcp, "TCP port to listen on instead; 0: a free one")
-                  ->excludes(socket);
+      .in_range(1, 1000);
+  const saphira::Option socket =
+      app.add_option("--socket", options.socket,
+                     "Local socket to listen on (default: $ROBOT_SOCKET, otherwise "
+                     "/tmp/saphira-robot-<uid>)");
+  const saphira::Option tcp =
+      app.add_option("--tcp", options.tcp, "TCP port to listen on instead; 0: a free one")
+          .excludes(socket);
   std::string terminal;
-  auto* pty =
+  const saphira::Option pty =
       app.add_option("--pty", terminal,
                      "A pseudo-terminal to talk on instead, as on a serial line: a symbolic "
                      "link to it is put at this path (default: " +
                          saphira::sim::default_terminal() + ")")
-          ->expected(0, 1)
-          ->type_name("PATH")
-          ->excludes(socket)
-          ->excludes(tcp);
+          .values(0, 1)
+          .placeholder("PATH")
+          .excludes(socket)
+          .excludes(tcp);
   app.add_option("--tcp-address", options.tcp_address,
-                 "Address of the TCP port; anybody who reaches it can drive the robot")
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "Seed of all that is random")->capture_default_str();
+                 "Address of the TCP port; anybody who reaches it can drive the robot");
+  app.add_option("--seed", options.seed, "Seed of all that is random");
   app.add_flag("--step", options.step, "Single-step from the start: time passes by command 64");
   app.add_option("--rate", rate, "Times real time; max: as fast as the clients answer")
-      ->capture_default_str()
-      ->check([](const std::string& text) {
-        return text == "max" ? std::string() : CLI::Range(1e-6, 1000.0)(text);
+      .check([](const std::string& text) {
+        return text == "max" || is_rate(text)
+                   ? std::string()
+                   : "expected a number from 1e-6 to 1000, or max, found " + text;
       });
   app.add_option("--trace", options.trace, "File for the true state of every cycle, CSV");
   app.add_option("--check", options.check,
@@ -144,17 +152,14 @@ int main(int argc, char** argv) {
   app.add_option("--position", positions,
                  "Start as \"x y th\" [mm mm deg] in the world, instead of the world file's; again "
                  "for each further robot")
-      ->allow_extra_args(false);
+      .one_value_each();
   bool dry_run = false;
   app.add_flag("--dry-run", dry_run, "Read the files, say what is wrong with them, and end");
   app.add_option("--plot", plot_files, "Draw a trace into a picture (SVG), and end")
-      ->expected(2)
-      ->type_name("TRACE.csv OUT.svg");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
+      .values(2)
+      .placeholder("TRACE.csv OUT.svg");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   try {
     if (robots.empty())
@@ -163,7 +168,7 @@ int main(int argc, char** argv) {
     for (std::string& file : robots)
       file = saphira::find_file(config + "/robots", file, ".p");
     options.world = saphira::find_file(config + "/worlds", options.world, ".wld");
-    if (pty->count() > 0)
+    if (pty.given())
       options.terminal = terminal.empty() ? saphira::sim::default_terminal() : terminal;
     offer(options, config);
     set_robots(options, robots, positions, count);

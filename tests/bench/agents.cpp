@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -15,6 +14,7 @@
 
 #include "bench.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -212,18 +212,17 @@ int measure(const Options& all) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Cost of asking by way of the facilitator");
+  CommandLine app("Cost of asking by way of the facilitator");
   Options all;
-  app.add_option("--agents", all.agents, "how many")
-      ->check(CLI::Range(4, 1000))
-      ->capture_default_str();
-  app.add_option("--capabilities", all.capabilities, "of all of them")->capture_default_str();
-  app.add_option("--triggers", all.triggers, "of all of them")->capture_default_str();
-  app.add_option("--requests", all.requests, "to measure")->capture_default_str();
+  app.add_option("--agents", all.agents, "how many").in_range(4, 1000);
+  app.add_option("--capabilities", all.capabilities, "of all of them");
+  app.add_option("--triggers", all.triggers, "of all of them");
+  app.add_option("--requests", all.requests, "to measure");
   app.add_flag("--json", all.json, "one JSON object");
-  app.add_flag("--serve", all.serve)->group("");
-  app.add_option("--first", all.first)->group("");
-  CLI11_PARSE(app, argc, argv);
+  app.add_flag("--serve", all.serve).hidden();
+  app.add_option("--first", all.first).hidden();
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     if (all.serve)
       serve(all);

@@ -4,7 +4,6 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -16,6 +15,7 @@
 #include "browser.hpp"
 #include "page_files.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "support/process.hpp"
 #include "support/quantile.hpp"
 
@@ -62,14 +62,15 @@ void write_map(const std::string& file, int artifacts) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"The console with three pages open, live at 10 Hz"};
+  CommandLine app{"The console with three pages open, live at 10 Hz"};
   bool json = false;
   unsigned seconds = 20;
   app.add_flag("--json", json, "one JSON object on the last line");
   int artifacts = 5000;
-  app.add_option("--artifacts", artifacts, "of the map")->check(CLI::Range(0, 100000));
-  app.add_option("--seconds", seconds, "how long to watch")->check(CLI::Range(5, 3600));
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--artifacts", artifacts, "of the map").in_range(0, 100000);
+  app.add_option("--seconds", seconds, "how long to watch").in_range(5, 3600);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   setenv("SAPHIRA_DOMAIN", "199", 1);
   setenv("SAPHIRA_ROBOT", "bench-console", 1);

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +20,7 @@
 #include "bench.hpp"
 #include "network/slow_link.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 using namespace saphira;
 namespace fs = std::filesystem;
@@ -201,18 +201,17 @@ int measure(test::SlowLink& link, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What a slow network between the robot and its services costs"};
+  CommandLine app{"What a slow network between the robot and its services costs"};
   Options options;
   app.add_flag("--json", options.json, "one JSON object on the last line");
   app.add_flag("--why", options.why, "what `saphira why` says meanwhile");
   app.add_option("--behaviors", options.behaviors, "on which host the behaviors service runs")
-      ->check(CLI::IsMember({"robot", "laptop"}))
-      ->capture_default_str();
-  app.add_option("--delay", options.delays, "[ms] each way")->check(CLI::Range(0.0, 5000.0));
-  app.add_option("--loss", options.losses, "[%] of all frames, each way")
-      ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--seconds", options.seconds, "of each run")->check(CLI::Range(1.0, 3600.0));
-  CLI11_PARSE(app, argc, argv);
+      .one_of({"robot", "laptop"});
+  app.add_option("--delay", options.delays, "[ms] each way").in_range(0.0, 5000.0);
+  app.add_option("--loss", options.losses, "[%] of all frames, each way").in_range(0.0, 100.0);
+  app.add_option("--seconds", options.seconds, "of each run").in_range(1.0, 3600.0);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   std::optional<test::SlowLink> link;
   try {
     link.emplace();

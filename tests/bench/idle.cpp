@@ -2,24 +2,25 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "bench.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 using namespace saphira::bench;
 
 int main(int argc, char** argv) {
-  CLI::App app{"Cost of the idle system, live at 10 Hz"};
+  CommandLine app{"Cost of the idle system, live at 10 Hz"};
   bool json = false;
   unsigned seconds = 20;
   std::string deployment = "demo";
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--seconds", seconds, "how long to watch")->check(CLI::Range(2, 3600));
+  app.add_option("--seconds", seconds, "how long to watch").in_range(2, 3600);
   app.add_option("--deployment", deployment, "what to run");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   setenv("SAPHIRA_DOMAIN", "199", 1);
   setenv("SAPHIRA_ROBOT", "bench-idle", 1);

@@ -1,9 +1,9 @@
 // How fast the whole system runs in lockstep: the demo, in one process and in separate ones.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "bench.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -22,12 +22,13 @@ nlohmann::json demo(bool single, int seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Lockstep speed of the demo, as multiples of real time"};
+  CommandLine app{"Lockstep speed of the demo, as multiples of real time"};
   bool json = false;
   int runs = 5;
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--runs", runs, "runs of each kind")->check(CLI::Range(1, 100));
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--runs", runs, "runs of each kind").in_range(1, 100);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   std::vector<double> single;
   std::vector<double> separate;

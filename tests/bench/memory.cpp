@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -20,6 +19,7 @@
 #include "process.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace {
 
@@ -168,15 +168,15 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Memory of a misused intentions service"};
+  CommandLine app{"Memory of a misused intentions service"};
   Options options;
   app.add_flag("--json", options.json, "one JSON object on the last line");
-  app.add_option("--domain", options.domain, "DDS domain; nobody else's")
-      ->check(CLI::Range(0, 232));
-  app.add_option("--goals", options.goals, "that are refused")->check(CLI::Range(100, 1000000));
+  app.add_option("--domain", options.domain, "DDS domain; nobody else's").in_range(0, 232);
+  app.add_option("--goals", options.goals, "that are refused").in_range(100, 1000000);
   app.add_option("--pause", options.pause, "[s] until what has ended is forgotten")
-      ->check(CLI::Range(0, 3600));
-  CLI11_PARSE(app, argc, argv);
+      .in_range(0, 3600);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return run(options);
   } catch (const std::exception& error) {

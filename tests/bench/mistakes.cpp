@@ -1,20 +1,21 @@
 // How long a newcomer waits for the answer to a mistake.
 #include "integration/mistakes.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "process.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace saphira;
-  CLI::App app("How long the answers to mistakes take");
+  CommandLine app("How long the answers to mistakes take");
   bool json = false;
   app.add_flag("--json", json, "one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   double slowest = 0.0;
   double sum = 0.0;

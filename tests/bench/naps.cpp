@@ -8,7 +8,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -27,6 +26,7 @@
 #include "bench.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace {
 
@@ -308,21 +308,21 @@ std::vector<Nap> run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Programs that nap: how many are heard again, and after how long"};
+  CommandLine app{"Programs that nap: how many are heard again, and after how long"};
   Options options;
   app.add_flag("--json", options.json, "one JSON object on the last line");
-  app.add_option("--naps", options.naps, "how many")->check(CLI::Range(1, 100000));
+  app.add_option("--naps", options.naps, "how many").in_range(1, 100000);
   app.add_option("--groups", options.groups, "so many at once, each in a domain of its own")
-      ->check(CLI::Range(1, 60));
-  app.add_option("--domain", options.domain, "the first of these domains")
-      ->check(CLI::Range(0, 172));
-  app.add_option("--shortest", options.shortest, "[s]")->check(CLI::PositiveNumber);
-  app.add_option("--longest", options.longest, "[s]")->check(CLI::PositiveNumber);
+      .in_range(1, 60);
+  app.add_option("--domain", options.domain, "the first of these domains").in_range(0, 172);
+  app.add_option("--shortest", options.shortest, "[s]").positive();
+  app.add_option("--longest", options.longest, "[s]").positive();
   app.add_option("--seed", options.seed, "of the order of the naps");
   app.add_flag("--cut", options.cut,
                "the sleepers are on a machine of their own (a network namespace; needs root), and "
                "in a third of the naps the link is cut meanwhile");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     const std::vector<Nap> naps = run(options);
     nlohmann::json result = summary(naps);

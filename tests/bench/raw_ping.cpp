@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -36,6 +35,7 @@
 #include "bench.hpp"
 #include "motionPubSubTypes.h"
 #include "robotPubSubTypes.h"
+#include "saphira/command_line/command_line.hpp"
 #include "support/quantile.hpp"
 
 namespace {
@@ -191,16 +191,17 @@ std::vector<double> ping(std::uint32_t domain, double hz, int count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Two-hop ping over bare Fast DDS between two processes"};
+  CommandLine app{"Two-hop ping over bare Fast DDS between two processes"};
   double hz = 10.0;
   int count = 300;
   std::uint32_t domain = 199;
   bool json = false;
-  app.add_option("--hz", hz, "Pings a second; 0: one after the other")->capture_default_str();
-  app.add_option("--count", count, "How many")->capture_default_str();
-  app.add_option("--domain", domain, "DDS domain")->capture_default_str();
+  app.add_option("--hz", hz, "Pings a second; 0: one after the other");
+  app.add_option("--count", count, "How many");
+  app.add_option("--domain", domain, "DDS domain");
   app.add_flag("--json", json, "One object: us (each ping), p50_us, p99_us");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   // Before anything of DDS is there: a fork takes no threads along.
   const pid_t child = fork();
   if (child == 0)

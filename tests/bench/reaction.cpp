@@ -9,7 +9,6 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -25,6 +24,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "serial_line.hpp"
@@ -217,17 +217,18 @@ int report_serial(const std::vector<double>& ours, int unanswered, int baud, boo
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Reaction time of bridge and behaviors beside a raw two-hop ping"};
+  CommandLine app{"Reaction time of bridge and behaviors beside a raw two-hop ping"};
   bool json = false;
   double hz = 10.0;
   int count = 300;
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--hz", hz, "information packets a second")->check(CLI::Range(1.0, 50.0));
+  app.add_option("--hz", hz, "information packets a second").in_range(1.0, 50.0);
   int baud = 0;
-  app.add_option("--count", count, "samples")->check(CLI::Range(10, 100000));
+  app.add_option("--count", count, "samples").in_range(10, 100000);
   app.add_option("--serial", baud, "a serial line of this baud rate between robot and bridge")
-      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}));
-  CLI11_PARSE(app, argc, argv);
+      .one_of({9600, 19200, 38400, 57600, 115200});
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     const std::string domain = "198";
     const std::string name = "bench" + std::to_string(getpid());

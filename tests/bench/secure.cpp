@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -18,6 +17,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/security/authority.hpp"
 
 using namespace saphira;
@@ -153,17 +153,17 @@ double idle_cpu_percent(const std::string& security, unsigned seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Cost of security: round trip beside an open bus, and the idle demo"};
+  CommandLine app{"Cost of security: round trip beside an open bus, and the idle demo"};
   bool json = false;
   int pings = 500;
   unsigned seconds = 20;
   std::string answering;
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--pings", pings, "round trips on each bus")->check(CLI::Range(10, 100000));
-  app.add_option("--seconds", seconds, "how long to watch the idle demo; 0: not")
-      ->check(CLI::Range(0, 3600));
-  app.add_option("--echo", answering)->group("");
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--pings", pings, "round trips on each bus").in_range(10, 100000);
+  app.add_option("--seconds", seconds, "how long to watch the idle demo; 0: not").in_range(0, 3600);
+  app.add_option("--echo", answering).hidden();
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   if (!answering.empty())
     echo(answering);
 

@@ -2,7 +2,6 @@
 // demo's goal in the demo's world; and the reaction time that such a line allows.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/cli/trace.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "serial_line.hpp"
 
 using namespace saphira;
@@ -103,20 +103,17 @@ Run demo(int baud, const std::string& seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"The demo over a serial line, and the reaction time that the line allows"};
+  CommandLine app{"The demo over a serial line, and the reaction time that the line allows"};
   bool json = false;
   int baud = 9600;
   std::string seed = "1";
   int count = 200;
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--baud", baud, "of the line")
-      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
-      ->capture_default_str();
-  app.add_option("--seed", seed, "of the simulator")->capture_default_str();
-  app.add_option("--count", count, "reactions")
-      ->check(CLI::Range(10, 100000))
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--baud", baud, "of the line").one_of({9600, 19200, 38400, 57600, 115200});
+  app.add_option("--seed", seed, "of the simulator");
+  app.add_option("--count", count, "reactions").in_range(10, 100000);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     const Run run = demo(baud, seed);
     const double line = baud / 10.0;

@@ -3,7 +3,6 @@
 // when dynamics, contacts and packets cost nothing.
 #include <time.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +14,7 @@
 #include "bench.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"
 #include "saphira/sim/simulation.hpp"
@@ -162,18 +162,17 @@ Result run(const sim::World& world, const protocol::RobotParameters& parameters,
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Speed of the simulator on one core, in robot-seconds a second"};
+  CommandLine app{"Speed of the simulator on one core, in robot-seconds a second"};
   bool json = false;
   double length = 5000.0;
   std::string world_file = "worlds/office-floor.wld";
   std::string robot_file = "robots/pioneer.p";
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--length", length, "robot-seconds to simulate of each kind")
-      ->check(CLI::Range(10.0, 1e7))
-      ->capture_default_str();
-  app.add_option("--world", world_file, "below config/")->capture_default_str();
-  app.add_option("--robot", robot_file, "below config/; with seven sonars")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--length", length, "robot-seconds to simulate of each kind").in_range(10.0, 1e7);
+  app.add_option("--world", world_file, "below config/");
+  app.add_option("--robot", robot_file, "below config/; with seven sonars");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   try {
     const sim::World world = sim::load_world(config_folder() + "/" + world_file);

@@ -2,7 +2,6 @@
 // over a line that tells nobody when it is cut. The simulator's trace is the truth.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -22,6 +21,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/parameters.hpp"
 #include "saphira/sim/trace.hpp"
 #include "serial_line.hpp"
@@ -206,16 +206,15 @@ nlohmann::json measure(const std::string& file, double wanted) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"How far each robot rolls when its driver, its bridge or its line is lost"};
+  CommandLine app{"How far each robot rolls when its driver, its bridge or its line is lost"};
   bool json = false;
   double velocity = 0.4;
   std::vector<std::string> names;
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--velocity", velocity, "[m/s], or the robot's own limit")
-      ->check(CLI::Range(0.05, 2.0))
-      ->capture_default_str();
+  app.add_option("--velocity", velocity, "[m/s], or the robot's own limit").in_range(0.05, 2.0);
   app.add_option("robots", names, "names of config/robots (usual: all)");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     const std::string folder = config_folder() + "/robots";
     if (names.empty()) {

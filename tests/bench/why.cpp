@@ -1,17 +1,19 @@
 // Asks why in each situation of docs/situations.md, and counts what is said falsely.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "saphira/command_line/command_line.hpp"
 #include "table.hpp"
 
 int main(int argc, char** argv) {
   using namespace saphira::situation;
-  CLI::App app("Asks why in each situation of docs/situations.md, and counts what is said falsely");
+  CommandLine app(
+      "Asks why in each situation of docs/situations.md, and counts what is said falsely");
   bool json = false;
   app.add_flag("--json", json, "one JSON object");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   const std::vector<test::Case> cases = test::all_cases();
   int wrong = 0;

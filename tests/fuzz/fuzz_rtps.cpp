@@ -15,7 +15,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -30,6 +29,7 @@
 #include <vector>
 
 #include "process.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace {
 
@@ -324,18 +324,18 @@ class Campaign {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Mutated RTPS packets against a running system, on the loopback"};
+  CommandLine app{"Mutated RTPS packets against a running system, on the loopback"};
   Options options;
-  app.add_option("--domain", options.domain, "DDS domain; nobody else's")
-      ->check(CLI::Range(0, 232));
-  app.add_option("--seconds", options.seconds, "how long")->check(CLI::Range(1, 1000000));
+  app.add_option("--domain", options.domain, "DDS domain; nobody else's").in_range(0, 232);
+  app.add_option("--seconds", options.seconds, "how long").in_range(1, 1000000);
   app.add_option("--round", options.round_seconds, "seconds between two looks at the robot")
-      ->check(CLI::Range(1, 3600));
-  app.add_option("--rate", options.rate, "packets a second, at most")->check(CLI::Range(1, 100000));
+      .in_range(1, 3600);
+  app.add_option("--rate", options.rate, "packets a second, at most").in_range(1, 100000);
   app.add_option("--seed", options.seed, "of the mutations");
   app.add_option("--log", options.log, "file for what the programs print");
   app.add_flag("--json", options.json, "one JSON object on the last line");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return Campaign(options).run();
   } catch (const std::exception& error) {

@@ -58,7 +58,8 @@ int main(int argc, char** argv) {
   std::string about;
   return bus::run_program(
       argc, argv, "cli", "Runs, watches and drives a robot on the Saphira bus",
-      [&](CLI::App& app) {
+      [&](CommandLine& line) {
+        CLI::App& app = line.parser();
         root = &app;
         app.name("saphira");
         app.require_subcommand(0, 1);

@@ -1,10 +1,10 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <thread>
 
 #include "gateway.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "screenshot.hpp"
 
 namespace {
@@ -41,34 +41,34 @@ int main(int argc, char** argv) {
   std::string token_file;
   return bus::run_program(
       argc, argv, "console", "Shows the robot in a browser, and lets people drive it from there.",
-      [&](CLI::App& app) {
+      [&](CommandLine& app) {
         app.add_option("--listen", options.server.address,
-                       "address to listen on; 0.0.0.0: every one of this machine")
-            ->capture_default_str();
+                       "address to listen on; 0.0.0.0: every one of this machine");
         app.add_option("--port", options.server.port,
                        "the first port to try, of 20; 0: any that is free")
-            ->check(CLI::Range(0, 65500))
-            ->capture_default_str();
-        auto* const key = app.add_option("--certificate-key", options.server.certificate_key,
-                                         "PEM file, of the certificate")
-                              ->check(CLI::ExistingFile);
-        auto* const certificate = app.add_option("--certificate", options.server.certificate,
-                                                 "PEM file: the page is served by HTTPS")
-                                      ->check(CLI::ExistingFile)
-                                      ->needs(key);
-        key->needs(certificate);
+            .in_range(0, 65500);
+        const Option key = app.add_option("--certificate-key", options.server.certificate_key,
+                                          "PEM file, of the certificate")
+                               .existing_file();
+        const Option certificate = app.add_option("--certificate", options.server.certificate,
+                                                  "PEM file: the page is served by HTTPS")
+                                       .existing_file()
+                                       .needs(key);
+        key.needs(certificate);
         app.add_option("--host-name", options.names, "a further name of this machine");
-        auto* const token = app.add_option("--dial-token-file", token_file,
-                                           "file with the token that the relay knows this robot by")
-                                ->check(CLI::ExistingFile);
+        const Option token =
+            app.add_option("--dial-token-file", token_file,
+                           "file with the token that the relay knows this robot by")
+                .existing_file();
         app.add_option("--dial", dial,
                        "wss://HOST[:PORT]/ROBOT of a relay (saphira-relay) by which the page is "
                        "reached, too, where this machine has no address of its own")
-            ->needs(token, certificate);
+            .needs(token)
+            .needs(certificate);
         app.add_option("--dial-authority", options.dial_authority,
                        "PEM file that the relay's certificate is checked by, in the place of the "
                        "system's authorities")
-            ->check(CLI::ExistingFile);
+            .existing_file();
         app.add_option("--simulator", options.simulator,
                        "socket of a simulator's own view (saphira-sim --view-socket), for the page "
                        "/simulator.html");
@@ -76,15 +76,12 @@ int main(int argc, char** argv) {
                        "keeps key and port over a restart, so that open pages go on");
         app.add_option("--screenshot", screenshot.file,
                        "makes a picture of the page, and ends; needs Chromium, and no display");
-        app.add_option("--width", screenshot.width, "[pixels] of the picture")
-            ->capture_default_str();
-        app.add_option("--height", screenshot.height, "[pixels]")->capture_default_str();
+        app.add_option("--width", screenshot.width, "[pixels] of the picture");
+        app.add_option("--height", screenshot.height, "[pixels]");
         app.add_flag("--dark", screenshot.dark, "the picture in dark colours");
         app.add_flag("--narrow", screenshot.narrow, "the picture as on a telephone");
         app.add_option("--tab", screenshot.tab, "what is open in the picture")
-            ->check(
-                CLI::IsMember({"Goals", "Why", "Behaviors", "Intentions", "Programs", "Messages"}))
-            ->capture_default_str();
+            .one_of({"Goals", "Why", "Behaviors", "Intentions", "Programs", "Messages"});
       },
       [&](const bus::NodeOptions& node, const bus::Stop& stop) {
         if (!dial.empty()) {

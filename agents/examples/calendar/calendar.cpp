@@ -3,19 +3,20 @@
 //   saphira ask place_of person=karen place=?
 // The bus is that of the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <map>
 #include <saphira/bus/agent.hpp>
 #include <saphira/bus/program.hpp>
+
+#include "saphira/command_line/command_line.hpp"
 
 namespace bus = saphira::bus;
 namespace v1 = saphira::v1;
 
 int main(int argc, char** argv) {
   std::vector<std::string> entries;
-  const auto add_options = [&](CLI::App& app) {
-    app.add_option("entries", entries, "PERSON=PLACE, for each that it knows")->required();
+  const auto add_options = [&](CommandLine& app) {
+    app.add_option("entries", entries, "PERSON=PLACE, for each that it knows").required();
   };
   const auto body = [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
     std::map<std::string, std::string> places;

@@ -2,11 +2,12 @@
 //   go_there X Y       in meters, ahead and to the left of where the robot is now
 // The bus is that of the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <saphira/bus/goal_client.hpp>
 #include <saphira/bus/program.hpp>
+
+#include "saphira/command_line/command_line.hpp"
 
 namespace bus = saphira::bus;
 namespace v1 = saphira::v1;
@@ -14,9 +15,9 @@ namespace v1 = saphira::v1;
 int main(int argc, char** argv) {
   double x = 0.0;
   double y = 0.0;
-  const auto add_options = [&](CLI::App& app) {
-    app.add_option("x", x, "meters ahead")->required();
-    app.add_option("y", y, "meters to the left")->required();
+  const auto add_options = [&](CommandLine& app) {
+    app.add_option("x", x, "meters ahead").required();
+    app.add_option("y", y, "meters to the left").required();
   };
   const auto body = [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
     bus::Node node(options);

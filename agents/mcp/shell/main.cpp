@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "http_door.hpp"
 #include "key.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace {
 
@@ -89,16 +89,16 @@ int main(int argc, char** argv) {
       argc, argv, "mcp",
       "A door for language models: the Model Context Protocol, on standard input and output or by "
       "HTTP",
-      [&](CLI::App& app) {
-        app.add_option("--who", own.who, "Who asks, as others see it")->capture_default_str();
-        auto* const token =
+      [&](CommandLine& app) {
+        app.add_option("--who", own.who, "Who asks, as others see it");
+        const Option token =
             app.add_option("--token-file", own.token_file,
                            "with --http: keeps what a client has to send as its bearer token; "
                            "written where it does not exist");
         app.add_option("--http", own.port,
                        "a port of this machine (127.0.0.1) to serve /mcp on; 0: any that is free")
-            ->check(CLI::Range(0, 65535))
-            ->needs(token);
+            .in_range(0, 65535)
+            .needs(token);
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         return own.port ? serve_http(options, own, stop) : serve(options, own.who, stop);

@@ -1,7 +1,6 @@
 // saphira-relay: lets a robot that has no reachable address be watched and driven. README.md.
 #include <sys/stat.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -9,6 +8,7 @@
 
 #include "relay.hpp"
 #include "saphira/base/stop_signals.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace {
 
@@ -29,27 +29,27 @@ std::vector<relay::Robot> read_robots(const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Lets robots without a reachable address be watched and driven from a browser");
+  CommandLine app("Lets robots without a reachable address be watched and driven from a browser");
   relay::RelayOptions options;
   std::string robots;
   app.add_option("--robots", robots, "file with a line for each robot: NAME PORT TOKEN")
-      ->required()
-      ->check(CLI::ExistingFile);
+      .required()
+      .existing_file();
   app.add_option("--dial-port", options.dial_port, "where the robots' consoles dial in")
-      ->required()
-      ->check(CLI::Range(1, 65535));
-  app.add_option("--listen", options.address, "address to listen on; 0.0.0.0: every one")
-      ->capture_default_str();
-  auto* const key =
+      .required()
+      .in_range(1, 65535);
+  app.add_option("--listen", options.address, "address to listen on; 0.0.0.0: every one");
+  const Option key =
       app.add_option("--certificate-key", options.certificate_key, "PEM file, of the certificate")
-          ->check(CLI::ExistingFile);
-  auto* const certificate =
+          .existing_file();
+  const Option certificate =
       app.add_option("--certificate", options.certificate,
                      "PEM file, of the dial port; without it robots of this machine alone dial in")
-          ->check(CLI::ExistingFile)
-          ->needs(key);
-  key->needs(certificate);
-  CLI11_PARSE(app, argc, argv);
+          .existing_file()
+          .needs(key);
+  key.needs(certificate);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     const int stop = stop_on_signals();
     relay::Relay server(options, read_robots(robots));

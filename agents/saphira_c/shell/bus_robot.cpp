@@ -1,7 +1,6 @@
 // The part of the C library that joins the bus (SAPHIRA_ROBOT): the robot is the bridge's, what its
 // sensors show is the services', and the program is one more that may drive it (role direct).
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -37,10 +36,7 @@ constexpr double kDrawnFor = 1.0;        // [s]
 constexpr double kPixel = 0.025;         // [m] that a pixel of the manual's window shows
 
 bus::NodeOptions options_of(const std::string& robot) {
-  bus::NodeOptions options;
-  CLI::App app;
-  bus::add_node_options(app, options);
-  app.parse(std::vector<std::string>{});  // what the environment says
+  bus::NodeOptions options = bus::options_of_environment();
   options.robot = robot;
   options.name = program_invocation_short_name;
   options.program = "agent";

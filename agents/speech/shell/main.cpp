@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -7,6 +6,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/speech/reading.hpp"
 #include "speech/shell/speech_shell.hpp"
 
@@ -47,27 +47,23 @@ int main(int argc, char** argv) {
   speech.grammar = "flakey";
   return bus::run_program(
       argc, argv, "speech", "Hears what people say to the robot, and speaks for it",
-      [&](CLI::App& app) {
+      [&](CommandLine& app) {
         app.add_option("--grammar", speech.grammar,
-                       "what people may say: a name of config/grammars, or a file")
-            ->capture_default_str();
+                       "what people may say: a name of config/grammars, or a file");
         app.add_option("--pronunciations", speech.pronunciations,
                        "a file: how words sound, where not as in the dictionary");
         app.add_option("--microphone", speech.microphone,
                        "a device of ALSA (arecord -L), a WAV file, a FIFO or - with raw samples "
-                       "(16 bits, 16 kHz), or none")
-            ->capture_default_str();
+                       "(16 bits, 16 kHz), or none");
         app.add_option("--speaker", speech.speaker,
-                       "a device of ALSA (aplay -L), a folder for WAV files, or none")
-            ->capture_default_str();
-        app.add_option("--voice", speech.voice, "slt, rms, awb, kal16, or espeak:NAME")
-            ->capture_default_str();
+                       "a device of ALSA (aplay -L), a folder for WAV files, or none");
+        app.add_option("--voice", speech.voice, "slt, rms, awb, kal16, or espeak:NAME");
         app.add_option("--person", speech.person, "the name of whoever speaks, where it is known");
         app.add_option("--read", dialogue,
                        "a file with a line \"speaker: text\" for each that speaks: writes it into "
                        "the folder --speaker as WAV files, and ends")
-            ->check(CLI::ExistingFile)
-            ->needs(app.get_option("--speaker"));
+            .existing_file()
+            .needs(app.option("--speaker"));
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {
         if (!dialogue.empty()) {

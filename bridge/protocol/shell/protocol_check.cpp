@@ -11,7 +11,6 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -19,6 +18,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/check.hpp"
 #include "saphira/transport/address.hpp"
 #include "saphira/transport/link.hpp"
@@ -177,23 +177,19 @@ class Proxy {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  CommandLine app{
       "Passes bytes between a client and a robot server, and prints what of them is against the "
       "protocol's tables. Ends by SIGINT or SIGTERM with a summary; code 1: there were violations"};
   std::string listen;
   std::string server;
   std::string robots = "config/robots";
-  app.add_option("--listen", listen, "Where the client connects: PATH or tcp:HOST:PORT")
-      ->required();
+  app.add_option("--listen", listen, "Where the client connects: PATH or tcp:HOST:PORT").required();
   app.add_option("--server", server,
                  "Where the robot server is, as the bridge's --robot-port says it")
-      ->required();
-  app.add_option("--robots", robots, "Folder of robot parameter files")->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitUsage;
-  }
+      .required();
+  app.add_option("--robots", robots, "Folder of robot parameter files");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     sigset_t signals;
     sigemptyset(&signals);

@@ -1,6 +1,5 @@
 #include "saphira/bus/program.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -10,9 +9,9 @@
 
 #include "internal.hpp"
 #include "log.hpp"
-#include "saphira/base/guess.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::bus {
 
@@ -33,95 +32,73 @@ std::string usual_security() {
   return {};
 }
 
-}  // namespace
-
-void add_node_options(CLI::App& app, NodeOptions& options) {
-  app.add_option("--name", options.name, "Name of this program on the bus")->capture_default_str();
-  app.add_option("--robot", options.robot, "The robot to belong to")
-      ->envname("SAPHIRA_ROBOT")
-      ->capture_default_str();
+void add_node_options(CommandLine& app, NodeOptions& options) {
+  app.add_option("--name", options.name, "Name of this program on the bus");
+  app.add_option("--robot", options.robot, "The robot to belong to").environment("SAPHIRA_ROBOT");
   app.add_option("--domain", options.domain, "DDS domain")
-      ->envname("SAPHIRA_DOMAIN")
-      ->check(CLI::Range(0, 231))
-      ->capture_default_str();
+      .environment("SAPHIRA_DOMAIN")
+      .in_range(0, 231);
   static const std::map<std::string, Profile> profiles{
       {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
-  app.add_option_function<std::string>(
+  app.add_action(
          "--profile",
          [&options](const std::string& profile) { options.profile = profiles.at(profile); },
          "Network: host (this machine alone), lan (multicast), wan (--peer)")
-      ->envname("SAPHIRA_PROFILE")
-      ->check(CLI::IsMember({"host", "lan", "wan"}))
-      ->default_str("host");
+      .environment("SAPHIRA_PROFILE")
+      .one_of({"host", "lan", "wan"})
+      .shows("host");
   app.add_option("--peer", options.peers,
                  "wan: addresses of other machines; one that all of them name is enough")
-      ->envname("SAPHIRA_PEERS")
-      ->delimiter(',');
+      .environment("SAPHIRA_PEERS")
+      .separated_by(',');
   app.add_option("--interface", options.interface, "lan, wan: address of the one interface to use")
-      ->envname("SAPHIRA_INTERFACE")
-      ->check(CLI::ValidIPV4);
+      .environment("SAPHIRA_INTERFACE")
+      .ipv4();
   options.security = usual_security();
   app.add_option("--security", options.security,
                  "Folder of credentials (saphira security add); none: a bus that is open to all")
-      ->envname("SAPHIRA_SECURITY")
-      ->default_str(options.security.empty() ? kOpenBus : options.security);
+      .environment("SAPHIRA_SECURITY")
+      .shows(options.security.empty() ? kOpenBus : options.security);
   app.add_flag("--dry-run", options.dry_run,
                "Read what is given here, say what is wrong with it, and end");
   app.add_flag("--lockstep", options.lockstep,
                "Lose no sample of a cycle and wait for every input (simulator in single step)");
-  app.add_option_function<std::string>(
+  app.add_action(
          "--log-level", [](const std::string& level) { internal::set_log_level(level); },
          "What is written to stderr: debug, info, warning or error")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
-      ->default_str("info");
-}
-
-namespace {
-
-/// Names the word that no option or command takes, with the nearest one that there is.
-int not_understood(const CLI::App& app) {
-  const CLI::App* command = &app;
-  while (!command->get_subcommands().empty())
-    command = command->get_subcommands().front();
-  std::vector<std::string> known;
-  for (const CLI::App* const each : command->get_subcommands({}))
-    known.push_back(each->get_name());
-  for (const CLI::Option* const each : command->get_options())
-    for (const std::string& name : each->get_lnames())
-      known.push_back("--" + name);
-  const std::vector<std::string> words = app.remaining(true);
-  const std::string word = words.empty() ? "" : words.front();
-  const std::string meant = guess(word, known);
-  std::fprintf(
-      stderr, "%s: \"%.200s\" is not understood%s\n", app.get_name().c_str(), word.c_str(),
-      meant.empty() ? "; --help lists the options" : (": did you mean " + meant + "?").c_str());
-  return kExitUsage;
+      .one_of({"debug", "info", "warning", "error"})
+      .shows("info");
 }
 
 }  // namespace
+
+NodeOptions options_of_environment() {
+  NodeOptions options;
+  CommandLine line("", "environment");
+  add_node_options(line, options);
+  const char* const program = "environment";
+  if (line.parse(1, &program))
+    throw std::invalid_argument("an environment variable of the bus (SAPHIRA_...) cannot be");
+  return options;
+}
 
 const char* version() {
   return "saphira " SAPHIRA_VERSION ", contract " SAPHIRA_CONTRACT;
 }
 
 int run_program(int argc, char** argv, const std::string& name, const std::string& description,
-                const std::function<void(CLI::App&)>& add_options,
+                const std::function<void(CommandLine&)>& add_options,
                 const std::function<int(const NodeOptions&, const Stop&)>& body) {
   NodeOptions options;
   options.name = name;
   options.program = name;
-  CLI::App app{description, "saphira-" + name};
+  CommandLine app{description, "saphira-" + name};
   add_node_options(app, options);
-  app.set_version_flag("--version", version());
+  app.add_version(version());
   if (add_options)
     add_options(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ExtrasError&) {
-    return not_understood(app);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitUsage;
-  }
+  if (const std::optional<int> code = app.parse(argc, argv))
+    return *code;
   internal::has_worked() = false;
   std::string what;
   std::string usage;  // what of that is told to the person who gave us something wrong

@@ -9,13 +9,13 @@
 //                                                 stamp, how many others answered in the last
 //                                                 second (number), and the newest goal it has read
 //                                                 (move)
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <map>
 #include <string>
 
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 using namespace saphira;
 using namespace saphira::bus;
@@ -123,10 +123,9 @@ int main(int argc, char** argv) {
   Wanted wanted;
   return run_program(
       argc, argv, "peer", "The other side of a test of the bus",
-      [&](CLI::App& app) {
-        app.add_option("--role", wanted.role)
-            ->check(CLI::IsMember({"writer", "reader", "watch", "answer"}));
-        app.add_option("--hz", wanted.hz)->check(CLI::PositiveNumber);
+      [&](CommandLine& app) {
+        app.add_option("--role", wanted.role).one_of({"writer", "reader", "watch", "answer"});
+        app.add_option("--hz", wanted.hz).positive();
         app.add_option("--count", wanted.count);
         app.add_option("--seconds", wanted.seconds);
       },

@@ -1,8 +1,7 @@
-#include <CLI/CLI.hpp>
-
 #include "agent_interface/shell/dialogue_shell.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/bus/program.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace saphira;
@@ -10,10 +9,9 @@ int main(int argc, char** argv) {
   dialogue.grammar = "flakey";
   return bus::run_program(
       argc, argv, "dialogue", "Understands what people say to the robot, and answers",
-      [&](CLI::App& app) {
+      [&](CommandLine& app) {
         app.add_option("--grammar", dialogue.grammar,
-                       "what people may say: a name of config/grammars, or a file")
-            ->capture_default_str();
+                       "what people may say: a name of config/grammars, or a file");
         app.add_option("--memory", dialogue.memory, "a file that keeps what the robot was told");
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) {

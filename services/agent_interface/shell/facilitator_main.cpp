@@ -3,12 +3,11 @@
 
 int main(int argc, char** argv) {
   using namespace saphira;
-  return bus::run_program(
-      argc, argv, "facilitator", "Routes requests to the agents that can answer them",
-      [](CLI::App&) {},
-      [](const bus::NodeOptions& options, const bus::Stop& stop) {
-        bus::Node node(options);
-        agent_interface::FacilitatorShell(node).run(stop);
-        return bus::kExitOk;
-      });
+  return bus::run_program(argc, argv, "facilitator",
+                          "Routes requests to the agents that can answer them", {},
+                          [](const bus::NodeOptions& options, const bus::Stop& stop) {
+                            bus::Node node(options);
+                            agent_interface::FacilitatorShell(node).run(stop);
+                            return bus::kExitOk;
+                          });
 }

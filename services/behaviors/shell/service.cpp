@@ -1,11 +1,11 @@
 #include "behaviors/shell/service.hpp"
 
-#include <CLI/CLI.hpp>
 #include <utility>
 
 #include "behaviors/shell/convert.hpp"
 #include "behaviors/shell/plugin.hpp"
 #include "lps/shell/convert.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::behaviors {
 
@@ -89,7 +89,7 @@ void Service::look() {
 runtime::Component component() {
   const auto options = std::make_shared<Options>();
   return {"behaviors", "Evaluates the behaviors that are intended and blends them",
-          [options](CLI::App& app) {
+          [options](CommandLine& app) {
             app.add_option("--behaviors", options->folder,
                            "folder of behavior files; they cover shipped ones of the same name");
             app.add_option("--plugin", options->plugins,

@@ -1,6 +1,5 @@
 #include "intentions/shell/service.hpp"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "requests/shell/convert.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/sender.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/intentions/functors.hpp"
 #include "saphira/intentions/navigation.hpp"
 
@@ -390,10 +390,10 @@ runtime::Component component() {
   const auto options = std::make_shared<Options>();
   return {
       "intentions", "Takes goals from anybody on the bus and intends what they need",
-      [options](CLI::App& app) {
+      [options](CommandLine& app) {
         app.add_option("--memory", options->memory_file,
                        "file that remembers ended goals over a restart, so that none is done twice")
-            ->check(in_a_folder);
+            .check(in_a_folder);
         app.add_flag("!--no-registration", options->registration,
                      "there is no registration service: do not wait for it in lockstep");
         app.add_flag("!--no-interpretation", options->interpretation, "the same of interpretation");

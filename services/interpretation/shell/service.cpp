@@ -35,8 +35,10 @@ void Service::step(const runtime::Turn& turn) {
 }
 
 runtime::Component component() {
-  return {"interpretation", "Finds walls, doors and corridors in the sonars' readings",
-          [](CLI::App&) {}, [](runtime::Ports& ports) { return std::make_unique<Service>(ports); }};
+  return {"interpretation",
+          "Finds walls, doors and corridors in the sonars' readings",
+          {},
+          [](runtime::Ports& ports) { return std::make_unique<Service>(ports); }};
 }
 
 }  // namespace saphira::interpretation

@@ -1,6 +1,5 @@
 #include "registration/shell/service.hpp"
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "registration/shell/convert.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::registration {
 namespace {
@@ -117,13 +117,12 @@ void Service::remember() {
 runtime::Component component() {
   const auto options = std::make_shared<Options>();
   return {"registration", "Keeps the robot's place on the map true",
-          [options](CLI::App& app) {
+          [options](CommandLine& app) {
             app.add_option("--map", options->map_file,
                            "map file, or the name of one that is shipped; none: an empty map");
             app.add_option("--start", options->start,
                            "where the robot is at first: x,y,th [m, rad], the name of a POS of the "
-                           "map, or unknown")
-                ->capture_default_str();
+                           "map, or unknown");
             app.add_option("--map-memory", options->memory_file,
                            "file that keeps pose and map over a restart");
             app.add_option("--add-features", options->add_features,

@@ -166,9 +166,9 @@ TEST_P(RuntimeTest, KnowsItsPorts) {
       {"intentions", Port::Use::kCycle},     {"messages", Port::Use::kEvents},
       {"behaviors/state", Port::Use::kEach}, {"beliefs", Port::Use::kChanges}};
   EXPECT_EQ(shell_.ports().table(), ports);
-  const Component component{
-      "repeater", "repeats", [](CLI::App&) {},
-      [this](Ports& made) { return std::make_unique<Repeater>(made, seen_); }};
+  const Component component{"repeater", "repeats", {}, [this](Ports& made) {
+                              return std::make_unique<Repeater>(made, seen_);
+                            }};
   EXPECT_EQ(ports_of(component), ports);
 }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <set>
 
@@ -11,6 +10,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/bus/introspect.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::system {
 namespace {
@@ -63,9 +63,10 @@ TEST(System, TheDrawingInTheDocumentsIsOfToday) {
 
 // Programs that run several services offer them together.
 TEST(System, NoTwoServicesHaveAnOptionOfTheSameName) {
-  CLI::App app;
+  CommandLine app("all", "all");
   for (const runtime::Component& service : services())
-    EXPECT_NO_THROW(service.add_options(app)) << service.name;
+    if (service.add_options)
+      EXPECT_NO_THROW(service.add_options(app)) << service.name;
 }
 
 TEST(System, TheTableOfTheBridgeIsTrue) {

@@ -1,9 +1,9 @@
 #include "vision/shell/service.hpp"
 
-#include <CLI/CLI.hpp>
 #include <utility>
 
 #include "lps/shell/convert.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "vision/shell/convert.hpp"
 
 namespace saphira::vision {
@@ -69,21 +69,19 @@ std::string Service::missing(const v1::RobotState& state) {
 runtime::Component component() {
   const auto options = std::make_shared<Options>();
   return {"vision", "Finds people in stereo pictures, and what has the camera's colors",
-          [options](CLI::App& app) {
+          [options](CommandLine& app) {
             app.add_option("--stereo-socket", options->stereo_socket,
                            "local socket that the pairs of pictures come from");
             app.add_option("--camera-height", options->camera.height,
-                           "of the color camera above the floor [m]")
-                ->capture_default_str();
+                           "of the color camera above the floor [m]");
             app.add_option("--camera-forward", options->camera.forward,
-                           "of the color camera before the robot's center [m]")
-                ->capture_default_str();
+                           "of the color camera before the robot's center [m]");
             for (std::size_t i = 0; i < options->camera.heights.size(); ++i)
               app.add_option(std::string("--height-") + static_cast<char>('a' + i),
                              options->camera.heights.at(i),
                              "how high the things of that channel are [m]; without it they are "
                              "taken to stand on the floor")
-                  ->check(CLI::PositiveNumber);
+                  .positive();
           },
           [options](runtime::Ports& ports) { return std::make_unique<Service>(ports, *options); }};
 }

@@ -1,6 +1,5 @@
 // The robot on floors of offices that it was not tuned on: where it believes to be, which doors it
 // notices, what it builds, and whether it says that it has arrived where it has not.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +16,7 @@
 #include "floors/floor.hpp"
 #include "localization/patrol.hpp"
 #include "perception/score.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/maps/topology.hpp"
 #include "support/quantile.hpp"
 
@@ -378,24 +378,18 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"The robot on generated floors of offices that it was not tuned on"};
-  app.add_option("--first", options.first, "the seed of the first floor")->capture_default_str();
-  app.add_option("--floors", options.floors, "how many")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  app.add_option("--minutes", options.minutes, "of patrol on each")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--building", options.building, "minutes to build a map, at most")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--errors", options.errors, "factor on the errors of dead reckoning")
-      ->capture_default_str();
-  app.add_option("--robot", options.robot, "a robot of config/robots")->capture_default_str();
+  CommandLine app{"The robot on generated floors of offices that it was not tuned on"};
+  app.add_option("--first", options.first, "the seed of the first floor");
+  app.add_option("--floors", options.floors, "how many").in_range(1, 10000);
+  app.add_option("--minutes", options.minutes, "of patrol on each").positive();
+  app.add_option("--building", options.building, "minutes to build a map, at most").positive();
+  app.add_option("--errors", options.errors, "factor on the errors of dead reckoning");
+  app.add_option("--robot", options.robot, "a robot of config/robots");
   app.add_option("--write", options.write_to,
                  "only write the floors into this folder, as worlds and maps");
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -1,5 +1,4 @@
 // Maps that a simulated robot builds from nothing, exploring, against the maps drawn by hand.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -9,10 +8,11 @@
 
 #include "drive/building.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace saphira;
-  CLI::App app{"Maps built from nothing in simulated worlds, against the maps drawn by hand"};
+  CommandLine app{"Maps built from nothing in simulated worlds, against the maps drawn by hand"};
   std::vector<std::string> worlds{"loop", "office-floor"};
   int seeds = 6;
   int first = 1;
@@ -21,13 +21,14 @@ int main(int argc, char** argv) {
   bool no_grid = false;
   bool json = false;
   app.add_option("--world", worlds, "worlds that have a map of the same name");
-  app.add_option("--seeds", seeds, "runs in each world")->check(CLI::Range(1, 1000));
+  app.add_option("--seeds", seeds, "runs in each world").in_range(1, 1000);
   app.add_option("--first", first, "the first seed");
   app.add_option("--errors", errors, "factor on the dead-reckoning errors of the parameter file");
-  app.add_option("--minutes", minutes, "of the robot, at most")->check(CLI::PositiveNumber);
+  app.add_option("--minutes", minutes, "of the robot, at most").positive();
   app.add_flag("--no-grid", no_grid, "walls are not snapped to right angles");
   app.add_flag("--json", json, "one JSON object on the last line");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
 
   nlohmann::json runs = nlohmann::json::array();
   int whole = 0;

@@ -1,6 +1,5 @@
 // Every robot with sonars crosses every world, with people standing and walking in it.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -10,6 +9,7 @@
 
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::test {
 namespace {
@@ -72,7 +72,7 @@ double median(std::vector<double> values) {
 int main(int argc, char** argv) {
   using namespace saphira;
   using namespace saphira::test;
-  CLI::App app{"Robots cross worlds in which people stand and walk"};
+  CommandLine app{"Robots cross worlds in which people stand and walk"};
   std::vector<std::string> robots;
   std::vector<std::string> worlds;
   int seeds = 10;
@@ -85,18 +85,19 @@ int main(int argc, char** argv) {
   bool json = false;
   app.add_option("--robot", robots, "of config/robots; without it: all that have sonars");
   app.add_option("--world", worlds, "of config/worlds; without it: all");
-  app.add_option("--seeds", seeds, "runs of each robot in each world")->check(CLI::Range(1, 1000));
+  app.add_option("--seeds", seeds, "runs of each robot in each world").in_range(1, 1000);
   app.add_option("--first", first, "the first seed");
   app.add_option("--standing", usual.standing, "people who stand on the way or beside it");
   app.add_option("--walking", usual.walking, "people who walk along the way");
   app.add_option("--most", usual.most, "[m] length of the way");
-  app.add_option("--jobs", jobs, "runs at the same time")->check(CLI::Range(1, 64));
+  app.add_option("--jobs", jobs, "runs at the same time").in_range(1, 64);
   app.add_option("--strength", sonar.strength, "[dB] of the sonars: real ones have 36 to 47");
   app.add_option("--cloth", sonar.cloth, "[dB] that people's clothes swallow: 2 to 10");
   app.add_flag("--trace", trace, "prints each contact (with --jobs 1 in order)");
   app.add_flag("--quiet", quiet, "only what went wrong, and the sum");
   app.add_flag("--json", json, "one JSON object on the last line");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     if (robots.empty())
       for (const std::string& name : names_in("robots", ".p"))

@@ -1,5 +1,4 @@
 // Where robots were, by their logs: dead reckoning and registration beside published figures.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include "percept_report.hpp"
 #include "report.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/logs/data_set.hpp"
 #include "saphira/logs/laser_map.hpp"
 #include "saphira/logs/scan_mapping.hpp"
@@ -369,23 +369,24 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Registration on logs of real and simulated robots"};
+  CommandLine app{"Registration on logs of real and simulated robots"};
   Options options;
   app.add_flag("--json", options.json, "one JSON object on the last line");
   app.add_option("--data", options.data, "the folder of the data sets, a folder each")
-      ->envname("SAPHIRA_DATA");
+      .environment("SAPHIRA_DATA");
   app.add_option("--only", options.only,
                  "these alone: intel, fr101, sonar-corridor, office-floor...");
-  auto* log = app.add_option("--log", options.log.raw, "a CARMEN log instead (.gz or not)");
-  app.add_option("--relations", options.log.relations, "its reference relations")->needs(log);
-  app.add_option("--corrected", options.log.corrected, "its corrected log")->needs(log);
+  const Option log = app.add_option("--log", options.log.raw, "a CARMEN log instead (.gz or not)");
+  app.add_option("--relations", options.log.relations, "its reference relations").needs(log);
+  app.add_option("--corrected", options.log.corrected, "its corrected log").needs(log);
   app.add_flag("--synthetic", options.synthetic,
                "full ranges on drives made up instead: other lasers, wheels and floors");
   app.add_option("--report", options.report, "write the tables into this file (Markdown)");
   app.add_option("--plot", options.plot,
                  "draw each drive into FILE-NAME.svg and FILE-NAME-percepts.svg")
-      ->type_name("FILE.svg");
-  CLI11_PARSE(app, argc, argv);
+      .placeholder("FILE.svg");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return run(options);
   } catch (const std::exception& error) {

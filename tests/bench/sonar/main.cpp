@@ -1,5 +1,4 @@
 // Simulated sonars beside real ones: the same statistics of both, in the same places.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +7,7 @@
 
 #include "plot.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "simulated.hpp"
 
 using namespace saphira::bench;
@@ -215,15 +215,16 @@ int run(const fs::path& data, const std::string& plot, bool as_json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Simulated sonars against data of real ones"};
+  CommandLine app{"Simulated sonars against data of real ones"};
   bool as_json = false;
   std::string plot;
   std::string data;
   app.add_flag("--json", as_json, "one JSON object on the last line");
   app.add_option("--plot", plot, "draw the comparison into a picture (SVG)");
   app.add_option("--data", data, "the folder of the data sets (see tests/bench/sonar/README.md)")
-      ->envname("SAPHIRA_DATA");
-  CLI11_PARSE(app, argc, argv);
+      .environment("SAPHIRA_DATA");
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   if (data.empty() || !fs::is_directory(fs::path(data) / "sonar-corridor")) {
     std::cerr << "saphira-bench-sonar: no data" << (data.empty() ? "" : " in " + data)
               << ": give --data (or SAPHIRA_DATA) a folder that holds sonar-calibration, "

@@ -1,6 +1,5 @@
 // How well spoken commands are understood: voices of flite and espeak-ng say what is written in
 // services/agent_interface/test/utterances.txt, clean and with noise, with the keyword and without.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +13,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/speech/recognizer.hpp"
 #include "saphira/speech/voice.hpp"
 #include "support/quantile.hpp"
@@ -247,18 +247,15 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"How well spoken commands are understood"};
-  app.add_option("--utterances", options.utterances, "a file of what is said, and its meanings")
-      ->capture_default_str();
+  CommandLine app{"How well spoken commands are understood"};
+  app.add_option("--utterances", options.utterances, "a file of what is said, and its meanings");
   app.add_option("--seen", options.seen, "voices that the recognizer was tuned with");
   app.add_option("--unseen", options.unseen, "other voices");
-  app.add_option("--every", options.every, "takes one of so many utterances")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  app.add_option("--noise", options.noise_db, "[dB] by which the noise is below the voice")
-      ->capture_default_str();
+  app.add_option("--every", options.every, "takes one of so many utterances").in_range(1, 100);
+  app.add_option("--noise", options.noise_db, "[dB] by which the noise is below the voice");
   app.add_flag("--json", options.json, "one JSON object; progress goes to stderr");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return run(options);
   } catch (const std::exception& error) {

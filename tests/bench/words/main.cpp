@@ -1,6 +1,5 @@
 // How many utterances have the meaning that a person would give them, and how many are acted on
 // wrongly: those of services/agent_interface/test/utterances.txt, or of a file of your own.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "agent_interface/test/utterances.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/command_line/command_line.hpp"
 
 namespace {
 
@@ -52,14 +52,15 @@ int run(const std::string& file, const std::string& grammar_file, bool json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("How utterances are understood");
+  CommandLine app("How utterances are understood");
   std::string file = "services/agent_interface/test/utterances.txt";
   std::string grammar;
   bool json = false;
-  app.add_option("--utterances", file, "lines \"utterance => meaning\"")->capture_default_str();
+  app.add_option("--utterances", file, "lines \"utterance => meaning\"");
   app.add_option("--grammar", grammar, "grammar file [the shipped one]");
   app.add_flag("--json", json, "one JSON object: utterances, right, acted_wrongly");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = app.parse(argc, argv))
+    return *code;
   try {
     return run(file, grammar.empty() ? config_folder() + "/grammars/flakey.grammar" : grammar,
                json);

@@ -4,10 +4,7 @@
 #include <string>
 
 #include "saphira/bus/node.hpp"
-
-namespace CLI {
-class App;
-}
+#include "saphira/command_line/command_line.hpp"
 
 namespace saphira::bus {
 
@@ -31,10 +28,11 @@ const char* version();
 /// code. With --dry-run the stop is requested before `body` begins, whose nodes join nothing: it
 /// reads what it was given, and ends.
 int run_program(int argc, char** argv, const std::string& name, const std::string& description,
-                const std::function<void(CLI::App&)>& add_options,
+                const std::function<void(CommandLine&)>& add_options,
                 const std::function<int(const NodeOptions&, const Stop&)>& body);
 
-/// The options that every program has, for a program with its own command line.
-void add_node_options(CLI::App& app, NodeOptions& options);
+/// The options of a program without a command line: what the environment variables say.
+/// std::invalid_argument: one of them cannot be.
+NodeOptions options_of_environment();
 
 }  // namespace saphira::bus

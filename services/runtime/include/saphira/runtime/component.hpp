@@ -3,11 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "saphira/command_line/command_line.hpp"
 #include "saphira/runtime/shell.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace saphira::runtime {
 
@@ -15,8 +12,8 @@ namespace saphira::runtime {
 struct Component {
   std::string name;    ///< on the bus; its program is saphira-NAME
   std::string effect;  ///< what it is for, in one line
-  /// Adds its options to a command line; `make` sees what was given there.
-  std::function<void(CLI::App&)> add_options;
+  /// Adds its options to a command line; `make` sees what was given there. Empty: it has none.
+  std::function<void(CommandLine&)> add_options;
   Shell::Make make;
 };
 

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace saphira {
+
+/// The variable that an option writes. Its own value is the default, which the help shows unless it
+/// is an empty text, an empty list or none.
+using OptionValue =
+    std::variant<std::string*, std::vector<std::string>*, int*, unsigned*, std::uint16_t*, long*,
+                 unsigned long*, double*, std::vector<double>*, std::optional<std::string>*,
+                 std::optional<bool>*, std::optional<int>*, std::optional<std::uint16_t>*,
+                 std::optional<double>*, std::function<void(const std::string&)>>;
+
+/// One option of a command line. A handle: copies mean the same option.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  const Option& required() const;
+  const Option& in_range(double low, double high) const;  ///< a number, both ends included
+  const Option& positive() const;                         ///< a number above 0
+  const Option& one_of(const std::vector<std::string>& words) const;
+  const Option& existing_file() const;
+  const Option& ipv4() const;
+  /// `complaint` gives what is wrong with a value; empty: nothing.
+  const Option& check(const std::function<std::string(const std::string&)>& complaint) const;
+  const Option& environment(const std::string& name) const;  ///< the value where it is not given
+  const Option& separated_by(char separator) const;          ///< many values in one word
+  const Option& values(int count) const;
+  const Option& values(int least, int most) const;
+  const Option& one_value_each() const;  ///< a list: the option is repeated for each value
+  const Option& last_wins() const;       ///< given twice, it is no mistake
+  const Option& needs(const Option& other) const;
+  const Option& excludes(const Option& other) const;
+  const Option& shows(const std::string& default_text) const;  ///< as default, in the help
+  const Option& describe(const std::string& help) const;
+  const Option& placeholder(const std::string& type) const;  ///< such as FILE.svg, in the help
+  const Option& hidden() const;                              ///< not in the help
+
+  bool given() const;
+  std::string text() const;  ///< as it was given; empty: it was not
+
+ private:
+  friend class CommandLine;
+  CLI::Option* option_;
+};
+
+/// The options of a program. A thin layer over CLI11, whose headers stay out of the programs.
+class CommandLine {
+ public:
+  explicit CommandLine(const std::string& description, const std::string& program = "");
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  /// `names`: "--long,-s", or "word" for a value by its place.
+  template <class T>
+  Option add_option(const std::string& names, T& value, const std::string& help) {
+    return add(names, OptionValue(&value), help);
+  }
+  Option add_action(const std::string& names, std::function<void(const std::string&)> action,
+                    const std::string& help) {
+    return add(names, OptionValue(std::move(action)), help);
+  }
+  /// "--name" sets `value`, "!--name" clears it.
+  Option add_flag(const std::string& names, bool& value, const std::string& help);
+  void add_version(const std::string& text);
+  /// One that was added. std::out_of_range: none is called so.
+  Option option(const std::string& name) const;
+
+  /// Reads the words. Returns the exit code where the program has to end at once: 0 after --help
+  /// and --version, 2 after a mistake, which stderr has then.
+  std::optional<int> parse(int argc, const char* const* argv);
+
+  /// The parser itself, for a program with subcommands.
+  CLI::App& parser() { return *app_; }
+
+ private:
+  Option add(const std::string& names, const OptionValue& value, const std::string& help);
+
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace saphira

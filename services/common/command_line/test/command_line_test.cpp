@@ -1,0 +1,107 @@
+#include "saphira/command_line/command_line.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira {
+namespace {
+
+struct Parsed {
+  std::optional<int> code;
+  std::string out;
+  std::string err;
+};
+
+Parsed parse(CommandLine& line, std::vector<const char*> words) {
+  words.insert(words.begin(), "gauge");
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const std::optional<int> code = line.parse(static_cast<int>(words.size()), words.data());
+  return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+}
+
+TEST(CommandLine, WritesEachKindOfValue) {
+  std::string text;
+  std::vector<std::string> list;
+  double number = 1.5;
+  std::optional<double> maybe;
+  int count = 3;
+  std::uint16_t port = 0;
+  bool flag = false;
+  bool kept = true;
+  std::string acted;
+  CommandLine line("measures", "gauge");
+  line.add_option("text", text, "a text");
+  line.add_option("--list", list, "texts").separated_by(',');
+  line.add_option("--number", number, "a number");
+  line.add_option("--maybe", maybe, "a number or none");
+  line.add_option("--count", count, "how many");
+  line.add_option("--port", port, "a port");
+  line.add_flag("--flag", flag, "sets");
+  line.add_flag("!--no-kept", kept, "clears");
+  line.add_action(
+      "--act", [&](const std::string& word) { acted = word; }, "does something");
+  EXPECT_EQ(parse(line, {"word", "--list", "a,b", "--number", "2.5", "--maybe=-1", "--port", "80",
+                         "--flag", "--no-kept", "--act", "now"})
+                .code,
+            std::nullopt);
+  EXPECT_EQ(text, "word");
+  EXPECT_EQ(list, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(number, 2.5);
+  EXPECT_EQ(maybe, -1.0);
+  EXPECT_EQ(count, 3);
+  EXPECT_EQ(port, 80);
+  EXPECT_TRUE(flag);
+  EXPECT_FALSE(kept);
+  EXPECT_EQ(acted, "now");
+  EXPECT_TRUE(line.option("--count").given() == false && line.option("--port").given());
+  EXPECT_THROW(line.option("--nothing"), std::out_of_range);
+}
+
+TEST(CommandLine, HelpShowsDefaultsThatSaySomething) {
+  std::string empty;
+  std::string full = "office";
+  double speed = 0.3;
+  std::string file;
+  std::string secret = "hush";
+  CommandLine line("measures", "gauge");
+  line.add_option("--empty", empty, "without");
+  line.add_option("--full", full, "with");
+  line.add_option("--speed", speed, "with").in_range(0, 2);
+  line.add_option("--file", file, "to read").required();
+  line.add_option("--secret", secret, "is not shown").hidden();
+  const Parsed help = parse(line, {"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("--empty TEXT "), std::string::npos) << help.out;
+  EXPECT_NE(help.out.find("--full TEXT=office"), std::string::npos) << help.out;
+  EXPECT_NE(help.out.find("in [0 - 2]=0.3"), std::string::npos) << help.out;
+  EXPECT_NE(help.out.find("--file TEXT REQUIRED"), std::string::npos) << help.out;
+  EXPECT_EQ(help.out.find("secret"), std::string::npos) << help.out;
+}
+
+TEST(CommandLine, MistakesAreNamed) {
+  std::string kind;
+  double speed = 0.0;
+  std::string key;
+  std::string even;
+  const auto words = [&](std::vector<const char*> given) {
+    CommandLine line("measures", "gauge");
+    line.add_option("--kind", kind, "one").one_of({"laser", "sonar"});
+    line.add_option("--speed", speed, "[m/s]").positive();
+    const Option first = line.add_option("--key", key, "a file").existing_file();
+    line.add_option("--even", even, "two letters").needs(first).check([](const std::string& text) {
+      return text.size() == 2 ? std::string() : "expected two letters, found " + text;
+    });
+    const Parsed parsed = parse(line, std::move(given));
+    EXPECT_EQ(parsed.code, 2);
+    return parsed.err;
+  };
+  EXPECT_EQ(words({"--sped", "1"}), "gauge: \"--sped\" is not understood: did you mean --speed?\n");
+  EXPECT_NE(words({"--kind", "radar"}).find("radar not in {laser,sonar}"), std::string::npos);
+  EXPECT_NE(words({"--speed", "-1"}).find("--speed"), std::string::npos);
+  EXPECT_NE(words({"--key", "/nowhere"}).find("/nowhere"), std::string::npos);
+  EXPECT_NE(words({"--even", "ab"}).find("--even requires --key"), std::string::npos);
+  EXPECT_NE(words({"--key", "/dev/null", "--even", "abc"}).find("two letters"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace saphira
