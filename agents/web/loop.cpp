@@ -4,6 +4,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace saphira::web {
@@ -26,6 +27,13 @@ std::string header(lws* wsi, lws_token_indexes which) {
   std::array<char, 1024> text{};
   const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
   return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+std::string peer(lws* wsi) {
+  std::array<char, 64> text{};
+  lws_get_peer_simple(wsi, text.data(), text.size());
+  const std::string_view address = text.data();
+  return std::string(address.starts_with("::ffff:") ? address.substr(7) : address);
 }
 
 lws_protocols Loop::descriptors() {

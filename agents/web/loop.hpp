@@ -11,6 +11,9 @@ namespace saphira::web {
 /// The text of a header; empty where it is missing or longer than 1023 bytes.
 std::string header(lws* wsi, lws_token_indexes which);
 
+/// The address of the network that the other side has; IPv4 as four numbers.
+std::string peer(lws* wsi);
+
 /// An event loop of libwebsockets, in one thread, with what our programs need beside connections:
 /// descriptors to wait for, a clock, an end.
 class Loop {

@@ -219,8 +219,8 @@ int main(int argc, char** argv) {
   app.add_option("--triggers", all.triggers, "of all of them");
   app.add_option("--requests", all.requests, "to measure");
   app.add_flag("--json", all.json, "one JSON object");
-  app.add_flag("--serve", all.serve).hidden();
-  app.add_option("--first", all.first).hidden();
+  app.add_flag("--serve", all.serve, "be the agents").hidden();
+  app.add_option("--first", all.first, "of these agents").hidden();
   if (const auto code = app.parse(argc, argv))
     return *code;
   try {

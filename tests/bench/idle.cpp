@@ -12,7 +12,7 @@
 using namespace saphira::bench;
 
 int main(int argc, char** argv) {
-  CommandLine app{"Cost of the idle system, live at 10 Hz"};
+  saphira::CommandLine app{"Cost of the idle system, live at 10 Hz"};
   bool json = false;
   unsigned seconds = 20;
   std::string deployment = "demo";

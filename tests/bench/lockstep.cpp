@@ -22,7 +22,7 @@ nlohmann::json demo(bool single, int seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app{"Lockstep speed of the demo, as multiples of real time"};
+  saphira::CommandLine app{"Lockstep speed of the demo, as multiples of real time"};
   bool json = false;
   int runs = 5;
   app.add_flag("--json", json, "one JSON object on the last line");

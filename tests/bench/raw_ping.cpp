@@ -191,7 +191,7 @@ std::vector<double> ping(std::uint32_t domain, double hz, int count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app{"Two-hop ping over bare Fast DDS between two processes"};
+  saphira::CommandLine app{"Two-hop ping over bare Fast DDS between two processes"};
   double hz = 10.0;
   int count = 300;
   std::uint32_t domain = 199;

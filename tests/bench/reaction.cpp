@@ -226,7 +226,7 @@ int main(int argc, char** argv) {
   int baud = 0;
   app.add_option("--count", count, "samples").in_range(10, 100000);
   app.add_option("--serial", baud, "a serial line of this baud rate between robot and bridge")
-      .one_of({9600, 19200, 38400, 57600, 115200});
+      .one_of({"9600", "19200", "38400", "57600", "115200"});
   if (const auto code = app.parse(argc, argv))
     return *code;
   try {

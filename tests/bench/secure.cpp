@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", json, "one JSON object on the last line");
   app.add_option("--pings", pings, "round trips on each bus").in_range(10, 100000);
   app.add_option("--seconds", seconds, "how long to watch the idle demo; 0: not").in_range(0, 3600);
-  app.add_option("--echo", answering).hidden();
+  app.add_option("--echo", answering, "be the other process").hidden();
   if (const auto code = app.parse(argc, argv))
     return *code;
   if (!answering.empty())

@@ -109,7 +109,8 @@ int main(int argc, char** argv) {
   std::string seed = "1";
   int count = 200;
   app.add_flag("--json", json, "one JSON object on the last line");
-  app.add_option("--baud", baud, "of the line").one_of({9600, 19200, 38400, 57600, 115200});
+  app.add_option("--baud", baud, "of the line")
+      .one_of({"9600", "19200", "38400", "57600", "115200"});
   app.add_option("--seed", seed, "of the simulator");
   app.add_option("--count", count, "reactions").in_range(10, 100000);
   if (const auto code = app.parse(argc, argv))

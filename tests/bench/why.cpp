@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   using namespace saphira::situation;
-  CommandLine app(
+  saphira::CommandLine app(
       "Asks why in each situation of docs/situations.md, and counts what is said falsely");
   bool json = false;
   app.add_flag("--json", json, "one JSON object");

@@ -324,7 +324,7 @@ class Campaign {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app{"Mutated RTPS packets against a running system, on the loopback"};
+  saphira::CommandLine app{"Mutated RTPS packets against a running system, on the loopback"};
   Options options;
   app.add_option("--domain", options.domain, "DDS domain; nobody else's").in_range(0, 232);
   app.add_option("--seconds", options.seconds, "how long").in_range(1, 1000000);

@@ -33,11 +33,7 @@ constexpr const char* kSecurityPolicy =
     "frame-ancestors 'none'";
 
 Caller caller_of(lws* wsi) {
-  std::array<char, 64> peer{};
-  lws_get_peer_simple(wsi, peer.data(), peer.size());
-  std::string_view address = peer.data();
-  if (address.starts_with("::ffff:"))
-    address.remove_prefix(7);
+  const std::string address = web::peer(wsi);
   return {header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN),
           address != kRelayed && (address.starts_with("127.") || address == "::1")};
 }

@@ -39,18 +39,9 @@ std::string new_ticket() {
   return text;
 }
 
-/// /dial/ROBOT and /carry/ROBOT/TICKET, in words.
-std::array<std::string, 3> words_of(const std::string& path) {
-  std::array<std::string, 3> words;
-  std::size_t at = 0;
-  for (std::string& word : words) {
-    if (at >= path.size() || path[at] != '/')
-      break;
-    const std::size_t end = path.find('/', at + 1);
-    word = path.substr(at + 1, end == std::string::npos ? end : end - at - 1);
-    at = end == std::string::npos ? path.size() : end;
-  }
-  return words;
+/// The path that a gateway asks for; empty where it is none of ours.
+Path path_of(lws* wsi) {
+  return parse_path(header(wsi, WSI_TOKEN_GET_URI)).value_or(Path{});
 }
 
 }  // namespace
@@ -81,7 +72,7 @@ struct Relay::Impl {
 
   static Impl& of(lws* wsi) { return *static_cast<Impl*>(lws_context_user(lws_get_context(wsi))); }
   const Robot* robot_of(const std::string& name) const;
-  bool refuses(lws* wsi, const std::string& path) const;
+  bool refuses(lws* wsi, bool dials) const;
   int dialled(lws* wsi, Leg& leg);
   int tell(lws* wsi, const Leg& leg);
   void hung_up(lws* wsi, const Leg& leg);
@@ -107,10 +98,11 @@ const Robot* Relay::Impl::robot_of(const std::string& name) const {
 }
 
 /// Only a gateway that knows its robot's token gets beyond the handshake.
-bool Relay::Impl::refuses(lws* wsi, const std::string& path) const {
+bool Relay::Impl::refuses(lws* wsi, bool dials) const {
   const std::string given = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
-  if (given.starts_with(kBearer) &&
-      rendezvous.knows(words_of(path)[1], std::string_view(given).substr(kBearer.size())))
+  const Path path = path_of(wsi);
+  if (given.starts_with(kBearer) && path.ticket.empty() == dials &&
+      rendezvous.knows(path.robot, std::string_view(given).substr(kBearer.size())))
     return false;
   lws_return_http_status(wsi, HTTP_STATUS_UNAUTHORIZED, "no such robot, or another token");
   return true;
@@ -118,7 +110,7 @@ bool Relay::Impl::refuses(lws* wsi, const std::string& path) const {
 
 /// A gateway dials in. One of that robot that was there before is forgotten: it may be gone.
 int Relay::Impl::dialled(lws* wsi, Leg& leg) {
-  leg.dialled = robot_of(words_of(header(wsi, WSI_TOKEN_GET_URI))[1]);
+  leg.dialled = robot_of(path_of(wsi).robot);
   if (leg.dialled == nullptr)
     return -1;
   Gateway& gateway = gateways[leg.dialled->name];
@@ -165,7 +157,8 @@ int Relay::Impl::arrived(lws* wsi, Leg& leg) {
     return -1;  // nobody has dialled in
   const std::string ticket = new_ticket();
   if (gateway->second.out.size() > Rendezvous::kMost ||
-      !rendezvous.arrive(door->second->name, last + 1, ticket, BootClock::seconds()))
+      !rendezvous.arrive(door->second->name, web::peer(wsi), last + 1, ticket,
+                         BootClock::seconds()))
     return -1;
   leg.visitor = ++last;
   const int one = 1;
@@ -178,8 +171,8 @@ int Relay::Impl::arrived(lws* wsi, Leg& leg) {
 
 /// The gateway has opened a connection for a visitor.
 int Relay::Impl::fetched(lws* wsi, Leg& leg) {
-  const auto words = words_of(header(wsi, WSI_TOKEN_GET_URI));
-  const auto visitor = rendezvous.fetch(words[1], words[2]);
+  const Path path = path_of(wsi);
+  const auto visitor = rendezvous.fetch(path.robot, path.ticket);
   const auto splice = visitor ? splices.find(*visitor) : splices.end();
   if (splice == splices.end())
     return -1;
@@ -222,7 +215,7 @@ int Relay::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void
   auto* const leg = static_cast<Leg*>(user);
   switch (reason) {
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-      return of(wsi).refuses(wsi, header(wsi, WSI_TOKEN_GET_URI)) ? -1 : 0;
+      return of(wsi).refuses(wsi, true) ? -1 : 0;
     case LWS_CALLBACK_ESTABLISHED:
       return of(wsi).dialled(wsi, *leg);
     case LWS_CALLBACK_SERVER_WRITEABLE:
@@ -246,7 +239,7 @@ int Relay::Impl::on_carry(lws* wsi, lws_callback_reasons reason, void* user, voi
   auto* const leg = static_cast<Leg*>(user);
   switch (reason) {
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-      return of(wsi).refuses(wsi, header(wsi, WSI_TOKEN_GET_URI)) ? -1 : 0;
+      return of(wsi).refuses(wsi, false) ? -1 : 0;
     case LWS_CALLBACK_ESTABLISHED:
       return of(wsi).fetched(wsi, *leg);
     case LWS_CALLBACK_SERVER_WRITEABLE:

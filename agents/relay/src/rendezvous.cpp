@@ -94,6 +94,20 @@ Address parse_address(std::string_view text) {
   return address;
 }
 
+std::optional<Path> parse_path(std::string_view text) {
+  const bool dials = text.starts_with("/dial/");
+  if (!dials && !text.starts_with("/carry/"))
+    return std::nullopt;
+  text.remove_prefix(dials ? 6 : 7);
+  const std::size_t slash = dials ? text.size() : text.find('/');
+  if (slash == std::string_view::npos || !is_name(text.substr(0, slash)))
+    return std::nullopt;
+  Path path{std::string(text.substr(0, slash)), {}};
+  if (!dials)
+    path.ticket = text.substr(slash + 1);
+  return dials || is_name(path.ticket) ? std::optional(path) : std::nullopt;
+}
+
 bool Rendezvous::knows(std::string_view robot, std::string_view token) const {
   bool known = false;
   for (const Robot& each : robots_) {
@@ -106,13 +120,18 @@ bool Rendezvous::knows(std::string_view robot, std::string_view token) const {
   return known;
 }
 
-bool Rendezvous::arrive(const std::string& robot, Visitor visitor, const std::string& ticket,
-                        double now) {
-  const auto there = std::count_if(guests_.begin(), guests_.end(),
-                                   [&](const auto& each) { return each.second.robot == robot; });
-  if (static_cast<std::size_t>(there) >= kMost)
+bool Rendezvous::arrive(const std::string& robot, const std::string& from, Visitor visitor,
+                        const std::string& ticket, double now) {
+  std::size_t there = 0;
+  std::size_t from_one = 0;
+  for (const auto& [other, guest] : guests_)
+    if (guest.robot == robot) {
+      ++there;
+      from_one += guest.from == from ? 1 : 0;
+    }
+  if (there >= kMost || from_one >= kMostFromOne)
     return false;
-  guests_[visitor] = {robot, ticket, now, true};
+  guests_[visitor] = {robot, from, ticket, now, true};
   return true;
 }
 

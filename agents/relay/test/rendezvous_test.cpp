@@ -62,7 +62,7 @@ TEST(Relay, KnowsAGatewayByRobotAndToken) {
 
 TEST(Relay, AVisitorIsFetchedOnceAndByTheirRobotAlone) {
   Rendezvous relay({{"pioneer", 1, kToken}, {"flakey", 2, kToken}});
-  EXPECT_TRUE(relay.arrive("pioneer", 7, "t7", 0.0));
+  EXPECT_TRUE(relay.arrive("pioneer", "here", 7, "t7", 0.0));
   EXPECT_FALSE(relay.fetch("flakey", "t7"));
   EXPECT_FALSE(relay.fetch("pioneer", "t8"));
   EXPECT_EQ(relay.fetch("pioneer", "t7"), Rendezvous::Visitor{7});
@@ -74,8 +74,8 @@ TEST(Relay, AVisitorIsFetchedOnceAndByTheirRobotAlone) {
 
 TEST(Relay, AVisitorWhomNobodyFetchesLeaves) {
   Rendezvous relay({{"pioneer", 1, kToken}});
-  relay.arrive("pioneer", 1, "a", 0.0);
-  relay.arrive("pioneer", 2, "b", 5.0);
+  relay.arrive("pioneer", "here", 1, "a", 0.0);
+  relay.arrive("pioneer", "here", 2, "b", 5.0);
   EXPECT_TRUE(relay.expire(10.0).empty());
   EXPECT_EQ(relay.expire(10.1), std::vector<Rendezvous::Visitor>{1});
   EXPECT_FALSE(relay.fetch("pioneer", "a"));
@@ -85,11 +85,32 @@ TEST(Relay, AVisitorWhomNobodyFetchesLeaves) {
 TEST(Relay, ACrowdAtOneRobotKeepsNobodyFromAnother) {
   Rendezvous relay({{"pioneer", 1, kToken}, {"flakey", 2, kToken}});
   for (Rendezvous::Visitor i = 0; i < Rendezvous::kMost; ++i)
-    EXPECT_TRUE(relay.arrive("pioneer", i, std::to_string(i), 0.0));
-  EXPECT_FALSE(relay.arrive("pioneer", 1000, "x", 0.0));
-  EXPECT_TRUE(relay.arrive("flakey", 1001, "y", 0.0));
+    EXPECT_TRUE(relay.arrive("pioneer", std::to_string(i % 8), i, std::to_string(i), 0.0));
+  EXPECT_FALSE(relay.arrive("pioneer", "here", 1000, "x", 0.0));
+  EXPECT_TRUE(relay.arrive("flakey", "here", 1001, "y", 0.0));
   relay.leave(3);
-  EXPECT_TRUE(relay.arrive("pioneer", 1002, "z", 0.0));
+  EXPECT_TRUE(relay.arrive("pioneer", "here", 1002, "z", 0.0));
+}
+
+TEST(Relay, OneAddressCannotTakeAllPlaces) {
+  Rendezvous relay({{"pioneer", 1, kToken}, {"flakey", 2, kToken}});
+  for (Rendezvous::Visitor i = 0; i < Rendezvous::kMostFromOne; ++i)
+    EXPECT_TRUE(relay.arrive("pioneer", "10.0.0.1", i, std::to_string(i), 0.0));
+  EXPECT_FALSE(relay.arrive("pioneer", "10.0.0.1", 1000, "x", 0.0));
+  EXPECT_TRUE(relay.arrive("pioneer", "10.0.0.2", 1001, "y", 0.0));
+  EXPECT_TRUE(relay.arrive("flakey", "10.0.0.1", 1002, "z", 0.0));
+  relay.leave(3);
+  EXPECT_TRUE(relay.arrive("pioneer", "10.0.0.1", 1003, "x", 0.0));
+}
+
+TEST(Relay, AGatewayComesByTwoPaths) {
+  EXPECT_EQ(parse_path("/dial/pioneer")->robot, "pioneer");
+  EXPECT_EQ(parse_path("/dial/pioneer")->ticket, "");
+  EXPECT_EQ(parse_path("/carry/pioneer/0a1b")->robot, "pioneer");
+  EXPECT_EQ(parse_path("/carry/pioneer/0a1b")->ticket, "0a1b");
+  for (const char* const text : {"", "/", "/dial", "/dial/", "/dial/a/b", "/carry/pioneer",
+                                 "/carry/pioneer/", "/carry//t", "/carry/a/b/c", "/other/a"})
+    EXPECT_FALSE(parse_path(text)) << text;
 }
 
 }  // namespace

@@ -124,10 +124,11 @@ int main(int argc, char** argv) {
   return run_program(
       argc, argv, "peer", "The other side of a test of the bus",
       [&](CommandLine& app) {
-        app.add_option("--role", wanted.role).one_of({"writer", "reader", "watch", "answer"});
-        app.add_option("--hz", wanted.hz).positive();
-        app.add_option("--count", wanted.count);
-        app.add_option("--seconds", wanted.seconds);
+        app.add_option("--role", wanted.role, "of this process")
+            .one_of({"writer", "reader", "watch", "answer"});
+        app.add_option("--hz", wanted.hz, "samples a second").positive();
+        app.add_option("--count", wanted.count, "of samples");
+        app.add_option("--seconds", wanted.seconds, "at most");
       },
       [&](const NodeOptions& options, const Stop& stop) {
         Node node(options);

@@ -64,9 +64,11 @@ TEST(System, TheDrawingInTheDocumentsIsOfToday) {
 // Programs that run several services offer them together.
 TEST(System, NoTwoServicesHaveAnOptionOfTheSameName) {
   CommandLine app("all", "all");
-  for (const runtime::Component& service : services())
-    if (service.add_options)
-      EXPECT_NO_THROW(service.add_options(app)) << service.name;
+  for (const runtime::Component& service : services()) {
+    if (!service.add_options)
+      continue;
+    EXPECT_NO_THROW(service.add_options(app)) << service.name;
+  }
 }
 
 TEST(System, TheTableOfTheBridgeIsTrue) {

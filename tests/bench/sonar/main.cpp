@@ -215,7 +215,7 @@ int run(const fs::path& data, const std::string& plot, bool as_json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine app{"Simulated sonars against data of real ones"};
+  saphira::CommandLine app{"Simulated sonars against data of real ones"};
   bool as_json = false;
   std::string plot;
   std::string data;

@@ -73,15 +73,13 @@ const Option& Option::required() const {
   return *this;
 }
 
+const Option& Option::in_range(int low, int high) const {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
 const Option& Option::in_range(double low, double high) const {
-  // A whole range reads as one: "INT in [1 - 9]".
-  const auto whole = [](double value) {
-    return value == static_cast<double>(static_cast<long>(value));
-  };
-  if (whole(low) && whole(high))
-    option_->check(CLI::Range(static_cast<long>(low), static_cast<long>(high)));
-  else
-    option_->check(CLI::Range(low, high));
+  option_->check(CLI::Range(low, high));
   return *this;
 }
 

@@ -32,9 +32,9 @@ TEST(CommandLine, WritesEachKindOfValue) {
   CommandLine line("measures", "gauge");
   line.add_option("text", text, "a text");
   line.add_option("--list", list, "texts").separated_by(',');
-  line.add_option("--number", number, "a number");
+  line.add_option("--number", number, "a number").in_range(0.0, 3.0);
   line.add_option("--maybe", maybe, "a number or none");
-  line.add_option("--count", count, "how many");
+  line.add_option("--count", count, "how many").in_range(1, 9);
   line.add_option("--port", port, "a port");
   line.add_flag("--flag", flag, "sets");
   line.add_flag("!--no-kept", kept, "clears");
@@ -66,7 +66,7 @@ TEST(CommandLine, HelpShowsDefaultsThatSaySomething) {
   CommandLine line("measures", "gauge");
   line.add_option("--empty", empty, "without");
   line.add_option("--full", full, "with");
-  line.add_option("--speed", speed, "with").in_range(0, 2);
+  line.add_option("--speed", speed, "with").in_range(0.0, 2.0);
   line.add_option("--file", file, "to read").required();
   line.add_option("--secret", secret, "is not shown").hidden();
   const Parsed help = parse(line, {"--help"});

@@ -30,6 +30,14 @@ struct Address {
 /// std::invalid_argument that says what is expected. ws:// is for this machine alone.
 Address parse_address(std::string_view text);
 
+/// The path by which a gateway comes: /dial/ROBOT or /carry/ROBOT/TICKET.
+struct Path {
+  std::string robot;
+  std::string ticket;  ///< empty: it dials in
+};
+/// Nothing where it is neither.
+std::optional<Path> parse_path(std::string_view text);
+
 /// Brings those who come to a robot's port together with the connections that its gateway opens for
 /// them. Pure. Times [s] may begin anywhere.
 class Rendezvous {
@@ -42,9 +50,10 @@ class Rendezvous {
   /// True where this is the token of that robot. Takes as long for a wrong one.
   bool knows(std::string_view robot, std::string_view token) const;
 
-  /// Somebody has come to the port of a robot, and is fetched by this ticket. False: too many are
-  /// there.
-  bool arrive(const std::string& robot, Visitor visitor, const std::string& ticket, double now);
+  /// Somebody has come from an address of the network to the port of a robot, and is fetched by
+  /// this ticket. False: too many are there.
+  bool arrive(const std::string& robot, const std::string& from, Visitor visitor,
+              const std::string& ticket, double now);
   /// The gateway of that robot fetches the visitor of a ticket. Nothing: nobody of that ticket
   /// waits.
   std::optional<Visitor> fetch(const std::string& robot, const std::string& ticket);
@@ -53,12 +62,14 @@ class Rendezvous {
   /// Those who have waited too long: they have left now.
   std::vector<Visitor> expire(double now);
 
-  static constexpr std::size_t kMost = 64;   ///< visitors of a robot
-  static constexpr double kPatience = 10.0;  ///< [s] that a visitor waits to be fetched
+  static constexpr std::size_t kMost = 64;         ///< visitors of a robot
+  static constexpr std::size_t kMostFromOne = 24;  ///< of these from one address
+  static constexpr double kPatience = 10.0;        ///< [s] that a visitor waits to be fetched
 
  private:
   struct Guest {
     std::string robot;
+    std::string from;
     std::string ticket;
     double since = 0.0;
     bool waits = true;

@@ -31,6 +31,7 @@ class Option {
   explicit Option(CLI::Option& option) : option_(&option) {}
 
   const Option& required() const;
+  const Option& in_range(int low, int high) const;        ///< a whole number, both ends included
   const Option& in_range(double low, double high) const;  ///< a number, both ends included
   const Option& positive() const;                         ///< a number above 0
   const Option& one_of(const std::vector<std::string>& words) const;

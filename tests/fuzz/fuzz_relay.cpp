@@ -1,0 +1,83 @@
+// What a relay reads, a line each: its file of robots, addresses and paths; and visitors who come
+// (+), are fetched (/carry) and leave (-) in any order. Each text is taken or is an error in words;
+// nobody is fetched twice or by another robot, and the places of a robot are bounded.
+
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "saphira/relay/rendezvous.hpp"
+
+using namespace saphira::relay;
+
+namespace {
+
+void expect(bool holds) {
+  if (!holds)
+    std::abort();
+}
+
+/// One line to every reader of text.
+void read(const std::string& line) {
+  try {
+    for (const Robot& robot : parse_robots("robots", line))
+      expect(!robot.name.empty() && robot.port > 0 && robot.port < 65536);
+  } catch (const std::invalid_argument& error) {
+    expect(std::string_view(error.what()).starts_with("robots"));
+  }
+  try {
+    const Address address = parse_address(line);
+    expect(!address.host.empty() && !address.robot.empty() && address.port > 0);
+  } catch (const std::invalid_argument& error) {
+    expect(*error.what() != 0);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  Rendezvous relay({{"pioneer", 1, "0123456789abcdef"}, {"flakey", 2, "fedcba9876543210"}});
+  std::map<std::string, std::set<Rendezvous::Visitor>> there;  // by robot
+  std::map<Rendezvous::Visitor, std::string> waiting;          // robot
+  Rendezvous::Visitor last = 0;
+  double now = 0.0;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line(text.substr(at, end - at));
+    at = end + 1;
+    now += 0.5;
+    read(line);
+    for (const Rendezvous::Visitor gone : relay.expire(now)) {
+      expect(waiting.contains(gone));
+      there[waiting[gone]].erase(gone);
+      waiting.erase(gone);
+    }
+    if (line.starts_with("+")) {
+      const std::string robot = line.find("flakey") == std::string::npos ? "pioneer" : "flakey";
+      ++last;
+      if (relay.arrive(robot, line, last, std::to_string(last), now)) {
+        there[robot].insert(last);
+        waiting[last] = robot;
+      }
+      expect(there[robot].size() <= Rendezvous::kMost);
+    } else if (const auto path = parse_path(line)) {
+      if (const auto visitor = relay.fetch(path->robot, path->ticket)) {
+        expect(waiting.contains(*visitor) && waiting[*visitor] == path->robot);
+        waiting.erase(*visitor);
+      }
+    } else if (line.starts_with("-") && last > 0) {
+      const Rendezvous::Visitor visitor = 1 + line.size() % last;
+      relay.leave(visitor);
+      waiting.erase(visitor);
+      there["pioneer"].erase(visitor);
+      there["flakey"].erase(visitor);
+    }
+  }
+  return 0;
+}
