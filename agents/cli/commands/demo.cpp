@@ -336,7 +336,7 @@ class Demo {
     // Children first: they come up while we make our node.
     supervisor_.start();
     // Other commands find it by that.
-    const RunningDemo found(node_options_.robot, node_options_.domain);
+    const FoundBus found(bus_of("the demo", node_options_));
     drive(stop);
     const bool interrupted = stop.requested();
     if (screen_.on() && !address_.empty() && !interrupted)

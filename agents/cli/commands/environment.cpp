@@ -21,6 +21,11 @@ std::map<std::string, std::string> as_environment(const bus::NodeOptions& option
           {"SAPHIRA_SECURITY", options.security.empty() ? bus::kOpenBus : options.security}};
 }
 
+RunningBus bus_of(const std::string& what, const bus::NodeOptions& options) {
+  return {what,          options.robot,    options.domain, name_of(options.profile),
+          options.peers, options.interface};
+}
+
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {
   const char* const given = std::getenv("SAPHIRA_DOMAIN");
   // Above 100 the ports of a domain run into those that the kernel gives out.

@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "environment.hpp"
 #include "run_folder.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/cli/printer.hpp"
+#include "watch.hpp"
 
 namespace saphira::cli {
 namespace {
@@ -27,24 +29,28 @@ int print_help(const CLI::App& root, const std::string& name) {
   return bus::kExitUsage;
 }
 
-/// Where no bus was named and nothing of ours is up but a demonstration, that one is meant.
-bus::NodeOptions with_demo(const CLI::App& root, bus::NodeOptions options) {
+/// Where no bus is named, a command means one that runs on this machine.
+bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
   static const std::set<std::string> others{"demo",  "scenario", "up",       "check", "stop",
                                             "renew", "log",      "security", "bench", "complete"};
-  for (const char* const option : {"--robot", "--domain", "--profile", "--peer"})
+  for (const char* const option : {"--robot", "--domain", "--profile", "--peer", "--interface"})
     if (root.get_option(option)->count() > 0)
       return options;
   const auto commands = root.get_subcommands();
-  if (commands.empty() || others.contains(commands.front()->get_name()) ||
-      !running_deployments().empty())
+  if (commands.empty() || others.contains(commands.front()->get_name()))
     return options;
-  const DemoBus demo = running_demo();
-  if (demo.robot.empty())
+  const RunningBus usual = bus_of("", options);
+  const std::vector<RunningBus> running = running_buses();
+  const RunningBus* const meant = bus_meant(usual, running);
+  if (meant == nullptr)
     return options;
-  complain("saphira: of the demo that runs here (--robot %s --domain %u)\n", demo.robot.c_str(),
-           demo.domain);
-  options.robot = demo.robot;
-  options.domain = demo.domain;
+  complain("saphira: of %s that runs here (%s)\n", meant->what.c_str(),
+           options_of(*meant, usual).c_str());
+  options.robot = meant->robot;
+  options.domain = meant->domain;
+  options.profile = profile_of(meant->profile);
+  options.peers = meant->peers;
+  options.interface = meant->interface;
   return options;
 }
 
@@ -107,7 +113,7 @@ int main(int argc, char** argv) {
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {
         if (chosen.run) {
-          const int code = chosen.run(cli::with_demo(*root, options), stop);
+          const int code = chosen.run(cli::with_running_bus(*root, options), stop);
           cli::flush_output();
           return code;
         }

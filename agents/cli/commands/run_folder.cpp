@@ -5,14 +5,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 
 namespace saphira::cli {
 
 namespace {
+
+constexpr const char* kServiceFolder = "/var/lib/saphira";  ///< of saphira@.service
 
 /// Makes a folder that only we can use; one that somebody else made for us is refused.
 void make_own(const std::string& path) {
@@ -91,42 +95,55 @@ std::vector<Running> running_deployments() {
   return all;
 }
 
-RunningDemo::RunningDemo(const std::string& robot, unsigned domain) {
-  const std::string folder = own_folder() + "/demos";
-  make_own(folder);
-  path_ = folder + "/" + robot;
-  lock_ = lock(path_);
-  const std::string text = robot + " " + std::to_string(domain) + "\n";
-  if (lock_ < 0 || ftruncate(lock_, 0) != 0 || ::write(lock_, text.data(), text.size()) < 0)
+FoundBus::FoundBus(const RunningBus& bus) {
+  const std::string folder = own_folder() + "/buses";
+  // Others of this machine may read it: a service has another user than the people who command it.
+  mkdir(folder.c_str(), 0755);
+  path_ =
+      folder + "/" + bus.robot + "-" + std::to_string(bus.domain) + "-" + std::to_string(getpid());
+  lock_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const std::string text = to_text(bus);
+  if (lock_ < 0 || flock(lock_, LOCK_EX) != 0 || ::write(lock_, text.data(), text.size()) < 0)
     throw std::runtime_error(path_ + " cannot be written");
 }
 
-RunningDemo::~RunningDemo() {
+FoundBus::~FoundBus() {
   unlink(path_.c_str());
   close(lock_);
 }
 
-DemoBus running_demo() {
-  DemoBus newest;
-  std::filesystem::file_time_type at;
+std::vector<RunningBus> running_buses() {
+  struct Found {
+    std::filesystem::file_time_type at;
+    RunningBus bus;
+  };
+  std::vector<Found> found;
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(own_folder() + "/demos", none)) {
-    const std::string path = entry.path();
-    // Who can have the lock is the only one: it was killed.
-    if (const int file = lock(path); file >= 0) {
-      unlink(path.c_str());
+  const std::string own = own_folder();
+  for (const std::string& folder : std::set<std::string>{own, kServiceFolder})
+    for (const auto& entry : std::filesystem::directory_iterator(folder + "/buses", none)) {
+      const std::string path = entry.path();
+      const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+      if (file < 0)
+        continue;
+      // A lock that can be had is of a program that was killed.
+      const bool dead = flock(file, LOCK_SH | LOCK_NB) == 0;
       close(file);
-      continue;
+      if (dead) {
+        unlink(path.c_str());
+        continue;
+      }
+      std::string text;
+      std::getline(std::ifstream(path), text);
+      if (auto bus = parse_running_bus(text))
+        found.push_back({entry.last_write_time(none), std::move(*bus)});
     }
-    DemoBus bus;
-    const auto written = entry.last_write_time(none);
-    if ((std::ifstream(path) >> bus.robot >> bus.domain) &&
-        (newest.robot.empty() || written > at)) {
-      newest = bus;
-      at = written;
-    }
-  }
-  return newest;
+  std::sort(found.begin(), found.end(),
+            [](const Found& one, const Found& other) { return one.at > other.at; });
+  std::vector<RunningBus> buses;
+  for (Found& each : found)
+    buses.push_back(std::move(each.bus));
+  return buses;
 }
 
 std::string log_of(const std::string& name) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "saphira/cli/running_bus.hpp"
+
 namespace saphira::cli {
 
 /// A folder of ours for what runs: sockets, and what must outlast a restart.
@@ -35,26 +37,21 @@ std::vector<Running> running_deployments();
 /// What is said by the deployment of that name while it has no terminal.
 std::string log_of(const std::string& name);
 
-/// A demonstration that runs on this machine, with a bus of its own: commands of this user that
-/// name no bus are meant for it, as long as the object lives.
-class RunningDemo {
+/// Lets commands that name no bus find this one, as long as the object lives (running_buses).
+class FoundBus {
  public:
-  RunningDemo(const std::string& robot, unsigned domain);
-  ~RunningDemo();
-  RunningDemo(const RunningDemo&) = delete;
-  RunningDemo& operator=(const RunningDemo&) = delete;
+  explicit FoundBus(const RunningBus& bus);
+  ~FoundBus();
+  FoundBus(const FoundBus&) = delete;
+  FoundBus& operator=(const FoundBus&) = delete;
 
  private:
   std::string path_;
   int lock_ = -1;
 };
 
-/// The robot and domain of the newest one; robot empty: none runs.
-struct DemoBus {
-  std::string robot;
-  unsigned domain = 0;
-};
-DemoBus running_demo();
+/// The buses of this machine, newest first: of this user, and of the system's service.
+std::vector<RunningBus> running_buses();
 
 /// That a robot has each of its programs once on this machine, by whatever deployments.
 class ProgramLocks {

@@ -304,7 +304,7 @@ int scenario(const ScenarioOptions& options, const bus::NodeOptions& given, cons
     story::Cast(read_file(casts.back()), casts.back());  // mistakes are told before anything runs
   }
   const bus::NodeOptions node = own_bus(given, "flakey");
-  const RunningDemo found(node.robot, node.domain);
+  const FoundBus found(bus_of("the scenario", node));
   const bool several = casts.size() * options.seeds > 1;
   Sum sum;
   for (const std::string& cast : casts)

@@ -68,6 +68,19 @@ std::string name_of(const Deployment& deployment, const bus::NodeOptions& option
          std::to_string(deployment.bus.domain.value_or(options.domain));
 }
 
+/// Its bus, for commands that name none.
+RunningBus bus_of(const Deployment& deployment, const bus::NodeOptions& options) {
+  RunningBus bus = cli::bus_of(
+      "the deployment " + std::filesystem::path(deployment.file).stem().string(), options);
+  bus.robot = deployment.bus.robot.value_or(bus.robot);
+  bus.domain = deployment.bus.domain.value_or(bus.domain);
+  bus.profile = deployment.bus.profile.value_or(bus.profile);
+  bus.interface = deployment.bus.interface.value_or(bus.interface);
+  if (!deployment.bus.peers.empty())
+    bus.peers = deployment.bus.peers;
+  return bus;
+}
+
 /// `saphira renew` asks for new versions by SIGUSR1.
 class RenewSignal {
  public:
@@ -141,6 +154,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
   const Supervisor::Print print = prefixed(children);
   Supervisor supervisor(std::move(children), print);
   supervisor.start();
+  const FoundBus found(bus_of(deployment, options));
   const std::string started =
       std::to_string(supervisor.children().size()) + " programs of " + deployment.file;
   print({}, started + kAreStarted);

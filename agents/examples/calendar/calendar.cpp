@@ -7,15 +7,14 @@
 #include <map>
 #include <saphira/bus/agent.hpp>
 #include <saphira/bus/program.hpp>
-
-#include "saphira/command_line/command_line.hpp"
+#include <saphira/command_line/command_line.hpp>
 
 namespace bus = saphira::bus;
 namespace v1 = saphira::v1;
 
 int main(int argc, char** argv) {
   std::vector<std::string> entries;
-  const auto add_options = [&](CommandLine& app) {
+  const auto add_options = [&](saphira::CommandLine& app) {
     app.add_option("entries", entries, "PERSON=PLACE, for each that it knows").required();
   };
   const auto body = [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {

@@ -6,8 +6,7 @@
 #include <iostream>
 #include <saphira/bus/goal_client.hpp>
 #include <saphira/bus/program.hpp>
-
-#include "saphira/command_line/command_line.hpp"
+#include <saphira/command_line/command_line.hpp>
 
 namespace bus = saphira::bus;
 namespace v1 = saphira::v1;
@@ -15,7 +14,7 @@ namespace v1 = saphira::v1;
 int main(int argc, char** argv) {
   double x = 0.0;
   double y = 0.0;
-  const auto add_options = [&](CommandLine& app) {
+  const auto add_options = [&](saphira::CommandLine& app) {
     app.add_option("x", x, "meters ahead").required();
     app.add_option("y", y, "meters to the left").required();
   };

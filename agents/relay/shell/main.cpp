@@ -20,9 +20,9 @@ std::vector<relay::Robot> read_robots(const std::string& file) {
   text << in.rdbuf();
   struct stat state {};
   if (!in || stat(file.c_str(), &state) != 0)
-    throw std::runtime_error(file + ": cannot be read");
+    throw std::invalid_argument(file + ": cannot be read");
   if ((state.st_mode & 077U) != 0)
-    throw std::runtime_error(file + ": others may read the robots' tokens; chmod 600 it");
+    throw std::invalid_argument(file + ": others may read the robots' tokens; chmod 600 it");
   return relay::parse_robots(file, text.str());
 }
 
@@ -56,9 +56,12 @@ int main(int argc, char** argv) {
     std::printf("listens for robots on port %d\n", options.dial_port);
     std::fflush(stdout);
     server.run(stop);
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "saphira-relay: %s\n", error.what());
+    return 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "saphira-relay: %s\n", error.what());
-    return 1;
+    return 3;
   }
   return 0;
 }

@@ -17,19 +17,20 @@ namespace saphira::bus {
 
 namespace {
 
-/// Where the credentials of this machine or user are, if it has any. A user who has an authority
-/// has them also before they are made: nothing starts open by accident then.
+/// The folder of credentials of this user, or else of this machine; empty: there is none. A user who
+/// has an authority has one also before it is made: nothing starts open by accident then.
 std::string usual_security() {
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
     return std::filesystem::is_directory(path, error);
   };
+  const std::string folder = user_folder();
+  const std::string user = folder + "/credentials";
+  if (!folder.empty() && is_folder(user))
+    return user;
   if (const std::string machine = "/etc/saphira/credentials"; is_folder(machine))
     return machine;
-  const std::string user = user_folder();
-  if (!user.empty() && (is_folder(user + "/credentials") || is_folder(user + "/authority")))
-    return user + "/credentials";
-  return {};
+  return !folder.empty() && is_folder(folder + "/authority") ? user : std::string();
 }
 
 void add_node_options(CommandLine& app, NodeOptions& options) {
