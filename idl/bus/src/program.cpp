@@ -17,8 +17,8 @@ namespace saphira::bus {
 
 namespace {
 
-/// The folder of credentials of this user, or else of this machine; empty: there is none. A user who
-/// has an authority has one also before it is made: nothing starts open by accident then.
+/// The folder of credentials of this user, or else of this machine; empty: there is none. A user
+/// who has an authority has one also before it is made: nothing starts open by accident then.
 std::string usual_security() {
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
