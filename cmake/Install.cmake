@@ -1,6 +1,6 @@
-# What is installed beside the programs, and the package that find_package(saphira) finds: with it
-# an agent (agents/examples) or a plug-in of behaviors (services/behaviors/examples) needs this
-# project's installed tree alone.
+# The installation of all files beside the programs, and the package for find_package(saphira): with it
+# an agent (agents/examples) or a plug-in of behaviors (services/behaviors/examples) needs only this
+# project's installed tree.
 include(CMakePackageConfigHelpers)
 
 # As packages have it (cmake/Package.cmake): what runs, what one builds with, what one reads.

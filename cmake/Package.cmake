@@ -8,7 +8,7 @@ endif()
 set(package ${CMAKE_SOURCE_DIR}/cmake/package)
 set(packed ${CMAKE_BINARY_DIR}/package)
 
-install(FILES ${package}/saphira@.service DESTINATION lib/systemd/system)
+install(FILES ${package}/saphira@.service ${package}/saphira-relay.service DESTINATION lib/systemd/system)
 install(FILES ${package}/saphira.conf DESTINATION lib/sysusers.d)
 
 # Manual pages, made of what the programs say to --help. help2man is looked for when packages are made.
@@ -20,7 +20,7 @@ install(DIRECTORY ${packed}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTION
 install(FILES ${packed}/man/saphira-speech.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
         COMPONENT speech OPTIONAL)
 
-# What Debian's policy asks of each package: copyright and changelog.
+# Debian's policy requires a copyright file and a changelog in each package.
 set(components core dev doc)
 if(TARGET saphira-speech)
   list(APPEND components speech)

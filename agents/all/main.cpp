@@ -76,7 +76,7 @@ struct Talk {
   double time_limit = 1200.0;
 };
 
-/// What runs.
+/// The parts that run in this process.
 struct Programs {
   sim::HostOptions robot;
   bridge::BridgeOptions link;

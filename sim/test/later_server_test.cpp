@@ -364,7 +364,7 @@ TEST(LaterServer, TheWatchdogIsTheFiles) {
   EXPECT_EQ(server.counters().watchdog_stops, 1U);
 }
 
-// Whatever number comes, with whatever argument: counted, and the robot still answers.
+// The server survives every command number with every kind of argument, and counts unknown ones.
 TEST(LaterServer, EveryNumberIsSurvived) {
   Bench b("p3dx-sh");
   b.open();

@@ -215,7 +215,7 @@ TEST_F(SimulationTest, AStepIsMadeWhenAllHaveAskedForIt) {
   EXPECT_EQ(simulation.server(1).robot().velocity(), 0.0);
 }
 
-// Whoever comes and speaks first.
+// The result is the same, whichever client connects and sends first.
 TEST_F(SimulationTest, TheOrderOfTheClientsDoesNotMatter) {
   const auto run = [&](bool turned) {
     ServerOptions options;

@@ -80,7 +80,7 @@ std::string credentials(const TempDir& folder) {
   return authority + "/members/demo";
 }
 
-// What the bus hides from others changes nothing of what the robot does.
+// Security on the bus does not change the robot's trajectory.
 TEST(SecuredDemo, IsTheSameAsTheOpenOne) {
   const TempDir folder;
   const std::string security = credentials(folder);

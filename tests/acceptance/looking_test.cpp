@@ -103,7 +103,7 @@ TEST_F(LookingTest, ListsInterruptsAndResumesProcesses) {
                            "execute-current-behaviors", "execute-intentions"})
     EXPECT_TRUE(has(list.text, name)) << list.text;
 
-  // What drives is suspended: the robot stands until it is resumed.
+  // Each of the two processes that drive is suspended: the robot stands until it is resumed.
   for (const auto& [service, process] : {std::pair{"behaviors", "execute-current-behaviors"},
                                          {"intentions", "execute-intentions"}}) {
     const Outcome asked = run({"processes", "interrupt", service, process});

@@ -138,7 +138,7 @@ std::string way_of_building(bool single_process) {
   return system.end();
 }
 
-// What the activity asks of registration counts in the same cycle in every run.
+// The requests of the activity to registration take effect in the same cycle in every run.
 TEST(MapRequests, AreHeardInTheSameCycleInOneProcessAndInMany) {
   const std::string many = way_of_building(false);
   const std::vector<sim::TraceRow> rows = sim::parse_trace(many, "trace.csv");

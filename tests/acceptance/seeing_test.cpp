@@ -87,7 +87,7 @@ TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
   EXPECT_EQ(first, run());
 }
 
-// What the comment of the deployment promises.
+// The deployment's comment holds: blob-search finds the colour of channel A.
 TEST(SeeingDeployment, FindsTheColourThatItsVisionSystemWasTold) {
   const TempDir folder;
   const std::string robot = "seeing-" + std::to_string(getpid());

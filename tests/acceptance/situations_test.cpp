@@ -1,5 +1,5 @@
-// What saphira says of a running robot in situations that are made on purpose (docs/situations.md
-// has those that are made of samples).
+// The answers of saphira about a running robot in situations that this test brings about
+// (docs/situations.md has those that are constructed from samples).
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -96,11 +96,11 @@ TEST_F(Situations, AServiceHangsWhileAGoalIsUnderway) {
   EXPECT_FALSE(has(hangs, "no goal")) << hangs;
   until({"status"}, {"trouble: intentions"});
   kill(intentions, SIGCONT);
-  // Who hangs for long is started again by the supervisor.
+  // A service that hangs for long is restarted by the supervisor.
   goal.signal(SIGINT);
   goal.wait();
   until({"why"}, {"The robot stands", "canceled"});
-  // Of a past cycle what was then is told, and not what is now.
+  // The answer about a past cycle describes that cycle, and not the present.
   const std::string past = said({"why", "--cycle", "-20"});
   EXPECT_FALSE(has(past, "nobody has asked")) << past;
 }

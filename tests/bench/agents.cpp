@@ -1,4 +1,4 @@
-// What it costs to ask by way of the facilitator: a routed request (asker, facilitator, agent and
+// The cost of a request through the facilitator: a routed request (asker, facilitator, agent and
 // back: four hops between three processes) beside a ping over bare Fast DDS in the same run (two
 // hops), with few agents and with many, while the demo's robot runs on the same bus.
 #include <stdlib.h>

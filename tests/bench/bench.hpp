@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// What the benchmark programs share.
+/// The parts that the benchmark programs share.
 namespace saphira::bench {
 
 /// A child with its output dropped; terminated with the object.

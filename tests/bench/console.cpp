@@ -1,5 +1,5 @@
-// What the console costs with three browsers and a large map, how long a packet takes to the
-// pixels, and how smoothly a page draws.
+// The cost of the console with three browsers and a large map, the delay from a packet to the
+// pixels, and the frame rate of a page.
 #include <stdlib.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -33,7 +33,7 @@ std::string address_in(const std::string& output) {
   return output.substr(begin, output.find('\n', begin) - begin);
 }
 
-/// Of the page, packed as gzip packs.
+/// The size of the page [kB], compressed as gzip does.
 double packed_kb() {
   double bytes = 0.0;
   for (const console::PageFile& file : console::page_files()) {

@@ -1,6 +1,6 @@
-// What a slow network costs: simulator and bridge on one host, the intentions on another, a link
-// that delays and loses between them. How far the robot comes in 20 s, by the simulator's truth,
-// and how soon it stands when the link is cut.
+// The cost of a slow network: simulator and bridge on one host, the intentions on another, and a
+// link between them that delays and loses frames. Measured: the distance of the robot in 20 s, by
+// the simulator's trace, and the time to its standstill after the link is cut.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -62,7 +62,7 @@ std::vector<Row> read_trace(const std::string& path) {
   return rows;
 }
 
-/// Looks at the trace until something is so, or for so many seconds.
+/// Reads the trace until the condition holds, or for so many seconds; true where it held.
 bool wait_for(const std::string& trace, double seconds,
               const std::function<bool(const std::vector<Row>&)>& what) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);

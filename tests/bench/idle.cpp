@@ -1,4 +1,4 @@
-// What the running system costs when the robot stands: CPU and memory of every process, live.
+// The cost of the running system while the robot stands: CPU and memory of every process, live.
 #include <stdlib.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-// What a misused intentions service costs for good: resident memory before, after many goals that
-// it refuses, after as many again, and after activities that begin others without end.
+// The lasting memory cost of a misused intentions service: resident memory before, after many
+// goals that it refuses, after as many again, and after activities that begin others without end.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -40,7 +40,7 @@ constexpr unsigned kBatch = 100;
 constexpr auto kPatience = 60s;
 constexpr auto kRunawayTime = 20s;
 
-// Each begins two that wait, up to the bound.
+// Activities that begin others, down to :two, which waits, until the service's bound.
 constexpr const char* kRunaway =
     "(defintention :runaway :goals '((INTEND :half () :blocking nil) (INTEND :half ())))\n"
     "(defintention :half :goals '((SPLIT (INTEND :many ()) (INTEND :many ()))"

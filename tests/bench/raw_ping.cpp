@@ -1,5 +1,5 @@
 // A two-hop ping over bare Fast DDS: one process writes a RobotState, another answers from its
-// listener with a MotorCommand. What the reaction of the system is measured against: the same
+// listener with a MotorCommand. The reference for the reaction time of the system: the same
 // payloads, QoS and network (best effort, KEEP_LAST 1, UDP on loopback), and nothing between.
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <sys/prctl.h>

@@ -121,8 +121,8 @@ protocol::InformationPacket information(long n) {
   return packet;
 }
 
-/// What the intentions would publish: go far ahead, avoiding what is in the way. The goal is to the
-/// left and to the right in turns, so that every cycle asks for another heading.
+/// A sample as the intentions service publishes it: go far ahead and avoid obstacles. The goal is
+/// to the left and to the right in turns, so that every cycle asks for another heading.
 v1::Intentions intentions(const v1::Stamp& stamp) {
   const auto behavior = [](const char* schema, int priority, std::vector<v1::Argument> parameters) {
     v1::IntendedBehavior b;

@@ -1,5 +1,5 @@
-// What security costs: the round trip over a secured bus beside that over an open one, and the CPU
-// of the demo that stands, secured.
+// The cost of security: the round trip over a secured bus beside that over an open one, and the
+// CPU time of the secured demo while its robot stands.
 #include <stdlib.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-// How long and how far a robot rolls after what drives it is lost: each model in the simulator,
-// over a line that tells nobody when it is cut. The simulator's trace is the truth.
+// The stopping time and distance of each robot model in the simulator after the loss of its driver,
+// its bridge or its line (a silent cut), or an emergency stop. The simulator's trace is the truth.
 #include <unistd.h>
 
 #include <algorithm>
@@ -112,7 +112,7 @@ class Ride {
         "serial:" + folder_.path("tty") + "@38400"});
   }
 
-  /// [m/s] What the bridge lets the driver have: the guard slows a robot that hears nobody in time.
+  /// [m/s] The speed in the driver's grant: the guard slows a robot that hears nobody in time.
   std::optional<double> permitted() const {
     return grant_ && grant_->role() == v1::ROLE_DIRECT && grant_->velocity() > 0.0
                ? std::optional(grant_->velocity())

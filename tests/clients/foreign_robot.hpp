@@ -33,8 +33,8 @@ class ForeignRobot {
   bool connected() const { return open_; }
   /// The next client is accepted and never answered; those after it are.
   void ignore_next_client() { ignores_ = true; }
-  /// What is done to each information packet's body before it is sent, from now on; the checker
-  /// does not see it.
+  /// Changes the body of each information packet before it is sent, from now on; the checker gets
+  /// the unchanged packet.
   void spoil(std::function<void(std::vector<std::uint8_t>&)> how);
   /// How often each command has come.
   std::map<int, int> commands() const;

@@ -34,7 +34,7 @@ class Line {
   /// Waits until a body with that property has come, takes all up to it, and returns it; nothing
   /// when the time is up, `seconds` times the patience of the line.
   std::optional<Wire> expect(const std::function<bool(const Wire&)>& property, double seconds);
-  /// What has come and was not yet taken.
+  /// The next whole body that has come and was not yet taken; nothing without one.
   std::optional<Wire> next();
 
  protected:
@@ -66,7 +66,7 @@ class PureLine : public Line {
   const protocol::RobotParameters& parameters() const { return parameters_; }
   const Pose& start() const { return kStart; }
 
-  /// What the checker has found, as text; empty when nothing is against the tables.
+  /// The violations of the tables that the checker has found, a line each; empty without any.
   std::string violations() const;
   const protocol::Checker& checker() const { return checker_; }
 
@@ -81,7 +81,7 @@ class PureLine : public Line {
   double time_ = 0.0;
 };
 
-/// What a client family knows of each subclass, from its own parameter tables.
+/// A subclass of robots in the client families' own parameter tables.
 struct KnownRobot {
   const char* subclass;
   double angle;     ///< rad

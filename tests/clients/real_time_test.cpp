@@ -66,7 +66,7 @@ class RealTime : public ::testing::TestWithParam<Case> {
                                         : RealLine::tcp(std::stoi(where[1])));
   }
 
-  // What was true when the simulator wrote last.
+  // The newest row of the simulator's trace: the true state.
   sim::TraceRow truth() const { return sim::parse_trace(read_file(trace_), trace_).back(); }
   // Ends it, and what the checker says of the whole.
   std::string ended() {

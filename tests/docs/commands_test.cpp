@@ -48,8 +48,8 @@ struct Shown {
   std::vector<std::string> words;  ///< behind `saphira`
 };
 
-/// What stands in `...`, in an indented line, a line of a fence, or a comment of a deployment, and
-/// begins with saphira.
+/// The commands that begin with saphira: in `...`, in an indented line, in a line of a fence, or in
+/// a comment of a deployment.
 std::vector<Shown> shown() {
   const std::regex quoted(R"(`(?:\./)?saphira ([^`]+)`)");
   const std::regex line_of_its_own(R"(^(?:#?\s+|\$ )?(?:\./)?saphira ([a-z][^#]*))");

@@ -41,7 +41,7 @@ struct DriveOptions {
 /// With interpretation and with registration on that map. `knows_pose`: as in DriveOptions.
 DriveOptions registered_on(maps::Map map, DriveOptions options = {}, bool knows_pose = true);
 
-/// What one cycle brings, and the truth beside it.
+/// The measurements of one cycle, and the true pose beside them.
 struct Seen {
   std::uint64_t cycle = 0;
   Pose pose_in_odom;  ///< (0, 0, 0) at the start
@@ -65,7 +65,7 @@ class Drive {
   /// Moves the world by one cycle under what was asked for last.
   const Seen& advance();
 
-  /// What is asked for from the next cycle on.
+  /// The task from the next cycle on.
   void go_to(const Vec2& goal_in_odom, double speed = 0.3, double radius = 0.15);
   void turn_to(double heading_in_odom);
   void stop();
@@ -74,11 +74,11 @@ class Drive {
   /// These behaviors, as intentions would intend them.
   void intend(std::vector<behaviors::Intended> intended, bool control = true);
 
-  /// What the behaviors made of it in the newest cycle.
+  /// The output of the behaviors in the newest cycle.
   const behaviors::Output& output() const { return cores_.said().behaviors.output; }
   system::Cores& cores() { return cores_; }
   const system::Cores& cores() const { return cores_; }
-  /// What registration says in the newest cycle.
+  /// The outputs of registration in the newest cycle.
   const registration::Core::Outputs& registered() const { return cores_.said().registration; }
   Pose believed() const { return registered().pose_in_map; }
   Pose truth() const { return seen_.true_pose_in_world; }
@@ -89,7 +89,7 @@ class Drive {
   const sim::World& world() const { return world_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
   const std::vector<lps::SonarMount>& mounts() const { return cores_.robot().lps.sonars; }
-  /// What the guard made of it in the newest cycle.
+  /// The result of the guard in the newest cycle.
   const authority::Guarded& guarded() const { return guarded_; }
   sim::Scene& scene() { return scene_; }
   sim::Robot& robot() { return *robot_; }

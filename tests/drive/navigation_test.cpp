@@ -43,7 +43,7 @@ bool is_in(const Whole& whole, const std::string& place) {
   });
 }
 
-/// What people answer: to each thing that the robot says, once, in this order.
+/// An answer of people to words of the robot. Each is given once, in the order of the list.
 struct Answer {
   std::string to;  ///< a part of what is said
   std::string name;
@@ -183,8 +183,8 @@ TEST(Navigation, BeforeAClosedDoorItAsksAndSaysWhyNot) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
-// A robot that has asked from beside the door, and not from before it, sometimes takes it for shut
-// still: about one in four. This one asks from before it.
+// A robot that asks from beside the door, and not from in front of it, takes the opened door for
+// closed in about one of four cases. This one asks from in front of it.
 TEST(Navigation, WhenTheDoorIsOpenedItGoesOn) {
   Whole whole(office(1, office_with("opened", kClosed247)));
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-247")});
@@ -369,7 +369,7 @@ TEST(People, AQuestionIsAskedAgainAndWhatWasSaidBeforeIsNoAnswer) {
   EXPECT_EQ(status.reason, "half past nine");
 }
 
-// ---- What a camera sees (paper 4.4, manual 9)
+// ---- Vision (paper 4.4, manual 9)
 
 const char* const kAnnInTheCorridor =
     "person ann 17500 10500\n"
@@ -518,7 +518,7 @@ std::vector<Scenario> scenarios() {
 
 class Golden : public ::testing::TestWithParam<Scenario> {};
 
-/// What stands in brackets is the name that the intention was given, or none.
+/// A line of the trace without its cycle, and without a generated name (I and a number).
 std::string without_numbers(const std::string& line) {
   std::string out = line.substr(line.find(' ') + 1);
   const std::size_t open = out.find("(I");

@@ -13,7 +13,7 @@ enum class Stereo {
   pictures  ///< rendered, and a census of each pair
 };
 
-/// Eyes that see what saphira-vision makes of a robot's cameras (WholeOptions::eyes): people by
+/// Eyes that see what saphira-vision makes of a robot's cameras (WholeOptions::sees): people by
 /// stereo, and red, green and blue by the Fast Track.
 std::function<std::vector<lps::SeenThing>(Drive&)> vision_eyes(Stereo stereo);
 

@@ -1,4 +1,4 @@
-// What people and colours the robot sees while it drives about: right ones, and no others.
+// The people and colours that the robot sees while it drives about: the right ones, and no others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,12 +26,12 @@ std::string world_with(const std::string& name, const std::string& more) {
 
 struct Count {
   int reported = 0;  // people, cycle by cycle
-  int right = 0;     // of them, who is there, or was a moment ago
+  int right = 0;     // of them, less than 0.6 m from a person
   int visible = 0;
   int found = 0;  // of them
 };
 
-// Who stands within its view, and nobody and no wall before; other things do not count.
+// True where `at` is in view, behind no other person and no wall; other things do not count.
 bool visible(Drive& drive, const Vec2& at) {
   const Pose robot = drive.seen().true_pose_in_world;
   const Vec2 in_robot = to_frame(robot, at);

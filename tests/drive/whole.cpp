@@ -115,7 +115,7 @@ bool Whole::at_rest() const {
 }
 
 /// The display of paper Figure 10, as it changes: nodes that come, that come to another state or
-/// label, and that go. The names that the forest has given are left out, since they are numbers.
+/// label, and that go. Names that the forest has generated (I and a number) are in it, too.
 void Whole::note_transitions() {
   using intentions::IntentionNode;
   const auto line = [&](const IntentionNode& node, const std::string& what) {

@@ -25,7 +25,7 @@ struct WholeOptions {
   bool adds_objects = false;  ///< what stands where the map has nothing is put onto it
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
-  /// What a camera sees after a cycle. None: there is no camera.
+  /// The things that a camera sees after a cycle. None: there is no camera.
   std::function<std::vector<lps::SeenThing>(Drive&)> sees;
 };
 
@@ -75,7 +75,7 @@ class Whole {
   /// All that was said to people.
   const std::vector<std::string>& said() const { return said_; }
   /// Everything that changed in the intentions since the start, a line each: "12 go_to (1:1)
-  /// BEGIN".
+  /// begins, END".
   const std::vector<std::string>& transitions() const { return transitions_; }
 
  private:

@@ -1,6 +1,6 @@
-// What browsers say to the console, a line for each message, from three of them in turn: each is a
-// message or says what was expected; whoever drives does so by a sample of the last moment and with
-// numbers that are numbers; what the pages are told of it is JSON.
+// Messages of browsers to the console, one per line, from three of them in turn. Each is parsed or
+// gives an error in words; an active command comes from a recent sample of the operator who holds
+// control; commands are finite numbers; the state that the pages get is JSON.
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-// What a language model's client says to the door, a line for each message: each line is taken or
-// gets an error, each call has arguments that fit, and what is said to the client is JSON.
+// Messages of a language model's client to the MCP server, one per line: each is taken or gets an
+// error, each call has arguments that fit its tool, and every line to the client is JSON.
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Bytes from a line: through the parser in pieces, into every decoder, and into a whole server.
-// What comes out of the parser must stand in the input as a packet, whatever the pieces.
+// Every packet from the parser must be a packet in the input, whatever the pieces.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ void require(bool condition) {
 
 void decode_everything(const protocol::Bytes& body) {
   const protocol::Command command = protocol::decode_command(body);
-  // What was understood can be said again. (An unknown command's argument is not kept.)
+  // A decoded command can be encoded again. (An unknown command's argument is not kept.)
   const protocol::Bytes again = protocol::encode(command);
   require(
       std::holds_alternative<protocol::Unknown>(command) ||

@@ -1,6 +1,6 @@
-// What a relay reads, a line each: its file of robots, addresses and paths; and visitors who come
-// (+), are fetched (/carry) and leave (-) in any order. Each text is taken or is an error in words;
-// nobody is fetched twice or by another robot, and the places of a robot are bounded.
+// The inputs of a relay, one per line: its file of robots, addresses and paths; and visitors who
+// come (+), are fetched (/carry) and leave (-) in any order. Each text is parsed or gives an error
+// in words; no visitor is fetched twice or by another robot; a robot's visitors are bounded.
 
 #include <cstdint>
 #include <cstdlib>

@@ -109,7 +109,7 @@ class Loopback {
     }
   }
   void send(const Packet& packet) const {
-    // Whoever does not listen any more is no mistake of ours.
+    // A receiver that is gone makes this fail, which is no fault of the fuzzer.
     [[maybe_unused]] const auto sent =
         sendto(sender_, packet.bytes.data(), packet.bytes.size(), 0,
                reinterpret_cast<const sockaddr*>(&packet.to), sizeof packet.to);
@@ -157,7 +157,7 @@ class Mutator {
   }
 
  private:
-  // What stands before the first submessage. Mostly left alone: a packet of nobody's is dropped.
+  // [bytes] The RTPS header. It is rarely mutated: a packet of an unknown sender is dropped.
   static constexpr std::size_t kHeader = 20;
 
   void once(Bytes& bytes, const Bytes& other) {
@@ -203,7 +203,7 @@ class Mutator {
   std::mt19937_64 random_;
 };
 
-/// What `saphira up` says of the ends of its programs, such as "bridge ended: exit code 3".
+/// The ends of programs that `saphira up` reports ("bridge ended: exit code 3"), with counts.
 std::map<std::string, int> ends(const std::string& output) {
   std::map<std::string, int> all;
   std::istringstream lines(output);

@@ -153,7 +153,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// What needs no bus.
+/// The answers that need no bus.
 class Answers : public CliTest {};
 
 TEST_F(Answers, WithoutArgumentsItHelps) {
@@ -351,7 +351,7 @@ TEST_F(CliTest, DriveIsADeadMan) {
           test::domain().c_str(), "drive", static_cast<char*>(nullptr));
     _exit(127);
   }
-  // What it draws is looked at in the end.
+  // The drawn text is checked at the end.
   std::string drawn;
   std::thread reader([&] {
     std::array<char, 4096> buffer{};
@@ -411,7 +411,7 @@ TEST_F(CliTest, DriveIsADeadMan) {
   EXPECT_TRUE(has(drawn, "12.5 V")) << drawn;
 }
 
-// A frozen ssh, or Ctrl-S: what is drawn goes nowhere, and what is driven is driven on.
+// A frozen ssh, or Ctrl-S: the terminal takes no output, and the commands are still sent.
 TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
   Scripted scripted(robot_);
   int terminal = -1;

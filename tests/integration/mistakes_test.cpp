@@ -1,4 +1,4 @@
-// What a newcomer types wrongly is answered with what was wrong and what to do.
+// The answer to a newcomer's mistake at the command line says what was wrong and what to do.
 #include "mistakes.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   EXPECT_TRUE(code == 1 || code == 2) << typed << ": " << said;
   for (const std::string& part : mistake.said)
     EXPECT_NE(said.find(part), std::string::npos) << typed << ": " << said;
-  // What is wrong is said, and not all that could be right.
+  // The answer names the mistake, and not all that could be right.
   EXPECT_LT(said.size(), 2000U) << typed;
   EXPECT_EQ(said.find("terminate"), std::string::npos) << typed << ": " << said;
 }

@@ -25,7 +25,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a system call gave, or why it failed.
+/// The result of a system call; std::system_error where it failed.
 int need(int result, const char* what) {
   if (result < 0)
     throw std::system_error(errno, std::generic_category(), what);
@@ -70,7 +70,7 @@ void make_host(const char* address, int& network, int& tap) {
   close(socket);
 }
 
-/// Who asks for an address is asked again only after a second: a radio link does not lose that.
+/// True for an ARP frame, which a radio link does not lose: ARP asks again only after a second.
 bool asks_for_address(const std::vector<char>& frame) {
   return frame.size() > 13 && frame[12] == 0x08 && frame[13] == 0x06;
 }

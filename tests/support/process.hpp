@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// What the tests that run whole programs share: processes, temporary folders, waiting.
+/// The parts that tests of whole programs share: processes, temporary folders, waiting.
 namespace saphira::test {
 
 /// Calls `condition` until it is true or the time is up; what it returned last. The limit is there
@@ -49,18 +49,18 @@ class Process {
   bool running();
   /// The exit code (128 + number after a signal), or nothing when it still runs.
   std::optional<int> wait(std::chrono::milliseconds limit = std::chrono::seconds(60));
-  /// What it has printed so far.
+  /// The text that it has printed so far.
   std::string output() const;
 
-  /// What the checker has found so far.
+  /// The violations that the checker has found so far, a line each.
   std::string violations() const;
   /// All that it has written: findings, and a summary for each connection that was closed.
   std::string checked() const;
   /// Somebody hurts the line or what is on it: violations are no failure.
   void expect_violations() { violations_expected_ = true; }
 
-  /// What violations, and findings of a sanitizer, are told to; nobody looks for them where this is
-  /// not set. Set where a test is linked with this.
+  /// The function that gets the violations and the findings of a sanitizer; without it nothing is
+  /// checked. Each test sets it (checked.cpp).
   static void (*complain)(const std::string& found);
 
  private:

@@ -57,7 +57,7 @@ void SerialLine::open_device() {
   if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
       ::ptsname_r(master_, name.data(), name.size()) != 0)
     throw std::runtime_error("no pseudo-terminal");
-  // A new one would send back what comes until whoever opens it has set it.
+  // A new terminal would echo its input until the program that opens it has set it up.
   termios settings{};
   ::tcgetattr(master_, &settings);
   ::cfmakeraw(&settings);
@@ -133,7 +133,7 @@ bool SerialLine::give(int fd, int direction) {
   if (out.empty() || fd < 0 || cut_[direction])
     return true;
   bytes_[direction] += out.size();
-  // What nobody takes is lost, as in a receiver that is not read.
+  // Bytes that the other end does not take are lost, as in a receiver that is not read.
   const ssize_t n = direction == 0 ? ::send(fd, out.data(), out.size(), MSG_NOSIGNAL)
                                    : ::write(fd, out.data(), out.size());
   return n >= 0 || errno == EAGAIN || errno == EINTR;
@@ -141,7 +141,7 @@ bool SerialLine::give(int fd, int direction) {
 
 void SerialLine::run() {
   auto next_try = Clock::now();
-  // What was sent still goes through: otherwise the robot would be left with half a packet.
+  // The bytes to the robot still go through at the end: else it is left with half a packet.
   for (bool done = false; !done;) {
     const bool stop = stop_;
     bool busy = false;

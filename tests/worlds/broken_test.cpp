@@ -1,5 +1,5 @@
-// Each shipped world and map with one mistake in it, of ten kinds: the error names the line and the
-// column of the mistake.
+// Each shipped world and map with one mistake in it, of ten kinds and more: the error names the
+// line and the column of the mistake.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -66,8 +66,8 @@ std::vector<Found> words(const std::string& line) {
   return found;
 }
 
-/// The `nth` line (counted from the middle on, so that something stands before it) whose first word
-/// is `first` and that has `count` words; 0 for any count, "#" for a number.
+/// The first line, from a third of the text on and then from its top, whose first word is `first`
+/// ("#": a number) and that has `count` words (0: any number of them).
 std::optional<std::size_t> line_with(const Text& text, const std::string& first,
                                      std::size_t count) {
   const std::size_t n = text.lines.size();
@@ -264,8 +264,8 @@ std::vector<std::string> words_of(const std::string& text) {
   return found;
 }
 
-// What is lost between two lines was never there, for all that a world file says. But no line is
-// read in part.
+// A world file that is cut off between two lines may still be valid, without the rest. But no line
+// is read in part.
 TEST(BrokenFiles, EachWorldThatIsCutOffWithinALineIsRefused) {
   const std::string path = ::testing::TempDir() + "cut-off-" + std::to_string(getpid()) + ".wld";
   for (const std::string& stem : test::stems("config/worlds", ".wld")) {

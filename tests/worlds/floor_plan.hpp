@@ -7,7 +7,7 @@
 #include "saphira/maps/map.hpp"
 #include "saphira/sim/world.hpp"
 
-/// What the tests ask of the shipped worlds and maps.
+/// The helpers for tests of the shipped worlds and maps.
 namespace saphira::test {
 
 std::string source(const std::string& path);

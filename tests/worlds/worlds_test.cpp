@@ -104,7 +104,7 @@ TEST_P(ShippedWorld, EverythingIsInside) {
 }
 
 TEST_P(ShippedWorld, IsClosed) {
-  // Whoever drives on does not leave it.
+  // A robot that drives on never reaches the border.
   const test::Reach reach(world, kPioneer);
   for (double t = 0.0; t <= 1.0; t += 0.001)
     for (const Vec2& at : {Vec2(t * world.width, 0.0), Vec2(t * world.width, world.height),

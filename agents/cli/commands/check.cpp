@@ -24,8 +24,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// What one program says to what it is given, and whether it would start. A program that nobody
-/// here has written is not asked: it may not know how to answer.
+/// The result of a dry run of one program: success, and the output. Only programs of saphira are
+/// asked: others may not know the option --dry-run.
 struct Said {
   bool well = true;
   std::string text;

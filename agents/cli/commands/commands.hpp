@@ -10,12 +10,12 @@
 /// what to run.
 namespace saphira::cli {
 
-/// What was chosen; set by the callback of a subcommand.
+/// The chosen subcommand; set by its callback.
 struct Chosen {
   std::function<int(const bus::NodeOptions&, const bus::Stop&)> run;
 };
 
-/// What is asked of a number, in words that say what was expected.
+/// A validator of numbers; expected: the words for its error message.
 inline CLI::Validator number_that(const std::string& expected, bool (*good)(double)) {
   return {[=](std::string& text) {
             double value = 0.0;

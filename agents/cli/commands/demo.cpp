@@ -44,6 +44,7 @@ constexpr double kGoalY = 1.0;
 constexpr double kTimeLimit = 180.0;    ///< [s] of robot time
 constexpr double kNewsPatience = 20.0;  ///< [s] of wall time without any news
 constexpr std::size_t kKeptLines = 60;
+constexpr std::uint64_t kPermitted = 300;  ///< cycles of lockstep beyond those that were heard of
 
 struct DemoOptions {
   bool headless = false;
@@ -116,7 +117,7 @@ bool is_utf8() {
   return false;
 }
 
-/// What the bus says while the robot drives, and how it is shown.
+/// The state of the robot from the bus during the drive, and its display.
 class Watcher {
  public:
   Watcher(bus::Node& node, const Vec2& goal)
@@ -401,12 +402,18 @@ class Demo {
         return;
       processes.poll();
     }
-    if (options_.lockstep) {
-      v1::StepPermit permit;
-      permit.source("saphira demo");
-      permit.until_cycle(std::numeric_limits<std::uint64_t>::max());
-      permits.write(permit);
-    }
+    std::uint64_t permitted = 0;
+    // Not far beyond the goal's status that was heard last: a minute after its end there is none.
+    const auto permit = [&] {
+      const std::uint64_t until = kPermitted + (status_ ? status_->stamp().cycle() : 0);
+      if (!options_.lockstep || until < permitted + kPermitted / 3)
+        return;
+      v1::StepPermit step;
+      step.source("saphira demo");
+      step.until_cycle(permitted = until);
+      permits.write(step);
+    };
+    permit();
 
     auto began = Clock::now();
     bool accepted = false;
@@ -421,6 +428,7 @@ class Demo {
       if (watcher.poll())
         news = Clock::now();
       status_ = goals.status(id);
+      permit();
       if (status_ && !accepted) {
         accepted = true;
         if (!options_.lockstep)

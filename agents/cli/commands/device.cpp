@@ -1,4 +1,4 @@
-// What a robot carries besides wheels: what it shows, and what is asked of it.
+// The command `saphira device`: the state of the robot's devices, and requests to them.
 #include <cstdio>
 #include <iostream>
 #include <set>
@@ -105,7 +105,7 @@ void print_serial(const v1::SerialData& data) {
   std::printf("port %d  %s |%s|\n", data.port(), hex.c_str(), text.c_str());
 }
 
-/// What hangs on a serial port needs a moment.
+/// Prints the answers from a serial port for kAnswerTime: a device there needs a moment.
 void wait_for_serial(Watch& watch, bus::Reader<v1::SerialData>& serial, const Request& asked,
                      const bus::Stop& stop) {
   const auto sent = Clock::now();

@@ -30,7 +30,7 @@ class DirectDriver {
   const std::optional<v1::Grant>& grant() const { return grant_; }
   /// A command of this driver's is what the wheels are told.
   bool drives() const;
-  /// Who drives instead and why, that the guard holds it back, that nobody answers: each once.
+  /// A new trouble in words, each kind once: another driver, a refusal, the guard, no bridge.
   std::optional<std::string> news();
 
  private:

@@ -69,7 +69,7 @@ class Button {
       print("%s\n", answer.text().c_str());
       return bus::kExitOk;
     }
-    // What drives now, or who waits, is in the grant.
+    // The next grant shows that the stop is released, and whether autonomy waits.
     while (!stop.requested() && seconds_since(began_) < kResetLimit &&
            (!grant_ || grant_->estopped())) {
       node_.wait(kAgain, &stop);

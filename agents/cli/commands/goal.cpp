@@ -253,7 +253,7 @@ void print_schema(const v1::ActivitySchema& schema) {
   }
 }
 
-/// What can be asked for.
+/// Prints the activities that a goal can name: all of them, or the given one.
 int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
             const bus::Stop& stop) {
   if (options.words.size() > 2) {

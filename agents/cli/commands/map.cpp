@@ -193,7 +193,7 @@ std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
   return raster;
 }
 
-/// What a program has drawn (manual 6.8), where it is on the map now.
+/// Adds a drawing of a program (manual 6.8), at its present place on the map.
 void add(const v1::Drawing& drawn, const v1::Registration& registration, maps::Drawing& drawing) {
   const Pose odom = lps::from_bus(registration.odom_in_map());
   const Pose frame = drawn.frame() == v1::FRAME_ROBOT  ? lps::from_bus(registration.pose_in_map())

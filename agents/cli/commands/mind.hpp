@@ -12,7 +12,7 @@
 
 namespace saphira::cli {
 
-/// What has come on a cyclic topic, of the newest epoch.
+/// The recent samples of a cyclic topic, by cycle; those of the newest epoch only.
 template <class T>
 class Past {
  public:
@@ -50,7 +50,7 @@ class Past {
   std::map<std::uint64_t, T> samples_;
 };
 
-/// What the robot thinks, as far as it is said on the bus: of now, or as it is recalled.
+/// The robot's goals, intentions, behaviors and beliefs from the bus: of now and of past cycles.
 class Mind {
  public:
   /// recalled: also what the last minute was. Where nothing is heard for a second that is asked for
@@ -64,7 +64,7 @@ class Mind {
   const v1::RobotState* robot() const { return robots_.newest(); }
   const v1::Intentions* intentions() const { return intentions_.newest(); }
   const v1::BehaviorSet* behaviors() const { return behaviors_.newest(); }
-  /// What programs with behaviors of their own think, of those that still say so.
+  /// The newest states of programs with behaviors of their own, if published lately.
   std::vector<const v1::ProgramMind*> programs() const;
   const v1::Grant* grant() const { return grants_.newest(); }
   const v1::BehaviorSchema* schema(const std::string& name) const;
@@ -84,7 +84,7 @@ class Mind {
   }
   /// The oldest and newest cycle of which the robot is known.
   std::pair<std::uint64_t, std::uint64_t> known() const;
-  /// What does not come each cycle has been there, or cannot be waited for.
+  /// True where the schemas and goals, which do not come each cycle, are complete.
   bool knows_goals() const;
 
  private:
@@ -126,7 +126,7 @@ class Mind {
   using Key = std::pair<std::uint64_t, std::uint64_t>;
   std::map<Key, v1::Goal> goals_;
   std::map<Key, v1::GoalStatus> statuses_;
-  /// What was told of the goals, by the epoch and cycle in which.
+  /// Past goal statuses, by the epoch and cycle of their publication.
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatusSet> past_goals_;
   std::optional<v1::BehaviorSchemas> schemas_;
   std::optional<v1::BeliefSet> beliefs_;

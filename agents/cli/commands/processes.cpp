@@ -131,7 +131,7 @@ void add_processes(CLI::App& app, Chosen& chosen) {
                       "suspend: for so many cycles, not until resumed");
   command->footer(
       "Of the service intentions also an intention, by its name or number (saphira intentions).\n"
-      "An interrupted process puts its things away and waits for being resumed.");
+      "An interrupted process cleans up and waits until it is resumed.");
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
       return processes(*options, node, stop);

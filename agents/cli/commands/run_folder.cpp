@@ -81,7 +81,7 @@ std::vector<Running> running_deployments() {
     const std::string path = entry.path() / "lock";
     if (!std::filesystem::exists(path))
       continue;
-    // Who can have the lock is the only one: nobody runs it.
+    // A lock that can be taken means that no process runs it.
     const int file = lock(path);
     if (file >= 0) {
       close(file);

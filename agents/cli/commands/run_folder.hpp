@@ -34,7 +34,7 @@ struct Running {
   pid_t pid = 0;     ///< of its saphira up
 };
 std::vector<Running> running_deployments();
-/// What is said by the deployment of that name while it has no terminal.
+/// The path of the log file of that deployment, for its output without a terminal.
 std::string log_of(const std::string& name);
 
 /// Lets commands that name no bus find this one, as long as the object lives (running_buses).

@@ -64,7 +64,7 @@ struct Ending {
   bool delivered() const { return outcome.starts_with("done: "); }
 };
 
-/// What programs said last: shown where something went wrong.
+/// The last lines of the programs' output, shown where something went wrong.
 class Kept {
  public:
   void add(std::string_view from, std::string_view line) {
@@ -213,7 +213,7 @@ Ending play_in_lockstep(const ScenarioOptions& options, const Run& run,
   return ending;
 }
 
-/// What was said, as text and as sound.
+/// Writes the dialogue as text and as sound.
 void write_audio(const std::string& folder, const std::string& said, const bus::Stop& stop) {
   std::filesystem::create_directories(folder);
   const std::string text = folder + "/dialogue.txt";

@@ -19,7 +19,7 @@ constexpr milliseconds kListen{1300};
 // With security: where a message of a handshake is lost, Fast DDS sends it again after a second.
 constexpr milliseconds kListenSecured{2600};
 
-/// What all programs say of themselves, and who drives.
+/// The status of all programs, and the driver of the robot.
 class StatusView {
  public:
   explicit StatusView(bus::Node& node)

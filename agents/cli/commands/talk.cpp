@@ -100,7 +100,7 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
   return bus::kExitFailed;
 }
 
-/// What is known, once it is said.
+/// Waits for the robot's knowledge on the bus; nothing where none comes within kSilence.
 std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const bus::Stop& stop) {
   auto reader = node.reader(bus::topics::kKnows);
   std::optional<v1::Knowledge> knowledge;

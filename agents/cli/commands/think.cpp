@@ -246,8 +246,8 @@ struct BeliefOptions {
 
 constexpr const char* kClaimant = "saphira beliefs";
 
-/// What this command claims of a name is one instance, whoever types it: the next one changes it,
-/// and unset finds it. One that is held is its holder's.
+/// The claim of this command about a name. It is one instance for all users: the next claim changes
+/// it, and unset finds it. A held claim gets an instance of its own (see claim()).
 v1::BeliefClaim claim_of(const std::string& name) {
   Fnv1a hash;
   hash.add(kClaimant + (" " + name));
@@ -259,7 +259,7 @@ v1::BeliefClaim claim_of(const std::string& name) {
   return sample;
 }
 
-/// What is believed under that name and was said by this command; nullptr: nothing.
+/// The belief of that name that this command has claimed; nullptr: none.
 const v1::Belief* claimed(const Mind& mind, const std::string& name) {
   if (mind.beliefs() != nullptr)
     for (const v1::Belief& belief : mind.beliefs()->beliefs())

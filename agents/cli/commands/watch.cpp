@@ -97,7 +97,7 @@ std::string person(const std::string& program, bool since) {
 
 namespace {
 
-/// What else to try where a program is not heard.
+/// Further advice where a program is not heard.
 const char* remedy(bus::Profile profile) {
   switch (profile) {
     case bus::Profile::host:

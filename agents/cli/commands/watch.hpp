@@ -25,7 +25,7 @@ class Processes {
 
   void poll();
   std::vector<SeenProcess> all() const;
-  /// What they make of the robot's situation, without what each of them says in each cycle.
+  /// The part of the robot's situation that their status gives, without cyclic topics.
   situation::Situation situation() const;
   /// Of all processes that were seen, also those that ended.
   std::uint64_t late_cycles() const;
@@ -65,7 +65,7 @@ bus::Profile profile_of(const std::string& name);  ///< host where it is no such
 /// (pts/3)"; with `since`, also the time of day when this was asked: "(pts/3, since 14:02)".
 std::string person(const std::string& program, bool since = false);
 
-/// What is there to hear us, in words, for when nobody answers.
+/// The programs that are missing or in trouble, in words, for when nobody answers.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
 
 }  // namespace saphira::cli

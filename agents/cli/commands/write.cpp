@@ -79,7 +79,7 @@ class Samples {
 
 nlohmann::json object_of(const std::string& text) {
   nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  // What is no object is refused where the sample is made of it.
+  // Text that is no JSON object is refused by the conversion to a sample.
   return json.is_object() ? json : nlohmann::json();
 }
 
@@ -159,7 +159,7 @@ std::string completed(const std::string& topic, const std::string& text, const b
   return text;
 }
 
-/// What is declared (goals, latched) holds until Ctrl-C; what happens once is written once.
+/// Holds samples of QoS goal or latched until Ctrl-C or for the given time; writes others once.
 int tell(const WriteOptions& options, const std::string& qos, const bus::NodeOptions& node_options,
          const bus::Stop& stop) {
   const bool holds = qos == "goal" || qos == "latched";

@@ -306,7 +306,7 @@ Places find_places() {
 }
 
 std::string find_deployment(const std::string& name, const Places& places) {
-  // What an administrator wrote comes before what is shipped.
+  // An administrator's deployment comes before the shipped one.
   const std::string own = places.own + "/" + name + ".yaml";
   std::error_code none;
   if (!places.own.empty() && std::filesystem::is_regular_file(own, none))

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kDoors = 3;    ///< closed ones that are named
 constexpr double kAnywhere = 100.0;  ///< [m] with a larger sigma there is no place to speak of
 
-/// What `saphira map` understands, in the order of its help.
+/// A form of `saphira map`; kForms has them in the order of its help.
 struct Form {
   std::string_view verb;
   std::string_view rest;
@@ -72,7 +72,7 @@ bool on_or_off(const std::string& word) {
   return word == "on";
 }
 
-/// What a line of a map file says of an artifact.
+/// The request's arguments for the artifact of one line of a map file.
 Arguments artifact(const std::string& line) {
   const maps::Map map = maps::parse_map(line, "the line");
   if (map.features.size() != 1)

@@ -13,7 +13,7 @@ constexpr std::size_t kMostEchoes = 20000;  ///< the oldest go first
 constexpr double kWakeStep = 0.05;          ///< [m]
 constexpr double kMargin = 0.5;             ///< [m] around what is shown
 
-/// What a character shows; of several, the last in this order.
+/// The content of a character; of several contents, the last in this order is shown.
 enum class Layer { none, wall, echo, wake, goal, robot };
 
 struct Look {

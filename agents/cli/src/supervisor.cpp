@@ -346,7 +346,7 @@ void Supervisor::reap(std::size_t index) {
   int status = 0;
   if (waitpid(slot.pid, &status, WNOHANG) != slot.pid)
     return;
-  // What it said last comes before the news of its end.
+  // Its last output is printed before the news of its end.
   for (Stream& stream : streams_)
     if (stream.slot == index)
       read_stream(stream);

@@ -14,7 +14,7 @@
 namespace saphira::cli {
 namespace {
 
-/// What a service manager hears.
+/// The receiver of the notifications, in place of a service manager.
 class Manager {
  public:
   explicit Manager(const std::string& path) {

@@ -23,7 +23,7 @@ class Browser {
   void go(const std::string& address);
   nlohmann::json call(const std::string& method,
                       const nlohmann::json& parameters = nlohmann::json::object());
-  /// What a JavaScript expression is in the page.
+  /// The value of a JavaScript expression in the page.
   nlohmann::json value(const std::string& expression);
   /// Waits until an expression is true. False where it is not within 20 s.
   bool wait(const std::string& expression);

@@ -138,7 +138,7 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
     bool any = false;
     reader->visit([&](const T& sample, const bus::SampleInfo& info) {
       any = true;
-      // What comes again in a tenth of a second is kept for somebody who looks.
+      // Without a viewer, cyclic samples are not kept: the next ones come within 0.1 s.
       if (viewers_ == 0 && topic.qos == bus::Qos::cyclic)
         return;
       std::string key = type.keyed ? key_text(type.key(&sample)) : std::string();
@@ -165,7 +165,7 @@ void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_write
   });
 }
 
-/// What a page needs first comes first: on a thin link the rest waits for it.
+/// The topics in the order of a page's needs: on a slow link the later ones wait.
 void Gateway::feed_all() {
   feed(topics::kRobotState);
   feed(topics::kGrant);

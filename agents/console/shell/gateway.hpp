@@ -37,7 +37,7 @@ constexpr int kReleases = 4;  ///< of the last word: the topics of driving are b
 double now();
 /// A key as the board names it.
 std::string key_text(const bus::InstanceKey& key);
-/// Who is at a page, as the rest of the system names it.
+/// The name of a page's operator for the rest of the system.
 std::string operator_of(const std::string& name);
 
 /// Between the bus and the browsers: what is on the bus goes onto the board, what the pages say
@@ -47,7 +47,7 @@ class Gateway {
   Gateway(const bus::NodeOptions& node, const GatewayOptions& options);
 
   int run(const bus::Stop& stop);
-  /// What a person opens, with the key.
+  /// The address that a person opens, with the key.
   std::string address() const;
 
  private:

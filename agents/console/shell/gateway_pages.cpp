@@ -182,7 +182,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     say(connection, text);
     return;
   }
-  // Whoever sees the robot may stop it.
+  // Anybody who may watch the robot may stop it.
   if (std::holds_alternative<EmergencyStop>(message)) {
     presser_ = operator_of(page.name);
     press_estop();

@@ -7,15 +7,15 @@ namespace saphira::console {
 /// Random, in hexadecimal digits. std::runtime_error where the system has no random numbers.
 std::string new_key();
 
-/// What lets open pages go on after a restart.
+/// The key and the port: with the same ones, open pages go on after a restart.
 struct Kept {
   std::string key;
   int port = 0;  ///< that pages know; 0: none yet
 };
 
-/// What the file keeps; where it keeps nothing, a new key that is written there, for its owner
-/// alone to read. Without a file a new one. std::runtime_error that names the file where it is open
-/// to others or cannot be written.
+/// Reads key and port from the file. Where it has no key, writes a new one there, which only the
+/// owner can read. Without a file name: a new key. std::runtime_error that names the file where it
+/// is open to others or cannot be written.
 Kept keep(const std::string& file);
 /// The first word of a file that only its owner may read. std::runtime_error that names the file.
 std::string read_secret(const std::string& file);

@@ -38,7 +38,7 @@ class Server {
  public:
   using Connection = std::uint64_t;
 
-  /// What happens. Each is called from run() alone.
+  /// The callbacks for events. Each is called from run() alone.
   struct Events {
     std::function<void(Connection, Channel, const Caller&)> opened;
     /// False closes the connection.

@@ -27,7 +27,7 @@ class SimulatorLink {
   };
   const Told& world() const { return world_; }
   const Told& scene() const { return scene_; }
-  /// What could not be done, since the last call.
+  /// The simulator's complaints since the last call, one JSON text each.
   std::vector<std::string> take_troubles();
 
  private:

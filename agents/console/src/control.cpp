@@ -104,7 +104,7 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
   } else {
     quickest_ = difference;
   }
-  // What waited in the network is not wanted any more. The operator's link lives all the same.
+  // A sample that was delayed in the network is refused; its number and time are kept all the same.
   const double late = difference - quickest_;
   newest_.number = sample.number;
   newest_.device_time = sample.device_time;

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What the next frame says; null where there is none. Acknowledged at once.
+/// The content of the next frame, acknowledged at once; null where there is none.
 Json read(const Board& board, Viewer& viewer, double now) {
   const auto frame = board.frame(viewer, now);
   if (!frame)

@@ -9,8 +9,8 @@
  * SAPHIRA_ROBOT and SAPHIRA_DOMAIN say which robot. Without CYCLONEDDS_URI it speaks on this machine
  * alone, as the profile host does.
  *
- * What a program of another vendor has to know besides the types: the partition is the robot's name,
- * and each topic has the QoS of idl/README.md. Both are in reader_of and writer_of below.
+ * Besides the types, a program on another vendor's DDS needs two things: the robot's name as its
+ * partition, and the QoS of each topic (idl/README.md). Both are in reader_of and writer_of below.
  */
 #include <math.h>
 #include <signal.h>

@@ -471,7 +471,7 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
       continue;
     if (has_no_pose(message.laser) && log.odometry.empty())
       continue;
-    // What stands before what in the file, for the laser that is kept.
+    // The number of the kept laser's scans before each odometry record in the file.
     const std::vector<std::size_t>& odometry_before = before[message.laser];
     for (std::size_t k = 0, scan = 0; k < log.odometry.size(); ++k) {
       while (scan < odometry_before.size() && odometry_before[scan] <= k)
@@ -510,7 +510,7 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
   mount(log, parameters);
   const std::optional<double> no_return = find_no_return(log.scans);
   for (LaserScan& scan : log.scans) {
-    // What the log says may be what the laser could do, not what it was set to.
+    // The log's maximum range may be that of the laser's type, not the configured one.
     if (no_return)
       scan.no_return = scan.no_return > 0.0 ? std::min(scan.no_return, *no_return) : *no_return;
     else if (scan.no_return == 0.0)

@@ -132,7 +132,7 @@ DataSet load_data_set(const std::string& name, const LogFiles& files) {
   if (const std::size_t back = steps_back(raw, clock); back > 0)
     notes.push_back(std::to_string(back) +
                     " scans are stamped seconds before the scan that stands before them");
-  // What the merge of thinned logs is marked with: the stamp is interpolated.
+  // The mark of scans in a merge of thinned logs: their stamps are interpolated.
   const auto interpolated = [](const LaserScan& scan) { return scan.host == "A"; };
   const bool mend = corrected && raw.odometry.empty() &&
                     std::any_of(raw.scans.begin(), raw.scans.end(), interpolated);

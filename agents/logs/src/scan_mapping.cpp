@@ -161,7 +161,7 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
     near.erase(near.begin(), near.end() - static_cast<std::ptrdiff_t>(settings_.local_nodes));
   const ScanReference local = reference(near, last);
   AlignSettings settings = settings_.align;
-  // What dead reckoning says holds along bare walls only: a small share of what walls say.
+  // Dead reckoning has a small weight beside the walls: it counts only along bare walls.
   settings.guess_information = turned(odom_information(step), -guess.th);
   Alignment found = align(local, scan, guess, settings);
   if (found.overlap < settings_.good_overlap) {

@@ -265,8 +265,8 @@ TEST(CarmenFiles, ReferencesOfAnotherTimeAreToldAndLeftOut) {
   EXPECT_GT(set.scans.front().points.size(), 170U);
 }
 
-// Whatever stands in a file, reading it gives scans with finite poses and times, or FileError with
-// a place.
+// Reading a damaged file gives scans with finite poses and times, or an error that begins with the
+// file's name. Damaged lines are reported.
 TEST(CarmenProperty, DamageIsToldAndNothingElse) {
   std::string good = "PARAM robot_front_laser_max 80 nohost 0\n";
   for (int i = 0; i < 6; ++i) {

@@ -28,7 +28,7 @@ class Robot {
   const v1::Capability* capability(const std::string& tool) const;
   const cli::Mind& mind() const { return mind_; }
   bool moves() const;
-  /// Who drives, what is underway, what is missing.
+  /// The driver, any trouble, and the robot's pose, velocity and battery.
   Result status() const;
   Result why() const;
 
@@ -47,7 +47,7 @@ class Robot {
 };
 
 /// Carries out the calls of one client on the bus: goals, requests, words, and the emergency stop.
-/// What it asked for ends with it, also when it is killed (Goal.writer_lost).
+/// Its goals end with the client, and also when this program is killed (Goal.writer_lost).
 class Door {
  public:
   Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);

@@ -28,7 +28,7 @@ class HttpServer {
  public:
   using Exchange = std::uint64_t;  ///< a request and its answer; from 1
 
-  /// What happens. Each is called from run() alone.
+  /// The callbacks for events. Each is called from run() alone.
   struct Events {
     std::function<void(Exchange, HttpRequest)> came;
     /// The connection went before the request was answered whole.

@@ -365,7 +365,7 @@ class BusRobot final : public Robot {
     const std::lock_guard lock(mutex_);
     shared_ = std::move(tasks);
     mind_ = std::move(mind);
-    // What is handed over now shows in what the program says the next time.
+    // The program's next call shows the effect of the requests that it gets now.
     unanswered_.clear();
     for (const TaskRequest& asked : asked_)
       unanswered_.insert(asked.name);
@@ -398,7 +398,7 @@ class BusRobot final : public Robot {
   }
 
  private:
-  /// What is on the bus: of the thread alone.
+  /// The endpoints on the bus; only the thread uses them.
   struct Ends {
     explicit Ends(bus::Node& node, const std::string& source)
         : robots(node.reader(bus::topics::kRobotState)),
@@ -600,7 +600,7 @@ class BusRobot final : public Robot {
     return std::nullopt;
   }
 
-  /// Who drives instead, and that the guard holds the robot back: each once.
+  /// Reports a refusal of the bridge and a stop by the guard, each kind once.
   void take_grant(Ends& ends) {
     const auto grant = ends.grants.take_newest();
     if (!grant)
@@ -626,7 +626,7 @@ class BusRobot final : public Robot {
     ends.commands.write(command);
   }
 
-  /// What the program asks for. False where it ends.
+  /// Writes the program's pending commands, requests and texts to the bus. False where it ends.
   bool say_all(bus::Node& node, Ends& ends) {
     std::optional<v1::MotorCommand> wish;
     std::vector<protocol::Bytes> packets;
@@ -705,7 +705,7 @@ class BusRobot final : public Robot {
         say_("the robot does not do it: " + std::string(answer.text()), true);
   }
 
-  /// What the program says of its micro-tasks holds, until somebody on the bus asks otherwise.
+  /// Shows the states of the program's micro-tasks, and takes requests from the bus to change them.
   void show_tasks(ProcessTable& table, runtime::ProcessesOnBus& processes) {
     std::vector<SharedTask> shared;
     std::set<std::string> busy;

@@ -136,7 +136,7 @@ point* Os::find_on_map(int id) {
   return nullptr;
 }
 
-/// What registration has put onto the map, or taken from it. An artifact that stays keeps its
+/// Takes over the changes that registration has made to the map. An artifact that stays keeps its
 /// place in memory: the program may have a pointer to it.
 void Os::read_map() {
   if (!registration_ || registration_->map_revision() == map_revision_)
@@ -202,7 +202,7 @@ void Os::interpret() {
   percepts_ = *interpretation_->step(inputs).output;
 }
 
-/// What the services' registration says. The global frame is that of their map.
+/// Takes over the results of the registration service. The global frame is that of its map.
 void Os::match_on_bus(const Found& found) {
   environment_ = found.environment;
   if (found.odom_in_map)

@@ -138,7 +138,7 @@ class DirectRobot final : public Robot {
     came_.notify_all();
   }
 
-  /// What the program asks for. False where it ends.
+  /// Carries out the program's pending command and packets. False where it ends.
   bool take() {
     std::optional<bridge::DriveCommand> wish;
     std::vector<protocol::Bytes> packets;

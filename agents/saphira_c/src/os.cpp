@@ -31,8 +31,8 @@ void mind_signal(int number) {
     std::signal(number, on_signal);
 }
 
-/// What is registered last is called first: once more after a library has been loaded, or that
-/// would be taken down before the robot is let go.
+/// The exit handler that is registered last is called first. It is registered again after a library
+/// has been loaded, so that the robot is let go before that library is taken down.
 void end_at_exit() {
   std::atexit([] { Os::get().finish(); });
 }
@@ -239,8 +239,8 @@ void Os::step(const Reflected& now) {
   changed_.notify_all();
 }
 
-/// Whatever stopped the robot on its way (an operator, the guard, motor_proc suspended), the rest
-/// of the way is driven when it can be.
+/// Commands the rest of a way again where the robot was stopped on it (by an operator, the guard or
+/// a suspended motor_proc).
 void Os::go_on_to_position() {
   const double rest = position_target ? *position_target - travelled : 0.0;
   stands_ = motion.translation == reflector::Translation::position && std::abs(rest) > kShort &&

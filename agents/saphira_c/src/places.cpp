@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What is above the folder of this library: the prefix where it was installed or built.
+/// The folder of this library. The prefix of the build or installation is one to three levels up.
 fs::path above_library() {
   Dl_info info{};
   if (::dladdr(reinterpret_cast<const void*>(&above_library), &info) == 0 ||

@@ -19,13 +19,13 @@
 
 namespace saphira::c {
 
-/// What a cycle brings.
+/// The inputs of one cycle.
 struct Reflected {
   std::uint64_t session = 0;  ///< another number for each connection
   reflector::State state;
 };
 
-/// What the services of a robot on the bus have found.
+/// The results of the services of a robot on the bus.
 struct Found {
   std::optional<lps::Percept> left_wall;   ///< sfLeftWallHyp
   std::optional<lps::Percept> right_wall;  ///< sfRightWallHyp
@@ -48,13 +48,13 @@ struct SharedIntention {
   std::string behavior;  ///< that it is there for; empty: a function
   int state = 0;         ///< as above, or an end of Table 8-1
 };
-/// What the program's behaviors and intentions are in a cycle.
+/// The program's behaviors and intentions in a cycle.
 struct SharedMind {
   std::uint64_t cycle = 0;  ///< of the robot
   behaviors::Output behaviors;
   std::vector<SharedIntention> intentions;
 };
-/// What another program asks of one.
+/// The request of another program to a micro-task.
 struct TaskRequest {
   std::string name;
   ProcessAction action = ProcessAction::suspend;
@@ -77,17 +77,17 @@ class Robot {
   /// connection is lost. The newest counts: cycles in which the caller was busy are passed over,
   /// with their sonar readings kept.
   virtual std::optional<Reflected> next(int milliseconds) = 0;
-  /// What the program wants of the wheels, in answer to the cycle. Counts for 0.3 s.
+  /// The program's motion command, in answer to the cycle. It is valid for 0.3 s.
   virtual void drive(const reflector::Motion& motion, std::uint64_t cycle) = 0;
   /// A packet to the robot, as it is.
   virtual void send(protocol::Bytes packet) = 0;
-  /// What the camera said last; and how many packets have come.
+  /// The newest packet of the camera; count: the number of packets so far.
   virtual protocol::VisionPacket vision(std::uint64_t& count) const = 0;
   /// Stops the robot and lets it go. Waits a second at the most.
   virtual void end() = 0;
 
   // ---- Of a robot on the bus; one that is served directly has none of it.
-  /// What its services have found; nothing: there are none, the program finds it by itself.
+  /// The results of its services; nothing: it has none, and the program computes them itself.
   virtual std::optional<Found> found() { return std::nullopt; }
   /// Shows the program's micro-tasks to others, and what it thinks, where it has behaviors or
   /// intentions. What these have asked since the last call.
@@ -115,7 +115,7 @@ std::unique_ptr<Robot> direct_robot(const std::string& address, Say say);
 /// the other options of the bus are those of the environment (SAPHIRA_DOMAIN and so on).
 /// std::runtime_error where that part is not there.
 std::unique_ptr<Robot> bus_robot(const std::string& name, Say say);
-/// What that part exports under the name kBusRobot.
+/// The function that this part exports under the name kBusRobot.
 using MakeBusRobot = Robot* (*)(const std::string& name, Say say);
 inline constexpr const char* kBusRobot = "saphira_c_bus_robot";
 /// Of an address, before the robot's name on the bus.

@@ -228,9 +228,9 @@ namespace {
 void nothing() {}
 }  // namespace
 
-// What the library does before all micro-tasks of a cycle (the packet, the state reflector, the
-// registration of all geometry) and behind them (the motor command, what is drawn) has its name and
-// its state. Those of them that make the cycle go on whatever their state.
+// Named micro-tasks with a state for the library's work before all others of a cycle (the packet,
+// the state reflector, the registration of all geometry) and after them (the motor command, the
+// drawing). Those that every cycle needs go on in any state.
 void Os::init_basic() {
   for (const char* const name : {"pulse_proc", "motor_proc", "clamp_proc", "sonar_proc",
                                  "wake_proc", "draw_proc", "process_waiting_packets"})

@@ -20,7 +20,7 @@ Mine& mine() {
   return *of_thread;
 }
 
-/// What this thread has read of a sonar stays read.
+/// Takes the next view. A sonar reading that this thread has read stays read.
 void take(Mine& of_thread, const View& next) {
   const View before = of_thread.view;
   of_thread.view = next;

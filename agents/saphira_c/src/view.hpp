@@ -9,7 +9,7 @@ namespace saphira::c {
 
 using ::point;  // and not the argument of a request
 
-/// What a C program sees of the robot: one whole cycle.
+/// The state of the robot for a C program: one whole cycle.
 struct View {
   std::uint64_t cycle = 0;
   struct robot robot {};

@@ -21,7 +21,7 @@ struct Drawn {
   float dx = 0.0F;
   float dy = 0.0F;
 };
-/// What was drawn since the last call.
+/// The rectangles that were drawn since the last call.
 std::vector<Drawn> take_drawn();
 
 /// Hands what was typed to the program. In the thread of the micro-tasks, once a cycle.

@@ -58,7 +58,7 @@ class OnBus : public testing::Test {
         },
         kPatience);
   }
-  /// What the command line prints.
+  /// The output of a command of `saphira`.
   std::string cli(std::vector<std::string> words) {
     words.insert(words.begin(), test::program("saphira"));
     Process process(words, system_.folder().path("cli"), {{"SAPHIRA_ROBOT", system_.robot()}});

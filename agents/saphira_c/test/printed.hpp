@@ -28,7 +28,7 @@ inline std::string manual() {
   return text.str();
 }
 
-/// What stands in the fences from one heading to another.
+/// The manual's code blocks from one heading to another, corrected by `mends`.
 inline std::string printed(const std::string& from, const std::string& to,
                            const std::vector<Mend>& mends) {
   const std::string text = manual();

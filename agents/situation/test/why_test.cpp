@@ -237,7 +237,7 @@ TEST_F(WhyTest, WithoutGoalsAndSchemasItTellsLess) {
   EXPECT_TRUE(sentence().ends_with("KeepOff wants 20 degrees to the left.")) << sentence();
 }
 
-// Whatever is the case, a sentence can be taken in at once.
+// The sentence stays short, however long names and reasons are.
 TEST_F(WhyTest, SentencesAreShort) {
   const std::string endless(500, 'x');
   scene.grant->guard(v1::GUARD_SLOW);

@@ -114,7 +114,7 @@ void SpeechShell::reload() {
   }
 }
 
-/// What the threads have had to say. Each trouble is told once.
+/// Reports the trouble of the sound threads. Each trouble is told once.
 void SpeechShell::report() {
   const std::lock_guard lock(mutex_);
   if (trouble_ == told_)

@@ -17,7 +17,7 @@ class RecognizerTest : public WithModel {
     names.emplace_back("ej-231");
     recognizer->listen_for(grammar.graph(names, false));
   }
-  /// What was made of each utterance in it: "command: flakey turn left".
+  /// The outcome and text of each utterance in it, such as "command: flakey turn left".
   std::vector<std::string> heard(const Sound& sound) {
     std::vector<Event> events = recognizer->hear(sound);
     const std::vector<Event> last = recognizer->end();
@@ -65,7 +65,7 @@ TEST_F(RecognizerTest, APauseAfterTheKeywordIsPartOfTheUtterance) {
             Texts{"command: flakey turn left"});
   EXPECT_EQ(heard(joined({silence(0.4), voice.say("flakey"), silence(3.0)})),
             Texts{"addressed: flakey"});
-  // What comes later than that is none of it.
+  // Speech after a longer pause is not part of the command.
   EXPECT_EQ(heard(joined({silence(0.4), voice.say("flakey"), silence(3.0), voice.say("turn left"),
                           silence(0.6)})),
             (Texts{"addressed: flakey", "not for it: "}));

@@ -161,7 +161,7 @@ TEST(Arbiter, AnybodysStopStopsAndTakesTheRole) {
   EXPECT_EQ(s.go_on(1, Wish::drive, Wish::stop).source, "teleop2") << "in the same cycle";
   EXPECT_EQ(s.go_on(5, Wish::drive, Wish::stop).source, "teleop2");
   EXPECT_EQ(s.refused["teleop1"], "teleop2 has stopped the robot: let go, then drive");
-  // Whoever stopped the robot may drive it.
+  // The person who stopped the robot may drive it.
   EXPECT_EQ(s.go_on(5, Wish::drive, Wish::drive).source, "teleop2");
 }
 

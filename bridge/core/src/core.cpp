@@ -64,7 +64,7 @@ double Core::time(double now) const {
 
 void Core::tend_session(double now, const Surroundings& around) {
   if (connection_.state() == State::closed) {
-    // Whoever follows that name would obey both bridges.
+    // No session begins beside another bridge of this name: two robots would share one name.
     if (!around.namesake.empty())
       return;
     parser_.reset();

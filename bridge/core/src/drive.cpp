@@ -59,7 +59,7 @@ void Core::command(const DriveCommand& in, double now) {
   authority::Command command = in.command;
   command.received = time(now);
   command.stop = command.active && is_stop(in.motion);
-  // Whatever else it says: a lockstep that waited for a better answer would wait for ever.
+  // Even a wrong command is an answer: lockstep could wait for a better one for ever.
   if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
       command.cycle == session_.stamp.cycle)
     session_.answered = true;

@@ -164,7 +164,7 @@ TEST(Impossible, InOtherPackets) {
   EXPECT_EQ(what(vision), "");
 }
 
-// Whatever a packet says: what is left of it lies within what the contract states.
+// The values that are left of a random packet lie within the limits of the contract.
 TEST(Impossible, NothingElseIsLeftOfRandomPackets) {
   Random random(5);
   int kept = 0;

@@ -114,7 +114,7 @@ const std::vector<Functor>& functors(Device device) {
   static const std::array<std::vector<Functor>, std::variant_size_v<Wish>> all_functors{{
       {{"servo",
         "turns the position servo (command 41)",
-        {whole_parameter("width", "pulse width [us]; a later robot: the number as it means it", 0.0,
+        {whole_parameter("width", "pulse width [us]; later robots: in their own units", 0.0,
                          65535.0)}}},
       {{"gripper",
         "moves the gripper (command 33); a Pioneer 1 takes numbers alone: 0, 1, 4, 5",
@@ -124,8 +124,7 @@ const std::vector<Functor>& functors(Device device) {
       {{"output",
         "sets the digital outputs (command 30)",
         {whole_parameter("bits", "as they are to be", 0.0, 255.0),
-         optional(whole_parameter("mask", "bits that stay as they are are 0", 0.0, 255.0),
-                  255.0)}}},
+         optional(whole_parameter("mask", "0: leave that bit as it is", 0.0, 255.0), 255.0)}}},
       {{"analog",
         "chooses the input that RobotState.analog shows (command 35)",
         {whole_parameter("port", "of the robot", 0.0, 255.0)}}},

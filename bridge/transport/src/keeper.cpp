@@ -25,7 +25,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPause{1000};  // between two starts
 constexpr int kUnanswered = 40;       // heartbeats: 2 s, by a keeper that has its own to do
 
-/// Whatever else is open belongs to the bridge: a pipe that the keeper held would never end.
+/// The keeper inherits its socket and stderr alone: a pipe of the bridge held by it would not end.
 struct Inherited {
   posix_spawn_file_actions_t files{};
   posix_spawnattr_t attributes{};

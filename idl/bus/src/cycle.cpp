@@ -67,7 +67,7 @@ struct Cycle::Impl {
                 why);
   }
 
-  // Who wrote it, for people.
+  // The program of a writer, for people.
   std::string program(const WriterId& writer) const {
     for (const EndpointEntry& entry : internal::transport_of(node).endpoints())
       if (entry.id == internal::to_hex(writer))
@@ -324,7 +324,7 @@ struct Cycle::Impl {
     return {};
   }
 
-  // Who and what is waited for.
+  // The input that is waited for, in words.
   std::string awaited() const {
     const auto nobody = [](std::size_t matched) {
       return matched == 0 ? ": nobody writes it" : "";

@@ -168,7 +168,7 @@ class DdsWriter : public RawWriter, public Endpoint {
   }
 
  private:
-  /// What it is in one session.
+  /// The writer's part in one session.
   struct Part : fdds::DataWriterListener {
     void on_publication_matched(fdds::DataWriter* /*writer*/,
                                 const fdds::PublicationMatchedStatus& status) override {
@@ -279,7 +279,7 @@ class DdsReader : public RawReader, public Endpoint {
   }
 
   void take(const std::function<void(const void*, const SampleInfo&)>& each) override {
-    // What was taken before a session ended.
+    // Samples that were taken before a session ended are not taken again.
     if (begun_anew_.exchange(false))
       taken_before_ = taken_;
     for (Part& part : parts_)
@@ -299,7 +299,7 @@ class DdsReader : public RawReader, public Endpoint {
  private:
   using Holder = std::unique_ptr<void, void (*)(void*)>;
 
-  /// What it is in one session.
+  /// The reader's part in one session.
   struct Part : fdds::DataReaderListener {
     void on_data_available(fdds::DataReader* /*reader*/) override { owner->bus_->wake->signal(); }
     void on_subscription_matched(fdds::DataReader* /*reader*/,
@@ -409,7 +409,7 @@ class DdsReader : public RawReader, public Endpoint {
 };
 
 class DdsTransport : public Transport {
-  /// What the discoveries of all sessions say, one after the other.
+  /// The results of `say` from the discoveries of all sessions, one after the other.
   template <class Say>
   auto from_each(Say say) const {
     const auto session = bus_->hold();

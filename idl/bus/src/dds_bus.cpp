@@ -34,7 +34,7 @@ constexpr std::chrono::seconds kLongSleep{kLease - std::chrono::seconds(15)};
 constexpr std::chrono::seconds kSleep{1};
 // Turns of the thread from one look at the machine's addresses to the next.
 constexpr int kLook = 2;
-// What is waited for is told when it has been for so long.
+// The time after which a wait for the network is logged.
 constexpr std::chrono::seconds kTellWait{3};
 // Between two attempts to look up the names of peers of which nothing is heard.
 constexpr std::chrono::seconds kLookUp{5};

@@ -74,12 +74,12 @@ class Endpoint {
   virtual void close(Session& session) = 0;
 };
 
-/// What the endpoints of a node share; lives as long as the last of them. Ten times a second its
-/// thread tells the others that this program is there, and looks whether they are.
+/// The state that the endpoints of a node share; lives as long as the last of them. Ten times a
+/// second its thread tells the others that this program is there, and looks whether they are.
 ///
 /// There is a session on loopback, for the programs of this machine, and with the profiles lan and
-/// wan one on the network, as soon as the machine has an address. When it gets another address,
-/// that one is made anew, and what runs on loopback goes on.
+/// wan one on the network, as soon as the machine has an address. When it gets another address, the
+/// session on the network is made anew, and the one on loopback goes on.
 ///
 /// A program that stood still for about as long as the lease of discovery, or longer, may have been
 /// dropped by the others without having dropped them, and would not be heard again by some (Fast

@@ -47,7 +47,7 @@ const char* policy_name(fdds::QosPolicyId_t id) {
   }
 }
 
-/// What stands behind `key` in a participant's user data, up to the next semicolon.
+/// The text behind `key` in a participant's user data, up to the next semicolon.
 std::string field(const std::string& data, const std::string& key) {
   const auto begin = data.find(key);
   if (begin == std::string::npos)
@@ -67,7 +67,7 @@ std::string to_text(const rtps::GuidPrefix_t& prefix) {
   return {reinterpret_cast<const char*>(prefix.value), sizeof prefix.value};
 }
 
-/// Who has it, for people.
+/// An endpoint by its program and host, for people.
 std::string name(const EndpointEntry& endpoint) {
   return std::string(endpoint.writer ? "the writer of " : "the reader of ") +
          (endpoint.program.empty() ? "an unknown program" : endpoint.program) +

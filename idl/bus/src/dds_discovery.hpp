@@ -19,7 +19,7 @@
 
 namespace saphira::bus::internal {
 
-/// What was discovered of others, and what did not match. Filled by Fast DDS's threads.
+/// The discovered programs and endpoints, and the mismatches. Filled by Fast DDS's threads.
 class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// most_here: programs of this machine that others can find [0: any number].
@@ -53,7 +53,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
   void add_own(const EndpointEntry& own);
   void remove_own(const std::string& id);
 
-  /// Who has written a sample, as far as discovery knows; none on an open bus.
+  /// The identity of a sample's writer, as far as discovery knows; none on an open bus.
   std::shared_ptr<const Identity> identity_of(const eprosima::fastrtps::rtps::GUID_t& writer) const;
 
   /// As Transport has them.

@@ -29,10 +29,10 @@ class Guard {
 
   void secure(eprosima::fastdds::dds::DomainParticipantQos& qos) const;
 
-  /// Who a participant is by the subject that it announced when it was discovered, where its prefix
-  /// is that subject's. Fast DDS 2.9 hears samples of those alone whose certificate has the subject
-  /// that they announced; that the prefix is that certificate's it checks within the handshake, but
-  /// not against the prefix of the samples. Who fails here is nobody.
+  /// The identity of a participant, by the subject that it announced at discovery; empty where the
+  /// site is another one or the prefix is not that subject's. Fast DDS 2.9 takes samples only where
+  /// the certificate has the announced subject. It checks within the handshake that the prefix is
+  /// the certificate's, but does not compare it with the prefix of the samples.
   std::shared_ptr<const Identity> identify(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix,
                                            const std::string& announced) const;
 

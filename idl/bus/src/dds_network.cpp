@@ -55,7 +55,7 @@ class DdsLog : public fdds::LogConsumer {
     if (is_refusal(entry.message))
       return;
     const std::string text = "Fast DDS: " + entry.message;
-    // What Fast DDS calls an error is no more than a warning for a system that goes on.
+    // An error of Fast DDS is logged as a warning, since the system goes on.
     write_log(entry.kind == fdds::Log::Kind::Info ? v1::LOG_DEBUG : v1::LOG_WARNING, text);
   }
 };

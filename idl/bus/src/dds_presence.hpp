@@ -32,7 +32,7 @@ class Presence : public Endpoint {
   BootClock::duration longest_silence(BootClock::time_point now) const;
 
  private:
-  /// What it has on one side.
+  /// Its endpoints on one side.
   struct Part : eprosima::fastdds::dds::DataReaderListener {
     void on_subscription_matched(
         eprosima::fastdds::dds::DataReader* /*reader*/,

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the endpoints of both directions have in common.
+// The QoS settings that readers and writers have in common.
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 

@@ -16,8 +16,8 @@
 
 namespace saphira::bus::internal {
 
-/// What stands between the network and Fast DDS, which takes a packet in a thread of its own and
-/// ends the process where it throws: only sound messages pass, and what is thrown at one is caught.
+/// A filter between the network and Fast DDS: only sound messages pass, and exceptions are caught.
+/// Fast DDS takes a packet in a thread of its own, where an exception would end the process.
 struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   using Mute = std::shared_ptr<const std::atomic<bool>>;
   /// True where a packet is to be dropped, by its sender's GUID prefix and address.

@@ -11,10 +11,10 @@ namespace {
 
 thread_local bool last_was_malformed = false;
 
-/// What the generated code lacks. It throws at a sample that is not of its type, through the thread
-/// that takes it or through one of Fast DDS's own, which ends the process. And its getKey works in
-/// a buffer of the object, while one object serves every endpoint of a participant: a write by the
-/// program and a sample received by the transport would meet in it.
+/// Adds the safety that the generated code lacks. That code throws at a sample that is not of its
+/// type, also in a thread of Fast DDS, which ends the process. And its getKey works in a buffer of
+/// the object, while one object serves every endpoint of a participant: a write by the program and
+/// a sample received by the transport would use the buffer at the same time.
 template <class Generated>
 class Guarded : public Generated {
  public:

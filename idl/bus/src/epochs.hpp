@@ -33,7 +33,7 @@ class Epochs {
   void describe(const Program& program, std::uint64_t instance, std::uint64_t epoch);
   /// A participant is gone. Another bridge may be followed when none is left of the one that is.
   void lose(const Program& program);
-  /// What is to be done with a state of the robot; follows its bridge where there is none.
+  /// The verdict on a state of the robot. Follows its bridge where none is followed yet.
   Verdict judge(const Program& writer, std::uint64_t epoch);
   /// True where what other services write for this epoch is of use, now or soon.
   bool useful(std::uint64_t epoch) const;

@@ -20,6 +20,8 @@ std::uint64_t next_number() {
   return ++number;
 }
 
+constexpr std::chrono::milliseconds kToldAgain{10000};  // by a service that is started again
+
 }  // namespace
 
 GoalClient::GoalClient(Node& node, std::string requester, std::chrono::milliseconds keep)
@@ -51,8 +53,8 @@ void GoalClient::cancel(const v1::GoalId& id) {
   goal.id(id);
   if (!writer_.dispose(goal))
     throw std::runtime_error("the bus did not take the withdrawal of goal " + describe(id));
-  if (const auto own = own_.find(key_of(id)); own != own_.end() && !own->second)
-    own->second = Clock::now();
+  if (const auto own = own_.find(key_of(id)); own != own_.end() && !own->second.over)
+    own->second.over = Clock::now();
 }
 
 void GoalClient::poll() {
@@ -63,17 +65,42 @@ void GoalClient::poll() {
       known_[key] = sample.data;
     else if (own == own_.end())
       known_.erase(key);
-    if (own != own_.end() && !own->second && ended(sample.data.state()))
-      own->second = Clock::now();
+    if (own == own_.end() || own->second.over)
+      continue;
+    if (sample.info.disposed)
+      own->second.withdrawn = Clock::now();
+    else
+      own->second.withdrawn.reset();
+    if (!sample.info.disposed && ended(sample.data.state()))
+      own->second.over = Clock::now();
   }
   forget();
+  miss();
 }
 
-/// Who asks for months asks for much.
+/// A goal whose status was withdrawn has ended, unless a service that was started again tells it.
+void GoalClient::miss() {
+  const auto now = Clock::now();
+  for (auto& [key, own] : own_) {
+    if (own.over || !own.withdrawn || now - *own.withdrawn < std::min(keep_, kToldAgain))
+      continue;
+    v1::GoalStatus& status = known_[key];
+    status.id().writer(key.first);
+    status.id().number(key.second);
+    status.state(v1::GOAL_FAILED);
+    status.code(v1::CODE_FORGOTTEN);
+    status.reason(
+        "it has ended, and this program has not heard how: it did not listen for more than a "
+        "minute");
+    own.over = now;
+  }
+}
+
+/// Withdraws and forgets goals that ended long ago: over months there are many.
 void GoalClient::forget() {
   const auto long_ago = Clock::now() - keep_;
   for (auto own = own_.begin(); own != own_.end();) {
-    if (!own->second || *own->second > long_ago) {
+    if (!own->second.over || *own->second.over > long_ago) {
       ++own;
       continue;
     }

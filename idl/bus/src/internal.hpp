@@ -1,6 +1,6 @@
 #pragma once
 
-// What the two transports share. Not for users of the library, but for its tests.
+// The parts that both transports share. Not for users of the library, but for its tests.
 
 #include <atomic>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace saphira::bus::internal {
 
-/// What a QoS name comes to.
+/// The DDS policies behind a QoS name.
 struct Policies {
   bool reliable = false;
   bool transient_local = false;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a writer holds for readers that come later.
+// The samples that a writer holds for readers that come later.
 
 #include <cstddef>
 #include <deque>

@@ -33,7 +33,7 @@ class Machines {
   /// That program hears these: separated by commas, as heard() says it. Damaged ones are left out.
   void tell(const std::string& program, const std::string& addresses);
   void forget(const std::string& program);
-  /// What all programs told.
+  /// Forgets the addresses that all programs told.
   void forget_told();
 
   /// From where announcements come, for other programs.
@@ -45,9 +45,9 @@ class Machines {
   /// Named ones that have no known address.
   std::vector<std::string> unknown() const;
 
-  /// What is not heard for so long is not there any more.
+  /// The silence after which a machine counts as gone.
   static constexpr std::chrono::seconds kGone{60};
-  /// Whoever tells of more machines makes them up.
+  /// The limit of each list of machines: a longer list is made up.
   static constexpr std::size_t kMost = 16;
 
  private:

@@ -56,7 +56,7 @@ void keep_last(std::deque<Item>& items, const InstanceKey& key, int depth) {
     items.erase(std::find_if(items.begin(), items.end(), same));
 }
 
-// What both kinds of endpoint and the node they belong to have in common.
+// The members that readers and writers have in common, with those of their node.
 struct Common {
   std::shared_ptr<MemoryBus> bus;
   std::shared_ptr<Wake> wake;

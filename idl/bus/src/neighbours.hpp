@@ -1,6 +1,6 @@
 #pragma once
 
-// What the status of the other programs of this robot means for a service. Pure.
+// The meaning of the status of this robot's other programs for a service. Pure.
 
 #include <chrono>
 #include <cstdint>

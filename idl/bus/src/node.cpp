@@ -274,7 +274,7 @@ bool Node::publish_status() {
     self.last_cpu = cpu;
     self.last_published = now;
   }
-  // What a person has to do soon is told beside what the program says.
+  // The coming expiry of the certificate is told beside the program's own reason.
   if (const std::string expiry = self.transport->expiry(); !expiry.empty()) {
     v1::ServiceStatus told = self.status;
     told.reason() += (told.reason().empty() ? "" : "; ") + expiry;

@@ -49,7 +49,7 @@ class Ends {
 /// itself does not take all others for dead.
 class Peers {
  public:
-  /// What the endpoints of a program have in common: the first part of their ids.
+  /// The first part of an endpoint's id, which is the same for all endpoints of a program.
   using Program = std::array<std::uint8_t, 12>;
   static Program program_of(const WriterId& endpoint);
 

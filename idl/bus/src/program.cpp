@@ -119,8 +119,8 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
   } catch (const std::exception& error) {
     what = error.what();
   }
-  // What a person gave is read before the work begins. Later the mistake is ours, and whoever
-  // started us may do so again.
+  // Input from people is read before the work begins: only then is a mistake theirs. A later one is
+  // ours, and a supervisor may start this program again.
   if (!usage.empty() && !internal::has_worked()) {
     std::fprintf(stderr, "%s\n", usage.c_str());
     return kExitUsage;

@@ -28,9 +28,9 @@ Policies policies(Qos qos, bool lockstep) {
               .lifespan_ms = 2000,
               .heartbeat_ms = 100};
     case Qos::latched:
-      // What comes between two looks is not overwritten: two writers of a topic without a key (two
-      // bridges) are both heard, and in lockstep the one that somebody else had in a certain cycle
-      // may be wanted.
+      // The reader keeps the samples that come between two looks: two writers of a topic without a
+      // key (two bridges) are both heard, and in lockstep the sample of an earlier cycle may be
+      // needed.
       return {.reliable = true,
               .transient_local = true,
               .reader_depth = 8,

@@ -14,6 +14,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kAgain{300};  // until it is written again
 constexpr std::chrono::milliseconds kLook{50};
+constexpr std::chrono::microseconds kSpin{1000};  // most answers are there by then
 
 std::string seconds(double patience) {
   char text[40];
@@ -70,6 +71,7 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
       again = now + kAgain;
       newest.code(v1::ANSWER_TOO_LATE);
       newest.text("nothing was heard of the request within " + seconds(patience));
+      node_.spin(kSpin);
     }
     node_.wait(std::min(kLook, std::chrono::ceil<std::chrono::milliseconds>(end - now)), stop);
     if (meanwhile)

@@ -77,6 +77,36 @@ TEST(GoalClient, KnowsTheNewestStatusAndKeepsItsOwn) {
   EXPECT_FALSE(client.status(foreign.id()));
 }
 
+// A program that is stopped for minutes misses the end, and the status is withdrawn meanwhile.
+TEST(GoalClient, AGoalWhoseEndWasMissedIsOver) {
+  const auto bus = make_memory_bus();
+  Node service(named("intentions"), bus);
+  auto statuses = service.writer(topics::kGoalStatus);
+  Node agent(named("agent"), bus);
+  GoalClient patient(agent, "an agent");
+  GoalClient hasty(agent, "an agent", std::chrono::milliseconds(0));
+  v1::GoalStatus never_heard;
+  never_heard.id(hasty.ask(v1::Goal()));
+  v1::GoalStatus told_again;
+  told_again.id(patient.ask(v1::Goal()));
+  for (v1::GoalStatus* const status : {&never_heard, &told_again}) {
+    status->state(v1::GOAL_UNDERWAY);
+    statuses.write(*status);
+    statuses.dispose(*status);
+  }
+  hasty.poll();
+  ASSERT_TRUE(hasty.status(never_heard.id()));
+  EXPECT_EQ(hasty.status(never_heard.id())->state(), v1::GOAL_FAILED);
+  EXPECT_EQ(hasty.status(never_heard.id())->code(), v1::CODE_FORGOTTEN);
+  // A service that is started again tells the status anew.
+  patient.poll();
+  EXPECT_EQ(patient.status(told_again.id())->state(), v1::GOAL_UNDERWAY);
+  told_again.state(v1::GOAL_SUCCEEDED);
+  statuses.write(told_again);
+  patient.poll();
+  EXPECT_EQ(patient.status(told_again.id())->state(), v1::GOAL_SUCCEEDED);
+}
+
 TEST(GoalClient, ForgetsWhatEndedLongAgo) {
   const auto bus = make_memory_bus();
   Node service(named("intentions"), bus);

@@ -135,7 +135,7 @@ TEST_F(Processes, NodeThatBeginsAnewTellsItsStateAgainAndNoWishes) {
   std::vector<WriterId> lost;
   EXPECT_TRUE(eventually(*node_, [&] { return !(lost = read_wishes.take_lost()).empty(); }));
   EXPECT_EQ(lost, std::vector<WriterId>{first.at(0).info.writer});
-  // What it writes now is heard, and nothing of before comes again.
+  // Its new samples are heard, and no earlier wish or message comes again.
   ASSERT_TRUE(eventually(*node_, [&] { return read_wishes.matched() == 1 && log.matched() == 1; }));
   wishes.write(goal(2));
   said.write(v1::Message());

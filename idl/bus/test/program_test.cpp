@@ -45,7 +45,7 @@ TEST(Program, AMistakeInWhatAPersonGaveIsAUsageError) {
             kExitBroken);
 }
 
-// Whoever supervises a service starts it again after the one, and gives up after the other.
+// A supervisor starts a service again after kExitBroken, and gives up after kExitUsage.
 TEST(Program, TheSameIsOurMistakeWhereTheServiceWasAtWork) {
   EXPECT_EQ(run([](const NodeOptions& options, const Stop& stop) -> int {
               step(options, stop);

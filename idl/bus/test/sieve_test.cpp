@@ -1,4 +1,4 @@
-// What of a packet is handed to the library.
+// The parts of a packet that are handed to the library.
 #include "sieve.hpp"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ Bytes heartbeat(std::uint8_t participant, std::uint32_t high, std::uint32_t low)
 // Some time at which a program has been awake for long.
 const Sequences::Time kAwake = Sequences::Time{} + std::chrono::hours(1);
 
-/// What a program hears until then, so that it is known to be awake.
+/// Heartbeats until kAwake, so that the program is known to be awake.
 void wake(Sequences& sequences) {
   const Bytes bytes = heartbeat(99, 0, 1);
   for (auto time = kAwake - std::chrono::seconds(3); time < kAwake;
@@ -187,7 +187,7 @@ TEST(Sequences, ProgramThatSleptBelievesTheLeapsOfAll) {
     return sequences.plausible(bytes.data(), bytes.size(), kAwake + time);
   };
   EXPECT_TRUE(ask(5000, milliseconds(0)));
-  // What was sent before the sockets were full comes first, and at once behind it what is sent now.
+  // The samples from before the sockets were full come first, and present ones right behind them.
   EXPECT_TRUE(ask(5001, milliseconds(30000)));
   EXPECT_TRUE(ask(5002, milliseconds(30000)));
   EXPECT_TRUE(ask(5300, milliseconds(30001)));

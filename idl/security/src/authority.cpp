@@ -33,7 +33,7 @@ constexpr int kMostDays = 3650;
 // The clock of a machine that is switched on may be somewhat behind.
 constexpr std::int64_t kEarlier = kDay;
 
-/// What is made meanwhile is for this user alone.
+/// While it lives, new files are for this user alone.
 class Private {
  public:
   Private() : before_(::umask(0077)) {}

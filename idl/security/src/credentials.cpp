@@ -82,7 +82,7 @@ std::string role_for(const std::string& folder, const std::string& program, cons
        "`saphira security add NAME --role operator` makes them");
 }
 
-/// What all roles of a folder have in common.
+/// The part that all roles of a folder have in common: the authority and the list of roles.
 Credentials load_shared(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))

@@ -35,7 +35,7 @@ std::string sign(const std::string& text, const KeyPair& authority);
 
 // All of these throw std::runtime_error that says what is wrong, without the file.
 
-/// What was signed by this certificate.
+/// The text of a document that this authority has signed.
 std::string verified(const std::string& document, const std::string& authority_certificate);
 CertificateText read_certificate(const std::string& pem);
 /// True where an authority has signed a certificate.

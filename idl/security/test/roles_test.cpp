@@ -105,7 +105,7 @@ TEST(Roles, TheShippedFileCoversTheContract) {
   EXPECT_EQ(roles.those_that_write("drive/teleop"), "operator");
 }
 
-// Whatever is in the file, it is taken or refused with a place.
+// A damaged file is taken, or refused with line and column.
 TEST(Roles, DamagedFilesAreToldNotTaken) {
   const std::string file = config_folder() + "/security/roles.yaml";
   const std::string good = read_file(file);

@@ -37,7 +37,7 @@ class Folder {
   const std::filesystem::path path_;
 };
 
-/// What f() throws, in words; empty where it throws nothing.
+/// The message of the exception that f() throws; empty where it throws none.
 template <class F>
 std::string trouble(F&& f) {
   try {

@@ -11,6 +11,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::chrono::microseconds kSpin{500};  // after a request: most agents answer within that
+
 double seconds() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
@@ -85,6 +87,7 @@ void FacilitatorShell::step(double now) {
       facilitator_.ask(saphira::from_bus(sample.data), now);
 
   const Facilitator::Outputs out = facilitator_.step(now);
+  awaits_ = !out.requests.empty();
   for (const Request& request : out.requests)
     requests_.write(to_bus(request));
   for (const Solved& solved : out.solved) {
@@ -105,6 +108,8 @@ void FacilitatorShell::run(const bus::Stop& stop) {
     const double now = seconds();
     const double due = facilitator_.due().value_or(now + kStatusTime);
     const double wait = std::clamp(due - now, 0.001, kStatusTime);
+    if (awaits_)
+      node_.spin(kSpin);
     node_.wait(std::chrono::milliseconds(static_cast<int>(1000.0 * wait) + 1), &stop);
     step(seconds());
     node_.publish_status();

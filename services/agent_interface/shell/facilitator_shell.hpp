@@ -29,6 +29,7 @@ class FacilitatorShell {
   bus::Writer<v1::Request> requests_;
   bus::Writer<v1::Answer> solved_;
   Facilitator facilitator_;
+  bool awaits_ = false;  ///< the last step has sent a request to an agent
   /// The writer of each: it goes with its writer.
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
   std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;

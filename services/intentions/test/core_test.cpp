@@ -132,7 +132,7 @@ TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   EXPECT_FALSE(ended(state(2)));
 }
 
-// Whose program may do what with a goal, on a bus that knows who wrote.
+// The rights of programs on a goal, on a bus that knows the writer of a sample.
 class OwnedGoal : public CoreTest {
  protected:
   using Sender = Core::Heard::Sender;

@@ -24,8 +24,8 @@ Arguments random_arguments(Random& random, const std::string& functor) {
   return {};
 }
 
-/// Whatever comes: one goal at most is underway, what is intended serves it, an end is for good and
-/// has a reason, and when no more comes every goal comes to its end.
+/// Under random inputs at most one goal is underway, and all intentions serve it. An end is final
+/// and has a reason. Every goal ends once no more inputs come.
 TEST(ExecutorProperty, HoldsForRandomGoals) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Random random(seed);

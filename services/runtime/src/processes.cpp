@@ -24,13 +24,12 @@ v1::ProcessState state_of(const Process& process) {
 
 std::vector<Functor> functors() {
   const Parameter process = text_parameter("process", "name of a process");
-  return {
-      {"interrupt", "the process puts its things away and waits until it is resumed", {process}},
-      {"suspend",
-       "the process waits",
-       {process, optional(whole_parameter("cycles", "for so many; 0: until it is resumed", 0.0,
-                                          4294967295.0))}},
-      {"resume", "the process goes on", {process}}};
+  return {{"interrupt", "the process cleans up and waits until it is resumed", {process}},
+          {"suspend",
+           "the process waits",
+           {process, optional(whole_parameter("cycles", "for so many; 0: until it is resumed", 0.0,
+                                              4294967295.0))}},
+          {"resume", "the process goes on", {process}}};
 }
 
 /// Of one of functors().

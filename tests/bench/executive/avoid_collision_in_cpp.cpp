@@ -36,7 +36,7 @@ constexpr double kTurnScale = radians(5.0);
 constexpr double kBlocked = 0.03;
 constexpr double kClear = 0.2;
 
-/// What is in the way, from the LPS: the fuzzy variables of paper 3.1.
+/// The obstacles ahead and to the sides, from the LPS: the fuzzy variables of paper 3.1.
 struct Blocked {
   double gap = 0.0;  ///< [m] from the bubble to what is ahead
   Fuzzy front = 0.0;

@@ -1,4 +1,4 @@
-// What the behaviors cost: a thousand of them, and the behavior language beside C++.
+// The CPU time of behaviors: a thousand of them, and the behavior language compared with C++.
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +16,12 @@ namespace {
 
 using namespace behaviors;
 
-/// Of this process [s]: what others do on the machine does not count.
+/// The CPU time of this process [s]; other processes on the machine do not count.
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// What the seven sonars hear in a cluttered room.
+/// Random readings of the seven sonars, as in a cluttered room.
 std::vector<lps::SonarReading> readings(Random& random) {
   std::vector<lps::SonarReading> out;
   for (int i = 0; i < 7; ++i)

@@ -1,4 +1,4 @@
-// What intentions cost: those of a delivery, and ten thousand that wait.
+// The CPU time of intentions: those of a delivery, and ten thousand that wait.
 
 #include <ctime>
 #include <stdexcept>
@@ -17,8 +17,8 @@ double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// Figure 10, with behaviors of today: what avoids beside what delivers, six intentions that wait
-// for others, monitors that wait for conditions, and a loop that computes.
+// Figure 10, with behaviors of today: avoidance beside the delivery, six intentions that wait for
+// others, monitors that wait for conditions, and a loop that computes.
 const char* const kDelivery = R"(
 (defintention :avoid
   :goals '((INTEND :AvoidCollision () :blocking t :priority 0 :name collide)))
@@ -63,7 +63,7 @@ std::unique_ptr<Executor> executor(const std::string& text) {
     throw std::logic_error(loaded.troubles.front().text());
   for (const Schema& schema : loaded.schemas)
     registry.add(schema);
-  // More than a service has: what one costs does not depend on the others.
+  // Higher limits than a service has: the cost of one intention does not depend on the others.
   return std::make_unique<Executor>(
       std::move(registry), Memory{},
       ExecutorOptions{.forest = {.max_intentions = 65536, .max_behaviors = 65536}});
@@ -127,7 +127,7 @@ double intentions_12_ms() {
 }
 
 double intentions_10000_ms() {
-  // A tree of 1 + 10 + 10 * 1000: as many as one intention may have children.
+  // A tree of 1 + 10 + 10 * 999 intentions: nearly as many children as one may have.
   std::string text = "(defintention :top :goals '(";
   for (int i = 0; i < 10; ++i)
     text += "(INTEND :crowd () :blocking nil)";

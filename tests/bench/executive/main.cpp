@@ -1,4 +1,4 @@
-// What deciding costs in a cycle: behaviors and intentions, without the bus.
+// The CPU time of behaviors and intentions in one cycle, without the bus.
 
 #include <cstdio>
 #include <exception>

@@ -108,8 +108,8 @@ TEST_P(Floors, NobodyGetsOut) {
     }
 }
 
-/// Of the doors of floors that nobody tuned it on, those that are closed and stand back from the
-/// wall.
+/// The closed doors that stand back from the corridor's wall, on floors that the robot was not
+/// tuned on.
 TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   int passed = 0;
   int found = 0;

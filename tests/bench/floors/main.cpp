@@ -67,7 +67,7 @@ test::DriveOptions drive_of(const Options& options, const Site& site) {
   return drive;
 }
 
-/// What a patrol of all corridors shows.
+/// The results of a patrol of all corridors.
 struct Patrolled {
   test::Offs offs;
   int cycles = 0;
@@ -199,13 +199,13 @@ Carried carry(const Options& options, const Site& site) {
   return result;
 }
 
-/// What the robot builds from nothing.
+/// The result of building the map of a floor from nothing.
 struct Built {
   bool done = false;
   std::string reason;
   double minutes = 0.0;
   double length = 0.0;   ///< [m] of the corridors
-  double covered = 0.0;  ///< [m] of it that the built corridors cover
+  double covered = 0.0;  ///< [m] of it that built corridors and junctions cover
   test::MapScore score;
   test::MapScore recessed;
   int contacts = 0;

@@ -69,7 +69,7 @@ TEST(Localization, TheSameSeedGivesTheSamePoseToTheLastBit) {
 }
 
 TEST(Localization, DeadReckoningThatTurnsByAConstantTooMuchDoesNotLoseIt) {
-  // As that of the robot of the Intel log does (tests/bench/registration/README.md).
+  // As much as that of the Intel log's robot (tests/bench/registration/README.md).
   for (const double turn : {radians(3.4), radians(-3.4)}) {
     DriveOptions options = on_office(doubled(4));
     options.bend = turn;
@@ -161,7 +161,7 @@ TEST(Localization, PeopleClosedDoorsAndBoxesDoNotMisleadIt) {
                   "box crate 26300 19000 20 400 400 50\n"
                   "box chest 18200 10000 0 350 700 50\n");
   maps::Map map = office();
-  // One was here when the map was made.
+  // The map has an object that is no longer there.
   maps::Feature moved;
   moved.type = lps::PointType::object;
   moved.id = 9000;
@@ -248,8 +248,8 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
 }
 
-/// A registration that remembers one drive, beside a robot that begins another. Whether it has
-/// found where it is, and never said that it was tracking elsewhere.
+/// A registration that remembers one drive, beside a robot that begins another. True where it has
+/// found its pose, and has never said that it tracks while it was more than 0.6 m off.
 bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
                   const std::vector<Vec2>& way, std::uint64_t cycles) {
   DriveOptions options = doubled(2);

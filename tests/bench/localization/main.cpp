@@ -47,7 +47,7 @@ struct Found {
   double said_lost = -1;  // [m] until it said that it is lost
 };
 
-/// Toured by the truth, since who does not know where he is cannot drive to a place.
+/// The tour is driven by the true pose, since a lost robot cannot drive to a place.
 Found find(test::Drive& robot, std::vector<Vec2> points, int cycles) {
   Found found;
   test::Tour tour(std::move(points), true);

@@ -189,7 +189,7 @@ void add_standing(Crossing& crossing, const CrossingOptions& options, double nee
   }
 }
 
-/// Somebody walks to and fro along the way, where there is room for two, on the right of his way.
+/// Somebody walks to and fro along the way, to one side of it, where there is room for two.
 void add_walking(Crossing& crossing, double needed, Random& random) {
   const std::vector<Vec2>& way = crossing.way;
   const Ways ways(crossing.world, needed);
@@ -203,7 +203,7 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
     const Vec2 ahead = line.normalized();
     const Vec2 aside(-ahead.y(), ahead.x());
     const double side = random.chance(0.5) ? 1.0 : -1.0;
-    // As far aside as there is room, and at most on the other's way.
+    // The least offset, up to 1.2 m, that leaves room for the person and for the robot.
     double off = 0.0;
     bool fits = false;
     for (off = 0.2; off <= 1.2 && !fits; off += 0.1) {

@@ -12,7 +12,7 @@
 #include "perception/score.hpp"
 #include "support/quantile.hpp"
 
-// saphira-bench-perception: what interpretation sees against what is there, and what it costs.
+// saphira-bench-perception: percepts and grids against the ground truth, and the cost of a cycle.
 
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include "perception/score.hpp"
 
-// What interpretation sees in simulated worlds, held against them. Limits are those that were asked
-// for; measured figures stand in the README.
+// The percepts of interpretation in simulated worlds, against the ground truth. The limits are the
+// required ones; the measured figures are in the README.
 namespace saphira::test {
 namespace {
 

@@ -44,7 +44,7 @@ struct Passage {
   bool found = false;
 };
 
-/// What was reported, as it stood last.
+/// A percept as it was reported last.
 struct Judged {
   lps::Percept percept;
   Pose pose_in_world;
@@ -115,14 +115,14 @@ class Score {
   std::vector<Passage> passages_;
 };
 
-/// What a grid is held against, in its frame.
+/// The ground truth for a grid, in the grid's frame.
 struct GridTruth {
   enum class Cell { unknown, free, occupied };
   std::vector<Vec2> surfaces;           ///< points of those within 2 m of the way that it sees
   std::vector<maps::Feature> doorways;  ///< open ones, within 1.5 m of it
   std::function<Cell(const Vec2& at)> cell;
 };
-/// Of a point within 2 m that no `blocked` hides from the nearest point of the way.
+/// True for a point within 2 m of the path that is not `blocked` from its nearest point.
 bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
                const std::function<bool(const Vec2& from, const Vec2& to)>& blocked);
 std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const maps::Map& map);

@@ -48,7 +48,7 @@ class Passages {
   bool stopped_ = false;
 };
 
-/// Where a robot with room around it can get to at all: a place within a desk is none.
+/// The places that a robot with room around it can reach; a place within a desk is none of them.
 class Reachable {
  public:
   Reachable(const sim::World& world, const Vec2& from) : world_(world) {

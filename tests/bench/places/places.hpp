@@ -24,8 +24,8 @@ std::vector<Journey> random_journeys(const maps::Map& map, const sim::World& wor
 
 /// How a journey ended.
 struct Arrival {
-  bool succeeded = false;  ///< says the goal
-  bool there = false;      ///< is true
+  bool succeeded = false;  ///< by the goal's status
+  bool there = false;      ///< by the robot's true pose
   bool at_rest = false;
   bool ended = false;
   int contacts = 0;
@@ -37,7 +37,7 @@ struct Arrival {
   std::vector<std::string> talk;
 };
 
-/// One journey with one seed for noise and errors, at most so long. `world`, `map`: names or files.
+/// One journey with one seed for noise and errors, at most `cycles` long. `world`: a name or file.
 Arrival travel(const Journey& journey, std::uint64_t seed, int cycles = 6000,
                const std::string& world = "office-floor", bool talk = false);
 

@@ -8,22 +8,22 @@
 
 namespace saphira::bench {
 
-/// What interpretation found with the readings of a real robot. It drives along one corridor, round
-/// a corner and along a second one, of which is known, from a fit to all readings at once: its
-/// walls are parallel and 2.14 m apart, and the left one has a gap of 0.73 m (its middle at y =
-/// -6.24 m).
+/// The findings of interpretation from the readings of a real robot. It drives along one corridor,
+/// round a corner and along a second one. A fit to all readings at once gives the truth about the
+/// second one: its walls are parallel and 2.14 m apart, and the left one has a gap of 0.73 m (its
+/// middle at y = -6.24 m).
 struct CorridorFindings {
   std::size_t walls = 0;        ///< along the corridor's walls
   std::size_t other_walls = 0;  ///< elsewhere
   double left_offset = 0.0;     ///< [m] of the longest along each, from the fit at its middle
   double right_offset = 0.0;
-  std::optional<double> width;  ///< [m] of the corridor with the greatest confidence
+  std::optional<double> width;  ///< [m] of the corridor whose width is nearest to the fit
   std::size_t corridors = 0;
   bool gap_found = false;
   double gap_centre_error = 0.0;       ///< [m] along the wall
   double gap_width_error = 0.0;        ///< [m]
   std::size_t gap_ends = 0;            ///< single ends within 0.3 m of one of its ends
-  std::size_t other_openings = 0;      ///< doors and junctions elsewhere in the two walls
+  std::size_t other_openings = 0;      ///< doors and junctions elsewhere
   std::vector<lps::Percept> percepts;  ///< each as it stood last
 };
 

@@ -9,8 +9,8 @@
 
 namespace saphira::bench {
 
-/// What a laser says of each place: where its beams ended, and where they went through. The
-/// reference for what sonars make of the same drive.
+/// A grid from laser scans: the cells where beams ended, and those that beams went through. The
+/// reference for the percepts and grids of sonars from the same drive.
 class LaserCells {
  public:
   static constexpr double kCell = 0.05;  ///< [m]

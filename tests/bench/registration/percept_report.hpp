@@ -16,9 +16,9 @@ struct PerceptReport {
   maps::Drawing drawing;  ///< what seven sonars saw, calibrated: real, wrong, missed
 };
 
-/// What interpretation makes of virtual sonars, with dead reckoning as it is and `calibrated`,
-/// against the reference for a log of that folder and against the laser; and the two models of a
-/// grid. `full`: where the robot was at the scans.
+/// The percepts of interpretation from virtual sonars, with dead reckoning as it is and calibrated
+/// (`calibrated_in_odom`), against the reference for a log of that folder and against the laser;
+/// and the two grid models. `full`: the robot's poses at the scans.
 PerceptReport report_percepts(const logs::DataSet& set, const std::string& log_folder,
                               const std::vector<logs::StampedPose>& full,
                               const std::vector<Pose>& calibrated_in_odom, Report& report);

@@ -23,7 +23,7 @@ std::optional<maps::Map> load_reference(const std::string& log_folder, const std
 /// log, or in another frame.
 double agreement(const maps::Map& reference, const LaserCells& cells);
 
-/// What interpretation made of a drive, held against what there is.
+/// The scores of a drive's percepts: against the reference by hand, and against the laser.
 struct PerceptRun {
   /// Against the reference, within what it covers.
   std::optional<test::Score> by_hand;

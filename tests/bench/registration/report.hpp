@@ -14,7 +14,7 @@ std::string format(const char* how, Values... values) {
   return text.data();
 }
 
-/// What is found, to the terminal as it comes and for a Markdown file.
+/// The results, printed to the terminal as they come and collected for a Markdown file.
 class Report {
  public:
   void heading(const std::string& text);

@@ -44,7 +44,7 @@ struct Wheels {
   double slip = 0.0;        ///< [rad] the most
 };
 
-/// What a robot logs that drives along the route at 0.5 m/s among `people` who walk about it.
+/// The log of a robot that drives along the route at 0.5 m/s among `people` who walk near it.
 logs::DataSet drive_synthetic(const std::string& name, const Floor& floor, const LaserKind& laser,
                               const Wheels& wheels, int people, std::uint64_t seed);
 

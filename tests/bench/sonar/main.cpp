@@ -55,7 +55,7 @@ json to_json(const RingStatistics& s) {
   return {{"rings", s.rings}, {"beside", beside}, {"deviation_m", s.deviation}};
 }
 
-// A column of figures for each of what is compared.
+// Prints a row: its label, and a figure for each of the compared data sets.
 void row(const char* what, std::initializer_list<double> values, const char* form = "%12.3f") {
   std::printf("%-46s", what);
   for (const double value : values)

@@ -5,7 +5,7 @@
 #include "saphira/sim/sonar.hpp"
 #include "statistics.hpp"
 
-/// What simulated sonars read where the real ones were.
+/// Simulated sonar readings in the places of the real ones.
 namespace saphira::bench {
 
 /// A model that knows no mirrors: each firing reads the nearest of the rays of its cone.
@@ -19,7 +19,7 @@ std::vector<CorridorRecord> simulate(const std::vector<CorridorRecord>& real,
                                      const Corridor& corridor, const sim::SonarModel& model,
                                      std::uint64_t seed);
 
-/// A ring beside a wall that is as near as to each of the real ones, the sonars turned anyhow.
+/// Rings beside a wall, each as near to it as the real one, and turned by a random angle.
 std::vector<std::array<double, kRing>> simulate(const std::vector<std::array<double, kRing>>& real,
                                                 const sim::SonarModel& model, std::uint64_t seed);
 

@@ -7,7 +7,7 @@
 #include "data.hpp"
 #include "saphira/sim/world.hpp"
 
-/// What is measured of sonar readings, real or simulated: the same on both.
+/// The statistics of sonar readings, the same for real and for simulated ones.
 namespace saphira::bench {
 
 // ---- A plate, met head-on.

@@ -37,7 +37,7 @@ struct Phrase {
   std::string meaning;  ///< empty: none
 };
 
-/// What begins with the keyword; replies are another matter.
+/// The phrases of the file with the keyword, without its section of replies.
 std::vector<Phrase> phrases(const std::string& file) {
   std::vector<Phrase> all;
   std::istringstream lines(read_file(file));

@@ -23,7 +23,7 @@ void start(Scene& scene) {
 
 TEST(BridgeLoss, AStoppedBridgeIsSpokenFor) {
   Scene scene;
-  // A driver without cycles: its commands would be as good after the gap as before.
+  // The driver's commands name no cycle, so that the gap does not make them look old.
   scene.follows_cycles = false;
   start(scene);
   scene.bridge->signal(SIGSTOP);

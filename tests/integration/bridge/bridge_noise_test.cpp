@@ -1,5 +1,5 @@
-// A line that hurts bytes: the robot does nothing that it was not told, and the bridge tells the
-// bus nothing that is not so.
+// A line that damages bytes: the robot executes no command that was not sent, and the bridge
+// publishes no implausible state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(BridgeNoise, NoWrongCommandIsActedOn) {
       static_cast<std::size_t>(line.hurt()), scene.states.size(), rows.size(), executed,
       scene.state.bad_packets());
 
-  // What the bus was told of the way is what the robot went: no jump, no speed that cannot be.
+  // The states on the bus are plausible: no jump of the pose, no impossible speed.
   const v1::RobotState* last = nullptr;
   for (const v1::RobotState& state : scene.states) {
     ASSERT_LT(std::abs(state.velocity()), 0.45);

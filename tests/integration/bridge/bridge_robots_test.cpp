@@ -1,5 +1,5 @@
 // Robots of every generation behind the bridge: it takes the parameter file that each one names,
-// drives it to where it says it is, hears its sonars, and uses what it carries.
+// drives it so that its odometry agrees with the truth, gets its sonars, and uses its devices.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -90,7 +90,7 @@ TEST(BridgeDevices, OfALaterRobot) {
   EXPECT_EQ(scene.devices.information_period(), 100);
   EXPECT_FALSE(scene.devices.serial_number().empty());
 
-  // What it shows comes on another topic than the answer: there is no order between the two.
+  // The values come on another topic than the answer: there is no order between the two.
   EXPECT_EQ(report("encoders", "always"), v1::ANSWER_DONE);
   EXPECT_TRUE(scene.until([&] { return scene.devices.has_encoders(); }));
   EXPECT_EQ(report("encoders", "off"), v1::ANSWER_SENT);

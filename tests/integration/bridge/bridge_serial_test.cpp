@@ -93,8 +93,8 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
 }
 
-// The bridge hears nothing and is heard: a driver that does not need to see goes on asking, and
-// SYNC0 is what a watchdog waits for.
+// The bridge hears nothing but is heard: a driver that ignores the robot's state goes on sending
+// commands, and a SYNC0 of the bridge would reset the robot's watchdog.
 TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
   LineScene scene;
   scene.follows_cycles = false;
@@ -137,7 +137,7 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
   scene.simulator->signal(SIGKILL);
   ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
   ASSERT_TRUE(scene.says("is it switched on, and the cable in?")) << scene.status.reason();
-  // What is asked for meanwhile is refused, and does not happen later.
+  // A request in the meantime is refused, and is not executed later.
   const v1::Answer answer = scene.ask(bus::topics::kServo, "servo", {bus::number("width", 1800)});
   EXPECT_EQ(answer.code(), v1::ANSWER_NOBODY);
   EXPECT_EQ(answer.text(), "no robot is connected");

@@ -59,7 +59,7 @@ class Scene {
   bool connected() const { return state.stamp().cycle() > 0; }
   bool rests() const;
 
-  /// What was true, from the simulator's trace; of the newest connection alone.
+  /// The true states, from the simulator's trace; those of the newest connection alone.
   std::vector<sim::TraceRow> trace() const;
   std::vector<sim::TraceRow> whole_trace() const;
   /// In lockstep: ends the simulator, which completes its trace, and gives that.

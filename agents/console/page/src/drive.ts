@@ -31,7 +31,7 @@ export class Drive {
     setInterval(() => this.sample(), period);
     addEventListener('keydown', event => this.key(event, true));
     addEventListener('keyup', event => this.key(event, false));
-    // Whoever looks elsewhere does not drive.
+    // A page that is hidden or without focus does not drive.
     const leave = () => this.release();
     addEventListener('blur', leave);
     addEventListener('pagehide', leave);

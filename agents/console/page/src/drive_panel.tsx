@@ -1,4 +1,4 @@
-// Who has control, and what the one who has it needs to see.
+// The holder of control, and the information that the holder needs.
 import {useState} from 'preact/hooks';
 import type {Drive} from './drive';
 import type {Link} from './link';

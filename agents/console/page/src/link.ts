@@ -91,7 +91,7 @@ export class Link {
   // False: there is no connection, and nothing was sent.
   send(message: object): boolean {
     if (this.commands?.readyState !== WebSocket.OPEN) return false;
-    // What a thin link has not taken yet is not followed by more: the newest word counts.
+    // While a slow link still has much to send, further messages are dropped.
     if (this.commands.bufferedAmount > 2000) return false;
     this.commands.send(JSON.stringify(message));
     return true;

@@ -1,4 +1,4 @@
-// What the robot thinks, in words and bars.
+// Panels: goals, behaviors, intentions, programs and messages, in words and bars.
 import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
 import {degrees} from './geometry';
@@ -78,7 +78,7 @@ function GoalCard({id, status, goal, link}: {id: string; status: GoalStatus; goa
   </li>;
 }
 
-// What programs with behaviors of their own think, as long as they say so.
+// Programs with behaviors of their own, until 2 s after their newest sample.
 function OfPrograms({link, now, show}: {link: Link; now: number; show: (mind: ProgramMind) => ComponentChildren}) {
   return <>{link.all<ProgramMind>('programs/mind').filter(([, item]) => now - item.at < 2000).map(([key, {data}]) =>
     <section key={key}><h2>Of the program {data.source}</h2>{show(data)}</section>)}</>;

@@ -1,4 +1,4 @@
-// What programs draw (topic drawings), as lines and labels.
+// The drawings of programs (topic drawings), as lines and labels.
 import type {Drawing} from './types';
 
 type Point = [number, number];

@@ -7,7 +7,7 @@ export interface Box { name: string; x: number; y: number; th: number; corners: 
 export interface Post { name: string; x: number; y: number; radius: number; color: string }
 export interface World { world: string; width: number; height: number; walls: number[][]; posts: Post[]; worlds: string[]; robots: string[] }
 export interface Scene { time: number; paused: boolean; rate: number; robots: Robot[]; people: Person[]; doors: Door[]; boxes: Box[] }
-// What can be chosen: "robot 0", "person ann".
+// The things that can be chosen, such as "robot 0" and "person ann".
 export type Kind = 'robot' | 'person' | 'box' | 'door';
 export interface Thing { kind: Kind; name: string; x: number; y: number; th: number; reach: number }
 

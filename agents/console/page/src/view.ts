@@ -159,7 +159,7 @@ export class View {
     return {x: -this.center.x, y: -this.center.y, th: 0};
   }
 
-  // What is at a place of the canvas, in pixels of the page.
+  // The target at a point of the canvas [pixels of the page].
   at(px: number, py: number): Target {
     const in_view = {x: (px - this.canvas.clientWidth / 2) / this.scale,
                      y: -(py - this.canvas.clientHeight / 2) / this.scale, th: 0};
@@ -372,7 +372,7 @@ export class View {
     c.setLineDash([]);
     c.lineCap = 'round';
   }
-  // Whether a point of the world is in the picture, or hardly out of it.
+  // A test that is true for a point of the world in the picture or just outside.
   private inPicture(): (x: number, y: number) => boolean {
     const m = this.context.getTransform(), [w, h] = [this.canvas.width, this.canvas.height];
     return (x, y) => {

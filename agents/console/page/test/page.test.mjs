@@ -153,7 +153,7 @@ test('a click sends the robot, with an answer and a cancel button', async () => 
   await card.getByRole('button', {name: 'Cancel'}).click();
   await page.locator('.card.over', {hasText: 'go to'}).waitFor();
   await stands(page);
-  // What is refused says why.
+  // A refused goal shows the reason.
   await page.getByLabel('Ask the robot for something').fill('go nowhere at all');
   await page.getByRole('button', {name: 'Send'}).click();
   await page.locator('.told.bad').waitFor();

@@ -163,7 +163,7 @@ test('over 500 ms each way it is slow', async () => {
   let from = now();
   near.held = false;
   const letGo = await until('that it stands', () => stood(from));
-  row('none', quick, 'key let go', letGo, 'watches');
+  row('none', quick, 'key let go', letGo, 'keeps control');
   near.leave();
   const far = await link(500), ann = await operator(far.port, 'fay');
   const slow = await drives(ann);

@@ -12,7 +12,7 @@
 
 namespace saphira::sim {
 
-/// Whose doing a contact is.
+/// The cause of a contact.
 enum class Blame {
   kCaused,      ///< the robot moved towards the thing, and could have heard it in time
   kWalkedInto,  ///< the robot stood, or moved away: the other one came

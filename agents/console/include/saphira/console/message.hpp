@@ -69,7 +69,7 @@ using Message = std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl
                              Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal,
                              Say, CancelGoal, AskProcess, PlaceRobot, PointOut>;
 
-/// Whatever the text is, a message: Wrong, with what was expected, where it is none.
+/// Any text gives a message: Wrong, with the expected form, where it is no valid one.
 Message parse_message(std::string_view text);
 
 }  // namespace saphira::console

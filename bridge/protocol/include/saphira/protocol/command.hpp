@@ -436,7 +436,7 @@ enum class ArgumentForm : std::uint8_t {
   kRaw,       ///< a form of its own
 };
 
-/// Whose command it is.
+/// The origin of a command.
 enum class Origin : std::uint8_t {
   kManual,     ///< Table 5-4
   kLater,      ///< P2OS, AROS, ARCOS

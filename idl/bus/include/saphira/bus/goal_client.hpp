@@ -57,7 +57,14 @@ class GoalClient {
   using Key = std::pair<std::uint64_t, std::uint64_t>;
   using Clock = std::chrono::steady_clock;
 
+  /// A goal that this client asked for.
+  struct Own {
+    std::optional<Clock::time_point> over;       ///< since it is
+    std::optional<Clock::time_point> withdrawn;  ///< its status, while no end was heard
+  };
+
   void forget();
+  void miss();
 
   Node& node_;
   std::string requester_;
@@ -65,9 +72,8 @@ class GoalClient {
   Reader<v1::GoalStatus> reader_;
   std::map<Key, v1::GoalStatus> known_;
   std::chrono::milliseconds keep_;
-  /// The goals that this client asked for, and since when each is over. Its status is kept though
-  /// the service has withdrawn it.
-  std::map<Key, std::optional<Clock::time_point>> own_;
+  /// Their statuses are kept though the service has withdrawn them.
+  std::map<Key, Own> own_;
 };
 
 /// True where a goal in this state has come to its end.

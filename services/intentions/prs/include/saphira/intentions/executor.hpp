@@ -74,7 +74,7 @@ struct ExecutorOptions {
   std::size_t max_open = 256;    ///< goals that may be open at once
   std::size_t max_ended = kMostEndings;
   bool remembers_work = false;  ///< whether somebody keeps News::work
-  /// Whose conditions are beliefs. None: those of core_functions().
+  /// The functions for activities; their conditions are beliefs. None: core_functions().
   std::shared_ptr<const Functions> functions{};
   ForestOptions forest{};
 };
