@@ -89,7 +89,7 @@ void add_check(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "check",
-      "Whether a deployment would start: its file, and all files that it gives its programs");
+      "Check a deployment without starting it: its file, and all files that its programs get");
   command->add_option("deployment", options->deployment, "a file, or a shipped one such as demo")
       ->required();
   command->add_option("--set", options->set, "name=value: a setting of the deployment")

@@ -34,7 +34,7 @@ void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* su
   CLI::App* command = app.add_subcommand(name, summary);
   command->allow_extras();
   const std::string program = std::string("saphira-") + name;
-  command->footer("What it takes: " + program + " --help. " + footer);
+  command->footer("Its options: " + program + " --help. " + footer);
   command->callback([command, program, &chosen] {
     chosen.run = [program, rest = command->remaining()](const bus::NodeOptions& options,
                                                         const bus::Stop&) {

@@ -158,7 +158,7 @@ void add_device(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<std::vector<std::string>>();
   auto answer = std::make_shared<int>(0);
   CLI::App* command =
-      app.add_subcommand("device", "What the robot carries: list it, follow it, use it");
+      app.add_subcommand("device", "Devices that the robot carries: list, follow and use them");
   command->add_option("words", *words, "list | follow | DEVICE what-it-is-to-do, as below");
   command->add_option("--answer", *answer, "serial: so many bytes are asked for afterwards");
   command->footer(std::string(kDeviceWords) +

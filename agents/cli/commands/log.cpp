@@ -77,7 +77,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
 void add_log(CLI::App& app, Chosen& chosen) {
   auto count = std::make_shared<std::uint64_t>(0);
   CLI::App* command =
-      app.add_subcommand("log", "What the programs have to say; and tools for logs of robots");
+      app.add_subcommand("log", "Messages of all programs; and tools for logs of robots");
   command->add_option("-n", *count, "the newest so many lines, and no more")->check(above_zero());
   add_robot_log(*command, chosen);
   command->callback([count, command, &chosen] {

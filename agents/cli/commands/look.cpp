@@ -129,7 +129,7 @@ void add_echo(CLI::App& app, Chosen& chosen) {
     double timeout = 0.0;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("echo", "What is written on a topic, as JSON lines");
+  CLI::App* command = app.add_subcommand("echo", "Samples of a topic, as JSON lines");
   command->add_option("topic", options->topic, "such as robot/state")->required();
   CLI::Option* const count =
       command->add_option("-n,--count", options->count, "end after so many samples")

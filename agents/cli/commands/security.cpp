@@ -56,10 +56,9 @@ std::string joined(const std::vector<std::string>& words) {
 
 void tell_folder(const std::string& folder) {
   std::cout << folder
-            << "\nCopy this folder, whole, to the machine, as ~/.config/saphira/credentials "
-               "of the user who runs the programs (or /etc/saphira/credentials, or where "
-               "--security says); "
-               "it holds private keys.\n";
+            << "\nCopy this folder, whole, to its machine; it holds private keys. For a person's "
+               "commands and programs: ~/.config/saphira/credentials. For the service: "
+               "/etc/saphira/credentials, owned by the user saphira.\n";
 }
 
 int init(const Words& words) {
@@ -151,7 +150,8 @@ void add_security(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<Words>();
   words->folder = user_folder() + "/authority";
   CLI::App* command = app.add_subcommand(
-      "security", "Who may do what on the bus: keys and certificates of a site (docs/security.md)");
+      "security",
+      "Keys and certificates of a site, and the roles of its members (docs/security.md)");
   command->require_subcommand(1);
   const auto action = [&](const std::string& name, const std::string& about,
                           int (*run)(const Words&)) {
@@ -190,7 +190,7 @@ void add_security(CLI::App& app, Chosen& chosen) {
   one = action("list", "The members", list);
   one->add_flag("--json", words->json, "for programs");
 
-  one = command->add_subcommand("check", "Whether a folder of credentials is whole and holds");
+  one = command->add_subcommand("check", "Check that a folder of credentials is whole and valid");
   one->add_option("folder", words->credentials, "the folder [that of this user or machine]");
   one->add_option("--program", words->program, "for which program")->capture_default_str();
   one->callback([words, &chosen] {

@@ -94,7 +94,7 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
     complain("saphira: nothing was answered. %s\n",
              writer.matched() == 0
                  ? ("No program listens: " + who_is_there(options, processes)).c_str()
-                 : "What is said to the robot begins with its keyword, such as \"Flakey, stop\"");
+                 : "A sentence for the robot begins with its keyword, such as \"Flakey, stop\"");
     return bus::kExitFailed;
   }
   return bus::kExitFailed;
@@ -153,7 +153,8 @@ void add_say(CLI::App& app, Chosen& chosen) {
   command->add_option("--as", options->speaker, "who says it (usual: your name here)");
   command->add_flag("--quick", options->quick, "do not wait for the end of what it does");
   command->footer(
-      "What may be said: config/grammars/flakey.grammar. Exit code 0: it was understood; 1: not.\n"
+      "Sentences that are understood: config/grammars/flakey.grammar. Exit code 0: it was "
+      "understood; 1: not.\n"
       "Ctrl-C ends the command, not what the robot does: say \"Flakey, stop\" for that.");
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
@@ -164,8 +165,7 @@ void add_say(CLI::App& app, Chosen& chosen) {
 
 void add_knows(CLI::App& app, Chosen& chosen) {
   auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* command =
-      app.add_subcommand("knows", "What the robot knows because it was told, and by whom");
+  CLI::App* command = app.add_subcommand("knows", "Facts that the robot was told, and by whom");
   command->add_option("words", *words, "forget NUMBER: takes one back");
   command->callback([words, &chosen] {
     chosen.run = [words](const bus::NodeOptions& node, const bus::Stop& stop) {

@@ -373,7 +373,7 @@ int beliefs(const BeliefOptions& belief_options, const bus::NodeOptions& options
 void add_intentions(CLI::App& app, Chosen& chosen) {
   auto watch = std::make_shared<WatchOptions>();
   CLI::App* command =
-      app.add_subcommand("intentions", "What the robot intends, as a tree down to the behaviors");
+      app.add_subcommand("intentions", "Intentions of the robot, as a tree down to the behaviors");
   add_watch_options(*command, *watch);
   command->footer(
       "* waits for what is below it, o goes on beside it; then the schema, (the instance), and "
@@ -389,8 +389,7 @@ void add_intentions(CLI::App& app, Chosen& chosen) {
 void add_behaviors(CLI::App& app, Chosen& chosen) {
   auto watch = std::make_shared<WatchOptions>();
   auto name = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("behaviors", "What each behavior wants, and what comes of it together");
+  CLI::App* command = app.add_subcommand("behaviors", "Outputs of the behaviors, and their blend");
   command->add_option("name", *name, "one behavior: its parameters, rules and fuzzy variables");
   add_watch_options(*command, *watch);
   command->footer(
@@ -422,8 +421,7 @@ void add_why(CLI::App& app, Chosen& chosen) {
 
 void add_beliefs(CLI::App& app, Chosen& chosen) {
   auto options = std::make_shared<BeliefOptions>();
-  CLI::App* command =
-      app.add_subcommand("beliefs", "What activities take to be true, and who said so");
+  CLI::App* command = app.add_subcommand("beliefs", "Beliefs of the activities, and who said them");
   command->add_option("words", options->words, "[part of a] NAME | set NAME VALUE | unset NAME");
   command->add_flag("--hold", options->hold, "set: until Ctrl-C, and then take it back");
   add_watch_options(*command, options->watch);

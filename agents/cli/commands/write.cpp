@@ -237,7 +237,7 @@ void add_write(CLI::App& app, Chosen& chosen) {
   command->add_option("--for", options->seconds, "[s] drive/..., goals: end then")
       ->check(above_zero());
   command->footer(
-      "What is not named is 0, false or empty; saphira echo shows what a sample looks like.\n"
+      "Members that are not named are 0, false or empty; saphira echo shows the form of a sample.\n"
       "drive/...: the robot drives for as long as this runs, and stops when it ends. goals and "
       "what is\n"
       "latched hold until Ctrl-C. Requests are answered: exit code 0 means done.");

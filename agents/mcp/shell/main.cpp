@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
       "A door for language models: the Model Context Protocol, on standard input and output or by "
       "HTTP",
       [&](CommandLine& app) {
-        app.add_option("--who", own.who, "Who asks, as others see it");
+        app.add_option("--who", own.who, "Name of the asker, as others see it");
         const Option token =
             app.add_option("--token-file", own.token_file,
                            "with --http: keeps what a client has to send as its bearer token; "

@@ -117,25 +117,26 @@ Json input_of(const Parameters& parameters) {
 
 /// The tools that are always there.
 std::vector<Tool> fixed_tools() {
-  return {{"robot_status", "Who drives the robot, what is underway, what is missing",
-           object(nullptr), true},
-          {"why", "Why the robot does what it does now, in a sentence and as a tree",
-           object(nullptr), true},
-          {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
-          {"goal", "What became of one goal; waits for its end",
-           object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
-          {"cancel", "Withdraws a goal of yours, or all of them, and says whether the robot stands",
-           object({{"goal",
-                    {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
-           false},
-          {"say",
-           "Says a sentence to the robot, such as: Flakey, go to Karen's office. Answers what the "
-           "robot says",
-           object({{"text", {{"type", "string"}}}}, {"text"}), false},
-          {.name = "emergency_stop",
-           .description = "Stops the robot by the hardest means. Only a person can release it",
-           .input = object(nullptr),
-           .always = true}};
+  return {
+      {"robot_status", "The driver of the robot, the goals underway, and programs that are missing",
+       object(nullptr), true},
+      {"why", "Why the robot does what it does now, in a sentence and as a tree", object(nullptr),
+       true},
+      {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
+      {"goal", "The outcome of one goal; waits for its end",
+       object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
+      {"cancel", "Withdraws a goal of yours, or all of them, and says whether the robot stands",
+       object(
+           {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
+       false},
+      {"say",
+       "Says a sentence to the robot, such as: Flakey, go to Karen's office. Answers what the "
+       "robot says",
+       object({{"text", {{"type", "string"}}}}, {"text"}), false},
+      {.name = "emergency_stop",
+       .description = "Stops the robot by the hardest means. Only a person can release it",
+       .input = object(nullptr),
+       .always = true}};
 }
 
 }  // namespace

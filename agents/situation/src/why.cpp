@@ -114,7 +114,7 @@ Explanation Reason::by_hand() const {
 Explanation Reason::silent() {
   const Condition bridge = condition(scene_, "bridge");
   Sentence sentence;
-  sentence.add(0, "What the robot does is not known: nothing has been heard of it for " +
+  sentence.add(0, "The robot's motion is not known: nothing has been heard of it for " +
                       seconds_text(scene_.silence));
   if (!bridge.words.empty())
     sentence.add(1, "; bridge " + bridge.words);
@@ -131,7 +131,7 @@ Explanation Reason::by_behaviors_unknown() const {
     sentence.add(0, told() + ": " + scene_.grant->source() + " drives it");
     cause = {"wheels", told(), {grant_cause()}};
   } else {
-    sentence.add(0, "What the robot is told in this cycle is not known");
+    sentence.add(0, "The robot's command in this cycle is not known");
   }
   sentence.add(
       1, "; its reasons are not known" + (how.words.empty() ? "" : ": behaviors " + how.words),

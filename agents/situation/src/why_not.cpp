@@ -37,7 +37,7 @@ Explanation Reason::why_not(Wish wish) {
     return finish(sentence, as_it_is.cause);
   };
   if (!scene_.grant || (by_behaviors() && !scene_.behaviors))
-    return instead("Whether it is to " + wanted + " is not known");
+    return instead("It is not known whether it is to " + wanted);
   if (does(wish))
     return instead("It does " + wanted);
   if (!by_behaviors() || (!scene_.past && scene_.silence > kSilence))

@@ -143,13 +143,13 @@ void bridge_gone(std::vector<Case>& all) {
   const Situation before = driving();
   const Change quiet = [](Situation& s) { s.silence = 4.0; };
   all.push_back(when("the bridge was killed 4 s ago", "why", before, {quiet, lost("bridge", 4.3)},
-                     {"What the robot does is not known", "nothing has been heard of it for 4.0 s",
+                     {"The robot's motion is not known", "nothing has been heard of it for 4.0 s",
                       "bridge has not been heard for 4.3 s"},
                      {"stands"}));
   all.push_back(when("the same", "drive", before, {quiet, lost("bridge", 4.3)},
                      {"not known any more", "bridge has not been heard"}, {"behaviors drives"}));
   all.push_back(when("the same", "why not faster", before, {quiet, lost("bridge", 4.3)},
-                     {"What the robot does is not known"}));
+                     {"The robot's motion is not known"}));
   all.push_back(when("the bridge lost its robot", "why", before,
                      {quiet,
                       [](Situation& s) {
@@ -157,7 +157,7 @@ void bridge_gone(std::vector<Case>& all) {
                         program.status.state(v1::SERVICE_WAITING);
                         program.status.reason("no answer from tcp:192.0.2.7:8101");
                       }},
-                     {"What the robot does is not known", "bridge is waiting: no answer from"}));
+                     {"The robot's motion is not known", "bridge is waiting: no answer from"}));
   all.push_back(when("no robot is connected yet", "why", resting(), {[](Situation& s) {
                        s.grant->stamp().epoch(0);
                        s.grant->reason("no robot is connected");

@@ -220,12 +220,12 @@ TEST_F(WhyTest, NotKnown) {
   const Situation nothing;
   EXPECT_EQ(why(nothing).sentence, "Nothing is known of this cycle.");
   EXPECT_EQ(why_not(nothing, Wish::faster).sentence,
-            "Whether it is to go faster is not known. Nothing is known of this cycle.");
+            "It is not known whether it is to go faster. Nothing is known of this cycle.");
   scene.behaviors.reset();
   EXPECT_EQ(sentence(),
             "The robot is told to drive ahead at 0.30 m/s and to turn 11 degrees to the left: "
             "behaviors drives it; its reasons are not known.");
-  EXPECT_TRUE(sentence(Wish::faster).starts_with("Whether it is to go faster is not known"));
+  EXPECT_TRUE(sentence(Wish::faster).starts_with("It is not known whether it is to go faster"));
 }
 
 TEST_F(WhyTest, WithoutGoalsAndSchemasItTellsLess) {

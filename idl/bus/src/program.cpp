@@ -66,7 +66,7 @@ void add_node_options(CommandLine& app, NodeOptions& options) {
                "Lose no sample of a cycle and wait for every input (simulator in single step)");
   app.add_action(
          "--log-level", [](const std::string& level) { internal::set_log_level(level); },
-         "What is written to stderr: debug, info, warning or error")
+         "Least severe messages on stderr: debug, info, warning or error")
       .one_of({"debug", "info", "warning", "error"})
       .shows("info");
 }

@@ -77,7 +77,7 @@ export function App() {
       <section class="picture" aria-label="Map">
         <Picture link={link} drive={drive} seen={state} />
       </section>
-      <section class="side" aria-label="What the robot does">
+      <section class="side" aria-label="Goals, reasons and programs">
         {grant?.estopped && <Estopped link={link} grant={grant} />}
         <Now link={link} grant={grant} seen={state} />
         <DrivePanel link={link} drive={drive} grant={grant} />
