@@ -145,6 +145,11 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     rest.insert(rest.begin(), first);
     return rest;
   };
+  // "go to PLACE", as people say it.
+  if (words[0] == "go" && bare == 2 && rest[0] == "to") {
+    rest.erase(rest.begin());
+    --bare;
+  }
   if (words[0] == "go" && bare == 1 && !parse_number(rest[0]))
     return parse_goal("go-to-place", with("place=" + rest[0]));
   if (words[0] == "go") {

@@ -78,6 +78,7 @@ TEST(GoalWords, ShortForms) {
   EXPECT_EQ(said({"go", "3", "-1.5"}), "go_to(position=(3, -1.5) in odom)");
   EXPECT_EQ(said({"go", "3", "1", "speed=0.2"}), "go_to(position=(3, 1) in odom, speed=0.2)");
   EXPECT_EQ(said({"go", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
+  EXPECT_EQ(said({"go", "to", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
   EXPECT_EQ(said({"drive", "0.3"}), "drive(speed=0.3)");
   EXPECT_EQ(said({"drive", "speed=0.3"}), "drive(speed=0.3)");
   EXPECT_EQ(said({"turn", "180"}), "turn_to(heading=3.14159)");

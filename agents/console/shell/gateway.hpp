@@ -94,6 +94,7 @@ class Gateway {
   std::optional<std::string> next(Connection connection);
 
   bool greet(Connection connection, Page& page, const Hello& hello);
+  void name(Connection connection, Page& page, const std::string& name);
   void admit(Connection connection, Page& page, const Hello& hello);
   void obey(Connection connection, Page& page, const Message& message);
   void take_sample(Connection connection, Page& page, const Control::Sample& sample);

@@ -161,12 +161,17 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
   return true;
 }
 
+void Gateway::name(Connection connection, Page& page, const std::string& name) {
+  page.name = name;
+  control_.join(connection, name.empty() ? "somebody" : name);
+}
+
 /// An operator, or a further connection of one.
 void Gateway::admit(Connection connection, Page& page, const Hello& hello) {
   if (hello.ticket.empty()) {
     page.ticket = new_key();
     page.operator_id = connection;
-    control_.join(connection, hello.name.empty() ? "somebody" : hello.name);
+    name(connection, page, hello.name);
     return;
   }
   for (const auto& [other, known] : pages_)
@@ -200,6 +205,8 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
   };
   if (const auto* sample = std::get_if<Control::Sample>(&message))
     take_sample(connection, page, *sample);
+  else if (const auto* rename = std::get_if<Rename>(&message))
+    name(connection, page, rename->name);
   else if (const auto* take = std::get_if<TakeControl>(&message))
     note(control_.take(connection, take->force, now()));
   else if (std::holds_alternative<AskForControl>(message))

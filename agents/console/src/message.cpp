@@ -62,6 +62,8 @@ Message read(const Json& json) {
   if (type == "hello")
     return Hello{text(json, "key"), text(json, "name", kName),
                  json.contains("ticket") ? text(json, "ticket", kName) : ""};
+  if (type == "rename")
+    return Rename{text(json, "name", kName)};
   if (type == "take")
     return TakeControl{truth(json, "force")};
   if (type == "ask")

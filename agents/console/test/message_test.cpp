@@ -31,6 +31,7 @@ TEST(Message, EachKindIsRead) {
       std::get<Hello>(parse_message(R"({"type":"hello","key":"k","name":"ann","ticket":"t"})"))
           .ticket,
       "t");
+  EXPECT_EQ(std::get<Rename>(parse_message(R"({"type":"rename","name":"ann"})")).name, "ann");
   EXPECT_EQ(std::get<Say>(parse_message(R"({"type":"say","text":"hello"})")).text, "hello");
   EXPECT_TRUE(std::holds_alternative<AskForControl>(parse_message(R"({"type":"ask"})")));
   EXPECT_TRUE(std::holds_alternative<ReleaseControl>(parse_message(R"({"type":"release"})")));

@@ -38,9 +38,9 @@ std::string sign(const std::string& text, const KeyPair& authority);
 /// The text of a document that this authority has signed.
 std::string verified(const std::string& document, const std::string& authority_certificate);
 CertificateText read_certificate(const std::string& pem);
-/// True where an authority has signed a certificate.
+/// std::runtime_error unless the authority has signed the certificate.
 void check_signed(const std::string& certificate, const std::string& authority_certificate);
-/// True where a private key is that of a certificate.
+/// std::runtime_error unless the private key is that of the certificate.
 void check_key(const std::string& key, const std::string& certificate);
 
 /// As prefix_head().

@@ -106,8 +106,9 @@ function Header({link, seen: s, grant}: {link: Link; seen: Seen; grant?: Grant})
     if (grant?.estopped) setPressed(false);
   }, [grant?.estopped]);
   const press = () => {
-    setPressed(true);
-    if (!link.send({type: 'estop'})) link.note('NOT SENT: there is no connection. Stop the robot by its own switch.', false);
+    const sent = link.send({type: 'estop'});
+    setPressed(sent);
+    if (!sent) link.note('NOT SENT: there is no connection. Stop the robot by its own switch.', false);
   };
   return <header>
     <h1>{info?.robot ?? 'Saphira'}</h1>
@@ -117,7 +118,7 @@ function Header({link, seen: s, grant}: {link: Link; seen: Seen; grant?: Grant})
     </span>
     <span class="grow" />
     {info?.simulator && <a class="wide" href="/simulator.html">the simulator's own view</a>}
-    <button class="estop" onClick={press} disabled={!link.commanding}
+    <button class="estop" onClick={press}
             aria-label="Emergency stop">{pressed && !grant?.estopped ? 'STOP …' : 'STOP'}</button>
   </header>;
 }
@@ -144,7 +145,7 @@ function Now({link, grant, seen: s}: {link: Link; grant?: Grant; seen: Seen}) {
   const pose = tracking ? registration!.pose_in_map : robot.pose_in_odom;
   const sigma = tracking ? Math.sqrt(Math.max(0, (registration!.covariance.xx + registration!.covariance.yy) / 2)) : 0;
   return <div class={`now ${s.state}`}>
-    <p class="sentence" title={why?.sentence}>{grant?.waits_for_hand_back ? 'A person drove last: autonomy waits until the robot is handed back.' : why?.sentence ?? grant?.reason}</p>
+    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{grant?.estopped ? 'Emergency stop: the robot stands until it is reset, and then until it gets a new goal.' : grant?.waits_for_hand_back ? 'A person drove last: autonomy waits until the robot is handed back.' : why?.sentence ?? grant?.reason}</p>
     {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {grant.guard_reason}</p>}
     <dl>
       <div><dt>Status</dt><dd>{robot.status.replace('MOTORS_', '').replace('_', ' ').toLowerCase()}{(robot.left_stalled || robot.right_stalled) && ', stalled'}</dd></div>
@@ -244,7 +245,7 @@ function bannerText(s: Seen): string {
   const age = Number.isFinite(s.age) ? `The picture is ${(s.age / 1000).toFixed(s.age < 10_000 ? 1 : 0)} s old. ` : '';
   switch (s.state) {
     case 'locked': return 'To watch from here the key is needed: open the address that saphira console prints.';
-    case 'gone': return `${age}There is no connection to the console. Trying again …`;
+    case 'gone': return `${age}There is no connection to the console, so STOP does not work from here: use the robot's own switch. Trying again …`;
     case 'silent': return 'No robot is heard.';
     default: return `${age}The robot says nothing.`;
   }
@@ -291,7 +292,11 @@ function TargetCard({link, target, close}: {link: Link; target: Target; close: (
   const [told, setTold] = useState('');
   useEffect(() => setTold(''), [target]);
   const name = target.artifact?.name;
+  const grant = link.data<Grant>('drive/grant');
+  const first = grant?.waits_for_hand_back ? 'Hand back, go' : 'Go';
   const ask = async (words: string) => {
+    if (grant?.estopped) return setTold('The emergency stop is latched: reset it first.');
+    if (grant?.waits_for_hand_back) link.send({type: 'hand_back'});
     const answer = await link.ask({type: 'goal', words});
     if (answer.well) close();
     else setTold(answer.text);
@@ -305,8 +310,8 @@ function TargetCard({link, target, close}: {link: Link; target: Target; close: (
     <div class="row"><strong>{name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
       <button class="plain" aria-label="Close" onClick={close}>×</button></div>
     {link.mayDrive ? <div class="row">
-      {name && <button class="main" onClick={() => ask(`go-to-place place=${name}`)}>Go to {name}</button>}
-      <button class={name ? '' : 'main'} onClick={() => ask(`go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`)}>Go here</button>
+      {name && <button class="main" onClick={() => ask(`go-to-place place=${name}`)}>{first} to {name}</button>}
+      <button class={name ? '' : 'main'} title="straight to this point, without a route" onClick={() => ask(`go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`)}>{first} here</button>
       <button title="a program that takes clicks gets this one" onClick={() => { link.send({type: 'point_out', x: target.x, y: target.y, in_map: target.frame === 'map'}); close(); }}>Tell programs</button>
       {target.frame === 'map' && <button title="tell the robot that it stands here" onClick={place}>The robot is here</button>}
     </div> : <p class="small">Without the key you may watch.</p>}

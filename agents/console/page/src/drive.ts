@@ -8,6 +8,7 @@ const firstStep = 0.05;      // [m/s] of one key
 const rate = 0.25;           // [m/s2] of a key that is held
 const keyTurn = 0.6;         // [rad/s]
 const deadZone = 0.12;       // of a gamepad's stick
+const stopHold = 2000;       // [ms] of the key k, as in the terminal
 const keysOf: {[key: string]: string} = {
   i: 'faster', ArrowUp: 'faster', m: 'slower', ArrowDown: 'slower', j: 'left', ArrowLeft: 'left',
   l: 'right', ArrowRight: 'right', '.': 'keep',
@@ -21,6 +22,8 @@ export class Drive {
   active = false;
   pad = '';                  // the gamepad's name
   padHint = '';
+
+  stoppedUntil = 0;          // [ms] a stop holds that long against autonomy, too
 
   private held = new Set<string>();
   private keyVelocity = 0;
@@ -51,8 +54,14 @@ export class Drive {
   letGo() {
     this.held.clear();
     this.stick = undefined;
-    this.keyVelocity = 0;
+    this.keyVelocity = this.stoppedUntil = 0;
     if (this.mine()) this.sample();
+  }
+  // The robot stands, whoever drives it: a person has priority over autonomy.
+  stop() {
+    this.letGo();
+    this.stoppedUntil = performance.now() + stopHold;
+    this.sample();
   }
   release() {
     if (!this.mine()) return;
@@ -67,7 +76,7 @@ export class Drive {
     if (!this.mine()) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (key === 'k' || key === ' ') {
-      if (down) this.letGo();
+      if (down) this.stop();
     } else if (key === 'g') {
       if (down && !event.repeat) this.constant();
     } else if (key === 'c') {
@@ -128,7 +137,7 @@ export class Drive {
       this.fromStick(this.stick.x, this.stick.y);
       this.active = true;
     } else {
-      this.active = this.fromKeys() || this.fromPad();
+      this.active = this.fromKeys() || this.fromPad() || performance.now() < this.stoppedUntil;
     }
     if (this.mine())
       this.link.sendSample({type: 'drive', number: ++this.number, at: performance.now() / 1000, active: this.active,

@@ -21,6 +21,7 @@ function Other({link, control, grant}: {link: Link; control?: ControlState; gran
   const held = !!control && control.holder !== 0;
   const take = (force: boolean) => {
     (document.activeElement as HTMLElement | null)?.blur();
+    link.refused = '';
     link.send({type: 'take', force});
   };
   return <div class="drive">
@@ -45,13 +46,15 @@ function Other({link, control, grant}: {link: Link; control?: ControlState; gran
 
 function Mine({link, drive, grant, control}: {link: Link; drive: Drive; grant?: Grant; control: ControlState}) {
   const most = link.data<RobotDescription>('robot/description')?.max_velocity ?? 0.4;
+  const autonomous = grant?.role === 'ROLE_BEHAVIORS' || grant?.role === 'ROLE_DIRECT';
   const state = control.let_go && drive.active ? 'let go first'
-    : drive.active ? `${drive.velocity.toFixed(2)} m/s, ${(drive.rotation * 180 / Math.PI).toFixed(0)} °/s` : 'you hold nothing: the robot stands';
+    : drive.active ? `asked ${drive.velocity.toFixed(2)} m/s, ${(drive.rotation * 180 / Math.PI).toFixed(0)} °/s`
+    : autonomous ? 'it drives by itself until you hold something' : 'you hold nothing: the robot stands';
   const speed = (event: Event) => { drive.maxVelocity = Number((event.target as HTMLInputElement).value); };
   return <div class="drive mine">
-    <div class="row"><strong>You drive</strong><span class="chip">{state}</span><span class="grow" />
-      <button onClick={() => drive.release()}>Release</button>
-      <button class="main" onClick={() => { drive.letGo(); link.send({type: 'hand_back'}); }}>Hand back</button></div>
+    <div class="row"><strong>You drive</strong><span class={!drive.active && autonomous ? 'chip warn' : 'chip'}>{state}</span><span class="grow" />
+      <button title="gives up control; autonomy waits until somebody hands the robot back" onClick={() => drive.release()}>Release</button>
+      <button class="main" title="gives up control; autonomy drives again" onClick={() => { drive.letGo(); link.send({type: 'hand_back'}); }}>Hand back</button></div>
     {control.asked.map(name => <div class="row asked" role="alert" key={name}><span class="grow"><strong>{name}</strong> asks for control.</span>
       <button onClick={() => drive.release()}>Give it</button></div>)}
     {drive.active && grant && grant.role !== 'ROLE_TELEOP' && <p class="told bad">{grant.reason}</p>}
@@ -59,7 +62,7 @@ function Mine({link, drive, grant, control}: {link: Link; drive: Drive; grant?: 
     {link.roundTrip > slow && <p class="told bad">Commands take {Math.round(link.roundTrip)} ms there and back: the robot is slowed down.</p>}
     <div class="row"><label for="speed" class="small">Fastest {drive.maxVelocity.toFixed(2)} m/s</label>
       <input id="speed" class="grow" type="range" min="0.05" max={most} step="0.05" value={drive.maxVelocity} onInput={speed} /></div>
-    <p class="small faint">Keys, held down: <kbd>i</kbd> faster <kbd>m</kbd> slower <kbd>j</kbd> left <kbd>l</kbd> right <kbd>.</kbd> go on; <kbd>k</kbd> stop
-      {' '}<kbd>g</kbd> constant speed. {drive.pad ? `Gamepad ${drive.pad}${drive.padHint && ': ' + drive.padHint}.` : 'A gamepad shows once one of its buttons is pressed.'}</p>
+    <p class="small faint">Keys, held down: <kbd>i</kbd> faster <kbd>m</kbd> slower, back <kbd>j</kbd> left <kbd>l</kbd> right <kbd>.</kbd> go on; <kbd>k</kbd> stop
+      {' '}<kbd>g</kbd> constant speed, by the behaviors. {drive.pad ? `Gamepad ${drive.pad}${drive.padHint && ': ' + drive.padHint}.` : 'A gamepad shows once one of its buttons is pressed.'}</p>
   </div>;
 }

@@ -27,6 +27,8 @@ function store(name: string, value: string) {
   }
 }
 
+interface Message { type: string; [member: string]: unknown }
+
 export class Link {
   connected = false;         // the telemetry
   commanding = false;        // the commands
@@ -85,14 +87,14 @@ export class Link {
   rename(name: string) {
     this.operator = name.trim().slice(0, 20);
     store(operatorName, this.operator);
-    this.commands?.close();
+    this.send({type: 'rename', name: this.operator});
   }
 
-  // False: there is no connection, and nothing was sent.
-  send(message: object): boolean {
+  // False: nothing was sent, because there is no connection, or a slow one has much to send still. An
+  // emergency stop is sent in any case.
+  send(message: Message): boolean {
     if (this.commands?.readyState !== WebSocket.OPEN) return false;
-    // While a slow link still has much to send, further messages are dropped.
-    if (this.commands.bufferedAmount > 2000) return false;
+    if (this.commands.bufferedAmount > 2000 && message.type !== 'estop') return false;
     this.commands.send(JSON.stringify(message));
     return true;
   }
@@ -112,7 +114,7 @@ export class Link {
     socket.onclose = () => setTimeout(() => ticket === this.ticket && this.openLane(i), retry);
   }
 
-  ask(message: object): Promise<Answer> {
+  ask(message: Message): Promise<Answer> {
     const reference = ++this.references;
     return new Promise(resolve => {
       if (!this.send({...message, reference}))
@@ -158,6 +160,7 @@ export class Link {
     socket.onmessage = event => this.takeCommand(JSON.parse(event.data as string));
     socket.onclose = () => {
       this.commanding = false;
+      this.refused = '';
       this.id = 0;
       this.ticket = '';
       for (const lane of this.lanes.splice(0)) lane.close();

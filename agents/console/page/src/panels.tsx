@@ -3,8 +3,7 @@ import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
 import {degrees} from './geometry';
 import type {Link} from './link';
-import type {Behaviors, BehaviorState, Belief, Cause, Goal, GoalStatus, Intentions, LogRecord, Message,
-             Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
+import type {BehaviorState, Behaviors, Belief, Cause, Goal, GoalStatus, Grant, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
 
 const word = (name: string) => name.replace(/^[A-Z]+_/, '').toLowerCase().replace(/_/g, ' ');
 export const nothing = (text: string) => <p class="nothing">{text}</p>;
@@ -37,14 +36,14 @@ export function Goals({link}: {link: Link}) {
     setTold(answer.well ? undefined : answer);
     if (answer.well) setWords('');
   };
-  const goals = link.all<GoalStatus>('goals/status').sort((a, b) => Number(ended(a[1].data)) - Number(ended(b[1].data)) || a[1].data.elapsed - b[1].data.elapsed);
+  const goals = link.all<GoalStatus>('goals/status').sort((a, b) => rank(a[1].data) - rank(b[1].data) || a[1].data.elapsed - b[1].data.elapsed);
   const asked = new Map(link.all<Goal>('goals').map(([key, item]) => [key, item.data]));
   return <>
     <form class="ask" onSubmit={send}>
       <label for="goal-words">Ask the robot for something</label>
       <div class="row">
         <input id="goal-words" value={words} disabled={!link.mayDrive} autocomplete="off" spellcheck={false}
-               placeholder="go 3 1, turn 90, patrol, go-to-place place=EJ-231"
+               placeholder="go EJ-231, go 3 1, turn 90, patrol"
                onInput={e => setWords((e.target as HTMLInputElement).value)} />
         <button type="submit" disabled={!link.mayDrive}>Send</button>
         <button type="button" disabled={!link.mayDrive} onClick={() => link.ask({type: 'goal', words: 'stop'}).then(setTold)}>End all</button>
@@ -55,6 +54,7 @@ export function Goals({link}: {link: Link}) {
     <ul class="cards">{goals.map(([key, {data}]) => <GoalCard key={key} id={key} status={data} goal={asked.get(key)} link={link} />)}</ul>
   </>;
 }
+const rank = (status: GoalStatus) => status.state === 'GOAL_UNDERWAY' ? 0 : ended(status) ? 2 : 1;
 const ended = (status: GoalStatus) => !['GOAL_WAITING', 'GOAL_UNDERWAY', 'GOAL_SUSPENDED'].includes(status.state);
 function argumentsOf(goal?: Goal): string {
   return (goal?.arguments ?? []).map(a => {
@@ -64,10 +64,14 @@ function argumentsOf(goal?: Goal): string {
 }
 function GoalCard({id, status, goal, link}: {id: string; status: GoalStatus; goal?: Goal; link: Link}) {
   const over = ended(status);
+  const grant = link.data<Grant>('drive/grant');
+  const held = over || status.state !== 'GOAL_UNDERWAY' ? '' : grant?.role === 'ROLE_TELEOP' ? 'a person drives'
+    : grant?.waits_for_hand_back ? 'waits for Hand back' : '';
   return <li class={over ? 'card over' : 'card'}>
     <div class="row">
       <strong>{status.functor.replace(/[_-]/g, ' ')}</strong>
       <span class={`chip ${status.state.toLowerCase()}`}>{word(status.state)}</span>
+      {held && <span class="chip warn">{held}</span>}
       <span class="grow" />
       {!over && link.mayDrive && <button onClick={() => link.ask({type: 'cancel', id})} aria-label={`Cancel ${status.functor}`}>Cancel</button>}
     </div>

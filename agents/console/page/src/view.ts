@@ -169,8 +169,13 @@ export class View {
         .filter(a => a.name && (a.type === 'ARTIFACT_DOOR' || a.type === 'ARTIFACT_OFFICE' || a.type === 'ARTIFACT_POSITION'))
         .map(a => ({a, d: Math.hypot(a.pose_in_map.x - world.x, a.pose_in_map.y - world.y)}))
         .sort((l, r) => l.d - r.d)[0];
+    // A click anywhere in a room means the room.
+    const room = artifacts.find(a => {
+      const at = compose(inverse(a.pose_in_map), {...world, th: 0});
+      return a.name && a.type === 'ARTIFACT_OFFICE' && Math.abs(at.x) < a.length / 2 && Math.abs(at.y) < a.width / 2;
+    });
     return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom',
-            artifact: near && near.d * this.scale < 22 ? near.a : undefined};
+            artifact: near && near.d * this.scale < 22 ? near.a : room};
   }
 
   draw() {
@@ -461,7 +466,7 @@ export class View {
     const states = new Map(this.link.all<GoalStatus>('goals/status').map(([key, item]) => [key, item.data.state]));
     for (const [key, {data}] of this.link.all<Goal>('goals')) {
       const state = states.get(key);
-      if (state && !['GOAL_WAITING', 'GOAL_UNDERWAY', 'GOAL_SUSPENDED'].includes(state)) continue;
+      if (!state || !['GOAL_WAITING', 'GOAL_UNDERWAY', 'GOAL_SUSPENDED'].includes(state)) continue;
       for (const argument of data.arguments) {
         // A point relative to the robot is meant from where the robot was.
         if (argument.kind !== 'ARGUMENT_POINT' || argument.frame === 'FRAME_ROBOT') continue;

@@ -71,7 +71,6 @@ const stands = page => until('the robot stands', async () => Math.abs(await spee
 async function takeControl(page, name) {
   await page.getByLabel('I am').fill(name);
   await page.getByLabel('I am').blur();
-  // The name opens the connection anew.
   await until('control', async () => {
     if (await page.getByText('You drive').count()) return true;
     const button = page.getByRole('button', {name: 'Drive', exact: true});
@@ -180,6 +179,24 @@ test('keys drive while they are held, and somebody else waits for control', asyn
   await handBack(bob);
   await leave(ann);
   await leave(bob);
+});
+
+test('k stops a robot that drives by itself', async () => {
+  const page = await person();
+  await open(page);
+  await page.getByLabel('Ask the robot for something').fill('drive 0.2');
+  await page.getByRole('button', {name: 'Send'}).click();
+  await moves(page);
+  await takeControl(page, 'ann');
+  await page.getByText('it drives by itself until you hold something').waitFor();
+  await until('the robot stands', async () => {
+    await page.keyboard.press('k');
+    await page.waitForTimeout(300);
+    return Math.abs(await speed(page)) < 0.02;
+  });
+  await page.getByRole('button', {name: 'End all'}).click();
+  await handBack(page);
+  await leave(page);
 });
 
 test('the stick drives, and letting it go or losing the window stops', async () => {

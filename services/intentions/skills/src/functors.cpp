@@ -444,7 +444,7 @@ Registry built_in() {
 
   Schema stop;
   stop.name = "stop";
-  stop.summary = "halts the robot, and ends every earlier goal that is not more important";
+  stop.summary = "halts the robot, and ends every earlier goal that drives";
   stop.replaces = true;
   stop.make = [](const Arguments&) -> std::unique_ptr<Activity> {
     return std::make_unique<Halt>();

@@ -17,6 +17,9 @@ struct Hello {
   /// Of the connection whose operator's samples come here as well [empty: one of its own].
   std::string ticket;
 };
+struct Rename {
+  std::string name;  ///< of the operator
+};
 struct Ack {
   std::uint64_t frame = 0;
 };
@@ -67,7 +70,7 @@ struct Wrong {
 
 using Message = std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl, ReleaseControl,
                              Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal,
-                             Say, CancelGoal, AskProcess, PlaceRobot, PointOut>;
+                             Say, CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
 
 /// Any text gives a message: Wrong, with the expected form, where it is no valid one.
 Message parse_message(std::string_view text);

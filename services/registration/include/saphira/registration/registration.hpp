@@ -49,7 +49,7 @@ struct Settings {
   double wall_range = 2.5;   ///< [m] the farthest that count
 
   // Scores of raw readings at the believed pose, see SearchSettings.
-  double sure = 15.0;        ///< from which on they fit; a robot that tracks has 20 to 40
+  double sure = 15.0;        ///< from which on they fit; a robot that tracks has 20 to 50
   double lost = -6.0;        ///< below which the pose does not hold...
   double again_sure = 20.0;  ///< ...until it has fitted as well as this again
   // The same of the last two metres alone: a robot that was carried off doubts before what fitted

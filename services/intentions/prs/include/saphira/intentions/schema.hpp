@@ -40,7 +40,7 @@ struct Schema {
   std::function<std::string(const Arguments&)> check;
   /// Makes an instance. The arguments are checked and complete, their points in odom or on the map.
   std::function<std::unique_ptr<Activity>(const Arguments&)> make;
-  /// A goal of this schema ends what is not more important, instead of waiting for it.
+  /// A goal of this schema ends all earlier goals that drive, instead of waiting for them.
   bool replaces = false;
   /// A goal of this schema may be underway beside others: it does not drive.
   bool concurrent = false;

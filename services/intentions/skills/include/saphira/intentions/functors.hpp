@@ -9,7 +9,7 @@ namespace saphira::intentions {
 ///   go_to(position, [speed], [radius], [patience])   drives to a point around what is in the way
 ///   drive(speed, [patience])                         goes on until its deadline or its withdrawal
 ///   turn_to(heading | position, [angle], [turn_speed], [patience])
-///   stop()                                           ends what is not more important, and halts
+///   stop()                                           ends all earlier goals that drive, and halts
 Registry built_in();
 
 }  // namespace saphira::intentions
