@@ -52,7 +52,8 @@ function Mine({link, drive, grant, control}: {link: Link; drive: Drive; grant?: 
     : autonomous ? 'it drives by itself until you hold something' : 'you hold nothing: the robot stands';
   const speed = (event: Event) => { drive.maxVelocity = Number((event.target as HTMLInputElement).value); };
   return <div class="drive mine">
-    <div class="row"><strong>You drive</strong><span class={!drive.active && autonomous ? 'chip warn' : 'chip'}>{state}</span><span class="grow" />
+    <div class="row"><strong>You drive</strong><span class={!drive.active && autonomous ? 'chip warn' : 'chip'}>{state}</span></div>
+    <div class="row">
       <button title="gives up control; autonomy waits until somebody hands the robot back" onClick={() => drive.release()}>Release</button>
       <button class="main" title="gives up control; autonomy drives again" onClick={() => { drive.letGo(); link.send({type: 'hand_back'}); }}>Hand back</button></div>
     {control.asked.map(name => <div class="row asked" role="alert" key={name}><span class="grow"><strong>{name}</strong> asks for control.</span>
