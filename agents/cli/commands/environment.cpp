@@ -22,8 +22,8 @@ std::map<std::string, std::string> as_environment(const bus::NodeOptions& option
 }
 
 RunningBus bus_of(const std::string& what, const bus::NodeOptions& options) {
-  return {what,          options.robot,    options.domain, name_of(options.profile),
-          options.peers, options.interface};
+  return {what,          options.robot,     options.domain, name_of(options.profile),
+          options.peers, options.interface, false};
 }
 
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {

@@ -29,7 +29,7 @@ int print_help(const CLI::App& root, const std::string& name) {
   return bus::kExitUsage;
 }
 
-/// Where no bus is named, a command means one that runs on this machine.
+/// Without options of the bus, a command joins a bus of this machine.
 bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
   static const std::set<std::string> others{"demo",  "scenario", "up",       "check", "stop",
                                             "renew", "log",      "security", "bench", "complete"};
@@ -48,7 +48,7 @@ bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options
            options_of(*meant, usual).c_str());
   options.robot = meant->robot;
   options.domain = meant->domain;
-  options.profile = profile_of(meant->profile);
+  options.profile = bus::profile_of(meant->profile);
   options.peers = meant->peers;
   options.interface = meant->interface;
   return options;

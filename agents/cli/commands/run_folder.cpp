@@ -126,15 +126,16 @@ std::vector<RunningBus> running_buses() {
       const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
       if (file < 0)
         continue;
-      // A lock that can be had is of a program that was killed.
-      const bool dead = flock(file, LOCK_SH | LOCK_NB) == 0;
+      std::string text;
+      std::getline(std::ifstream(path), text);
+      // The owner writes after it has locked. A lock that can be had is of a program that was
+      // killed.
+      const bool dead = !text.empty() && flock(file, LOCK_SH | LOCK_NB) == 0;
       close(file);
       if (dead) {
         unlink(path.c_str());
         continue;
       }
-      std::string text;
-      std::getline(std::ifstream(path), text);
       if (auto bus = parse_running_bus(text))
         found.push_back({entry.last_write_time(none), std::move(*bus)});
     }

@@ -78,6 +78,7 @@ RunningBus bus_of(const Deployment& deployment, const bus::NodeOptions& options)
   bus.interface = deployment.bus.interface.value_or(bus.interface);
   if (!deployment.bus.peers.empty())
     bus.peers = deployment.bus.peers;
+  bus.deployment = true;
   return bus;
 }
 

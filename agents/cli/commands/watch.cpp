@@ -71,10 +71,6 @@ const char* name_of(bus::Profile profile) {
   return "?";
 }
 
-bus::Profile profile_of(const std::string& name) {
-  return name == "lan" ? bus::Profile::lan : name == "wan" ? bus::Profile::wan : bus::Profile::host;
-}
-
 std::string person(const std::string& program, bool since) {
   const char* const user = getlogin();
   std::string text = user == nullptr ? program : program + " of " + user;

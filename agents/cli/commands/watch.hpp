@@ -59,7 +59,6 @@ class DeploymentWatch {
 
 /// The profile's word: host, lan, wan.
 const char* name_of(bus::Profile profile);
-bus::Profile profile_of(const std::string& name);  ///< host where it is no such word
 
 /// A program of this name and the person who runs it, for people: "keyboard of ann at laptop
 /// (pts/3)"; with `since`, also the time of day when this was asked: "(pts/3, since 14:02)".

@@ -1,13 +1,18 @@
 #include "saphira/cli/running_bus.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace saphira::cli {
 
 std::string to_text(const RunningBus& bus) {
-  return nlohmann::json{{"what", bus.what},     {"robot", bus.robot},
-                        {"domain", bus.domain}, {"profile", bus.profile},
-                        {"peers", bus.peers},   {"interface", bus.interface}}
+  return nlohmann::json{{"what", bus.what},
+                        {"robot", bus.robot},
+                        {"domain", bus.domain},
+                        {"profile", bus.profile},
+                        {"peers", bus.peers},
+                        {"interface", bus.interface},
+                        {"deployment", bus.deployment}}
              .dump() +
          "\n";
 }
@@ -15,8 +20,9 @@ std::string to_text(const RunningBus& bus) {
 std::optional<RunningBus> parse_running_bus(std::string_view text) {
   try {
     const nlohmann::json json = nlohmann::json::parse(text);
-    return RunningBus{json.at("what"),    json.at("robot"), json.at("domain"),
-                      json.at("profile"), json.at("peers"), json.at("interface")};
+    return RunningBus{json.at("what"),      json.at("robot"), json.at("domain"),
+                      json.at("profile"),   json.at("peers"), json.at("interface"),
+                      json.at("deployment")};
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;
   }
@@ -28,7 +34,10 @@ const RunningBus* bus_meant(const RunningBus& usual, const std::vector<RunningBu
   for (const RunningBus& bus : running)
     if (options_of(bus, usual).empty())
       return nullptr;
-  return &running.front();
+  // A real robot before a demonstration that was started beside it.
+  const auto found = std::find_if(running.begin(), running.end(),
+                                  [](const RunningBus& bus) { return bus.deployment; });
+  return found == running.end() ? &running.front() : &*found;
 }
 
 std::string options_of(const RunningBus& bus, const RunningBus& usual) {

@@ -5,10 +5,10 @@
 namespace saphira::cli {
 namespace {
 
-const RunningBus kUsual{"", "pioneer", 0, "host", {}, ""};
-const RunningBus kDemo{"the demo", "demo-17", 77, "host", {}, ""};
-const RunningBus kLaptop{"the deployment laptop",  "pioneer", 0, "wan",
-                         {"10.0.0.2", "10.0.0.3"}, "10.0.0.1"};
+const RunningBus kUsual{"", "pioneer", 0, "host", {}, "", false};
+const RunningBus kDemo{"the demo", "demo-17", 77, "host", {}, "", false};
+const RunningBus kLaptop{"the deployment laptop",  "pioneer",  0,   "wan",
+                         {"10.0.0.2", "10.0.0.3"}, "10.0.0.1", true};
 
 TEST(RunningBus, IsKeptAsText) {
   const auto read = parse_running_bus(to_text(kLaptop));
@@ -23,10 +23,10 @@ TEST(RunningBus, TheNewestIsMeantWhereTheUsualOneDoesNotRun) {
   EXPECT_EQ(bus_meant(kUsual, {}), nullptr);
   const std::vector<RunningBus> one{kDemo};
   EXPECT_EQ(bus_meant(kUsual, one), &one.front());
-  const std::vector<RunningBus> two{kLaptop, kDemo};
-  EXPECT_EQ(bus_meant(kUsual, two), &two.front());
+  const std::vector<RunningBus> two{kDemo, kLaptop};
+  EXPECT_EQ(bus_meant(kUsual, two), &two.back()) << "a deployment, though the demo is newer";
   const std::vector<RunningBus> three{
-      kLaptop, kDemo, {"the deployment demo", "pioneer", 0, "host", {}, ""}};
+      kLaptop, kDemo, {"the deployment demo", "pioneer", 0, "host", {}, "", false}};
   EXPECT_EQ(bus_meant(kUsual, three), nullptr) << "the usual one runs";
 }
 

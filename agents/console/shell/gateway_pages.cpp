@@ -187,7 +187,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
     say(connection, text);
     return;
   }
-  // Anybody who may watch the robot may stop it.
+  // The right to watch includes the right to stop.
   if (std::holds_alternative<EmergencyStop>(message)) {
     presser_ = operator_of(page.name);
     press_estop();

@@ -18,7 +18,7 @@ namespace saphira::bus {
 namespace {
 
 /// The folder of credentials of this user, or else of this machine; empty: there is none. A user
-/// who has an authority has one also before it is made: nothing starts open by accident then.
+/// with an authority needs one even before it exists, so that nothing starts open by accident.
 std::string usual_security() {
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
@@ -39,11 +39,9 @@ void add_node_options(CommandLine& app, NodeOptions& options) {
   app.add_option("--domain", options.domain, "DDS domain")
       .environment("SAPHIRA_DOMAIN")
       .in_range(0, 231);
-  static const std::map<std::string, Profile> profiles{
-      {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
   app.add_action(
          "--profile",
-         [&options](const std::string& profile) { options.profile = profiles.at(profile); },
+         [&options](const std::string& profile) { options.profile = profile_of(profile); },
          "Network: host (this machine alone), lan (multicast), wan (--peer)")
       .environment("SAPHIRA_PROFILE")
       .one_of({"host", "lan", "wan"})
@@ -72,6 +70,12 @@ void add_node_options(CommandLine& app, NodeOptions& options) {
 }
 
 }  // namespace
+
+Profile profile_of(const std::string& word) {
+  static const std::map<std::string, Profile> profiles{
+      {"host", Profile::host}, {"lan", Profile::lan}, {"wan", Profile::wan}};
+  return profiles.at(word);
+}
 
 NodeOptions options_of_environment() {
   NodeOptions options;

@@ -31,7 +31,10 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
                 const std::function<void(CommandLine&)>& add_options,
                 const std::function<int(const NodeOptions&, const Stop&)>& body);
 
-/// The options of a program without a command line: what the environment variables say.
+/// The profile of a word: host, lan or wan. std::out_of_range: it is no such word.
+Profile profile_of(const std::string& word);
+
+/// The options of a program without a command line, from the environment variables.
 /// std::invalid_argument: one of them cannot be.
 NodeOptions options_of_environment();
 

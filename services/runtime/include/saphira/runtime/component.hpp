@@ -12,7 +12,7 @@ namespace saphira::runtime {
 struct Component {
   std::string name;    ///< on the bus; its program is saphira-NAME
   std::string effect;  ///< what it is for, in one line
-  /// Adds its options to a command line; `make` sees what was given there. Empty: it has none.
+  /// Adds its options to a command line; `make` uses their values. Empty: it has none.
   std::function<void(CommandLine&)> add_options;
   Shell::Make make;
 };

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,7 +35,7 @@ class Option {
   const Option& one_of(const std::vector<std::string>& words) const;
   const Option& existing_file() const;
   const Option& ipv4() const;
-  /// `complaint` gives what is wrong with a value; empty: nothing.
+  /// `complaint` returns the fault of a value in words; empty: it has none.
   const Option& check(const std::function<std::string(const std::string&)>& complaint) const;
   const Option& environment(const std::string& name) const;  ///< the value where it is not given
   const Option& separated_by(char separator) const;          ///< many values in one word
