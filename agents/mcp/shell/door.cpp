@@ -167,6 +167,10 @@ void Door::begin(const Call& call) {
     session_.answer(call.number, result);
   } else if (call.tool == "why") {
     session_.answer(call.number, robot_.why());
+  } else if (call.tool == "map") {
+    session_.answer(call.number, robot_.map());
+  } else if (call.tool == "look") {
+    session_.answer(call.number, robot_.view());
   } else {  // it went between the call and now
     session_.answer(call.number, {"not done: nobody offers this tool now", nullptr, true});
   }

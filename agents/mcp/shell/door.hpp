@@ -10,6 +10,7 @@
 #include "mind.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/mcp/session.hpp"
+#include "saphira/mcp/surroundings.hpp"
 
 namespace saphira::mcp {
 
@@ -31,14 +32,27 @@ class Robot {
   /// The driver, any trouble, and the robot's pose, velocity and battery.
   Result status() const;
   Result why() const;
+  Result map() const { return map_of(surroundings()); }
+  Result view() const { return view_of(surroundings()); }
 
  private:
   void make_tools();
+  Surroundings surroundings() const;
 
   bus::Node& node_;
   cli::Mind mind_;
   bus::Reader<v1::ActivitySchemas> schema_reader_;
   bus::Reader<v1::Agent> agent_reader_;
+  bus::Reader<v1::SonarBuckets> sonar_reader_;
+  bus::Reader<v1::Perception> perception_reader_;
+  bus::Reader<v1::Vision> vision_reader_;
+  bus::Reader<v1::FloorMap> map_reader_;
+  bus::Reader<v1::Registration> registration_reader_;
+  std::optional<v1::SonarBuckets> sonars_;
+  std::optional<v1::Perception> perception_;
+  std::optional<v1::Vision> vision_;
+  std::optional<v1::FloorMap> map_;
+  std::optional<v1::Registration> registration_;
   std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, v1::Agent> agents_;
   std::vector<Tool> tools_;

@@ -122,6 +122,12 @@ std::vector<Tool> fixed_tools() {
        object(nullptr), true},
       {"why", "Why the robot does what it does now, in a sentence and as a tree", object(nullptr),
        true},
+      {"map",
+       "The robot's place on the map, the places that have a name, nearest first, and closed doors",
+       object(nullptr), true},
+      {"look",
+       "The walls, doors, people and echoes around the robot, nearest first; x ahead, y left [m]",
+       object(nullptr), true},
       {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
       {"goal", "The outcome of one goal; waits for its end",
        object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
@@ -145,12 +151,26 @@ Robot::Robot(bus::Node& node)
     : node_(node),
       mind_(node, false),
       schema_reader_(node.reader(bus::topics::kActivitySchemas)),
-      agent_reader_(node.reader(bus::topics::kAgents)) {
+      agent_reader_(node.reader(bus::topics::kAgents)),
+      sonar_reader_(node.reader(bus::topics::kSonarBuckets)),
+      perception_reader_(node.reader(bus::topics::kPerception)),
+      vision_reader_(node.reader(bus::topics::kVision)),
+      map_reader_(node.reader(bus::topics::kMap)),
+      registration_reader_(node.reader(bus::topics::kRegistration)) {
   make_tools();
 }
 
 void Robot::poll() {
   mind_.poll();
+  const auto take = [](auto& reader, auto& newest) {
+    if (auto sample = reader.take_newest())
+      newest = std::move(sample);
+  };
+  take(sonar_reader_, sonars_);
+  take(perception_reader_, perception_);
+  take(vision_reader_, vision_);
+  take(map_reader_, map_);
+  take(registration_reader_, registration_);
   bool changed = false;
   if (const auto newest = schema_reader_.take_newest()) {
     schemas_ = newest->schemas();
@@ -209,6 +229,12 @@ const v1::ActivitySchema* Robot::activity(const std::string& tool) const {
 const v1::Capability* Robot::capability(const std::string& tool) const {
   const auto found = capabilities_.find(tool);
   return found == capabilities_.end() ? nullptr : &found->second;
+}
+
+Surroundings Robot::surroundings() const {
+  const auto known = [](const auto& newest) { return newest ? &*newest : nullptr; };
+  return {mind_.robot(), known(sonars_),     known(registration_),
+          known(map_),   known(perception_), known(vision_)};
 }
 
 Result Robot::status() const {

@@ -14,11 +14,14 @@ constexpr int kParseError = -32700;
 constexpr int kBadRequest = -32600;
 constexpr int kNoMethod = -32601;
 constexpr int kBadParameters = -32602;
+constexpr int kInternal = -32603;
+constexpr int kNoResource = -32002;  // of the older era; the newer one has kBadParameters
 constexpr int kBadHeader = -32020;
 constexpr int kBadVersion = -32022;
 const std::string kMeta = "io.modelcontextprotocol/";
 constexpr std::size_t kMostListeners = 16;
 constexpr std::size_t kDeepest = 16;
+const std::string kResources = "saphira://robot/";
 
 bool is_id(const Json& id) {
   return id.is_string() || id.is_number_integer();
@@ -27,6 +30,10 @@ bool is_id(const Json& id) {
 Json member(const Json& object, const char* name) {
   const auto found = object.find(name);
   return found == object.end() ? Json() : *found;
+}
+
+bool is_resource(const Tool& tool) {
+  return tool.reads && member(tool.input, "properties").empty();
 }
 
 Json describe(const Tool& tool) {
@@ -236,8 +243,9 @@ bool Session::fits(const std::string& method, const Request& request, const Json
     return wrong("MCP-Protocol-Version", headers.version, version);
   if (method != headers.method)
     return wrong("Mcp-Method", headers.method, method);
-  if (const Json name = member(parameters, "name");
-      method == "tools/call" && name.is_string() && name != headers.name)
+  const bool reads = method == "resources/read";
+  if (const Json name = member(parameters, reads ? "uri" : "name");
+      (reads || method == "tools/call") && name.is_string() && name != headers.name)
     return wrong("Mcp-Name", headers.name, name);
   return true;
 }
@@ -248,16 +256,28 @@ void Session::ask(const std::string& method, const Request& request, const Json&
     const bool known = std::find(kRevisions.begin(), kRevisions.end(), asked) != kRevisions.end();
     begun_ = true;
     return reply(request, {{"protocolVersion", known ? asked : Json(kLegacy)},
-                           {"capabilities", {{"tools", {{"listChanged", true}}}}},
+                           {"capabilities", capabilities()},
                            {"serverInfo", {{"name", name_}, {"version", version_}}},
                            {"instructions", instructions_}});
   }
   if (method == "ping")
     return reply(request, Json::object());
+  ask_either(method, request, parameters);
+}
+
+/// The methods that both eras have.
+void Session::ask_either(const std::string& method, const Request& request,
+                         const Json& parameters) {
   if (method == "tools/list")
     return list_tools(request);
   if (method == "tools/call")
     return call(request, parameters);
+  if (method == "resources/list")
+    return list_resources(request);
+  if (method == "resources/templates/list")
+    return list(request, {{"resourceTemplates", Json::array()}});
+  if (method == "resources/read")
+    return read(request, parameters);
   error(request, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
 }
 
@@ -275,26 +295,53 @@ void Session::ask_modern(const std::string& method, const Request& request,
     return error(request, kBadParameters, "_meta: " + kMeta + "clientCapabilities is missing");
   if (method == "server/discover")
     return reply(request, {{"supportedVersions", {kModern}},
-                           {"capabilities", {{"tools", {{"listChanged", true}}}}},
+                           {"capabilities", capabilities()},
                            {"instructions", instructions_},
                            {"ttlMs", 3600000},
                            {"cacheScope", "public"}});
-  if (method == "tools/list")
-    return list_tools(request);
-  if (method == "tools/call")
-    return call(request, parameters);
   if (method == "subscriptions/listen")
     return listen(request, parameters);
-  error(request, kNoMethod, "there is no method \"" + method.substr(0, 60) + "\"");
+  ask_either(method, request, parameters);
+}
+
+Json Session::capabilities() const {
+  return {{"tools", {{"listChanged", true}}}, {"resources", Json::object()}};
 }
 
 void Session::list_tools(const Request& request) {
-  Json list = Json::array();
+  Json all = Json::array();
   for (const Tool& tool : tools_)
-    list.push_back(describe(tool));
-  Json result{{"tools", std::move(list)}};
+    all.push_back(describe(tool));
+  list(request, {{"tools", std::move(all)}});
+}
+
+void Session::list_resources(const Request& request) {
+  Json all = Json::array();
+  for (const Tool& tool : tools_)
+    if (is_resource(tool))
+      all.push_back({{"uri", kResources + tool.name},
+                     {"name", tool.name},
+                     {"description", tool.description},
+                     {"mimeType", "text/plain"}});
+  list(request, {{"resources", std::move(all)}});
+}
+
+/// The answer of the tool behind a resource.
+void Session::read(const Request& request, const Json& parameters) {
+  const Json uri = member(parameters, "uri");
+  const auto tool = std::find_if(tools_.begin(), tools_.end(), [&](const Tool& each) {
+    return is_resource(each) && uri == kResources + each.name;
+  });
+  if (tool == tools_.end())
+    return error(request, request.modern ? kBadParameters : kNoResource,
+                 "there is no resource " + uri.dump().substr(0, 100), {{"uri", uri}});
+  call(request, {{"name", tool->name}}, uri);
+}
+
+/// An answer that is not to be kept: it changes with the programs that run.
+void Session::list(const Request& request, Json result) {
   if (request.modern) {
-    result["ttlMs"] = 0;  // what can be done changes with the programs that run
+    result["ttlMs"] = 0;
     result["cacheScope"] = "private";
   }
   reply(request, std::move(result));
@@ -329,7 +376,7 @@ double Session::too_soon() {
   return 0.0;
 }
 
-void Session::call(const Request& request, const Json& parameters) {
+void Session::call(const Request& request, const Json& parameters, const Json& uri) {
   const Json name = member(parameters, "name");
   const auto tool = std::find_if(tools_.begin(), tools_.end(),
                                  [&](const Tool& each) { return name == each.name; });
@@ -340,7 +387,7 @@ void Session::call(const Request& request, const Json& parameters) {
     arguments = Json::object();
   const std::uint64_t number = ++count_;
   const Json meta = member(parameters, "_meta");
-  open_[number] = {request, meta.is_object() ? member(meta, "progressToken") : Json()};
+  open_[number] = {request, meta.is_object() ? member(meta, "progressToken") : Json(), uri};
   const auto refuse = [&](const std::string& why) {
     answer(number, {"not done: " + why, nullptr, true});
   };
@@ -389,11 +436,18 @@ void Session::answer(std::uint64_t call, const Result& result) {
   const auto found = open_.find(call);
   if (found == open_.end())
     return;
+  const Open open = std::move(found->second);
+  open_.erase(found);
+  if (!open.uri.is_null() && result.is_error)
+    return error(open.request, kInternal, result.text, {{"uri", open.uri}});
+  if (!open.uri.is_null())
+    return list(
+        open.request,
+        {{"contents", {{{"uri", open.uri}, {"mimeType", "text/plain"}, {"text", result.text}}}}});
   Json json{{"content", {{{"type", "text"}, {"text", result.text}}}}, {"isError", result.is_error}};
   if (result.value.is_object())
     json["structuredContent"] = result.value;
-  reply(found->second.request, std::move(json));
-  open_.erase(found);
+  reply(open.request, std::move(json));
 }
 
 void Session::progress(std::uint64_t call, double value, const std::string& text) {

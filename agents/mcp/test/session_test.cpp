@@ -285,5 +285,42 @@ TEST(McpSession, ASenderIsKnownByWhatItSays) {
     EXPECT_FALSE(sender_of(text).begins || sender_of(text).modern) << text;
 }
 
+// A tool that reads and takes no arguments is a resource too.
+TEST(McpSession, ReadsAResourceByItsTool) {
+  Client client;
+  const Tool why{"why", "why it does that",
+                 Json{{"type", "object"}, {"properties", Json::object()}}, true};
+  client.session.set_tools({go_to(), why});
+  const Json list = client.one(R"({"jsonrpc":"2.0","id":1,"method":"resources/list"})")["result"];
+  ASSERT_EQ(list["resources"].size(), 1U);
+  EXPECT_EQ(list["resources"][0]["uri"], "saphira://robot/why");
+  EXPECT_FALSE(list.contains("ttlMs"));
+  EXPECT_TRUE(
+      client
+          .say(
+              R"({"jsonrpc":"2.0","id":2,"method":"resources/read","params":{"uri":"saphira://robot/why"}})")
+          .empty());
+  const auto calls = client.session.take_calls();
+  ASSERT_EQ(calls.size(), 1U);
+  EXPECT_EQ(calls.front().tool, "why");
+  client.session.answer(calls.front().number, {"nobody drives", nullptr, false});
+  EXPECT_EQ(client.heard().front()["result"],
+            Json::parse(R"({"contents":[{"uri":"saphira://robot/why","mimeType":"text/plain",
+                            "text":"nobody drives"}]})"));
+}
+
+TEST(McpSession, AResourceThatIsNotThereIsAnErrorOfItsEra) {
+  Client client;
+  const Json old = client.one(
+      R"({"jsonrpc":"2.0","id":1,"method":"resources/read","params":{"uri":"saphira://robot/go_to"}})");
+  EXPECT_EQ(old["error"]["code"], -32002);
+  const Json modern = client.one(
+      R"({"jsonrpc":"2.0","id":2,"method":"resources/read","params":{"uri":"saphira://robot/x","_meta":{
+          "io.modelcontextprotocol/protocolVersion":"2026-07-28",
+          "io.modelcontextprotocol/clientCapabilities":{}}}})");
+  EXPECT_EQ(modern["error"]["code"], -32602);
+  EXPECT_EQ(modern["error"]["data"]["uri"], "saphira://robot/x");
+}
+
 }  // namespace
 }  // namespace saphira::mcp

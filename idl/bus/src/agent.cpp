@@ -7,7 +7,7 @@
 namespace saphira::bus {
 namespace {
 
-constexpr std::size_t kKnown = 256;  // requests of which a repetition is recognized
+constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
 
 v1::CapabilityParameter slot(const std::string& name, const std::string& meaning, bool required,
                              v1::ArgumentKind kind) {
@@ -34,7 +34,7 @@ Agent::Agent(Node& node, std::string name, std::string summary)
       events_(node.writer(topics::kAgentEvents)),
       requests_(node.reader<v1::Request>(topics::kAgentRequest)),
       answers_(node.writer(topics::kAgentAnswers)),
-      solver_(node, topics::kSolve, name) {
+      solver_(node, topics::kSolve, name, &topics::kAgentAnswers) {
   self_.id(next_request_number() ^ node.instance());  // several agents may share a node
   self_.name(std::move(name));
   self_.summary(std::move(summary));

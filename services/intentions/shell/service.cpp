@@ -41,6 +41,15 @@ std::string refusal_of(const v1::Grant& grant) {
   return grant.waits_for_hand_back() ? grant.reason() : std::string();
 }
 
+/// Why goals that drive wait: a person drives, or has not handed the robot back.
+std::string person_of(const v1::Grant& grant) {
+  if (grant.role() == v1::ROLE_TELEOP)
+    return grant.source() + " drives: goes on when the robot is handed back";
+  if (grant.waits_for_hand_back() && !grant.estopped())
+    return "autonomy waits: goes on when the robot is handed back (saphira drive hand-back)";
+  return {};
+}
+
 Core::Settings settings(const runtime::Ports& ports, const MemoryFile& memory,
                         std::shared_ptr<const Functions> functions) {
   return {built_in(), memory.memory(), memory.keeps(), ports.lockstep(), std::move(functions)};
@@ -250,8 +259,8 @@ void Service::take_answers(Core::Heard& heard) {
 void Service::take_estops(Core::Heard& heard) {
   for (const auto& sample : grants_.take())
     if (!sample.info.disposed)
-      heard.estops.push_back(
-          {sample.data.estopped(), sample.data.estop_source(), refusal_of(sample.data)});
+      heard.estops.push_back({sample.data.estopped(), sample.data.estop_source(),
+                              refusal_of(sample.data), person_of(sample.data)});
 }
 
 void Service::look() {

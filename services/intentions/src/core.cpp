@@ -48,6 +48,8 @@ Core::Outputs Core::step(Inputs inputs) {
   now.estop = estop_;
   if (!execution_.works())
     now.hold = execution_.name() + " is suspended";
+  if (!lockstep_)
+    now.person = person_;
 
   Outputs outputs;
   now.events = events_of(inputs.heard, outputs.notes);
@@ -318,6 +320,7 @@ void Core::note_estops(const std::vector<Heard::Estop>& estops) {
       estop_.clear();
     pressed = pressed || estop.pressed;
     refusal_ = estop.refusal;
+    person_ = estop.person;
   }
 }
 

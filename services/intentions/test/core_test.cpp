@@ -109,6 +109,39 @@ TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
       << statuses_.at({5, 1}).reason;
 }
 
+// A minute at the stick is no minute without progress: the goal's patience (20 s) does not run.
+TEST_F(CoreTest, AGoalThatDrivesWaitsForThePersonWhoHasTheRobot) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  step();
+  inputs_.heard.estops = {{false, "", "", "karen drives: goes on when the robot is handed back"}};
+  EXPECT_TRUE(step().intended.behaviors.empty());
+  EXPECT_EQ(state(1), GoalState::kSuspended);
+  EXPECT_EQ(statuses_.at({5, 1}).reason, "karen drives: goes on when the robot is handed back");
+  inputs_.heard.goals = {written(2, kJohn)};
+  for (int i = 0; i < 600; ++i)
+    step();
+  EXPECT_EQ(state(1), GoalState::kSuspended);
+  EXPECT_EQ(state(2), GoalState::kWaiting);
+  inputs_.heard.estops = {{false, "", "", ""}};
+  EXPECT_FALSE(step().intended.behaviors.empty());
+  EXPECT_EQ(state(1), GoalState::kUnderway);
+}
+
+TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
+  inputs_.heard.goals = {written(1, kKaren)};
+  inputs_.heard.estops = {{false, "", "", "karen drives"}};
+  step();
+  EXPECT_EQ(state(1), GoalState::kWaiting);
+  Core::Heard::Goal stop = written(2, kJohn);
+  stop.event.goal.functor = "stop";
+  stop.event.goal.arguments.clear();
+  inputs_.heard.goals = {stop};
+  for (int i = 0; i < 5; ++i)
+    step();
+  EXPECT_EQ(state(1), GoalState::kCanceled);
+  EXPECT_EQ(state(2), GoalState::kSucceeded);
+}
+
 TEST_F(CoreTest, AnIntentionIsFoundByItsSchemaToo) {
   inputs_.heard.goals = {written(1, kKaren)};
   step();

@@ -136,6 +136,7 @@ Outputs Executor::step(const Inputs& inputs) {
       entry.status.elapsed = seconds(now_ - entry.accepted);
   }
   robot_here_ = inputs.robot.connected && inputs.hold.empty();
+  person_ = inputs.person;
   if (robot_here_) {
     meet_odom(inputs.robot.odom);
     for (auto& [id, entry] : entries_) {
@@ -523,13 +524,18 @@ std::string Executor::step_of(const IntentionNode& node) const {
   return node.step.empty() || node.step.front() == '(' ? schema->name : node.step;
 }
 
+/// A goal that drives, while a person has the robot. A stop and concurrent goals go on.
+bool Executor::waits_for_person(const Entry& entry) const {
+  return !person_.empty() && !entry.schema->concurrent && !entry.schema->replaces;
+}
+
 Executor::Entry* Executor::best() {
   const auto rank = [](const Entry& entry) {
     return std::tuple(-static_cast<std::int64_t>(entry.goal.priority), entry.accepted, entry.order);
   };
   Entry* best = nullptr;
   for (auto& [id, entry] : entries_) {
-    if (open(entry.status) && !entry.schema->concurrent &&
+    if (open(entry.status) && !entry.schema->concurrent && !waits_for_person(entry) &&
         (best == nullptr || rank(entry) < rank(*best)))
       best = &entry;
   }
@@ -538,11 +544,20 @@ Executor::Entry* Executor::best() {
 
 /// Gives the robot to the best goal; the one that is underway now, nullptr where there is none.
 Executor::Entry* Executor::arbitrate(const World& world) {
+  for (auto& [id, entry] : entries_) {
+    if (!open(entry.status) || !waits_for_person(entry))
+      continue;
+    if (entry.status.state == GoalState::kWaiting)
+      wait(entry, GoalCode::kNone, person_);
+    else
+      suspend(entry, GoalCode::kPreempted, person_);
+  }
   Entry* const chosen = best();
   if (chosen == nullptr)
     return nullptr;
   for (auto& [id, entry] : entries_) {
-    if (!open(entry.status) || &entry == chosen || entry.schema->concurrent)
+    if (!open(entry.status) || &entry == chosen || entry.schema->concurrent ||
+        waits_for_person(entry))
       continue;
     const bool more = chosen->goal.priority > entry.goal.priority;
     const std::string who =

@@ -16,7 +16,7 @@ struct Tool {
   std::string name;         ///< [a-zA-Z0-9_-]{1,64}
   std::string description;  ///< for the model
   Json input;               ///< JSON Schema of its arguments: an object
-  bool reads = false;       ///< changes nothing
+  bool reads = false;       ///< changes nothing; without arguments it is a resource as well
   bool always = false;      ///< no limit holds it back: it stops the robot
   bool operator==(const Tool&) const = default;
 };
@@ -110,7 +110,8 @@ class Session {
   };
   struct Open {
     Request request;
-    Json token;  ///< of progress; null: none is wanted
+    Json token;     ///< of progress; null: none is wanted
+    Json uri = {};  ///< of the resource that is read; null: a tool was called
   };
   void send(const Json& message, std::uint64_t exchange, bool last = false, int status = 200) {
     lines_.push_back(
@@ -119,12 +120,17 @@ class Session {
   void reply(const Request& request, Json result);
   void error(const Request& request, int code, const std::string& text, Json data = nullptr);
   void ask(const std::string& method, const Request& request, const Json& parameters);
+  void ask_either(const std::string& method, const Request& request, const Json& parameters);
   void ask_modern(const std::string& method, const Request& request, const Json& parameters);
   bool fits(const std::string& method, const Request& request, const Json& parameters,
             const Headers& headers);
   void list_tools(const Request& request);
   void listen(const Request& request, const Json& parameters);
-  void call(const Request& request, const Json& parameters);
+  Json capabilities() const;
+  void list_resources(const Request& request);
+  void read(const Request& request, const Json& parameters);
+  void list(const Request& request, Json result);
+  void call(const Request& request, const Json& parameters, const Json& uri = nullptr);
   double too_soon();
   void give_up(const Json& parameters, std::uint64_t exchange);
   void erase(std::uint64_t call);

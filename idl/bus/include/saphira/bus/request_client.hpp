@@ -2,13 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "saphira/bus/node.hpp"
 
 namespace saphira::bus {
 
-/// An agent's side of requests: asks, and waits for what becomes of it. For the node's own thread.
+/// An agent's side of requests: asks, and waits for the answers. For the node's own thread.
 ///
 ///   Node node(options);
 ///   RequestClient robot(node, topics::kServo, "my agent");
@@ -19,13 +20,15 @@ namespace saphira::bus {
 ///   if (answer.code() != v1::ANSWER_DONE) ... answer.text() ...
 class RequestClient {
  public:
-  /// source: who asks, for people.
-  RequestClient(Node& node, const RequestTopic& topic, std::string source);
+  /// source: name of the asker, for people. direct: topic of the answers before a router passes
+  /// them on.
+  RequestClient(Node& node, const RequestTopic& topic, std::string source,
+                const Topic<v1::Answer>* direct = nullptr);
 
-  /// Asks, and waits for the end of it, for `patience` [s] at most. There is always an answer:
-  /// where none came, ANSWER_NOBODY says that no program takes such requests, and ANSWER_TOO_LATE
-  /// that none has answered. It is written again until somebody answers, and done once.
-  /// `meanwhile` is called whenever something has come to the node.
+  /// Asks, and waits for the end of the request, for `patience` [s] at most. There is always an
+  /// answer: ANSWER_NOBODY says that no program takes such requests, and ANSWER_TOO_LATE that none
+  /// has answered. The request is written again until a program answers, and carried out once.
+  /// `meanwhile` is called whenever a sample has come to the node.
   v1::Answer ask(v1::Request request, double patience, const Stop* stop = nullptr,
                  const std::function<void()>& meanwhile = {});
 
@@ -36,12 +39,14 @@ class RequestClient {
 
  private:
   v1::Request complete(v1::Request request);
+  std::optional<v1::Answer> take_direct(const v1::Request& request);
 
   Node& node_;
   const RequestTopic topic_;
   std::string source_;
   Writer<v1::Request> writer_;
   Reader<v1::Answer> reader_;
+  std::optional<Reader<v1::Answer>> direct_;
 };
 
 v1::Argument number(const std::string& name, double value);
@@ -55,7 +60,7 @@ std::uint64_t next_request_number();
 
 /// True where a request with this answer has come to its end.
 bool ended(v1::AnswerCode code);
-/// True where that is a good end, or may become one.
+/// True where the code is a good end, or may become one.
 bool well(v1::AnswerCode code);
 
 }  // namespace saphira::bus

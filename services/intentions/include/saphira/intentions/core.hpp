@@ -59,6 +59,8 @@ class Core {
       std::string source;
       /// Why the bridge does not let the behaviors drive [empty: it does, or they do not ask].
       std::string refusal{};
+      /// Why goals that drive are to wait: a person drives, or drove last [empty: nobody does].
+      std::string person{};
     };
     std::vector<Writer> lost_requesters;
     std::vector<Goal> goals;
@@ -154,6 +156,7 @@ class Core {
   Process& execution_ =
       processes_.add("execute-intentions", "pursues the goals: begins and steps intentions");
   std::string refusal_;  ///< why the bridge does not let the behaviors drive
+  std::string person_;   ///< why goals that drive wait for a person
   std::string estop_;    ///< which program pressed the emergency stop that is latched
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;

@@ -41,6 +41,7 @@ struct Inputs {
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
   std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
   std::string hold{};                       ///< why all goals are to wait; empty: they are not
+  std::string person{};  ///< why goals that drive are to wait for a person; empty: they are not
   std::string
       estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
   /// [cycles] Of what was intended, when the behaviors were computed.
@@ -159,6 +160,7 @@ class Executor {
   void replace();
   void obey_estop(const std::string& source);
   std::string step_of(const IntentionNode& node) const;
+  bool waits_for_person(const Entry& entry) const;
   Entry* best();
   Entry* arbitrate(const World& world);
   void begin(Entry& entry, const World& world);
@@ -186,6 +188,7 @@ class Executor {
   std::uint64_t epoch_ = 0;
   std::uint64_t cycle_ = 0;
   bool robot_here_ = false;
+  std::string person_;                 ///< of the newest inputs
   std::optional<std::uint64_t> odom_;  ///< of the newest step with a robot
   std::vector<GoalId> withdrawn_;
   std::vector<Placement> placed_;

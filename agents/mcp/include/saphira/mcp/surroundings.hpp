@@ -1,0 +1,28 @@
+#pragma once
+
+#include "map.h"
+#include "perception.h"
+#include "robot.h"
+#include "saphira/mcp/session.hpp"
+#include "vision.h"
+
+namespace saphira::mcp {
+
+/// The newest samples about the robot's place. Null: not heard.
+struct Surroundings {
+  const v1::RobotState* robot = nullptr;
+  const v1::SonarBuckets* sonars = nullptr;
+  const v1::Registration* registration = nullptr;
+  const v1::FloorMap* map = nullptr;
+  const v1::Perception* perception = nullptr;
+  const v1::Vision* vision = nullptr;
+};
+
+/// The robot's pose on the map, the places that have a name, nearest first, and the closed doors.
+Result map_of(const Surroundings& around);
+
+/// The walls, doors, people and echoes around the robot, nearest first: distance [m], direction,
+/// and place in the frame `robot` [m].
+Result view_of(const Surroundings& around);
+
+}  // namespace saphira::mcp

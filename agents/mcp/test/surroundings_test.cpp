@@ -1,0 +1,123 @@
+#include "saphira/mcp/surroundings.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::mcp {
+namespace {
+
+v1::Pose2 pose(double x, double y, double th) {
+  v1::Pose2 made;
+  made.x(x);
+  made.y(y);
+  made.th(th);
+  return made;
+}
+
+v1::MapArtifact artifact(std::uint32_t id, v1::ArtifactType type, const std::string& name, double x,
+                         double y) {
+  v1::MapArtifact made;
+  made.id(id);
+  made.type(type);
+  made.name(name);
+  made.pose_in_map(pose(x, y, 0.0));
+  return made;
+}
+
+class SurroundingsTest : public testing::Test {
+ protected:
+  SurroundingsTest() {
+    map_.source("floor.map");
+    map_.artifacts({artifact(1, v1::ARTIFACT_OFFICE, "library", 9.0, 0.0),
+                    artifact(2, v1::ARTIFACT_OFFICE, "lobby", 2.0, 0.0),
+                    artifact(3, v1::ARTIFACT_DOOR, "lobby", 2.0, 1.0),
+                    artifact(4, v1::ARTIFACT_CORRIDOR, "", 0.0, 0.0)});
+    registration_.state(v1::REGISTRATION_TRACKING);
+    registration_.pose_in_map(pose(1.0, 0.0, 0.0));
+    registration_.covariance().xx(0.01);
+    registration_.covariance().yy(0.01);
+    registration_.environment(4);
+    registration_.closed_doors({3});
+    robot_.pose_in_odom(pose(5.0, 5.0, 1.5707963));  // it looks along y of odom
+  }
+  v1::FloorMap map_;
+  v1::Registration registration_;
+  v1::RobotState robot_;
+  v1::Perception perception_;
+  v1::Vision vision_;
+  v1::SonarBuckets sonars_;
+};
+
+TEST_F(SurroundingsTest, TheMapSaysWhereTheRobotIsAndWhereItCanBeSent) {
+  Surroundings around;
+  around.map = &map_;
+  around.registration = &registration_;
+  const Result result = map_of(around);
+  EXPECT_EQ(result.text,
+            "the robot is at (1.00, 0.00) m, heading 0.00 rad, sure to 0.10 m, in corridor 4\n"
+            "places, nearest first:\n"
+            "room lobby at (2.00, 0.00)\n"
+            "room library at (9.00, 0.00)\n"
+            "closed: door lobby");
+  EXPECT_EQ(result.value["places"][1]["name"], "library");
+  EXPECT_EQ(result.value["robot"]["in"], "corridor 4");
+  EXPECT_EQ(result.value["closed_doors"], Json::array({"door lobby"}));
+}
+
+TEST_F(SurroundingsTest, APlaceThatIsNotKnownIsNotSaid) {
+  registration_.state(v1::REGISTRATION_LOST);
+  registration_.reason("the walls do not fit");
+  Surroundings around;
+  around.map = &map_;
+  around.registration = &registration_;
+  const Result result = map_of(around);
+  EXPECT_EQ(result.text.substr(0, result.text.find('\n')),
+            "the robot's place on the map is not known: the walls do not fit");
+  EXPECT_FALSE(result.value.contains("robot"));
+  EXPECT_FALSE(map_of({}).is_error);
+}
+
+TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
+  v1::Percept wall;  // along y of odom, so along the robot's way, 1 m to its left
+  wall.type(v1::ARTIFACT_WALL);
+  wall.pose_in_odom(pose(4.0, 7.0, 1.5707963));
+  wall.length(6.0);
+  v1::Percept door;
+  door.type(v1::ARTIFACT_DOOR);
+  door.pose_in_odom(pose(6.0, 6.0, 0.0));
+  door.width(0.9);
+  perception_.percepts({door, wall});
+  v1::SeenThing person;
+  person.kind(v1::SEEN_PERSON);
+  person.range_known(true);
+  person.pose_in_odom(pose(5.0, 7.5, 0.0));
+  vision_.things({person});
+  v1::SonarBucket behind;  // read half a metre further back
+  behind.reading().echo(true);
+  behind.pose_in_odom(pose(5.0, 4.5, 1.5707963));
+  behind.x(-2.5);
+  v1::SonarBucket silent = behind;
+  silent.reading().echo(false);
+  silent.x(-0.1);
+  sonars_.buckets({behind, silent});
+  const Result result = view_of({&robot_, &sonars_, nullptr, nullptr, &perception_, &vision_});
+  EXPECT_EQ(result.text,
+            "1.00 m left: wall, 6.0 m long\n"
+            "1.41 m ahead right: door, open, 0.9 m wide\n"
+            "2.50 m ahead: person\n"
+            "3.00 m behind: echo");
+  EXPECT_EQ(result.value["seen"][1]["x"], 1.0);
+  EXPECT_EQ(result.value["seen"][1]["y"], -1.0);
+}
+
+TEST_F(SurroundingsTest, SamplesOfAnotherFrameAreLeftOut) {
+  v1::Percept wall;
+  wall.type(v1::ARTIFACT_WALL);
+  perception_.percepts({wall});
+  perception_.odom(7);
+  EXPECT_EQ(view_of({&robot_, nullptr, nullptr, nullptr, &perception_, nullptr}).text,
+            "nothing is near, or no sensor is heard");
+  EXPECT_TRUE(view_of({}).is_error);
+}
+
+}  // namespace
+}  // namespace saphira::mcp
