@@ -12,9 +12,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kDeadline = 600.0;    // [s] of a goal that names none
+constexpr double kDeadline = 600.0;    // [s] of a goal without one
 constexpr std::size_t kMostGoals = 4;  // underway at once
-constexpr double kReply = 10.0;        // [s] for what the robot or an agent says
+constexpr double kReply = 10.0;        // [s] for the robot's or an agent's reply
 
 milliseconds seconds_of(double seconds) {
   return milliseconds(static_cast<int>(1000 * seconds));
@@ -171,7 +171,7 @@ void Door::begin(const Call& call) {
     session_.answer(call.number, robot_.map());
   } else if (call.tool == "look") {
     session_.answer(call.number, robot_.view());
-  } else {  // it went between the call and now
+  } else {  // removed between the call and now
     session_.answer(call.number, {"not done: nobody offers this tool now", nullptr, true});
   }
 }
@@ -192,7 +192,7 @@ void Door::say(const Call& call) {
                            .until = Clock::now() + seconds_of(kReply)};
 }
 
-/// Asks whichever agent can. The answer fills the parameters that are not given.
+/// Sends a request to any capable agent. The answer fills missing parameters.
 void Door::request(const Call& call, const v1::Capability& capability) {
   v1::Request request;
   request.functor(capability.functor());
@@ -247,7 +247,7 @@ void Door::cancel(const Call& call) {
   waiting_[call.number] = waiting;
 }
 
-/// Answers a call that waits, where it can be answered now.
+/// Answers a waiting call, if possible now.
 bool Door::is_over(std::uint64_t number, Waiting& waiting) {
   const bool late = Clock::now() >= waiting.until;
   switch (waiting.what) {
@@ -303,7 +303,7 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
       if (!late && !latched)
         return false;
       if (latched)
-        press();  // lets go, so that a person can release it
+        press();  // releases, so that a person can reset it
       session_.answer(
           number,
           {latched ? "the emergency stop is latched, pressed by " +
@@ -318,8 +318,7 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
   return true;
 }
 
-/// Says that it presses until the bridge has latched it, and then that it lets go. The topic is
-/// best effort.
+/// Presses until the bridge has latched the stop, and then releases. The topic is best effort.
 void Door::press() {
   const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();
   v1::MotorCommand command;

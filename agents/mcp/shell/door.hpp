@@ -14,9 +14,9 @@
 
 namespace saphira::mcp {
 
-constexpr double kWait = 20.0;  ///< [s] that a call waits for the end of its goal, at most
+constexpr double kWait = 20.0;  ///< [s] longest wait of a call for the end of its goal
 
-/// The robot as all clients of this program see it, and the tools that it offers. For one thread.
+/// The robot's state for all clients of this program, and the tools. For one thread.
 class Robot {
  public:
   explicit Robot(bus::Node& node);
@@ -66,18 +66,18 @@ class Door {
  public:
   Door(bus::Node& node, const Robot& robot, Session& session, const std::string& who);
 
-  /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, ten
-  /// times a second at least.
+  /// Takes samples of the bus and calls of the client. Call after each wait and Robot::poll, at
+  /// least ten times a second.
   void turn();
   /// Withdraws every goal of this client.
   void close();
-  /// Waits until that is heard, for a second at most.
+  /// Waits until that is acknowledged, for a second at most.
   void close_and_wait();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A call that waits for something.
+  /// A call without an answer yet.
   struct Waiting {
     enum class For { goal, cancel, request, words, stop } what = For::goal;
     std::optional<v1::GoalId> goal = std::nullopt;

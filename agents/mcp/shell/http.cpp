@@ -16,14 +16,14 @@ namespace {
 
 constexpr unsigned kMostDescriptors = 128;
 constexpr int kTick = 50'000;         // [us]
-constexpr int kTicksOfSilence = 100;  // then a stream says that it lives
+constexpr int kTicksOfSilence = 100;  // then a stream sends a sign of life
 constexpr std::size_t kLongestHeader = 1024;
 constexpr std::size_t kLongestQueue = 1024 * 1024;  // of a client that does not read
 constexpr int kUnauthorized = 401;
 
 using web::header;
 
-/// Without blanks round it. Text that is no ASCII comes as =?base64?...?=.
+/// Without surrounding blanks. Text that is not ASCII comes as =?base64?...?=.
 std::string custom_header(lws* wsi, const char* name) {
   std::array<char, kLongestHeader> text{};
   if (lws_hdr_custom_copy(wsi, text.data(), static_cast<int>(text.size()), name,
@@ -45,7 +45,7 @@ std::string custom_header(lws* wsi, const char* name) {
 }  // namespace
 
 struct HttpServer::Impl {
-  /// The record that libwebsockets keeps for each connection; it begins as zeros.
+  /// The record of libwebsockets for each connection; it begins as zeros.
   struct Connection {
     Exchange exchange;
   };
@@ -55,10 +55,10 @@ struct HttpServer::Impl {
     bool too_long = false;
     bool has_come = false;
     bool is_only = false;  // the client wants no further answer by this connection
-    int status = 0;        // of the answer [0: there is none yet]
+    int status = 0;        // of the answer [0: none yet]
     std::string type;
     std::string session;
-    std::string body;  // what is to be sent
+    std::string body;  // to be sent
     bool streams = false;
     bool begun = false;  // the headers are sent
     bool complete = false;
@@ -212,7 +212,7 @@ void HttpServer::Impl::tick() {
         ++answer.silent < kTicksOfSilence)
       continue;
     answer.silent = 0;
-    answer.body = ": \r\n";  // so that a client which has left is noticed
+    answer.body = ": \r\n";  // reveals a client that has left
     lws_callback_on_writable(answer.wsi);
   }
 }
@@ -249,7 +249,7 @@ HttpServer::HttpServer(int port, Events events) : impl_(std::make_unique<Impl>()
   info.protocols = protocols.data();
   info.iface = "127.0.0.1";
   info.port = port;
-  info.timeout_secs = 5;  // for who connects and says nothing whole
+  info.timeout_secs = 5;  // for clients without a complete request
   info.keepalive_timeout = 30;
   info.vhost_name = "mcp";
   impl_->vhost = lws_create_vhost(impl_->loop->context(), &info);

@@ -9,7 +9,7 @@
 
 namespace saphira::mcp {
 
-/// A request of HTTP that has come whole.
+/// A complete request of HTTP.
 struct HttpRequest {
   std::string method;  ///< GET, POST, DELETE
   std::string path;
@@ -23,7 +23,7 @@ struct HttpRequest {
 };
 
 /// HTTP on this machine (127.0.0.1) by libwebsockets, in one thread. Bounded: connections, sizes,
-/// times without a word.
+/// silences.
 class HttpServer {
  public:
   using Exchange = std::uint64_t;  ///< a request and its answer; from 1
@@ -31,7 +31,7 @@ class HttpServer {
   /// The callbacks for events. Each is called from run() alone.
   struct Events {
     std::function<void(Exchange, HttpRequest)> came;
-    /// The connection went before the request was answered whole.
+    /// The connection was lost before the complete answer.
     std::function<void(Exchange)> lost;
     std::function<void()> readable;  ///< the file descriptor of watch()
     std::function<void()> tick;      ///< 20 times a second
@@ -46,13 +46,13 @@ class HttpServer {
   int port() const;
   void watch(int fd);
 
-  /// Answers whole. session: becomes the header Mcp-Session-Id [empty: none].
+  /// A complete answer. session: becomes the header Mcp-Session-Id [empty: none].
   void answer(Exchange exchange, int status, const std::string& type, std::string body,
               const std::string& session = {});
   /// A message of a stream of events, which begins with the first one. last: the stream ends.
   void event(Exchange exchange, const std::string& message, bool last);
 
-  /// Until `stop` is readable.
+  /// Runs until `stop` is readable.
   void run(int stop);
 
   static constexpr std::size_t kLongestBody = 65536;

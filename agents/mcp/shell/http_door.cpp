@@ -8,7 +8,7 @@ namespace saphira::mcp {
 namespace {
 
 constexpr double kLeave = 30.0;  // [s]
-constexpr double kBroken = 2.0;  // [s] likewise, of one that may have been killed
+constexpr double kBroken = 2.0;  // [s] the same for a client that may have been killed
 constexpr std::size_t kMostClients = 8;
 constexpr const char* kPath = "/mcp";
 constexpr const char* kJson = "application/json";
@@ -42,13 +42,13 @@ void HttpDoor::refuse(Exchange exchange, int status, const std::string& text) {
   server_.answer(exchange, status, "text/plain", text + "\n");
 }
 
-/// The session that a request belongs to. Null: the request is refused.
+/// The session of a request. Null: the request is refused.
 HttpDoor::Client* HttpDoor::client_of(Exchange exchange, const HttpRequest& request,
                                       std::string& id) {
   const Sender sender = sender_of(request.body);
   const bool modern = sender.modern || request.version == Session::kModern;
   const bool begins = !modern && sender.begins;
-  // In the newer era no session exists: clients are told apart by what they say they are.
+  // The newer era has no sessions: clients are distinguished by their own identity.
   id = modern ? "client " + sender.client : begins ? console::new_key() : request.session;
   if (const auto found = clients_.find(id); found != clients_.end())
     return found->second.get();
@@ -106,7 +106,7 @@ void HttpDoor::came(Exchange exchange, const HttpRequest& request) {
   tell(id, *client);
 }
 
-/// Sends what a client is to be told. What concerns none of its requests has nowhere to go.
+/// Sends a client's messages. A message without one of its requests cannot be sent.
 void HttpDoor::tell(const std::string& id, Client& client) {
   for (const Line& line : client.session.take_lines()) {
     const auto waits = client.waits.find(line.exchange);

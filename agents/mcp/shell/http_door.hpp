@@ -11,15 +11,15 @@ namespace saphira::mcp {
 
 struct HttpDoorOptions {
   int port = 0;       ///< 0: any that is free
-  std::string token;  ///< what every request has to carry
-  std::string who;    ///< asks, as others see it
+  std::string token;  ///< required in every request
+  std::string who;    ///< the asker, as shown to others
   std::string version;
   std::string instructions;
 };
 
-/// Streamable HTTP: any number of clients up to 8, each with a door of its own. A client that
-/// neither asks nor waits for an answer for 30 s has left, and its goals end; likewise one that
-/// breaks a connection on which it waits, and does not ask again for 2 s.
+/// Streamable HTTP: up to 8 clients, each with a door of its own. A client without a request or a
+/// pending answer for 30 s has left, and its goals end; likewise a client that breaks a connection
+/// with a pending answer, and sends no request for 2 s.
 class HttpDoor {
  public:
   HttpDoor(bus::Node& node, HttpDoorOptions options);
@@ -36,10 +36,10 @@ class HttpDoor {
           door(node, robot, session, options.who) {}
     Session session;
     Door door;
-    bool broken = false;  ///< its connection has ended before an answer, since it last asked
-    double heard = 0.0;   ///< [s] when it last asked
-    bool is_new = false;  ///< its first answer names its session
-    std::map<Exchange, bool> waits;  ///< requests that are not answered, and whether one streams
+    bool broken = false;  ///< its connection ended before an answer, since its last request
+    double heard = 0.0;   ///< [s] of its last request
+    bool is_new = false;  ///< its first answer will contain its session
+    std::map<Exchange, bool> waits;  ///< requests without an answer; true: it streams
   };
 
   HttpServer::Events events();
@@ -55,7 +55,7 @@ class HttpDoor {
   const HttpDoorOptions options_;
   const console::AccessSettings access_;
   Robot robot_;
-  std::map<std::string, std::unique_ptr<Client>> clients_;  ///< by session, or what it says it is
+  std::map<std::string, std::unique_ptr<Client>> clients_;  ///< by session or identity
   HttpServer server_;
 };
 

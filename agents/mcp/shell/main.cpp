@@ -1,4 +1,4 @@
-// A door for language models: the Model Context Protocol on standard input and output, or by HTTP.
+// Access for language models: the Model Context Protocol on standard input and output, or by HTTP.
 // README.md.
 #include <fcntl.h>
 #include <poll.h>
@@ -75,7 +75,7 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
     for (const mcp::Line& line : session.take_lines())
       std::fprintf(stdout, "%s\n", line.text.c_str());
     if (std::fflush(stdout) != 0)
-      break;  // nobody reads
+      break;  // no reader
   }
   door.close_and_wait();
   return bus::kExitOk;

@@ -1,4 +1,4 @@
-// The robot as a language model sees it: tools, and what they ask for.
+// The robot for a language model: tools, and their requests.
 #include <algorithm>
 #include <cmath>
 
@@ -102,7 +102,7 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
   return json;
 }
 
-/// The input of a tool that takes these parameters.
+/// The input schema of a tool with these parameters.
 template <class Parameters>
 Json input_of(const Parameters& parameters) {
   Json properties;
@@ -115,7 +115,7 @@ Json input_of(const Parameters& parameters) {
   return object(std::move(properties), required);
 }
 
-/// The tools that are always there.
+/// The permanent tools.
 std::vector<Tool> fixed_tools() {
   return {
       {"robot_status", "The driver of the robot, the goals underway, and programs that are missing",
@@ -187,7 +187,7 @@ void Robot::poll() {
     make_tools();
 }
 
-/// The fixed ones have no rivals, and an activity goes before a capability of its name.
+/// The permanent tools come first, then activities, then capabilities of the same name.
 void Robot::make_tools() {
   tools_ = fixed_tools();
   activities_.clear();

@@ -148,7 +148,7 @@ void Session::error(const Request& request, int code, const std::string& text, J
   if (!data.is_null())
     error["data"] = std::move(data);
   Json message{{"jsonrpc", "2.0"}, {"error", std::move(error)}};
-  // A client of the newer era expects no id where none could be read.
+  // A client of the newer era expects no id where none was readable.
   if (!request.modern || !request.id.is_null())
     message["id"] = request.id;
   send(message, request.exchange, true,
@@ -184,7 +184,7 @@ bool Session::take(std::string_view text, std::uint64_t exchange, const Headers*
     request.id = id;
   const bool has_id = message.is_object() && message.contains("id");
   if (!method.is_string()) {
-    // An answer to a request: none was made.
+    // An answer to a request: this server sends no requests.
     if (message.is_object() && (message.contains("result") || message.contains("error")))
       return false;
     return wrong(kBadRequest, "expected a request with a method");
@@ -212,11 +212,11 @@ bool Session::take(std::string_view text, std::uint64_t exchange, const Headers*
   return true;
 }
 
-/// True where the headers say what the message says; else the client is told.
+/// True where the headers agree with the message; otherwise the client gets an error.
 bool Session::fits(const std::string& method, const Request& request, const Json& parameters,
                    const Headers& headers) {
   if (!request.modern) {
-    // Before `initialize` is answered a client cannot know the version.
+    // Before the answer to `initialize` a client cannot know the version.
     if (headers.version.empty() ||
         std::find(kRevisions.begin(), kRevisions.end(), headers.version) != kRevisions.end())
       return true;
@@ -347,7 +347,7 @@ void Session::list(const Request& request, Json result) {
   reply(request, std::move(result));
 }
 
-/// A request that stays open: what changes is told to it.
+/// A request that stays open: it receives the changes.
 void Session::listen(const Request& request, const Json& parameters) {
   if (listeners_.size() >= kMostListeners)
     return error(request, kBadRequest, "too many subscriptions are open");
@@ -366,7 +366,7 @@ void Session::listen(const Request& request, const Json& parameters) {
        request.exchange);
 }
 
-/// [s] until a further call may come; 0: now, which counts it.
+/// [s] until a further call is allowed; 0: now, which counts it.
 double Session::too_soon() {
   allowed_ = std::min(kMostAtOnce, allowed_ + (time_ - counted_) * kMostASecond);
   counted_ = time_;
@@ -415,7 +415,7 @@ void Session::give_up(const Json& parameters, std::uint64_t exchange) {
                 [&](const Request& each) { return each.id == id && each.exchange == exchange; });
   const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& each) {
     const Request& request = each.second.request;
-    // Clients of the newer era may share this session, so an id is theirs within a connection.
+    // Clients of the newer era may share this session, so an id is unique within a connection only.
     return request.id == id && (!request.modern || request.exchange == exchange);
   });
   if (found != open_.end())

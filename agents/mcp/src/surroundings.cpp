@@ -69,8 +69,9 @@ bool on_map(const Surroundings& around) {
 }
 
 std::string name_of(const v1::MapArtifact& artifact) {
-  return std::string(kind_of(artifact.type())) + " " +
-         (artifact.name().empty() ? std::to_string(artifact.id()) : artifact.name());
+  const std::string kind = kind_of(artifact.type());
+  return artifact.name().empty() ? kind + " " + std::to_string(artifact.id())
+                                 : artifact.name() + " (" + kind + ")";
 }
 
 const v1::MapArtifact* find(const v1::FloorMap& map, std::uint32_t id) {
@@ -83,7 +84,7 @@ const v1::MapArtifact* find(const v1::FloorMap& map, std::uint32_t id) {
 
 /// The nearest point of a wall; the middle of anything else. In the frame `robot`.
 Vec2 nearest(const v1::Percept& percept, const Pose& robot_in_odom) {
-  const Pose middle = compose(inverse(robot_in_odom), pose(percept.pose_in_odom()));
+  const Pose middle = relative(robot_in_odom, pose(percept.pose_in_odom()));
   if (percept.type() != v1::ARTIFACT_WALL)
     return middle.position();
   const Vec2 along(std::cos(middle.th), std::sin(middle.th));
@@ -122,7 +123,7 @@ std::vector<Seen> people(const v1::Vision& vision, const Pose& robot) {
           {thing.kind() == v1::SEEN_PERSON
                ? "person"
                : "colour of channel " + std::string(1, static_cast<char>('A' + thing.channel())),
-           compose(inverse(robot), pose(thing.pose_in_odom())).position()});
+           relative(robot, pose(thing.pose_in_odom())).position()});
   return all;
 }
 
@@ -132,7 +133,7 @@ std::vector<Seen> echoes(const v1::SonarBuckets& sonars, const Pose& robot) {
   for (const v1::SonarBucket& bucket : sonars.buckets()) {
     if (!bucket.reading().echo())
       continue;
-    const Pose then = compose(inverse(robot), pose(bucket.pose_in_odom()));
+    const Pose then = relative(robot, pose(bucket.pose_in_odom()));
     const Vec2 place = compose(then, {bucket.x(), bucket.y(), 0.0}).position();
     const auto [one, is_new] =
         nearest.try_emplace(direction(std::atan2(place.y(), place.x())), Seen{"echo", place});
@@ -175,7 +176,8 @@ Result map_of(const Surroundings& around) {
   }
   std::vector<const v1::MapArtifact*> named;
   for (const v1::MapArtifact& artifact : around.map->artifacts())
-    if (!artifact.name().empty() && artifact.type() != v1::ARTIFACT_DOOR)
+    if (!artifact.name().empty() && artifact.type() != v1::ARTIFACT_DOOR &&
+        artifact.type() != v1::ARTIFACT_BREAK)
       named.push_back(&artifact);
   const auto distance = [&](const v1::MapArtifact* artifact) {
     return (pose(artifact->pose_in_map()).position() - here).norm();

@@ -1,4 +1,4 @@
-// A client by lines, before a running robot.
+// A client by lines, with a running robot.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
     Client client(system, "first");
     client.say(1, "initialize", {{"protocolVersion", "2025-06-18"}});
     EXPECT_EQ(client.result(1)["serverInfo"]["name"], "saphira");
-    // The tools of the activities are there when intentions is heard.
+    // The tools of the activities appear when intentions is discovered.
     int id = 10;
     ASSERT_TRUE(wait_until([&] {
       client.say(++id, "tools/list", json::object());
@@ -192,8 +192,8 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   };
   EXPECT_EQ(call(go(0.8, 20))["structuredContent"]["state"], "succeeded");
 
-  // A client that is killed in a call: its connection closes. In the newer era, which has no
-  // session, the connection is the call.
+  // A client is killed in a call: its connection closes. In the newer era, without a session, the
+  // connection is the call.
   json modern = go(5.0, 20);
   modern["_meta"] = {{"io.modelcontextprotocol/protocolVersion", "2026-07-28"},
                      {"io.modelcontextprotocol/clientCapabilities", json::object()}};
@@ -216,7 +216,7 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   drive_and_break(session, go(5.0, 20));
   EXPECT_TRUE(http(port, session, R"({"id":4,"method":"ping"})").starts_with("HTTP/1.1 404"));
 
-  // A goal that goes on without its call ends with its session.
+  // A goal that outlasts its call ends with its session.
   session = begin();
   call(go(5.0, 0));
   EXPECT_TRUE(system.wait_moving());

@@ -16,7 +16,7 @@ Tool go_to() {
 
 struct Client {
   Client() { session.set_tools({go_to()}); }
-  /// The lines that a line is answered with.
+  /// The lines of the answer to a line.
   std::vector<Json> say(const std::string& line) {
     session.take(line);
     return heard();
@@ -155,7 +155,7 @@ TEST(McpSession, TheNewerEraNeedsNoBeginning) {
   const Json answer = client.heard().at(0)["result"];
   EXPECT_EQ(answer["resultType"], "complete");
   EXPECT_EQ(answer["content"][0]["text"], "there");
-  // The older era on the same stream stays what it is.
+  // The older era on the same stream is not affected.
   EXPECT_FALSE(client.one(R"({"jsonrpc":"2.0","id":2,"method":"tools/list"})")["result"].contains(
       "resultType"));
 }

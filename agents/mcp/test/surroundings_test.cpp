@@ -55,12 +55,12 @@ TEST_F(SurroundingsTest, TheMapSaysWhereTheRobotIsAndWhereItCanBeSent) {
   EXPECT_EQ(result.text,
             "the robot is at (1.00, 0.00) m, heading 0.00 rad, sure to 0.10 m, in corridor 4\n"
             "places, nearest first:\n"
-            "room lobby at (2.00, 0.00)\n"
-            "room library at (9.00, 0.00)\n"
-            "closed: door lobby");
+            "lobby (room) at (2.00, 0.00)\n"
+            "library (room) at (9.00, 0.00)\n"
+            "closed: lobby (door)");
   EXPECT_EQ(result.value["places"][1]["name"], "library");
   EXPECT_EQ(result.value["robot"]["in"], "corridor 4");
-  EXPECT_EQ(result.value["closed_doors"], Json::array({"door lobby"}));
+  EXPECT_EQ(result.value["closed_doors"], Json::array({"lobby (door)"}));
 }
 
 TEST_F(SurroundingsTest, APlaceThatIsNotKnownIsNotSaid) {

@@ -11,17 +11,17 @@ namespace saphira::mcp {
 
 using Json = nlohmann::json;
 
-/// Something that a language model may ask for.
+/// A tool for the language model.
 struct Tool {
   std::string name;         ///< [a-zA-Z0-9_-]{1,64}
   std::string description;  ///< for the model
   Json input;               ///< JSON Schema of its arguments: an object
   bool reads = false;       ///< changes nothing; without arguments it is a resource as well
-  bool always = false;      ///< no limit holds it back: it stops the robot
+  bool always = false;      ///< exempt from the limit: it stops the robot
   bool operator==(const Tool&) const = default;
 };
 
-/// A tool that was called, with arguments that fit its schema.
+/// A call of a tool, with arguments that fit its schema.
 struct Call {
   std::uint64_t number = 0;  ///< of this session
   std::string tool;
@@ -29,10 +29,9 @@ struct Call {
 };
 
 struct Result {
-  std::string text;  ///< for the model
-  Json value;        ///< the same for programs: an object, or null
-  bool is_error =
-      false;  ///< what it asked for was not done; the text says why, and what would help
+  std::string text;       ///< for the model
+  Json value;             ///< the same for programs: an object, or null
+  bool is_error = false;  ///< the request failed; the text gives the reason and advice
 };
 
 /// A message for the client.
@@ -50,59 +49,59 @@ struct Headers {
   std::string name;     ///< Mcp-Name
 };
 
-/// Which client a message of HTTP comes from, as far as the message says it.
+/// The client of a message of HTTP, as far as the message identifies it.
 struct Sender {
   bool begins = false;  ///< it is `initialize`
-  bool modern = false;  ///< the newer era, where no session exists
-  std::string client;   ///< what the newer era's client says of itself, as JSON
+  bool modern = false;  ///< the newer era, without sessions
+  std::string client;   ///< identity from the newer era's client, as JSON
 };
 Sender sender_of(std::string_view message);
 
 /// The server's side of the Model Context Protocol, for one client. Two eras, which a client may
 /// mix: the revisions 2024-11-05 to 2025-11-25, which begin with `initialize`, and 2026-07-28,
-/// where each request says its version. Pure: messages in, messages and calls out. A message that
-/// is wrong gets an error and ends nothing.
+/// where each request gives its version. Pure: messages in, messages and calls out. A faulty
+/// message gets an error and ends nothing.
 class Session {
  public:
-  /// name, version: of the server. instructions: what the model is told of it.
+  /// name, version: of the server. instructions: the server's description for the model.
   Session(std::string name, std::string version, std::string instructions)
       : name_(std::move(name)),
         version_(std::move(version)),
         instructions_(std::move(instructions)) {}
 
-  /// The tools from now on. The client is told when it changes.
+  /// The tools from now on. The client is notified of a change.
   void set_tools(std::vector<Tool> tools);
   const std::vector<Tool>& tools() const { return tools_; }
-  /// The clock of the limit on calls [s]; it may begin anywhere.
+  /// The clock of the limit on calls [s], of any origin.
   void set_time(double time) { time_ = time; }
 
-  /// A message of the client. exchange: the HTTP request that brought it [0: a line of a stream];
-  /// headers: of that request. False: nothing answers this message.
+  /// A message of the client. exchange: its HTTP request [0: a line of a stream]; headers: of that
+  /// request. False: the message gets no answer.
   bool take(std::string_view message, std::uint64_t exchange = 0, const Headers* headers = nullptr);
-  /// The client has closed the connection of a request. Of the newer era that cancels the request.
+  /// The client has closed the connection of a request. In the newer era that cancels the request.
   void close(std::uint64_t exchange);
 
-  /// Since the last call: tools that were called, and calls that the client has given up. Of those
-  /// nothing more is to be answered.
+  /// Since the last call: called tools, and calls that the client has given up. The latter get no
+  /// further answer.
   std::vector<Call> take_calls();
   std::vector<std::uint64_t> take_given_up();
 
   void answer(std::uint64_t call, const Result& result);
-  /// How far a call has come, for a client that asked to be told. value has to rise.
+  /// The progress of a call, for a client that asked for it. value has to rise.
   void progress(std::uint64_t call, double value, const std::string& text);
 
-  /// For the client, since the last call.
+  /// Messages for the client since the last call.
   std::vector<Line> take_lines();
 
   static constexpr std::size_t kLongestLine = 65536;
-  static constexpr std::size_t kMostOpen = 64;          ///< calls that are not answered
+  static constexpr std::size_t kMostOpen = 64;          ///< calls without an answer
   static constexpr double kMostASecond = 5.0;           ///< calls, over some seconds
   static constexpr double kMostAtOnce = 20.0;           ///< calls, after a silence
   static constexpr const char* kLegacy = "2025-11-25";  ///< the newest revision with `initialize`
   static constexpr const char* kModern = "2026-07-28";
 
  private:
-  /// A request, as far as its answer needs it.
+  /// The part of a request that its answer needs.
   struct Request {
     Json id;
     std::uint64_t exchange = 0;
@@ -142,17 +141,18 @@ class Session {
   bool begun_ = false;
   std::uint64_t count_ = 0;
   std::map<std::uint64_t, Open> open_;
-  std::vector<Request> listeners_;  ///< those who want to hear when the tools change
+  std::vector<Request> listeners_;  ///< those that want changes of the tools
   std::vector<Call> calls_;
   std::vector<std::uint64_t> given_up_;
   std::vector<Line> lines_;
   double time_ = 0.0;
-  double allowed_ = kMostAtOnce;  ///< calls that may come at once
-  double counted_ = 0.0;          ///< [s] when `allowed_` was true
+  double allowed_ = kMostAtOnce;  ///< calls allowed at once
+  double counted_ = 0.0;          ///< [s] time of `allowed_`
 };
 
-/// Why arguments do not fit a schema, in words that name the argument; empty where they do. Of JSON
-/// Schema: type, properties, required, additionalProperties, enum, minimum, maximum.
+/// The reason why arguments do not fit a schema, in words, with the argument's name; empty where
+/// they do. Of JSON Schema: type, properties, required, additionalProperties, enum, minimum,
+/// maximum.
 std::string misfit(const Json& arguments, const Json& schema);
 
 }  // namespace saphira::mcp
