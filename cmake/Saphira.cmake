@@ -47,7 +47,8 @@ if(SAPHIRA_TESTS)
 endif()
 
 add_library(saphira_warnings INTERFACE)
-target_compile_options(saphira_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+target_compile_options(saphira_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion
+  $<$<NOT:$<BOOL:$<TARGET_PROPERTY:SAPHIRA_NOT_PEDANTIC>>>:-Wpedantic>
   $<$<BOOL:${SAPHIRA_WERROR}>:-Werror>)
 
 # saphira_library(<name> SOURCES a.cpp... [LINK t...])

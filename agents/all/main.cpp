@@ -1,6 +1,6 @@
 // saphira-all: a simulated robot and every service in one process. Live, each has a thread, and
 // they meet on the bus as separate processes do. In lockstep they take turns in one thread, and a
-// gateway lets other programs watch and ask.
+// gateway lets other programs watch and send commands.
 
 #include <poll.h>
 
@@ -35,8 +35,8 @@ namespace {
 
 using namespace saphira;
 
-/// Threads that end together: when one ends, the others are stopped; what failed first is thrown
-/// on.
+/// Threads that end together: when one ends, the others are stopped; the first exception is
+/// rethrown.
 class Threads {
  public:
   void add(std::function<void(const bus::Stop&)> work) {
@@ -69,10 +69,10 @@ class Threads {
   std::vector<std::jthread> threads_;
 };
 
-/// People who speak to the robot, and what understands them.
+/// People who speak to the robot, and the grammar for them.
 struct Talk {
-  std::string grammar;  ///< a file; empty: nobody understands
-  std::string people;   ///< a file of config/people; empty: nobody is there
+  std::string grammar;  ///< a file; empty: no dialogue
+  std::string people;   ///< a file of config/people; empty: no people
   double time_limit = 1200.0;
 };
 
@@ -106,7 +106,7 @@ void run_in_threads(const Programs& programs, const bus::NodeOptions& options,
 }
 
 /// Dialogue and people on the in-memory bus. They take a step after each of the services, so that
-/// what is said depends on the robot's cycles alone.
+/// the conversation depends on the robot's cycles alone.
 class Talkers {
  public:
   Talkers(const Talk& talk, const bus::NodeOptions& options,
@@ -132,7 +132,7 @@ class Talkers {
     return story_ && story_->step();
   }
 
-  /// How the story ended, as one line of JSON.
+  /// The result of the story, as one line of JSON.
   void report() const {
     const nlohmann::json result{{"well", story_->well()},
                                 {"outcome", story_->outcome()},
@@ -204,7 +204,7 @@ int main(int argc, char** argv) {
   programs.robot.world = "office";
   programs.robot.robot = "pioneer";
   programs.link.robots_folder = config + "/robots";
-  // Here the simulated robot dies with whoever drives it.
+  // Here the simulated robot ends with its driver.
   programs.link.keeper = false;
   programs.services = system::services();
   std::string socket = sim::default_socket();

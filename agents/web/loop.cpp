@@ -41,7 +41,7 @@ lws_protocols Loop::descriptors() {
 }
 
 Loop::Loop(void* owner, unsigned most, bool encrypts) {
-  lws_set_log_level(0, nullptr);  // mistakes are told by us
+  lws_set_log_level(0, nullptr);  // this program reports errors itself
   lws_context_creation_info info{};
   info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
   if (encrypts)

@@ -11,15 +11,15 @@ namespace saphira::web {
 /// The text of a header; empty where it is missing or longer than 1023 bytes.
 std::string header(lws* wsi, lws_token_indexes which);
 
-/// The address of the network that the other side has; IPv4 as four numbers.
+/// The network address of the other side; IPv4 as four numbers.
 std::string peer(lws* wsi);
 
-/// An event loop of libwebsockets, in one thread, with what our programs need beside connections:
+/// An event loop of libwebsockets, in one thread, with the further needs of our programs:
 /// descriptors to wait for, a clock, an end.
 class Loop {
  public:
-  /// owner: the context's user, as lws_context_user() gives it. most: descriptors at once.
-  /// encrypts: TLS is used. std::runtime_error where it cannot be made.
+  /// owner: the context's user, from lws_context_user(). most: descriptors at once. encrypts: TLS
+  /// is used. std::runtime_error where the loop cannot be made.
   Loop(void* owner, unsigned most, bool encrypts);
   /// Closes all connections: their callbacks still need the owner.
   ~Loop();
@@ -27,15 +27,15 @@ class Loop {
   Loop& operator=(const Loop&) = delete;
 
   lws_context* context() const { return context_; }
-  /// From now on `readable` is called when the descriptor is. The vhost has to have the protocol
+  /// From now on calls `readable` when the descriptor is. The vhost has to have the protocol
   /// descriptors().
   void watch(lws_vhost* vhost, int fd, std::function<void()> readable);
-  /// From now on `tick` is called once a period [us].
+  /// From now on calls `tick` once a period [us].
   void every(lws_usec_t period, std::function<void()> tick);
-  /// Until `stop` is readable. std::runtime_error where the loop fails.
+  /// Runs until `stop` is readable. std::runtime_error where the loop fails.
   void run(lws_vhost* vhost, int stop);
 
-  /// The protocol by which watched descriptors are served.
+  /// The protocol of watched descriptors.
   static lws_protocols descriptors();
 
  private:

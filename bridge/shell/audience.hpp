@@ -8,14 +8,14 @@
 
 namespace saphira::bridge {
 
-/// Decides from the status of the services whether they receive the samples of the bridge. Pure:
-/// time is given to it, in seconds.
+/// Decides from the status of the services whether they receive the bridge's samples. Pure: the
+/// time, in seconds, is an argument.
 class Audience {
  public:
-  /// [s] Services that do not hear the robot begin anew on the bus themselves after 10 s; a bridge
+  /// [s] Services that do not hear the robot begin anew on the bus themselves after 10 s. A bridge
   /// that none of them hears after that is mute.
   static constexpr double kMute = 13.0;
-  /// [s] until a bridge that began anew does it again.
+  /// [s] between two new beginnings of a bridge.
   static constexpr double kAgain = 60.0;
 
   void hear(const bus::WriterId& writer, const v1::ServiceStatus& status, double now);

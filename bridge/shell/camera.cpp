@@ -8,7 +8,7 @@ namespace saphira::bridge {
 namespace {
 
 constexpr std::uint64_t kSecond = 10;   // [cycles]
-constexpr std::uint64_t kSilence = 20;  // [cycles] then the camera is asked again
+constexpr std::uint64_t kSilence = 20;  // [cycles] then the command is sent again
 
 }  // namespace
 

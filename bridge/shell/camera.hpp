@@ -13,16 +13,17 @@
 
 namespace saphira::bridge {
 
-/// A Fast Track vision system (manual 9.1): asked until its packets come, and handed on.
+/// A Fast Track vision system (manual 9.1): repeats its commands until packets come, and publishes
+/// these.
 class Camera {
  public:
-  /// `words`: what it is told, such as "pioneer_a_mode=2".
+  /// `words`: the commands, such as "pioneer_a_mode=2".
   Camera(bus::Node& node, std::vector<std::string> words);
 
   /// A session begins.
   void connect();
-  /// The robot's cycle `cycle` begins: what is to be said to the camera. A word may be lost on a
-  /// serial line, so that it is said again where no packet comes.
+  /// The robot's cycle `cycle` begins: returns the commands to the camera. A command may be lost on
+  /// a serial line, so it is repeated where no packet comes.
   std::vector<protocol::Bytes> begin(std::uint64_t cycle);
   /// Of the last second, at begin().
   std::uint16_t packets_per_s() const { return static_cast<std::uint16_t>(packets_.size()); }
@@ -32,7 +33,7 @@ class Camera {
  private:
   std::vector<std::string> words_;
   bus::Writer<v1::VisionChannels> channels_;
-  std::uint64_t asked_ = 0;            ///< cycle; 0: not yet
+  std::uint64_t asked_ = 0;            ///< cycle of the newest commands; 0: none yet
   std::deque<std::uint64_t> packets_;  ///< cycles of those of the last second
 };
 

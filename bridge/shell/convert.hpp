@@ -32,22 +32,22 @@ v1::RobotDescription to_bus(const protocol::RobotParameters& parameters,
                             const std::string& link, bool lockstep);
 v1::VisionChannels to_bus(const protocol::VisionPacket& packet);
 
-/// A grant, what its driver wants of the wheels, what the guard made of that, who was refused.
+/// A grant, the driver's setpoints, the guard's result, the refused drivers.
 v1::Grant to_bus(const authority::Grant& grant, const Told& told, const authority::Guarded& guarded,
                  const std::vector<authority::Refusal>& refused, const v1::Stamp& stamp);
 
-/// The trouble with a motor command; empty where nothing is. Anybody may write one: a number that
-/// is none, or an enumerator of no contract, is refused here.
+/// The error in a motor command; empty: none. Anybody may write one: NaN, infinity, or an unknown
+/// enumerator is refused here.
 std::string trouble(const v1::MotorCommand& command);
 /// Only for a command without trouble.
 reflector::Motion to_motion(const v1::MotorCommand& command);
 authority::Command to_command(const v1::MotorCommand& command, authority::Role role,
                               const authority::WriterId& writer, double received);
-/// The whole of one, with what is wrong with it.
+/// A whole command, with its errors.
 DriveCommand to_drive(const v1::MotorCommand& command, authority::Role role,
                       const authority::WriterId& writer);
 
-/// A writer's name for itself: anybody may write anything, so no more than the contract's text.
+/// A writer's own name, cut to the contract's length: anybody may write any text.
 template <class Sample>
 std::string source_of(const Sample& sample) {
   return sample.source().substr(0, 255);

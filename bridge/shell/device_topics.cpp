@@ -31,7 +31,7 @@ std::optional<Answer> DeviceTopics::act(const Request& request) {
     return Answer{AnswerCode::nobody, "no robot is connected"};
   try {
     reflector_.request(request, reflector::wish_of(request));
-    return std::nullopt;  // what becomes of it: publish()
+    return std::nullopt;  // its result comes by publish()
   } catch (const std::invalid_argument& error) {
     return Answer{AnswerCode::bad_argument, error.what()};
   }

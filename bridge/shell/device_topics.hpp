@@ -12,20 +12,19 @@
 
 namespace saphira::bridge {
 
-/// The robot's devices on the bus: what is asked of them comes in, what became of it and what they
-/// say goes out.
+/// The robot's devices on the bus: requests in, results and reports out.
 class DeviceTopics {
  public:
   DeviceTopics(bus::Node& node, reflector::Reflector& reflector);
 
-  /// Takes the requests, and publishes what became of them. Without a session they are refused.
+  /// Takes the requests, and publishes their results. Without a session they are refused.
   void take(const Stamp& stamp, bool session);
   /// Any packet but an information packet.
   void packet(const protocol::ServerPacket& packet, std::uint8_t type, const v1::Stamp& stamp);
-  /// Where there is something new to tell.
+  /// Publishes news, if any.
   void publish(const v1::Stamp& stamp);
 
-  /// Requests, since the start, that could not be done.
+  /// Failed requests since the start.
   std::uint64_t refused() const { return desk_.refused(); }
 
  private:
@@ -38,7 +37,7 @@ class DeviceTopics {
   bus::Writer<v1::SerialData> serial_data_;
   Desk desk_;
   bool session_ = false;
-  /// Of the information packet, what robot/devices shows; it is written when this changes.
+  /// The fields of the information packet that robot/devices shows; a change writes the topic.
   using Shown =
       std::tuple<std::uint8_t, std::uint8_t, std::optional<bool>, std::optional<bool>,
                  std::optional<std::uint16_t>, std::optional<std::uint8_t>, std::optional<double>,

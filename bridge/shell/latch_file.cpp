@@ -15,7 +15,7 @@ authority::Latches LatchFile::read() const {
   std::error_code error;
   if (path_.empty() || (!std::filesystem::exists(path_, error) && !error))
     return {};
-  // The file is there because something was latched: an empty one says as little as a bad one.
+  // The file exists because of a latch: an empty one is as bad as a damaged one.
   std::ifstream file(path_);
   std::string line;
   const bool whole = std::getline(file, line) && !file.eof();

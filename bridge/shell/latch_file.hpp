@@ -6,17 +6,17 @@
 
 namespace saphira::bridge {
 
-/// The file that keeps an emergency stop, and whether autonomy waits for a person, over a restart
-/// of the bridge. There is one only while something is latched.
+/// The file that keeps an emergency stop, and autonomy's wait for a person, over a restart of the
+/// bridge. It exists only while a latch is set.
 class LatchFile {
  public:
-  /// An empty path: nothing is kept.
+  /// An empty path: nothing is saved.
   explicit LatchFile(std::string path) : path_(std::move(path)) {}
 
   const std::string& path() const { return path_; }
-  /// The latched stop. A file that is there and cannot be read means an emergency stop.
+  /// The saved latches. An unreadable file counts as an emergency stop.
   authority::Latches read() const;
-  /// Why it could not be kept, in words; empty where it was.
+  /// The reason why it could not be saved, in words; empty where it was.
   std::string write(const authority::Latches& latches) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace {
 
-/// Reads what would be read when a robot answers.
+/// Reads the files that a robot's answer would need.
 int check(const saphira::bridge::BridgeOptions& options) {
   saphira::transport::parse_address(options.robot_port);
   for (const auto& file : std::filesystem::directory_iterator(options.robots_folder))

@@ -31,7 +31,7 @@ void OtherPrograms::take() {
     others_.erase(writer);
     audience_.lose(writer);
   }
-  // It has its robot, and nobody hears it: it is the bus that is broken.
+  // This bridge has its robot, and nobody hears it: the bus is broken.
   if (has_robot() && audience_.begins_anew(now)) {
     node_.warn("no program hears robot/state, and some wait for it: begins anew on the bus");
     node_.begin_anew();

@@ -8,18 +8,18 @@
 
 namespace saphira::bridge {
 
-/// The meaning of the other programs' status for the bridge. Other bridges that have a robot of
-/// this name: whoever follows that name would obey them and this one. And the services: where none
-/// of them hears this bridge, it begins anew on the bus.
+/// The status of other programs, as the bridge uses it. Other bridges with a robot of this name: a
+/// program that follows the name would obey both. And the services: where none of them hears this
+/// bridge, it begins anew on the bus.
 class OtherPrograms {
  public:
   explicit OtherPrograms(bus::Node& node);
 
-  /// Takes in what the programs say of themselves. A new namesake is told to people as an error.
+  /// Takes the programs' status. A new namesake is logged as an error.
   void take();
 
   bool has_namesake() const { return !others_.empty(); }
-  /// One of them, in words; only where there is any.
+  /// One of the namesakes, in words; only where there is any.
   const std::string& namesake() const { return others_.begin()->second; }
 
  private:

@@ -10,17 +10,18 @@ namespace saphira::bridge {
 /// The file that keeps the odom frame over a restart of the bridge (--state).
 class PositionFile {
  public:
-  /// An empty path: nothing is kept. std::invalid_argument where it cannot be opened.
+  /// An empty path: nothing is saved. std::invalid_argument where it cannot be opened.
   explicit PositionFile(std::string path);
   ~PositionFile();
   PositionFile(const PositionFile&) = delete;
   PositionFile& operator=(const PositionFile&) = delete;
 
-  /// Its content; nothing where it is new, or nothing is kept.
+  /// Its content; nothing where the file is new, or nothing is saved.
   const std::optional<reflector::OdometryMemory>& found() const { return found_; }
   /// Its damage, and the consequence; empty: none.
   const std::string& trouble() const { return trouble_; }
-  /// Why it could not be kept, in words, and empty where it was. After that it is given up.
+  /// The reason why it could not be saved, in words; empty where it was. After a failure it stops
+  /// saving.
   std::string write(const reflector::OdometryMemory& memory);
 
  private:

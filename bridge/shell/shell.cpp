@@ -25,8 +25,8 @@ constexpr std::chrono::microseconds kSpin{500};
 constexpr double kBeat = 0.05;         // [s] of the keeper
 constexpr double kMostContact = 0.15;  // [m/s] that a robot may touch with
 
-// [s] from the start until the robot is asked: who may stop it, and another bridge that has it, are
-// found by then, in two announcements of a program (idl/bus).
+// [s] from the start to the first contact with the robot. By then programs that may stop the robot,
+// and another bridge that has it, are found, in two announcements of a program (idl/bus).
 double look_around(bus::Profile profile) {
   return profile == bus::Profile::host ? 0.3 : profile == bus::Profile::lan ? 0.6 : 1.2;
 }
@@ -75,7 +75,7 @@ std::unique_ptr<transport::Keeper> make_keeper(bool wanted) {
   return wanted ? std::make_unique<transport::Keeper>() : nullptr;
 }
 
-/// Checks what a person gave before anything is made of it.
+/// Checks a person's input before it is used.
 BridgeOptions checked(BridgeOptions options) {
   transport::parse_address(options.robot_port);
   if (!std::filesystem::is_directory(options.robots_folder))
@@ -174,7 +174,7 @@ void Shell::advance(Ready ready) {
   deliver(BootClock::seconds());
   if (ready.link)
     receive();
-  // The answer to a packet is a fraction of a millisecond away.
+  // The answer to a packet comes within a fraction of a millisecond.
   if (ready.link && !ready.bus && core_.awaits_answer())
     ready.bus = node_.spin(kSpin);
   if (ready.bus) {
@@ -204,7 +204,7 @@ void Shell::tend_link() {
     keeper_->beat();
   }
   if (core_.may_connect(now)) {
-    // One that a write found dead, before it is opened again.
+    // A link that a write found dead, before it is opened again.
     if (!link_is_open()) {
       core_.link_closed(link_.trouble(), now);
       deliver(now);
@@ -234,7 +234,7 @@ Surroundings Shell::surroundings() const {
 
 void Shell::receive() {
   if (!link_is_open())
-    return;  // a connection that is coming about: tend_link
+    return;  // a connection in progress: tend_link
   const double now = BootClock::seconds();
   input_.clear();
   const bool alive = link_.read(input_, now);
@@ -275,7 +275,7 @@ void Shell::take_drives(Role role, bus::Reader<v1::MotorCommand>& reader, double
     core_.writer_lost(role, writer, now);
 }
 
-// ---- What the core wants done.
+// ---- The outputs of the core.
 
 void Shell::work(double now) {
   deliver(now);
@@ -303,7 +303,7 @@ void Shell::perform(const Identified& identified, double now) {
   } catch (const std::exception& error) {
     return core_.refuse_robot(error.what(), now);
   }
-  // Requests from before there was a robot are heard, and refused, before there is one.
+  // Requests from before the connection are taken, and refused, before there is a robot.
   take_all(now);
   core_.open(parameters, milliseconds_since_1970(), now);
 }
@@ -354,7 +354,7 @@ void Shell::perform(const GrantDecided& decided, double) {
   grant_writer_.write(grant);
   if (decided.stamp.epoch == 0)
     return;
-  // With the grant, not with the state: the services wait for that.
+  // With the grant, not with the state: services wait for the state.
   grant_recall_.write(grant);
   if (recalled_ != stamp && newest_state_.stamp() == stamp) {
     recalled_ = stamp;

@@ -25,49 +25,50 @@ namespace saphira::bridge {
 struct BridgeOptions {
   std::string robot_port = transport::default_address();
   std::string robots_folder = "config/robots";  ///< of the parameter files
-  /// The parameter file of a robot that names its class and subclass, or the name of one in that
-  /// folder; empty: none. Other robots get theirs by what they name.
+  /// The parameter file of a robot that names its class and subclass, or the name of a file in that
+  /// folder; empty: none. Other robots get theirs by their identity.
   std::string parameter_file;
   double lease = 0.3;                                      ///< [s] in lockstep cycles x 0.1
   double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;
-  double contact_speed = 0.15;  ///< [m/s] at the most where a driver means contact; 0: never
+  double contact_speed = 0.15;  ///< [m/s] at most, for a driver who wants contact; 0: never
   /// Keeps the odom frame over a restart, and with ".latched" behind its name an emergency stop;
   /// empty: none.
   std::string state_file;
   bool free_step = false;  ///< lockstep: step without a permit
   /// The commands to the camera of a Fast Track vision system at the start (manual 9.1), such as
-  /// "pioneer_a_mode=2"; empty: it is not asked for packets.
+  /// "pioneer_a_mode=2"; empty: none, so no packets are requested.
   std::vector<std::string> vision;
   bool keeper = true;
 };
 
 /// The bridge as a service: one robot server on one side, the bus on the other. It carries bytes,
-/// samples, files and the time to the core (saphira/bridge/core.hpp), and does what the core says.
+/// samples, files and the time to the core (saphira/bridge/core.hpp), and executes the core's
+/// outputs.
 class Shell {
  public:
   /// std::invalid_argument for a wrong option; std::runtime_error where the bus fails.
   Shell(const bus::NodeOptions& node, BridgeOptions options,
         std::shared_ptr<bus::MemoryBus> memory = nullptr);
 
-  /// Until stop is requested. An exit code (bus::Exit).
+  /// Runs until stop is requested. Returns an exit code (bus::Exit).
   int run(const bus::Stop& stop);
 
-  // ---- The same in steps that never wait, for a caller with a loop of its own.
+  // ---- The same in steps that never wait, for a caller with its own loop.
 
   /// Its inputs.
   struct Ready {
     bool link = true;
     bool bus = true;
   };
-  /// Takes what has come, and does all that is due.
+  /// Takes the inputs, and does all due work.
   void advance(Ready ready);
   /// The descriptors to poll before the next advance: the link (a descriptor below 0 while it is
   /// closed), and the bus.
   std::array<pollfd, 2> descriptors() const;
-  /// When to call advance again, whatever comes [ms].
+  /// The longest time to the next advance [ms].
   int timeout_ms() const;
-  /// Stops the robot and lets it go.
+  /// Stops the robot and releases it.
   void end();
 
  private:
@@ -76,7 +77,7 @@ class Shell {
   void take_all(double now);
   void take_drives(authority::Role role, bus::Reader<v1::MotorCommand>& reader, double now);
 
-  /// Does what the core says, until it says no more.
+  /// Executes the core's outputs until there are none.
   void work(double now);
   void deliver(double now);
   void perform(const Send& send, double now);
@@ -123,7 +124,7 @@ class Shell {
   LatchFile latch_file_;
 
   v1::RobotState newest_state_;
-  v1::Stamp recalled_;  ///< of the newest state that was put where it is recalled
+  v1::Stamp recalled_;  ///< of the newest state in recall
   std::vector<std::uint8_t> input_;
   double last_beat_ = 0.0;  ///< [s] of the keeper
 };

@@ -1,4 +1,4 @@
-// True where a bridge is mute, by the status of the programs that follow its robot.
+// Detection of a mute bridge, by the status of the programs that follow its robot.
 #include "audience.hpp"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST_F(AudienceTest, WhatIsGoneOrStandsStillSaysNothing) {
   steps(2);
   steps(2);
   waits(1);
-  // Not a word more of the second one: it hangs, or waits for something else.
+  // No more status of the second one: it hangs, or waits for another cause.
   v1::ServiceStatus status;
   status.stamp().cycle(cycle_);
   audience_.hear({2}, status, now_);

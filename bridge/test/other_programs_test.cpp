@@ -11,7 +11,7 @@ namespace {
 
 class NamesakesTest : public testing::Test {
  protected:
-  /// `node` says of itself that it is in that state.
+  /// Publishes a status of `node` with that state.
   void say(bus::Node& node, v1::ServiceState state) {
     v1::ServiceStatus status = node.status();
     status.state(state);

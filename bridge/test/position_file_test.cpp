@@ -45,7 +45,7 @@ TEST(PositionFile, WhatIsDamagedIsSetAsideAndNotTakenForAnother) {
   memory.raw = {100, 200, 0.5};
   EXPECT_EQ(PositionFile(path).write(memory), "");
   const std::string whole = content(path);
-  const std::size_t end = whole.find("  ");  // what fills it up does not count
+  const std::size_t end = whole.find("  ");  // the padding does not count
   for (std::size_t i = 0; i < end; ++i) {
     for (int bit = 0; bit < 8; ++bit) {
       std::string damaged = whole;

@@ -1,9 +1,9 @@
 // Writes a C++ header that visits the members of every struct of the given IDL files by name, and
-// names their enumerators: what JSON and keys are made of, without types at run time.
+// names their enumerators. JSON and keys are made with this header, without types at run time.
 //
 //   saphira-idl-visit OUTPUT.hpp FILE.idl...
 //
-// It understands what the contract uses: modules, enums, structs with @key, typedefs of a base type
+// The accepted IDL is the contract's: modules, enums, structs with @key, typedefs of a base type
 // with their constants, sequences, strings. Anything else is an error that names the place.
 
 #include <cctype>

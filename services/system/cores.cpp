@@ -113,7 +113,7 @@ behaviors::Core::Outputs Cores::step_behaviors(const RobotCycle& robot) {
   behaviors::Core::Inputs inputs;
   inputs.cycle = robot.cycle;
   inputs.new_robot = first() ? &settings_.robot : nullptr;
-  // Commands work at once here: where the robot turns to is not asked for.
+  // Commands take effect at once here: the heading setpoint is not needed.
   inputs.robot = {robot.pose_in_odom,    robot.velocity,     robot.rotation_velocity,
                   robot.pose_in_odom.th, robot.left_stalled, robot.right_stalled};
   inputs.sonars = robot.readings;
@@ -148,7 +148,7 @@ void Cores::step_registration(const RobotCycle& robot, Said& now) {
   const double before = time();
   for (const Request& request : asked_)
     registration_->act(request);
-  // As in lockstep: what was asked for in the last cycle counts in the next one.
+  // As in lockstep: a request of the last cycle counts in the next one.
   asked_ = said_.intentions.intended.requests;
   now.registration = registration_->step(inputs);
   registration_took_ = time() - before;

@@ -15,7 +15,7 @@ namespace saphira::system {
 /// The robot's state in a cycle, as the bridge publishes it.
 struct RobotCycle {
   std::uint64_t cycle = 0;
-  std::uint64_t odom = 1;  ///< which odom frame
+  std::uint64_t odom = 1;  ///< number of the odom frame
   Pose pose_in_odom;
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
@@ -24,9 +24,9 @@ struct RobotCycle {
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
 };
 
-/// The cores of the services in one loop, without the bus: each sees in the step for cycle N what
-/// the others said in N-1, as on the bus. Values are handed over as they are: the bus rounds some
-/// to float, so a robot on the bus goes another way in the last digits.
+/// The cores of the services in one loop, without the bus: in the step for cycle N each sees the
+/// others' outputs of N-1, as on the bus. Values are passed unchanged. The bus rounds some to
+/// float, so a robot on the bus differs in the last digits.
 class Cores {
  public:
   struct Settings {
@@ -34,22 +34,22 @@ class Cores {
     behaviors::Registry behaviors;
     bool interpretation = false;
     std::optional<registration::Core::Settings> registration;
-    /// Without it, intend() says what is intended.
+    /// None: intend() sets the intent.
     std::optional<intentions::Core::Settings> intentions;
-    /// [s] Measures what the services take. None: nothing is measured.
+    /// [s] Measures the time of the services. None: no measurement.
     std::function<double()> clock;
   };
-  /// The outputs of the services for a cycle; of those that are not there: nothing.
+  /// The outputs of the services for a cycle; empty for missing services.
   struct Said {
     behaviors::Core::Outputs behaviors;
     std::vector<lps::Percept> percepts;
     registration::Core::Outputs registration;
     std::uint64_t map_revision = 0;
-    bool adds_features = false;  ///< registration puts what is seen on the map
+    bool adds_features = false;  ///< registration adds percepts to the map
     intentions::Core::Outputs intentions;
-    /// Of a vision service; none: there is no camera.
+    /// From a vision service; none: no camera.
     std::optional<std::vector<lps::SeenThing>> things;
-    std::uint64_t cycle = 0;  ///< 0: nothing was said yet
+    std::uint64_t cycle = 0;  ///< 0: no outputs yet
     Pose pose_in_odom;        ///< of the robot, in that cycle
   };
 
@@ -58,13 +58,13 @@ class Cores {
   const Said& step(const RobotCycle& robot);
   const Said& said() const { return said_; }
 
-  /// The intent from now on, where no intentions service is there.
+  /// The intent from now on, without an intentions service.
   void intend(std::vector<behaviors::Intended> behaviors, bool control);
-  /// The same behaviors, and whether they drive (sfBehaviorControl, manual 7.4).
+  /// The same behaviors, with control on or off (sfBehaviorControl, manual 7.4).
   void set_control(bool control);
-  /// A vision service says this for the newest cycle.
+  /// The vision service's output for the newest cycle.
   void see(std::vector<lps::SeenThing> things) { said_.things = std::move(things); }
-  /// A goal, a claim: heard in the next step.
+  /// A goal, a claim: taken in the next step.
   void hear(intentions::GoalEvent goal);
   void hear(intentions::ClaimEvent claim);
 
@@ -73,7 +73,7 @@ class Cores {
   registration::Core& registration() { return registration_.value(); }
   const registration::Core& registration() const { return registration_.value(); }
   intentions::Core& intentions() { return intentions_.value(); }
-  /// [s] What interpretation and registration took in the newest step.
+  /// [s] The time of interpretation and registration in the newest step.
   double interpretation_took() const { return interpretation_took_; }
   double registration_took() const { return registration_took_; }
 
@@ -94,7 +94,7 @@ class Cores {
   std::optional<behaviors::Intent> intent_;
   intentions::Core::Heard heard_;
   std::vector<Request> asked_;
-  std::uint64_t known_map_ = 0;  ///< revision that intentions has
+  std::uint64_t known_map_ = 0;  ///< the revision that intentions has
   Said said_;
   double interpretation_took_ = 0.0;
   double registration_took_ = 0.0;

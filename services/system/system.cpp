@@ -11,7 +11,7 @@ namespace {
 
 using Use = runtime::Port::Use;
 
-// The bridge is no cyclic service: the cycles come from it. A test compares this list with its
+// The bridge is no cyclic service: it makes the cycles. A test compares this list with its
 // endpoints.
 const runtime::Unit kBridge{
     "bridge",

@@ -7,11 +7,11 @@
 
 namespace saphira::system {
 
-/// The cyclic services, each with options of its own. The one list of them: programs that run
-/// several, the table of the system and its drawing come from here.
+/// The cyclic services, each with its own options. Programs that run several services, the table of
+/// the system and its drawing use this one list.
 std::vector<runtime::Component> services();
 
-/// The whole robot in the table: the bridge and the services.
+/// The units of the whole robot: the bridge and the services.
 std::vector<runtime::Unit> units();
 
 }  // namespace saphira::system

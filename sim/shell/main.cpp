@@ -40,7 +40,8 @@ saphira::Pose parse_position(const std::string& text) {
   return {x, y, saphira::norm2_angle(th)};
 }
 
-/// The first robot and the others; a robot without a file of its own is as the last that has one.
+/// Sets the first robot and the others; a robot without a file of its own gets the last file before
+/// it.
 void set_robots(saphira::sim::HostOptions& options, const std::vector<std::string>& files,
                 const std::vector<std::string>& positions, std::size_t count) {
   const std::size_t robots = std::max({files.size(), positions.size(), count});
@@ -56,7 +57,7 @@ void set_robots(saphira::sim::HostOptions& options, const std::vector<std::strin
   }
 }
 
-/// Shipped files may be loaded by the view.
+/// The view may load shipped files.
 void offer(saphira::sim::HostOptions& options, const std::string& config) {
   const auto names = [](const std::string& folder, const std::string& extension) {
     std::vector<std::string> found;

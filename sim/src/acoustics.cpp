@@ -14,7 +14,7 @@ struct Knot {
   double loss;   // [dB]
 };
 
-// A piston of 38 mm; between its lobes the beam of a real one has no nulls.
+// A piston of 38 mm; a real one's beam has no nulls between its lobes.
 constexpr std::array<Knot, 17> kBeam{{{0.0, 0.0},
                                       {2.5, 0.6},
                                       {5.0, 2.6},

@@ -8,14 +8,14 @@ namespace saphira::sim {
 
 namespace {
 
-constexpr double kLookout = 1.0;  // [m] from the hull
-// Slower is at rest.
+constexpr double kContactLookout = 1.0;  // [m] from the hull
+// Slower motion is rest.
 constexpr double kStands = 0.005;    // [m/s]
 constexpr double kTurns = 0.01;      // [rad/s]
-constexpr double kSameThing = 0.1;   // [m] a wall that is so near to the point does not hide it
-constexpr std::size_t kOneWall = 0;  // all walls are one thing
+constexpr double kSameThing = 0.1;   // [m] a wall this near to the point does not hide it
+constexpr std::size_t kOneWall = 0;  // all walls count as one thing
 
-/// No sonar hears farther than it can, whatever is fair to expect of others.
+/// No sonar exceeds its own range, whatever the settings allow.
 ContactSettings of_robot(ContactSettings settings, const protocol::RobotParameters& parameters) {
   settings.most_range = std::min(settings.most_range, parameters.sonar_max_range);
   return settings;
@@ -30,7 +30,7 @@ ContactWatch::ContactWatch(const Scene& scene, RobotNumber robot,
       robot_(robot),
       parameters_(parameters),
       settings_(of_robot(settings, parameters)),
-      near_(scene.world(), parameters.radius + std::max(kLookout, settings.most_range)) {
+      near_(scene.world(), parameters.radius + std::max(kContactLookout, settings.most_range)) {
   remember();
 }
 
@@ -112,8 +112,8 @@ void ContactWatch::judge(const Thing& thing) {
     return;
   const Robot& robot = scene_->robot(robot_);
   const Pose& pose = robot.pose_in_world();
-  // A contact ends the robot's motion, so that of before counts. A hull that turns moves along
-  // itself.
+  // A contact ends the robot's motion, so the velocity before it counts. The turning of a round
+  // hull does not approach anything.
   const double velocity =
       std::abs(velocity_) > std::abs(robot.velocity()) ? velocity_ : robot.velocity();
   const double towards =
@@ -140,7 +140,7 @@ Contact ContactWatch::blame(const Thing& thing, double towards) const {
   return contact;
 }
 
-// Things but people are taken to have been where they are now.
+// Things other than people are assumed to have stood still.
 double ContactWatch::heard(const Thing& thing) const {
   std::size_t ticks = 0;
   for (const Past& past : past_) {

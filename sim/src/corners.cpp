@@ -10,15 +10,15 @@ namespace saphira::sim {
 namespace {
 
 constexpr double kSame = 0.002;            // [m]
-constexpr double kFlat = radians(5.0);     // a wall that turns by less goes straight on
-constexpr double kSquare = radians(2.0);   // an inner corner that is off by more is no mirror
+constexpr double kFlat = radians(5.0);     // a wall with a smaller turn goes straight on
+constexpr double kSquare = radians(2.0);   // an inner corner with a larger deviation is no mirror
 constexpr double kSameArm = radians(1.0);  // walls that lie upon each other
 
 bool before(const Vec2& a, const Vec2& b) {
   return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
 }
 
-// The first corner whose x is not below.
+// The first corner with at least this x.
 std::vector<Corner>::iterator first_from(std::vector<Corner>& corners, double x) {
   return std::lower_bound(corners.begin(), corners.end(), x,
                           [](const Corner& corner, double low) { return corner.point.x() < low; });
@@ -85,7 +85,7 @@ std::vector<Corner> find_corners(const std::vector<Segment>& segments) {
 CornerShape shape_from(const Corner& corner, const Vec2& viewer) {
   const Vec2 away = viewer - corner.point;
   const double at = norm_angle(std::atan2(away.y(), away.x()));
-  // The sector between the two arms that the viewer stands between.
+  // The sector between the two arms around the viewer.
   const auto next = std::upper_bound(corner.arms.begin(), corner.arms.end(), at);
   const bool wraps = next == corner.arms.begin() || next == corner.arms.end();
   const double sector =

@@ -10,15 +10,15 @@ using namespace protocol;
 
 namespace {
 
-// The paddles take 1.5 s from stop to stop, the lift 3 s: about what the Pioneers' gripper needs.
+// The paddles take 1.5 s from stop to stop, the lift 3 s: about as long as the Pioneers' gripper.
 constexpr double kPaddleStep = 0.1 / 1.5;
 constexpr double kLiftStep = 0.1 / 3.0;
 constexpr std::string_view kChannel = "pioneer_";
 constexpr std::string_view kColorIs = "_color=";
 constexpr int kSoundUnitsInCycle = 5;  // of 20 ms
 
-// PeopleBots have infrared sensors that look up at tables, on their digital inputs: a bit that is
-// clear says that there is one. The first one (p2pb) has none.
+// PeopleBots have infrared sensors that look up at tables, on their digital inputs: a clear bit
+// means a table. The first PeopleBot (p2pb) has none.
 bool has_table_sensors(const RobotParameters& parameters) {
   constexpr std::array kPeopleBots{"p2pp", "perfpb", "perfpb+", "peoplebot-sh"};
   return std::find(kPeopleBots.begin(), kPeopleBots.end(), parameters.subclass) !=
@@ -151,7 +151,7 @@ Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& 
   return std::visit(
       Overloaded{
           [&](const DigitalOutput& c) {
-            // PSOS has no mask; a client of that time says none, and means all bits.
+            // PSOS has no mask; a client of that time sends none, and means all bits.
             const std::uint8_t mask = later_ && c.mask != 0 ? c.mask : std::uint8_t{0xFF};
             digital_output_ =
                 static_cast<std::uint8_t>((digital_output_ & ~mask) | (c.bits & mask));
@@ -203,7 +203,7 @@ Devices::Answer Devices::act(const Integer& c, const Robot& robot, Bytes& out) {
     case Number::kGripperRequest:
       return ask(Request::kGripper, c.value, robot, out);
     case Number::kGyroRequest:
-      return ask(kGyro, c.value != 0 ? 2 : 0, robot, out);  // 1 is "from now on" here
+      return ask(kGyro, c.value != 0 ? 2 : 0, robot, out);  // here 1 means "from now on"
     case Number::kJoystickRequest:
       return ask(kJoystick, c.value, robot, out);
     case Number::kBatteryRequest:
@@ -243,13 +243,13 @@ Devices::Answer Devices::ask(Request request, int mode, const Robot& robot, Byte
 
 Bytes Devices::packet(Request request, const Robot& robot) const {
   const auto count = [this](double way) {
-    // Rolls over as the controller's register does.
+    // Rolls over like the controller's register.
     return static_cast<std::int32_t>(
         static_cast<std::uint32_t>(std::llround(way / parameters_.encoder_unit)));
   };
   switch (request) {
     case kConfig: {
-      // As it is set now, whatever the file says.
+      // The present settings, not those of the file.
       RobotParameters set = parameters_;
       set.acceleration = robot.acceleration();
       set.deceleration = robot.deceleration();

@@ -8,9 +8,9 @@ namespace saphira::sim {
 
 namespace {
 
-// Sonars look 5 m far: smaller cells are more in number than what stands in them.
+// Sonars have a range of 5 m: smaller cells would outnumber the things in them.
 constexpr double kCell = 4.0;            // [m]
-constexpr std::size_t kMostCells = 512;  // in a row; those of larger worlds count to the last one
+constexpr std::size_t kMostCells = 512;  // in a row; a larger world adds its rest to the last one
 
 constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 

@@ -34,25 +34,25 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A client that steps is never farther ahead of who looks at the pictures of its cycles.
+// The lead of a client in single step over a viewer of its pictures.
 constexpr std::size_t kPicturesInStep = 4;
 
 // Silence after which a packet that has begun will not be completed.
 constexpr double kGap = 0.050;  // [s]
 
-// Free running, time is at most so far ahead of a client: less than the watchdog's two seconds. A
-// client that says nothing for so long by the wall clock is not waited for any more.
+// Free running, time may be this far ahead of a client: less than the watchdog's two seconds. A
+// client that is silent for kGivenUp by the wall clock is not waited for any more.
 constexpr int kMostAhead = 10;    // [cycles]
 constexpr double kGivenUp = 2.0;  // [s]
 
-// How often to look whether somebody has opened a terminal.
+// Between two checks for a client at a terminal.
 constexpr int kLook = 50;  // [ms]
 
-// Bytes that may wait for a client that does not read. It then loses whole packets, the newest:
-// they are stale when it wakes.
+// Bytes that may wait for a client that does not read. Beyond that it loses whole packets, the
+// newest: they would be stale when it wakes.
 constexpr std::size_t kMost = 65536;
 
-/// `number` of the robot, from 1. None behind a terminal.
+/// `number` of the robot, from 1. Nothing for a terminal.
 std::optional<Listener> listen(const HostOptions& options, std::size_t number) {
   if (options.terminal)
     return std::nullopt;
@@ -94,8 +94,8 @@ class TraceFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-// How many ticks are due by the wall clock. Time in which nothing ran is time in which the process
-// slept as a whole (stopped, or the machine suspended): it is left out rather than caught up with.
+// The ticks that are due by the wall clock. Time in which the whole process slept (stopped, or the
+// machine suspended) is skipped, not made up.
 class Pace {
  public:
   explicit Pace(double rate) : tick_(kTick / rate) {}
@@ -115,7 +115,7 @@ class Pace {
     done_ += std::max<std::int64_t>(due, 0);
     return static_cast<int>(std::max<std::int64_t>(due, 0));
   }
-  /// When that many ticks more will be due.
+  /// The time until so many further ticks are due.
   double seconds_until(int ticks) const {
     const double at = static_cast<double>(done_ + ticks) * tick_;
     return at - std::chrono::duration<double>(Clock::now() - origin_).count();
@@ -127,7 +127,7 @@ class Pace {
   std::int64_t done_ = 0;
 };
 
-// A timer that poll() wakes up for; nothing runs between packets but what the client sends.
+// A timer that wakes poll(); between packets only clients' bytes need work.
 class Timer {
  public:
   Timer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {
@@ -151,7 +151,7 @@ class Timer {
   Fd fd_;
 };
 
-// One robot's line: who listens, who talks, what waits to be sent, what is written down.
+// One robot's line: its listener, its client, its output queue, its files.
 class Station {
  public:
   Station(const HostOptions& options, Simulation& simulation, RobotNumber number)
@@ -180,19 +180,19 @@ class Station {
 
   void add_to(std::vector<pollfd>& fds) const {
     const auto events = static_cast<short>(output_.empty() ? POLLIN : POLLIN | POLLOUT);
-    fds.push_back({line(), events, 0});  // poll leaves out those below zero
+    fds.push_back({line(), events, 0});  // poll skips those below zero
     fds.push_back({listener_ ? listener_->fd() : -1, POLLIN, 0});
   }
   void add_viewers_to(std::vector<pollfd>& fds) const {
     if (stereo_)
       stereo_->add_to(fds);
   }
-  /// For a client to open the terminal, which poll() does not tell.
+  /// Waits for a client to open the terminal, which poll() does not report.
   bool waits_for_terminal() const { return terminal_ && !terminal_open_; }
   bool packet_pending() const { return server().packet_pending(); }
 
-  // For free running: whether the client may still be at work on what it has been sent. It is not
-  // waited for without end.
+  // For free running: true where the client may still work on its last packets. The wait for it has
+  // a limit.
   bool is_behind() const { return server().is_open() && cycles_ >= kMostAhead; }
   double seconds_until_given_up() const {
     return kGivenUp - std::chrono::duration<double>(Clock::now() - heard_).count();
@@ -213,7 +213,7 @@ class Station {
     }
     const int yes = 1;  // fails on a local socket, where it is not needed
     ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    // Or time would run far ahead of a client before it is felt.
+    // A larger buffer would let time run far ahead of a client.
     const int size = 4096;
     if (patient_)
       ::setsockopt(fd.get(), SOL_SOCKET, SO_SNDBUF, &size, sizeof size);
@@ -221,7 +221,7 @@ class Station {
     log("a client has connected");
   }
 
-  /// True where somebody has the terminal open now.
+  /// Checks for a client at the terminal.
   void look_at_terminal() {
     if (!terminal_ || terminal_->is_open() == terminal_open_)
       return;
@@ -230,7 +230,7 @@ class Station {
   }
 
   void read_client() {
-    // Earlier messages were heard before this one, in that order.
+    // The client's earlier bytes were taken before, in order.
     if (line() >= 0)
       send(server().take_output());
     if (line() < 0)
@@ -248,23 +248,23 @@ class Station {
     }
   }
 
-  /// Sends what there is to send, and writes down what there is to write down.
+  /// Sends pending output, and writes pending rows.
   void write(bool live) {
     const protocol::Bytes fresh = server().take_output();
     if (line() >= 0)
       send(fresh);
     const auto rows = server().take_trace();
     trace_.write(rows);
-    // Live, somebody may be watching the file.
+    // Live, a person may be watching the file.
     if (!rows.empty() && (live || !client_))
       trace_.flush();
-    // After the packet, which is not to wait for the picture.
+    // After the packet, which must not wait for the picture.
     if (stereo_)
       stereo_->serve(simulation_.scene(), number_, server().cycle(),
                      server().single_step() ? kPicturesInStep : 1);
   }
 
-  /// Somebody pulls the plug.
+  /// Disconnects the client on request of the view.
   void drop() { hang_up("disconnected by the view"); }
 
   void end() {
@@ -283,7 +283,7 @@ class Station {
       log_(prefix_ + text);
   }
   Server& server() const { return simulation_.server(number_); }
-  /// To the client; below zero while there is none.
+  /// The client's descriptor; below zero without one.
   int line() const { return terminal_ ? (terminal_open_ ? terminal_->fd() : -1) : client_.get(); }
 
   void watch(protocol::Side side, protocol::ByteView bytes) {
@@ -317,7 +317,7 @@ class Station {
     }
   }
 
-  // Nobody reads: as on a line, what was said is gone, and what is said next is fresh.
+  // Without a reader: as on a real line, old output is lost, and later output is fresh.
   void lose_output() {
     terminal_->forget();
     output_.clear();
@@ -348,13 +348,13 @@ class Station {
   protocol::Bytes output_;
   std::optional<LineCheck> check_;
   std::optional<StereoFeed> stereo_;
-  int cycles_ = 0;  // since the client was heard
+  int cycles_ = 0;  // since the client's last bytes
   Clock::time_point heard_ = Clock::now();
 };
 
 class Serving {
  public:
-  /// `view`, which may be none, outlives it.
+  /// `view`, which may be null, outlives it.
   Serving(const HostOptions& options, Simulation& simulation, ViewFeed* view)
       : simulation_(simulation),
         view_(view),
@@ -383,7 +383,7 @@ class Serving {
     }
     if (most_ms >= 0)
       at_most(most_ms);
-    // In that order: stop, timer, then each robot's client and listener, then who looks on.
+    // In that order: stop, timer, then each robot's client and listener, then viewers.
     fds_.clear();
     fds_.push_back({stop_fd, POLLIN, 0});
     fds_.push_back({timer_.fd(), POLLIN, 0});
@@ -406,7 +406,7 @@ class Serving {
     return true;
   }
 
-  /// The world or robots that somebody at the view asks for instead.
+  /// A world or robots requested at the view.
   std::optional<Load> take_load() { return std::exchange(load_, std::nullopt); }
 
   void end() {
@@ -422,8 +422,8 @@ class Serving {
     return fds[3 + 2 * station].revents != 0;
   }
 
-  // Wakes up when the next information packet is due, or to look for an end of silence. How long
-  // poll shall wait [ms], without end below zero.
+  // Sets the timer to the next information packet, or to the end of a silence. Returns poll's
+  // timeout [ms], without end below zero.
   int schedule() {
     const bool ran = running_;
     running_ = simulation_.runs() && !pacing_.paused;
@@ -448,7 +448,7 @@ class Serving {
     return -1;
   }
 
-  // Free running: how long to wait for clients [ms].
+  // Free running: the wait for clients [ms].
   int patience() {
     double wait = 0.0;
     waits_ = false;
@@ -470,7 +470,7 @@ class Serving {
       std::uint64_t count = 0;
       [[maybe_unused]] const auto size = ::read(timer_.fd(), &count, sizeof count);
     }
-    // Time first, so that what has come acts now and not when the packet before it was due.
+    // Time first, so that new bytes act now, not at the time of the packet before.
     if (running_ && !unpaced_)
       simulation_.advance(pace_.due());
     for (std::size_t i = 0; i < stations_.size(); ++i) {
@@ -500,7 +500,7 @@ class Serving {
     view_->tell(describe_scene(simulation_, pacing_), false);
   }
 
-  /// A line from the view; what is answered, as a line.
+  /// Carries out a line from the view; returns the answer, as a line.
   std::string obey(const std::string& text) {
     std::string trouble;
     try {
@@ -539,7 +539,7 @@ class Serving {
   Simulation& simulation_;
   ViewFeed* view_;
   std::string world_;                   // as the view describes it
-  std::optional<std::uint64_t> shown_;  // [ticks] when the view was told last
+  std::optional<std::uint64_t> shown_;  // [ticks] time of the newest view
   std::optional<Load> load_;
   bool unpaced_;
   Pacing pacing_;
@@ -548,7 +548,7 @@ class Serving {
   std::vector<std::unique_ptr<Station>> stations_;
   std::vector<pollfd> fds_;
   bool running_ = false;
-  bool waits_ = false;  // for a client to take what is sent
+  bool waits_ = false;  // for a client to read its output
   bool timed_ = false;
 };
 
@@ -667,7 +667,7 @@ void Host::change(const std::string& world, const std::string& robot) {
     return view_->tell(complaint(error.what()), true);
   }
   parts_->serving->end();
-  parts_.reset();  // its sockets are wanted
+  parts_.reset();  // its sockets are needed
   try {
     parts_ = std::make_unique<Parts>(next, view_.get());
     options_ = next;

@@ -43,7 +43,7 @@ void Fd::reset(int fd) {
 }
 
 Listener::~Listener() {
-  // Unless another simulator has put its own there meanwhile.
+  // Unless another simulator has replaced it meanwhile.
   struct stat now {};
   if (fd_ && !path_.empty() && ::stat(path_.c_str(), &now) == 0 && now.st_ino == inode_)
     ::unlink(path_.c_str());
@@ -57,7 +57,7 @@ Listener Listener::local(const std::string& path) {
   Listener out;
   const sockaddr_un address = local_address(path);
   out.name_ = path;
-  // A simulator that was killed leaves its socket behind; one that lives answers.
+  // A killed simulator leaves its socket behind; a living one answers.
   const Fd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto* where = reinterpret_cast<const sockaddr*>(&address);
   struct stat there {};
@@ -106,14 +106,14 @@ Terminal::Terminal(std::string link) : link_(std::move(link)) {
       ::ptsname_r(master_.get(), device.data(), device.size()) != 0)
     fail("pseudo-terminal");
   device_ = device.data();
-  // A new one would send back what comes until its client has set it.
+  // A new terminal would echo until its client has configured it.
   termios settings{};
   ::tcgetattr(master_.get(), &settings);
   ::cfmakeraw(&settings);
   ::tcsetattr(master_.get(), TCSANOW, &settings);
-  // That nobody has it open is seen only after somebody had.
+  // A terminal reports its unused state only after a first use.
   const Fd once(::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));
-  // A simulator that was killed leaves its link behind.
+  // A killed simulator leaves its link behind.
   struct stat there {};
   if (::lstat(link_.c_str(), &there) == 0) {
     if (!S_ISLNK(there.st_mode))
@@ -126,7 +126,7 @@ Terminal::Terminal(std::string link) : link_(std::move(link)) {
 }
 
 Terminal::~Terminal() {
-  // Unless another simulator has put its own there meanwhile.
+  // Unless another simulator has replaced it meanwhile.
   std::array<char, 64> target{};
   const ssize_t size = ::readlink(link_.c_str(), target.data(), target.size() - 1);
   if (size > 0 && device_ == target.data())

@@ -8,7 +8,7 @@
 
 namespace saphira::sim {
 
-/// std::runtime_error with what errno says.
+/// std::runtime_error with the message of errno.
 [[noreturn]] void fail(const std::string& what);
 
 /// A file descriptor that is closed with its object.
@@ -32,8 +32,8 @@ class Fd {
   int fd_;
 };
 
-/// A socket that is listened on; a local one is removed at the end. std::runtime_error where it
-/// cannot be had.
+/// A listening socket; a local one is removed at the end. std::runtime_error where it cannot be
+/// opened.
 class Listener {
  public:
   static Listener local(const std::string& path);
@@ -46,7 +46,7 @@ class Listener {
 
   int fd() const { return fd_.get(); }
   const std::string& name() const { return name_; }
-  /// A client that has connected, not blocking; none where the descriptor is none.
+  /// A client that has connected, not blocking; none for an invalid descriptor.
   Fd accept() const;
 
  private:
@@ -58,9 +58,9 @@ class Listener {
   ino_t inode_ = 0;
 };
 
-/// A pseudo-terminal: what a client opens in place of a serial line. A symbolic link leads to it,
-/// and is removed at the end. As on a real line nobody is told that the client has gone, and what
-/// nobody reads is lost. std::runtime_error where it cannot be had.
+/// A pseudo-terminal, in place of a serial line. A symbolic link leads to it, and is removed at the
+/// end. As on a real line the client's end is not reported, and unread output is lost.
+/// std::runtime_error where it cannot be opened.
 class Terminal {
  public:
   explicit Terminal(std::string link);
@@ -69,11 +69,11 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   int fd() const { return master_.get(); }
-  /// The link, and the device that it leads to.
+  /// The link, and its device.
   std::string name() const { return link_ + " (" + device_ + ")"; }
   /// True where a client has it open.
   bool is_open() const;
-  /// Forgets what has been written to it and not been read.
+  /// Discards unread output.
   void forget() const;
 
  private:

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "world_check.hpp"
+
 namespace saphira::sim {
 
 namespace {
 
-constexpr double kMillimetre = 0.001;
-constexpr double kMax = 1e7;        // [mm]
 constexpr double kMostTime = 1e6;   // [s]
 constexpr double kMostLoss = 60.0;  // [dB]
 constexpr double kMostSpeed = 5e3;  // [mm/s]

@@ -9,7 +9,7 @@ namespace saphira::sim {
 
 namespace {
 
-// The heading servo is content within this.
+// The heading servo's tolerance.
 constexpr double kHeadingDeadband = 0.001;  // [rad]
 constexpr double kWayDeadband = 0.0005;     // [m]
 
@@ -19,23 +19,23 @@ constexpr double kGrip = 4.0;  // [m/s2]
 // The motors' short circuit.
 constexpr double kEmergencyDeceleration = 6.0;  // [m/s2]
 
-// The share of the wheels' way that the encoders still count where the robot cannot go.
+// The share of the wheels' way that the encoders still count while the robot is blocked.
 constexpr double kPushSlip = 0.2;
 
 constexpr int kPushes = 4;
 
-// Nearer things press a bumper.
+// Nearer objects press a bumper.
 constexpr double kBumperGap = 0.005;  // [m]
 
-// A lead-acid battery falls nearly evenly by this share of its voltage until it is empty, and by
-// that of the sag while the motors run.
+// A lead-acid battery's voltage falls nearly evenly by the first share until it is empty, and by
+// the second while the motors run.
 constexpr double kBatteryFall = 0.13;
 constexpr double kBatterySag = 0.01;
-// From full to empty at rest, and how much faster with the motors running.
+// From full to empty at rest, and the factor with the motors running.
 constexpr double kBatteryLife = 4.0 * 3600.0;  // [s]
 constexpr double kMotorLoad = 2.5;
 
-// How far from its hull the robot looks for what it might touch.
+// The distance from its hull at which the robot considers obstacles.
 constexpr double kLookout = 1.0;  // [m]
 
 // A contact is over when the hull is this far away.
@@ -45,14 +45,14 @@ constexpr double kContactEnds = 0.005;  // [m]
 constexpr double kLeastAcceleration = 0.001;         // [m/s2]
 constexpr double kLeastRotationAcceleration = 0.01;  // [rad/s2]
 
-// The falling side of a trapezoid: the largest speed from which, after one more tick at it, one can
-// still stop at the setpoint.
+// The falling side of a trapezoid: the largest speed from which, after one more tick at it, the
+// robot can still stop at the setpoint.
 double falling_speed(double left, double deceleration) {
   return deceleration * (std::sqrt(kTick * kTick + 2.0 * left / deceleration) - kTick);
 }
 
-// Towards the target: away from zero by `up`, towards zero by `down`, and not through zero within
-// one step.
+// Approaches the target: away from zero by `up`, towards zero by `down`, and not through zero
+// within one step.
 double approach(double value, double target, double up, double down) {
   if (value > 0.0 && target < value)
     return std::max({value - down, target, 0.0});
@@ -266,7 +266,7 @@ Robot::Motion Robot::next_motion() const {
   const double left = max_wheel_velocity_ - wheel_share(std::abs(next.turn));
   next.forward = approach(wheel_velocity_, std::clamp(target.forward, -left, left),
                           acceleration_ * kTick, deceleration * kTick);
-  // Where the robot does not slow down as fast as its turn speeds up, the turn waits.
+  // Where the robot slows down more slowly than its turn speeds up, the turn waits.
   const double most = (max_wheel_velocity_ - std::abs(next.forward)) * rotation_per_difference_;
   next.turn = std::clamp(next.turn, -most, most);
   return next;
@@ -289,7 +289,7 @@ void Robot::tick() {
     emergency_ = false;
 }
 
-// Things that the robot might touch.
+// The obstacles that the robot might touch.
 const Things& Robot::around() {
   const Vec2 at = pose_in_world_.position();
   around_.segments = near_.around(at);
@@ -298,8 +298,7 @@ const Things& Robot::around() {
   return around_;
 }
 
-// The part of a straight way that the robot can go before it touches; moving off from where it
-// touches is free.
+// The share of a straight way before a contact; the way out of a contact is free.
 double Robot::free_part(const Things& things, const Vec2& way, double& clearance_after) {
   const Vec2 at = pose_in_world_.position();
   const double now = distance(things, at) - radius_;
@@ -326,7 +325,7 @@ void Robot::move(double way, double turn) {
     const Vec2 at = pose_in_world_.position();
     double clearance_after = 0.0;
     double part = free_part(around(), way * along, clearance_after);
-    // A box that turns as it gives way may need another push.
+    // A box that turns under a push may need another push.
     bool pushed = false;
     for (int i = 0; i < kPushes && part < 1.0; ++i) {
       if (!scene_->push(number_, at + part * way * along, (1.0 - part) * way * along))

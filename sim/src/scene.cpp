@@ -9,24 +9,24 @@ namespace saphira::sim {
 
 namespace {
 
-// Nobody walks nearer to a robot than this, if it is he who walks.
+// A walking person keeps at least this distance from a robot.
 constexpr double kManners = 0.10;  // [m]
 
-// Somebody who has waited so long for the way to become free goes elsewhere [s].
+// The waiting time after which a person chooses another target [s].
 constexpr double kPatience = 4.0;
 
-// Somebody who leads a robot waits for it beyond this distance, from middle to middle.
+// A leading person waits for the robot beyond this distance, from middle to middle.
 constexpr double kLeash = 2.5;  // [m]
 
 constexpr double kDoorSpeed = kPi / 2.0;  // [rad/s]
 
-// A robot of the class that we have moves what does not hold faster than its own tyres.
+// A robot of this class cannot accelerate a lighter box beyond the grip of its own tyres.
 constexpr double kMostPushed = 10.0;  // [kg]
 
-// How much a box gives way beyond what it must, so that the next look finds it out of the way.
+// The additional displacement of a pushed box, so that it is out of the way at the next check.
 constexpr double kGiven = 1e-7;  // [m]
 
-// Ticks after which a sonar's sound has passed whoever could hear it: 14 m.
+// Ticks after which a sonar's sound has passed all listeners: 14 m.
 constexpr std::uint64_t kPingTicks = 4;
 
 // A person's legs at the height of a robot's sonars, and their pace.
@@ -34,7 +34,7 @@ constexpr double kShin = 0.06;   // [m] radius
 constexpr double kApart = 0.10;  // [m] from the person's middle, to each side
 constexpr double kStep = 0.30;   // [m] before the middle and behind it
 
-// Numbers of things as sonars know them, kind by kind.
+// Numbers of things for sonars, kind by kind.
 constexpr std::uint32_t kOfPersons = 1U << 24U;
 constexpr std::uint32_t kOfPosts = 2U << 24U;
 constexpr std::uint32_t kOfSegments = 3U << 24U;
@@ -56,7 +56,7 @@ std::array<Shin, 2> shins(const Person& person) {
   for (std::size_t i = 0; i < 2; ++i) {
     double ahead = 0.0;
     if (person.way > 0.0) {
-      // While a foot stands the middle passes over it; then it overtakes the middle.
+      // While a foot stands, the middle passes over it; then the foot overtakes the middle.
       const double pace = person.way / (4.0 * kStep) + 0.25 + 0.5 * static_cast<double>(i);
       const double part = pace - std::floor(pace);
       pair[i].swings = part >= 0.5;
@@ -135,7 +135,7 @@ Robot& Scene::add_robot(const protocol::RobotParameters& parameters, const Pose&
 
 void Scene::tick() {
   ++ticks_;
-  // In order of time: the oldest go first.
+  // In order of time: the oldest are dropped first.
   const auto fresh = std::find_if(pings_.begin(), pings_.end(), [this](const Ping& ping) {
     return ping.tick + kPingTicks > ticks_;
   });
@@ -254,7 +254,7 @@ bool Scene::has_robot_within(double reach, const Vec2& point) const {
                      [&](std::uint32_t i) { return (hulls_[i].centre - point).norm() <= reach; });
 }
 
-// True where nothing is in his way that was not already behind him.
+// True where his way is free, apart from obstacles that were behind him.
 bool Scene::lets_pass(const Person& person, const Vec2& to) {
   const double radius = person.plan->radius;
   for (const std::uint32_t i : hulls_near_.near(to, radius + widest_hull_ + kManners)) {
@@ -364,9 +364,8 @@ bool Scene::push(RobotNumber number, const Vec2& centre, const Vec2& way) {
   const double depth = way.dot(normal);
   if (depth <= 0.0)
     return false;
-  // A box that is pushed slowly moves as the friction beneath it has it: with an ellipsoidal limit
-  // surface, a force along the normal gives a motion along it and a turn in proportion to its
-  // lever.
+  // A slowly pushed box moves by its floor friction: with an ellipsoidal limit surface, a force
+  // along the normal gives a motion along it and a turn in proportion to its lever.
   const double lever = cross(contact - box.pose_in_world.position(), normal);
   const double size =
       (box.plan->length * box.plan->length + box.plan->width * box.plan->width) / 12.0;

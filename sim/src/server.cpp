@@ -11,7 +11,7 @@ using namespace protocol;
 
 namespace {
 
-// A packet's bytes come within a few milliseconds of each other on any line that we serve.
+// A packet's bytes come within a few milliseconds of each other on every supported line.
 constexpr int kGapTicks = 5;
 
 constexpr int kSonarsInArray = 8;
@@ -136,8 +136,8 @@ void Server::handle(const Bytes& body) {
   act(decode_command(body, parameters_.vel2_unit));
 }
 
-// The dialogue of manual 5.4.1, in which 0, 1 and 2 are SYNC packets. An echo may get lost on the
-// way, so a packet that comes again is echoed again; SYNC0 begins anew at any time before OPEN.
+// The dialogue of manual 5.4.1, in which 0, 1 and 2 are SYNC packets. An echo may get lost, so a
+// repeated packet is echoed again; SYNC0 begins anew at any time before OPEN.
 bool Server::synchronize(const Bytes& body) {
   const auto number = sync_number(body);
   if (!number)
@@ -215,10 +215,10 @@ void Server::act(const Command& command) {
     ++counters_.unsupported_commands;
 }
 
-// The commands that move the robot or say how it moves; whether this was one that it has.
+// The commands that move the robot or set its motion; true for one that the robot has.
 bool Server::drive(const Command& command) {
   const RobotParameters& p = parameters_;
-  // A robot that nobody has opened does not move.
+  // Without a client the robot does not move.
   Robot* robot = is_open() ? &robot_ : nullptr;
   const auto move = [this, robot](const auto& how) {
     emergency_ = false;
@@ -378,7 +378,7 @@ SimStatusPacket Server::sim_status() const {
 
 void Server::open() {
   if (is_open())
-    return;  // some clients say it again and again
+    return;  // some clients repeat it
   state_ = State::kOpen;
   cycle_ = 0;
   phase_ = 0;
@@ -402,7 +402,7 @@ void Server::close() {
   vision_.disconnect();
   sim_status_with_each_ = false;
   emergency_ = false;
-  // Nobody will say STEP any more: the robot comes to rest now.
+  // No further STEP will come: the robot comes to rest now.
   step_asked_ = false;
   rest_asked_ = single_step_;
   while (options_.keeps_time && rest_asked())
@@ -494,7 +494,7 @@ InformationPacket Server::information() const {
   return packet;
 }
 
-// Further contents of the packets of P2OS and ARCOS.
+// The additional fields of P2OS and ARCOS packets.
 void Server::add_later_fields(InformationPacket& packet) const {
   const RobotParameters& p = parameters_;
   const unsigned front = robot_.bumpers(p.front_bumpers, false);

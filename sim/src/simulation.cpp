@@ -51,7 +51,7 @@ bool Simulation::step_due() const {
   return any;
 }
 
-// Time that passes because of what clients have said.
+// Advances time after the clients' commands.
 void Simulation::settle() {
   while (true) {
     bool open = false;

@@ -9,8 +9,8 @@ namespace saphira::sim {
 
 namespace {
 
-// The farthest that a transducer stands from the middle of a robot: the loader's limit is more, but
-// then only a few segments more are looked at.
+// The greatest distance of a transducer from the middle of a robot: the loader's limit is larger,
+// but then only a few more segments are checked.
 double farthest(const std::vector<protocol::SonarUnit>& units) {
   double far = 0.0;
   for (const auto& unit : units)
@@ -18,15 +18,15 @@ double farthest(const std::vector<protocol::SonarUnit>& units) {
   return far;
 }
 
-// A surface nearer than this before a thing hides it [m]: not its own sides.
+// A surface this near before an object does not hide it [m]: it is the object's own side.
 constexpr double kBefore = 0.01;
 
-// A random change of the strength of an echo stays for so long.
+// The duration of a random change of an echo's strength.
 constexpr double kLuckLasts = 0.3;  // [s]
-// More standard deviations than matter.
+// More standard deviations than can matter.
 constexpr double kSure = 4.0;
 
-// Numbers of what stands fast, beyond those of what moves (Surface::id). Narrow sides of furniture
+// Numbers of fixed objects, beyond those of moving ones (Surface::id). Narrow sides of furniture
 // share one.
 constexpr std::uint32_t kOfCorners = 4U << 24U;
 constexpr Surface kWall{0.0, false, 5U << 24U};
@@ -36,7 +36,7 @@ SonarModel with_range(SonarModel model, double range) {
   return model;
 }
 
-// Farther off the axis nothing is heard.
+// Farther off the axis there is no echo.
 double widest_cosine(const SonarModel& model) {
   const double most = model.strength + kSure * std::max(model.spread, model.soft_spread);
   double angle = 0.0;
@@ -45,7 +45,7 @@ double widest_cosine(const SonarModel& model) {
   return std::max(0.0, std::cos(angle));
 }
 
-// True where it is so narrow that it scatters sound more than it mirrors it.
+// True where the segment is so narrow that it scatters sound more than it reflects it.
 bool is_strip(double squared_width, double range) {
   return squared_width < kWavelength * range;
 }
@@ -118,7 +118,7 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   Firing firing{number, at.position(), at.direction(), 0.0, std::nullopt};
   ++firings_;
   scene_->sound({self_, scene_->ticks(), firing.origin, firing.ahead});
-  // Always the same draws, so that one reading's fate does not shift those of the next.
+  // Always the same number of draws, so that one reading does not shift those of the next.
   const bool dropped = random_.chance(model_.dropout);
   const bool rough = random_.chance(model_.roughness);
   firing.aside = random_.uniform();
@@ -148,7 +148,7 @@ SonarEcho Sonars::fire(std::uint8_t number, const Pose& robot_in_world) {
   return {number, std::max(range, model_.min_range)};
 }
 
-// Things before the sonar and near enough.
+// Objects before the sonar and within range.
 void Sonars::gather(const Vec2& robot, const Firing& firing) {
   in_beam_.things.segments.clear();
   in_beam_.things.discs.clear();
@@ -269,7 +269,7 @@ void Sonars::hear(const Vec2& way, double range, const Surface& surface, Firing&
   double margin = model_.strength - shape() - surface.loss - way_loss(range) -
                   2.0 * beam_loss(std::acos(std::min(1.0, cosine)));
   const double spread = surface.loss > 0.0 ? model_.soft_spread : model_.spread;
-  // A leg that swings is mostly tilted away.
+  // A swinging leg is mostly tilted away.
   if (surface.swings)
     margin = std::min(margin, 0.0);
   if (margin < -kSure * spread)
@@ -293,16 +293,16 @@ bool Sonars::in_direct_cone(const Firing& firing, const Vec2& way) const {
   return along >= 0.0 && along * along >= direct_cosine_ * direct_cosine_ * way.squaredNorm();
 }
 
-// The sound of other robots comes straight, so it is loud, and from half as far as it seems.
+// The sound of other robots comes directly, so it is loud, and from half its apparent distance.
 void Sonars::hear_others(Firing& firing) const {
   for (const Ping& ping : scene_->pings()) {
     const Vec2 way = ping.origin - firing.origin;
-    // Most look elsewhere: the cheapest question first.
+    // Most sonars look elsewhere: the cheapest test first.
     if (way.dot(ping.ahead) >= 0.0 || way.dot(firing.ahead) < 0.0 || ping.robot == self_ ||
         !in_direct_cone(firing, way))
       continue;
     const double apart = way.norm();
-    // How far the sound was on its way when this sonar began to listen.
+    // The way of the sound before this sonar began to listen.
     const double gone = static_cast<double>(scene_->ticks() - ping.tick) * kTick * kSound;
     const double range = (apart - gone) / 2.0;
     if (range < model_.min_range || range >= firing.nearest.value_or(model_.max_range) ||

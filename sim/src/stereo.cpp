@@ -9,16 +9,16 @@ namespace saphira::sim {
 
 namespace {
 
-// Of a grey of 0 to 255. Real walls are plainer than this; a census window needs something to hold
-// on to, and gets it from plaster, posters and shelves there.
-constexpr double kWall = 170.0;
+// On a grey scale of 0 to 255. Real walls are plainer; a census window needs texture, which real
+// rooms have from plaster, posters and shelves.
+constexpr double kWallGrey = 170.0;
 constexpr double kFloor = 110.0;
 constexpr double kCeiling = 215.0;
 constexpr double kTexture = 45.0;
 constexpr double kFar = 128.0;
 constexpr double kRobotHeight = 0.3;  // [m] no robot of ours is much higher
-// Of a person: where the head begins, as a share of the height; its radius, as one of the body's;
-// where the trousers end.
+// Of a person: the beginning of the head, as a share of the height; its radius, as a share of the
+// body's; the end of the trousers.
 constexpr double kShoulder = 0.83;
 constexpr double kHead = 0.42;
 constexpr double kBelt = 0.52;
@@ -35,7 +35,7 @@ std::int32_t floor_of(double value) {
   return value < whole ? whole - 1 : whole;
 }
 
-// Values between -1 and 1 on a lattice of the unit, straight lines between.
+// Values between -1 and 1 on a unit lattice, linear between.
 double lattice(double u, double v, std::uint32_t seed) {
   const std::int32_t fu = floor_of(u);
   const std::int32_t fv = floor_of(v);
@@ -50,11 +50,11 @@ double lattice(double u, double v, std::uint32_t seed) {
          (value(0, 1) * (1.0 - a) + value(1, 1) * a) * b;
 }
 
-// Which details of a texture a pixel shows that covers so much of it: of two pixels and more. Finer
-// ones are left out, for they would differ from one camera to the other.
+// The visible details of a texture for a pixel of this size: those of two pixels and more. Finer
+// ones are left out, since they would differ between the cameras.
 struct Detail {
   double scale = 100.0;  // [1/m] of the finest: 1 cm, or its double, ...
-  double fade = 1.0;     // how much of it
+  double fade = 1.0;     // its share
   std::uint32_t octave = 0;
 
   static Detail of(double pixel) {
@@ -74,7 +74,7 @@ double texture(double u, double v, std::uint32_t seed, const Detail& detail) {
          1.6;
 }
 
-// An upright face of something, from low to high.
+// An upright face of an object, from low to high.
 struct Face {
   bool round = false;
   Segment segment;
@@ -82,20 +82,20 @@ struct Face {
   double low = 0.0;   // [m]
   double high = 0.0;  // [m]
   double grey = 0.0;  // 0 to 255
-  double belt = 0.0;  // [m] below that it is darker
+  double belt = 0.0;  // [m] below it the face is darker
   std::uint32_t seed = 0;
-  int thing = 0;        // faces of one thing stand around it
-  double turned = 0.0;  // [rad] how a round one is
+  int thing = 0;        // number of the object that the face surrounds
+  double turned = 0.0;  // [rad] rotation of a round one
 };
 
-// Where a column's plane meets a face.
+// The intersection of a column's plane with a face.
 struct Meeting {
   double depth = 0.0;  // [m] along the axis
   double u = 0.0;      // [m] along the face
   double light = 0.0;  // from a window far away
   Detail detail;
   const Face* face = nullptr;
-  bool leaves = false;  // the thing: what is seen below its top is its lid
+  bool leaves = false;  // the object ends here: below its top the lid is visible
 };
 
 class Faces {
@@ -104,7 +104,7 @@ class Faces {
       : eye_(eye), range_(rig.range), pixel_(1.0 / rig.focal()) {
     std::uint32_t seed = 1;
     for (const Segment& segment : scene.world().segments)
-      add(segment, kWallHeight, kWall, seed++, ++things_);
+      add(segment, kWallHeight, kWallGrey, seed++, ++things_);
     for (const Door& door : scene.doors())
       add(scene.leaf(door), door.plan->look.height, 120.0, seed++, ++things_);
     for (const Box& box : scene.boxes()) {
@@ -132,7 +132,7 @@ class Faces {
     }
   }
 
-  // All that a column meets, the nearest first. `way` is as long as it goes aside for a depth of 1.
+  // All intersections of a column, the nearest first. `way` has depth 1.
   void meet(const Vec2& way, std::vector<Meeting>& meetings) const {
     meetings.clear();
     for (const Face& face : faces_)
@@ -221,12 +221,12 @@ class Faces {
 
   Vec2 eye_;
   double range_;
-  double pixel_;  // [m] what one covers at a depth of 1 m
+  double pixel_;  // [m] width of a pixel at a depth of 1 m
   std::vector<Face> faces_;
   int things_ = 0;
 };
 
-// The part of a row that all columns share: where it meets the floor or the ceiling.
+// The part of a row common to all columns: its intersection with the floor or the ceiling.
 struct Row {
   double slope = 0.0;  // [m] upward for each of depth
   double depth = 0.0;  // [m]
@@ -280,7 +280,7 @@ GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, do
   const Faces faces(scene, robot, middle.position() + aside * left, rig);
   const std::vector<Row> rows = rows_of(rig);
   const double focal = rig.focal();
-  // Two even draws make a triangle with this half width.
+  // The sum of two uniform draws is triangular with this half width.
   const double spread = rig.noise * std::sqrt(6.0);
   GreyImage image{rig.columns, rig.rows, {}};
   image.pixels.resize(static_cast<std::size_t>(rig.columns) * static_cast<std::size_t>(rig.rows));

@@ -34,7 +34,7 @@ void StereoFeed::add_to(std::vector<pollfd>& fds) const {
 
 // False where the viewer has gone.
 bool StereoFeed::send(Viewer& viewer) {
-  // Bytes of viewers are of no interest, but their end is.
+  // Bytes from viewers are ignored, but their end is not.
   std::array<char, 256> said{};
   const ssize_t heard = ::recv(viewer.fd.get(), said.data(), said.size(), MSG_DONTWAIT);
   if (heard == 0 || (heard < 0 && errno != EAGAIN && errno != EINTR))

@@ -13,19 +13,18 @@
 
 namespace saphira::sim {
 
-/// The pictures of a robot's stereo cameras for whoever wants them, one pair a cycle: PGM after PGM
-/// on a local socket, to any number of clients, or a file each in a folder. The noise of a picture
-/// depends on the seed and the cycle alone, so that nobody sees another one because somebody else
-/// looks.
+/// The pictures of a robot's stereo cameras, one pair a cycle: PGM after PGM on a local socket, to
+/// any number of clients, or a file each in a folder. The noise of a picture depends on the seed
+/// and the cycle alone, so that further viewers do not change the pictures.
 class StereoFeed {
  public:
-  /// An empty folder: none. It is made where it is missing.
+  /// An empty folder: none. A missing folder is created.
   StereoFeed(std::string folder, const std::optional<std::string>& socket, std::uint64_t seed);
 
   void add_to(std::vector<pollfd>& fds) const;
-  /// Takes on who has come, sends on what waits, and the picture of `cycle` where it is a new one.
-  /// A viewer with so many waiting does not get it. Where more than one may wait,
-  /// who comes later gets the pictures before as well.
+  /// Takes new viewers, sends queued pictures, and adds the picture of `cycle` where it is new. A
+  /// viewer with a full queue does not get it. Where the queue may hold more than one, a late
+  /// viewer gets the earlier pictures as well.
   void serve(const Scene& scene, RobotNumber robot, std::uint64_t cycle, std::size_t waiting);
 
  private:

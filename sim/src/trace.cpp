@@ -16,7 +16,7 @@ constexpr std::size_t kColumns = 11;
 
 constexpr int kRowsBetweenOutlines = 50;  // of a picture: 5 s
 
-// A number of a trace: unlike the numbers that people write it may be nan or inf.
+// A number of a trace: unlike numbers in people's files it may be nan or inf.
 double trace_number(std::string_view text, const std::string& file, int line, int column,
                     std::string_view whole) {
   double value = 0.0;

@@ -39,7 +39,7 @@ std::string name_in(const Json& object, const char* name, bool may_miss = false)
   if (may_miss && !object.contains(name))
     return {};
   const Json& value = member(object, name);
-  // A name of what is shipped is no path: whoever may move the robot may not read files.
+  // A shipped name is no path: a person who may move the robot may not read files.
   if (!value.is_string() || value.get_ref<const std::string&>().size() > 100 ||
       value.get_ref<const std::string&>().find('/') != std::string::npos)
     throw std::invalid_argument(std::string("\"") + name + "\": expected a name");

@@ -9,8 +9,8 @@ namespace saphira::sim {
 namespace {
 
 constexpr std::size_t kMostViewers = 16;
-constexpr std::size_t kLongest = 4096;         // of a line that comes
-constexpr std::size_t kMostWaiting = 1 << 20;  // [bytes] that somebody has not taken
+constexpr std::size_t kLongest = 4096;         // of an incoming line
+constexpr std::size_t kMostWaiting = 1 << 20;  // [bytes] that a viewer has not read
 
 }  // namespace
 

@@ -10,18 +10,18 @@
 
 namespace saphira::sim {
 
-/// The view's local socket: lines to and from any number of viewers. Whoever does not read misses
-/// pictures and holds up nobody.
+/// The view's local socket: lines to and from any number of viewers. A viewer that does not read
+/// misses pictures, and delays nobody.
 class ViewFeed {
  public:
   explicit ViewFeed(const std::string& path) : listener_(Listener::local(path)) {}
 
   void add_to(std::vector<pollfd>& fds) const;
   bool watched() const { return !viewers_.empty(); }
-  /// Takes on who has come, whom it tells `world`, and hands on what viewers say, line by line;
-  /// what `obey` returns is told to who has said it. True where there was anything.
+  /// Takes new viewers and sends them `world`; passes the viewers' lines to `obey`, whose result
+  /// goes back to the sender. True where there was any input.
   bool serve(const std::string& world, const std::function<std::string(const std::string&)>& obey);
-  /// To each viewer who has taken what came before; `must`: to the others too.
+  /// Sends to each viewer that has read the earlier lines; `must`: to the others too.
   void tell(const std::string& line, bool must);
 
  private:

@@ -8,7 +8,7 @@ namespace saphira::sim {
 
 namespace {
 
-// Something that stands on the floor, as a viewer meets it in one direction.
+// An object on the floor, in one direction of view.
 struct Layer {
   double range = 0.0;   // [m]
   double height = 0.0;  // [m] of its top
@@ -39,7 +39,7 @@ class View {
             kNoColor);
   }
 
-  /// All that is met in a direction, the nearest first, as far as a wall.
+  /// All objects in a direction, the nearest first, up to a wall.
   const std::vector<Layer>& along(const Vec2& direction) {
     layers_.clear();
     for (const auto& [segment, layer] : segments_) {
@@ -58,7 +58,7 @@ class View {
   }
 
  private:
-  // No robot of ours is much higher.
+  // No robot of this project is much higher.
   static constexpr double kRobotHeight = 0.3;
 
   void add(const Segment& segment, double height, const std::string& color) {
@@ -116,7 +116,7 @@ std::optional<Blob> see_blob(const Scene& scene, RobotNumber robot, const Camera
   for (int column = 0; column < camera.columns; ++column) {
     const int x = column - camera.columns / 2;
     const double th = eye.th - (x + 0.5) * camera.pixel;
-    int hidden = -half;  // rows below this are hidden by what is nearer
+    int hidden = -half;  // rows below this are hidden by nearer objects
     std::vector<Strip> strips;
     for (const Layer& layer : view.along({std::cos(th), std::sin(th)})) {
       const int low = std::max(hidden, row(0.0, layer.range));
@@ -154,7 +154,7 @@ std::optional<Blob> see_blob(const Scene& scene, RobotNumber robot, const Camera
 std::array<RangeBand, 3> see_bands(const Scene& scene, RobotNumber robot,
                                    const StereoCamera& camera, Random& random) {
   const Pose eye = compose(scene.robot(robot).pose_in_world(), camera.pose_in_robot);
-  // From there on the disparity is nothing.
+  // Beyond this range the disparity is too small.
   const double range = camera.baseline / camera.disparity;
   View view(scene, robot, eye.position(), range);
   std::array<RangeBand, 3> bands;
@@ -165,7 +165,7 @@ std::array<RangeBand, 3> see_bands(const Scene& scene, RobotNumber robot,
     const Vec2 direction(std::cos(eye.th + bearing), std::sin(eye.th + bearing));
     const std::vector<Layer>& layers = view.along(direction);
     for (std::size_t band = 0; band < bands.size(); ++band) {
-      // Always the same draws, so that what one column meets does not shift the next one's.
+      // Always the same draws, so that one column does not shift the next one's.
       const bool matched = !random.chance(camera.dropout);
       const double noise = random.normal();
       const auto first = std::find_if(layers.begin(), layers.end(), [&](const Layer& layer) {

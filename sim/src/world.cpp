@@ -12,11 +12,9 @@ namespace saphira::sim {
 
 namespace {
 
-constexpr double kMillimetre = 0.001;
-constexpr double kMax = 1e7;  // [mm] 10 km: more is a slip of the pen
 constexpr std::size_t kMaxNesting = 100;
 
-// How far the point may move before the neighbourhood is gathered again.
+// The motion of the point after which the neighbourhood is collected again.
 constexpr double kSlack = 1.0;  // [m]
 
 class Parser {
@@ -113,7 +111,7 @@ class Parser {
     }
   }
 
-  // The claim of the directive that has been read; nothing where it cannot be wrong.
+  // The check for the last directive; nothing where it needs none.
   Trouble trouble_of(std::string_view word) const {
     const MovablePlans& plans = movable_.plans();
     if (word == "robot")
@@ -173,7 +171,7 @@ class Parser {
         {transform(frames_.back(), {x1, y1}), transform(frames_.back(), {x2, y2})});
   }
 
-  std::string file_;  // that is being read
+  std::string file_;  // the present file
   World world_;
   MovableReader movable_;
   std::vector<Claim> claims_;         // in the order of their lines
@@ -270,8 +268,8 @@ std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& or
     const Vec2 along = segment.to - segment.from;
     const Vec2 to_from = segment.from - origin;
     const double cross = direction.x() * along.y() - direction.y() * along.x();
-    // Where on the segment (0 to 1 times cross) and how far on the ray, both still times cross:
-    // most segments are ruled out before the division.
+    // The place on the segment (0 to 1 times cross) and on the ray, both still times cross: most
+    // segments are excluded before the division.
     const double on_segment = to_from.x() * direction.y() - to_from.y() * direction.x();
     const double on_ray = to_from.x() * along.y() - to_from.y() * along.x();
     if (cross > 0.0) {

@@ -9,7 +9,7 @@ namespace saphira::sim {
 
 namespace {
 
-// Nothing stands nearer to a wall than half of it is thick.
+// The least distance from a wall: half of its thickness.
 constexpr double kInWall = 0.02;  // [m]
 // A door's hinge and its latch are in walls.
 constexpr double kFrame = 0.05;  // [m]
@@ -36,7 +36,7 @@ std::optional<std::string> outside(const World& world, const Vec2& point) {
          metres(point);
 }
 
-// A place where somebody stands, or goes to.
+// The place of a person, or of a person's target.
 std::optional<std::string> trouble_of_place(const World& world, const Vec2& point) {
   if (const auto trouble = outside(world, point))
     return trouble;

@@ -21,7 +21,7 @@ TEST(Acoustics, TheGainMakesUpForThreeMetres) {
   EXPECT_NEAR(way_loss(5.0), 20.0 * std::log10(5.0 / 3.0) + 6.6, 1e-9);
 }
 
-// The rest of 40 dB on the axis, of rods and bins from 0.3 m and from 3 m away.
+// The remaining margin of 40 dB on the axis, of rods and bins at 0.3 m and at 3 m.
 TEST(Acoustics, RoundThingsScatter) {
   EXPECT_NEAR(40.0 - round_loss(0.015, 0.3), 27.0, 0.5);
   EXPECT_NEAR(40.0 - round_loss(0.015, 3.0), 17.0, 0.5);

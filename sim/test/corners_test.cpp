@@ -51,7 +51,7 @@ TEST(Corners, AnAttachedPartitionMakesCornersOnItsOwnSide) {
   EXPECT_EQ(shape_from(*foot, {-0.1, -1.0}), CornerShape::kNone);
 }
 
-// Only a square one sends sound back to where it comes from.
+// Only a square one reflects sound back to its source.
 TEST(Corners, AnAskewInnerCornerIsNoMirror) {
   const auto corners = find_corners({{{0.0, 0.0}, {1.0, 0.0}}, {{0.0, 0.0}, {0.1, 1.0}}});
   ASSERT_NE(at(corners, {0.0, 0.0}), nullptr);

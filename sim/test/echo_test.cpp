@@ -41,7 +41,8 @@ std::string post(double x, double y, double radius) {
          std::to_string(1000.0 * radius) + " ";
 }
 
-// The largest whole degree off the axis at which a post is heard whose surface is so far away.
+// The largest whole degree off the axis at which a post is heard, with its surface at this
+// distance.
 int widest(double radius, double gap, double strength, const std::string& more) {
   const World world = world_with(post(10.0 + gap + radius, 10.0, radius) + more);
   Scene scene(world);
@@ -64,7 +65,7 @@ TEST(Echo, PostsAreHeardWithinTheMainLobe) {
   EXPECT_EQ(widest(0.015, 1.0, 16.0, ""), -1);
 }
 
-// Between two sonars of a P3 ring, straight ahead, nothing thin is heard, however near.
+// Between two sonars of a P3 ring, straight ahead, no thin object is heard at any distance.
 TEST(Echo, StraightAheadOfAP3IsASlot) {
   const RobotParameters parameters = p3dx();
   const auto first_heard = [&](double aside, double strength) {
@@ -83,8 +84,8 @@ TEST(Echo, StraightAheadOfAP3IsASlot) {
   EXPECT_GT(first_heard(-0.15, 40.0), 2.5);
 }
 
-// A person who stands is two legs: heard more and more as the robot comes near, but from far away
-// by chance only.
+// A standing person is two legs: heard more and more as the robot comes near, but at a distance
+// only by chance.
 TEST(Echo, APersonIsTwoLegs) {
   const RobotParameters parameters = p3dx();
   const World world = world_with("person ann 10000 10000");
@@ -137,7 +138,7 @@ TEST(Echo, ChanceLastsForAThirdOfASecond) {
   }
   EXPECT_GT(heard, kFirings / 4);
   EXPECT_LT(heard, 3 * kFirings / 4);
-  // Anew every 7.5 firings, and then half of the time the other way.
+  // New every 7.5 firings, and then with the other result half of the time.
   EXPECT_LT(changes, kFirings / 7.5 * 0.6);
   EXPECT_GT(changes, kFirings / 7.5 * 0.3);
 }
@@ -186,7 +187,7 @@ TEST(Echo, WhoWalksHasALegThatAnswersHalfOfTheTime) {
 }
 
 TEST(Echo, WhatStandsNearerHidesWhatStandsBehind) {
-  // A soft post that is not heard, before a wall.
+  // An unheard soft post before a wall.
   const World world = world_with(post(11.0, 10.0, 0.2) + "cloth 60  12000 5000 12000 15000");
   Scene scene(world);
   Sonars sonars(scene, kNobody, one_sonar(), exact(), 1);

@@ -36,7 +36,7 @@ using protocol::Bytes;
 
 using test::source;
 
-// Generous: only a failure takes so long.
+// Generous: only a failure takes this long.
 constexpr auto kLimit = 20s;
 
 template <class Condition>
@@ -196,7 +196,7 @@ TEST_F(HostTest, ServesLive) {
   EXPECT_FALSE(std::filesystem::exists(*options_.socket));
 }
 
-// As a bridge opens a serial line, goes, and comes back.
+// As a bridge opens a serial line, leaves, and returns.
 TEST_F(HostTest, ServesATerminal) {
   options_.socket.reset();
   options_.terminal = directory_ + "/tty";
@@ -220,7 +220,7 @@ TEST_F(HostTest, ServesATerminal) {
         return false;
       });
     };
-    EXPECT_TRUE(link.write(encode(protocol::Close{}), now()));  // whoever spoke before
+    EXPECT_TRUE(link.write(encode(protocol::Close{}), now()));  // after any earlier client
     for (int i = 0; i < 3; ++i) {
       EXPECT_TRUE(link.write(protocol::encode_sync(i), now()));
       EXPECT_TRUE(hear([&](const Bytes& body) { return protocol::sync_number(body) == i; })) << i;
@@ -403,8 +403,8 @@ TEST_F(HostTest, RefusesWhatItCannotServe) {
   EXPECT_NE(message(options_).find("another simulator"), std::string::npos);
 }
 
-// A client that sends nothing more than it must: what is measured is that time does not wait, and
-// that it does not run away from a client either.
+// A client that sends only necessary packets: time must not wait, and must not run away from a
+// client either.
 TEST_F(HostTest, RunsAsFastAsItsClientReads) {
   options_.rate = kMaxRate;
   options_.trace.clear();
@@ -517,7 +517,7 @@ TEST_F(HostTest, ShowsWhatTheStereoCamerasSee) {
     EXPECT_NE(picture, last);
     last = picture;
   }
-  // In single step who comes late has missed nothing.
+  // In single step a late viewer has missed nothing.
   const int late = look();
   for (int cycle = 1; cycle <= 3; ++cycle)
     EXPECT_EQ(next_picture(late),
@@ -549,7 +549,7 @@ TEST_F(HostTest, WritesDownWhatIsAgainstTheTables) {
     client.send({0x55});
     client.send(encode(protocol::Step{}));
     client.information();
-    // At once, and not when it goes.
+    // At once, not at the end of the connection.
     EXPECT_NE(read_file(*options_.check).find("violation: 1 bytes that belong to no packet"),
               std::string::npos);
   }

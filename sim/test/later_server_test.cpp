@@ -1,4 +1,4 @@
-// The simulator as a robot of the generations since the manual: P2OS and ARCOS.
+// The simulator as a robot of later generations: P2OS and ARCOS.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using protocol::ServerPacket;
 
 using test::source;
 
-// A robot of some file in an empty square of 20 m, and its client.
+// A robot of a given file in an empty square of 20 m, and its client.
 class Bench {
  public:
   explicit Bench(const std::string& robot)
@@ -36,7 +36,7 @@ class Bench {
     packets();
   }
   void send(const Command& command) { server_.receive(protocol::encode(command, parameters_)); }
-  /// As long as that, with a pulse now and then.
+  /// Advances the time, with a pulse at intervals.
   void advance(double seconds) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds * 10.0)); ++i) {
       send(protocol::Pulse{});
@@ -50,7 +50,7 @@ class Bench {
       out.push_back(protocol::decode_packet(*body));
     return out;
   }
-  /// The newest one of a kind since the last call, and how many there were.
+  /// The newest packet of a kind since the last call, and their number.
   template <class Packet>
   Packet last(int* count = nullptr) {
     Packet found{};
@@ -331,7 +331,7 @@ TEST(FastTrackTest, SendsWhatTheCameraSees) {
   EXPECT_TRUE(seen(3).empty());
 }
 
-// MobileSim's and the old simulator's commands for where the robot really is.
+// MobileSim's and the old simulator's commands for the true pose of the robot.
 TEST(LaterServer, AHandPutsTheRobotElsewhere) {
   Bench b("p3dx-sh");
   b.open();

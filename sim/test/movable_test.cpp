@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenLine{"box b 5000 1000 0 600 500 5 4000 1000 6000 1100", 1, "in no wall"},
         BrokenLine{"post p 5000 50 100", 1, "in no wall"}));
 
-// Against a wall, through a door that is shut, and where the walls of furniture are is all right.
+// Valid: against a wall, through a closed door, and in the walls of furniture.
 TEST(Movable, WhatStandsCloseIsNotRefused) {
   EXPECT_NO_THROW(world("post p 5000 100 100  box b 5000 1050 0 500 500 5  4000 800 6000 800"));
   EXPECT_NO_THROW(

@@ -28,7 +28,7 @@ void run(Robot& robot, int ticks) {
     robot.tick();
 }
 
-// Manual 5.5: constant acceleration to the speed that was set.
+// Manual 5.5: constant acceleration to the set speed.
 TEST(Robot, AcceleratesAtAConstantRate) {
   const World world = empty();
   RobotParameters parameters;  // 0.5 m/s2, 2 m/s2, at most 0.4 m/s
@@ -205,7 +205,7 @@ TEST(Robot, TheWheelsLimitChangesNothingThatItDoesNotReach) {
   EXPECT_EQ(robot.pose_in_odom(), other.pose_in_odom());
 }
 
-// Something that a client may say; whether it was an emergency stop.
+// A random command of a client; true for an emergency stop.
 bool command_at_random(Robot& robot, const RobotParameters& p, Random& random) {
   const double v = random.uniform(-1.5, 1.5) * p.max_velocity;
   const double w = random.uniform(-1.5, 1.5) * p.max_rotation_velocity;
@@ -371,7 +371,7 @@ TEST(Robot, SettingTheOriginKeepsTheDirectionThatWasSet) {
   EXPECT_NEAR(robot.pose_in_world().th, 1.0, 0.003);
 }
 
-// Manual Table 3-1 as robot.hpp reads it, over 400 robots; the bounds are four standard errors.
+// Manual Table 3-1 as defined in robot.hpp, over 400 robots; the bounds are four standard errors.
 TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
   const World world = empty();
   RobotParameters parameters;
@@ -408,8 +408,9 @@ TEST(Robot, ErrorsOfDeadReckoningAreThoseOfTheParameters) {
   EXPECT_NEAR(left, kRobots / 2, 40);
 }
 
-// Table 3-1 with the Pioneer's values, as a person would measure it: 10 m by dead reckoning, and
-// one revolution by dead reckoning, against the truth. The figures are those of sim/README.md.
+// Table 3-1 with the Pioneer's values, as a person would measure them: 10 m by dead reckoning, and
+// one revolution by dead reckoning, against the true motion. The figures are those of
+// sim/README.md.
 TEST(Robot, TenMetresAndOneRevolution) {
   const World world = empty();
   RobotParameters parameters;
@@ -435,7 +436,7 @@ TEST(Robot, TenMetresAndOneRevolution) {
     along += robot.pose_in_world().x - 60.0;
     along_squares += std::pow(robot.pose_in_world().x - 60.0, 2);
     aside += std::abs(robot.pose_in_world().y - 50.0);
-    // The heading servo holds what dead reckoning takes for straight on, within its deadband.
+    // The heading servo holds straight on by dead reckoning, within its deadband.
     heading += std::abs(robot.pose_in_world().th);
     const double before = norm2_angle(robot.pose_in_world().th - robot.pose_in_odom().th);
     for (const double target : {120.0, 240.0, 360.0}) {
@@ -522,7 +523,7 @@ TEST(Robot, WheelsSlipInAnEmergencyStop) {
   robot.emergency_stop();
   run(robot, 100);
   EXPECT_FALSE(robot.moving());
-  // v^2 / 2a, by what the motors do and by what the floor holds.
+  // v^2 / 2a, by the motors and by the grip.
   EXPECT_NEAR(robot.pose_in_world().x - from, 0.5, 0.02);
   EXPECT_NEAR(robot.pose_in_odom().x - from, 4.0 / 12.0, 0.02);
 }

@@ -70,7 +70,7 @@ TEST(Scene, RobotsSeeEachOther) {
   EXPECT_NEAR(scene.robot(0).clearance(), 2.0 - 0.44, 1e-12);
 }
 
-// Two sonars that look at each other: what the one sends the other hears, once, and straight.
+// Two sonars that face each other: one hears the other's sound, once, and directly.
 TEST(Scene, SonarsHearEachOther) {
   const World world = arena();
   SonarModel exact;
@@ -201,7 +201,7 @@ TEST_F(SimulationTest, AStepIsMadeWhenAllHaveAskedForIt) {
   send(simulation, 0, protocol::Step{});
   EXPECT_EQ(simulation.scene().ticks(), 30U);
   EXPECT_GT(simulation.server(0).robot().velocity(), 0.0);
-  // A client that has gone is not waited for, and its robot comes to rest with the others' steps.
+  // A client that has gone is not waited for, and its robot comes to rest in the others' steps.
   simulation.disconnect(0);
   EXPECT_GT(simulation.server(0).robot().velocity(), 0.0);
   for (int i = 0; i < 5; ++i)

@@ -158,7 +158,7 @@ TEST_F(ServerTest, DrivesAndReports) {
   EXPECT_FALSE(server_.robot().moving());
 }
 
-// A coordinate that would be negative rolls over to the top of 15 bits (manual 5.5.1).
+// A negative coordinate rolls over to the top of 15 bits (manual 5.5.1).
 TEST_F(ServerTest, ThePositionIsAlwaysPositive) {
   open();
   send(protocol::Velocity{-0.2});
@@ -360,9 +360,9 @@ TEST_F(ServerTest, ThePictureHasTheWorldAndTheWay) {
   EXPECT_TRUE(plot_svg(world_, {}, 0.22).ends_with("</svg>\n"));
 }
 
-// A driver with no plan: towards the goal, away from what the front sonars hear or, since a smooth
-// wall is not heard from everywhere, have just heard. The shipped office promises that its
-// suggested way needs no more.
+// A driver without a plan: towards the goal, away from the front sonars' echoes or, since a smooth
+// wall is not heard from everywhere, recent echoes. The suggested way of the shipped office must
+// need no more.
 TEST_F(ServerTest, TheOfficesWayNeedsNoPlan) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ServerOptions options;

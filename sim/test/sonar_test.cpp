@@ -67,7 +67,7 @@ TEST(Sonars, NoEchoBeyondTheRangeOrBehind) {
   EXPECT_FALSE(sonars.fire(0, {1.5, 0.0, kPi}).range);
 }
 
-// Off by more than 17 degrees a wall is heard less and less, and the farther away the sooner not.
+// Beyond 17 degrees a wall is heard less and less, and at a larger distance even less.
 TEST(Sonars, GlancingSurfacesAreLost) {
   const auto share = [](double distance_mm, double off) {
     const World world = wall_at(distance_mm);
@@ -99,7 +99,7 @@ TEST(Sonars, RoughSurfacesAnswerAtAnyAngle) {
   EXPECT_NEAR(*echo.range, 1.0 / std::cos(radians(57.5)), 1e-9);
 }
 
-// A sonar that looks along a corridor's wall hears its door posts.
+// A sonar along a corridor's wall hears its door posts.
 TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
   // A wall along y = 1 with a door in it, and a partition that meets it from behind at x = 5.
   const World world = parse_world(
@@ -114,7 +114,7 @@ TEST(Sonars, CornersAreHeardWhereTheWallIsNot) {
   EXPECT_NEAR(*post.range, std::sqrt(2.0), 0.002);  // weak, so a little late
   EXPECT_TRUE(sonars.fire(0, {1.0, 0.0, radians(54.0)}).range);
   EXPECT_FALSE(sonars.fire(0, {1.0, 0.0, radians(56.0)}).range);
-  // Towards where the partition is, the wall is smooth, and it hides the partition's end.
+  // Towards the partition the wall is smooth, and it hides the partition's end.
   EXPECT_FALSE(sonars.fire(0, {4.0, 0.0, radians(45.0)}).range);
   EXPECT_FALSE(sonars.fire(0, {6.0, 0.0, radians(125.0)}).range);
   model.strength = 0.0;
@@ -192,7 +192,7 @@ TEST(Sonars, ArraysTakeTurns) {
   EXPECT_FALSE(near_sighted.fire(0, {}).range);
 }
 
-// A near thing that the sonar before has heard, and this one hears instead of the wall.
+// The sonar before has heard a near object, and this one hears it instead of the wall.
 TEST(Sonars, TheLastFiringsEchoIsHeardNowAndThen) {
   const World world =
       parse_world("width 9000 height 9000 2000 -5000 2000 5000 -5000 -1000 1000 -1000", "wall.wld");

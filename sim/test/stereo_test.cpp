@@ -1,5 +1,5 @@
-// The pictures are good for what they are for: a census stereo, written here as the paper of 1996
-// says its was (Zabih and Woodfill), finds the ranges in them.
+// The pictures are fit for their purpose: a census stereo, written here after the paper of 1996
+// (Zabih and Woodfill), finds the ranges in them.
 #include "saphira/sim/stereo.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ World world(const std::string& things) {
       "stereo.wld");
 }
 
-// Which of the 7 x 7 pixels around are darker than the middle.
+// A bit for each of the 7 x 7 neighbours that is darker than the middle.
 std::uint64_t census(const GreyImage& image, int column, int row) {
   std::uint64_t bits = 0;
   for (int dy = -3; dy <= 3; ++dy)
@@ -42,7 +42,7 @@ class Census {
         words_[at(column, row)] = census(image, column, row);
   }
   int columns() const { return columns_; }
-  // How much two windows differ.
+  // The difference of two windows.
   int cost(int column, const Census& other, int other_column, int row) const {
     int sum = 0;
     for (int dy = -kWindow; dy <= kWindow; ++dy)
@@ -78,7 +78,7 @@ std::optional<int> match(const Census& from, const Census& to, int column, int r
   return least < 1 << 30 ? std::optional(best) : std::nullopt;
 }
 
-// Ranges [m] along one row of the left picture; nothing where left and right do not agree.
+// Ranges [m] along one row of the left picture; nothing where left and right disagree.
 std::vector<std::optional<double>> ranges(const StereoPair& pair, const StereoRig& rig, int row) {
   const Census left(pair.left);
   const Census right(pair.right);
@@ -95,7 +95,7 @@ std::vector<std::optional<double>> ranges(const StereoPair& pair, const StereoRi
 }
 
 struct Found {
-  int right = 0;    // columns whose range is what it should be
+  int right = 0;    // columns with the right range
   int matched = 0;  // with any
   int all = 0;
 };
@@ -143,7 +143,7 @@ TEST(Stereo, CensusFindsAPersonsBandsAtTorsoHeight) {
       if (wall.all > 0) {
         EXPECT_GT(wall.right, 0.8 * wall.all) << away << " m away, at " << height;
       }
-      // As wide as a person: what is nearer than half a metre behind her front.
+      // As wide as a person: within half a metre behind her front.
       int wide = 0;
       for (const auto& range : band)
         wide += range && *range < away + 0.5 && *range > away - 0.5;
@@ -151,7 +151,7 @@ TEST(Stereo, CensusFindsAPersonsBandsAtTorsoHeight) {
       if (width > 0.35 && width < 0.7)
         ++bands;
     }
-    // The paper's tracker takes two bands of three for a person.
+    // The paper's tracker needs two bands of three for a person.
     EXPECT_GE(bands, 2) << away << " m away";
   }
 }
@@ -218,7 +218,7 @@ TEST(Stereo, ASeedDecidesThePicture) {
   EXPECT_TRUE(text.starts_with("P5\n# saphira stereo cycle=7 focal=277.12"));
   const std::size_t pixels = std::size_t{640} * 240;
   EXPECT_EQ(text.substr(text.size() - pixels - 12, 12), "640 240\n255\n");
-  // The noise is what the rig says: what differs between two seeds has twice its variance.
+  // The noise is the rig's: the difference of two seeds has twice its variance.
   Random one(1);
   Random two(2);
   const StereoPair a = render_stereo(scene, 0, rig, one);

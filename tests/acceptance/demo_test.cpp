@@ -1,4 +1,4 @@
-// The demo as a user runs it: the robot arrives, touches nothing, and in lockstep every run of a
+// The demo as a user runs it: the robot arrives without a contact, and in lockstep every run of a
 // seed is the same to the last bit, in one process or in many.
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -65,7 +65,7 @@ TEST(Demo, SeparateProcessesAreTheSameEachTime) {
             demo(separate).summary.at("trajectory_hash"));
 }
 
-/// A folder of credentials for all that runs in the demo.
+/// A folder of credentials for all programs of the demo.
 std::string credentials(const TempDir& folder) {
   const std::string authority = folder.path("authority");
   for (const std::vector<std::string>& words :
@@ -117,7 +117,7 @@ TEST(Demo, OutOfTimeIsAFailureThatSaysSo) {
   EXPECT_FALSE(late.summary.at("arrived").get<bool>());
 }
 
-// The first thing that a newcomer tries: a second terminal.
+// A newcomer's first experiment: a second terminal.
 TEST(Demo, CommandsWithoutABusFindIt) {
   const TempDir folder;
   const std::map<std::string, std::string> plain{{"SAPHIRA_DOMAIN", ""},

@@ -14,8 +14,8 @@
 
 namespace saphira::test {
 
-/// A robot in a world of the test's own with its services, in lockstep, and a node of the test
-/// beside them.
+/// A robot with its services in a test's own world, in lockstep, and a node of the test beside
+/// them.
 class LockstepSystem {
  public:
   struct Scene {
@@ -23,21 +23,21 @@ class LockstepSystem {
     std::string robot;            ///< a file of config/robots, without its ending
     std::string map{};            ///< a file of config/maps [none: an empty map]
     unsigned seed = 1;            ///< of the simulator's noise
-    bool vision = false;          ///< with stereo cameras and the service that looks
+    bool vision = false;          ///< with stereo cameras and the vision service
     bool single_process = false;  ///< in one thread, without a bus between the services
   };
 
   explicit LockstepSystem(const Scene& scene);
 
-  /// Asks for a goal, and waits until it is there: before the first cycle.
+  /// Asks for a goal, and waits for its arrival: before the first cycle.
   v1::GoalId ask(const v1::Goal& goal);
-  /// Lets the robot make its steps up to that cycle.
+  /// Permits the robot's steps up to that cycle.
   void permit(std::uint64_t until);
-  /// Waits for the goal's end, and calls `meanwhile` until then; the goal's newest status, which is
-  /// none of an end where the goal does not end.
+  /// Waits for the goal's end, and calls `meanwhile` until then; returns the goal's newest status,
+  /// which is no end where the goal does not end.
   std::optional<v1::GoalStatus> wait_end(
       const v1::GoalId& goal, const std::function<void()>& meanwhile = [] {});
-  /// Ends the simulator, which completes its trace, and gives that.
+  /// Ends the simulator, which completes its trace; returns the trace.
   std::string end();
   /// Everything that the processes have printed.
   std::string output() const;

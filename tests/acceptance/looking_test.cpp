@@ -1,4 +1,4 @@
-// A person looks at the running system by the command line, asks it why, and interrupts its
+// A person watches the running system from the command line, asks for reasons, and interrupts its
 // micro-tasks.
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -30,7 +30,7 @@ class LookingTest : public testing::Test {
     outcome.text = process.output();
     return outcome;
   }
-  /// On the way to a point far down the corridor.
+  /// Drives to a point far down the corridor.
   void drive() {
     system.start_all();
     goal = system.go_to(6.0, 0.0);

@@ -1,5 +1,5 @@
-// Losing any program while the robot drives ends in a robot that stands, in half a second, and the
-// system goes on by itself when the program is back.
+// The loss of any program while the robot drives stops the robot within half a second, and the
+// system continues by itself when the program is back.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -13,7 +13,7 @@ struct Loss {
   int signal;
 };
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest looks for
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for this name
 void PrintTo(const Loss& loss, std::ostream* out) {
   *out << loss.name << " " << (loss.signal == SIGKILL ? "killed" : "stopped");
 }
@@ -27,7 +27,7 @@ TEST_P(LossTest, TheRobotStandsWithinHalfASecondAndTheSystemGoesOn) {
   const v1::GoalId goal = system.go_to(8.0, 0.0);
   ASSERT_TRUE(system.wait_moving()) << system.output();
 
-  // By the robot's own cycles, whoever else is busy on this machine.
+  // By the robot's own cycles, whatever the load of this machine.
   const long lost = system.truth().cycle;
   system[loss.name].signal(loss.signal);
   ASSERT_TRUE(wait_until([&] { return system.stood_still(lost).has_value(); })) << system.output();
@@ -36,7 +36,7 @@ TEST_P(LossTest, TheRobotStandsWithinHalfASecondAndTheSystemGoesOn) {
   RecordProperty("cycles_to_standstill", std::to_string(took));
   std::printf("%s: stood %ld cycles later\n", loss.name, took);
 
-  // It does not drive off by itself while the program is away.
+  // The robot does not drive while the program is away.
   const long cycle = system.truth().cycle;
   if (std::string(loss.name) != "saphira-bridge") {
     ASSERT_TRUE(wait_until([&] { return system.truth().cycle > cycle + 10; })) << system.output();

@@ -1,4 +1,4 @@
-// A goal on the map, over the whole system; and a service of perception that is killed on the way.
+// A goal on the map, over the whole system, and the loss of a perception service on the way.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -24,10 +24,10 @@ v1::Goal go_along_the_corridor(double x) {
   return goal;
 }
 
-/// In lockstep, which is the same and takes seconds where the live system drives for a minute.
+/// In lockstep, with the same result in seconds that takes the live system a minute.
 class MapTest : public testing::Test {
  protected:
-  /// Lets the robot drive until the goal's success, which is to come.
+  /// Lets the robot drive until the goal's success, which must come.
   void arrive(const v1::Goal& goal) {
     const v1::GoalId id = system.ask(goal);
     system.permit(permitted_ += 1500);
@@ -54,7 +54,7 @@ class MapTest : public testing::Test {
     return map && std::any_of(map->artifacts().begin(), map->artifacts().end(),
                               [id](const v1::MapArtifact& each) { return each.id() == id; });
   }
-  /// Ends the run: nothing was touched, and registration had the robot where it was.
+  /// Ends the run: without a contact, and with the right pose in registration.
   sim::TraceRow end() {
     take();
     const std::vector<sim::TraceRow> rows = sim::parse_trace(system.end(), "trace.csv");
@@ -93,7 +93,7 @@ TEST_F(MapTest, AThingOfTheMapThatIsNotThereIsTakenFromItOnTheWay) {
   ASSERT_TRUE(step_until([&] {
     return !registered.empty() && registered.back().state() == v1::REGISTRATION_TRACKING;
   })) << system.output();
-  // Beside the way, half a metre before the wall: what is behind it must be heard through it.
+  // Beside the way, half a metre before the wall: its absence shows by echoes from behind it.
   v1::Request request;
   request.functor("put");
   request.arguments({bus::number("id", 900), bus::text("type", "OBJECT"),
@@ -101,7 +101,7 @@ TEST_F(MapTest, AThingOfTheMapThatIsNotThereIsTakenFromItOnTheWay) {
                      bus::number("length", 0.5), bus::number("width", 0.2)});
   ASSERT_EQ(requests.ask(request, 60.0).code(), v1::ANSWER_DONE) << system.output();
   ASSERT_TRUE(step_until([&] { return on_map(900); })) << system.output();
-  // A goal goes on while the map changes; at the latest on the way back it is missed.
+  // A goal continues while the map changes; on the way back at the latest the object is missed.
   arrive(go_along_the_corridor(11.5));
   if (on_map(900))
     arrive(go_along_the_corridor(2.0));
@@ -146,7 +146,7 @@ TEST(MapRequests, AreHeardInTheSameCycleInOneProcessAndInMany) {
   EXPECT_EQ(many, way_of_building(true));
 }
 
-/// Live: the question is how soon a service that was killed is back.
+/// Live: the test measures the time until a killed service is back.
 class PerceptionLoss : public testing::TestWithParam<const char*> {
  protected:
   bool wait_tracking(std::chrono::milliseconds limit) {
@@ -182,7 +182,7 @@ TEST_P(PerceptionLoss, AKilledServiceKnowsAgainWhereTheRobotIs) {
       },
       std::chrono::seconds(30)))
       << system.output();
-  // Two seconds of the robot's time at the most, and no jump.
+  // At most two seconds of robot time, and no jump.
   EXPECT_LE(registration.stamp().cycle(), cycle + 30) << system.output();
   EXPECT_NEAR(registration.odom_in_map().x(), before.x(), 0.15);
   EXPECT_NEAR(registration.odom_in_map().y(), before.y(), 0.15);

@@ -1,5 +1,5 @@
 // "Go to room N2" over the whole system in lockstep: the goal on the bus, the activities from their
-// files, the behaviors that they intend, the map and what is seen.
+// files, their behaviors, the map and perception.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   for (const char* schema : {"go-to-place", "plan-and-execute", "monitor-planex", "follow-path",
                              "corridor-to-door", "through-door", "FollowCorridor", "FollowDoor"})
     EXPECT_TRUE(schemas.contains(schema)) << schema;
-  // The way is drawn on the map, from the robot through the room's door, until it has been gone.
+  // The way is drawn on the map, from the robot through the room's door, until its end.
   ASSERT_GE(way.size(), 2u);
   EXPECT_NEAR(way.front().x(), 1.5, 0.3);
   EXPECT_TRUE(std::any_of(way.begin(), way.end(), [](const v1::DrawnPoint& at) {
@@ -69,7 +69,7 @@ TEST(NavigationAcceptance, GoesToARoomByItsName) {
   EXPECT_GT(truth.pose_in_world.y, 8.0);
 }
 
-// It means contact, and the guard is on: it touches the wall, slowly.
+// Wanted contact, with the guard on: the robot touches the wall, slowly.
 TEST(NavigationAcceptance, BumpAndGoBumps) {
   Office system;
   v1::Goal goal;

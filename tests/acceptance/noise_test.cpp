@@ -1,5 +1,5 @@
-// One byte in a hundred of the serial line is damaged, lost or doubled, both ways: the robot
-// arrives all the same, and touches nothing.
+// One byte in a hundred of the serial line is damaged, lost or doubled, both ways: the robot still
+// arrives, without a contact.
 #include "noise.hpp"
 
 #include <gtest/gtest.h>

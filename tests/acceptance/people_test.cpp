@@ -1,5 +1,5 @@
-// A person stands where the robot wants to go, over the bus and in lockstep: simulator, bridge,
-// perception, registration, behaviors, intentions. The simulator's trace is the truth.
+// A person stands in the robot's way, over the bus and in lockstep: simulator, bridge, perception,
+// registration, behaviors, intentions. The simulator's trace is the truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Drive drive(const std::string& world, unsigned seed) {
   return result;
 }
 
-// [m] of the robot's middle beside its start line where it passes the person.
+// [m] between the robot's middle and its start line as it passes the person.
 double aside(const std::vector<sim::TraceRow>& rows) {
   const auto passes = std::find_if(rows.begin(), rows.end(), [](const sim::TraceRow& row) {
     return row.pose_in_world.x >= 5.5;
@@ -66,7 +66,7 @@ TEST_P(PeopleAcceptance, ArrivesBehindAPersonWhomItDoesNotTouch) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, PeopleAcceptance, ::testing::Range(1U, 5U));
 
-// Without him the same way is straight: it is he whom the robot goes around.
+// Without him the same way is straight: the detour is due to him.
 TEST(PeopleAcceptanceAlone, WayWithoutAPersonIsStraight) {
   const Drive result = drive(kHall, 1);
   ASSERT_TRUE(result.status);

@@ -1,5 +1,5 @@
-// The paper's story in lockstep: it ends as its cast says, without a contact, and the same seed is
-// the same story and the same trajectory.
+// The paper's story in lockstep: it ends as its cast requires, without a contact, and the same seed
+// gives the same story and the same trajectory.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -36,7 +36,7 @@ TEST_P(Story, EndsAsItsCastSaysAndTheSameEachTime) {
 INSTANTIATE_TEST_SUITE_P(Casts, Story, testing::Values("report", "early", "away", "leak"),
                          [](const auto& cast) { return std::string(cast.param); });
 
-// Paper 4.4: it follows its supervisor, whom its cameras see, around a corner and through a door.
+// Paper 4.4: it follows its supervisor, by its cameras, around a corner and through a door.
 TEST(Scenario, ItIsIntroducedToTheOfficeByFollowingItsSupervisor) {
   const nlohmann::json result = scenario({"--cast", "introduction"});
   EXPECT_EQ(result.at("delivered"), 1) << result;

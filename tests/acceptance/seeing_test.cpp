@@ -43,7 +43,7 @@ TEST(SeeingAcceptance, AWalkerIsFollowed) {
   std::uint64_t skipped = 0;
   const std::optional<v1::GoalStatus> status = system.wait_end(id, [&] {
     for (const auto& sample : system.visions.take()) {
-      // In lockstep every picture is looked at.
+      // In lockstep every picture is processed.
       skipped += sample.data.picture() != sample.data.stamp().cycle();
       for (const v1::SeenThing& thing : sample.data.things()) {
         people += thing.kind() == v1::SEEN_PERSON;
@@ -64,7 +64,7 @@ TEST(SeeingAcceptance, AWalkerIsFollowed) {
   EXPECT_EQ(rows.back().contacts, 0);
 }
 
-// Also with eyes a run in lockstep is the same to the last bit.
+// A run in lockstep with cameras is also the same to the last bit.
 TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
   const auto run = [] {
     constexpr std::uint64_t kCycles = 200;

@@ -1,5 +1,5 @@
 // The whole system with a serial line at 9600 baud before the robot, as slow as a real one: the
-// robot arrives as it does without.
+// robot arrives as without the line.
 #include <gtest/gtest.h>
 
 #include "serial_line.hpp"

@@ -29,7 +29,7 @@ class Situations : public testing::Test {
     process.wait();
     return process.output();
   }
-  /// Asks until the answer has all of that; the last answer.
+  /// Asks until the answer has all of these parts; returns the last answer.
   std::string until(const std::vector<std::string>& words, const std::vector<std::string>& parts) {
     std::string answer;
     EXPECT_TRUE(test::wait_until(
@@ -100,7 +100,7 @@ TEST_F(Situations, AServiceHangsWhileAGoalIsUnderway) {
   goal.signal(SIGINT);
   goal.wait();
   until({"why"}, {"The robot stands", "canceled"});
-  // The answer about a past cycle describes that cycle, and not the present.
+  // The answer about a past cycle describes that cycle, not the present.
   const std::string past = said({"why", "--cycle", "-20"});
   EXPECT_FALSE(has(past, "nobody has asked")) << past;
 }

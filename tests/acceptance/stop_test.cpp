@@ -1,5 +1,4 @@
-// A stop is a stop: by a goal, by the emergency stop, and by the end of the program that wanted the
-// robot to drive.
+// Stops: by a goal, by the emergency stop, and by the end of the program that asked for motion.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -14,7 +13,7 @@ Process command_line(const System& system, const std::vector<std::string>& words
   return {argv, system.folder().path("cli." + words.back())};
 }
 
-/// For so many cycles of the robot.
+/// True where the robot stays still for that number of its cycles.
 bool stays_still(const System& system, long cycles) {
   const long begin = system.truth().cycle;
   bool still = true;
@@ -56,7 +55,7 @@ TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {
   EXPECT_EQ(status->state(), v1::GOAL_CANCELED);
   EXPECT_EQ(status->reason().find("emergency stop, pressed by"), 0U) << status->reason();
 
-  // While it is latched, nothing that is asked for drives.
+  // While it is latched, no goal drives.
   const v1::GoalId meanwhile = system.go_to(8.0, 0.0);
   ASSERT_TRUE(system.wait_end(meanwhile)) << system.output();
   EXPECT_TRUE(stays_still(system, 10)) << system.output();
@@ -71,7 +70,7 @@ TEST(Stop, AnEmergencyStopEndsGoalsAndOnlyANewOneDrives) {
   EXPECT_TRUE(system.wait_still());
 }
 
-// Its goal says: cancel when I die. (saphira goal without --keep.)
+// The goal's writer_lost is cancel. (saphira goal without --keep.)
 TEST(Stop, TheEndOfAGoalsWriterIsNoticedBeforeTheRobotHasGoneFar) {
   System system;
   system.start_all();

@@ -13,7 +13,7 @@
 
 namespace saphira::test {
 
-/// One line of the simulator's trace: the truth. [m, rad, m/s, rad/s]
+/// One line of the simulator's trace: the true state. [m, rad, m/s, rad/s]
 struct Truth {
   long cycle = 0;
   double x = 0.0;
@@ -22,18 +22,18 @@ struct Truth {
   double velocity = 0.0;
   double rotation_velocity = 0.0;
   long contacts = 0;
-  /// Far below what people see move; the servo's last tremble is not motion.
+  /// Below visible motion; the servo's last tremble does not count.
   bool still() const;
 };
 
-/// A robot with its services as separate processes, live, in a partition and folder of its own, and
-/// a node of the test beside them.
+/// A robot with its services as separate processes, live, in its own partition and folder, and a
+/// node of the test beside them.
 class System {
  public:
   /// `bridge_port` replaces the simulator's socket as the bridge's address (a proxy between them).
   explicit System(std::string bridge_port = {});
 
-  /// Starts, or starts again, one of saphira-sim, saphira-bridge, saphira-behaviors,
+  /// Starts, or restarts, one of saphira-sim, saphira-bridge, saphira-behaviors,
   /// saphira-intentions.
   void start(const std::string& name);
   void start_all();
@@ -47,15 +47,15 @@ class System {
   /// Asks the robot to go to a place [m] in odom.
   v1::GoalId go_to(double x, double y);
 
-  /// Waits for the goal's end, and calls `meanwhile` until then; nothing where it does not end.
+  /// Waits for the goal's end, and calls `meanwhile` until then; nothing without an end.
   std::optional<v1::GoalStatus> wait_end(
       const v1::GoalId& goal, const std::function<void()>& meanwhile = [] {});
 
   /// The newest line of the trace.
   Truth truth() const;
-  /// The first cycle from that one on in which the robot stood, as far as the trace goes.
+  /// The first cycle from that one on with a standing robot, as far as the trace goes.
   std::optional<long> stood_still(long cycle) const;
-  /// Waits for the trace to say so.
+  /// Waits until the trace shows motion.
   bool wait_moving(std::chrono::milliseconds limit = std::chrono::seconds(30));
   bool wait_still(std::chrono::milliseconds limit = std::chrono::seconds(30));
   /// Everything that the processes have printed.

@@ -33,8 +33,8 @@ struct Options {
   unsigned first = 0;
 };
 
-constexpr unsigned kProcesses = 4;  // that the agents live in
-constexpr unsigned kTold = 50;      // triggers in a hundred that are of time, and fire
+constexpr unsigned kProcesses = 4;  // processes for the agents
+constexpr unsigned kTold = 50;      // percentage of triggers that are of time, and fire
 
 bus::NodeOptions options(const std::string& name) {
   bus::NodeOptions made;
@@ -48,7 +48,7 @@ std::string functor(unsigned agent, unsigned capability) {
   return "fact_" + std::to_string(agent) + "_" + std::to_string(capability);
 }
 
-/// A part of the agents, and of the triggers, in a process of its own: answers until it is killed.
+/// A part of the agents, and of the triggers, in its own process: answers until it is killed.
 [[noreturn]] void serve(const Options& all) {
   bus::Node node(options("agents"));
   auto announces = node.writer(bus::topics::kAgents);
@@ -100,7 +100,7 @@ std::string functor(unsigned agent, unsigned capability) {
   }
 }
 
-/// Asks one after the other; the time of each [us].
+/// Asks one after the other; returns the time of each [us].
 std::vector<double> ask(bus::Node& node, bus::Agent& asker, const Options& all, unsigned agents) {
   std::vector<double> us;
   for (unsigned i = 0; i < all.requests; ++i) {
@@ -118,7 +118,7 @@ std::vector<double> ask(bus::Node& node, bus::Agent& asker, const Options& all, 
   return us;
 }
 
-/// Waits until the last agent of all can be asked.
+/// Waits until the last agent can be asked.
 void wait_for(bus::Agent& asker, unsigned agents) {
   const auto end = Clock::now() + std::chrono::seconds(60);
   for (unsigned known = 0; known < agents;) {
@@ -132,7 +132,7 @@ void wait_for(bus::Agent& asker, unsigned agents) {
   }
 }
 
-/// The cycles that services were late in.
+/// The late cycles of the services.
 class Late {
  public:
   explicit Late(bus::Node& node) : statuses_(node.reader(bus::topics::kStatus)) {}

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-/// The parts that the benchmark programs share.
+/// The common parts of the benchmark programs.
 namespace saphira::bench {
 
 /// A child with its output dropped; terminated with the object.
 class Child {
  public:
-  /// `network`: a file descriptor of the network namespace that it runs in; below 0: this one.
+  /// `network`: a file descriptor of its network namespace; below 0: this one.
   explicit Child(std::vector<std::string> argv, int network = -1);
   ~Child();
   Child(const Child&) = delete;
@@ -22,10 +22,10 @@ class Child {
   pid_t pid_;
 };
 
-/// Runs a program to its end and returns what it wrote to stdout; std::runtime_error when it fails.
+/// Runs a program to its end and returns its stdout; std::runtime_error when it fails.
 std::string output_of(const std::vector<std::string>& argv, int network = -1);
 
-/// CPU seconds that a process has used, and its resident memory [MB]. 0 when it is gone.
+/// CPU seconds of a process, and its resident memory [MB]. 0 when it is gone.
 double cpu_seconds(pid_t pid);
 double resident_mb(pid_t pid);
 /// The process and all its descendants.

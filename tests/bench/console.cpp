@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kPages = 3;
 
-/// The address with the key, which the console prints.
+/// The address with the key, from the console's output.
 std::string address_in(const std::string& output) {
   const std::size_t begin = output.find("http://");
   if (begin == std::string::npos)
@@ -47,7 +47,7 @@ double packed_kb() {
   return bytes / 1000.0;
 }
 
-/// The map of the office with walls beside it, until it has so many artifacts.
+/// The map of the office with further walls, up to that number of artifacts.
 void write_map(const std::string& file, int artifacts) {
   std::ifstream office(config_folder() + "/maps/office.map");
   std::ofstream map(file);
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
                                          "?.startTime ?? 0")
                                  .get<double>());
   }
-  // It drives somewhere meanwhile: a page that stands still costs less.
+  // The robot drives meanwhile: a static page costs less.
   const bench::Child goal({"saphira", "goal", "go", "16", "1"});
 
   pid_t gateway = -1;

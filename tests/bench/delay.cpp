@@ -62,7 +62,7 @@ std::vector<Row> read_trace(const std::string& path) {
   return rows;
 }
 
-/// Reads the trace until the condition holds, or for so many seconds; true where it held.
+/// Reads the trace until the condition holds, for that time at most; true where it held.
 bool wait_for(const std::string& trace, double seconds,
               const std::function<bool(const std::vector<Row>&)>& what) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
@@ -147,7 +147,7 @@ Result drive(test::SlowLink& link, const Options& options, double delay, double 
       stood += std::abs(rows[i].velocity) < kStands ? 1 : 0;
     }
     result.stood = static_cast<double>(stood) / static_cast<double>(cycles);
-    // It stands where it does so for a second.
+    // The standstill counts after a second.
     const std::size_t cut = rows.size();
     wait_for(trace, 10.0, [&](const std::vector<Row>& all) {
       std::size_t still = 0;

@@ -1,4 +1,4 @@
-// How fast the whole system runs in lockstep: the demo, in one process and in separate ones.
+// The speed of the whole system in lockstep: the demo, in one process and in separate ones.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 

@@ -31,7 +31,7 @@ using saphira::bench::Child;
 struct Options {
   unsigned domain = 199;
   unsigned goals = 10000;
-  // [s] A goal that has ended is told for a minute, then memory is given back, every 30 s.
+  // [s] The status of an ended goal stays for a minute; then memory is returned, every 30 s.
   unsigned pause = 100;
   bool json = false;
 };
@@ -40,7 +40,7 @@ constexpr unsigned kBatch = 100;
 constexpr auto kPatience = 60s;
 constexpr auto kRunawayTime = 20s;
 
-// Activities that begin others, down to :two, which waits, until the service's bound.
+// Activities that begin others, down to :two, which waits, up to the service's limit.
 constexpr const char* kRunaway =
     "(defintention :runaway :goals '((INTEND :half () :blocking nil) (INTEND :half ())))\n"
     "(defintention :half :goals '((SPLIT (INTEND :many ()) (INTEND :many ()))"
@@ -55,7 +55,7 @@ class Misuse {
   Misuse(const Options& options, pid_t intentions)
       : options_(options), intentions_(intentions), node_(node_options(options)) {}
 
-  /// Goals of which none is taken; all of them have ended when it returns.
+  /// Sends goals that are all refused; they have ended when it returns.
   void refused() {
     bus::GoalClient goals(node_, "bench memory", 60s);
     for (unsigned asked = 0; asked < options_.goals; asked += kBatch) {
@@ -64,11 +64,11 @@ class Misuse {
         batch.push_back(goals.ask(goal("fly")));
       wait(goals, batch);
       for (const v1::GoalId& id : batch)
-        goals.cancel(id);  // a writer of so many instances takes minutes to end
+        goals.cancel(id);  // the writer of so many instances takes minutes to end
     }
   }
-  /// An activity that has time to begin all that it may, and is canceled; the most memory
-  /// meanwhile [MB].
+  /// An activity that has time to begin the allowed number, and is canceled; returns the peak of
+  /// memory meanwhile [MB].
   double runaway() {
     bus::GoalClient goals(node_, "bench memory");
     const v1::GoalId id = goals.ask(goal("runaway"));
@@ -83,7 +83,7 @@ class Misuse {
     std::printf("  %s\n", bus::describe(*goals.status(id)).c_str());
     return most;
   }
-  /// [MB] when what has ended is forgotten.
+  /// [MB] after ended goals are forgotten.
   double later() const {
     std::this_thread::sleep_for(std::chrono::seconds(options_.pause));
     return bench::resident_mb(intentions_);

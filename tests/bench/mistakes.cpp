@@ -1,4 +1,4 @@
-// How long a newcomer waits for the answer to a mistake.
+// The delay of the answer to a newcomer's mistake.
 #include "integration/mistakes.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Naps: programs that are stopped and go on, as on a laptop that sleeps. How many are heard and
-// hear again, and after how long.
+// Naps: programs that are stopped and continued, as on a laptop that sleeps. Measures the number of
+// programs that hear and are heard again, and the delay.
 //
 // In each group five programs answer two that stay awake. A nap stops one of the five (program),
 // all of them (machine), or all of them while their network is cut (cut; in a network namespace,
@@ -64,7 +64,7 @@ void shell(const std::string& command, bool must = true) {
     throw std::runtime_error("failed: " + command);
 }
 
-/// A network namespace with a link to this one; nothing where `number` is not given one.
+/// A network namespace with a link to this one; nothing without a `number`.
 class Machine {
  public:
   explicit Machine(unsigned number)
@@ -115,7 +115,8 @@ bus::NodeOptions node_options(unsigned domain, const Machine* machine, unsigned 
   return options;
 }
 
-/// One that stays awake: it states and wishes ten times a second, and takes the answers.
+/// A program that stays awake: it writes states and wishes ten times a second, and takes the
+/// answers.
 class Awake {
  public:
   explicit Awake(const bus::NodeOptions& options)
@@ -141,7 +142,7 @@ class Awake {
       if (sample.data.stamp().epoch() == node_.instance())
         newest_[sample.data.source()] = sample.data;
   }
-  /// The sleepers that have answered what was said since that count, completely.
+  /// The sleepers that have completely answered the samples since that count.
   std::set<std::string> complete(std::uint64_t since) const {
     std::set<std::string> all;
     for (const auto& [name, answer] : newest_)
@@ -261,7 +262,7 @@ nlohmann::json summary(const std::vector<Nap>& naps) {
 }
 
 std::vector<Nap> run(const Options& options) {
-  // Lengths over the whole range, as many short as long ones by their logarithm, and the longest.
+  // Lengths over the whole range, uniform in the logarithm, and the longest.
   std::mt19937_64 random(options.seed);
   std::vector<Nap> plan;
   for (unsigned i = 0; i < options.naps; ++i) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Network addresses that come, go and change under a running robot and a laptop, which are two network
-# namespaces. In each case: how long until each machine hears the other's programs again, nothing restarted
-# by hand, and how long an emergency stop takes that is pressed on the robot itself meanwhile.
+# Network addresses that come, go and change under a running robot and a laptop, which are two
+# network namespaces. Measures for each case the time until each machine hears the other's programs
+# again, without a manual restart, and the time of an emergency stop on the robot itself meanwhile.
 #
 #   saphira bench network [--profile lan|wan] [--json]
 #
@@ -39,7 +39,7 @@ trap 'exit 130' INT TERM
 now() { date +%s.%N; }
 since() { awk -v a="$1" -v b="$(now)" 'BEGIN {printf "%.2f", b - a}'; }
 
-# until SECONDS COMMAND...: waits until it succeeds.
+# until SECONDS COMMAND...: waits until the command succeeds.
 until_true() {
   local begun deadline=$1
   begun=$(now)
@@ -101,7 +101,7 @@ back() {
     failed=1 back_max=$(larger "$back_max" "$limit")
     say "$SAPHIRA_PROFILE, $1: NOT heard within $limit s"
   fi
-  # So is a program of the laptop that begins now.
+  # A program that begins on the laptop now hears it too.
   SAPHIRA_PEERS=$laptop_peers on $laptop "$bin/saphira" echo robot/state --once --timeout $limit >/dev/null 2>&1 ||
     { failed=1; say "$SAPHIRA_PROFILE, $1: a new program of the laptop does NOT hear the robot"; }
 }

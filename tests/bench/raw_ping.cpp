@@ -44,7 +44,7 @@ namespace fdds = eprosima::fastdds::dds;
 namespace v1 = saphira::v1;
 using Clock = std::chrono::steady_clock;
 
-// One side: writes Out, hands each In to a function, in the thread that received it.
+// One side: writes Out, passes each In to a function, in the receiving thread.
 template <class Out, class OutType, class In, class InType>
 class Side : public fdds::DataReaderListener, public fdds::DataWriterListener {
  public:
@@ -121,7 +121,7 @@ using Robot =
 using Service =
     Side<v1::MotorCommand, v1::MotorCommandPubSubType, v1::RobotState, v1::RobotStatePubSubType>;
 
-// As the bridge and the behaviors send them on their way to a goal.
+// As sent by the bridge and the behaviors on the way to a goal.
 v1::RobotState robot_state() {
   v1::RobotState state;
   state.sonars().resize(2);
@@ -168,7 +168,7 @@ std::vector<double> ping(std::uint32_t domain, double hz, int count) {
     const bool there = arrived.wait_for(lock, limit, [&] { return answered == cycle; });
     return there ? std::chrono::duration<double, std::micro>(Clock::now() - start).count() : -1.0;
   };
-  // The first that are answered say that both have found each other.
+  // The first answers show that both sides have found each other.
   std::uint64_t cycle = 0;
   int warm = 0;
   for (int i = 0; i < 600 && warm < 5; ++i)

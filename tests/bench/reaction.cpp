@@ -39,7 +39,7 @@ double us_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-/// A robot server that says what it is told and listens.
+/// A robot server that sends given packets and listens.
 class ScriptedRobot {
  public:
   explicit ScriptedRobot(std::string path) : path_(std::move(path)) {
@@ -110,7 +110,7 @@ class ScriptedRobot {
   protocol::PacketParser parser_;
 };
 
-/// An information packet of a robot that drives at 0.2 m/s and sees nothing.
+/// An information packet of a robot that drives at 0.2 m/s without echoes.
 protocol::InformationPacket information(long n) {
   protocol::InformationPacket packet;
   packet.motors = protocol::Motors::kMoving;
@@ -122,7 +122,7 @@ protocol::InformationPacket information(long n) {
 }
 
 /// A sample as the intentions service publishes it: go far ahead and avoid obstacles. The goal is
-/// to the left and to the right in turns, so that every cycle asks for another heading.
+/// to the left and to the right in turns, so that the heading changes in every cycle.
 v1::Intentions intentions(const v1::Stamp& stamp) {
   const auto behavior = [](const char* schema, int priority, std::vector<v1::Argument> parameters) {
     v1::IntendedBehavior b;
@@ -152,7 +152,7 @@ class Reaction {
         states_(std::in_place, node.reader(bus::topics::kRobotState)),
         intend_(node.writer(bus::topics::kIntentions)) {}
 
-  /// One cycle: what the answer took [us]; nothing where none came in time.
+  /// One cycle: the time of the answer [us]; nothing without one in time.
   std::optional<double> cycle() {
     const protocol::Bytes packet = protocol::encode(information(++n_));
     const auto start = Clock::now();
@@ -282,8 +282,8 @@ int main(int argc, char** argv) {
       return report_serial(ours, unanswered, baud, json);
     }
 
-    // Both at once, out of phase: the same machine at the same time. (A robot server must not fall
-    // silent meanwhile.)
+    // Both at once, out of phase: on the same machine at the same time. (A robot server must not
+    // fall silent meanwhile.)
     std::future<std::string> ping = std::async(std::launch::async, [&] {
       return bench::output_of({"saphira-bench-raw-ping", "--hz", std::to_string(hz), "--count",
                                std::to_string(count), "--json"});

@@ -1,5 +1,5 @@
-// The cost of security: the round trip over a secured bus beside that over an open one, and the
-// CPU time of the secured demo while its robot stands.
+// The cost of security: the round trip over a secured bus compared with an open one, and the CPU
+// time of the secured demo while its robot stands.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -106,7 +106,7 @@ class RoundTrip {
   std::vector<double> times_;
 };
 
-/// The folders of credentials of a site that lasts as long as the benchmark.
+/// The folders of credentials of a site, for the benchmark's duration.
 class Site {
  public:
   Site()

@@ -37,7 +37,7 @@ struct Run {
   double time = 0.0;  // [s] of robot time
   std::uint64_t bad_packets = 0;
   double bytes_per_s[2] = {0.0, 0.0};  // to the robot, from it
-  std::uint64_t waited[2] = {0, 0};    // the most bytes that stood before the line
+  std::uint64_t waited[2] = {0, 0};    // the longest queue before the line [bytes]
 };
 
 Run demo(int baud, const std::string& seed) {

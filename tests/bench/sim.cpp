@@ -1,6 +1,6 @@
-// How fast the simulator runs: robots that wander about the office floor with their sonars on, each
-// by the packets of a client, on one core. Beside it, as a bound, the sonars alone: what is left
-// when dynamics, contacts and packets cost nothing.
+// The speed of the simulator: robots that wander about the office floor with their sonars on, each
+// by the packets of a client, on one core. As an upper bound also the sonars alone, without the
+// cost of dynamics, contacts and packets.
 #include <time.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 using namespace saphira;
 
-// Of this thread: what others do on the machine meanwhile does not count.
+// CPU time of this thread, without other work on the machine.
 double seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -32,7 +32,7 @@ double seconds() {
 
 constexpr double kCell = 0.1;  // [m]
 
-/// Places that a robot can drive to from the world's start, in no order.
+/// Places that a robot can reach from the world's start, unordered.
 std::vector<Vec2> reachable(const sim::World& world, double radius) {
   const auto columns = static_cast<int>(world.width / kCell);
   const auto rows = static_cast<int>(world.height / kCell);
@@ -61,7 +61,7 @@ std::vector<Vec2> reachable(const sim::World& world, double radius) {
   return found;
 }
 
-/// A client that wanders: on, where its front sonars see nothing near, else aside.
+/// A wandering client: straight on while the front is free, else aside.
 class Wanderer {
  public:
   explicit Wanderer(std::uint64_t seed) : random_(seed, 77), ranges_(64, 5.0) {}
@@ -96,8 +96,8 @@ class Wanderer {
 };
 
 struct Result {
-  double robot_seconds = 0.0;  ///< simulated in a second
-  double bound = 0.0;          ///< by the sonars alone
+  double robot_seconds = 0.0;  ///< simulated time per second
+  double bound = 0.0;          ///< with the sonars alone
   int contacts = 0;
   double way = 0.0;  ///< [m]
 };
@@ -123,7 +123,7 @@ Result run(const sim::World& world, const protocol::RobotParameters& parameters,
   }
 
   Result result;
-  std::vector<Pose> poses;  // where they were, cycle by cycle
+  std::vector<Pose> poses;  // the poses, cycle by cycle
   poses.reserve(robots * static_cast<std::size_t>(cycles));
   const double begin = seconds();
   for (int cycle = 0; cycle < cycles; ++cycle) {

@@ -76,7 +76,7 @@ class Ride {
     else
       pressed_ = true;
     need(until([&] { return std::abs(newest().velocity) <= kStill; }), "it does not stop");
-    // By rows, one a cycle: the numbers of cycles begin anew with each connection.
+    // By rows, one a cycle: the cycle numbers restart with each connection.
     const std::vector<sim::TraceRow> all = rows();
     const std::size_t lost = before.size() - 1;
     std::size_t still = lost;
@@ -85,7 +85,7 @@ class Ride {
     const Roll roll{
         before.back().velocity, static_cast<double>(still - lost) * kCycle,
         (all[still].pose_in_world.position() - all[lost].pose_in_world.position()).norm()};
-    // As before.
+    // Restores the starting conditions.
     grant_.reset();
     drive_ = false;
     pressed_ = false;
@@ -112,7 +112,8 @@ class Ride {
         "serial:" + folder_.path("tty") + "@38400"});
   }
 
-  /// [m/s] The speed in the driver's grant: the guard slows a robot that hears nobody in time.
+  /// [m/s] The speed in the driver's grant: the guard slows a robot that cannot hear people in
+  /// time.
   std::optional<double> permitted() const {
     return grant_ && grant_->role() == v1::ROLE_DIRECT && grant_->velocity() > 0.0
                ? std::optional(grant_->velocity())

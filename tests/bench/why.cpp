@@ -1,4 +1,4 @@
-// Asks why in each situation of docs/situations.md, and counts what is said falsely.
+// Asks why in each situation of docs/situations.md, and counts the wrong answers.
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>

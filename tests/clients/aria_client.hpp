@@ -10,21 +10,21 @@
 
 namespace saphira::test {
 
-/// A stand-in of the ARIA family of clients: what it sends, needs and stumbles over, as its sources
-/// and its wire say (connection states of ArRobot, SIP of ArRobot::processMotorPacket). It has its
-/// own packets and its own parameters; nothing of it is the project's protocol library.
+/// A stand-in of the ARIA family of clients: its packets, requirements and weaknesses, from its
+/// sources and its traffic (connection states of ArRobot, SIP of ArRobot::processMotorPacket). It
+/// has its own packets and its own parameters, without the project's protocol library.
 class AriaClient {
  public:
   explicit AriaClient(Line& line) : line_(line) {}
 
-  // Empty, or why it gave up.
+  // Empty, or the reason of its failure.
   std::string connect() {
     line_.send({'W', 'M', 'S', '2', '\r'});
     for (int number = 0; number < 3; ++number) {
       bool answered = false;
       for (int attempt = 0; attempt < 5 && !answered; ++attempt) {
         line_.send(packet(Wire{static_cast<std::uint8_t>(number)}));
-        // It listens for 70 ms, then says it again.
+        // It listens for 70 ms, then repeats the packet.
         const auto body = line_.expect([](const Wire&) { return true; }, 0.07);
         if (!body)
           continue;
@@ -34,7 +34,7 @@ class AriaClient {
           answered = true;
           break;
         }
-        // A slow line: the echo of what has been sent again meanwhile.
+        // A slow line: the echo of a packet that was repeated meanwhile.
         if ((*body)[0] < number)
           continue;
         if ((*body)[0] != number)
@@ -70,7 +70,7 @@ class AriaClient {
     return {};
   }
 
-  // Lets it run for that long, as its cycle of 100 ms does.
+  // Runs for that time, in its cycle of 100 ms.
   void poll(double seconds) {
     const double until = line_.now() + seconds;
     while (line_.now() < until - 1e-9) {
@@ -87,13 +87,13 @@ class AriaClient {
   void drive_a_metre() {
     const double x0 = x_;
     if (known_->moves) {
-      say(packet(8, 1000));  // MOVE, and nothing but pulses until it is done
+      say(packet(8, 1000));  // MOVE, then only pulses until it is done
       for (int i = 0; i < 150 && (x_ - x0 < 950.0 || velocity_ != 0); ++i)
         poll(0.1);
       poll(0.5);
       return;
     }
-    // Without MOVE it watches the way itself, and slows down.
+    // Without MOVE it measures the way itself, and slows down.
     for (int i = 0; i < 200; ++i) {
       const double left = 1000.0 - (x_ - x0);
       if (left < 5.0)
@@ -159,7 +159,7 @@ class AriaClient {
     }
   }
 
-  // Limits come from the configuration packet where there is one; what is zero there stays zero.
+  // Limits come from the configuration packet, if there is one; zeros there stay zero.
   void read_config() {
     if (config_.empty())
       return;

@@ -1,6 +1,6 @@
-// A stand-in of the ARIA family of clients: what it sends, needs and stumbles over, as its sources
-// and its wire say (connection states of ArRobot, SIP of ArRobot::processMotorPacket). It has its
-// own packets and its own parameters; nothing of it is the project's protocol library.
+// A stand-in of the ARIA family of clients: its packets, requirements and weaknesses, from its
+// sources and its traffic (connection states of ArRobot, SIP of ArRobot::processMotorPacket). It
+// has its own packets and its own parameters, without the project's protocol library.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ TEST_P(Aria, ConnectsConfiguresDrivesSeesAndStops) {
   const bool psos = line.parameters().protocol == protocol::Protocol::kPsos;
   EXPECT_EQ(client.has_config(), !psos);
   if (!psos) {
-    // With zeros there it would only ever send VEL 0.
+    // With zeros there it would only send VEL 0.
     EXPECT_EQ(client.config_velocity_max(),
               static_cast<int>(line.parameters().max_velocity * 1000.0));
   }
@@ -30,7 +30,7 @@ TEST_P(Aria, ConnectsConfiguresDrivesSeesAndStops) {
   client.poll(2.0);
   EXPECT_GE(client.sips(), 19);
   EXPECT_GT(client.battery(), 10.0);
-  EXPECT_EQ(client.motors_on(), !psos);  // a Pioneer 1's word there is the servo's
+  EXPECT_EQ(client.motors_on(), !psos);  // a Pioneer 1 has the servo in that word
   const KnownRobot& known = *client.known();
   ASSERT_TRUE(client.sonar().contains(known.front));
   // The wall is 3 m from the robot's middle; the beam is some degrees wide.
@@ -76,7 +76,7 @@ std::string printable(const ::testing::TestParamInfo<std::string>& robot) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, Aria, ::testing::ValuesIn(subclasses()), printable);
 
-// A client that was killed did not say CLOSE; on a serial line the robot goes on talking.
+// A killed client did not send CLOSE; on a serial line the robot continues to send.
 TEST(AriaAgain, FindsAnOpenRobot) {
   PureLine line("p3dx-sh");
   {
@@ -91,7 +91,7 @@ TEST(AriaAgain, FindsAnOpenRobot) {
   EXPECT_GE(client.sips(), 9);
 }
 
-// Its bytes, as they are seen on the wire.
+// Its bytes, as observed on the wire.
 TEST(AriaAgain, TheOpeningByteForByte) {
   EXPECT_EQ(packet(Wire{0}), (Wire{0xFA, 0xFB, 3, 0, 0, 0}));
   EXPECT_EQ(packet(Wire{1}), (Wire{0xFA, 0xFB, 3, 1, 0, 1}));

@@ -24,7 +24,7 @@ class BeeClient {
 
   void send(const Wire& bytes) { line_.send(bytes); }
 
-  // The next information packet, by its rules; empty, or which one it breaks.
+  // The next information packet, by its rules; empty, or the broken rule.
   std::string cycle() {
     const auto body = line_.expect([](const Wire&) { return true; }, 0.5);
     if (!body)
@@ -36,7 +36,7 @@ class BeeClient {
     if ((*body)[12] > 1 || (*body)[13] > 1)
       return "stall bytes";
     const int count = (*body)[19];
-    // The first packet's sonars began to fire when it was opened.
+    // The sonars of the first packet began to fire at the opening.
     if (++packets_ > 1 && (count < fewest_ || count > most_))
       return std::to_string(count) + " sonar readings";
     if (body->size() < 20U + 3U * static_cast<std::size_t>(count) + 5U)
@@ -45,7 +45,7 @@ class BeeClient {
     return {};
   }
 
-  // A metre in six seconds; empty, or what is wrong with which packet.
+  // A metre in six seconds; empty, or the error and its packet.
   std::string drive_a_metre() {
     send(packet(4, 1));  // ENABLE
     for (int i = 0; i < 60; ++i) {

@@ -13,10 +13,9 @@
 
 namespace saphira::test {
 
-/// A robot server that is not ours, after AMRISim's ways with a Pioneer 3 DX: it listens on a TCP
-/// port, says 0x32 whether it moves or not, sends all sixteen sonars in every packet of 89 bytes,
-/// has no watchdog, accepts one client, and ignores the commands that it does not know. It drives
-/// on an empty plane.
+/// A third-party robot server, after AMRISim's behavior with a Pioneer 3 DX: it listens on a TCP
+/// port, sends 0x32 at rest and in motion, sends all sixteen sonars in every packet of 89 bytes,
+/// has no watchdog, accepts one client, and ignores unknown commands. It drives on an empty plane.
 class ForeignRobot {
  public:
   ForeignRobot();
@@ -31,14 +30,14 @@ class ForeignRobot {
   double th() const { return th_; }              ///< [deg]
   bool motors() const { return motors_; }
   bool connected() const { return open_; }
-  /// The next client is accepted and never answered; those after it are.
+  /// Accepts the next client without ever answering; later ones are served.
   void ignore_next_client() { ignores_ = true; }
-  /// Changes the body of each information packet before it is sent, from now on; the checker gets
-  /// the unchanged packet.
+  /// Changes the body of each following information packet before it is sent; the checker gets the
+  /// unchanged packet.
   void spoil(std::function<void(std::vector<std::uint8_t>&)> how);
-  /// How often each command has come.
+  /// The number of each received command.
   std::map<int, int> commands() const;
-  /// Bytes that were no packet, and what the strict checker says of both sides.
+  /// Bytes outside of packets, and the strict checker's findings on both sides.
   std::string trouble() const;
 
  private:

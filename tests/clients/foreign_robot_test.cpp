@@ -1,5 +1,4 @@
-// Our bridge with robots that are strict with it: a simulator that is not ours, and ours under the
-// protocol checker.
+// Our bridge with strict robots: a third-party simulator, and ours under the protocol checker.
 
 #include "foreign_robot.hpp"
 
@@ -70,7 +69,7 @@ TEST(ForeignRobotTest, IsTriedAgainWhenItDoesNotAnswer) {
   EXPECT_EQ(robot.trouble(), "");
 }
 
-// Fields that cannot be true, with a checksum that is right.
+// Impossible fields, with a right checksum.
 TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   ForeignRobot robot;
   Scene scene;
@@ -81,18 +80,18 @@ TEST(ForeignRobotTest, IsStoppedWhileNoneOfItsPacketsCanBeTrue) {
   ASSERT_TRUE(scene.until([&] { return scene.state.velocity() > 0.19; })) << scene.bridge_log();
   const std::uint64_t epoch = scene.state.stamp().epoch();
   robot.spoil([](std::vector<std::uint8_t>& body) {
-    body[7] = 0x01;  // the left wheel backward, the right one forward, as fast as can be said
+    body[7] = 0x01;  // the left wheel backward, the right one forward, at the largest speed
     body[8] = 0x80;
     body[9] = 0xFF;
     body[10] = 0x7F;
   });
-  // It also waited while it connected.
+  // It also waited during the connection.
   ASSERT_TRUE(scene.until([&] {
     return scene.status.state() == v1::SERVICE_WAITING &&
            scene.status.reason().find("the robot sends a turn of 183 rad/s") == 0;
   })) << scene.status.reason();
   EXPECT_TRUE(scene.until([&] { return robot.velocity() == 0.0; }));
-  // Longer than a silent link is borne with: packets come, so it is none.
+  // Longer than the limit of a silent link: packets come, so the link is not silent.
   scene.watch(std::chrono::milliseconds(3000));
   EXPECT_EQ(scene.status.reason().find("the robot sends a turn of 183 rad/s"), 0U)
       << scene.status.reason();
@@ -121,7 +120,7 @@ TEST(ForeignRobotTest, WithASonarThatItsTableDoesNotHave) {
   EXPECT_EQ(scene.status.state(), v1::SERVICE_DEGRADED);
   EXPECT_EQ(scene.state.sonars().size(), 15U);
   EXPECT_GT(scene.state.bad_packets(), 0U);
-  // A count that is wrong makes nonsense of all that stands behind it.
+  // A wrong count makes all fields behind it meaningless.
   robot.spoil([](std::vector<std::uint8_t>& body) { body[19] = 100; });
   ASSERT_TRUE(scene.until([&] {
     return scene.status.reason().find("ends within its sonar readings") != std::string::npos;
@@ -135,7 +134,7 @@ TEST(ForeignRobotTest, WithASonarThatItsTableDoesNotHave) {
 
 class UnderTheChecker : public ::testing::TestWithParam<const char*> {};
 
-// Everything that bridge and simulator say to each other, from the synchronization to the end.
+// All traffic between bridge and simulator, from the synchronization to the end.
 TEST_P(UnderTheChecker, BridgeAndSimulatorKeepToTheTables) {
   Scene scene;
   scene.robot_file = std::string(GetParam()) + ".p";

@@ -74,7 +74,7 @@ void PureLine::wait(double seconds) {
 }
 
 std::optional<Wire> Line::next() {
-  // Their receivers: FA FB, a count, and the checksum right.
+  // Their receivers: FA FB, a count, and a right checksum.
   while (received_.size() >= 3) {
     const std::size_t size = 3U + received_[2];
     if (received_[0] != 0xFA || received_[1] != 0xFB || received_.size() < size) {

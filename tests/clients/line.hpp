@@ -14,12 +14,12 @@ namespace saphira::test {
 
 using Wire = std::vector<std::uint8_t>;
 
-/// A packet as others' clients make it: their own code, not ours.
+/// A packet as third-party clients make it: with separate code.
 Wire packet(const Wire& body);
 /// With an integer, by type 0x3B or 0x1B as they do.
 Wire packet(std::uint8_t command, int argument);
 
-/// A line to a robot as a client has it.
+/// A client's line to a robot.
 class Line {
  public:
   virtual ~Line() = default;
@@ -28,13 +28,13 @@ class Line {
   Line& operator=(const Line&) = delete;
 
   virtual void send(const Wire& bytes) = 0;
-  /// Lets time pass [s] and collects what comes.
+  /// Lets time pass [s] and collects received bytes.
   virtual void wait(double seconds) = 0;
   virtual double now() const = 0;  ///< [s]
   /// Waits until a body with that property has come, takes all up to it, and returns it; nothing
-  /// when the time is up, `seconds` times the patience of the line.
+  /// after `seconds` times the patience of the line.
   std::optional<Wire> expect(const std::function<bool(const Wire&)>& property, double seconds);
-  /// The next whole body that has come and was not yet taken; nothing without one.
+  /// The next complete body that was not taken yet; nothing without one.
   std::optional<Wire> next();
 
  protected:
@@ -51,7 +51,7 @@ std::string hall();
 inline const Pose kStart{4.0, 4.0, 0.0};
 
 /// A simulated robot with a line on which time passes only when the client waits, and the strict
-/// checker listening on it.
+/// checker on it.
 class PureLine : public Line {
  public:
   /// `file`: a robot of config/robots, in the hall.
@@ -66,7 +66,7 @@ class PureLine : public Line {
   const protocol::RobotParameters& parameters() const { return parameters_; }
   const Pose& start() const { return kStart; }
 
-  /// The violations of the tables that the checker has found, a line each; empty without any.
+  /// The violations of the tables found by the checker, a line each; empty without any.
   std::string violations() const;
   const protocol::Checker& checker() const { return checker_; }
 
@@ -91,7 +91,7 @@ struct KnownRobot {
   int sonars;
   bool moves;      ///< has MOVE and settable accelerations
   int front;       ///< a sonar that looks ahead
-  double front_x;  ///< [mm] where it stands
+  double front_x;  ///< [mm] its place
   double front_degrees;
 };
 const KnownRobot* find_known(const std::string& subclass);

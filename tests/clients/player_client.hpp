@@ -15,7 +15,7 @@ class PlayerClient {
  public:
   explicit PlayerClient(Line& line) : line_(line) {}
 
-  // Empty, or why it gave up. `warned` says that it did not know the robot and takes entry 0.
+  // Empty, or the reason of its failure. `warned`: it did not know the robot and takes entry 0.
   std::string connect() {
     for (int number = 0; number < 3; ++number) {
       std::optional<Wire> body;
@@ -66,7 +66,7 @@ class PlayerClient {
     line_.send(packet(21, rotation));
   }
 
-  // One information packet after the other, answered by nothing: its default says no pulse.
+  // One information packet after the other, without answers: its default sends no pulse.
   bool cycle() {
     const auto body = line_.expect(
         [](const Wire& b) { return b[0] == 0x32 || b[0] == 0x33 || b[0] == 0x31; }, 0.5);
@@ -76,7 +76,7 @@ class PlayerClient {
     return true;
   }
 
-  // Sonars and motors on, and what is seen for 1.5 s; false where the robot fell silent.
+  // Switches sonars and motors on, and reads for 1.5 s; false where the robot fell silent.
   bool switch_on() {
     sonars(true);
     motors(true);
@@ -94,7 +94,7 @@ class PlayerClient {
 
   double x = 0.0;  // mm
   bool warned = false;
-  int tainted = 0;  // odometry steps that it throws away
+  int tainted = 0;  // odometry steps that it discards
   std::map<int, double> ranges;
   const KnownRobot* known() const { return known_; }
 

@@ -66,7 +66,7 @@ TEST(PlayerAgain, SilenceStopsTheRobot) {
   EXPECT_NEAR(line.robot().velocity(), 0.15, 1e-6);
 }
 
-// A robot without a subclass is none of its table: it says so and takes another's.
+// A robot without a subclass is not in its table: it warns and takes another entry.
 TEST(PlayerAgain, AForeignClassIsWarnedOf) {
   PureLine line("b21");
   PlayerClient client(line);

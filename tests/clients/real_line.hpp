@@ -12,7 +12,7 @@ class RealLine : public Line {
  public:
   static int local(const std::string& path);
   static int tcp(int port);
-  /// A terminal at 9600 baud, as these clients set it.
+  /// A terminal at 9600 baud, with these clients' settings.
   static int terminal(const std::string& path);
 
   /// Takes the descriptor.

@@ -26,7 +26,7 @@ struct Case {
   Way way;
 };
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name that GoogleTest looks for
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for this name
 void PrintTo(const Case& which, std::ostream* out) {
   *out << which.robot;
 }
@@ -68,7 +68,7 @@ class RealTime : public ::testing::TestWithParam<Case> {
 
   // The newest row of the simulator's trace: the true state.
   sim::TraceRow truth() const { return sim::parse_trace(read_file(trace_), trace_).back(); }
-  // Ends it, and what the checker says of the whole.
+  // Ends the program; returns all findings of the checker.
   std::string ended() {
     simulator_->signal(SIGTERM);
     EXPECT_EQ(simulator_->wait(), 0);

@@ -1,4 +1,4 @@
-// Programs of other vendors make their types of the same files.
+// Programs with other vendors' DDS generate their types from the same files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ TEST(Contract, CompilesWithCyclonesIdlc) {
     test::Process idlc({"/usr/bin/env", "-C", folder.path(), "idlc", "-I" + idl, entry.path()},
                        folder.path(name + ".log"));
     EXPECT_EQ(idlc.wait(), 0) << entry.path() << ":\n" << idlc.output();
-    // A warning, too, is something that the next version may refuse.
+    // A warning also fails: the next version may refuse it.
     EXPECT_EQ(idlc.output(), "") << entry.path();
     EXPECT_TRUE(fs::exists(folder.path(name + ".c"))) << entry.path();
   }

@@ -1,4 +1,4 @@
-// The commands that documents and comments show can be typed as they are shown.
+// The commands in documents and comments can be typed as shown.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -30,7 +30,7 @@ std::vector<fs::path> files_with_commands() {
   return files;
 }
 
-/// The subcommands, as the help lists them.
+/// The subcommands, from the help.
 std::set<std::string> commands() {
   std::set<std::string> names{"test", "complete", "package"};
   std::istringstream help(read_file(test::source("agents/cli/help.txt")));
@@ -75,7 +75,7 @@ std::vector<Shown> shown() {
   return all;
 }
 
-/// NAME, N, FILE.svg, [-d] and ... stand for what a person types there.
+/// True for NAME, N, FILE.svg, [-d] and ..., which a person replaces.
 bool is_example(const std::string& word) {
   return std::any_of(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; }) ||
          word.find_first_of("[<|") != std::string::npos || word.find("...") != std::string::npos;

@@ -34,7 +34,7 @@ std::vector<fs::path> documents() {
   return files;
 }
 
-/// The lines of the fenced block that contains `word`, without their indent; empty: there is none.
+/// The lines of the fenced block that contains `word`, without their indent; empty: none.
 std::string block_with(const fs::path& file, const std::string& word) {
   std::ifstream in(file);
   std::string block;

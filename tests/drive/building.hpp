@@ -15,24 +15,24 @@ class Building {
  public:
   explicit Building(const DriveOptions& options, bool snap_to_right_angle_grid = true);
 
-  /// Until the map is built, or for so many cycles.
+  /// Runs until the map is built, for that number of cycles at most.
   void run(std::uint64_t limit);
   bool done() const { return whole.status(goal_).state == intentions::GoalState::kSucceeded; }
   std::string reason() const { return whole.status(goal_).reason; }
-  /// The map as built, moved and turned as a whole so that the way lies best on the true one: where
-  /// it begins and which way it is turned are the builder's choice.
+  /// The built map, moved and turned as a whole for the best fit of its way to the true one: its
+  /// origin and direction are the builder's choice.
   maps::Map aligned_map() const;
   /// A picture and the map, into the folder of the environment variable SAPHIRA_DRAW_TO.
   void draw(const std::string& name) const;
 
   Whole whole;
-  double worst = 0.0;  ///< [m] the believed pose against the true one
+  double worst = 0.0;  ///< [m] the estimated pose against the true one
   int closures = 0;    ///< loops that were closed
 
  private:
   void note();
 
-  /// Of the graph when it was looked at last: where the robot believed to have been, and was.
+  /// The way at the last check of the graph: estimated and true places.
   struct Way {
     std::vector<Vec2> believed;
     std::vector<Vec2> truth;
@@ -43,7 +43,7 @@ class Building {
   Way way_;
 };
 
-/// A built map against the one that was drawn by hand.
+/// A built map compared with the hand-drawn one.
 struct MapScore {
   int corridors = 0;        ///< of the reference
   int corridors_found = 0;  ///< with the length to 3 %
@@ -52,12 +52,12 @@ struct MapScore {
   int doors_found = 0;
   int doors_false = 0;
   double worst_length = 0.0;  ///< share of the length
-  std::string text;           ///< what is missing or wrong
+  std::string text;           ///< missing and wrong artifacts
 };
 
 /// A door is found, or real, as in tests/bench/perception: within 0.3 m, 15 degrees and 0.4 m of
-/// width. At a corner of two corridors, whether the one or the other has the corner's square is a
-/// matter of taste: ends are compared without it.
+/// width. At a corner of two corridors either may have the corner's square: ends are compared
+/// without it.
 MapScore score(const maps::Map& built, const maps::Map& reference);
 
 }  // namespace saphira::test

@@ -14,7 +14,7 @@ namespace {
 protocol::RobotParameters parameters_of(const DriveOptions& options) {
   auto parameters =
       protocol::load_parameters(find_file(config_folder() + "/robots", options.robot, ".p"));
-  // As the bridge sets the robot at the connection.
+  // As set by the bridge at the connection.
   parameters.deceleration = std::max(parameters.deceleration, parameters.stop_deceleration);
   parameters.encode_jitter *= options.errors;
   parameters.angle_jitter *= options.errors;
@@ -108,7 +108,7 @@ void Drive::obey(const behaviors::Output& output) {
   const double heading = by_hand_        ? heading_
                          : output.active ? output.heading_in_odom
                                          : seen_.pose_in_odom.th;
-  // Whole millimetres and degrees, as the robot's commands have them.
+  // Whole millimetres and degrees, as in the robot's commands.
   robot_->set_velocity(std::round(guard(speed) * 1000.0) / 1000.0);
   const double bent = norm2_angle(seen_.pose_in_odom.th - robot_in_odom_.th);
   robot_->set_heading(radians(std::round(degrees(norm2_angle(heading - bent)))));

@@ -26,16 +26,16 @@ struct DriveOptions {
   double errors = 1.0;  ///< factor on the robot's dead-reckoning errors (manual Table 3-1)
   std::optional<Pose> start_in_world;  ///< else the world's own
   sim::SonarModel sonar;
-  bool guard = false;  ///< beside the robot, as in the bridge: it makes drives slower
-  double bend = 0.0;   ///< [rad/m] dead reckoning turns by so much more than the robot does
+  bool guard = false;  ///< beside the robot, as in the bridge: it slows drives
+  double bend = 0.0;   ///< [rad/m] additional turn of dead reckoning
 
   // The services beside behaviors.
   std::optional<behaviors::Registry> behaviors;  ///< else the predefined ones
   bool interpretation = false;
   std::optional<registration::Core::Settings> registration;
-  bool knows_pose = false;  ///< registration is told where the robot starts
+  bool knows_pose = false;  ///< registration gets the robot's start
   std::optional<intentions::Core::Settings> intentions;
-  std::function<double()> clock;  ///< [s] measures what the services take
+  std::function<double()> clock;  ///< [s] for the time of the services
 };
 
 /// With interpretation and with registration on that map. `knows_pose`: as in DriveOptions.
@@ -62,14 +62,14 @@ class Drive {
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
 
-  /// Moves the world by one cycle under what was asked for last.
+  /// Moves the world by one cycle under the newest commands.
   const Seen& advance();
 
   /// The task from the next cycle on.
   void go_to(const Vec2& goal_in_odom, double speed = 0.3, double radius = 0.15);
   void turn_to(double heading_in_odom);
   void stop();
-  /// By hand, without behaviors: [m/s], and the heading in odom [rad].
+  /// Manual driving, without behaviors: [m/s], and the heading in odom [rad].
   void drive(double speed, double heading_in_odom);
   /// These behaviors, as intentions would intend them.
   void intend(std::vector<behaviors::Intended> intended, bool control = true);
@@ -108,7 +108,7 @@ class Drive {
   Pose start_;
   system::Cores cores_;
   double bend_;
-  Pose robot_in_odom_;  ///< as the robot counts it, without the bend
+  Pose robot_in_odom_;  ///< by the robot's own odometry, without the bend
   bool has_guard_;
   authority::Body body_;
   authority::EchoMap echoes_;
@@ -119,15 +119,15 @@ class Drive {
   Seen seen_;
 };
 
-/// Drives through points one after the other, over and over where `loop` is set: go_to each, the
-/// next one when it is nearer than `radius`. The points are in the map; the caller says each cycle
-/// where the robot believes to be, or is.
+/// Drives through points one after the other, repeatedly if `loop` is set: go_to each, the next one
+/// at a distance below `radius`. The points are in the map; the caller passes the robot's estimated
+/// or true pose in each cycle.
 class Tour {
  public:
   Tour(std::vector<Vec2> points_in_map, bool loop, double radius = 0.5, double speed = 0.3)
       : points_(std::move(points_in_map)), loop_(loop), radius_(radius), speed_(speed) {}
 
-  /// False when the last point is reached; the robot is told to stop then.
+  /// False when the last point is reached; then the robot stops.
   bool act(Drive& drive, const Pose& pose_in_map);
   std::size_t reached() const { return reached_; }
   /// Gives up the present point for the next one.

@@ -5,7 +5,7 @@
 namespace saphira::test {
 namespace {
 
-/// Round a corner of the corridors by the true pose; the last one.
+/// Drives round a corner of the corridors by the true pose; returns the last cycle.
 Seen tour(std::uint64_t seed, int& contacts) {
   DriveOptions options;
   options.seed = seed;

@@ -13,7 +13,7 @@ constexpr double kReach = 6.0;               // [m]
 constexpr double kField = radians(30.0);     // to each side
 constexpr std::uint64_t kForget = 50;        // [cycles]
 constexpr double kTick = 0.1;                // [s]
-constexpr double kNominal = 2.0;             // [m] where nothing tells the range
+constexpr double kNominal = 2.0;             // [m] without a known range
 constexpr std::uint32_t kFirstBlob = 1'000;  // people are numbered from 1
 
 class TrueEyes {

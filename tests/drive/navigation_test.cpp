@@ -20,7 +20,7 @@ using intentions::GoalStatus;
 using saphira::Frame;
 using saphira::text;
 
-/// The office floor with more in it, as a file.
+/// The office floor with additions, as a file.
 std::string office_with(const std::string& name, const std::string& more) {
   const std::string path = testing::TempDir() + "saphira-navigation-" + name + ".wld";
   std::ofstream(path) << read_file(config_folder() + "/worlds/office-floor.wld") << "\n" << more;
@@ -43,9 +43,9 @@ bool is_in(const Whole& whole, const std::string& place) {
   });
 }
 
-/// An answer of people to words of the robot. Each is given once, in the order of the list.
+/// People's answer to the robot's words. Each is given once, in the order of the list.
 struct Answer {
-  std::string to;  ///< a part of what is said
+  std::string to;  ///< a part of the robot's words
   std::string name;
   intentions::Value value;
 };
@@ -70,7 +70,7 @@ class People {
   std::size_t next_ = 0;
 };
 
-/// Until the goal has ended, among people who answer.
+/// Runs until the goal has ended, among people who answer.
 GoalStatus among(Whole& whole, People& people, const intentions::GoalId& goal, int cycles) {
   whole.advance_until(
       [&] {
@@ -88,8 +88,8 @@ bool said(const Whole& whole, const std::string& part) {
                      [&](const std::string& each) { return each.find(part) != std::string::npos; });
 }
 
-// Paper 3.5.1: the door is begun while the corridor is still followed, so that the robot does not
-// stop between the two.
+// Paper 3.5.1: the passage of the door begins while the robot still follows the corridor, so that
+// it does not stop between the two.
 TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
   Whole whole(office());
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
@@ -119,7 +119,7 @@ TEST(Navigation, FromTheCorridorThroughTheDoorWithoutAStop) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
-// From leg to leg of the path no cycle passes in which nobody drives.
+// From leg to leg of the path some behavior drives in every cycle.
 TEST(Navigation, OnTheWayThereIsAlwaysABehaviorThatDrives) {
   Whole whole(office());
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
@@ -140,7 +140,7 @@ TEST(Navigation, OnTheWayThereIsAlwaysABehaviorThatDrives) {
       },
       3000);
   EXPECT_TRUE(driving);
-  // Between the end of the path and the stop plan-and-execute comes to its end.
+  // Between the end of the path and the stop, plan-and-execute ends.
   EXPECT_LE(idle, 2);
 }
 
@@ -183,8 +183,8 @@ TEST(Navigation, BeforeAClosedDoorItAsksAndSaysWhyNot) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
-// A robot that asks from beside the door, and not from in front of it, takes the opened door for
-// closed in about one of four cases. This one asks from in front of it.
+// A robot that asks from beside the door, not from in front of it, takes the opened door for closed
+// in about one of four cases. This one asks from in front of it.
 TEST(Navigation, WhenTheDoorIsOpenedItGoesOn) {
   Whole whole(office(1, office_with("opened", kClosed247)));
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-247")});
@@ -219,7 +219,7 @@ TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
   ASSERT_EQ(go_to(whole, 31.5, 7.0).state, GoalState::kSucceeded);
   EXPECT_EQ(closed, std::vector<std::uint32_t>{1271});
   ASSERT_EQ(go_to(whole, 27.0, 7.0).state, GoalState::kSucceeded);
-  // Past it to the farther door, without another look.
+  // Past it to the farther door, without a second look.
   const auto goal = whole.ask("go-to-place", {text("place", "EJ-271")});
   double nearest = 10.0;  // to it, from the corridor's middle
   whole.advance_until(
@@ -301,7 +301,7 @@ TEST(Navigation, AMoreImportantGoalInterruptsTheJourneyWhichThenGoesOn) {
 // ---- People (paper 4.5, 4.6)
 
 // The most complicated plan that Flakey executed: to Karen's office, where she is not; to John's
-// place, to ask him where she is; to her, for the report; and back with it.
+// place, to ask him for her place; to her, for the report; and back with it.
 std::vector<Answer> the_report_of_karen() {
   return {{"Is karen here?", "answer", "no"},   {"Who knows where karen is?", "answer", "john"},
           {"Is karen here?", "answer", "no"},   {"Who knows where karen is?", "answer", "EJ-244"},
@@ -444,15 +444,15 @@ TEST(Mapping, TheMapOfAFloorFromNothingAndThenByIt) {
   EXPECT_GE(count(lps::PointType::door), 7);
   EXPECT_EQ(whole.drive().contacts(), 0);
   EXPECT_TRUE(whole.at_rest());
-  // The map is registered on from now on.
+  // Registration uses the built map from now on.
   for (int i = 0; i < 20; ++i)
     whole.advance();
   EXPECT_EQ(whole.registered().state, registration::State::tracking);
   EXPECT_LT((whole.believed().position() - whole.truth().position()).norm(), 0.5);
 }
 
-// ---- Golden traces: what each activity does in a world of its own, exactly. Renewed, when it has
-// been changed deliberately, with SAPHIRA_RENEW_GOLDEN=1 in the environment of this program.
+// ---- Golden traces: the exact course of each activity in a world of its own. To renew them after
+// a deliberate change, set SAPHIRA_RENEW_GOLDEN=1 in the environment of this program.
 
 struct Scenario {
   std::string name;
@@ -461,7 +461,7 @@ struct Scenario {
   saphira::Arguments arguments;
   int cycles = 3000;
   std::vector<Answer> answers{};
-  std::vector<std::pair<std::string, std::string>> claims{};  ///< made before
+  std::vector<std::pair<std::string, std::string>> claims{};  ///< claims before the start
 };
 
 std::vector<Scenario> scenarios() {
@@ -531,7 +531,7 @@ std::string without_numbers(const std::string& line) {
 TEST_P(Golden, TheTransitionsAreThoseThatAreStored) {
   const Scenario& scenario = GetParam();
   Whole whole(scenario.options);
-  for (int i = 0; i < 5; ++i)  // registration has looked
+  for (int i = 0; i < 5; ++i)  // registration has checked
     whole.advance();
   for (const auto& [name, value] : scenario.claims)
     whole.claim(name, value);

@@ -1,4 +1,4 @@
-// The people and colours that the robot sees while it drives about: the right ones, and no others.
+// The people and colours that the robot sees while it drives: the right ones, and no others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Kind = lps::SeenThing::Kind;
 
-// The office floor, and more in it.
+// The office floor with additions.
 std::string world_with(const std::string& name, const std::string& more) {
   const std::string path = testing::TempDir() + "saphira-vision-" + name + ".wld";
   std::ofstream(path) << read_file(config_folder() + "/worlds/office-floor.wld") << "\n"
@@ -31,7 +31,7 @@ struct Count {
   int found = 0;  // of them
 };
 
-// True where `at` is in view, behind no other person and no wall; other things do not count.
+// True where `at` is in view, not behind another person or a wall; other objects do not count.
 bool visible(Drive& drive, const Vec2& at) {
   const Pose robot = drive.seen().true_pose_in_world;
   const Vec2 in_robot = to_frame(robot, at);
@@ -126,10 +126,10 @@ TEST(VisionEyes, SeePeopleWalk) {
   EXPECT_GT(count.right, 0.98 * count.reported);
   EXPECT_GT(count.found, 0.85 * count.visible);
   const Count bands = watch(Stereo::bands, world, Pose{13.0, 25.0, 0.0}, {}, 300);
-  EXPECT_GT(bands.found, 0.85 * bands.visible);  // and a piece of wall, which goes on above
+  EXPECT_GT(bands.found, 0.85 * bands.visible);  // and a piece of wall, which continues above
 }
 
-// By what its cameras see, not by the truth.
+// By its cameras, not by the true state.
 TEST(VisionEyes, APersonIsFollowedAroundACorner) {
   WholeOptions options;
   options.drive.world = world_with(

@@ -18,19 +18,19 @@ namespace saphira::test {
 
 struct WholeOptions {
   DriveOptions drive;
-  std::string map;  ///< a name of config/maps; empty: that of the world; none: no map
+  std::string map;  ///< a name of config/maps; empty: the world's; none: no map
   std::shared_ptr<const maps::Map> made_map;  ///< instead of it
-  bool knows_pose = true;                     ///< registration is told where the robot starts
-  bool snap = true;                           ///< what is put onto the map is on right angles
-  bool adds_objects = false;  ///< what stands where the map has nothing is put onto it
+  bool knows_pose = true;                     ///< registration gets the robot's start
+  bool snap = true;                           ///< new artifacts are aligned with right angles
+  bool adds_objects = false;                  ///< objects that are not on the map are added to it
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;
-  /// The things that a camera sees after a cycle. None: there is no camera.
+  /// The things that a camera sees after a cycle. None: no camera.
   std::function<std::vector<lps::SeenThing>(Drive&)> sees;
 };
 
-/// The built-in schemas, and those of config/activities. std::runtime_error where anything is wrong
-/// with a file.
+/// The built-in schemas, and those of config/activities. std::runtime_error where a file has an
+/// error.
 intentions::Registry shipped_schemas(const behaviors::Registry& behaviors);
 
 /// The whole robot in one loop, without the bus: simulated robot and all services. Repeatable to
@@ -42,18 +42,18 @@ class Whole {
   Whole& operator=(const Whole&) = delete;
 
   void advance();
-  /// Until `done`, for so many cycles at most; whether it was.
+  /// Advances until `done`, for `cycles` at most; returns the result of `done`.
   bool advance_until(const std::function<bool()>& done, int cycles);
 
-  /// Asks for a goal; it is heard in the next cycle.
+  /// Asks for a goal, which is taken in the next cycle.
   intentions::GoalId ask(std::string functor, saphira::Arguments arguments = {}, int priority = 0,
                          double deadline = 0.0);
-  /// Somebody claims it; it is heard in the next cycle.
+  /// Makes a claim, which is taken in the next cycle.
   void claim(std::string name, intentions::Value value);
-  /// The newest word on a goal; kWaiting until there is one.
+  /// The newest status of a goal; kWaiting until there is one.
   const intentions::GoalStatus& status(const intentions::GoalId& goal) const;
   bool ended(const intentions::GoalId& goal) const;
-  /// Asks, and advances until the goal has ended, or for so many cycles.
+  /// Asks, and advances until the goal has ended, for that number of cycles at most.
   intentions::GoalStatus achieve(std::string functor, saphira::Arguments arguments, int cycles);
 
   Drive& drive() { return drive_; }
@@ -61,7 +61,7 @@ class Whole {
   const registration::Core::Outputs& registered() const { return drive_.registered(); }
   Pose believed() const { return drive_.believed(); }
   const maps::Map& map() const { return drive_.cores().registration().map(); }
-  /// Of the map as it is now.
+  /// Of the present map.
   maps::Topology topology() const { return maps::Topology(map()); }
   const intentions::Outputs& intentions() const {
     return drive_.cores().said().intentions.intended;
@@ -70,12 +70,11 @@ class Whole {
   std::uint64_t cycle() const { return drive_.seen().cycle; }
   bool at_rest() const;
 
-  /// The newest behavior that could not be made, and why; empty: none.
+  /// The newest behavior that could not be made, and the reason; empty: none.
   const std::string& trouble() const { return trouble_; }
-  /// All that was said to people.
+  /// All messages to people.
   const std::vector<std::string>& said() const { return said_; }
-  /// Everything that changed in the intentions since the start, a line each: "12 go_to (1:1)
-  /// begins, END".
+  /// All changes in the intentions since the start, a line each: "12 go_to (1:1) begins, END".
   const std::vector<std::string>& transitions() const { return transitions_; }
 
  private:

@@ -1,5 +1,5 @@
-// Drives a fuzzer's entry function where libFuzzer is not to be had: a number of inputs, made from
-// the seeds (and from nothing) by random changes. The same inputs in every run.
+// Drives a fuzzer's entry function without libFuzzer: a number of inputs, made from the seeds (and
+// from nothing) by random changes. The same inputs in every run.
 //
 //     fuzz_x COUNT [SEED_FILE...]    or, to see a failure again:    fuzz_x - FILE...
 
@@ -14,7 +14,7 @@
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {

@@ -1,5 +1,5 @@
-// A file of activities: it compiles or has errors that name their place, and what compiles runs as
-// long as one likes without harm. The same bytes as a value of a belief.
+// A file of activities: it compiles or has errors with their place, and compiled activities run for
+// any time without harm. The same bytes as a value of a belief.
 
 #include <cstdint>
 #include <cstdlib>
@@ -62,7 +62,7 @@ void run(const Loaded& loaded) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view content(reinterpret_cast<const char*>(data), size);
   static const Functions kFunctions = [] {

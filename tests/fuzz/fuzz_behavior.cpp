@@ -1,4 +1,5 @@
-// A behavior file: it compiles or there are messages; what compiles runs, and drives by numbers.
+// A behavior file: it compiles or there are messages; a compiled behavior runs, with finite
+// outputs.
 
 #include <cmath>
 #include <cstdint>
@@ -27,7 +28,7 @@ Intended intended(const Schema& schema) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   Compiled compiled = compile(text, "fuzz.beh");

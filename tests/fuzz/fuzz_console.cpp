@@ -20,7 +20,7 @@ namespace {
 
 constexpr Control::OperatorId kPeople = 3;
 
-/// Its sample counts.
+/// True where its sample counts.
 bool apply(Control& control, Control::OperatorId who, const Message& message, double now) {
   if (const auto* const wrong = std::get_if<Wrong>(&message);
       wrong != nullptr && wrong->why.empty())
@@ -42,7 +42,7 @@ bool apply(Control& control, Control::OperatorId who, const Message& message, do
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string_view rest(reinterpret_cast<const char*>(data), size);
   AccessSettings access{"right", {"robot.example"}};

@@ -1,5 +1,5 @@
-// A map file: it loads or it is a FileError; what loads can be written and read again, looked at,
-// drawn, driven by and registered on.
+// A map file: it loads or gives a FileError; a loaded map can be written and read again, searched,
+// drawn, used for routes and for registration.
 
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include "saphira/maps/route.hpp"
 #include "saphira/registration/line_map.hpp"
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace saphira;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (editor.map().features.size() != map.features.size())
     std::abort();
   if (map.features.size() > 40)
-    return 0;  // what follows takes long with many
+    return 0;  // the rest takes long with many
   const maps::Topology topology(map);
   const registration::LineMap lines(map);
   for (const registration::Surface& surface : lines.surfaces())

@@ -1,5 +1,5 @@
-// Messages of a language model's client to the MCP server, one per line: each is taken or gets an
-// error, each call has arguments that fit its tool, and every line to the client is JSON.
+// Messages of a language model's client to the MCP server, one per line: each is accepted or gets
+// an error, each call has arguments that fit its tool, and every line to the client is JSON.
 
 #include <cstdint>
 #include <cstdlib>
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     ++count;
-    // Lines, and requests of HTTP in turn, of which each third is closed.
+    // Lines, and requests of HTTP in turn; a third of the latter is closed.
     const Headers headers{count % 4 == 0 ? Session::kModern : "", "tools/call", "go_to"};
     session.set_time(0.01 * static_cast<double>(count));
     session.take(text.substr(0, end), count, count % 2 == 0 ? &headers : nullptr);

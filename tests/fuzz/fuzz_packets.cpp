@@ -1,5 +1,5 @@
 // Bytes from a line: through the parser in pieces, into every decoder, and into a whole server.
-// Every packet from the parser must be a packet in the input, whatever the pieces.
+// Every packet from the parser must be a packet in the input, for any pieces.
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ void decode_everything(const protocol::Bytes& body) {
   }
 }
 
-// The checker bears with anything, from either side.
+// The checker survives any bytes, from either side.
 void check(protocol::ByteView bytes) {
   protocol::Checker checker;
   for (int i = 0; i < 2; ++i) {
@@ -102,7 +102,7 @@ void serve(protocol::ByteView bytes) {
   server.receive(protocol::encode(protocol::Open{}));
   server.receive(protocol::encode(protocol::Enable{true}));
   server.receive(bytes);
-  // And once more with a frame around it, so that commands with damaged bodies arrive.
+  // Again with a frame around it, so that commands with damaged bodies arrive.
   if (!bytes.empty())
     server.receive(protocol::frame(bytes.first(std::min(bytes.size(), protocol::kMaxBody))));
   server.advance(30);
@@ -114,7 +114,7 @@ void serve(protocol::ByteView bytes) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const protocol::ByteView input(data, size);
   protocol::PacketParser parser;

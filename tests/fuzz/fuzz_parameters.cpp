@@ -1,4 +1,5 @@
-// A robot parameter file: it loads or it is a FileError, and what loads keeps its promises.
+// A robot parameter file: it loads or gives a FileError, and loaded parameters keep their
+// guarantees.
 
 #include <cmath>
 #include <cstdint>
@@ -8,7 +9,7 @@
 #include "saphira/base/text.hpp"
 #include "saphira/protocol/parameters.hpp"
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is libFuzzer's
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {

@@ -21,7 +21,7 @@ void expect(bool holds) {
     std::abort();
 }
 
-/// One line to every reader of text.
+/// Passes a line to every reader of text.
 void read(const std::string& line) {
   try {
     for (const Robot& robot : parse_robots("robots", line))

@@ -1,6 +1,6 @@
-// Mutated RTPS packets against a running system: what is said on the loopback of one DDS domain is
-// recorded, mutated and sent again to where it went, in rounds. After each round: which programs
-// have died, and whether a goal still moves the robot.
+// Mutated RTPS packets against a running system: packets on the loopback of one DDS domain are
+// recorded, mutated and sent again to their destination, in rounds. After each round: the programs
+// that have died, and the success of a goal.
 //
 //   saphira-fuzz-rtps --domain 130 --seconds 3600 [--rate 200] [--seed 1]
 //
@@ -45,7 +45,7 @@ struct Options {
   unsigned rate = 200;  // packets a second
   std::uint64_t seed = 1;
   bool json = false;
-  std::string log;  // of the programs; empty: it goes with this one
+  std::string log;  // of the programs; empty: removed at the end
 };
 
 [[noreturn]] void fail(const std::string& what) {
@@ -57,7 +57,7 @@ struct Packet {
   Bytes bytes;
 };
 
-/// Hears what is sent on the loopback to a domain's ports, and sends there.
+/// Captures the packets on the loopback to a domain's ports, and sends there.
 class Loopback {
  public:
   explicit Loopback(unsigned domain)
@@ -92,7 +92,7 @@ class Loopback {
 
   int fd() const { return heard_; }
 
-  /// The next packet that has been heard; false where there is none.
+  /// The next captured packet; false: none.
   bool next(Packet& packet) {
     std::array<std::uint8_t, 65536> buffer{};
     for (;;) {
@@ -102,14 +102,14 @@ class Loopback {
                                    reinterpret_cast<sockaddr*>(&from), &size);
       if (got < 0)
         return false;
-      // Each packet comes by twice, out and in.
+      // Each packet is seen twice, out and in.
       if (from.sll_pkttype != PACKET_OUTGOING &&
           read(buffer.data(), static_cast<std::size_t>(got), packet))
         return true;
     }
   }
   void send(const Packet& packet) const {
-    // A receiver that is gone makes this fail, which is no fault of the fuzzer.
+    // Fails after the end of a receiver, which is no fault of the fuzzer.
     [[maybe_unused]] const auto sent =
         sendto(sender_, packet.bytes.data(), packet.bytes.size(), 0,
                reinterpret_cast<const sockaddr*>(&packet.to), sizeof packet.to);
@@ -266,7 +266,7 @@ class Campaign {
   }
 
  private:
-  /// True where a goal of a client that is started now is reached.
+  /// True where a newly started client reaches a goal.
   bool goal(const std::string& name) {
     there_ = !there_;
     // In the map: dead reckoning drifts, and after an hour its (2, 0) is in a room beside the
@@ -313,7 +313,7 @@ class Campaign {
   const std::map<std::string, std::string> environment_{
       {"SAPHIRA_DOMAIN", std::to_string(options_.domain)},
       {"SAPHIRA_PROFILE", "host"},
-      // No run before it has left a place in its memory of the map.
+      // No earlier run has left a place in its memory of the map.
       {"SAPHIRA_ROBOT", "fuzz-" + std::to_string(getpid())}};
   std::uint64_t sent_ = 0;
   int rounds_ = 0;

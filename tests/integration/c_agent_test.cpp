@@ -64,7 +64,7 @@ TEST(CAgent, OfAnotherVendorLooksSendsTakesBackAndDrives) {
   run({"cancel", "8", "0", "3"}, "canceled");
   run({"drive", "0.1", "0.3", "2"}, "c_agent drives");
   run({"go", "1", "0"}, "succeeded");
-  // A wrong word is the person's mistake.
+  // A wrong word gives the exit code of a usage error.
   test::Process wrong({build + "/c_agent", "fly"}, installed.path("wrong.log"), environment);
   EXPECT_EQ(wrong.wait(), std::optional<int>(2));
   EXPECT_NE(wrong.output().find("expected state"), std::string::npos);

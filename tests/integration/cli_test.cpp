@@ -1,4 +1,4 @@
-// The command line as a person uses it, against a scripted node in the place of the services.
+// The command line as a person uses it, with a scripted node in place of the services.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -29,8 +29,8 @@ namespace {
 using std::chrono::milliseconds;
 namespace topics = bus::topics;
 
-/// A bridge that stands still and an intentions service that answers each goal by its functor: in
-/// a thread, until the object goes.
+/// A bridge of a standing robot and an intentions service that answers each goal by its functor: in
+/// a thread, for the object's life.
 class Scripted {
  public:
   explicit Scripted(const std::string& robot) : options_(test::node_options("bridge", robot)) {
@@ -222,7 +222,7 @@ TEST_F(CliTest, StatusShowsProcessesTheGrantAndWhatIsMissing) {
 TEST_F(CliTest, WatchShowsWhoIsLost) {
   const std::string file = folder_.path("watch");
   test::Process watch(command({"status", "--watch"}), file);
-  // A process that ends without a word: it is killed.
+  // A killed process ends without a message.
   const pid_t child = fork();
   if (child == 0) {
     // A fresh program: DDS does not survive a fork.
@@ -291,7 +291,7 @@ TEST_F(CliTest, ListShowsEndpointsAndMismatches) {
       << outcome.text;
   EXPECT_TRUE(has(outcome.text, "reliable transient_local")) << outcome.text;
 
-  // Somebody who expects lockstep asks for more than a live bridge offers.
+  // A user who expects lockstep requires more than a live bridge offers.
   bus::NodeOptions strict = scripted.options();
   strict.name = "strict";
   strict.lockstep = true;
@@ -367,7 +367,7 @@ TEST_F(CliTest, DriveIsADeadMan) {
     const auto all = scripted.teleop();
     return all.empty() ? v1::MotorCommand() : all.back();
   };
-  // Until its first command is heard: it comes up and is discovered meanwhile.
+  // Until its first command is received: it starts and is discovered meanwhile.
   EXPECT_TRUE(test::wait_until([&] {
     press('i');
     std::this_thread::sleep_for(milliseconds(50));
@@ -375,10 +375,10 @@ TEST_F(CliTest, DriveIsADeadMan) {
   }));
   EXPECT_EQ(newest().stamp().epoch(), 7U);
   EXPECT_GT(newest().stamp().cycle(), 0U);
-  // Without keys it gives the robot back, and stops.
+  // Without keys it releases the robot, and stops.
   EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
   EXPECT_EQ(newest().velocity(), 0.0);
-  // No number comes twice.
+  // All numbers differ.
   std::uint64_t last = 0;
   for (const v1::MotorCommand& command : scripted.teleop()) {
     EXPECT_GT(command.number(), last);
@@ -400,12 +400,12 @@ TEST_F(CliTest, DriveIsADeadMan) {
   EXPECT_EQ(waitpid(pid, &status, 0), pid);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   EXPECT_TRUE(test::wait_until([&] { return !newest().active(); }));
-  // The terminal is as it was.
+  // The terminal has its earlier settings.
   termios after{};
   EXPECT_EQ(tcgetattr(terminal, &after), 0);
   EXPECT_NE(after.c_lflag & ICANON, 0U);
   EXPECT_NE(after.c_lflag & ECHO, 0U);
-  // The reader ends by itself: nobody has the other side any more.
+  // The reader ends by itself: the other side is closed.
   reader.join();
   close(terminal);
   EXPECT_TRUE(has(drawn, "12.5 V")) << drawn;
@@ -459,7 +459,7 @@ TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
   close(terminal);
 }
 
-/// A command whose output nobody reads.
+/// A command without a reader of its output.
 class Unread {
  public:
   explicit Unread(std::vector<std::string> words) {
@@ -470,7 +470,7 @@ class Unread {
     argv.push_back(nullptr);
     EXPECT_EQ(pipe2(pipe_.data(), O_CLOEXEC), 0);
     EXPECT_GT(fcntl(pipe_[1], F_SETPIPE_SZ, 4096), 0);
-    // Full from the start: not one character of the command fits.
+    // Full from the start: no character of the command fits.
     const std::string filling(4096, '.');
     EXPECT_EQ(write(pipe_[1], filling.data(), filling.size()), 4096);
     pid_ = fork();
@@ -540,7 +540,7 @@ TEST_F(CliTest, UpStartsAgainWhatDiesAndStopsAll) {
   const int pid = std::stoi(text.substr(text.find("| pid ") + 6));
   kill(pid, SIGKILL);
   EXPECT_TRUE(test::wait_until([&] { return has(up.output(), "a started again"); })) << up.output();
-  // Twice at once would share sockets and memory.
+  // A second instance would share sockets and memory.
   const Outcome again = run({"up", file});
   EXPECT_NE(again.code, 0);
   EXPECT_TRUE(has(again.text, "running already")) << again.text;
@@ -583,7 +583,7 @@ TEST_F(Answers, UpEndsWhenAProgramDoesNotTakeItsOptions) {
   EXPECT_TRUE(has(outcome.text, "bridge does not take what")) << outcome.text;
 }
 
-// The files that a deployment gives its programs are read by these, and nothing is started.
+// The programs read the files that a deployment gives them, and nothing is started.
 TEST_F(Answers, CheckSaysWhetherADeploymentWouldStart) {
   const Outcome good = run({"check", "office"});
   EXPECT_EQ(good.code, 0) << good.text;

@@ -1,5 +1,5 @@
-// An agent of somebody else, from nothing but the installed tree: installed, configured, built and
-// run against the service and a scripted robot.
+// A third-party agent, from the installed tree only: installed, configured, built and run against
+// the service and a scripted robot.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST(ExampleAgent, IsBuiltFromTheInstalledTreeAndSendsTheRobot) {
   EXPECT_NE(agent.output().find("succeeded: arrived"), std::string::npos) << agent.output();
   EXPECT_LE((robot.world.robot.pose_in_odom.position() - Vec2(1.0, 0.5)).norm(), 0.15);
 
-  // A wrong argument is the agent's failure, with the reason.
+  // A wrong argument is a failure of the agent, with the reason.
   test::Process wrong({build + "/go_there", "1e6", "0"}, installed.path("wrong.log"), environment);
   EXPECT_EQ(wrong.wait(), std::optional<int>(1));
   EXPECT_NE(wrong.output().find("refused: argument \"position\": expected a point"),
@@ -78,7 +78,7 @@ TEST(ExampleAgent, CanBeAskedByItsNameOrByWhatItKnows) {
   EXPECT_NE(text.find("calendar: refused: the calendar has no bob"), std::string::npos) << text;
 }
 
-/// The commands of a document, without their comments, in their order.
+/// The commands of a document, without comments, in order.
 std::vector<std::string> commands_of(const std::string& file) {
   std::vector<std::string> commands;
   std::istringstream in(read_file(file));
@@ -130,7 +130,7 @@ TEST(ExampleAgent, TheTenMinutesOfTheDocumentWorkAsTheyAreWritten) {
       continue;
     }
     const bool asks = command.find(" ask ") != std::string::npos;
-    // Before the agent is there, nobody can tell; after that it may not have been heard yet.
+    // Before the agent's start the request fails; just after, the agent may not be discovered yet.
     const int expected = asks && asked++ == 0 ? 1 : 0;
     EXPECT_TRUE(test::wait_until([&] {
       const auto one = process();

@@ -1,5 +1,5 @@
-// A plug-in of somebody else, from nothing but the installed tree: installed, configured, built,
-// and loaded by the installed service.
+// A third-party plug-in, from the installed tree only: installed, configured, built, and loaded by
+// the installed service.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(ExamplePlugin, IsBuiltFromTheInstalledTreeAndLoadedByTheService) {
   const std::string build = installed.build("services/behaviors/examples/hold_distance");
   if (HasFatalFailure())
     return;
-  // It needs no more than a pure library: the bus is the service's business.
+  // It needs only a pure library: the bus belongs to the service.
   std::ifstream cache(build + "/CMakeCache.txt");
   const std::string entries((std::istreambuf_iterator<char>(cache)), {});
   EXPECT_NE(entries.find("saphira_DIR:PATH=" + installed.prefix()), std::string::npos);

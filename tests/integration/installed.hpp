@@ -11,7 +11,7 @@
 
 namespace saphira::test {
 
-/// This build, installed to a folder of its own: what somebody else has of the project.
+/// This build, installed to a separate folder: the project for third parties.
 class Installed {
  public:
   Installed() { EXPECT_EQ(install_build(prefix()), ""); }
@@ -20,8 +20,8 @@ class Installed {
   std::string program(const std::string& name) const { return prefix() + "/bin/" + name; }
   std::string path(const std::string& name) const { return dir_.path(name); }
 
-  /// Configures and builds a project of the source tree against what is installed; the build
-  /// folder.
+  /// Configures and builds a project of the source tree against the installed tree; returns the
+  /// build folder.
   std::string build(const std::string& project) const {
     std::string folder = dir_.path("build");
     const std::string sanitize = cached("SAPHIRA_SANITIZE");

@@ -5,10 +5,10 @@
 
 namespace saphira::test {
 
-/// Something that a newcomer types wrongly.
+/// A mistake in a newcomer's command.
 struct Mistake {
-  std::vector<std::string> words;  ///< behind `saphira`
-  std::vector<std::string> said;   ///< parts of the answer: what was wrong, and what to do
+  std::vector<std::string> words;  ///< after `saphira`
+  std::vector<std::string> said;   ///< parts of the answer: the error, and the advice
 };
 
 const std::vector<Mistake>& mistakes();

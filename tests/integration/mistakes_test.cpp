@@ -1,4 +1,4 @@
-// The answer to a newcomer's mistake at the command line says what was wrong and what to do.
+// The answer to a newcomer's mistake at the command line gives the error and advice.
 #include "mistakes.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   const test::TempDir folder;
   std::vector<std::string> words{"saphira"};
   words.insert(words.end(), mistake.words.begin(), mistake.words.end());
-  // Nobody types into it.
+  // Its input is empty.
   words.insert(words.begin(), {"/bin/sh", "-c", "exec \"$0\" \"$@\" </dev/null"});
   words[3] = test::program("saphira");
   test::Process process(words, folder.path("said"), {{"SAPHIRA_ROBOT", test::unique_robot()}});
@@ -25,7 +25,7 @@ TEST_P(Mistakes, AreAnsweredWithWhatWasWrongAndWhatToDo) {
   EXPECT_TRUE(code == 1 || code == 2) << typed << ": " << said;
   for (const std::string& part : mistake.said)
     EXPECT_NE(said.find(part), std::string::npos) << typed << ": " << said;
-  // The answer names the mistake, and not all that could be right.
+  // The answer names the mistake, and does not list all valid forms.
   EXPECT_LT(said.size(), 2000U) << typed;
   EXPECT_EQ(said.find("terminate"), std::string::npos) << typed << ": " << said;
 }

@@ -54,7 +54,7 @@ void up(int socket, const char* interface) {
   need(ioctl(socket, SIOCSIFFLAGS, &made), "network interface");
 }
 
-/// Gives the calling thread a network of its own, with one end of the link in it.
+/// Gives the calling thread its own network namespace, with one end of the link in it.
 void make_host(const char* address, int& network, int& tap) {
   need(unshare(CLONE_NEWNET), "a network namespace");
   network = need(open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC), "a network namespace");
@@ -70,7 +70,7 @@ void make_host(const char* address, int& network, int& tap) {
   close(socket);
 }
 
-/// True for an ARP frame, which a radio link does not lose: ARP asks again only after a second.
+/// True for an ARP frame, which a radio link does not lose: ARP repeats only after a second.
 bool asks_for_address(const std::vector<char>& frame) {
   return frame.size() > 13 && frame[12] == 0x08 && frame[13] == 0x06;
 }
@@ -79,7 +79,7 @@ bool asks_for_address(const std::vector<char>& frame) {
 
 SlowLink::SlowLink() {
   for (std::size_t host = 0; host < 2; ++host) {
-    // In a thread of its own, whose network is then the host's.
+    // In a separate thread, whose namespace then becomes the host's.
     std::exception_ptr trouble;
     std::thread([&] {
       try {
@@ -134,7 +134,7 @@ void SlowLink::relay() {
       auto& queue = on_the_way[from];
       for (; !queue.empty() && queue.front().due <= Clock::now(); queue.pop_front()) {
         const std::vector<char>& frame = queue.front().data;
-        // A full queue of the other host is a loss like any other.
+        // A full queue of the other host counts as a loss.
         [[maybe_unused]] const ssize_t written = write(taps_[1 - from], frame.data(), frame.size());
       }
     }

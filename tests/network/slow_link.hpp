@@ -6,23 +6,23 @@
 
 namespace saphira::test {
 
-/// Two hosts within this machine, 10.77.0.1 and 10.77.0.2: network namespaces with nothing between
-/// them but a link that delays, loses and can be cut. They go with the object.
+/// Two hosts within this machine, 10.77.0.1 and 10.77.0.2: network namespaces with only a link
+/// between them, which delays, loses and can be cut. They end with the object.
 class SlowLink {
  public:
-  /// std::system_error where this is not allowed: it needs root (CAP_SYS_ADMIN and CAP_NET_ADMIN)
-  /// and /dev/net/tun.
+  /// std::system_error without the rights: it needs root (CAP_SYS_ADMIN and CAP_NET_ADMIN) and
+  /// /dev/net/tun.
   SlowLink();
   ~SlowLink();
   SlowLink(const SlowLink&) = delete;
   SlowLink& operator=(const SlowLink&) = delete;
 
-  /// [s] each way, and the part [0..1] of all frames that is lost, each way.
+  /// [s] delay, and share [0..1] of lost frames, each way.
   void set(double delay, double loss) {
     delay_ = delay;
     loss_ = loss;
   }
-  /// While it is cut nothing enters the link; what is on its way arrives.
+  /// While it is cut no frame enters the link; frames on their way arrive.
   void cut(bool is_cut) { cut_ = is_cut; }
 
   /// The file descriptor of a host's network namespace, for setns.

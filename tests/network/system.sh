@@ -1,7 +1,7 @@
 #!/bin/bash
-# The real system on two hosts: simulator and bridge on one, behaviors, intentions and the one who
-# asks on the other. The robot drives; then the link is cut: it must stand within half a second, and
-# drive on by itself to its goal when the link is back.
+# The real system on two hosts: simulator and bridge on one, behaviors, intentions and the asker on
+# the other. The robot drives; then the link is cut: it must stand within half a second, and drive
+# on by itself to its goal when the link is back.
 #
 #   system.sh BIN_DIR CONFIG_DIR lan|wan
 set -u
@@ -34,7 +34,7 @@ if [ "${4:-}" = services ]; then
   # Half a second to stand, a tenth for the trace's next line, a tenth for this loop.
   sleep 0.7
   still || { echo "the robot drives on without its services"; tail -n 8 "$run/trace.csv"; exit 1; }
-  sleep 3.5  # longer than the lease: both sides take each other for dead
+  sleep 3.5  # longer than the lease: each side takes the other for dead
   still || { echo "the robot did not stay"; exit 1; }
   ip link set vb up
   echo "link up"

@@ -40,7 +40,7 @@ inside() {  # HOST COMMAND...: nsenter, since "ip netns exec" remounts /, which 
 pids=()
 clean_up() {
   trap - EXIT
-  # Only what was started here: the groups of the two commands and the cutter.
+  # Only processes that were started here: the groups of the two commands and the cutter.
   set +m
   for pid in "${pids[@]}"; do kill -TERM -- "-$pid" 2>/dev/null; done
   for pid in "${pids[@]}"; do
@@ -90,7 +90,7 @@ fi
 inside b ip addr add 10.77.0.2/24 dev vb
 inside a ip link set va up
 inside b ip link set vb up
-# A link has a carrier a moment later; until then its address is not to be had.
+# A link has a carrier a moment later; until then its address is not available.
 for host in a $others; do
   for _ in $(seq 100); do
     [ "$host" = a ] && end=va || end=v$host

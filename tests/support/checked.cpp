@@ -1,5 +1,5 @@
-// Linked into every test: what a simulator's checker or a sanitizer finds in a program is a failure
-// of the test.
+// Linked into every test: findings of a simulator's checker or a sanitizer in a program fail the
+// test.
 #include <gtest/gtest.h>
 
 #include "process.hpp"

@@ -1,6 +1,6 @@
-// The main of tests that talk on a bus of their own. It reserves a DDS domain that no other test of
-// this machine uses, also for what a killed test may have left running, and says after a failure
-// how long the machine itself stood still. 77: all tests were skipped.
+// The main of tests on a bus of their own. It reserves a DDS domain that no other test of this
+// machine uses, including leftovers of a killed test, and reports after a failure the time for
+// which the machine itself stood still. 77: all tests were skipped.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -22,17 +22,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-// Above, the ports of a domain run into those that the kernel gives out; below are those of people.
+// Above, the ports of a domain overlap the kernel's ephemeral ports; lower domains are for people.
 constexpr int kFirstDomain = 20;
 constexpr int kDomains = 80;
 
 /// Reserves a domain by the lock of a file. Children inherit the lock, so that the domain of a
-/// process that outlives its test is not given out again. False: all are taken, or the folder
-/// cannot be written.
+/// process that outlives its test is not used again. False: all are taken, or the folder cannot be
+/// written.
 bool reserve_domain() {
   constexpr char kFolder[] = "/tmp/saphira-test-domains";
   mkdir(kFolder, 0777);
-  chmod(kFolder, 0777);  // whatever the mask: tests of another user use it too
+  chmod(kFolder, 0777);  // for any umask: tests of another user use it too
   for (int i = 0; i < kDomains; ++i) {
     const std::string domain = std::to_string(kFirstDomain + (getpid() + i) % kDomains);
     const int file = open((std::string(kFolder) + "/" + domain).c_str(), O_RDWR | O_CREAT, 0666);
@@ -54,7 +54,7 @@ Seconds stolen() {
   return Seconds(steal / static_cast<double>(sysconf(_SC_CLK_TCK)));
 }
 
-/// Sees for how long this process did not run though it wanted to.
+/// Measures the time for which this process was ready but did not run.
 class StallWatch {
  public:
   StallWatch() : thread_([this] { watch(); }) {}

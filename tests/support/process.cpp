@@ -123,7 +123,7 @@ Process::~Process() {
     return;
   if (const std::string found = violations(); !found.empty() && !violations_expected_)
     complain("against the robots' protocol:\n" + found);
-  // A program that was killed has no exit code that tells of it.
+  // A killed program's exit code does not show the cause.
   const std::string said = output();
   if (const std::size_t at = said.find("Sanitizer:"); at != std::string::npos)
     complain(said.substr(said.rfind('\n', at) + 1, 4000));

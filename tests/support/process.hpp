@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-/// The parts that tests of whole programs share: processes, temporary folders, waiting.
+/// The common parts of tests of whole programs: processes, temporary folders, waiting.
 namespace saphira::test {
 
-/// Calls `condition` until it is true or the time is up; what it returned last. The limit is there
-/// for broken runs, so be generous.
+/// Calls `condition` until it is true or the time is up; returns its last result. The limit is for
+/// broken runs only, so be generous.
 bool wait_until(const std::function<bool()>& condition,
                 std::chrono::milliseconds limit = std::chrono::seconds(30));
 
-/// A folder that goes with the object.
+/// A folder that is removed with the object.
 class TempDir {
  public:
   TempDir();
@@ -33,10 +33,10 @@ class TempDir {
 /// A child process; killed with its object. Its output (both streams) goes to a file.
 ///
 /// In a test, every simulator that it is or starts has the strict protocol checker on its lines,
-/// and what that says to be against the tables fails the test when the object goes.
+/// and violations fail the test at the object's end.
 class Process {
  public:
-  /// argv[0] without a slash is one of the project's programs. `environment` adds to our own.
+  /// argv[0] without a slash is one of the project's programs. `environment` is added to our own.
   Process(std::vector<std::string> argv, std::string output_file,
           const std::map<std::string, std::string>& environment = {});
   ~Process();
@@ -47,28 +47,28 @@ class Process {
   pid_t pid() const { return pid_; }
   void signal(int number) const;
   bool running();
-  /// The exit code (128 + number after a signal), or nothing when it still runs.
+  /// The exit code (128 + number after a signal), or nothing while it still runs.
   std::optional<int> wait(std::chrono::milliseconds limit = std::chrono::seconds(60));
-  /// The text that it has printed so far.
+  /// The output so far.
   std::string output() const;
 
-  /// The violations that the checker has found so far, a line each.
+  /// The violations found so far, a line each.
   std::string violations() const;
-  /// All that it has written: findings, and a summary for each connection that was closed.
+  /// All output of the checker: findings, and a summary for each closed connection.
   std::string checked() const;
-  /// Somebody hurts the line or what is on it: violations are no failure.
+  /// The test damages the line: violations are no failure.
   void expect_violations() { violations_expected_ = true; }
 
-  /// The function that gets the violations and the findings of a sanitizer; without it nothing is
-  /// checked. Each test sets it (checked.cpp).
+  /// The function that gets the violations and the findings of a sanitizer; without it there is no
+  /// check. Each test sets it (checked.cpp).
   static void (*complain)(const std::string& found);
 
  private:
   pid_t pid_ = -1;
   std::optional<int> status_;
   std::string output_file_;
-  std::string check_file_;        // empty: nobody looks
-  std::size_t check_begins_ = 0;  // what stands there of a process before
+  std::string check_file_;        // empty: no check
+  std::size_t check_begins_ = 0;  // end of an earlier process's entries
   bool violations_expected_ = false;
 };
 
@@ -81,8 +81,8 @@ std::string domain();
 /// A robot (partition) of this test alone.
 std::string unique_robot();
 
-/// Installs this build, or one component of it, below `prefix`; what went wrong, or nothing. One at
-/// a time on a machine, since what is not stripped yet takes ten times the room.
+/// Installs this build, or one component of it, below `prefix`; returns the error, or nothing. One
+/// at a time on a machine, since unstripped files take ten times the room.
 std::string install_build(const std::string& prefix, const std::string& component = {});
 
 }  // namespace saphira::test

@@ -6,8 +6,8 @@
 
 namespace saphira::test {
 
-/// The value that a share of them does not exceed: 0.5 gives the median, 1 the greatest; not a
-/// number where there are none.
+/// The value that a share of the values does not exceed: 0.5 gives the median, 1 the greatest; NaN
+/// without values.
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty())
     return std::nan("");

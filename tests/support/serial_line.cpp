@@ -90,7 +90,7 @@ void SerialLine::put_back() {
   open_device();
 }
 
-/// False where the other end is gone.
+/// False after the end of the other side.
 bool SerialLine::take(int fd, int direction) {
   Direction& d = directions_[direction];
   std::array<std::uint8_t, 512> buffer{};
@@ -133,7 +133,7 @@ bool SerialLine::give(int fd, int direction) {
   if (out.empty() || fd < 0 || cut_[direction])
     return true;
   bytes_[direction] += out.size();
-  // Bytes that the other end does not take are lost, as in a receiver that is not read.
+  // Bytes that the other end does not take are lost, as in an unread receiver.
   const ssize_t n = direction == 0 ? ::send(fd, out.data(), out.size(), MSG_NOSIGNAL)
                                    : ::write(fd, out.data(), out.size());
   return n >= 0 || errno == EAGAIN || errno == EINTR;
@@ -141,7 +141,7 @@ bool SerialLine::give(int fd, int direction) {
 
 void SerialLine::run() {
   auto next_try = Clock::now();
-  // The bytes to the robot still go through at the end: else it is left with half a packet.
+  // The bytes to the robot still go through at the end: otherwise it would have half a packet.
   for (bool done = false; !done;) {
     const bool stop = stop_;
     bool busy = false;
@@ -160,7 +160,7 @@ void SerialLine::run() {
     const std::scoped_lock lock(mutex_);
     listened_ = fds[0].fd >= 0 && (fds[0].revents & POLLHUP) == 0;
     if (!listened_)
-      std::this_thread::sleep_for(kTick);  // a poll of what has hung up waits for nothing
+      std::this_thread::sleep_for(kTick);  // poll does not wait on a closed descriptor
     const bool comes = (fds[0].revents & POLLIN) != 0 && fds[0].fd == master_;
     if (comes)
       take(master_, 0);
@@ -168,7 +168,7 @@ void SerialLine::run() {
     if (fds[1].revents != 0 && robot_ >= 0)
       robot_is_there = take(robot_, 1);
     robot_is_there = give(robot_, 0) && robot_is_there;
-    // A terminal that nobody has open would send back what is written to it.
+    // A terminal that is not open would echo written bytes.
     give(listened_ ? master_ : -1, 1);
     if (!robot_is_there && robot_ >= 0) {
       ::close(robot_);

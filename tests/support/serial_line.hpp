@@ -11,34 +11,32 @@
 namespace saphira::test {
 
 /// A serial line between a robot server, which listens on a local socket, and a pseudo-terminal
-/// that a bridge opens. Each way is as slow as the real thing: ten bits a byte. A robot that is
-/// switched off (its socket is gone) is just silent, as behind a real line, and is there again when
-/// it is.
+/// that a bridge opens. Each way has the real speed: ten bits a byte. A robot that is switched off
+/// (its socket is gone) is silent, as behind a real line, and returns when it is switched on.
 class SerialLine {
  public:
-  /// `device`: where the pseudo-terminal is to be found, a symbolic link. `baud` 0: not paced.
+  /// `device`: the path of the pseudo-terminal, a symbolic link. `baud` 0: not paced.
   SerialLine(std::string device, std::string robot_socket, int baud = 9600);
   ~SerialLine();
   SerialLine(const SerialLine&) = delete;
   SerialLine& operator=(const SerialLine&) = delete;
 
-  /// True where the robot is switched on. Before, what is sent to it is lost, and then perhaps half
-  /// a packet.
+  /// True where the robot is switched on. Bytes sent before that are lost, perhaps half a packet.
   bool has_robot();
-  /// The cable out of its socket: nothing comes through either way, and nobody is told.
+  /// The cable out of its socket: no byte passes either way, without a signal to either side.
   void cut(bool out) { cut_[0] = cut_[1] = out; }
-  /// Only what the robot says is lost.
+  /// Only the robot's bytes are lost.
   void cut_from_robot(bool out) { cut_[1] = out; }
   /// A USB adapter pulled, with its device; and put back.
   void remove();
   void put_back();
-  /// One byte in so many is hurt, lost or doubled, each way; 0: none.
+  /// One byte in this number is damaged, lost or doubled, each way; 0: none.
   void hurt_one_in(unsigned bytes) { hurt_one_in_ = bytes; }
 
   /// Bytes that went through, to and from the robot.
   std::uint64_t to_robot() const { return bytes_[0]; }
   std::uint64_t from_robot() const { return bytes_[1]; }
-  /// The most bytes that ever waited for the line to take them.
+  /// The longest queue before the line [bytes].
   std::uint64_t waited_to_robot() const { return waited_[0]; }
   std::uint64_t waited_from_robot() const { return waited_[1]; }
   std::uint64_t hurt() const { return hurt_; }
@@ -47,7 +45,7 @@ class SerialLine {
   using Clock = std::chrono::steady_clock;
   struct Direction {
     std::deque<std::uint8_t> waiting;
-    Clock::time_point due;  ///< when the first of them has gone through
+    Clock::time_point due;  ///< time at which the first of them has passed
   };
 
   void run();
@@ -59,9 +57,9 @@ class SerialLine {
   std::string device_;
   std::string socket_;
   std::chrono::nanoseconds byte_;
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< of the following members
   int master_ = -1;
-  bool listened_ = false;  ///< whether somebody has the device open
+  bool listened_ = false;  ///< the device is open
   int robot_ = -1;
   Direction directions_[2];  ///< to the robot, from it
   std::uint64_t random_ = 0x9E3779B97F4A7C15ULL;

@@ -1,4 +1,4 @@
-// Each shipped world and map with one mistake in it, of ten kinds and more: the error names the
+// Each shipped world and map with one mistake in it, of ten kinds and more: the error gives the
 // line and the column of the mistake.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -84,7 +84,7 @@ std::optional<std::size_t> line_with(const Text& text, const std::string& first,
   return std::nullopt;
 }
 
-/// Makes one mistake and says where it is.
+/// Makes one mistake and returns its place.
 using Mistake = Place (*)(Text&);
 
 Place replace_word(Text& text, std::size_t line, std::size_t word, const std::string& by) {
@@ -146,7 +146,7 @@ const Kind kWorldMistakes[] = {
     {"a comma in a number", [](Text& t) { return replace_word(t, start(t), 2, "1,000"); }},
     {"the height left out",
      [](Text& t) {
-       // On the line of the width, or on its own: the first that misses it is what comes behind.
+       // On the line of the width, or on its own: the following word reveals the missing one.
        for (std::string& line : t.lines) {
          const std::size_t at = line.find("height");
          if (at != std::string::npos && at < line.find(';')) {
@@ -282,7 +282,7 @@ TEST(BrokenFiles, EachWorldThatIsCutOffWithinALineIsRefused) {
         const auto left = words_of(text.substr(0, size));
         ASSERT_LE(left.size(), whole.size());
         ASSERT_TRUE(std::equal(left.begin(), left.end(), whole.begin()));
-        // The first word that is missing begins a line.
+        // The first missing word begins a line.
         EXPECT_TRUE(left.empty() || left.size() == whole.size() ||
                     std::atoi(left.back().c_str()) < std::atoi(whole[left.size()].c_str()));
       } catch (const FileError& error) {

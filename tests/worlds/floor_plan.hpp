@@ -7,7 +7,7 @@
 #include "saphira/maps/map.hpp"
 #include "saphira/sim/world.hpp"
 
-/// The helpers for tests of the shipped worlds and maps.
+/// Helpers for tests of the shipped worlds and maps.
 namespace saphira::test {
 
 std::string source(const std::string& path);
@@ -15,8 +15,8 @@ std::string source(const std::string& path);
 /// The stems of the shipped files with that extension, sorted: worlds(".wld") of config/worlds.
 std::vector<std::string> stems(const std::string& folder, const std::string& extension);
 
-/// Where the middle of a robot can get to from the start of a world: a flood over a grid, over the
-/// cells that are farther than `radius` [m] from every segment.
+/// The places that the middle of a robot can reach from the start of a world: a flood over a grid,
+/// over the cells that are farther than `radius` [m] from every segment.
 class Reach {
  public:
   static constexpr double kCell = 0.05;  // [m]
@@ -25,8 +25,8 @@ class Reach {
 
   /// True where the robot gets within a cell of `position`.
   bool at(const Vec2& position) const;
-  /// Of the positions in the rectangle of `room` where the robot has room, how many it gets to: 0
-  /// to 1; 0 where it has room nowhere.
+  /// The reachable share of the positions with room for the robot in the rectangle of `room`: 0 to
+  /// 1; 0 without any room.
   double share_of(const maps::Feature& room) const;
 
  private:
@@ -40,7 +40,7 @@ class Reach {
 };
 
 /// The share of the way from `from` to `to` along which a segment lies within `tolerance` [m], or
-/// `also` says so.
+/// `also` is true.
 template <class Also>
 double covered(const sim::World& world, const Vec2& from, const Vec2& to, double tolerance,
                const Also& also) {

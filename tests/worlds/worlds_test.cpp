@@ -14,12 +14,12 @@ using maps::Map;
 using sim::World;
 
 constexpr double kPioneer = 0.22;   // [m] radius, config/robots/pioneer.p
-constexpr double kMargin = 0.05;    // [m] that it keeps everywhere
-constexpr double kOnWall = 0.02;    // [m] what lies so near to a segment lies on it
+constexpr double kMargin = 0.05;    // [m] its distance from everything
+constexpr double kOnWall = 0.02;    // [m] objects this near to a segment lie on it
 constexpr double kBesides = 0.5;    // [m] in front of a door and behind it
-constexpr double kWellBuilt = 0.9;  // of a corridor's sides are wall or an opening of the map
+constexpr double kWellBuilt = 0.9;  // share of a corridor's sides: wall, or an opening of the map
 
-constexpr double kFurnished = 0.9;  // of a room are outside of its furniture
+constexpr double kFurnished = 0.9;  // share of a room outside of its furniture
 
 bool is_opening(const Feature& feature) {
   return feature.type == PointType::door || feature.type == PointType::breach;
@@ -112,7 +112,7 @@ TEST_P(ShippedWorld, IsClosed) {
       ASSERT_FALSE(reach.at(at)) << at.transpose();
 }
 
-// Straight through the middle of each, and both its sides can be reached from the start.
+// Straight through the middle of each; both sides can be reached from the start.
 TEST_P(ShippedWorld, EveryDoorIsPassable) {
   const test::Reach reach(world, kPioneer + kMargin);
   for (const Feature& door : map.features) {
@@ -127,7 +127,7 @@ TEST_P(ShippedWorld, EveryDoorIsPassable) {
   }
 }
 
-// All of it but the insides of furniture.
+// All of it except the insides of furniture.
 TEST_P(ShippedWorld, EveryRoomIsReachable) {
   const test::Reach reach(world, kPioneer + kMargin);
   for (const Feature& room : map.features)
@@ -192,7 +192,7 @@ TEST_P(ShippedWorld, WallsOfTheMapAreThere) {
   }
 }
 
-// The sides of a corridor are walls, but for doors, breaks, junctions and other corridors.
+// The sides of a corridor are walls, except for doors, breaks, junctions and other corridors.
 TEST_P(ShippedWorld, CorridorsOfTheMapAreThere) {
   for (const Feature& corridor : map.features) {
     if (corridor.type != PointType::corridor)

@@ -1,4 +1,4 @@
-// ask and agents: programs that can be asked for something.
+// ask and agents: requests to programs, and the list of these programs.
 #include <cstdio>
 #include <iostream>
 #include <map>

@@ -1,5 +1,5 @@
-// check: whether the programs of a deployment would start with what it gives them. What runs goes
-// on.
+// check: a dry run of a deployment's programs with their options. Running programs are not
+// affected.
 #include <sys/wait.h>
 
 #include <array>
@@ -24,8 +24,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// The result of a dry run of one program: success, and the output. Only programs of saphira are
-/// asked: others may not know the option --dry-run.
+/// The result of a dry run of one program: success, and the output. Only saphira's programs are
+/// run: others may not know the option --dry-run.
 struct Said {
   bool well = true;
   std::string text;
@@ -52,7 +52,7 @@ int check(const std::string& name, const std::vector<std::string>& set,
           const bus::NodeOptions& options) {
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
-  const RunFolder folder;  // what a running deployment remembers is not touched
+  const RunFolder folder;  // the memory of a running deployment is not touched
   places.run = folder.path();
   places.robot = options.robot;
   int wrong = 0;

@@ -6,8 +6,8 @@
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/program.hpp"
 
-/// The subcommands of `saphira`. Each adds itself to the command line, and when it is chosen says
-/// what to run.
+/// The subcommands of `saphira`. Each adds itself to the command line, and when chosen gives the
+/// function to run.
 namespace saphira::cli {
 
 /// The chosen subcommand; set by its callback.

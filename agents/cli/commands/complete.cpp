@@ -1,4 +1,4 @@
-// complete: what may come next on a command line, for the shell (saphira.bash).
+// complete: the possible next words of a command line, for the shell (saphira.bash).
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -43,11 +43,11 @@ void add_options(const CLI::App& command, std::vector<std::string>& words) {
       words.push_back("--" + name);
 }
 
-/// The words that may stand where the last of `words` is being typed.
+/// The possible words in the place of the last of `words`.
 std::vector<std::string> candidates(const CLI::App& root, const std::vector<std::string>& words) {
   const auto names = commands(root);
   const CLI::App* command = nullptr;
-  std::size_t behind = 0;  // words between the command and the one that is typed
+  std::size_t behind = 0;  // words between the command and the last one
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     if (command != nullptr)
       ++behind;

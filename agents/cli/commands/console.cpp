@@ -12,7 +12,7 @@ namespace saphira::cli {
 
 namespace {
 
-/// Another program in our place, with the bus that was asked for here.
+/// Replaces this process by another program, with the bus options given here.
 int become(const std::string& program, const bus::NodeOptions& options,
            const std::vector<std::string>& arguments) {
   for (const auto& [name, value] : as_environment(options))
@@ -28,7 +28,7 @@ int become(const std::string& program, const bus::NodeOptions& options,
   throw std::system_error(errno, std::generic_category(), words[0]);
 }
 
-/// A command that is a program of its own; its options are its own, too.
+/// A command that is a separate program, with its own options.
 void add_program(CLI::App& app, Chosen& chosen, const char* name, const char* summary,
                  const std::string& footer) {
   CLI::App* command = app.add_subcommand(name, summary);

@@ -1,4 +1,4 @@
-// The system as a newcomer meets it: a simulated robot drives somewhere, and one sees how.
+// A first demonstration of the system: a simulated robot drives to a goal, with a display.
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -37,14 +37,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// In odom, which begins where the robot stands: the far side of the lobby of the shipped office,
+/// In odom, which begins at the robot's start: the far side of the lobby of the shipped office,
 /// past the cupboards of the corridor, the pillar and the crate.
 constexpr double kGoalX = 16.0;
 constexpr double kGoalY = 1.0;
 constexpr double kTimeLimit = 180.0;    ///< [s] of robot time
 constexpr double kNewsPatience = 20.0;  ///< [s] of wall time without any news
 constexpr std::size_t kKeptLines = 60;
-constexpr std::uint64_t kPermitted = 300;  ///< cycles of lockstep beyond those that were heard of
+constexpr std::uint64_t kPermitted = 300;  ///< cycles of lockstep beyond the newest known one
 
 struct DemoOptions {
   bool headless = false;
@@ -60,7 +60,7 @@ struct DemoOptions {
   std::string trace;
 };
 
-/// The console is for people: what is measured, or has nobody before it, goes without.
+/// The console is for people: benchmarks, and runs without a person, do not need it.
 bool has_console(const DemoOptions& options) {
   return !options.headless && !options.json && !options.lockstep && !options.single_process;
 }
@@ -80,7 +80,7 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
   std::vector<std::string> set{"seed=" + std::to_string(options.seed)};
   if (!options.world.empty()) {
     set.push_back("world=" + options.world);
-    // A map that is shipped bears the name of its world; a world of one's own has none.
+    // A shipped map has the name of its world; a user's world has no map.
     set.push_back("map=" + std::string(std::filesystem::exists(config_folder() + "/maps/" +
                                                                options.world + ".map")
                                            ? options.world
@@ -92,7 +92,7 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
                                             ? std::vector<std::string>{"--trace", trace, "--step"}
                                             : std::vector<std::string>{"--trace", trace};
   if (options.single_process) {
-    // saphira-all takes the options of all, and those of the bus once.
+    // saphira-all takes the options of all programs, and those of the bus once.
     Program all{"all", {"saphira-all"}, {}, {}, true, true};
     for (const Program& program : deployment.programs)
       all.arguments.insert(all.arguments.end(), program.arguments.begin(), program.arguments.end());
@@ -101,7 +101,7 @@ std::vector<ChildSpec> programs(const DemoOptions& options, const bus::NodeOptio
   std::vector<ChildSpec> children = command_lines(deployment, places, set);
   for (ChildSpec& child : children)
     child.environment.merge(as_environment(node));
-  // The simulator is the first of the deployment; alone, all of it is.
+  // The simulator is the deployment's first program; with saphira-all there is only one.
   children.at(0).argv.insert(children.at(0).argv.end(), more.begin(), more.end());
   return children;
 }
@@ -130,7 +130,7 @@ class Watcher {
     picture_.set_goal(goal);
   }
 
-  /// True when something came.
+  /// True when there was a new sample.
   bool poll() {
     if (const auto description = descriptions_.take_newest()) {
       description_ = description;
@@ -196,7 +196,7 @@ class Watcher {
     return {robot.pose_in_odom().x(), robot.pose_in_odom().y(), robot.pose_in_odom().th()};
   }
 
-  /// The map as the robot has it in odom.
+  /// The map in odom, by the robot's registration.
   void place_walls() {
     std::vector<std::pair<Vec2, Vec2>> walls;
     if (odom_in_map_)
@@ -266,7 +266,7 @@ class Watcher {
   std::map<int, Reading> newest_;  ///< by sonar
 };
 
-/// The terminal's other page, for the picture; the first page comes back with the destructor.
+/// The terminal's alternate page, for the picture; the destructor restores the first page.
 class Screen {
  public:
   explicit Screen(bool wanted) : on_(wanted) {
@@ -281,7 +281,7 @@ class Screen {
   void leave() {
     if (!on_)
       return;
-    out().flush(milliseconds(100));  // the last picture belongs on the other page
+    out().flush(milliseconds(100));  // the last picture belongs to the alternate page
     print("\x1b[?25h\x1b[?1049l");
     on_ = false;
   }
@@ -334,9 +334,9 @@ class Demo {
 
   int run(const bus::Stop& stop) {
     std::ofstream(trace_).close();
-    // Children first: they come up while we make our node.
+    // Children first: they start while our node is made.
     supervisor_.start();
-    // Other commands find it by that.
+    // Other commands find the bus by that.
     const FoundBus found(bus_of("the demo", node_options_));
     drive(stop);
     const bool interrupted = stop.requested();
@@ -349,7 +349,7 @@ class Demo {
   }
 
  private:
-  /// The robot waits at the console for whoever looks there.
+  /// The robot waits at the console for visitors.
   void stay(const bus::Stop& stop) {
     screen_.leave();
     print("%s. The robot waits for you: %s\nCtrl-C ends it.\n",
@@ -393,7 +393,7 @@ class Demo {
       print("goal %s, in %.0f s at most\n", describe(goal).c_str(), options_.time_limit);
     }
 
-    // In lockstep the goal is there before the first step, so that it is taken at the same cycle
+    // In lockstep the goal is there before the first step, so that it is accepted at the same cycle
     // in every run.
     const auto asked = Clock::now();
     while (!goals.delivered(100)) {
@@ -403,7 +403,7 @@ class Demo {
       processes.poll();
     }
     std::uint64_t permitted = 0;
-    // Not far beyond the goal's status that was heard last: a minute after its end there is none.
+    // Not far beyond the goal's newest status: a minute after its end there is none.
     const auto permit = [&] {
       const std::uint64_t until = kPermitted + (status_ ? status_->stamp().cycle() : 0);
       if (!options_.lockstep || until < permitted + kPermitted / 3)
@@ -439,7 +439,7 @@ class Demo {
         show(watcher);
         break;
       }
-      // Once a second of the robot, and not more often than a person reads.
+      // Once a second of robot time, and no more often than a person can read.
       const double wall = seconds_since(shown);
       if (screen_.on()
               ? wall > 0.1
@@ -516,14 +516,14 @@ class Demo {
   bus::NodeOptions node_options_;
   RunFolder folder_;
   std::string trace_;
-  std::deque<std::string> kept_;  ///< what the programs said last
+  std::deque<std::string> kept_;  ///< newest lines of the programs
   Screen screen_{!options_.headless && !options_.json && isatty(STDOUT_FILENO) != 0};
   Supervisor supervisor_;
   std::optional<v1::GoalStatus> status_;
   double wall_ = 0.0;
   std::uint64_t late_cycles_ = 0;
   std::string trouble_;
-  std::string address_;  ///< "open http://...", as the console says it
+  std::string address_;  ///< "open http://...", from the console
 };
 
 }  // namespace

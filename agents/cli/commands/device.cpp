@@ -15,8 +15,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kDevicePatience = 10.0;  ///< [s] a request is given up by the bridge after 5
-constexpr double kAnswerTime = 1.0;       ///< [s] for what hangs on a serial port
+constexpr double kDevicePatience = 10.0;  ///< [s]; the bridge gives a request up after 5
+constexpr double kAnswerTime = 1.0;       ///< [s] for a device on a serial port
 
 /// The robot's devices as they are on the bus.
 class Watch {
@@ -64,7 +64,7 @@ int list_devices(const bus::NodeOptions& options, const bus::Stop& stop) {
   return bus::kExitOk;
 }
 
-/// Each line of the list, whenever it changes.
+/// Prints each line of the list, whenever it changes.
 int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
   Watch watch(options);
   std::set<std::vector<std::string>> shown;
@@ -87,7 +87,7 @@ int follow(const bus::NodeOptions& options, const bus::Stop& stop) {
                     row[0].c_str(), row[1].c_str());
     std::fflush(stdout);
     if (std::ferror(stdout) != 0)
-      return bus::kExitOk;  // who read our output has left
+      return bus::kExitOk;  // the reader of our output has left
     shown = now;
   }
   return bus::kExitOk;

@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int kReleases = 4;         ///< of the last word: the topic is best effort
+constexpr int kReleases = 4;         ///< repetitions of a release: the topic is best effort
 constexpr double kUnanswered = 1.0;  ///< [s]
 constexpr double kStuck = 5.0;       ///< [s] without any progress
 
@@ -34,7 +34,7 @@ DirectDriver::DirectDriver(bus::Node& node, const bus::Topic<v1::MotorCommand>& 
       source_(person(program)) {}
 
 void DirectDriver::drive(v1::MotorCommand command) {
-  // The stamp says which picture of the robot it answers: an old one is refused.
+  // The stamp names the robot state that the command answers: an old one is refused.
   if (command.stamp().cycle() == 0 && robot_)
     command.stamp(robot_->stamp());
   if (command.source().empty())
@@ -90,7 +90,7 @@ std::string DirectDriver::trouble() const {
 
 std::optional<std::string> DirectDriver::news() {
   std::string now = trouble();
-  // Distances in a reason change all the time: the kind of trouble is what is new.
+  // Distances in a reason change all the time: only a new kind of trouble is news.
   const std::string kind = now.substr(0, now.find_first_of("0123456789"));
   if (kind == told_)
     return std::nullopt;
@@ -121,7 +121,7 @@ std::string qos_of(const std::string& topic) {
 
 namespace {
 
-/// Until it is done, as the bridge shows it.
+/// Repeats the command until it is done, as shown by the bridge.
 int move(const Move& wanted, double seconds, const bus::NodeOptions& options,
          const bus::Stop& stop) {
   bus::Node node(options);

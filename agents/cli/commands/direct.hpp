@@ -11,8 +11,8 @@ namespace saphira::cli {
 
 inline constexpr std::chrono::milliseconds kDrivePeriod{50};  ///< the bridge's lease is 300 ms
 
-/// Plays a role on drive/...: writes commands with what each must have, and tells what becomes of
-/// them. Whoever has it calls drive() and poll() every kDrivePeriod.
+/// Plays a role on drive/...: writes commands with the required members, and reports their results.
+/// The owner calls drive() and poll() every kDrivePeriod.
 class DirectDriver {
  public:
   DirectDriver(bus::Node& node, const bus::Topic<v1::MotorCommand>& topic,
@@ -25,10 +25,10 @@ class DirectDriver {
   void poll();
 
   const std::string& source() const { return source_; }
-  /// Where the robot is, once it was heard.
+  /// The robot's state, once it was heard.
   const std::optional<v1::RobotState>& robot() const { return robot_; }
   const std::optional<v1::Grant>& grant() const { return grant_; }
-  /// A command of this driver's is what the wheels are told.
+  /// True where a command of this driver goes to the wheels.
   bool drives() const;
   /// A new trouble in words, each kind once: another driver, a refusal, the guard, no bridge.
   std::optional<std::string> news();
@@ -50,7 +50,7 @@ class DirectDriver {
   std::string told_;
 };
 
-/// That there is no topic of that name, with a guess; nothing: there is one.
+/// An error for an unknown topic name, with a guess; nothing: the topic exists.
 std::optional<std::string> unknown_topic(const std::string& topic);
 /// The name of its QoS.
 std::string qos_of(const std::string& topic);

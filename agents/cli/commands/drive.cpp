@@ -25,10 +25,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPeriod{50};     ///< of the commands; the bridge's lease is 300 ms
-constexpr int kDriveReleases = 4;       ///< of the last word: the topic is best effort
+constexpr int kDriveReleases = 4;       ///< repetitions of a release: the topic is best effort
 constexpr double kHandBackLimit = 5.0;  ///< [s]
-constexpr double kRefused = 0.4;      ///< [s] since the bridge has refused a command: it still does
-constexpr double kTellRefusal = 2.0;  ///< [s] that the reason is shown
+constexpr double kRefused = 0.4;        ///< [s] for which a refusal of the bridge counts as present
+constexpr double kTellRefusal = 2.0;    ///< [s] that the reason is shown
 constexpr double kConstantVelocity = 0.3;  ///< [m/s] of the key g (manual 2.3.6)
 
 constexpr const char* kKeys =
@@ -43,7 +43,7 @@ constexpr std::array kShowCursor{'\x1b', '[', '?', '2', '5', 'h', '\n'};
 
 /// The terminal as a keyboard: keys come at once and are not echoed. Restored with the object, and
 /// by the signals that end or stop a process without its destructors. Nothing here waits for a
-/// terminal that nobody reads.
+/// terminal without a reader.
 class RawTerminal {
  public:
   RawTerminal() {
@@ -80,7 +80,7 @@ class RawTerminal {
 };
 termios RawTerminal::saved{};
 
-/// A joystick of the kernel's. One that is unplugged is gone; it is looked for again once a second.
+/// A joystick of the kernel. After unplugging, it is searched for once a second.
 class Joystick {
  public:
   explicit Joystick(std::string path) : path_(std::move(path)) { open(); }
@@ -219,7 +219,7 @@ class Teleop {
     const bool was = joystick_.stick().setpoint(now()).active;
     joystick_.read(now());
     if (!robot_)
-      return joystick_.stick().let_go();  // nobody drives what he has not seen
+      return joystick_.stick().let_go();  // a person must see the robot to drive it
     const bool is = joystick_.stick().setpoint(now()).active;
     if (is == was)
       return;
@@ -257,7 +257,7 @@ class Teleop {
     }
     note_.clear();
     if (!robot_)
-      return;  // nobody drives what he has not seen
+      return;  // a person must see the robot to drive it
     end_constant();
     if (key == DriveKey::stop)
       joystick_.stick().let_go();
@@ -265,7 +265,7 @@ class Teleop {
     send();  // at once: a stop does not wait for the period
   }
 
-  /// g: the goal drive, so that the behaviors keep the speed and avoid what is in the way.
+  /// g: the goal drive, so that the behaviors keep the speed and avoid obstacles.
   void toggle_constant() {
     if (constant_) {
       end_constant();
@@ -323,12 +323,12 @@ class Teleop {
   struct Wanted {
     bool active = false;
     double velocity = 0.0;  ///< [m/s]
-    double heading = 0.0;   ///< [rad] of keys, with `move` as KeyDrive has it
+    double heading = 0.0;   ///< [rad] from the keys, with `move` as in KeyDrive
     std::uint64_t move = 0;
     bool by_stick = false;
     double turn = 0.0;  ///< [rad/s] of the stick
   };
-  /// The keys' all stop is stronger than a stick that is held.
+  /// The keys' stop is stronger than a held stick.
   Wanted wanted() {
     const KeyDrive::Setpoint keys = keys_.setpoint(now());
     const StickDrive::Setpoint stick = joystick_.stick().setpoint(now());
@@ -337,8 +337,8 @@ class Teleop {
     return {true, stick.velocity, 0.0, 0, true, stick.turn};
   }
 
-  /// Once it has driven, it says until its end that it does not: so the bridge knows that it is
-  /// alive, and that a release that got lost was meant.
+  /// After driving, it reports until its end that it does not drive: so the bridge knows that it is
+  /// alive, and understands a release that got lost.
   void send() {
     const Wanted setpoint = wanted();
     drove_ = drove_ || setpoint.active;
@@ -350,7 +350,7 @@ class Teleop {
 
   void write(const Wanted& setpoint, bool hand_back = false) {
     v1::MotorCommand command;
-    // The stamp says which picture of the robot the person has: an old one is refused.
+    // The stamp names the robot state that the person sees: an old one is refused.
     if (robot_)
       command.stamp(robot_->stamp());
     command.source(source_);
@@ -371,7 +371,7 @@ class Teleop {
     Wanted setpoint = wanted();
     const bool refused = !refusal_.empty() && seconds_since(refused_at_) < kRefused;
     if (refused)
-      setpoint.velocity = 0.0;  // nothing that is refused is shown as wanted
+      setpoint.velocity = 0.0;  // a refused setpoint is not shown as wanted
     std::array<char, 256> text{};
     std::string line;
     if (!robot_ || seconds_since(robot_came_) > 1.0) {
@@ -414,7 +414,7 @@ class Teleop {
     out().show(picture);
   }
 
-  /// The robot is released, which stops it. It is not handed back by that.
+  /// Releases the robot, which stops it, without a hand-back.
   void finish() {
     keys_.release();
     joystick_.stick().lost();
@@ -433,7 +433,7 @@ class Teleop {
   }
 
   Joystick joystick_;
-  Clock::time_point looked_;  ///< for a joystick
+  Clock::time_point looked_;  ///< time of the last search for a joystick
   bus::Node node_;
   Processes processes_;
   bus::GoalClient goals_;

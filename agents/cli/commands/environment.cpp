@@ -28,7 +28,7 @@ RunningBus bus_of(const std::string& what, const bus::NodeOptions& options) {
 
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {
   const char* const given = std::getenv("SAPHIRA_DOMAIN");
-  // Above 100 the ports of a domain run into those that the kernel gives out.
+  // Above 100 the ports of a domain overlap the kernel's ephemeral ports.
   if (options.domain == 0 && (given == nullptr || *given == '\0'))
     options.domain = 60 + std::random_device{}() % 40;
   options.robot = name + "-" + std::to_string(getpid());
@@ -36,7 +36,7 @@ bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {
   options.peers.clear();
   options.interface.clear();
   options.name = name;
-  options.lockstep = false;  // we only watch
+  options.lockstep = false;  // this program only watches
   return options;
 }
 

@@ -8,14 +8,14 @@
 
 namespace saphira::cli {
 
-/// The bus options that were given to us, for programs that we start.
+/// Our bus options, for programs that we start.
 std::map<std::string, std::string> as_environment(const bus::NodeOptions& options);
 
-/// The bus that these options name, for commands that name none (FoundBus).
+/// The bus of these options, for commands without bus options (FoundBus).
 RunningBus bus_of(const std::string& what, const bus::NodeOptions& options);
 
-/// A bus of our own: a robot that nobody else has, and unless one was asked for, a domain at
-/// random. name: of the command.
+/// A private bus: a robot name of its own, and unless a domain was given, a random one. name: of
+/// the command.
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name);
 
 }  // namespace saphira::cli

@@ -11,7 +11,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kAgain{20};        ///< between two commands: the topic is best effort
-constexpr double kConfirmPatience = 2.0;  ///< [s] then it is said that nothing confirms
+constexpr double kConfirmPatience = 2.0;  ///< [s] until a missing confirmation is reported
 constexpr double kResetLimit = 5.0;
 constexpr int kStopReleases = 4;
 
@@ -26,7 +26,7 @@ class Button {
         source_(person("saphira estop")),
         resets_(node_, bus::topics::kEstopReset, source_) {}
 
-  /// Presses until the bridge says that the stop is latched, for as long as that may take.
+  /// Presses until the bridge confirms the latch, without a time limit.
   int press(const bus::Stop& stop) {
     double told = 0.0;
     while (!stop.requested()) {
@@ -34,7 +34,7 @@ class Button {
       node_.wait(kAgain, &stop);
       poll();
       if (grant_ && grant_->estopped()) {
-        // Latched: the bridge holds it without us. Let go, so that it can be reset.
+        // Latched: the bridge holds the stop without us. Let go, so that it can be reset.
         for (int i = 0; i < kStopReleases; ++i) {
           write(false);
           node_.wait(milliseconds(5));
@@ -69,7 +69,7 @@ class Button {
       print("%s\n", answer.text().c_str());
       return bus::kExitOk;
     }
-    // The next grant shows that the stop is released, and whether autonomy waits.
+    // The next grant shows the release of the stop, and autonomy's wait.
     while (!stop.requested() && seconds_since(began_) < kResetLimit &&
            (!grant_ || grant_->estopped())) {
       node_.wait(kAgain, &stop);

@@ -23,7 +23,7 @@ struct GoalOptions {
   bool keep = false;
 };
 
-/// Says once what keeps a goal from driving the robot, and when that is over.
+/// Reports once the latch that keeps a goal from driving the robot, and its end.
 class Latches {
  public:
   explicit Latches(bus::Node& node) : grants_(node.reader(bus::topics::kGrant)) {}
@@ -45,7 +45,7 @@ class Follower {
  public:
   /// True when the goal has come to its end.
   bool show(const v1::GoalStatus& status) {
-    // Progress alone is news every tenth.
+    // Progress alone is printed every tenth.
     const std::string key = bus::describe(status.state()) + status.step() + status.reason() +
                             status.note() + std::to_string(std::floor(status.progress() * 10.0));
     if (key != last_) {
@@ -59,12 +59,12 @@ class Follower {
   std::string last_;
 };
 
-/// A stop from anybody also ends the driving of a person, who then has to let go before driving on.
-/// `source` names the one who stops, for people.
+/// Anybody's stop also ends a person's driving, who then has to let go before driving on. `source`
+/// names the stopping person.
 void stop_whoever_drives(bus::Node& node, const std::string& source, const bus::Stop& stop) {
-  constexpr int kReleases = 4;  // of the last word: the topic is best effort
+  constexpr int kReleases = 4;  // repetitions of a release: the topic is best effort
   auto grants = node.reader(bus::topics::kGrant);
-  std::optional<bus::Writer<v1::MotorCommand>> commands;  // not everybody has the right to have one
+  std::optional<bus::Writer<v1::MotorCommand>> commands;  // a writer needs a right
   v1::MotorCommand command;
   command.source(source);
   command.translation(v1::TRANSLATION_VELOCITY);
@@ -134,7 +134,7 @@ int ask(const GoalOptions& options, const bus::NodeOptions& node_options, const 
   bool canceled = false;
   Clock::time_point canceled_at;
   while (true) {
-    // Once stop is requested its descriptor stays readable: then wait for the bus alone.
+    // After a stop request its descriptor stays readable: then wait for the bus alone.
     node.wait(milliseconds(200), canceled ? nullptr : &stop);
     deployments.poll();
     goals.poll();

@@ -13,7 +13,7 @@ namespace saphira::cli {
 namespace {
 
 constexpr double kLogPatience = 3.0;  ///< [s] for the first line
-constexpr double kQuiet = 0.7;        ///< [s] after the last one all that was said before has come
+constexpr double kQuiet = 0.7;        ///< [s] after the last line: all earlier ones have come
 
 std::string clock_time(std::int64_t time_ns) {
   const std::time_t seconds = time_ns / 1'000'000'000;
@@ -35,7 +35,7 @@ std::string record_line(const v1::LogRecord& record) {
 int newest(std::uint64_t count, const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   auto reader = node.reader(bus::topics::kLog);
-  std::multimap<std::int64_t, std::string> lines;  // by time: each program tells its own in order
+  std::multimap<std::int64_t, std::string> lines;  // by time: each program's lines are in order
   const auto began = Clock::now();
   auto came = began;
   while (!stop.requested() && seconds_since(began) < kLogPatience &&

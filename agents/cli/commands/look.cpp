@@ -1,4 +1,4 @@
-// list and echo: the bus as it is.
+// list and echo: the present bus.
 #include <algorithm>
 #include <iostream>
 
@@ -95,7 +95,7 @@ int echo(const std::string& topic, std::uint64_t count, double timeout,
     }
     std::cout.flush();
     if (!std::cout)
-      return bus::kExitOk;  // who read our output has left
+      return bus::kExitOk;  // the reader of our output has left
     if (!warned && shown == 0 && reader.matched() == 0 && seconds_since(began) > 2.0) {
       std::cerr << "saphira: nobody writes " << topic << " for robot " << options.robot
                 << "; waiting\n";
@@ -108,7 +108,7 @@ int echo(const std::string& topic, std::uint64_t count, double timeout,
                  topic.c_str(), timeout);
       return count > 0 || shown == 0 ? bus::kExitFailed : bus::kExitOk;
     }
-    // A wait rather too short: how much is left of the time is looked at again.
+    // A short wait: the remaining time is checked again.
     node.wait(milliseconds(timeout > 0.0 ? 50 : 500), &stop);
   }
   return count == 0 ? bus::kExitOk : bus::kExitFailed;

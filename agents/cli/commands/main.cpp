@@ -29,7 +29,7 @@ int print_help(const CLI::App& root, const std::string& name) {
   return bus::kExitUsage;
 }
 
-/// Without options of the bus, a command joins a bus of this machine.
+/// Without bus options, a command joins a running bus of this machine.
 bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
   static const std::set<std::string> others{"demo",  "scenario", "up",       "check", "stop",
                                             "renew", "log",      "security", "bench", "complete"};
@@ -104,8 +104,8 @@ int main(int argc, char** argv) {
         cli::add_complete(app, chosen);
         app.add_subcommand("help", "This text; with a command's name: what that takes")
             ->add_option("command", about, "name of a command");
-        // --robot and the like may stand behind the subcommand as well.
-        // (Programs of their own have options of their own.)
+        // --robot and the like may stand behind the subcommand as well. (Separate programs have
+        // their own options.)
         for (CLI::App* command : app.get_subcommands({})) {
           const std::string name = command->get_name();
           command->fallthrough(name != "bench" && name != "console" && name != "mcp");
@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
           cli::flush_output();
           return code;
         }
-        root->clear();  // its help is that of the command that was given, otherwise
+        root->clear();  // otherwise its help is that of the last command
         if (!about.empty())
           return cli::print_help(*root, about);
         std::fputs(root->help().c_str(), stdout);

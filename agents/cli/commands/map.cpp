@@ -1,4 +1,4 @@
-// The map and where the robot is on it: looked at, drawn, changed, and driven by.
+// The map and the robot's place on it: display, drawing, changes, and goals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,9 +25,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr double kMapPatience = 5.0;  ///< [s] for the map, and for an answer
-constexpr double kAllHeard = 0.5;     ///< [s] until every program of this robot has been found
+constexpr double kAllHeard = 0.5;     ///< [s] until every program of this robot is discovered
 
-/// The map and the robot on it as they are on the bus.
+/// The map and the robot on it, from the bus.
 class View {
  public:
   explicit View(const bus::NodeOptions& options)
@@ -58,7 +58,7 @@ class View {
     return false;
   }
 
-  /// Waits until the map is there, and the registration where it is asked for.
+  /// Waits for the map, and for the registration where requested.
   bool wait_for_map(const bus::Stop& stop, bool and_registration = true) {
     const auto began = Clock::now();
     while (!stop.requested() && seconds_since(began) < kMapPatience) {
@@ -94,7 +94,7 @@ class View {
   std::optional<v1::Registration> registration;
   std::optional<double> radius;  ///< [m] of the robot
   bus::RequestClient registration_client{node, bus::topics::kRegistrationRequest, "saphira map"};
-  std::string holds;  ///< what is latched, in words
+  std::string holds;  ///< the latches, in words
 
  private:
   bus::NodeOptions options_;
@@ -149,7 +149,7 @@ int save(const std::string& path, const bus::NodeOptions& options, const bus::St
   return write_out(path, maps::to_text(view.map));
 }
 
-/// The grid's tiles put together, in the map.
+/// A raster of the grid's tiles, in the map.
 std::optional<maps::Raster> raster_of(const std::vector<v1::GridTile>& tiles,
                                       const v1::Registration& registration) {
   std::optional<maps::Raster> raster;
@@ -283,7 +283,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
         const auto percept = percepts.find(match.percept());
         const maps::Feature* const artifact =
             match.artifact() == 0 ? nullptr : maps::find(view.map, match.artifact());
-        // Of a corridor the middle says nothing of where it was matched.
+        // A corridor's middle is not the place of its match.
         if (percept != percepts.end() && artifact != nullptr &&
             artifact->type != lps::PointType::corridor)
           drawing.matches.push_back({transform(lps::from_bus(view.registration->odom_in_map()),
@@ -318,7 +318,7 @@ int show(const std::string& path, double seconds, const bus::NodeOptions& option
   return write_out(path, maps::to_svg(drawing));
 }
 
-/// Asks registration and waits for its answer; says what came, and what did not.
+/// Sends a request to registration and waits for its answer; reports the result.
 bool ask(View& view, const Request& asked, const bus::NodeOptions& options, const bus::Stop& stop) {
   const v1::Answer answer =
       view.registration_client.ask(to_bus(asked), kMapPatience, &stop, [&] { view.poll(); });
@@ -337,7 +337,7 @@ bool ask(View& view, const Request& asked, const bus::NodeOptions& options, cons
 int request(const std::vector<std::string>& words, const bus::NodeOptions& options,
             const bus::Stop& stop) {
   View view(options);
-  // Names of places are those of the map that is there.
+  // Place names belong to the present map.
   if (!view.wait_for_map(stop, false))
     return bus::kExitFailed;
   return ask(view, parse_map_request(words, view.map), options, stop) ? bus::kExitOk
@@ -368,7 +368,7 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   return bus::kExitOk;
 }
 
-/// Lets the robot build the map (activity build-map); writes it when nothing is left.
+/// Lets the robot build the map (activity build-map); writes it when it is complete.
 int build(const std::string& path, const bus::NodeOptions& options, const bus::Stop& stop) {
   View view(options);
   if (!view.wait_for_map(stop))
@@ -415,7 +415,7 @@ int build(const std::string& path, const bus::NodeOptions& options, const bus::S
     goals.cancel(goal);
     goals.delivered(1000);
   }
-  // Also when it was broken off: what there is, is the map.
+  // Also after an interruption: the partial map counts.
   if (!whole) {
     const bus::Stop end;
     if (!ask(view, {"add_features", {{"on", false}}}, options, end))

@@ -7,7 +7,7 @@ namespace saphira::cli {
 namespace {
 
 constexpr double kSilence = 1.0;           // [s]
-constexpr double kSoon = 0.5;              // [s] then all that is latched has come
+constexpr double kSoon = 0.5;              // [s] by then all latched samples have come
 constexpr std::uint64_t kSaidLately = 20;  // cycles
 
 template <class T>
@@ -99,7 +99,7 @@ std::vector<const v1::ProgramMind*> Mind::programs() const {
   return result;
 }
 
-/// Of a program whose behaviors drove in that cycle; else nullptr.
+/// The mind of a program whose behaviors drove in that cycle; else nullptr.
 const v1::ProgramMind* Mind::program(const std::string& source, std::uint64_t cycle) const {
   for (const auto& [instance, past] : programs_)
     if (past.epoch() == robots_.epoch() && past.newest() != nullptr &&
@@ -134,7 +134,7 @@ void Mind::take_past_goals() {
       past_goals_[{sample.data.stamp().epoch(), sample.data.stamp().cycle()}] = sample.data;
 }
 
-/// As intentions told them last before the cycle was over.
+/// From the newest report of intentions in that cycle.
 std::vector<v1::GoalStatus> Mind::goals_at(std::uint64_t cycle) const {
   auto after = past_goals_.upper_bound({robots_.epoch(), cycle});
   if (after == past_goals_.begin() || std::prev(after)->first.first != robots_.epoch())
@@ -142,8 +142,8 @@ std::vector<v1::GoalStatus> Mind::goals_at(std::uint64_t cycle) const {
   return std::prev(after)->second.goals();
 }
 
-/// The grant that was told with the next packet is the one that the command of a cycle met; in
-/// lockstep it is told when that command is in.
+/// A command's effect shows in the grant of the next packet; in lockstep in the grant after the
+/// command.
 const v1::Grant* Mind::grant_for(std::uint64_t cycle) const {
   return grants_.at(lockstep_ ? cycle : cycle + 1);
 }
@@ -180,7 +180,7 @@ bool Mind::knows_goals() const {
       if (const Key key{node.goal().writer(), node.goal().number()};
           node.parent() == 0 && !(statuses_.contains(key) && goals_.contains(key)))
         return false;
-  // That there is none may only not have come yet.
+  // A missing status may only be late.
   return !statuses_.empty() || seconds_since(began_) > kSoon;
 }
 
@@ -193,7 +193,7 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.listened = seconds_since(began_);
   now.robot = copy(robots_.at(cycle));
   now.grant = copy(grant_for(cycle));
-  // Where the command of this cycle was late, an earlier one holds: of that cycle are its reasons.
+  // After a late command of this cycle, an earlier one holds: the reasons are from its cycle.
   std::uint64_t answered = cycle;
   const auto drives = [&](v1::Role role) { return now.grant && now.grant->role() == role; };
   if ((drives(v1::ROLE_BEHAVIORS) || drives(v1::ROLE_DIRECT)) && now.grant->answers().cycle() != 0)
@@ -217,7 +217,8 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
   now.statuses_known = now.intentions_known.newest != 0;
   if (past) {
     now.statuses = goals_at(cycle);
-    // It tells them when they change: who was there in that cycle and had told of none had none.
+    // They are reported on change: a program that was there in that cycle without a report had
+    // none.
     now.statuses_known = !now.statuses.empty() || now.intentions.has_value();
   } else {
     for (const auto& [key, status] : statuses_)

@@ -28,7 +28,7 @@ class Past {
     if (sample.stamp().epoch() > epoch_)
       samples_.clear();
     epoch_ = sample.stamp().epoch();
-    // The first one of a cycle stays: a second one is what came of the cycle.
+    // The first sample of a cycle stays: a second one is the cycle's result.
     samples_.emplace(sample.stamp().cycle(), sample);
     while (samples_.size() > kMost)
       samples_.erase(samples_.begin());
@@ -53,18 +53,18 @@ class Past {
 /// The robot's goals, intentions, behaviors and beliefs from the bus: of now and of past cycles.
 class Mind {
  public:
-  /// recalled: also what the last minute was. Where nothing is heard for a second that is asked for
-  /// by itself: a simulator in single step may stand still.
+  /// recalled: also the last minute. Without samples for a second, the last minute is requested
+  /// anyway: a simulator in single step may stand still.
   Mind(bus::Node& node, bool recalled);
 
   void poll();
-  /// Waits and polls, for as long.
+  /// Waits and polls, for that time.
   void listen(std::chrono::milliseconds time, const bus::Stop& stop);
 
   const v1::RobotState* robot() const { return robots_.newest(); }
   const v1::Intentions* intentions() const { return intentions_.newest(); }
   const v1::BehaviorSet* behaviors() const { return behaviors_.newest(); }
-  /// The newest states of programs with behaviors of their own, if published lately.
+  /// The newest states of programs with their own behaviors, if recent.
   std::vector<const v1::ProgramMind*> programs() const;
   const v1::Grant* grant() const { return grants_.newest(); }
   const v1::BehaviorSchema* schema(const std::string& name) const;
@@ -72,19 +72,19 @@ class Mind {
   bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }
   const Processes& processes() const { return processes_; }
 
-  /// All that is known of a cycle. `past`: it was asked for, and is not now.
+  /// All known data of a cycle. `past`: the cycle was requested, and is not the present one.
   situation::Situation situation(std::uint64_t cycle, bool past) const;
-  /// True where there is all that makes a whole of a cycle.
+  /// True where all samples of a cycle are there.
   bool whole(std::uint64_t cycle) const;
-  /// The newest cycle that is whole; else the newest of which anything is known; 0: none.
+  /// The newest complete cycle; else the newest with any data; 0: none.
   std::uint64_t newest_cycle() const;
   /// True where the commands to the robot are known.
   bool some(std::uint64_t cycle) const {
     return robots_.at(cycle) != nullptr && grant_for(cycle) != nullptr;
   }
-  /// The oldest and newest cycle of which the robot is known.
+  /// The oldest and newest cycle with a robot state.
   std::pair<std::uint64_t, std::uint64_t> known() const;
-  /// True where the schemas and goals, which do not come each cycle, are complete.
+  /// True where the schemas and goals, which are not cyclic, are complete.
   bool knows_goals() const;
 
  private:

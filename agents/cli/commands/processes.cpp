@@ -43,7 +43,7 @@ class Watch {
         services_[sample.data.instance()] = sample.data;
     }
   }
-  /// Of those that live.
+  /// The processes of living programs.
   std::vector<v1::ProcessSet> services() const {
     std::vector<v1::ProcessSet> all;
     for (const SeenProcess& program : programs_.all())
@@ -87,13 +87,13 @@ int ask(const ProcessesOptions& asked, const bus::NodeOptions& options, const bu
     request.arguments().push_back(bus::number("cycles", asked.cycles));
   const v1::Answer answer = services.ask(request, kAnswerPatience, &stop, [&] { watch.poll(); });
   if (bus::well(answer.code())) {
-    // Its state is told in the cycle after that.
+    // Its state is published in the cycle after that.
     watch.listen(milliseconds(300), stop);
     std::fputs(processes_table(watch.services()).c_str(), stdout);
     return bus::kExitOk;
   }
   std::string names;
-  bool there = !answer.service().empty();  // it may answer before its processes are heard of
+  bool there = !answer.service().empty();  // it may answer before its processes are discovered
   for (const v1::ProcessSet& service : watch.services()) {
     names += (names.empty() ? "" : ", ") + service.service();
     there = there || service.service() == request.service();

@@ -20,8 +20,8 @@ namespace {
 
 struct RobotLogOptions {
   logs::LogFiles files;
-  std::string map;      ///< map: to be written; evaluate: to be localized on
-  std::string drawing;  ///< a picture to be written; empty: none
+  std::string map;      ///< map: output file; evaluate: the map for localization
+  std::string drawing;  ///< output picture; empty: none
   std::vector<double> start;
   std::string sonars = "pioneer";
   bool json = false;
@@ -114,7 +114,7 @@ int evaluate(const RobotLogOptions& options, const bus::Stop& stop) {
                        {"lost", share(run.lost)},
                        {"unplaced", share(run.unplaced)},
                        {"matches", run.accepted}};
-    // Without a pose there is no error to be told: null, and not 0.
+    // Without a pose the error is null, not 0.
     const logs::Accuracy& at = result.localized;
     const auto known = [&](double value) {
       return at.compared < 2 ? nlohmann::json() : nlohmann::json(value);

@@ -4,7 +4,7 @@
 
 namespace saphira::cli {
 
-/// Subcommands of `saphira log` for logs that robots have written.
+/// Subcommands of `saphira log` for logs of real robots.
 void add_robot_log(CLI::App& log, Chosen& chosen);
 
 }  // namespace saphira::cli

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kServiceFolder = "/var/lib/saphira";  ///< of saphira@.service
 
-/// Makes a folder that only we can use; one that somebody else made for us is refused.
+/// Makes a private folder; one of another owner is refused.
 void make_own(const std::string& path) {
   mkdir(path.c_str(), 0700);
   struct stat info {};
@@ -26,7 +26,7 @@ void make_own(const std::string& path) {
     throw std::runtime_error(path + " cannot be made, or is not ours");
 }
 
-/// Of this user, for all deployments: SAPHIRA_RUN, or one in /tmp.
+/// The folder of this user, for all deployments: SAPHIRA_RUN, or one in /tmp.
 std::string own_folder() {
   const char* const given = std::getenv("SAPHIRA_RUN");
   const std::string ours = given != nullptr && *given != '\0'
@@ -36,7 +36,7 @@ std::string own_folder() {
   return ours;
 }
 
-/// Opens and locks it; -1 when somebody else has.
+/// Opens and locks it; -1 when another process holds the lock.
 int lock(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0)
@@ -81,7 +81,7 @@ std::vector<Running> running_deployments() {
     const std::string path = entry.path() / "lock";
     if (!std::filesystem::exists(path))
       continue;
-    // A lock that can be taken means that no process runs it.
+    // A free lock means that no process runs it.
     const int file = lock(path);
     if (file >= 0) {
       close(file);
@@ -97,7 +97,7 @@ std::vector<Running> running_deployments() {
 
 FoundBus::FoundBus(const RunningBus& bus) {
   const std::string folder = own_folder() + "/buses";
-  // Others of this machine may read it: a service has another user than the people who command it.
+  // Readable for others on this machine: a service has another user than the people who command it.
   mkdir(folder.c_str(), 0755);
   path_ =
       folder + "/" + bus.robot + "-" + std::to_string(bus.domain) + "-" + std::to_string(getpid());
@@ -128,8 +128,7 @@ std::vector<RunningBus> running_buses() {
         continue;
       std::string text;
       std::getline(std::ifstream(path), text);
-      // The owner writes after it has locked. A lock that can be had is of a program that was
-      // killed.
+      // The owner writes after it has locked. A free lock belongs to a killed program.
       const bool dead = !text.empty() && flock(file, LOCK_SH | LOCK_NB) == 0;
       close(file);
       if (dead) {

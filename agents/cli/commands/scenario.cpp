@@ -1,4 +1,4 @@
-// The paper's story (4.6): people tell the robot who is where, and send it for a report.
+// The paper's story (4.6): people tell the robot where they are, and send it for a report.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -28,7 +28,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t kKeptLines = 40;
-constexpr double kStart = 60.0;  // [s] for the programs to be there
+constexpr double kStart = 60.0;  // [s] for the start of the programs
 
 struct ScenarioOptions {
   std::vector<std::string> casts{"introduction"};
@@ -38,7 +38,7 @@ struct ScenarioOptions {
   double time_limit = 1200.0;
   bool lockstep = false;
   bool json = false;
-  std::string audio;  ///< a folder for what was said, as sound; empty: none
+  std::string audio;  ///< a folder for the dialogue as sound; empty: none
 };
 
 /// One story, with one seed.
@@ -51,20 +51,20 @@ struct Run {
   std::string trace() const { return folder + "/trace.csv"; }
 };
 
-/// How a story ended.
+/// The end of a story.
 struct Ending {
-  bool well = false;  ///< as its cast says
+  bool well = false;  ///< as the cast requires
   std::string outcome;
   double time = 0.0;  ///< [s] of the robot
   std::uint64_t utterances = 0;
-  std::string hash;  ///< of what was said
+  std::string hash;  ///< of the dialogue
   Track track;
   std::string said;  ///< "speaker: text" a line
 
   bool delivered() const { return outcome.starts_with("done: "); }
 };
 
-/// The last lines of the programs' output, shown where something went wrong.
+/// The last lines of the programs' output, shown after a failure.
 class Kept {
  public:
   void add(std::string_view from, std::string_view line) {
@@ -96,7 +96,7 @@ Deployment deployment_of(const Run& run, const bus::NodeOptions& node, const Pla
   deployment.bus.profile = "host";
   std::erase_if(deployment.programs,
                 [](const Program& program) { return program.name == "console"; });
-  // The simulator is the first of the deployment.
+  // The simulator is the deployment's first program.
   std::vector<Placed>& simulator = deployment.programs.at(0).arguments;
   simulator.insert(simulator.end(), {Placed{"--trace"}, Placed{run.trace()}});
   if (!people.things().empty())
@@ -115,7 +115,7 @@ std::vector<ChildSpec> programs(const ScenarioOptions& options, const Run& run,
   return children;
 }
 
-/// All of it in one process, with the people.
+/// The whole system in one process, with the people.
 std::vector<ChildSpec> one_program(const ScenarioOptions& options, const Run& run,
                                    const bus::NodeOptions& node) {
   const Places places = places_of(run);
@@ -255,7 +255,7 @@ Ending play(const ScenarioOptions& options, const std::string& cast, std::uint64
   return ending;
 }
 
-/// Of all stories together, as JSON.
+/// The summary of all stories, as JSON.
 class Sum {
  public:
   void add(const Ending& ending) {
@@ -301,7 +301,7 @@ int scenario(const ScenarioOptions& options, const bus::NodeOptions& given, cons
   std::vector<std::string> casts;
   for (const std::string& name : options.casts) {
     casts.push_back(find_file(config_folder() + "/people", name, ".people"));
-    story::Cast(read_file(casts.back()), casts.back());  // mistakes are told before anything runs
+    story::Cast(read_file(casts.back()), casts.back());  // reports errors before anything runs
   }
   const bus::NodeOptions node = own_bus(given, "flakey");
   const FoundBus found(bus_of("the scenario", node));

@@ -14,9 +14,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// The status comes once a second, so everybody alive has spoken after this.
+/// The status comes once a second, so every living program has reported after this.
 constexpr milliseconds kListen{1300};
-// With security: where a message of a handshake is lost, Fast DDS sends it again after a second.
+// With security: Fast DDS repeats a lost handshake message after a second.
 constexpr milliseconds kListenSecured{2600};
 
 /// The status of all programs, and the driver of the robot.
@@ -116,7 +116,7 @@ class StatusView {
   v1::Stamp robot_, behaved_, intended_;  ///< the newest
   Clock::time_point robot_came_ = Clock::now();
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatus> statuses_;
-  std::map<std::uint64_t, std::string> started_again_;  ///< by the supervisor, and why
+  std::map<std::uint64_t, std::string> started_again_;  ///< by the supervisor, with the reason
 };
 
 int status(bool watch, bool json, const bus::NodeOptions& options, const bus::Stop& stop) {

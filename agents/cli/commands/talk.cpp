@@ -1,4 +1,4 @@
-// say and knows: talking to the robot, and what it knows from that.
+// say and knows: talking to the robot, and its knowledge from that.
 #include <unistd.h>
 
 #include <cstdio>
@@ -37,7 +37,7 @@ std::string words_in_line(const std::vector<std::string>& words) {
   return text;
 }
 
-/// All that is said to and by the robot, as it is said.
+/// Prints all utterances to and by the robot, as they come.
 int listen(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   auto heard = node.reader(bus::topics::kHeard);
@@ -51,7 +51,7 @@ int listen(const bus::NodeOptions& options, const bus::Stop& stop) {
         print("%s\n", line_of(sample.data, options.robot).c_str());
     std::fflush(stdout);
     if (std::ferror(stdout) != 0)
-      return bus::kExitOk;  // who read our output has left
+      return bus::kExitOk;  // the reader of our output has left
     node.wait(milliseconds(500), &stop);
   }
   return bus::kExitOk;

@@ -1,4 +1,4 @@
-// intentions, behaviors, why and beliefs: what the robot thinks.
+// intentions, behaviors, why and beliefs: the robot's reasoning.
 #include <unistd.h>
 
 #include <cstdio>
@@ -16,13 +16,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kMindPatience = 3.0;  // [s] for the first word
-constexpr milliseconds kOthers{300};   // for programs that are heard after the services
+constexpr double kMindPatience = 3.0;  // [s] for the first sample
+constexpr milliseconds kOthers{300};   // for programs that are discovered after the services
 
 struct WatchOptions {
   bool once = false;
   bool watch = false;
-  /// On a terminal it is shown again and again, as the windows of the manual.
+  /// On a terminal the display is repeated, as in the windows of the manual.
   bool live() const { return !once && (watch || isatty(STDOUT_FILENO) != 0); }
 };
 
@@ -37,8 +37,8 @@ int nobody(const bus::NodeOptions& options, const Mind& mind, const std::string&
   return bus::kExitFailed;
 }
 
-/// Shows what `draw` gives, once or again and again: `draw` returns nothing until there is
-/// something to show.
+/// Shows the result of `draw`, once or repeatedly: `draw` returns nothing until there is something
+/// to show.
 template <class Draw>
 int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOptions& watch,
          const std::string& what, Draw draw) {
@@ -66,7 +66,7 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
       shown = *text;
       changed = Clock::now();
       if (terminal) {
-        // Over the old picture line by line: cleared first, it would flicker.
+        // Overwrites the old picture line by line: clearing first would flicker.
         std::string screen = "\x1b[H";
         for (const char c : shown)
           screen += c == '\n' ? "\x1b[K\n" : std::string(1, c);
@@ -76,7 +76,7 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
       }
       std::fflush(stdout);
       if (std::ferror(stdout) != 0)
-        return bus::kExitOk;  // who read our output has left
+        return bus::kExitOk;  // the reader of our output has left
     }
     mind.listen(milliseconds(200), stop);
     text = draw(mind);
@@ -89,7 +89,7 @@ std::string header(const v1::Stamp& stamp, const Mind& mind) {
   return "cycle " + std::to_string(stamp.cycle()) + (holds.empty() ? "" : "  " + holds) + "\n";
 }
 
-/// Above what a program with behaviors of its own thinks.
+/// Heading of the display of a program with its own behaviors.
 std::string of_program(const v1::ProgramMind& program) {
   return "\nof the program " + program.source() + ":\n";
 }
@@ -109,8 +109,8 @@ int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const
       });
 }
 
-/// The window of a behavior of that name or schema; nothing: it is not among these, whose names are
-/// added to `names`.
+/// The window of a behavior with that name or schema; nothing: it is not among these, whose names
+/// are added to `names`.
 std::optional<std::string> find_behavior(const std::string& name, const v1::BehaviorSet& behaviors,
                                          const v1::Intentions* intentions, const Mind& mind,
                                          std::string& names) {
@@ -128,7 +128,7 @@ std::optional<std::string> find_behavior(const std::string& name, const v1::Beha
   return std::nullopt;
 }
 
-/// Nothing: nobody has said anything yet.
+/// Nothing: no samples yet.
 std::optional<std::string> behaviors_text(const std::string& name, const Mind& mind) {
   const v1::BehaviorSet* const newest = mind.behaviors();
   const std::vector<const v1::ProgramMind*> programs = mind.programs();
@@ -193,7 +193,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
   while (!stop.requested()) {
     mind.listen(milliseconds(50), stop);
     const auto known = mind.known();
-    // The newest cycle comes with each; what is recalled ends with its oldest.
+    // The newest cycle comes with each sample; recall ends with its oldest.
     if (known.first != before.first)
       grown = Clock::now();
     before = known;
@@ -210,7 +210,7 @@ int why(const WhyOptions& why_options, const bus::NodeOptions& options, const bu
       cycle = static_cast<std::uint64_t>(why_options.cycle);
     else if (cycle == 0 && known.second > static_cast<std::uint64_t>(-why_options.cycle) &&
              waited > 0.5)
-      // So long ago when it was asked, not when it was answered.
+      // Relative to the time of the question, not of the answer.
       cycle = known.second - static_cast<std::uint64_t>(-why_options.cycle);
     if (cycle != 0 && mind.whole(cycle) && (mind.knows_goals() || waited > 1.0))
       break;
@@ -246,8 +246,8 @@ struct BeliefOptions {
 
 constexpr const char* kClaimant = "saphira beliefs";
 
-/// The claim of this command about a name. It is one instance for all users: the next claim changes
-/// it, and unset finds it. A held claim gets an instance of its own (see claim()).
+/// This command's claim for a name. It is one instance for all users: the next claim changes it,
+/// and unset finds it. A held claim gets an instance of its own (see claim()).
 v1::BeliefClaim claim_of(const std::string& name) {
   Fnv1a hash;
   hash.add(kClaimant + (" " + name));
@@ -259,7 +259,7 @@ v1::BeliefClaim claim_of(const std::string& name) {
   return sample;
 }
 
-/// The belief of that name that this command has claimed; nullptr: none.
+/// The belief of that name from this command's claim; nullptr: none.
 const v1::Belief* claimed(const Mind& mind, const std::string& name) {
   if (mind.beliefs() != nullptr)
     for (const v1::Belief& belief : mind.beliefs()->beliefs())
@@ -285,7 +285,7 @@ int unset(const std::string& name, const bus::NodeOptions& options, const bus::S
       std::cerr << "saphira: nobody has said " << name << " with saphira beliefs set\n";
       return bus::kExitFailed;
     }
-    // Again and again: who hears it only after it has been disposed hears nothing.
+    // Repeated: a reader that discovers the writer after the disposal would get nothing.
     if (writer.matched() > 0)
       taken_back = writer.dispose(sample) || taken_back;
   }
@@ -305,7 +305,7 @@ int claim(const std::string& name, const std::string& value, bool hold,
   sample.value(value);
   sample.writer_lost(hold ? v1::WRITER_LOST_CANCEL : v1::WRITER_LOST_KEEP);
   const auto began = Clock::now();
-  std::optional<std::uint64_t> before;  // [cycle] when it was said the time before, if it was
+  std::optional<std::uint64_t> before;  // [cycle] of the earlier claim, if any
   bool written = false;
   while (!stop.requested()) {
     mind.listen(milliseconds(100), stop);
@@ -316,7 +316,7 @@ int claim(const std::string& name, const std::string& value, bool hold,
       written = writer.write(sample);
       continue;
     }
-    // As it is written back: 1 may have become 1.0.
+    // In the service's notation: 1 may have become 1.0.
     if (written && belief != nullptr && belief->since() != before) {
       std::printf("%s = %s, said by %s\n", name.c_str(), belief->value().c_str(),
                   belief->said_by().c_str());

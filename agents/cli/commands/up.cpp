@@ -34,7 +34,7 @@ constexpr const char* kAreStarted = " started; Ctrl-C stops them";
 constexpr double kStarted = 20.0;  ///< [s]
 constexpr double kStopped = 20.0;  ///< [s]
 
-/// Prints with the child's name before each line, in a color of its own on a terminal.
+/// Prints each line with the child's name before it, in a color of its own on a terminal.
 Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
   std::size_t width = std::string("saphira").size();
   std::vector<std::string> names;
@@ -61,14 +61,14 @@ Supervisor::Print prefixed(const std::vector<ChildSpec>& children) {
   };
 }
 
-/// Two robots by one file are two deployments.
+/// One file for two robots gives two deployments.
 std::string name_of(const Deployment& deployment, const bus::NodeOptions& options) {
   return std::filesystem::path(deployment.file).stem().string() + "-" +
          deployment.bus.robot.value_or(options.robot) + "-" +
          std::to_string(deployment.bus.domain.value_or(options.domain));
 }
 
-/// Its bus, for commands that name none.
+/// Its bus, for commands without bus options.
 RunningBus bus_of(const Deployment& deployment, const bus::NodeOptions& options) {
   RunningBus bus = cli::bus_of(
       "the deployment " + std::filesystem::path(deployment.file).stem().string(), options);
@@ -108,7 +108,7 @@ class RenewSignal {
   int fd_ = -1;
 };
 
-/// Why a program cannot be taken in beside those that run; empty: it can.
+/// The reason why a program cannot be added to the running ones; empty: it can.
 std::string other_contract(const std::string& program) {
   std::string said;
   if (FILE* const output = popen(("'" + program + "' --version 2>&1").c_str(), "r")) {
@@ -178,7 +178,7 @@ int up(const std::string& name, const std::vector<std::string>& set,
   return bus::kExitOk;
 }
 
-/// This program again, without a terminal: its output goes to the log.
+/// Starts this program again, without a terminal: its output goes to the log.
 pid_t start_again(const std::string& name, const std::vector<std::string>& set,
                   const bus::NodeOptions& options, const std::string& log) {
   std::vector<std::string> words{"saphira", "up", name};
@@ -203,10 +203,10 @@ pid_t start_again(const std::string& name, const std::vector<std::string>& set,
   _exit(bus::kExitBroken);
 }
 
-/// Starts it in the background, and says what became of the start.
+/// Starts it in the background, and reports the result of the start.
 int detach(const std::string& name, const std::vector<std::string>& set,
            const bus::NodeOptions& options, const bus::Stop& stop) {
-  // The trouble with the file or the settings is said here, not in a log.
+  // Errors in the file or the settings are reported here, not in a log.
   Places places = find_places();
   const Deployment deployment = load_deployment(find_deployment(name, places));
   places.run = "/tmp";
@@ -234,8 +234,8 @@ int detach(const std::string& name, const std::vector<std::string>& set,
   return bus::kExitFailed;
 }
 
-/// The one deployment that runs and is meant; nothing, and the reason on stderr, where it is not
-/// clear. `code` is how the program then ends.
+/// The running deployment with that name, or the only one; nothing, with the reason on stderr,
+/// where it is ambiguous. `code` is the program's exit code then.
 std::optional<Running> running_one(const std::string& name, int& code) {
   std::vector<Running> meant;
   std::string names;

@@ -93,7 +93,7 @@ std::string person(const std::string& program, bool since) {
 
 namespace {
 
-/// Further advice where a program is not heard.
+/// Further advice for an unheard program.
 const char* remedy(bus::Profile profile) {
   switch (profile) {
     case bus::Profile::host:

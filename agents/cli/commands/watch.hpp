@@ -18,37 +18,37 @@ inline double seconds_since(Clock::time_point when) {
   return std::chrono::duration<double>(Clock::now() - when).count();
 }
 
-/// Keeps what every process said of itself last.
+/// Keeps the newest status of every process.
 class Processes {
  public:
   explicit Processes(bus::Node& node) : reader_(node.reader(bus::topics::kStatus)) {}
 
   void poll();
   std::vector<SeenProcess> all() const;
-  /// The part of the robot's situation that their status gives, without cyclic topics.
+  /// The part of the robot's situation that comes from the status, without cyclic topics.
   situation::Situation situation() const;
-  /// Of all processes that were seen, also those that ended.
+  /// Of all seen processes, including ended ones.
   std::uint64_t late_cycles() const;
 
  private:
   struct Entry {
     v1::ServiceStatus status;
     Clock::time_point came;
-    bool gone = false;  ///< in good order
+    bool gone = false;  ///< after a clean end
   };
   bus::Reader<v1::ServiceStatus> reader_;
   std::map<std::uint64_t, Entry> entries_;
   Clock::time_point began_ = Clock::now();
 };
 
-/// Complains once when two deployments have this robot, whatever else a command shows.
+/// Warns once when two deployments have this robot, in any command.
 class DeploymentWatch {
  public:
   DeploymentWatch(bus::Node& node, Processes& processes) : node_(node), processes_(processes) {}
 
   /// Polls the processes as well.
   void poll();
-  /// For the end of a command: waits until it is certain whether there is a second deployment.
+  /// For the end of a command: waits until a second deployment is confirmed or excluded.
   void settle(const bus::Stop& stop);
 
  private:
@@ -60,11 +60,11 @@ class DeploymentWatch {
 /// The profile's word: host, lan, wan.
 const char* name_of(bus::Profile profile);
 
-/// A program of this name and the person who runs it, for people: "keyboard of ann at laptop
-/// (pts/3)"; with `since`, also the time of day when this was asked: "(pts/3, since 14:02)".
+/// A program of this name and its user, for people: "keyboard of ann at laptop (pts/3)"; with
+/// `since`, also the time of this call: "(pts/3, since 14:02)".
 std::string person(const std::string& program, bool since = false);
 
-/// The programs that are missing or in trouble, in words, for when nobody answers.
+/// The missing or troubled programs, in words, for requests without an answer.
 std::string who_is_there(const bus::NodeOptions& options, const Processes& processes);
 
 }  // namespace saphira::cli

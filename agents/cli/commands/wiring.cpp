@@ -1,4 +1,4 @@
-// Which program writes what, and which reads it: the table that the system is made from.
+// The topics of each program, written and read: the system's table.
 #include <algorithm>
 #include <cstdio>
 

@@ -79,11 +79,11 @@ class Samples {
 
 nlohmann::json object_of(const std::string& text) {
   nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  // Text that is no JSON object is refused by the conversion to a sample.
+  // The conversion to a sample refuses text that is not a JSON object.
   return json.is_object() ? json : nlohmann::json();
 }
 
-/// A motor command of which what a person left out is what the person means.
+/// A motor command; missing members get their natural values.
 v1::MotorCommand motor_command(const std::string& text) {
   v1::MotorCommand command;
   command.active(true);
@@ -96,11 +96,11 @@ v1::MotorCommand motor_command(const std::string& text) {
   return command;
 }
 
-/// Drives for as long as it lives: a command is good for a fraction of a second.
+/// Drives for the command's life: a motor command is valid for a fraction of a second.
 int drive(const WriteOptions& options, const bus::Topic<v1::MotorCommand>& topic,
           const bus::NodeOptions& node_options, const bus::Stop& stop) {
   Samples samples(options.json);
-  // A mistake on the command line moves nothing.
+  // An error on the command line moves nothing.
   std::optional<v1::MotorCommand> command;
   if (!samples.from_input())
     command = motor_command(*samples.next());
@@ -146,7 +146,7 @@ int ask(const WriteOptions& options, const bus::RequestTopic& topic,
   return code;
 }
 
-/// With what has to be unique and nobody wants to make up.
+/// Adds members that have to be unique, and that a person would not write.
 std::string completed(const std::string& topic, const std::string& text, const bus::Node& node) {
   nlohmann::json json = object_of(text);
   if (topic == bus::topics::kGoals.name && json.is_object()) {

@@ -32,7 +32,7 @@ std::string line_of(const std::string& text, int number) {
   return text.substr(begin, text.find('\n', begin) - begin);
 }
 
-/// Reads one file: what the document says, and what is wrong with it.
+/// Reads one file, and its errors.
 class Parser {
  public:
   Parser(const std::string& text, const std::string& file) {
@@ -140,7 +140,7 @@ class Parser {
     return value;
   }
 
-  // As with every path in a file: from where the file is.
+  // As every path in a file: relative to the file.
   std::string security(const YAML::Node& node) const {
     const std::string folder = word(node, "a folder of credentials, or none");
     return folder == "none" ? folder
@@ -268,7 +268,7 @@ std::optional<std::string> executable(const fs::path& path) {
 std::string find_program(const Deployment& deployment, const Placed& program,
                          const std::string& name, const Places& places) {
   if (name.find('/') != std::string::npos) {
-    // As with every path in a file: from where the file is.
+    // As every path in a file: relative to the file.
     const fs::path path = fs::path(deployment.file).parent_path() / name;
     if (const auto found = executable(path))
       return *found;
@@ -306,7 +306,7 @@ Places find_places() {
 }
 
 std::string find_deployment(const std::string& name, const Places& places) {
-  // An administrator's deployment comes before the shipped one.
+  // An administrator's deployment replaces the shipped one.
   const std::string own = places.own + "/" + name + ".yaml";
   std::error_code none;
   if (!places.own.empty() && std::filesystem::is_regular_file(own, none))

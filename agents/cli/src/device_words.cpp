@@ -29,7 +29,7 @@ const char* const kDeviceWords =
 
 namespace {
 
-/// As people type it, and as the bridge has it.
+/// People's words, and the bridge's.
 constexpr std::array<std::pair<const char*, const char*>, 11> kGripperWords{
     {{"open", "open"},
      {"close", "close"},
@@ -75,7 +75,7 @@ bool on_off(const std::string& word) {
   return word == "on";
 }
 
-/// The words behind the device, each taken once.
+/// The words after the device, each taken once.
 class Words {
  public:
   explicit Words(const std::vector<std::string>& words) : words_(words) {}
@@ -95,7 +95,7 @@ class Words {
   std::size_t at_ = 1;
 };
 
-/// An argument that is a whole number, as it is typed.
+/// An argument that is a whole number, as typed.
 Argument whole_of(const char* name, const std::string& word, long high, const std::string& what) {
   return {name, static_cast<double>(whole(word, 0, high, what))};
 }
@@ -292,7 +292,7 @@ std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
                       (d->emergency_stop() ? ", EMERGENCY STOP PRESSED" : ""));
   else
     add("motors", robot.status() == v1::MOTORS_NO_POWER ? "off" : "on");
-  // To tens: which sonar's turn falls into the second is no news.
+  // Rounded to tens: the sonar of the last turn is no news.
   const unsigned rate = (robot.sonar_readings_per_s() + 5U) / 10U * 10U;
   add("sonar", rate == 0 ? "silent" : "about " + std::to_string(rate) + " readings/s");
   add("servo", std::to_string(robot.ptu()) + " us");

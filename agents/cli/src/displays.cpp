@@ -15,7 +15,7 @@ using situation::is_behavior;
 namespace {
 
 constexpr int kBar = 8;                      // characters each side of the middle line
-constexpr double kFullTurn = radians(30.0);  // as long as the bar
+constexpr double kFullTurn = radians(30.0);  // the length of the bar
 constexpr double kFullSpeed = 0.4;           // [m/s]
 constexpr double kCycle = 0.1;               // [s] manual 2.1.1
 
@@ -77,7 +77,7 @@ char sign_of(v1::ControlAction action) {
   return '=';
 }
 
-/// "2.5 s", for people.
+/// Such as "2.5 s", for people.
 std::string ago(std::uint64_t since, std::uint64_t now) {
   return since > now ? "-" : format("%.1f s", kCycle * static_cast<double>(now - since));
 }
@@ -138,7 +138,7 @@ void add_tree(const v1::Intentions& all, const v1::BehaviorSet* behaviors, std::
               std::size_t depth, std::vector<TreeLine>& lines) {
   const std::string indent(2 * depth, ' ');
   if (depth > all.nodes().size())
-    return;  // a tree that bites its own tail
+    return;  // a cyclic tree
   for (const v1::IntentionNode& node : all.nodes()) {
     if (node.parent() != parent)
       continue;

@@ -13,7 +13,7 @@ using situation::format;
 
 constexpr double kFarthest = 100.0;            // [m]
 constexpr double kFastest = 5.0;               // [m/s]
-constexpr double kThere = radians(2.0);        // the manual's robots turn no finer than that
+constexpr double kThere = radians(2.0);        // the resolution of the manual's robots
 constexpr double kStands = 0.02;               // [m/s]
 constexpr double kDoesNotTurn = radians(3.0);  // [rad/s]
 

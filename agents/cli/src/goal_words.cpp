@@ -18,7 +18,7 @@ constexpr std::size_t kLongestName = 31;
 constexpr std::size_t kLongestText = 255;
 constexpr std::size_t kMostArguments = 16;
 
-/// The number that the whole of the text is, in SI units; an angle in degrees ends with deg.
+/// The number of the whole text, in SI units; an angle in degrees ends with deg.
 std::optional<double> parse_number(std::string_view text) {
   const bool angle = text.ends_with("deg");
   if (angle)
@@ -43,7 +43,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-/// True where the text means to be a point, and so has to be a right one.
+/// True where the text has the form of a point, and so has to be a valid one.
 bool looks_like_point(std::string_view text) {
   const std::string_view first = text.substr(0, text.find(','));
   return first.size() != text.size() && parse_number(first).has_value();
@@ -128,7 +128,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
   if (words.empty())
     throw std::invalid_argument("expected a goal, such as go 3 1");
   std::vector<std::string> rest(words.begin() + 1, words.end());
-  // The words in front that are no name=value, of which a short form has a fixed number.
+  // The leading words without "=", of which a short form has a fixed number.
   std::size_t bare = 0;
   while (bare < rest.size() && rest[bare].find('=') == std::string::npos)
     ++bare;
@@ -145,7 +145,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     rest.insert(rest.begin(), first);
     return rest;
   };
-  // "go to PLACE", as people say it.
+  // "go to PLACE", as in speech.
   if (words[0] == "go" && bare == 2 && rest[0] == "to") {
     rest.erase(rest.begin());
     --bare;
@@ -156,7 +156,7 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     expect(2, "go X Y [m, in odom] or go PLACE");
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
   }
-  // Of the functor drive in its long form a speed is required as well.
+  // The functor drive in its long form also requires a speed.
   if (words[0] == "drive" && std::none_of(rest.begin(), rest.end(), [](const std::string& word) {
         return word.starts_with("speed=");
       })) {

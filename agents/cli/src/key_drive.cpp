@@ -101,10 +101,10 @@ void KeyDrive::press(DriveKey key, double now) {
   if (key > DriveKey::keep)
     return;
   if (!setpoint(now).active)
-    ++setpoint_.move;  // hold the heading that the robot has now
+    ++setpoint_.move;  // hold the present heading
   const double gap = now - last_key_;
   last_key_ = now;
-  // Keys at once are one: a slow line brings several together.
+  // Simultaneous keys count as one: a slow line bundles them.
   if (gap > settings_.burst)
     slowest_ = gap > settings_.first_hold ? 0.0 : std::max(gap, settings_.forget * slowest_);
   if (key == DriveKey::stop)

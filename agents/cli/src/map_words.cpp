@@ -14,8 +14,8 @@
 namespace saphira::cli {
 namespace {
 
-constexpr std::size_t kDoors = 3;    ///< closed ones that are named
-constexpr double kAnywhere = 100.0;  ///< [m] with a larger sigma there is no place to speak of
+constexpr std::size_t kDoors = 3;    ///< closed doors named at most
+constexpr double kAnywhere = 100.0;  ///< [m] with a larger sigma there is no useful place
 
 /// A form of `saphira map`; kForms has them in the order of its help.
 struct Form {
@@ -137,7 +137,7 @@ void check_map_words(const std::vector<std::string>& words) {
   for (const Form& form : kForms) {
     if (words.empty() || form.verb != words.front())
       continue;
-    // The name of a place is known to the map alone; what is with the robot, to the robot.
+    // Only the map knows a place by its name; a pose with the robot is the robot's.
     const bool named = words.front() == "place" && words.size() == 2;
     const bool looks = form.verb == "follow" || form.verb == "list" || form.verb == "save" ||
                        form.verb == "show" || form.verb == "build" || form.verb == "route";

@@ -9,9 +9,9 @@ namespace saphira::cli {
 namespace {
 
 constexpr double kCell = 0.05;              ///< [m]
-constexpr std::size_t kMostEchoes = 20000;  ///< the oldest go first
+constexpr std::size_t kMostEchoes = 20000;  ///< the oldest are dropped
 constexpr double kWakeStep = 0.05;          ///< [m]
-constexpr double kMargin = 0.5;             ///< [m] around what is shown
+constexpr double kMargin = 0.5;             ///< [m] around the content
 
 /// The content of a character; of several contents, the last in this order is shown.
 enum class Layer { none, wall, echo, wake, goal, robot };
@@ -156,7 +156,7 @@ std::vector<std::string> Picture::draw(int columns, int rows, bool utf8) const {
     include({(i + 0.5) * kCell, (j + 0.5) * kCell});
   low -= Vec2::Constant(kMargin);
   high += Vec2::Constant(kMargin);
-  // A dot is about square: a character is twice as high as wide, and so is 2 x 4 dots.
+  // A dot is about square: a character is twice as high as wide, like 2 x 4 dots.
   const Vec2 size = high - low;
   const double scale = std::max(size.x() / (2 * columns), size.y() / (4 * rows));
   const Vec2 middle = (low + high) / 2;

@@ -20,16 +20,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLastMoment{1000};  // for what a program says at its end
+constexpr milliseconds kLastMoment{1000};  // for the last output of a program
 
-/// False where nobody will ever read.
+/// False where there is no reader any more.
 bool write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(fd, text.data(), text.size());
     if (n > 0) {
       text.remove_prefix(static_cast<std::size_t>(n));
     } else if (n < 0 && errno == EAGAIN) {
-      // Somebody else made it non-blocking, as some shells do.
+      // Another process made it non-blocking, as some shells do.
       pollfd ready{fd, POLLOUT, 0};
       ::poll(&ready, 1, -1);
     } else if (n < 0 && errno != EINTR) {
@@ -68,7 +68,7 @@ struct Printer::Shared {
 Printer::Printer(int fd, std::size_t room) : shared_(std::make_shared<Shared>()) {
   shared_->fd = fd;
   shared_->room = room;
-  // Signals are for the thread that waits for them.
+  // Signals belong to the waiting thread.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);

@@ -34,7 +34,7 @@ const RunningBus* bus_meant(const RunningBus& usual, const std::vector<RunningBu
   for (const RunningBus& bus : running)
     if (options_of(bus, usual).empty())
       return nullptr;
-  // A real robot before a demonstration that was started beside it.
+  // A real robot comes before a demonstration beside it.
   const auto found = std::find_if(running.begin(), running.end(),
                                   [](const RunningBus& bus) { return bus.deployment; });
   return found == running.end() ? &running.front() : &*found;

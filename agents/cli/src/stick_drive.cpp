@@ -47,7 +47,7 @@ bool StickDrive::is_silent(double now) const {
   return held_ != 0 && now - heard_ > settings_.silence;
 }
 
-/// Fine near the middle, all at the end.
+/// Fine near the middle, full at the end.
 double StickDrive::share(double axis) const {
   const double way =
       std::max(0.0, (std::abs(axis) - settings_.dead_zone) / (1.0 - settings_.dead_zone));

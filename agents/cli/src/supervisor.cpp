@@ -23,10 +23,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kTakenIn{2000};  // a new version has run for so long
+constexpr milliseconds kTakenIn{2000};  // run of a new version before the next one
 constexpr milliseconds kFirstBackoff{100};
 constexpr milliseconds kLastBackoff{5000};
-/// How often it looks whether somebody hangs.
+/// Between two checks for hanging children.
 constexpr milliseconds kWatch{1000};
 constexpr std::size_t kLongestLine = 4096;  ///< longer ones are broken up
 
@@ -95,7 +95,7 @@ class Pipe {
 
   int out() const { return ends_[1]; }
   int take_in() { return std::exchange(ends_[0], -1); }
-  /// The writing end, as the child is told of it.
+  /// The name of the writing end, for the child.
   std::string name() const {
     struct stat info {};
     fstat(ends_[1], &info);
@@ -106,7 +106,7 @@ class Pipe {
   int ends_[2] = {-1, -1};
 };
 
-/// Names a file so that its successor under the same path is told from it.
+/// The identity of a file, which differs from that of a later file with the same path.
 std::string file_of(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0)
@@ -247,7 +247,7 @@ void Supervisor::renew_next() {
   if (slots_[next].pid == 0)
     return;
   renewing_ = next;
-  slots_[next].started = Clock::now();  // that it ends now says nothing of it
+  slots_[next].started = Clock::now();  // its end now is no sign of a failure
   say(slots_[next].spec.name + ": a new version is taken in");
   kill(slots_[next].pid, SIGTERM);
   kill(slots_[next].pid, SIGCONT);
@@ -281,7 +281,7 @@ void Supervisor::launch_again(std::size_t index) {
   try {
     launch(index);
   } catch (const std::exception& error) {
-    // The machine has no process, descriptor or memory left for it now: the others go on.
+    // The machine lacks a process, descriptor or memory for it now: the others continue.
     const milliseconds delay = put_off(slot, false);
     say(std::string(error.what()) + "; tried again in " + std::to_string(delay.count()) + " ms");
   }
@@ -300,7 +300,7 @@ void Supervisor::poll_once(milliseconds timeout, std::initializer_list<int> wake
   for (const Stream& stream : streams_)
     fds.push_back({stream.fd, POLLIN, 0});
   for (const Slot& slot : slots_)
-    fds.push_back({slot.pid_fd, POLLIN, 0});  // a negative one is skipped by poll
+    fds.push_back({slot.pid_fd, POLLIN, 0});  // poll skips a negative one
   for (const int fd : wake_fds)
     fds.push_back({fd, POLLIN, 0});
   poll(fds.data(), fds.size(), static_cast<int>(timeout.count()));
@@ -379,8 +379,9 @@ void Supervisor::stop(milliseconds limit) {
     if (slots_[i].pid == 0)
       continue;
     kill(slots_[i].pid, SIGTERM);
-    kill(slots_[i].pid, SIGCONT);  // one that was stopped hears the SIGTERM
-    // Each has its share of what is left, so that one that hangs does not take the others' time.
+    kill(slots_[i].pid, SIGCONT);  // a stopped child gets the SIGTERM then
+    // Each child has its share of the remaining time, so that a hanging one does not use up the
+    // others'.
     const auto share = std::chrono::duration_cast<milliseconds>(until(end) / (i + 1));
     const Clock::time_point next = Clock::now() + share;
     while (slots_[i].pid != 0 && Clock::now() < next)

@@ -35,7 +35,7 @@ const char* word(v1::AnswerCode code) {
   return "?";
 }
 
-/// The time of day here, such as 10:02.
+/// The local time of day, such as 10:02.
 std::string time_of(double time) {
   if (time <= 0.0)
     return "-";

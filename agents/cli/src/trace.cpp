@@ -13,7 +13,7 @@ namespace saphira::cli {
 
 namespace {
 
-/// A column of a trace that counts here, and all of them in number.
+/// The used columns of a trace, and the number of all.
 enum Column : std::size_t { kCycle = 0, kX = 1, kY = 2, kTh = 3, kClearance = 9, kContacts = 10 };
 constexpr std::size_t kColumns = 11;
 constexpr std::string_view kHeader = "cycle,";
@@ -75,7 +75,7 @@ Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std:
     y = row[kY];
     track.min_clearance = std::fmin(track.min_clearance, row[kClearance]);
     const auto count = static_cast<std::uint64_t>(row[kContacts]);
-    if (count < counted)  // the simulator was started again
+    if (count < counted)  // the simulator was restarted
       before += counted;
     counted = count;
     track.contacts = before + counted;

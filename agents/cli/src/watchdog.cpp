@@ -6,9 +6,9 @@ namespace saphira::cli {
 
 namespace {
 
-// Nodes say something once a second: this is late for what is regular.
+// Nodes send a heartbeat once a second: a longer pause is not regular.
 constexpr std::chrono::seconds kLate{4};
-// Lives in a row in which a child waited and heard nothing: then it is not the child.
+// Consecutive lives of a child without hearing the robot: then the child is not the cause.
 constexpr int kDeafLives = 2;
 
 std::string seconds(std::chrono::seconds time) {

@@ -32,7 +32,7 @@ v1::IntendedBehavior behavior(std::uint32_t intention, bool blocking, const std:
   return result;
 }
 
-// The snapshot that the paper prints.
+// The snapshot in the paper.
 TEST(IntentionsDisplay, IsFigure10) {
   v1::Intentions all;
   all.behavior_control(true);

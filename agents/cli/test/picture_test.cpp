@@ -5,7 +5,7 @@
 namespace saphira::cli {
 namespace {
 
-/// Without the colors.
+/// The lines without colors.
 std::vector<std::string> plain(const std::vector<std::string>& lines) {
   std::vector<std::string> all;
   for (const std::string& line : lines) {

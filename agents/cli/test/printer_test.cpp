@@ -14,7 +14,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A pipe that nobody reads until the test does.
+/// A pipe without a reader until the test reads.
 struct Pipe {
   Pipe() {
     EXPECT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
@@ -29,7 +29,7 @@ struct Pipe {
       ::close(ends[0]);
     ends[0] = -1;
   }
-  /// As much as is asked for.
+  /// Reads exactly that much.
   std::string read(std::size_t size) {
     std::string text(size, '\0');
     std::size_t done = 0;
@@ -77,7 +77,7 @@ TEST(Printer, OfPicturesThatWaitTheNewestIsShown) {
   Pipe pipe;
   Printer printer(pipe.ends[1]);
   const std::string big(1U << 17U, '.');
-  printer.show(big);  // holds up the thread, or waits and is replaced
+  printer.show(big);  // blocks the thread, or waits and is replaced
   for (int i = 0; i <= 1000; ++i)
     printer.show("picture " + std::to_string(i) + "\n");
   std::string all;
@@ -94,7 +94,7 @@ TEST(Printer, ItsEndDoesNotWait) {
   Pipe pipe;
   Printer printer(pipe.ends[1]);
   printer.print(std::string(1U << 17U, 'x'));
-  // The destructor returns although the thread is held up, or this test never ends.
+  // The destructor returns in spite of the blocked thread, or this test never ends.
 }
 
 TEST(Printer, NoticesThatNobodyWillEverRead) {

@@ -21,7 +21,7 @@ ChildSpec shell(const std::string& name, const std::string& script) {
   return {name, {"/bin/sh", "-c", script}, {}, true};
 }
 
-/// A supervisor whose output is kept.
+/// A supervisor with stored output.
 class SupervisorTest : public testing::Test {
  protected:
   Supervisor::Print keep() {
@@ -130,7 +130,7 @@ TEST_F(SupervisorTest, TakesInNewVersionsOneAfterTheOther) {
   Supervisor supervisor(children, keep());
   supervisor.start();
   const auto pid = [&](std::size_t i) { return supervisor.children()[i].pid; };
-  // All of them, since a shell reads its script only after it is started.
+  // All children, since a shell reads its script only after its start.
   EXPECT_TRUE(run_until(supervisor, [&] {
     return said("a|old") && said("b|old") && said("odd|old") && said("same|old") && said("sim|old");
   })) << all();
@@ -167,7 +167,7 @@ TEST_F(SupervisorTest, DoesNotStartAgainWhatIsMisused) {
 }
 
 TEST_F(SupervisorTest, StartsAgainWhatEndsLateAsIfMisused) {
-  // It ran, so what it was given is right.
+  // It ran, so its input is right.
   Supervisor supervisor({shell("a", "sleep 0.1; exit 2")}, keep(), milliseconds(50));
   supervisor.start();
   EXPECT_TRUE(run_until(supervisor, [&] { return supervisor.children().at(0).starts == 2; }));
@@ -175,7 +175,7 @@ TEST_F(SupervisorTest, StartsAgainWhatEndsLateAsIfMisused) {
   EXPECT_TRUE(said("|a ended: exit code 2; started again in 100 ms")) << all();
 }
 
-/// No descriptor more than there are, as long as it lives.
+/// Allows no further descriptor, as long as it lives.
 class NoMoreFiles {
  public:
   NoMoreFiles() {
@@ -283,7 +283,7 @@ TEST_F(SupervisorTest, TheChildrenEndWithTheirSupervisor) {
   pid_t child = 0;
   ASSERT_EQ(read(ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
   waitpid(middle, nullptr, 0);
-  // Re-parented: who reaps it is not ours to say, so a zombie counts as ended.
+  // Re-parented: another process reaps it, so a zombie counts as ended.
   const auto gone = [child] {
     std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
     std::string word;

@@ -62,7 +62,7 @@ TEST(Trace, ALineThatIsBeingWrittenIsLeftOut) {
 }
 
 TEST(Trace, TheCutCountsInTheLastConnection) {
-  // The simulator was left and joined again: its robot stands where it stood.
+  // The client left and connected again: the robot stands at the same place.
   const std::string text = kHeader + kFirst + kSecond + kThird + kHeader +
                            "1,4,7,0,0,0,0,0,0,2,1\n" + "2,4,8,0,0,0,0,0,0,2,2\n" +
                            "3,4,9,0,0,0,0,0,0,2,2\n";

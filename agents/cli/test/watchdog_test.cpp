@@ -31,7 +31,7 @@ class WatchdogTest : public testing::Test {
     for (int i = 0; i < times; ++i)
       second(flags_of_1, flags_of_2);
   }
-  /// "deaf" or "mute" or "hung"; empty: nothing is wrong.
+  /// "deaf" or "mute" or "hung"; empty: no error.
   std::string trouble(std::size_t child) const {
     const std::string text = dog_.trouble(child, now_).value_or("");
     for (const char* word : {"deaf", "mute", "hung"})

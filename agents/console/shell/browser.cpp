@@ -41,7 +41,7 @@ std::string find_browser() {
 
 Browser::Browser() {
   const std::string program = find_browser();
-  signal(SIGPIPE, SIG_IGN);  // a browser that ends is told by what write returns
+  signal(SIGPIPE, SIG_IGN);  // write reports an ended browser
   char name[] = "/tmp/saphira-browser-XXXXXX";
   if (mkdtemp(name) == nullptr)
     throw std::runtime_error("no temporary folder for the browser");
@@ -57,7 +57,7 @@ Browser::Browser() {
       program.c_str(), "--headless=new",    "--remote-debugging-pipe", "--no-first-run",
       "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", data.c_str()};
   if (geteuid() == 0)
-    argv.push_back("--no-sandbox");  // Chromium's own does not work for root
+    argv.push_back("--no-sandbox");  // Chromium's own sandbox does not work for root
   argv.push_back(nullptr);
   pid_ = fork();
   if (pid_ == 0) {

@@ -8,9 +8,9 @@
 
 namespace saphira::console {
 
-/// A running Chromium without a display that is told what to do: its DevTools protocol, JSON texts
-/// that end with a zero byte, on its descriptors 3 and 4. std::runtime_error where there is no
-/// Chromium, and where it does not do what it is told.
+/// A running Chromium without a display, controlled by its DevTools protocol: JSON texts that end
+/// with a zero byte, on its descriptors 3 and 4. std::runtime_error without Chromium, and where a
+/// command fails.
 class Browser {
  public:
   Browser();
@@ -18,7 +18,7 @@ class Browser {
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
-  /// Opens a page with a window of this size; the commands that follow are for it.
+  /// Opens a page with a window of this size; the following commands are for it.
   void open(int width, int height, bool telephone = false);
   void go(const std::string& address);
   nlohmann::json call(const std::string& method,

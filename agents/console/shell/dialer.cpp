@@ -26,12 +26,12 @@ using relay::Splice;
 constexpr const char* kDial = "saphira.dial";
 constexpr const char* kCarry = "saphira.carry";
 constexpr unsigned kMostVisitors = 64;
-constexpr int kLongestPause = 30;  // [s] until it dials again
+constexpr int kLongestPause = 30;  // [s] between two attempts
 
 }  // namespace
 
 struct Dialer::Impl {
-  /// A connection of ours, as libwebsockets gives it back: of a visitor, or to the relay (0).
+  /// One of our connections in libwebsockets: of a visitor, or to the relay (0).
   struct Leg {
     Impl* impl = nullptr;
     std::uint64_t visitor = 0;
@@ -140,7 +140,7 @@ void Dialer::Impl::fetch(const std::string& ticket) {
   local.local_protocol_name = "server";
   local.opaque_user_data = &visitor.leg;
   if (lws_client_connect_via_info(&local) == nullptr) {
-    visitors.erase(number);  // its other side is not begun
+    visitors.erase(number);  // its other side is not opened
     return;
   }
   if (visitors.contains(number) &&
@@ -148,7 +148,7 @@ void Dialer::Impl::fetch(const std::string& ticket) {
     ended(number, Splice::kNear);
 }
 
-/// A side of a visitor is closed, or never came to be.
+/// A side of a visitor is closed, or was never opened.
 void Dialer::Impl::ended(std::uint64_t number, Splice::Side side) {
   const auto visitor = visitors.find(number);
   if (visitor == visitors.end())

@@ -19,8 +19,8 @@ namespace {
 
 namespace topics = bus::topics;
 
-constexpr double kGreeting = 5.0;     // [s] within which a page says hello
-constexpr double kStillThere = 60.0;  // [s] after driving the bridge hears that nobody drives
+constexpr double kGreeting = 5.0;     // [s] limit for a page's hello
+constexpr double kStillThere = 60.0;  // [s] after driving in which the bridge gets releases
 constexpr double kExplain = 0.5;      // [s]
 constexpr std::size_t kLines = 200;   // of a log
 constexpr std::size_t kMany = 2000;   // instances of a topic
@@ -54,7 +54,7 @@ std::string origin_of(const ServerOptions& options) {
 }  // namespace
 
 double now() {
-  return BootClock::seconds();  // what was wanted before the machine slept is not wanted now
+  return BootClock::seconds();  // commands from before the machine slept are not valid now
 }
 
 std::string key_text(const bus::InstanceKey& key) {
@@ -127,7 +127,7 @@ std::string Gateway::address() const {
   return origin_ + ":" + std::to_string(server_.port()) + "/#" + access_.key;
 }
 
-/// with_writer: an instance goes with the program that wrote it.
+/// with_writer: an instance is removed with its writer.
 template <class T>
 void Gateway::feed(const bus::Topic<T>& topic, std::size_t most, bool with_writer) {
   const int rank = board_.topic(topic.name, most);
@@ -242,8 +242,8 @@ void Gateway::tick() {
   node_.publish_status();
 }
 
-/// For as long as somebody drives, and a while after that, the bridge hears it 20 times a second:
-/// so it knows that this program lives, and that a release that got lost was meant.
+/// While an operator drives, and a while after that, the bridge gets a sample 20 times a second: so
+/// it knows that this program lives, and understands a release that got lost.
 void Gateway::drive() {
   const Control::Order order = control_.order(now());
   if (!order.source.empty()) {
@@ -253,8 +253,8 @@ void Gateway::drive() {
   if (now() - drove_ > kStillThere && hand_backs_left_ == 0)
     return;
   v1::MotorCommand command;
-  // The stamp says which picture of the robot the operator has: the bridge is slower by an old one,
-  // and refuses one that is too old. A release and a hand-back hold whatever is seen.
+  // The stamp names the robot state on the operator's screen: an old one makes the bridge slower,
+  // and a too old one is refused. A release and a hand-back are valid with any stamp.
   command.stamp(stamp_);
   if (order.active)
     command.stamp().cycle(std::min(order.cycle, stamp_.cycle()));
@@ -270,7 +270,7 @@ void Gateway::drive() {
   teleop_.write(command);
 }
 
-/// Presses until the bridge says that the stop is latched; then lets go, so that it can be reset.
+/// Presses until the bridge confirms the latched stop; then lets go, so that it can be reset.
 void Gateway::press_estop() {
   if (presser_.empty() && releases_left_ == 0)
     return;
@@ -287,7 +287,7 @@ void Gateway::press_estop() {
   estop_.write(command);
 }
 
-/// Why the robot does what it does, as `saphira why` tells it.
+/// The reasons for the robot's motion, as in `saphira why`.
 void Gateway::explain() {
   if (viewers_ == 0 || now() - explained_ < kExplain || !mind_.heard())
     return;

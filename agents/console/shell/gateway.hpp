@@ -24,24 +24,24 @@ namespace saphira::console {
 struct GatewayOptions {
   ServerOptions server;
   std::vector<std::string> names;      ///< further host names of this machine
-  std::string simulator;               ///< socket of a simulator's own view; empty: there is none
-  std::optional<relay::Address> dial;  ///< a relay by which this is reached, too
-  std::string dial_token;              ///< what it knows us by
-  std::string dial_authority;          ///< PEM file that its certificate is checked by
+  std::string simulator;               ///< socket of a simulator's own view; empty: none
+  std::optional<relay::Address> dial;  ///< a relay for further access
+  std::string dial_token;              ///< our token there
+  std::string dial_authority;          ///< PEM file to check its certificate
   std::string key_file;  ///< keeps key and port over a restart; empty: a new key each time
 };
 
-constexpr int kReleases = 4;  ///< of the last word: the topics of driving are best effort
+constexpr int kReleases = 4;  ///< repetitions of a release: the topics of driving are best effort
 
-/// [s] of the clock that all of this uses.
+/// [s] of the clock of these files.
 double now();
-/// A key as the board names it.
+/// A key, in the board's form.
 std::string key_text(const bus::InstanceKey& key);
 /// The name of a page's operator for the rest of the system.
 std::string operator_of(const std::string& name);
 
-/// Between the bus and the browsers: what is on the bus goes onto the board, what the pages say
-/// goes to the bus. For one thread.
+/// Between the bus and the browsers: samples of the bus go onto the board, the pages' messages go
+/// to the bus. For one thread.
 class Gateway {
  public:
   Gateway(const bus::NodeOptions& node, const GatewayOptions& options);
@@ -58,17 +58,17 @@ class Gateway {
   struct Page {
     Channel channel = Channel::telemetry;
     Caller caller;
-    bool greeted = false;        ///< it has said hello, and may watch
+    bool greeted = false;        ///< it has sent hello, and may watch
     bool trusted = false;        ///< it has the key
     std::string name;            ///< of the operator
-    std::string ticket;          ///< by which a further connection carries this operator's samples
-    Connection operator_id = 0;  ///< whose samples come here [0: none]
+    std::string ticket;          ///< joins a further connection to this operator's samples
+    Connection operator_id = 0;  ///< the operator of the samples of this connection [0: none]
     double opened = 0.0;         ///< [s]
     Viewer viewer;
-    std::deque<std::string> queue;  ///< of commands: what it is to be told
-    std::uint64_t world = 0;        ///< of the simulator: the newest that it was told
+    std::deque<std::string> queue;  ///< commands: outgoing messages
+    std::uint64_t world = 0;        ///< simulator: newest version that was sent
     std::uint64_t scene = 0;        ///< likewise
-    std::string refused;            ///< the newest reason why a sample did not count
+    std::string refused;            ///< the newest reason for a refused sample
   };
   struct Asked {
     Connection connection = 0;
@@ -125,7 +125,7 @@ class Gateway {
   bus::Writer<v1::AgentEvent> pointed_out_;
   bus::Reader<v1::Grant> grants_;
 
-  std::vector<std::function<bool()>> feeds_;  ///< each: whether something came
+  std::vector<std::function<bool()>> feeds_;  ///< each: true where it had new samples
   int control_topic_ = 0;
   int why_topic_ = 0;
   std::map<Connection, Page> pages_;
@@ -137,10 +137,10 @@ class Gateway {
   std::optional<v1::Grant> grant_;
   std::uint64_t command_ = 0;
   std::uint64_t utterances_ = 0;
-  double drove_ = -1e9;      ///< [s] when an operator had control last
+  double drove_ = -1e9;      ///< [s] when an operator last had control
   int hand_backs_left_ = 0;  ///< the topic is best effort
   std::string last_source_ = "console";
-  std::string presser_;  ///< who presses the emergency stop, until it is confirmed
+  std::string presser_;  ///< the person who presses the emergency stop, until it is confirmed
   int releases_left_ = 0;
   double explained_ = -1e9;  ///< [s]
   std::string shown_control_;

@@ -1,4 +1,4 @@
-// The pages' side: what they say, and what they are told.
+// The pages' side: their messages, and the replies.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -136,7 +136,7 @@ void Gateway::ask_simulator(Connection connection, const Page& page, std::string
   };
   if (!page.trusted)
     return refuse("without the key you may watch: open the address that saphira has printed");
-  std::replace(text.begin(), text.end(), '\n', ' ');  // a line is one wish
+  std::replace(text.begin(), text.end(), '\n', ' ');  // one line for each wish
   if (!simulator_ || !simulator_->say(text))
     refuse("the simulator is not there");
 }
@@ -153,7 +153,7 @@ bool Gateway::greet(Connection connection, Page& page, const Hello& hello) {
     admit(connection, page, hello);
   if (page.greeted && page.channel == Channel::telemetry)
     return true;
-  // One without the key is told so, and closed when it has not given it in time.
+  // A page without the key gets this message, and is closed without the key in time.
   say(connection, std::string("{\"type\":\"hello\",\"id\":") + std::to_string(connection) +
                       ",\"may_watch\":" + (page.greeted ? "true" : "false") +
                       ",\"may_drive\":" + (page.trusted ? "true" : "false") +
@@ -250,7 +250,7 @@ void Gateway::obey(Connection connection, Page& page, const Message& message) {
 
 void Gateway::take_sample(Connection connection, Page& page, const Control::Sample& sample) {
   const std::string why = control_.drive(page.operator_id, sample, now());
-  // Of several connections one is quicker: that a sample was overtaken is nothing to tell.
+  // Of several connections one is quicker: an overtaken sample is not reported.
   if (why == page.refused || why == Control::kRepeated)
     return;
   page.refused = why;
@@ -275,7 +275,7 @@ void Gateway::ask_goal(Connection connection, const Page& page, const AskGoal& a
     const v1::GoalId id = goals_.ask(goal);
     answer(connection, ask.reference, true, cli::describe(goal),
            key_text({id.writer(), id.number()}));
-  } catch (const std::exception& error) {  // what the person typed, or a bus that does not take it
+  } catch (const std::exception& error) {  // the person's text, or a bus that does not take it
     answer(connection, ask.reference, false, error.what());
   }
 }
@@ -290,7 +290,7 @@ void Gateway::cancel_goal(Connection connection, const CancelGoal& cancel) {
   answer(connection, cancel.reference, true, "withdrawn", cancel.id);
 }
 
-/// For the agent interface: what a person types to the robot.
+/// Passes a person's typed words to the agent interface.
 void Gateway::hear(const Page& page, const Say& words) {
   v1::Utterance utterance;
   utterance.id().writer(node_.instance());

@@ -7,10 +7,10 @@ namespace saphira::console {
 /// Random, in hexadecimal digits. std::runtime_error where the system has no random numbers.
 std::string new_key();
 
-/// The key and the port: with the same ones, open pages go on after a restart.
+/// The key and the port: with the same ones, open pages continue after a restart.
 struct Kept {
   std::string key;
-  int port = 0;  ///< that pages know; 0: none yet
+  int port = 0;  ///< known to pages; 0: none yet
 };
 
 /// Reads key and port from the file. Where it has no key, writes a new one there, which only the
@@ -19,7 +19,7 @@ struct Kept {
 Kept keep(const std::string& file);
 /// The first word of a file that only its owner may read. std::runtime_error that names the file.
 std::string read_secret(const std::string& file);
-/// The port that was found is kept as well. std::runtime_error that names the file.
+/// Saves the port as well. std::runtime_error that names the file.
 void keep_port(const std::string& file, const Kept& kept, int port);
 
 }  // namespace saphira::console

@@ -11,7 +11,7 @@ namespace {
 
 using namespace saphira;
 
-/// The page as it is now, into a file; then the program ends.
+/// Writes a picture of the present page to a file; then the program ends.
 int picture(console::Gateway& gateway, const console::ScreenshotOptions& options) {
   bus::Stop done;
   std::exception_ptr failure;
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
           options.dial = relay::parse_address(dial);
           options.dial_token = console::read_secret(token_file);
         }
-        if (node.dry_run)  // its files are there, as the options ask
+        if (node.dry_run)  // its files were checked
           return static_cast<int>(bus::kExitOk);
         if (!screenshot.file.empty())
           options.server.port = 0;

@@ -6,7 +6,7 @@
 
 namespace saphira::console {
 
-/// The page as it is built into the program.
+/// The files of the page, embedded in the program.
 std::vector<PageFile> page_files();
 
 }  // namespace saphira::console

@@ -21,7 +21,7 @@ using web::header;
 constexpr std::size_t kMostConnections = 96;  // WebSockets; a page has two, one that drives four
 constexpr unsigned kMostDescriptors = 192;
 constexpr std::size_t kLongestMessage = 4096;
-constexpr int kSendBuffer = 128 * 1024;  // what the kernel keeps for a slow browser
+constexpr int kSendBuffer = 128 * 1024;  // the kernel's buffer for a slow browser
 constexpr int kTick = 50'000;            // [us]
 constexpr int kTogether = 10'000;        // [us]
 constexpr const char* kTelemetry = "saphira.telemetry";
@@ -47,7 +47,7 @@ Channel channel_of(const char* protocol) {
 }  // namespace
 
 struct Server::Impl {
-  /// The record that libwebsockets keeps for each connection; it begins as zeros.
+  /// The record of libwebsockets for each connection; it begins as zeros.
   struct Http {
     const PageFile* file;
   };
@@ -68,7 +68,7 @@ struct Server::Impl {
   Connection last = 0;
   bool soon = false;
 
-  // A timer of libwebsockets, with the way back to us.
+  // A timer of libwebsockets, with a pointer to us.
   struct Timer {
     lws_sorted_usec_list_t list{};
     Impl* impl = nullptr;
@@ -238,7 +238,7 @@ Server::Server(const ServerOptions& options, const AccessSettings& access,
        {kSimulator, Impl::socket, sizeof(Impl::Socket), kLongestMessage, 0, nullptr, 0},
        web::Loop::descriptors(),
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
-  // A browser that sleeps or is cut off is let go after half a minute.
+  // A sleeping or disconnected browser is dropped after half a minute.
   static const lws_retry_bo_t patience{nullptr, 0, 0, 10, 30, 0};
 
   const bool encrypts = !options.certificate.empty();
@@ -248,11 +248,11 @@ Server::Server(const ServerOptions& options, const AccessSettings& access,
     info.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
   info.protocols = protocols.data();
   info.iface = options.address == "0.0.0.0" ? nullptr : options.address.c_str();
-  info.timeout_secs = 5;  // for who connects and says nothing whole
+  info.timeout_secs = 5;  // for clients without a complete request
   info.keepalive_timeout = 5;
   info.retry_and_idle_policy = &patience;
   info.vhost_name = "console";
-  info.alpn = "http/1.1";  // a browser would choose HTTP/2, which has other headers and WebSockets
+  info.alpn = "http/1.1";  // with HTTP/2, a browser has other headers and WebSockets
   if (encrypts) {
     info.ssl_cert_filepath = options.certificate.c_str();
     info.ssl_private_key_filepath = options.certificate_key.c_str();

@@ -23,17 +23,17 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< to listen on; 0.0.0.0: every one
   int port = 8642;                    ///< the first to try; 0: any that is free
   int ports = 20;                     ///< how many to try
-  int before = 0;                     ///< tried before them, where it is one of them
+  int before = 0;                     ///< tried before them, if in their range
   std::string certificate;            ///< a file; empty: HTTP
   std::string certificate_key;        ///< a file
 };
 
-/// The kinds of connection of a page: so the picture never makes a command wait. simulator: both
+/// The kinds of a page's connections: so that telemetry never delays a command. simulator: both
 /// ways, of the page of the simulator's own view.
 enum class Channel { telemetry, commands, simulator };
 
 /// HTTP and WebSockets (libwebsockets), in one thread: the page's files, and texts to and from each
-/// connection. Bounded: connections, sizes, and times without a word.
+/// connection. Bounded: connections, sizes, and silences.
 class Server {
  public:
   using Connection = std::uint64_t;
@@ -44,7 +44,7 @@ class Server {
     /// False closes the connection.
     std::function<bool(Connection, const std::string& text)> came;
     std::function<void(Connection)> closed;
-    /// The next text for a connection, when it can be sent; nothing: there is none.
+    /// The next text for a connection, when it can be sent; nothing: none.
     std::function<std::optional<std::string>(Connection)> next;
     std::function<void()> readable;  ///< the file descriptor of watch()
     std::function<void()> tick;      ///< 20 times a second
@@ -62,12 +62,11 @@ class Server {
   void watch(int fd);
   /// There may be something to send: next() is called soon.
   void want(Connection connection);
-  /// The same for all connections, a hundredth of a second later: what comes together goes
-  /// together.
+  /// The same for all connections, a hundredth of a second later: simultaneous news go together.
   void want_all_soon();
   void close(Connection connection);
 
-  /// Until `stop` is readable.
+  /// Runs until `stop` is readable.
   void run(int stop);
 
  private:

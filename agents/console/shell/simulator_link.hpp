@@ -6,8 +6,8 @@
 
 namespace saphira::console {
 
-/// The simulator's own view (saphira/sim/view.hpp), by its local socket: the newest of what it
-/// tells, and lines to it. Where the simulator is not there, or gone, it is tried again.
+/// The simulator's own view (saphira/sim/view.hpp), by its local socket: its newest lines, and
+/// lines to it. A missing or lost simulator is tried again.
 class SimulatorLink {
  public:
   explicit SimulatorLink(std::string socket) : socket_(std::move(socket)) {}
@@ -15,9 +15,9 @@ class SimulatorLink {
   SimulatorLink(const SimulatorLink&) = delete;
   SimulatorLink& operator=(const SimulatorLink&) = delete;
 
-  /// Takes what has come. True where there is something new.
+  /// Takes the input. True where there is news.
   bool poll(double now);
-  /// False where nobody is there.
+  /// False without a simulator.
   bool say(const std::string& text);
 
   /// A line, with a number that grows with each change; 0: none yet.

@@ -15,7 +15,7 @@ std::string_view name_of(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
-/// An address in digits leads to nobody else than itself.
+/// A numeric address leads to itself only.
 bool is_address(std::string_view name) {
   if (name.starts_with('['))
     return name.size() > 2 && name.find_first_not_of("[]0123456789abcdefABCDEF:.") == name.npos;

@@ -10,7 +10,7 @@ namespace saphira::console {
 
 namespace {
 
-constexpr double kClockDrift = 1e-3;  // more than two clocks drift apart
+constexpr double kClockDrift = 1e-3;  // more than the drift of two clocks
 
 std::string seconds(double value) {
   char text[32];
@@ -32,8 +32,8 @@ void Control::drop(const std::string& note) {
   note_ = note;
 }
 
-// Also a sample that ends the silence comes too late: what waited while this program hung or the
-// link was cut is no sign of an operator who has seen anything.
+// A sample that ends the silence also comes too late: samples that waited while this program hung
+// or the link was cut are no sign of an attentive operator.
 void Control::lose_silent(double now) {
   const double silence = now - came_;
   if (holder_ != 0 && silence > settings_.lose)
@@ -104,7 +104,7 @@ std::string Control::drive(OperatorId id, const Sample& sample, double now) {
   } else {
     quickest_ = difference;
   }
-  // A sample that was delayed in the network is refused; its number and time are kept all the same.
+  // A sample delayed in the network is refused; its number and time still count.
   const double late = difference - quickest_;
   newest_.number = sample.number;
   newest_.device_time = sample.device_time;

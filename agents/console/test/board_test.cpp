@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The content of the next frame, acknowledged at once; null where there is none.
+/// The content of the next frame, acknowledged at once; null without one.
 Json read(const Board& board, Viewer& viewer, double now) {
   const auto frame = board.frame(viewer, now);
   if (!frame)
@@ -49,7 +49,7 @@ TEST(Board, ASlowViewerGetsTheNewestAndNothingQueuesUp) {
     frames += board.frame(slow, 0.1 * i).has_value() ? 1 : 0;
     EXPECT_EQ(read(board, quick, 0.1 * i).at("items")[0]["d"], i);
   }
-  EXPECT_EQ(frames, 2);  // on their way, until it says that it has seen them
+  EXPECT_EQ(frames, 2);  // on their way, until the viewer acknowledges them
   Board::seen(slow, 2);
   EXPECT_EQ(read(board, slow, 10.0).at("items")[0]["d"], 99);
 }

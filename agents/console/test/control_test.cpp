@@ -11,7 +11,7 @@ namespace {
 constexpr Control::OperatorId kAnn = 1;
 constexpr Control::OperatorId kBob = 2;
 
-/// Two operators, of whom one drives 20 times a second.
+/// Two operators; one drives 20 times a second.
 class ControlTest : public testing::Test {
  protected:
   ControlTest() {
@@ -21,7 +21,7 @@ class ControlTest : public testing::Test {
   Control::Sample sample(bool active) {
     return {++number, now + device_ahead, active, active ? 0.2 : 0.0, 0.0, 100};
   }
-  /// Samples for so long, each of which arrives at once. Whether the robot moved at the end.
+  /// Samples for that time, each without delay. True where the robot moved at the end.
   bool samples(bool active, double duration) {
     for (const double end = now + duration; now < end; now += 0.05) {
       refused = control.drive(kAnn, sample(active), now);
@@ -29,7 +29,7 @@ class ControlTest : public testing::Test {
     }
     return moves;
   }
-  /// Nothing comes for so long. Until when the robot moved, from the beginning of it.
+  /// Silence for that time. Returns the time until which the robot moved, from its beginning.
   double silence(double duration) {
     double moved = 0.0;
     const double begin = now;
@@ -87,10 +87,10 @@ TEST_F(ControlTest, AfterALongSilenceTheOperatorOnlyWatches) {
   EXPECT_NE(control.json().find("nothing was heard of ann"), std::string::npos);
 }
 
-// A retransmission holds all that comes after it: a third of a second is no reason to stop.
+// A retransmission delays all later samples: a third of a second is no reason to stop.
 TEST_F(ControlTest, ASampleAfterALongSilenceDoesNotKeepControl) {
   take_and_drive();
-  now += 1.1;  // nobody has asked for an order: this program hung, too
+  now += 1.1;  // nobody called order(): this program hung, too
   EXPECT_EQ(control.drive(kAnn, sample(false), now), "you do not have control");
   EXPECT_EQ(control.holder(), 0U);
 }
@@ -106,7 +106,7 @@ TEST_F(ControlTest, WhatWaitedInTheNetworkDrivesNothing) {
   std::vector<Control::Sample> waiting;
   for (int i = 0; i < 20; ++i, now += 0.05)
     waiting.push_back(sample(true));
-  // All of them at once, a second later: the newest is young, and still the stick must be let go.
+  // All of them at once, a second later: the newest is young, but the stick must be let go.
   for (const Control::Sample& one : waiting)
     control.drive(kAnn, one, now);
   EXPECT_FALSE(control.order(now).active);

@@ -93,7 +93,7 @@ static dds_entity_t writer_of(const dds_topic_descriptor_t* type, const char* to
   const dds_entity_t entity = dds_create_topic(participant, type, topic, NULL, NULL);
   check(entity, topic);
   dds_qos_t* own = qos_of(qos, false);
-  /* A goal is taken back by disposing it; that its writer has ended says so as well. */
+  /* A goal is withdrawn by disposing it; the end of its writer withdraws it as well. */
   dds_qset_writer_data_lifecycle(own, true);
   const dds_entity_t writer = dds_create_writer(publisher, entity, own, NULL);
   check(writer, topic);
@@ -102,7 +102,7 @@ static dds_entity_t writer_of(const dds_topic_descriptor_t* type, const char* to
   return writer;
 }
 
-/* The next sample of a reader into *sample, which is NULL the first time; false: there is none. */
+/* The next sample of a reader into *sample, which is NULL the first time; false: none. */
 static bool take(dds_entity_t reader, void** sample) {
   dds_sample_info_t info;
   do {
@@ -201,7 +201,7 @@ static int drive(double speed, double turn, double seconds) {
   while (released < 4) {
     void* sample = NULL;
     while (take(robots, &sample)) {
-      /* Nobody drives what he does not see: a command says which state of the robot it answers. */
+      /* A driver must see the robot: a command names the robot state that it answers. */
       const saphira_v1_RobotState* robot = sample;
       command.stamp = robot->stamp;
       if (!seen) began = dds_time();
@@ -222,7 +222,7 @@ static int drive(double speed, double turn, double seconds) {
     }
     if (seen) {
       if (stopped || passed > seconds) {
-        /* Let go, some times: the topic is best effort. Autonomy may drive again. */
+        /* Releases several times: the topic is best effort. Autonomy may drive again. */
         command.active = false;
         command.hand_back = true;
         ++released;

@@ -1,7 +1,7 @@
-// An agent that can be asked: knows from a calendar where people are.
+// An agent that answers requests: it knows from a calendar where people are.
 //   calendar karen=library john=EJ-245
 //   saphira ask place_of person=karen place=?
-// The bus is that of the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
+// The bus comes from the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
 
 #include <chrono>
 #include <map>

@@ -1,6 +1,6 @@
 // An agent: sends the robot to a point and follows it there.
-//   go_there X Y       in meters, ahead and to the left of where the robot is now
-// The bus is that of the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
+//   go_there X Y       in meters, ahead and to the left of the robot's present place
+// The bus comes from the environment: SAPHIRA_ROBOT, SAPHIRA_DOMAIN, SAPHIRA_PROFILE.
 
 #include <chrono>
 #include <iostream>

@@ -53,7 +53,7 @@ class Words {
     at_ = std::min(row_.text.find_first_of(" \t", from), row_.text.size());
     return row_.text.substr(from, at_ - from);
   }
-  /// How many words are left, and the second last one of them; empty where there is none.
+  /// The number of words left, and the second last one; empty without it.
   std::pair<std::size_t, std::string_view> rest() const {
     std::size_t count = 0;
     std::string_view last;
@@ -75,7 +75,7 @@ class Words {
       fail(expected);
     return value;
   }
-  // A range may be written nan or inf where there was no return.
+  // A range without a return may be written as nan or inf.
   double range() {
     const std::string_view text = word("a range");
     double value = 0.0;
@@ -92,7 +92,7 @@ class Words {
       fail(expected);
     return static_cast<std::size_t>(value);
   }
-  // A stamp where one stands; logs of before CARMEN 0.5 have none.
+  // A stamp, if any; logs of before CARMEN 0.5 have none.
   double stamp(double otherwise) { return at_end() ? otherwise : number("a stamp"); }
   Pose pose() {
     const double x = number("x of a pose");
@@ -103,7 +103,7 @@ class Words {
     std::string text = "expected " + expected;
     if (begin_ < row_.text.size())
       text += ", found \"" + std::string(row_.text.substr(begin_, 20)) + "\"";
-    // A scan's line is too long to be shown.
+    // A scan's line is too long for a message.
     throw FileError(file_, row_.number, static_cast<int>(begin_) + 1, text,
                     row_.text.size() < 120 ? row_.text : std::string_view{});
   }
@@ -115,14 +115,13 @@ class Words {
   std::size_t begin_ = 0;
 };
 
-// [degrees] that usual lasers span: a SICK LMS either way, Hokuyos, one that turns.
+// [degrees] fields of view of usual lasers: a SICK LMS either way, Hokuyos, a rotating one.
 constexpr double kFields[] = {100.0, 180.0, 240.0, 270.0, 360.0};
 
-// How the beams of a laser lie that has so many, where the log does not say it: as CARMEN and
-// others configure a SICK LMS, a SICK LMS 1xx or Hokuyo UTM, a Hokuyo URG. An even number is the
-// odd one without the last beam. Any other number is taken to span 180 degrees. Such a laser is
-// believed more than a `resolution` [degrees] of the log by which it would span what none does;
-// false then.
+// Sets the beams of a laser by their number, if the log does not give them: as CARMEN and others
+// configure a SICK LMS, a SICK LMS 1xx or Hokuyo UTM, a Hokuyo URG. An even number is the odd one
+// without the last beam. Any other number spans 180 degrees. A usual laser overrides a `resolution`
+// [degrees] of the log that gives an unusual field of view; false then.
 bool lay_beams(LaserScan& scan, double resolution) {
   const std::size_t n = scan.ranges.size();
   const auto spans = [&](double first, double step) {
@@ -166,7 +165,7 @@ bool lay_beams(LaserScan& scan, double resolution) {
   return said;
 }
 
-// Stamp, host, and the logger's stamp, as far as they stand there.
+// Stamp, host, and the logger's stamp, as far as present.
 Stamps stamps(Words& words, std::string* host = nullptr) {
   Stamps time;
   time.ipc = time.logger = words.stamp(std::nan(""));
@@ -192,7 +191,7 @@ void ranges_of(Words& words, LaserScan& scan) {
     range = words.range();
 }
 
-// The laser's pose is written as its place until all are known.
+// The laser's pose is stored as its place until all are known.
 LaserScan old_laser(Words& words, Laser laser, Parameters& parameters) {
   LaserScan scan;
   scan.laser = laser;
@@ -221,7 +220,7 @@ LaserScan new_laser(Words& words, Laser laser, bool with_robot) {
   ranges_of(words, scan);
   if (scan.step == 0.0 && scan.ranges.size() > 1)
     scan.step = field / static_cast<double>(scan.ranges.size() - 1);
-  // Documents of CARMEN have no remissions there, its programs have. Then come two poses and five
+  // CARMEN's documents have no remissions there, its programs do. Then come two poses and five
   // numbers, a stamp, a name and a stamp.
   const auto [left, host] = words.rest();
   const bool named = !host.empty() && host.find_first_not_of("0123456789+-.eE") != host.npos;
@@ -245,7 +244,7 @@ struct Message {
   const char* name;
   Laser laser;
 };
-// The first that is in a log is read: by place, and for one place the message that has poses.
+// The first one in a log is read: by place, and for one place the message with poses.
 constexpr Message kLasers[] = {
     {"FLASER", Laser::flaser},  {"ROBOTLASER1", Laser::robot1}, {"RAWLASER1", Laser::raw1},
     {"RLASER", Laser::rlaser},  {"ROBOTLASER2", Laser::robot2}, {"RAWLASER2", Laser::raw2},
@@ -264,8 +263,8 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-// One place for all scans. In some corrected logs one of the two poses is corrected, the other not:
-// then they say nothing of the laser.
+// One place for all scans. In some corrected logs only one of the two poses is corrected: then they
+// do not give the laser's place.
 void mount(CarmenLog& log, const Parameters& parameters) {
   std::vector<double> x;
   std::vector<double> y;
@@ -294,7 +293,7 @@ void mount(CarmenLog& log, const Parameters& parameters) {
     scan.laser_in_robot = place;
 }
 
-// Leaves out the scans that are not to be kept; dead reckoning still knows what stands before it.
+// Removes the scans that are not kept; dead reckoning keeps its order with the others.
 void keep_scans(CarmenLog& log, const std::vector<char>& kept) {
   std::vector<std::size_t> kept_before{0};
   std::vector<LaserScan> scans;
@@ -336,8 +335,8 @@ void place_raw(CarmenLog& log) {
   keep_scans(log, placed);
 }
 
-// Every message a stamp, which the order in the file gives where the log has none. Where only some
-// have none, as the last line of a log that was cut off, they are left out.
+// Gives every message a stamp, by the order in the file if the log has none. Single messages
+// without a stamp, such as the last line of a truncated log, are left out.
 void stamp_all(CarmenLog& log) {
   const auto unstamped = [](const auto& m) {
     return !std::isfinite(m.time.ipc) || !std::isfinite(m.time.logger);
@@ -388,15 +387,15 @@ std::optional<double> find_no_return(const std::vector<LaserScan>& scans) {
         bin.sectors |= 1U << (i * kSectors / scan.ranges.size());
         all += 1.0;
       }
-  // From the longest down. Beyond what means nothing there is nothing real but for a few; there are
-  // many times as many as in a bin of the metre before; and it is in all directions, which a wall
-  // that a standing robot sees is not.
+  // From the longest down. Ranges that mean no return have three signs: almost none are longer;
+  // they are many times as frequent as those in a bin of the metre before; and they are in all
+  // directions, unlike a wall before a standing robot.
   constexpr double kBeyond = 0.002;
   constexpr double kPile = 0.001;
   constexpr double kTimes = 20.0;
   constexpr std::size_t kBefore = 50;
   constexpr int kDirections = 6;
-  constexpr double kCodes = 0.3;  // [m] lasers have some codes beside each other
+  constexpr double kCodes = 0.3;  // [m] distance between neighbouring codes
   std::optional<double> found;
   double beyond = 0.0;
   for (std::size_t bin = kBins; bin-- > 1 && beyond <= kBeyond * all;) {
@@ -550,7 +549,7 @@ std::string read_log(const std::string& path, std::string* trouble) {
       out.append(part.data(), static_cast<std::size_t>(got));
       continue;
     }
-    // A file that ends too early is told only when it is asked for.
+    // A truncated file is reported only on request.
     int error = Z_OK;
     const std::string why = gzerror(file.get(), &error);
     if (error == Z_OK || error == Z_STREAM_END)
@@ -559,7 +558,7 @@ std::string read_log(const std::string& path, std::string* trouble) {
       throw std::runtime_error(path + ": cannot be unpacked");
     if (trouble != nullptr)
       *trouble = path + ": damaged or cut off after " + std::to_string(out.size()) + " bytes";
-    // Not half a line.
+    // Whole lines only.
     out.resize(out.rfind('\n') == std::string::npos ? 0 : out.rfind('\n') + 1);
     return out;
   }

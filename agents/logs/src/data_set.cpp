@@ -19,7 +19,7 @@ std::string first_of(std::vector<std::string> names) {
   return names.empty() ? "" : names.front();
 }
 
-// Of several files the one whose name begins as that of a log does: with all of its first word.
+// Of several files the one whose name begins like the log's: with the whole first word.
 std::string like(const std::vector<std::string>& paths, const std::string& log) {
   std::vector<std::string> out;
   const std::string word = log.substr(0, log.find_first_of(".-_"));
@@ -109,7 +109,7 @@ DataSet load_data_set(const std::string& name, const LogFiles& files) {
   if (!files.relations.empty())
     relations = parse_relations(read_log(files.relations), files.relations);
 
-  // The clock that knows the relations' stamps, or that the corrected file has.
+  // The clock of the relations' stamps, or of the corrected file.
   Clock clock = Clock::ipc;
   const auto hits = [&](Clock by) {
     const Trajectory track = time_base(raw, by).odometry;
@@ -125,7 +125,7 @@ DataSet load_data_set(const std::string& name, const LogFiles& files) {
     if (ipc && logger && std::abs(*logger) < std::abs(*ipc))
       clock = Clock::logger;
   }
-  // A clock that was set back hides what came before; the other one may not have been.
+  // A clock that was set back hides earlier scans; the other clock may be sound.
   if (const auto other = clock == Clock::ipc ? Clock::logger : Clock::ipc;
       relations.empty() && !corrected && steps_back(raw, clock) > 0 && steps_back(raw, other) == 0)
     clock = other;

@@ -11,8 +11,8 @@ namespace saphira::logs {
 namespace {
 
 constexpr double kCell = 0.05;   // [m]
-constexpr double kHits = 3;      // scans that saw a cell
-constexpr double kOff = 0.06;    // [m] of a cell from the line that it is of
+constexpr double kHits = 3;      // scans with a point in the cell
+constexpr double kOff = 0.06;    // [m] distance of a cell from its line
 constexpr double kAgree = 0.94;  // cosine between the normals
 constexpr double kGap = 0.3;     // [m] in a wall
 constexpr double kLeast = 0.3;   // [m] of a wall
@@ -24,7 +24,7 @@ struct Cell {
   Vec2 at{0.0, 0.0};
   Vec2 normal{0.0, 0.0};
   double hits = 0.0;
-  double near = 0.0;  // from so near that a sonar would hear it
+  double near = 0.0;  // points near enough for a sonar
   bool taken = false;
 };
 
@@ -35,7 +35,7 @@ struct Wall {
   double near = 0.0;
 };
 
-// The two faces of one wall. A map has one line for it.
+// The two faces of one wall. A map has one line for both.
 bool same_wall(const Wall& a, const Wall& b) {
   if (a.normal.dot(b.normal) > -0.95 || std::abs((b.middle - a.middle).dot(a.normal)) > kThick)
     return false;
@@ -46,7 +46,7 @@ bool same_wall(const Wall& a, const Wall& b) {
 }  // namespace
 
 maps::Map walls_of(const std::vector<Scan>& scans, const std::vector<Pose>& poses) {
-  // The two faces of a wall are cells apart, or look to opposite sides.
+  // The two faces of a wall are cells apart, or face opposite sides.
   std::map<std::pair<std::pair<int, int>, int>, Cell> grid;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const Pose turn{0.0, 0.0, poses[i].th};
@@ -140,7 +140,7 @@ maps::Map walls_of(const std::vector<Scan>& scans, const std::vector<Pose>& pose
     }
     walls.push_back(wall);
   }
-  // The face stays that was seen more from near.
+  // Keeps the face with more near points.
   std::stable_sort(walls.begin(), walls.end(),
                    [](const Wall& a, const Wall& b) { return a.near > b.near; });
   maps::Map map;

@@ -61,7 +61,7 @@ Trajectory densify(const Trajectory& scans, const Trajectory& odometry) {
     const auto odom_after = odometry.at(after.time);
     if (!odom_before || !odom_after || record.time - before.time < 1e-4)
       continue;
-    // In the frame of the scan before, where turns do not reach far.
+    // In the frame of the scan before, where turns have a short lever.
     const Pose gone = relative(*odom_before, *odom_after);
     const Pose here = relative(*odom_before, record.pose);
     const Pose off = compose(relative(before.pose, after.pose), relative(gone, Pose{}));

@@ -23,8 +23,8 @@ Eigen::Matrix3d diagonal_covariance(double distance, double turn) {
   return Eigen::Vector3d(distance * distance, distance * distance, turn * turn).asDiagonal();
 }
 
-// Information (or the covariance) about a pose's (x, y, th) in the frame that the pose is in, in
-// the pose's own frame.
+// Converts the information (or covariance) of a pose's (x, y, th) from the pose's reference frame
+// into the pose's own frame.
 Eigen::Matrix3d turned(const Eigen::Matrix3d& information, double th) {
   Eigen::Matrix3d r = Eigen::Matrix3d::Identity();
   r.topLeftCorner<2, 2>() << std::cos(th), -std::sin(th), std::sin(th), std::cos(th);
@@ -32,20 +32,19 @@ Eigen::Matrix3d turned(const Eigen::Matrix3d& information, double th) {
 }
 
 // Points of one scan share their errors (the same beam pattern, the same wrong partners), so their
-// information does not add up as if each were a measurement of its own.
+// information is smaller than that of independent measurements.
 constexpr double kShared = 0.05;
 
-// [m2] a variance that says nothing.
+// [m2] the variance of an unknown value.
 constexpr double kNothing = 1e4;
 
 Eigen::Matrix3d matched_information(const Alignment& alignment) {
   return turned(kShared * alignment.information, alignment.pose.th);
 }
 
-// Along bare walls two scans seem to know a little, by the noise of the normals: nothing is known
-// there.
+// Along bare walls the noise of the normals gives two scans some false information: it is removed.
 Eigen::Matrix3d without_noise(const Eigen::Matrix3d& information) {
-  constexpr double kLeast = 0.01;  // of what is known across
+  constexpr double kLeast = 0.01;  // of the information across
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
       Eigen::Matrix2d(information.topLeftCorner<2, 2>()));
   if (axes.eigenvalues()[0] > kLeast * axes.eigenvalues()[1])
@@ -124,8 +123,8 @@ Eigen::Matrix3d ScanMapper::step_covariance(const Pose& step) const {
   const PoseEdge& odometry = odometry_.back();
   if (!odometry.doubtful)  // the scan did not match
     return out + odometry.information.inverse();
-  // Along bare walls scans say little. What they say less than dead reckoning counts in part: its
-  // own sigmas are there to be safe.
+  // Along bare walls scans have little information. The part below that of dead reckoning counts
+  // with this factor: dead reckoning's own sigmas are cautious.
   constexpr double kPart = 0.25;
   const Eigen::Matrix3d both = (chain_.back().information + odometry.information).inverse();
   out.topLeftCorner<2, 2>() += kPart * both.topLeftCorner<2, 2>();
@@ -149,7 +148,7 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   const Pose step = relative(last_odom_, pose_in_odom);
   last_odom_ = pose_in_odom;
   if (std::hypot(step.x, step.y) < 0.002 && std::abs(step.th) < radians(0.2)) {
-    // The robot stands: nothing new, and nothing that could drift.
+    // The robot stands: no news, and no drift.
     believed_in_node_ = compose(believed_in_node_, step);
     hung_.push_back({last, believed_in_node_});
     return compose(poses_[last], believed_in_node_);
@@ -161,7 +160,7 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
     near.erase(near.begin(), near.end() - static_cast<std::ptrdiff_t>(settings_.local_nodes));
   const ScanReference local = reference(near, last);
   AlignSettings settings = settings_.align;
-  // Dead reckoning has a small weight beside the walls: it counts only along bare walls.
+  // Dead reckoning has a small weight beside the walls: it matters only along bare walls.
   settings.guess_information = turned(odom_information(step), -guess.th);
   Alignment found = align(local, scan, guess, settings);
   if (found.overlap < settings_.good_overlap) {
@@ -191,7 +190,7 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
     hung_.push_back({last, believed});
     return compose(poses_[last], believed);
   }
-  // A node.
+  // A new node.
   const Pose odom_step = relative(node_odom_, pose_in_odom);
   node_odom_ = pose_in_odom;
   if (matched)
@@ -261,7 +260,7 @@ std::vector<Eigen::Matrix3d> ScanMapper::covariances(std::size_t from,
 }
 
 double ScanMapper::through(const Closure& closure) const {
-  // Each of the two places looks at what the other saw.
+  // Each of the two places is compared with the other's points.
   constexpr double kAbout = 1.0;  // [m] of way
   Sight sum;
   const auto look = [&](std::size_t from, std::size_t at, const Pose& at_in_from) {
@@ -322,12 +321,12 @@ std::optional<ScanMapper::Closure> ScanMapper::find_closure(std::size_t pass, st
     position += (open ? kNothing : slack.eigenvalues()[k]) * along * along.transpose();
     if (!open)
       continue;
-    // Its direction is not known exactly: what the graph is off along it is seen across.
+    // The direction is not exact: an error of the graph along it shows across.
     constexpr double kDirection = radians(2.0);
     const Vec2 across(-along.y(), along.x());
     position += kDirection * kDirection * along.dot(prior * along) * across * across.transpose();
-    // One place along a corridor, or among rooms that look alike, is as good as the next: what the
-    // scans say is said for the one where the robot is by the graph.
+    // Along a corridor, or among rooms that look alike, one place is as good as the next: the
+    // scans' result is applied to the place of the robot by the graph.
     const Vec2 start = pose.position() + along.dot(guess.position() - pose.position()) * along;
     settings.guess_information.topLeftCorner<2, 2>() =
         400.0 * along * along.transpose() / (settings.noise * settings.noise);
@@ -373,7 +372,7 @@ void ScanMapper::close_loops() {
   std::vector<Candidate> candidates;
   for (std::size_t k = 0; k < passes.size(); ++k) {
     const Pose there = relative(poses_[here], poses_[passes[k]]);
-    // Where the robot is, seen from there: the same uncertainty with the lever between them.
+    // The robot's place, seen from there: the same uncertainty with the lever between them.
     Eigen::Matrix3d lever = Eigen::Matrix3d::Identity();
     lever(0, 2) = there.y;
     lever(1, 2) = -there.x;
@@ -386,7 +385,7 @@ void ScanMapper::close_loops() {
     if (away < 16.0)
       candidates.push_back({passes[k], away, covariance});
   }
-  // The nearest ones are enough: they hang together already.
+  // The nearest ones are enough: they are connected already.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.away < b.away; });
   if (candidates.size() > 3)
@@ -402,14 +401,14 @@ void ScanMapper::close_loops() {
     if (!closure)
       continue;
     ++report_.loop_candidates;
-    // Within what the graph knows.
+    // Within the graph's uncertainty.
     const Pose off = relative(closure->to_in_from, relative(poses_[closure->from], poses_[here]));
     const Eigen::Vector3d e(off.x, off.y, off.th);
     const Eigen::Matrix3d expected =
         turned(candidate.covariance, closure->to_in_from.th) + closure->covariance;
     if (e.dot(expected.inverse() * e) > 16.0)
       continue;
-    // Two that say the same, from places apart, are believed; one alone may be a look-alike.
+    // Two agreeing ones, from different places, are accepted; a single one may be a look-alike.
     for (Closure& other : pending_) {
       const double apart = path_[here] - path_[other.to];
       if (apart > 8.0 || apart < 0.3)
@@ -450,7 +449,7 @@ void ScanMapper::accept(const std::vector<Closure>& closures) {
     loops_.push_back(
         {closure.from, closure.to, closure.to_in_from, closure.covariance.inverse(), true});
     ++report_.loops;
-    // Where it says nothing new the graph is left alone.
+    // A closure without news does not change the graph.
     news = news || chi2(loops_.back(), poses_) > 1.0;
   }
   if (news)
@@ -471,7 +470,7 @@ void ScanMapper::refine(int rounds) {
   for (int round = 0; round < rounds; ++round) {
     std::vector<PoseEdge> edges;
     for (std::size_t i = 1; i < poses_.size(); ++i) {
-      // The nodes before, and the nearest of each other pass that looks the same way.
+      // The nodes before, and the nearest of each other pass in the same direction.
       std::vector<std::size_t> partners;
       for (std::size_t back = 1; back <= 3 && back <= i; ++back)
         partners.push_back(i - back);
@@ -511,7 +510,8 @@ void ScanMapper::refine(int rounds) {
     }
     edges.insert(edges.end(), chain_.begin(), chain_.end());
     edges.insert(edges.end(), odometry_.begin(), odometry_.end());
-    // Closures that leave a direction open say no more than the pairs here, and not as well.
+    // Closures with an open direction have no more information than the pairs here, and less
+    // accuracy.
     std::copy_if(loops_.begin(), loops_.end(), std::back_inserter(edges),
                  [](const PoseEdge& e) { return !leaves_open(e.information); });
     optimize(poses_, edges, 30, 5.0);

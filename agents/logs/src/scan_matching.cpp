@@ -11,8 +11,8 @@ namespace saphira::logs {
 
 namespace {
 
-constexpr double kCell = 0.1;         // [m] of the cells that points are looked up in
-constexpr double kAgree = 0.7;        // cosine of the angle between normals that agree
+constexpr double kSearchCell = 0.1;         // [m] of the cells for the search of points
+constexpr double kNormalsAgree = 0.7;        // cosine of the angle between normals that agree
 constexpr double kFieldCell = 0.05;   // [m]
 constexpr double kFieldSigma = 0.08;  // [m]
 constexpr int kFieldReach = 4;        // cells
@@ -21,7 +21,7 @@ int cells_along(double length, double cell) {
   return std::max(1, static_cast<int>(std::floor(length / cell)) + 1);
 }
 
-// The normal of the surface through point i from those of its neighbours that continue it.
+// The normal of the surface through point i, from its neighbours on the same surface.
 Vec2 normal_at(const std::vector<Vec2>& points, std::size_t i, double reach) {
   constexpr std::size_t kNeighbours = 5;
   std::array<Vec2, 2 * kNeighbours + 1> near;
@@ -70,7 +70,8 @@ Scan make_scan(const std::vector<double>& ranges, const Beams& beams) {
   scan.sensor = beams.sensor_in_robot.position();
   const Pose turn{0.0, 0.0, beams.sensor_in_robot.th};
   for (std::size_t i = 0; i < in_sensor.size(); ++i) {
-    // Beams part with the range: a surface 60 degrees off its normal still has neighbours.
+    // The spacing of beams grows with the range: a surface 60 degrees off its normal still has
+    // neighbours.
     const double reach = 0.1 + 5.0 * used[i] * beams.step;
     Vec2 normal = normal_at(in_sensor, i, reach);
     if (normal.dot(in_sensor[i]) > 0.0)
@@ -99,11 +100,11 @@ void ScanReference::arrange() {
     high = high.cwiseMax(p);
   }
   origin_ = low;
-  columns_ = cells_along(high.x() - low.x(), kCell);
-  rows_ = cells_along(high.y() - low.y(), kCell);
+  columns_ = cells_along(high.x() - low.x(), kSearchCell);
+  rows_ = cells_along(high.y() - low.y(), kSearchCell);
   const auto cell_of = [&](const Vec2& p) {
-    return static_cast<int>((p.y() - origin_.y()) / kCell) * columns_ +
-           static_cast<int>((p.x() - origin_.x()) / kCell);
+    return static_cast<int>((p.y() - origin_.y()) / kSearchCell) * columns_ +
+           static_cast<int>((p.x() - origin_.x()) / kSearchCell);
   };
   start_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
   for (const Vec2& p : points_)
@@ -119,9 +120,9 @@ void ScanReference::arrange() {
 
 std::optional<std::size_t> ScanReference::nearest(const Vec2& at, const Vec2& normal,
                                                   double limit) const {
-  const int column = static_cast<int>(std::floor((at.x() - origin_.x()) / kCell));
-  const int row = static_cast<int>(std::floor((at.y() - origin_.y()) / kCell));
-  const int rings = static_cast<int>(std::ceil(limit / kCell));
+  const int column = static_cast<int>(std::floor((at.x() - origin_.x()) / kSearchCell));
+  const int row = static_cast<int>(std::floor((at.y() - origin_.y()) / kSearchCell));
+  const int rings = static_cast<int>(std::ceil(limit / kSearchCell));
   double best = limit * limit;
   std::optional<std::size_t> found;
   const auto look = [&](int c, int r) {
@@ -131,14 +132,14 @@ std::optional<std::size_t> ScanReference::nearest(const Vec2& at, const Vec2& no
     for (int k = start_[cell]; k < start_[cell + 1]; ++k) {
       const auto i = static_cast<std::size_t>(order_[static_cast<std::size_t>(k)]);
       const double away = (points_[i] - at).squaredNorm();
-      if (away < best && normals_[i].dot(normal) > kAgree) {
+      if (away < best && normals_[i].dot(normal) > kNormalsAgree) {
         best = away;
         found = i;
       }
     }
   };
   for (int ring = 0; ring <= rings; ++ring) {
-    const double nearest_of_ring = (ring - 1) * kCell;
+    const double nearest_of_ring = (ring - 1) * kSearchCell;
     if (ring > 1 && best < nearest_of_ring * nearest_of_ring)
       break;
     for (int c = column - ring; c <= column + ring; ++c) {
@@ -165,7 +166,7 @@ Alignment align(const ScanReference& reference, const Scan& scan, const Pose& gu
   for (int iteration = 0; iteration < settings.iterations; ++iteration) {
     Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    // The robust weight's width follows the gate, so that a start that is off still pulls.
+    // The robust weight's width follows the gate, so that a start with an error still converges.
     const double width = std::max(0.03, 0.3 * gate);
     const double cos_th = std::cos(out.pose.th);
     const double sin_th = std::sin(out.pose.th);
@@ -227,7 +228,7 @@ ScanField::ScanField(const ScanReference& reference, int levels) {
     low = low.cwiseMin(reference.point(i));
     high = high.cwiseMax(reference.point(i));
   }
-  // The border lets squares begin outside; the kernel stays inside.
+  // The border allows squares to begin outside; the kernel stays inside.
   const int border = kFieldReach + 1;
   origin_ = low - Vec2::Constant(border * kFieldCell);
   columns_ = cells_along(high.x() - low.x(), kFieldCell) + 2 * border;
@@ -256,8 +257,8 @@ ScanField::ScanField(const ScanReference& reference, int levels) {
   }
   levels_.push_back(std::move(field));
   for (int level = 1; level < levels; ++level) {
-    // Of four squares of half the size; outside nothing is likely. A square may begin up to its
-    // width left of or below the field: bound() looks that up by clamping.
+    // From four squares of half the size; outside the likelihood is 0. A square may begin up to its
+    // width left of or below the field: bound() handles that by clamping.
     const std::vector<float>& finer = levels_.back();
     std::vector<float> coarse(size);
     const int half = 1 << (level - 1);
@@ -299,7 +300,7 @@ Eigen::Matrix2d ScanField::slack(const Scan& scan, const Pose& best, const Vec2&
                                  const Eigen::Matrix2d& prior, double distance) const {
   constexpr int kLevel = 1;
   constexpr int kStep = 1 << kLevel;  // cells
-  // The points of a scan are far from independent: as if there were so many.
+  // The points of a scan are far from independent: they count as this many.
   constexpr double kIndependent = 30.0;
   if (levels_.size() <= kLevel || scan.points.empty())
     return prior;
@@ -340,7 +341,7 @@ Eigen::Matrix2d ScanField::slack(const Scan& scan, const Pose& best, const Vec2&
 Sight look_at(const Scan& scan, const std::vector<Vec2>& points) {
   constexpr double kSame = 0.2;        // [m]
   constexpr std::size_t kBeside = 2;   // beams to each side
-  constexpr double kGap = radians(5);  // wider ones are looked through by nobody
+  constexpr double kGap = radians(5);  // the laser sees through wider ones
   struct Beam {
     double angle;
     double range;

@@ -13,7 +13,7 @@ namespace saphira::logs {
 
 namespace {
 
-// One step after the other: `locate` is given each cycle and what is seen in it.
+// One step after the other: `locate` gets each cycle and its percepts.
 template <typename Locate>
 SonarRun run(const SonarDrive& drive, Locate&& locate) {
   interpretation::Settings settings;
@@ -54,13 +54,13 @@ void perceive(const SonarDrive& drive, interpretation::Interpretation& interpret
               const std::function<void(const Perceived&)>& look) {
   std::uint64_t cycle = 0;
   for (std::size_t i = 0; i < drive.times.size(); ++i) {
-    // Cycles of 0.1 s, as time goes, or more where the readings of a place come in two of them. A
-    // stamp may be damaged and far off.
+    // Cycles of 0.1 s, by time, or more if the readings of a place come in two of them. A damaged
+    // stamp may be far off.
     const double tenths = std::clamp(10.0 * (drive.times[i] - drive.times.front()), 0.0, 1e15);
     const auto now = static_cast<std::uint64_t>(std::llround(tenths)) + 1;
     cycle = std::max(cycle + 1, now);
     const Pose grid = odom_in_grid != nullptr ? (*odom_in_grid)[i] : Pose{};
-    // All were heard at this place, and not one after the other on the way to it: first the way.
+    // All readings are of this place, not of the way to it: first the way.
     if (drive.at_once) {
       const auto& moved = interpretation.step({cycle, drive.poses_in_odom[i], {}, grid});
       look({cycle++, i, &moved, &drive.readings[i], false});

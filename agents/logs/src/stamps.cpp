@@ -18,7 +18,7 @@ Key key_of(const LaserScan& scan) {
   return key;
 }
 
-// Scans of the corrected file that the raw log holds too: index there by index here, in order.
+// Scans in both the corrected file and the raw log: index there by index here, in order.
 std::vector<std::optional<std::size_t>> common(const CarmenLog& raw, const CarmenLog& corrected) {
   std::map<Key, std::vector<std::size_t>> by_ranges;
   for (std::size_t i = 0; i < raw.scans.size(); ++i)
@@ -39,18 +39,18 @@ std::vector<std::optional<std::size_t>> common(const CarmenLog& raw, const Carme
   return out;
 }
 
-// Gives the scans, which are in order, the stamps at which dead reckoning was where they say: the
-// best of all assignments that keep the order.
+// Gives the scans, which are in order, the stamps at which dead reckoning had their poses: the best
+// assignment that keeps the order.
 void put_in_time(const std::vector<LaserScan*>& scans, const Trajectory& odometry) {
   constexpr double kTick = 0.02;        // [s]
   constexpr int kReach = 60;            // ticks to each side of the stamp
-  constexpr double kPerSecond = 0.002;  // where the robot stood, the stamp itself is as good as any
+  constexpr double kPerSecond = 0.002;  // cost of a deviation from the stamp itself
   if (scans.empty())
     return;
   struct Row {
     int first = 0;             // tick of the first candidate
     std::vector<double> cost;  // of all scans up to this one, this one at the candidate's tick
-    std::vector<int> best;     // the candidate up to which it is cheapest
+    std::vector<int> best;     // the cheapest candidate so far
   };
   const double start = scans.front()->time.ipc;
   std::vector<Row> rows;
@@ -139,7 +139,7 @@ TimeBase mend_stamps(CarmenLog& raw, const CarmenLog& corrected) {
     if (record.scans_before == 0 || !pairs[record.scans_before - 1])
       continue;
     const LaserScan& before = corrected.scans[record.scans_before - 1];
-    // The first line after a scan repeats it, with no stamp.
+    // The first line after a scan repeats it, without a stamp.
     if (record.time.ipc <= before.time.ipc)
       continue;
     track.push_back(

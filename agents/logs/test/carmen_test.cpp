@@ -1,4 +1,4 @@
-// Logs as CARMEN and others wrote them over the years, by hand and small.
+// Small handwritten logs, in the formats of CARMEN and others over the years.
 #include "saphira/logs/carmen.hpp"
 
 #include <gtest/gtest.h>
@@ -147,7 +147,7 @@ TEST(Carmen, ARobotLaserWithOrWithoutACountOfRemissions) {
 }
 
 TEST(CarmenMount, IsWhatAllPosesSay) {
-  // Backwards and off centre, seen from three headings.
+  // Backwards and off centre, at three headings.
   std::string text = "PARAM robot_frontlaser_offset 0.3 nohost 0\n";
   const Pose in_robot{-0.2, 0.1, kPi};
   for (int i = 0; i < 3; ++i) {
@@ -165,13 +165,13 @@ TEST(CarmenMount, IsWhatAllPosesSay) {
     EXPECT_NEAR(scan.laser_in_robot.y, 0.1, 1e-4);
     EXPECT_NEAR(std::abs(scan.laser_in_robot.th), kPi, 1e-4);
   }
-  // Poses that are the same say nothing; what the parameters say holds.
+  // Equal poses do not give the place; the parameters count.
   EXPECT_DOUBLE_EQ(
       parse("PARAM robot_frontlaser_offset 0.3 nohost 0\nFLASER 1 1 5 5 0 5 5 0 1 h 1\n")
           .scans[0]
           .laser_in_robot.x,
       0.3);
-  // Where one of the two is corrected they say nothing either.
+  // If only one of the two is corrected, they do not give it either.
   const CarmenLog corrected =
       parse("FLASER 1 1 0.1 0 0 0 0 0 1 h 1\nFLASER 1 1 5 5 1 4.5 5 0 2 h 2\n");
   EXPECT_EQ(corrected.scans[0].laser_in_robot, Pose{});
@@ -190,11 +190,11 @@ TEST(CarmenNoReturn, IsWhereRangesPileUp) {
     EXPECT_NEAR(find_no_return(drive(longest, 0.1)).value_or(0.0), longest, 0.04) << longest;
   // None: the robot never looked so far.
   EXPECT_FALSE(find_no_return(drive(8.0, 0.0)));
-  // A few codes far above, as some lasers give, hide nothing.
+  // A few codes far above, as from some lasers, hide nothing.
   auto codes = drive(8.19, 0.1);
   codes[7].ranges[5] = codes[8].ranges[5] = 81.91;
   EXPECT_NEAR(find_no_return(codes).value_or(0.0), 8.19, 0.04);
-  // A robot that stands before a wall at 3 m for half of the time.
+  // A robot stands before a wall at 3 m for half of the time.
   auto wall = drive(80.0, 0.05);
   for (std::size_t i = 0; i < 100; ++i)
     std::fill_n(wall[i].ranges.begin(), 90, 3.0);

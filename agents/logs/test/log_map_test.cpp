@@ -11,7 +11,7 @@
 namespace saphira::logs {
 namespace {
 
-/// [m] To the nearest wall of a room of 8 by 6 m with a wall that stands into it.
+/// [m] To the nearest wall of a room of 8 by 6 m with a partition.
 double range_from(const Pose& sensor) {
   const struct {
     Vec2 from, to;

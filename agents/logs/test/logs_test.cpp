@@ -156,7 +156,7 @@ TEST(Metrics, BetweenScansItGoesAsDeadReckoningDid) {
 }
 
 TEST(Stamps, AreMendedByDeadReckoning) {
-  // Every fifth scan has its stamp; the others have been spaced evenly, up to 0.6 s off.
+  // Every fifth scan has its stamp; the others are spaced evenly, up to 0.6 s off.
   const auto way = a_way();
   CarmenLog raw;
   CarmenLog corrected;
@@ -173,7 +173,7 @@ TEST(Stamps, AreMendedByDeadReckoning) {
     truth.push_back(1000.0 + way[i].time);
     if (!original)
       continue;
-    // Corrected poses are elsewhere; between them it goes on as dead reckoning did.
+    // Corrected poses differ; between them the motion is that of dead reckoning.
     scan.time = {way[i].time, way[i].time};
     const Pose there = compose({3.0, 4.0, 1.0}, way[i].pose);
     scan.pose = there;

@@ -123,7 +123,7 @@ TEST(LookAt, WhatStandsBeforeAWallIsSeenThrough) {
   EXPECT_GT(through.through, before.size() * 8 / 10);
   const Sight hidden = look_at(scan, behind);
   EXPECT_LT(hidden.through, behind.size() / 20);
-  // Behind its back it saw nothing.
+  // It saw nothing behind it.
   EXPECT_EQ(look_at(scan, {{-1.0, 0.3}}).agree + look_at(scan, {{-1.0, 0.3}}).through, 0U);
 }
 

@@ -1,4 +1,4 @@
-// saphira-relay: lets a robot that has no reachable address be watched and driven. README.md.
+// saphira-relay: access to a robot without a reachable address. README.md.
 #include <sys/stat.h>
 
 #include <cstdio>

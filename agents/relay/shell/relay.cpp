@@ -27,7 +27,7 @@ constexpr std::string_view kBearer = "Bearer ";
 
 using web::header;
 
-/// Nobody can guess it.
+/// An unguessable ticket.
 std::string new_ticket() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
@@ -39,7 +39,7 @@ std::string new_ticket() {
   return text;
 }
 
-/// The path that a gateway asks for; empty where it is none of ours.
+/// The path of a gateway's request; empty for any other.
 Path path_of(lws* wsi) {
   return parse_path(header(wsi, WSI_TOKEN_GET_URI)).value_or(Path{});
 }
@@ -49,10 +49,10 @@ Path path_of(lws* wsi) {
 struct Relay::Impl {
   using Visitor = Rendezvous::Visitor;
 
-  /// The record that libwebsockets keeps for each connection; it begins as zeros.
+  /// The record of libwebsockets for each connection; it begins as zeros.
   struct Leg {
-    Visitor visitor;       ///< whom it carries; 0: nobody
-    const Robot* dialled;  ///< whose gateway it is; null: none
+    Visitor visitor;       ///< the visitor it carries; 0: none
+    const Robot* dialled;  ///< the robot of its gateway; null: none
   };
   /// A gateway that has dialled in.
   struct Gateway {
@@ -97,7 +97,7 @@ const Robot* Relay::Impl::robot_of(const std::string& name) const {
   return nullptr;
 }
 
-/// Only a gateway that knows its robot's token gets beyond the handshake.
+/// Only a gateway with its robot's token passes the handshake.
 bool Relay::Impl::refuses(lws* wsi, bool dials) const {
   const std::string given = header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION);
   const Path path = path_of(wsi);
@@ -108,7 +108,7 @@ bool Relay::Impl::refuses(lws* wsi, bool dials) const {
   return true;
 }
 
-/// A gateway dials in. One of that robot that was there before is forgotten: it may be gone.
+/// A gateway dials in. An earlier one of the same robot is dropped: it may be dead.
 int Relay::Impl::dialled(lws* wsi, Leg& leg) {
   leg.dialled = robot_of(path_of(wsi).robot);
   if (leg.dialled == nullptr)
@@ -149,12 +149,12 @@ void Relay::Impl::hung_up(lws* wsi, const Leg& leg) {
   std::fflush(stdout);
 }
 
-/// Somebody has come to the port of a robot.
+/// A visitor has come to the port of a robot.
 int Relay::Impl::arrived(lws* wsi, Leg& leg) {
   const auto door = doors.find(lws_get_vhost(wsi));
   const auto gateway = door == doors.end() ? gateways.end() : gateways.find(door->second->name);
   if (gateway == gateways.end())
-    return -1;  // nobody has dialled in
+    return -1;  // no gateway has dialled in
   const std::string ticket = new_ticket();
   if (gateway->second.out.size() > Rendezvous::kMost ||
       !rendezvous.arrive(door->second->name, web::peer(wsi), last + 1, ticket,
@@ -196,7 +196,7 @@ void Relay::Impl::left(const Leg& leg, Splice::Side side) {
   if (splice == splices.end())
     return;
   splice->second.closed(side);
-  // One who leaves while waiting is never fetched.
+  // A visitor who leaves while waiting is never fetched.
   if (splice->second.is_over() ||
       !splice->second.is_attached(side == Splice::kNear ? Splice::kFar : Splice::kNear)) {
     rendezvous.leave(leg.visitor);
@@ -221,7 +221,7 @@ int Relay::Impl::on_dial(lws* wsi, lws_callback_reasons reason, void* user, void
     case LWS_CALLBACK_SERVER_WRITEABLE:
       return of(wsi).tell(wsi, *leg);
     case LWS_CALLBACK_RECEIVE:
-      return -1;  // a gateway has nothing to say here
+      return -1;  // a gateway must not send here
     case LWS_CALLBACK_CLOSED:
       of(wsi).hung_up(wsi, *leg);
       return 0;
@@ -285,7 +285,7 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
   static const std::array<lws_protocols, 2> door_protocols{
       {{"visitor", Impl::on_visitor, sizeof(Impl::Leg), 16384, 0, nullptr, 0},
        {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
-  // A gateway that does not answer is forgotten: it dials in again.
+  // A gateway without an answer is dropped: it dials in again.
   static const lws_retry_bo_t patience{nullptr, 0, 0, 5, 12, 0};
 
   const bool encrypts = !options.certificate.empty();
@@ -305,7 +305,8 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
                                "certificate and key do not fit");
     return vhost;
   };
-  // The doors first: they have no certificate, since what comes by them is not for us to read.
+  // The visitors' ports first: they have no certificate, since their bytes are not for the relay to
+  // read.
   info.options |= LWS_SERVER_OPTION_ADOPT_APPLY_LISTEN_ACCEPT_CONFIG;
   info.listen_accept_role = "raw-skt";
   info.listen_accept_protocol = "visitor";
@@ -322,7 +323,7 @@ Relay::Relay(const RelayOptions& options, std::vector<Robot> robots)
     info.ssl_cert_filepath = options.certificate.c_str();
     info.ssl_private_key_filepath = options.certificate_key.c_str();
   }
-  // Without a certificate the tokens would cross the network in the clear.
+  // Without a certificate the tokens would cross the network in clear.
   impl_->dial = listen(options.dial_port, "dial", encrypts ? options.address : "127.0.0.1");
 }
 

@@ -10,13 +10,13 @@ namespace saphira::relay {
 struct RelayOptions {
   std::string address = "0.0.0.0";  ///< to listen on
   int dial_port = 0;                ///< where gateways dial in
-  std::string certificate;          ///< files, of the dial port; empty: this machine alone
+  std::string certificate;          ///< files, of the dial port; empty: this machine only
   std::string certificate_key;
 };
 
 /// The relay: gateways dial in, people come to the port of a robot, and the relay carries bytes
-/// between them. What people and gateway say is encrypted between them; the relay has no key of it.
-/// For one thread.
+/// between them. The traffic is encrypted from end to end; the relay has no key of it. For one
+/// thread.
 class Relay {
  public:
   /// std::runtime_error that names the cause (no port, no certificate).
@@ -25,7 +25,7 @@ class Relay {
   Relay(const Relay&) = delete;
   Relay& operator=(const Relay&) = delete;
 
-  /// Until `stop` is readable.
+  /// Runs until `stop` is readable.
   void run(int stop);
 
  private:

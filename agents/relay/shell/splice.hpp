@@ -8,22 +8,22 @@ struct lws;
 
 namespace saphira::relay {
 
-/// Two connections of libwebsockets, of which each gets what comes by the other: a WebSocket or a
-/// plain socket. Bounded: who does not read holds up the other side.
+/// Joins two connections of libwebsockets, each a WebSocket or a plain socket: each gets the
+/// other's bytes. Bounded: a side that does not read holds up the other.
 class Splice {
  public:
   enum Side { kNear, kFar };
 
-  /// The connection of a side is there. is_websocket: what it gets goes as binary messages.
+  /// The connection of a side is open. is_websocket: its bytes are sent as binary messages.
   void attach(Side side, lws* wsi, bool is_websocket);
   bool is_attached(Side side) const { return ends_[side].wsi != nullptr; }
   /// Bytes have come by a side.
   void came(Side side, std::string_view bytes);
   /// A side can be written to: 0, or -1, by which libwebsockets closes it.
   int write(Side side);
-  /// A side is closed. The other one gets what is left, and is closed then.
+  /// A side is closed. The other one gets the rest, and is then closed.
   void closed(Side side);
-  /// Closes what is there.
+  /// Closes both sides.
   void close();
   /// Both sides are closed.
   bool is_over() const { return ends_[kNear].gone && ends_[kFar].gone; }
@@ -32,9 +32,9 @@ class Splice {
   struct End {
     lws* wsi = nullptr;
     bool is_websocket = false;
-    bool held = false;  ///< it is not read for now
+    bool held = false;  ///< reading is paused
     bool gone = false;
-    std::string out;  ///< what it is still to get
+    std::string out;  ///< bytes still to send
   };
   void hold(End& end, bool held);
 

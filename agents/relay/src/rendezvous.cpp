@@ -19,7 +19,7 @@ bool is_name(std::string_view text) {
          });
 }
 
-/// 1 to 65535; 0: it is none.
+/// 1 to 65535; 0: invalid.
 int port_of(std::string_view text) {
   int port = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);

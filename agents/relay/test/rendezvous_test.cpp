@@ -67,7 +67,7 @@ TEST(Relay, AVisitorIsFetchedOnceAndByTheirRobotAlone) {
   EXPECT_FALSE(relay.fetch("pioneer", "t8"));
   EXPECT_EQ(relay.fetch("pioneer", "t7"), Rendezvous::Visitor{7});
   EXPECT_FALSE(relay.fetch("pioneer", "t7"));
-  // One who is fetched waits no more.
+  // A fetched visitor does not wait any more.
   EXPECT_TRUE(relay.expire(100.0).empty());
   relay.leave(7);
 }

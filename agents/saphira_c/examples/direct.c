@@ -6,7 +6,7 @@ enum { GO = 20, WAIT = 21, BACK = 22, WAIT_BACK = 23 };
 static void patrol(void) {
   switch (process_state) {
     case sfINIT:
-    case sfRESUME: /* somebody suspended it, and lets it go on */
+    case sfRESUME: /* suspended earlier, and resumed */
       process_state = GO;
       break;
     case GO:

@@ -1,4 +1,4 @@
-/* Says what artifacts it passes: points of its own, walls that are seen, what the map has. */
+/* Names the artifacts that it passes: its own points, seen walls, and the map's. */
 #include "saphira.h"
 
 static point* goal;

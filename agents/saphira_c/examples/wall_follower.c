@@ -1,5 +1,5 @@
-/* Follows the wall to its left: a behavior with fuzzy rules (manual 7.6) below one of the library
- * that avoids what is near. */
+/* Follows the wall to its left: a behavior with fuzzy rules (manual 7.6), with lower priority than
+ * a library behavior that avoids obstacles. */
 #include "saphira.h"
 
 extern int Accel, Decel, Turn_left, Turn_right;

@@ -115,7 +115,7 @@ int sfDoneHeading(int ang);      /* [deg] */
 float sfTargetVel(void);         /* [mm/s] */
 float sfTargetHead(void);        /* [deg] */
 
-/* ---- 7.6: what behaviors are made of. */
+/* ---- 7.6: the parts of behaviors. */
 
 typedef union beh_param {
   float f;
@@ -139,11 +139,11 @@ typedef struct {
   int n_rules; /* 10 at the most */
   beh_rule rules[10];
 } behavior;
-/* The fuzzy state of the behavior whose init or update function is called now. */
+/* The fuzzy state of the behavior whose init or update function is running. */
 #define BEH_STATE_LEN 64
 extern float* beh_state;
-/* Its activity, set by update: how much it wants to turn, to set the speed; how well its goal is
- * reached, and whether it gets on. Before each update 1, 1, 0, 0. */
+/* The activity of the behavior, set by update: the weights of its turn and of its speed, the
+ * satisfaction of its goal, and its progress. Before each update 1, 1, 0, 0. */
 extern float c_act_t, c_act_v, c_goal, c_progress;
 
 typedef struct beh_closure {
@@ -292,7 +292,7 @@ float aligned_in_lane(point* lane_point, point* target, double near_angle, doubl
 #define sfLeftWallHyp (*sf_wall_hypothesis(sfLEFT)) /* 6.7 */
 #define sfRightWallHyp (*sf_wall_hypothesis(sfRIGHT))
 wall* sf_wall_hypothesis(int side);
-extern point* current_environment; /* 8.1.2; NULL: nothing that is known */
+extern point* current_environment; /* 8.1.2; NULL: none known */
 
 /* ---- 6.8: drawing. */
 
@@ -382,7 +382,7 @@ enum {
 #define PULSE_COM sfCOMPULSE
 #define VEL_COM sfCOMVEL
 enum { sfARGINT = 0x3B, sfARGNINT = 0x1B, sfARGSTR = 0x2B };
-/* 5.3: what an information packet begins with. */
+/* 5.3: the first bytes of information packets. */
 enum { sfSTATUSNOPOWER = 0x31, sfSTATUSSTOPPED = 0x32, sfSTATUSMOVING = 0x33 };
 
 /* ---- 9: vision. */

@@ -1,5 +1,6 @@
-// The part of the C library that joins the bus (SAPHIRA_ROBOT): the robot is the bridge's, what its
-// sensors show is the services', and the program is one more that may drive it (role direct).
+// The part of the C library that joins the bus (SAPHIRA_ROBOT): the robot is the bridge's, the
+// interpretation of its sensors is the services', and the program is one of those that may drive it
+// (role direct).
 
 #include <algorithm>
 #include <array>
@@ -29,11 +30,11 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTurn{20};
-constexpr double kSilent = 1.0;          // [s] after which the robot is gone
-constexpr int kReleases = 4;             // of the last word: the topic is best effort
-constexpr std::size_t kMostKept = 1000;  // sonar readings of cycles that were passed over
+constexpr double kSilent = 1.0;          // [s] of silence that ends the robot
+constexpr int kReleases = 4;             // repetitions of a release: the topic is best effort
+constexpr std::size_t kMostKept = 1000;  // sonar readings of skipped cycles
 constexpr double kDrawnFor = 1.0;        // [s]
-constexpr double kPixel = 0.025;         // [m] that a pixel of the manual's window shows
+constexpr double kPixel = 0.025;         // [m] size of a pixel of the manual's window
 
 bus::NodeOptions options_of(const std::string& robot) {
   bus::NodeOptions options = bus::options_of_environment();
@@ -365,7 +366,7 @@ class BusRobot final : public Robot {
     const std::lock_guard lock(mutex_);
     shared_ = std::move(tasks);
     mind_ = std::move(mind);
-    // The program's next call shows the effect of the requests that it gets now.
+    // The program's next call shows the effect of its present requests.
     unanswered_.clear();
     for (const TaskRequest& asked : asked_)
       unanswered_.insert(asked.name);
@@ -398,7 +399,7 @@ class BusRobot final : public Robot {
   }
 
  private:
-  /// The endpoints on the bus; only the thread uses them.
+  /// The endpoints on the bus, for the thread alone.
   struct Ends {
     explicit Ends(bus::Node& node, const std::string& source)
         : robots(node.reader(bus::topics::kRobotState)),
@@ -525,7 +526,7 @@ class BusRobot final : public Robot {
     }
   }
 
-  /// Under the mutex.
+  /// Call under the mutex.
   void begin() {
     parameters_ = parameters_of(*description_);
     epoch_ = stamp_.epoch();
@@ -611,7 +612,7 @@ class BusRobot final : public Robot {
         news = "the robot's bridge refuses to drive: " + refusal.reason();
     if (grant->source() == source_ && grant->guard() == v1::GUARD_STOP)
       news = "the guard stops the robot: " + grant->guard_reason();
-    // Distances in a reason change all the time: the kind of trouble is what is new.
+    // Distances in a reason change all the time: only a new kind of trouble is news.
     const std::string kind = news.substr(0, news.find_first_of("0123456789"));
     if (kind != news_ && !news.empty())
       say_(news, false);
@@ -750,7 +751,7 @@ class BusRobot final : public Robot {
   const std::string name_;
   Say say_;
 
-  // Of the thread.
+  // The thread's members.
   std::string source_;
   std::optional<v1::RobotDescription> description_;
   v1::Stamp stamp_;
@@ -759,7 +760,7 @@ class BusRobot final : public Robot {
   std::string news_;
   std::map<std::string, bus::RequestClient> devices_;
 
-  // Between the threads.
+  // Members shared between the threads.
   mutable std::mutex mutex_;
   std::condition_variable came_;
   bus::Node* node_ = nullptr;
@@ -783,8 +784,8 @@ class BusRobot final : public Robot {
   std::vector<SharedTask> shared_;
   std::optional<SharedMind> mind_;
   std::vector<Vec2> pointed_out_;
-  std::vector<TaskRequest> asked_;    // to be handed to the program
-  std::set<std::string> unanswered_;  // micro-tasks that it was asked for something by now
+  std::vector<TaskRequest> asked_;    // for the program
+  std::set<std::string> unanswered_;  // micro-tasks with an open request
   std::optional<Found> found_;
   std::shared_ptr<const maps::Map> map_;
   protocol::VisionPacket seen_;

@@ -12,7 +12,7 @@
 namespace saphira::c {
 namespace {
 
-// Of a point, and of what begins like one.
+// The local pose of a point, or of a type that begins like one.
 Pose local_of(const point& p) {
   return {p.x / 1000.0, p.y / 1000.0, p.th};
 }
@@ -52,7 +52,7 @@ void Os::add_point(point* p) {
   if (p->id == 0)
     for (p->id = 1000000; sfFindArtifact(p->id) != nullptr; ++p->id) {
     }
-  // One that has but a local place gets its global one from that.
+  // An artifact with only a local place gets its global one from that.
   const Pose global = global_of(*p);
   if (global == Pose{} && !(local_of(*p) == Pose{}))
     set_global(*p, compose(robot_in_global(), local_of(*p)));
@@ -61,8 +61,8 @@ void Os::add_point(point* p) {
   points.push_back({p, {p->x, p->y, p->th}, {p->ax, p->ay, p->ath}});
 }
 
-/// The local place follows from the global one, which stays. Where the program has written one of
-/// them since, that one counts: 8.1 moves a target in the LPS.
+/// The local place follows from the global one, which stays. If the program has written one of them
+/// since, that one counts: 8.1 moves a target in the LPS.
 void Os::update_points() {
   const Pose robot = robot_in_global();
   for (Listed& listed : points) {
@@ -136,8 +136,8 @@ point* Os::find_on_map(int id) {
   return nullptr;
 }
 
-/// Takes over the changes that registration has made to the map. An artifact that stays keeps its
-/// place in memory: the program may have a pointer to it.
+/// Takes registration's changes to the map. A remaining artifact keeps its address: the program may
+/// have a pointer to it.
 void Os::read_map() {
   if (!registration_ || registration_->map_revision() == map_revision_)
     return;
@@ -169,7 +169,7 @@ void Os::show_map(const maps::Map& map) {
   update_points();
 }
 
-/// The micro-task occgrid_proc, and with it the others of interpretation.
+/// The micro-task occgrid_proc, with the others of interpretation.
 void Os::interpret() {
   const std::lock_guard lock(mutex);
   if (const auto found = robot_ ? robot_->found() : std::nullopt) {
@@ -202,7 +202,7 @@ void Os::interpret() {
   percepts_ = *interpretation_->step(inputs).output;
 }
 
-/// Takes over the results of the registration service. The global frame is that of its map.
+/// Takes the results of the registration service. The global frame is that of its map.
 void Os::match_on_bus(const Found& found) {
   environment_ = found.environment;
   if (found.odom_in_map)
@@ -261,7 +261,7 @@ namespace lps = saphira::lps;
 
 namespace {
 
-/// True where the pointers are there; says which function got NULL.
+/// True where no pointer is NULL; otherwise reports the function.
 template <class... Points>
 bool given(const char* function, const Points*... p) {
   if (((p != nullptr) && ...))
@@ -471,7 +471,7 @@ void sfMoveRobot(float dx, float dy, float dth) {
 float aligned_in_lane(point* lane_point, point* target, double near_angle, double far_angle) {
   if (!given("aligned_in_lane", lane_point, target))
     return 0.0F;
-  // A lane has no direction of its own: the target says which way along it.
+  // A lane has no direction of its own: the target gives it.
   const bool back = sfPointXoPoint(lane_point, target) < sfPointXo(lane_point);
   const double off = std::abs(saphira::norm2_angle(lane_point->th + (back ? saphira::kPi : 0.0)));
   return down_straight(real(saphira::degrees(off)), real(near_angle), real(far_angle));

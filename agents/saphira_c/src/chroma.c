@@ -4,7 +4,7 @@
 enum { LOOK = 20, APPROACH = 21 };
 #define CENTRED 10            /* [pixels] */
 #define LOOK_CYCLES 200       /* 20 s */
-#define STOP_RANGE 500        /* [mm] that the sonars see ahead */
+#define STOP_RANGE 500        /* [mm] to the sonars' echo ahead */
 #define STANDING 5            /* [mm/s]; slower is standing */
 #define BLOCKED_CYCLES 20     /* 2 s */
 #define TWO_FEET 609.6        /* [mm] */
@@ -46,7 +46,7 @@ void draw_blobs(void) {
     const struct vinfo* seen = channel_of(channel);
     double pixels, range, bearing, size;
     if (!is_seen(seen)) continue;
-    /* A pixel to the left is positive in the LPS; one of the image counts to the right. */
+    /* Left is positive in the LPS; image pixels count to the right. */
     pixels = seen->w > 0 ? seen->w : sqrt((double)seen->area);
     if (pixels < 1.0) pixels = 1.0;
     range = TWO_FEET / tan(pixels / DEG_TO_PIXELS * 3.14159265 / 180.0);
@@ -110,7 +110,7 @@ void search_and_go_blob(void) {
       break;
     case APPROACH:
       x = found_blob(0, 100);
-      /* Where no echo comes back from what is thin, the robot's guard stops it before the blob. */
+      /* The robot's guard stops it before a blob that is too thin for an echo. */
       blocked = abs((int)sfRobot.tv) < STANDING ? blocked + 1 : 0;
       if (sfOccPlane(sfFRONT, sfFRONT, 100, 300, 300) <= STOP_RANGE ||
           (x != -1000 && blocked > BLOCKED_CYCLES)) {
@@ -134,7 +134,7 @@ void search_and_go_blob(void) {
   }
 }
 
-/* 8.1: follows the corridor that the robot is in, until it ends or the robot turns off it. */
+/* 8.1: follows the robot's corridor, until it ends or the robot turns off it. */
 enum { FOLLOW_CORRIDOR = 10, WAIT_REMOVE = 11, CHECK_CORRIDOR = 20 };
 
 void sfFindAndFollow(void) {

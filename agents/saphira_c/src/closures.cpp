@@ -58,7 +58,7 @@ Pose local_pose(const void* p) {
   return {at.x / 1000.0, at.y / 1000.0, at.th};
 }
 
-/// A behavior that is written in C, as the executive sees it.
+/// A C program's behavior, for the executive.
 class InC final : public behaviors::Behavior {
  public:
   void init(const behaviors::Parameters& parameters, const behaviors::Context&) override {
@@ -208,7 +208,7 @@ behaviors::Intended Os::intended(const Closure& closure) {
     ++i;
     if (parameter.unit == 0.0) {
       if (given.p == nullptr)
-        continue;  // the executive says which one is missing
+        continue;  // the executive reports the missing one
       const Pose at = local_pose(given.p);
       intended.parameters.push_back(saphira::point(parameter.name, compose(robot_in_odom, at)));
       const wall& wide = *static_cast<const wall*>(given.p);
@@ -221,7 +221,7 @@ behaviors::Intended Os::intended(const Closure& closure) {
       intended.parameters.push_back(text(parameter.name, given.i == sfOUT ? "out" : "in"));
     } else {
       double value = given.f * parameter.unit;
-      // The manual's own examples leave its ranges: the nearest value of the range is meant.
+      // The manual's own examples exceed its ranges: take the nearest value.
       if (schema != nullptr)
         for (const behaviors::ParameterSpec& spec : schema->parameters)
           if (spec.name == parameter.name && std::isfinite(value))
@@ -336,8 +336,8 @@ namespace {
 
 using namespace saphira::c;
 
-/// Of the library's behaviors each parameter's type is known: an int where a float is due is taken
-/// for its number.
+/// The types of the library's behaviors' parameters are known: an int in place of a float counts as
+/// its number.
 bool take_kinds(const std::string& call, const behavior* b, std::vector<beh_param>& params,
                 const std::vector<int>& kinds) {
   const std::vector<int> due = kinds_of(b);

@@ -1,4 +1,4 @@
-// The thread that talks to a robot server: the bridge's shell without the bus.
+// The thread with the connection to a robot server: the bridge's shell without the bus.
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -25,7 +25,7 @@ namespace saphira::c {
 namespace {
 
 constexpr double kBeat = 0.05;           // [s] of the keeper
-constexpr std::size_t kMostKept = 1000;  // sonar readings of cycles that were passed over
+constexpr std::size_t kMostKept = 1000;  // sonar readings of skipped cycles
 
 class DirectRobot final : public Robot {
  public:
@@ -251,7 +251,7 @@ class DirectRobot final : public Robot {
   }
   void perform(const bridge::CycleBegan& cycle) {
     const std::lock_guard lock(mutex_);
-    session_ = next_session_;  // with the first packet: then there is something to see
+    session_ = next_session_;  // with the first packet: then there is a state
     newest_ = cycle.state;
     const auto& readings = cycle.state.information.sonars;
     readings_.insert(readings_.end(), readings.begin(), readings.end());
@@ -308,7 +308,7 @@ class DirectRobot final : public Robot {
   std::uint64_t number_ = 0;
   bool guarded_ = false;
 
-  // Between the threads.
+  // Members shared between the threads.
   mutable std::mutex mutex_;
   std::condition_variable came_;
   int wake_ = -1;

@@ -9,7 +9,7 @@ using c::Os;
 
 namespace {
 
-/// Nothing moves before there is a robot, and the state reflector that moves it.
+/// True where there is a robot, and the state reflector that moves it.
 bool ready(const char* function) {
   static bool told = false;
   if (Os::get().connected() && Os::get().find("motor_proc") != nullptr)

@@ -15,15 +15,15 @@ namespace {
 
 constexpr auto kPatience = std::chrono::seconds(8);  // of sfConnectToRobot
 constexpr double kHung = 1.0;                        // [s] of a micro-task
-constexpr double kShort = 0.05;                      // [m] of a position
+constexpr double kShort = 0.05;                      // [m] from the end of a position
 constexpr double kStanding = 0.005;                  // [m/s]
 constexpr int kStandsLong = 10;                      // [cycles]
-constexpr int kWaits = 15;                           // [100 ms] until a missing robot is told
+constexpr int kWaits = 15;                           // [100 ms] until a missing robot is reported
 
 volatile std::sig_atomic_t signalled = 0;
 void on_signal(int number) {
   signalled = number;
-  std::signal(number, SIG_DFL);  // the second one ends a program that hangs
+  std::signal(number, SIG_DFL);  // the second signal ends a hanging program
 }
 void mind_signal(int number) {
   struct sigaction before {};
@@ -31,8 +31,8 @@ void mind_signal(int number) {
     std::signal(number, on_signal);
 }
 
-/// The exit handler that is registered last is called first. It is registered again after a library
-/// has been loaded, so that the robot is let go before that library is taken down.
+/// The exit handler that is registered last is called first. It is registered again after loading a
+/// library, so that the robot is released before that library is unloaded.
 void end_at_exit() {
   std::atexit([] { Os::get().finish(); });
 }
@@ -178,7 +178,7 @@ void Os::session_ended() {
   changed_.notify_all();
 }
 
-/// Nothing of one connection is left to the next.
+/// No state of one connection passes to the next.
 void Os::reset() {
   for (const auto& task : tasks_)
     task->removed = true;
@@ -239,8 +239,8 @@ void Os::step(const Reflected& now) {
   changed_.notify_all();
 }
 
-/// Commands the rest of a way again where the robot was stopped on it (by an operator, the guard or
-/// a suspended motor_proc).
+/// Commands the rest of a way again after a stop on it (by an operator, the guard or a suspended
+/// motor_proc).
 void Os::go_on_to_position() {
   const double rest = position_target ? *position_target - travelled : 0.0;
   stands_ = motion.translation == reflector::Translation::position && std::abs(rest) > kShort &&
@@ -333,8 +333,8 @@ void Os::finish() {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }
 
-/// Names what hangs: the thread of the micro-tasks cannot. The robot stands by then: nothing has
-/// answered its packets for longer than the lease.
+/// Reports the hanging function: the thread of the micro-tasks cannot. The robot stands by then:
+/// its packets had no answer for longer than the lease.
 void Os::watch() {
   while (!ending_) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));

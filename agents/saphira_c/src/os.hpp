@@ -43,7 +43,7 @@ struct Closure {
   std::vector<beh_param> params;
 };
 
-/// An artifact on the pointlist, and what it was when it was written here last.
+/// An artifact on the pointlist, with its last written state.
 struct Listed {
   point* artifact = nullptr;
   std::array<float, 3> local{};
@@ -51,13 +51,13 @@ struct Listed {
 };
 
 /// The Saphira OS of a C program: the cores of the services, stepped once for each information
-/// packet in the order of the micro-tasks; and what the program says to them.
+/// packet in the order of the micro-tasks, and the program's calls to them.
 ///
-/// The members are under the mutex, but for what only the thread of the micro-tasks uses. It is
+/// The members are under the mutex, except those of the micro-tasks' thread alone. The mutex is
 /// never held while a function of the program runs.
 class Os {
  public:
-  /// There is one, and it is never destroyed: threads may use it until the process is gone.
+  /// The only instance, never destroyed: threads may use it until the end of the process.
   static Os& get();
 
   // ---- 6.1
@@ -71,7 +71,7 @@ class Os {
   /// The program ends: stops the robot. Once.
   void finish();
   void say(const std::string& text, bool error);
-  /// The same, from the program: whoever looks on sees it too.
+  /// The same, from the program: shown to observers too.
   void message(const std::string& text, bool error);
 
   std::recursive_mutex mutex;
@@ -85,7 +85,7 @@ class Os {
   Task* find(const std::string& name);
   Task* of(const process* shown);
   void run_tasks();
-  /// A micro-task of the library that somebody has stopped.
+  /// True for a micro-task of the library that was stopped.
   bool suspended(const char* built_in);
   void add_built_in(const char* name, std::function<void()> step);
   void init_basic();
@@ -110,7 +110,7 @@ class Os {
   void read_map();
   point* find_on_map(int id);
 
-  // ---- What holds in this cycle.
+  // ---- The present cycle.
   Pose robot_in_odom;
   Pose odom_in_global;
   Pose robot_in_global() const { return compose(odom_in_global, robot_in_odom); }
@@ -119,14 +119,14 @@ class Os {
   lps::LocalPerceptualSpace lps;
   std::uint64_t cycle = 0;  ///< since this program began, through all connections
 
-  // ---- 6.4: what is wanted of the wheels, motion.cpp
+  // ---- 6.4: the wheels' commands, motion.cpp
   reflector::Motion motion;
   double travelled = 0.0;                 ///< [m]
   std::optional<double> position_target;  ///< [m] on that scale
   double target_heading = 0.0;            ///< [rad] in odom
   double max_velocity = 0.0;              ///< [m/s] 0: the robot's own
   void send(protocol::Bytes packet);
-  /// Shows a state that came by another way (the packet functions).
+  /// Shows a state from another source (the packet functions).
   void reflect(const reflector::State& now, const protocol::RobotParameters& robot);
 
  private:
@@ -171,14 +171,14 @@ class Os {
   int waits_ = 0;  ///< for a robot
 
   std::deque<std::unique_ptr<Task>> tasks_;
-  std::set<std::string> slow_;  ///< micro-tasks that were named
+  std::set<std::string> slow_;  ///< micro-tasks already reported
   struct Watched {
     std::string name;
     double since = 0.0;  ///< [s] 0: no task of the program runs
     bool told = false;
   } watched_;
 
-  // Of the thread of the micro-tasks alone.
+  // For the thread of the micro-tasks alone.
   std::unique_ptr<behaviors::Core> behaviors_;
   std::unique_ptr<interpretation::Core> interpretation_;
   std::unique_ptr<registration::Core> registration_;
@@ -205,9 +205,9 @@ class Os {
 
 wall to_c(const maps::Feature& feature);
 behaviors::RobotModel model_of(const protocol::RobotParameters& parameters);
-/// How the executive calls a behavior of the program, or of the library.
+/// Adapters between the executive and the behaviors of the program and the library.
 void register_behaviors(behaviors::Registry& registry);
-/// Reads "sfFLOAT, 300.0, ..., sfEND". What is no such list is said, as far as it can be known.
+/// Reads "sfFLOAT, 300.0, ..., sfEND". Reports errors in the list, as far as possible.
 bool read_arguments(const std::string& function, std::vector<beh_param>& params,
                     std::vector<int>& kinds, va_list list);
 /// The parameters' types of one of the library's behaviors.

@@ -1,4 +1,5 @@
-// Talking to the robot server without the OS (manual 8.6 and 4.3.5), and the connection itself.
+// Communication with the robot server without the OS (manual 8.6 and 4.3.5), and the connection
+// itself.
 
 #include <poll.h>
 
@@ -18,19 +19,18 @@ using c::Os;
 
 namespace {
 
-constexpr double kPatience = 8.0;  // [s] of a connection
-constexpr double kAtLeast = 0.1;   // [s] that sfWaitClientPacket waits (manual 8.6)
+constexpr double kConnectTime = 8.0;  // [s] of a connection
+constexpr double kAtLeast = 0.1;   // [s] least wait of sfWaitClientPacket (manual 8.6)
 constexpr int kOdometryFrame = 1;
 
-/// A line to the robot server, and the packet that is read of it. The program is served by its own
-/// calls alone.
+/// A line to the robot server, and its present packet. Only the program's own calls serve it.
 class Line {
  public:
   explicit Line(const std::string& address) : link_(transport::parse_address(address)) {}
 
-  /// Until the server has said what it is. `why` says what is wrong where it does not.
+  /// Opens until the server has identified itself. `why` gives the reason of a failure.
   bool open(std::string& why) {
-    const double until = BootClock::seconds() + kPatience;
+    const double until = BootClock::seconds() + kConnectTime;
     bool begun = false;
     while (BootClock::seconds() < until) {
       const double now = BootClock::seconds();
@@ -166,7 +166,7 @@ Line* open_line(const char* function) {
   return line().get();
 }
 
-/// Where the manual's port is to be found; empty where it is none.
+/// The address of the manual's port; empty for an unknown port.
 std::string address_of(int port, const char* name) {
   const auto given = [&](const char* variable) {
     const char* const value = std::getenv(variable);

@@ -54,7 +54,7 @@ std::unique_ptr<Robot> robot_at(const std::string& address, Say say) {
   return direct_robot(address, std::move(say));
 }
 
-// The bus is a part of its own: a program that talks to a robot by itself needs no DDS.
+// The bus is a separate part: a program with a robot of its own needs no DDS.
 std::unique_ptr<Robot> bus_robot(const std::string& name, Say say) {
   const std::string path = (above_library() / "libsfx-bus.so").string();
   void* const part = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -1,4 +1,4 @@
-// From a state of the robot to what a C program sees of it.
+// From a robot's state to a C program's view of it.
 
 #include <algorithm>
 #include <cmath>
@@ -65,14 +65,14 @@ wall to_c(const lps::Percept& percept, const Pose& robot_in_odom, const Pose& od
 
 }  // namespace
 
-/// Registers all that is geometry with the robot as it is now.
+/// Registers all geometry with the present pose of the robot.
 void Os::clamp(const reflector::State& now) {
   const Pose before = robot_in_odom;
   new_frame_ = !first_ && now.odom != odom_;
   odom_ = now.odom;
   robot_in_odom = now.pose_in_odom;
   if (new_frame_) {
-    // The robot stays where it was in the global frame.
+    // The robot keeps its place in the global frame.
     odom_in_global = compose(compose(odom_in_global, before), relative(robot_in_odom, Pose{}));
     lps.reset();
   }

@@ -29,15 +29,15 @@ struct Reflected {
 struct Found {
   std::optional<lps::Percept> left_wall;   ///< sfLeftWallHyp
   std::optional<lps::Percept> right_wall;  ///< sfRightWallHyp
-  std::optional<Pose> odom_in_map;         ///< where registration knows the robot
-  std::shared_ptr<const maps::Map> map;    ///< another object where it has changed
-  std::uint32_t environment = 0;           ///< the artifact that the robot is in; 0: none known
+  std::optional<Pose> odom_in_map;         ///< while registration has the robot's pose
+  std::shared_ptr<const maps::Map> map;    ///< a new object after a change
+  std::uint32_t environment = 0;           ///< the artifact around the robot; 0: none known
 };
 
-/// A micro-task as other programs see it.
+/// A micro-task for other programs.
 struct SharedTask {
   std::string name;
-  std::string effect;  ///< what it is, for people
+  std::string effect;  ///< description, for people
   int state = 0;       ///< manual Table 6-3
 };
 /// An intention of the program (manual 8).
@@ -45,7 +45,7 @@ struct SharedIntention {
   std::uint32_t id = 0;
   std::uint32_t parent = 0;  ///< 0: none
   std::string name;
-  std::string behavior;  ///< that it is there for; empty: a function
+  std::string behavior;  ///< the behavior it stands for; empty: a function
   int state = 0;         ///< as above, or an end of Table 8-1
 };
 /// The program's behaviors and intentions in a cycle.
@@ -60,8 +60,8 @@ struct TaskRequest {
   ProcessAction action = ProcessAction::suspend;
 };
 
-/// The robot that a C program is connected to, by whatever way. It is served by a thread of its
-/// own, so that it stands where the program hangs.
+/// The robot of a C program, on any connection. A thread of its own serves it, so that the robot
+/// stops when the program hangs.
 class Robot {
  public:
   virtual ~Robot() = default;
@@ -70,12 +70,12 @@ class Robot {
   virtual std::uint64_t session() const = 0;  ///< 0: not connected
   virtual protocol::RobotParameters parameters() const = 0;
   virtual protocol::RobotIdentity identity() const = 0;
-  /// Why it is not connected, in words.
+  /// The reason why it is not connected, in words.
   virtual std::string trouble() const = 0;
 
-  /// Waits until a cycle begins that was not returned yet; nothing where none does in time, or the
-  /// connection is lost. The newest counts: cycles in which the caller was busy are passed over,
-  /// with their sonar readings kept.
+  /// Waits until a new cycle begins; nothing where none does in time, or the connection is lost.
+  /// The newest counts: cycles in which the caller was busy are skipped, with their sonar readings
+  /// kept.
   virtual std::optional<Reflected> next(int milliseconds) = 0;
   /// The program's motion command, in answer to the cycle. It is valid for 0.3 s.
   virtual void drive(const reflector::Motion& motion, std::uint64_t cycle) = 0;
@@ -83,23 +83,23 @@ class Robot {
   virtual void send(protocol::Bytes packet) = 0;
   /// The newest packet of the camera; count: the number of packets so far.
   virtual protocol::VisionPacket vision(std::uint64_t& count) const = 0;
-  /// Stops the robot and lets it go. Waits a second at the most.
+  /// Stops the robot and releases it. Waits a second at most.
   virtual void end() = 0;
 
-  // ---- Of a robot on the bus; one that is served directly has none of it.
-  /// The results of its services; nothing: it has none, and the program computes them itself.
+  // ---- Only for a robot on the bus.
+  // The results of its services; nothing: it has none, and the program computes them itself.
   virtual std::optional<Found> found() { return std::nullopt; }
-  /// Shows the program's micro-tasks to others, and what it thinks, where it has behaviors or
-  /// intentions. What these have asked since the last call.
+  /// Shows the program's micro-tasks to others, with its behaviors and intentions, if any. Returns
+  /// the others' requests since the last call.
   virtual std::vector<TaskRequest> share(std::vector<SharedTask>, std::optional<SharedMind>) {
     return {};
   }
-  /// For whoever looks on: what was drawn in this cycle, and a line of text.
+  /// For observers: the drawings of this cycle, and a line of text.
   virtual void draw(std::vector<Drawn>) {}
   virtual void tell(const std::string&) {}
-  /// Where somebody who looks on has pointed since the last call [m] [odom].
+  /// The places that observers have pointed out since the last call [m] [odom].
   virtual std::vector<Vec2> pointed_out() { return {}; }
-  /// Asks registration for something; what it is and what became of it is said.
+  /// Sends a request to registration; reports it and its result.
   virtual void load_map(const std::string& /*text*/, const std::string& /*name*/) {}
   virtual void place(const Pose& /*robot_in_map*/) {}
 };
@@ -107,27 +107,27 @@ class Robot {
 /// Takes lines for people; called in any thread.
 using Say = std::function<void(const std::string&, bool error)>;
 
-/// A robot server at this address, with the bridge's core before it: its session, its guard, its
-/// lease. std::invalid_argument for an address that is none.
+/// A robot server at this address, behind the bridge's core: its session, guard and lease.
+/// std::invalid_argument for an invalid address.
 std::unique_ptr<Robot> direct_robot(const std::string& address, Say say);
 
-/// The robot of that name on the bus, by the library's part for the bus, which is loaded for it;
-/// the other options of the bus are those of the environment (SAPHIRA_DOMAIN and so on).
-/// std::runtime_error where that part is not there.
+/// The robot of that name on the bus, by the library's module for the bus, which is loaded for it;
+/// the other bus options come from the environment (SAPHIRA_DOMAIN and so on). std::runtime_error
+/// without that module.
 std::unique_ptr<Robot> bus_robot(const std::string& name, Say say);
-/// The function that this part exports under the name kBusRobot.
+/// The function that this module exports under the name kBusRobot.
 using MakeBusRobot = Robot* (*)(const std::string& name, Say say);
 inline constexpr const char* kBusRobot = "saphira_c_bus_robot";
-/// Of an address, before the robot's name on the bus.
+/// The beginning of an address, before the robot's name on the bus.
 inline constexpr const char* kOnBus = "bus:";
-/// The one that is meant by an address.
+/// The robot of an address.
 std::unique_ptr<Robot> robot_at(const std::string& address, Say say);
 /// The robot that the environment names (SAPHIRA_ROBOT), as an address; empty: none.
 std::string robot_of_environment();
 
-/// A program of ours, wherever this library was put; the path in any case.
+/// The path of a program of ours, for any place of this library; always a path.
 std::string beside_library(const std::string& path);
-/// The folder of robots and behaviors; std::runtime_error where there is none.
+/// The folder of robots and behaviors; std::runtime_error without one.
 std::string configuration();
 
 }  // namespace saphira::c

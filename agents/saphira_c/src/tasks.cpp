@@ -10,8 +10,8 @@ namespace saphira::c {
 namespace {
 
 constexpr double kCycle = 0.1;            // [s] for all micro-tasks together
-constexpr float kGoalReached = 0.9F;      // of a behavior that an intention has made
-constexpr std::size_t kMostTasks = 4096;  // with those that are gone, whose pointers may be kept
+constexpr float kGoalReached = 0.9F;      // of a behavior in an intention
+constexpr std::size_t kMostTasks = 4096;  // with removed ones, whose pointers may be kept
 
 bool ended(int state) {
   return state == sfSUCCESS || state == sfFAILURE || state == sfTIMEOUT;
@@ -67,8 +67,8 @@ Task* Os::of(const process* shown) {
 }
 
 void Os::run_tasks() {
-  // Those that are added meanwhile have their first turn in the next cycle, but for those that a
-  // callback of the connection has added: they are there already.
+  // Tasks that are added meanwhile have their first turn in the next cycle, except those from a
+  // callback of the connection: they are there already.
   std::vector<Task*> turn;
   {
     const std::lock_guard lock(mutex);
@@ -107,8 +107,7 @@ void Os::run_task(Task& task) {
   process_state = its_state;
   if (task.built_in) {
     task.built_in();
-    // One of the library does its work in whatever its_state it is, and puts it away when it is
-    // told.
+    // A task of the library works in any its_state, and cleans up on request.
     if (process_state == sfINTERRUPT)
       process_state = sfSUSPEND;
     else if (process_state == sfINIT || process_state == sfRESUME)
@@ -118,7 +117,7 @@ void Os::run_task(Task& task) {
   }
   const std::lock_guard lock(mutex);
   current = nullptr;
-  // sfREMOVE, which a program writes into the structure, holds.
+  // sfREMOVE, which a program writes into the structure, stays.
   if (its_state != sfREMOVE)
     its_state = process_state;
   if (!task.built_in)
@@ -133,7 +132,7 @@ void Os::mind_time(const Task& task, double seconds) {
         true);
 }
 
-/// Manual 8.4: which intentions are removed; and what becomes of their behaviors.
+/// Manual 8.4: removes intentions, with their behaviors.
 void Os::tend_intentions() {
   const std::lock_guard lock(mutex);
   for (const auto& task : tasks_) {
@@ -168,7 +167,8 @@ void Os::tend_intentions() {
   }
 }
 
-/// Other programs see the micro-tasks and behaviors of this one, and stop and resume them.
+/// Shows this program's micro-tasks and behaviors to other programs, which may stop and resume
+/// them.
 void Os::share(Robot& robot, std::uint64_t robot_cycle) {
   std::vector<SharedTask> shown;
   for (const auto& task : tasks_)
@@ -230,7 +230,7 @@ void nothing() {}
 
 // Named micro-tasks with a state for the library's work before all others of a cycle (the packet,
 // the state reflector, the registration of all geometry) and after them (the motor command, the
-// drawing). Those that every cycle needs go on in any state.
+// drawing). Tasks that every cycle needs continue in any state.
 void Os::init_basic() {
   for (const char* const name : {"pulse_proc", "motor_proc", "clamp_proc", "sonar_proc",
                                  "wake_proc", "draw_proc", "process_waiting_packets"})
@@ -270,7 +270,7 @@ using saphira::c::Task;
 
 namespace {
 
-/// The task of a program's pointer; says which function got which wrong one.
+/// The task of a program's pointer; for a wrong one, reports the function and the pointer.
 Task* task_of(const char* function, process* p) {
   Task* const task = Os::get().of(p);
   if (task == nullptr || task->removed) {

@@ -20,7 +20,7 @@ Mine& mine() {
   return *of_thread;
 }
 
-/// Takes the next view. A sonar reading that this thread has read stays read.
+/// Takes the next view. A sonar reading counts as new for each thread once.
 void take(Mine& of_thread, const View& next) {
   const View before = of_thread.view;
   of_thread.view = next;

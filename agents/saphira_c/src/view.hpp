@@ -7,7 +7,7 @@
 
 namespace saphira::c {
 
-using ::point;  // and not the argument of a request
+using ::point;  // not the argument of a request
 
 /// The state of the robot for a C program: one whole cycle.
 struct View {
@@ -20,10 +20,10 @@ struct View {
   std::array<vinfo, 3> vision{};
 };
 
-/// The view of the calling thread. The thread that runs the micro-tasks has the one of its cycle;
-/// any other has a copy of the newest, taken now: so no thread reads what another one writes.
+/// The view of the calling thread. The micro-tasks' thread has that of its cycle; any other has a
+/// copy of the newest, taken now: so no thread reads while another one writes.
 View& view();
-/// The calling thread runs the micro-tasks: its view changes in publish() alone.
+/// The calling thread runs the micro-tasks: its view changes in publish() only.
 void own_view();
 /// A new cycle, from the thread that runs the micro-tasks.
 void publish(const View& next);

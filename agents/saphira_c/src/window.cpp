@@ -1,4 +1,4 @@
-// Messages, keys and drawing (manual 6.1, 6.8) where there is no window: the terminal.
+// Messages, keys and drawing (manual 6.1, 6.8) without a window: the terminal.
 
 #include "window.hpp"
 
@@ -15,7 +15,7 @@
 namespace saphira::c {
 namespace {
 
-// The screen that there would be: this many pixels, the robot in the middle, X upwards.
+// The size of the missing window: this many pixels, the robot in the middle, X upwards.
 constexpr float kHalfScreen = 200.0F;
 constexpr float kMmPerPixel = 25.0F;
 

@@ -6,14 +6,14 @@
 
 namespace saphira::c {
 
-/// How the next thing is drawn.
+/// The style of the next drawing.
 struct Pen {
   int width = 1;  ///< [pixels]
   int dashed = 0;
   int line = 14;  ///< a colour of Table 6-4
   int patch = 14;
 };
-/// A rectangle that the program has drawn: its lower left corner in the LPS, its extent [mm].
+/// A rectangle from the program: its lower left corner in the LPS, its extent [mm].
 struct Drawn {
   Pen pen;
   float x = 0.0F;
@@ -24,9 +24,9 @@ struct Drawn {
 /// The rectangles that were drawn since the last call.
 std::vector<Drawn> take_drawn();
 
-/// Hands what was typed to the program. In the thread of the micro-tasks, once a cycle.
+/// Passes typed keys to the program. In the thread of the micro-tasks, once a cycle.
 void take_keys();
-/// Likewise a place where somebody has pointed [m] [robot], as a click there.
+/// Likewise a place that a person has pointed out [m] [robot], as a click there.
 void click(const Vec2& in_robot);
 
 }  // namespace saphira::c

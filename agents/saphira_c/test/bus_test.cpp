@@ -1,4 +1,4 @@
-// The same programs in C as one more program on the bus, beside all services (SAPHIRA_ROBOT).
+// The same programs in C as one of the programs on the bus, beside all services (SAPHIRA_ROBOT).
 
 #include <algorithm>
 #include <fstream>
@@ -45,7 +45,7 @@ class OnBus : public testing::Test {
         },
         kPatience);
   }
-  /// Waits for the state of a program's micro-task as others see it.
+  /// Waits for the state of a program's micro-task, as shown to others.
   bool shows(const std::string& service, const std::string& name, v1::ProcessState state) {
     return wait_until(
         [&] {
@@ -82,7 +82,7 @@ class OnBus : public testing::Test {
   bus::Reader<v1::Grant> grants_;
   bus::Reader<v1::ProcessSet> tasks_;
   bus::Reader<v1::Message> messages_;
-  /// By the program, the processes that it told of last: they are told when they change.
+  /// By program, its newest published processes: they are published on change.
   std::map<std::string, std::vector<v1::Process>> shown_;
 };
 
@@ -101,14 +101,15 @@ TEST_F(OnBus, AProgramDrivesAsDirectAndItsMicroTasksAreEverybodys) {
   EXPECT_TRUE(system_.wait_still(kPatience)) << "it comes to the end of its two metres";
   EXPECT_EQ(ask("resume", "program", "patrol"), v1::ANSWER_DONE);
   EXPECT_TRUE(system_.wait_moving(kPatience));
-  // Those of the library as well: without motor_proc nothing drives.
+  // The library's tasks as well: without motor_proc nothing drives.
   EXPECT_EQ(ask("suspend", "program", "motor_proc"), v1::ANSWER_DONE);
   EXPECT_TRUE(shows("program", "motor_proc", v1::PROCESS_SUSPENDED));
   EXPECT_TRUE(system_.wait_still(kPatience));
   EXPECT_EQ(ask("resume", "program", "motor_proc"), v1::ANSWER_DONE);
   EXPECT_TRUE(system_.wait_moving(kPatience));
 
-  // It dies while it drives: the lease ends within 0.3 s, and the services have the robot again.
+  // It is killed while it drives: the lease ends within 0.3 s, and the services have the robot
+  // again.
   program.signal(SIGKILL);
   const long cycle = system_.truth().cycle;
   ASSERT_TRUE(system_.wait_still());
@@ -168,8 +169,7 @@ int main(void) { sfOnConnectFn(connected); sfStartup(0); return 0; }
   EXPECT_NE(said.find("door 1 at 2450, robot at 1500 7000"), std::string::npos) << said;
 }
 
-// Manual 4.3.4, as it is printed: what it has started and left suspended is switched on from
-// outside.
+// Manual 4.3.4, as printed: its suspended tasks are resumed from outside.
 TEST_F(OnBus, ThePrintedSaphiraClientIsSwitchedOnByOthers) {
   if (test::manual().empty())
     GTEST_SKIP() << "the manual is not there (SAPHIRA_MANUAL, ../shared/seeds)";
@@ -195,8 +195,7 @@ TEST_F(OnBus, ThePrintedSaphiraClientIsSwitchedOnByOthers) {
   EXPECT_EQ(system_.truth().contacts, 0);
 }
 
-// Manual 8.1, as it is printed: the corridor that it finds is the one of the services'
-// registration.
+// Manual 8.1, as printed: its corridor comes from the registration service.
 TEST_F(OnBus, ThePrintedIntentionFollowsTheCorridor) {
   if (test::manual().empty())
     GTEST_SKIP() << "the manual is not there (SAPHIRA_MANUAL, ../shared/seeds)";

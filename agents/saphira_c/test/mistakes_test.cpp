@@ -1,4 +1,4 @@
-// Programs in C that are wrong, or end while the robot drives.
+// Programs in C with errors, or with an end while the robot drives.
 
 #include "programs.hpp"
 

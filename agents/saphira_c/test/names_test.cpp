@@ -1,5 +1,5 @@
-// docs/c-api.md has the names of saphira.h and no others; and what the manual names is in one of
-// the two.
+// docs/c-api.md has exactly the names of saphira.h, and every name in the manual is in one of the
+// two.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ std::string header() {
   return std::regex_replace(text, std::regex(R"(/\*[^*]*\*+([^/*][^*]*\*+)*/)"), " ");
 }
 
-/// $SAPHIRA_MANUAL, or where it is beside the source tree.
+/// $SAPHIRA_MANUAL, or the file beside the source tree.
 std::string manual_path() {
   const char* const given = std::getenv("SAPHIRA_MANUAL");
   return given != nullptr ? given : test::source("../shared/seeds/saphira-manual-5.3.txt");
@@ -69,13 +69,13 @@ TEST(Names, EachOfTheManualIsInTheHeaderOrDiffers) {
   std::set<std::string> there = all(header(), R"(\b(\w+)\b)");
   there.merge(all(read(test::source("docs/c-api.md")), "`(\\w+)`"));
   std::set<std::string> named = all(manual, R"(\b(sf[A-Za-z0-9_]+)\b)");
-  // Chapter 12: a prototype begins a line, or what is between two tags.
+  // Chapter 12: a prototype begins a line, or the text between two tags.
   const std::string reference = manual.substr(manual.rfind("12. Saphira API Reference"));
   named.merge(all(
       reference,
       R"((?:^|\n|>)(?:void|int|float|process \*|point \*|BEHCLOSURE|char \*|behavior \*|wall) ?\*?(\w+)\()"));
   ASSERT_GT(named.size(), 150U);
-  // Of the program's own, and slips of the scan that no name begins with.
+  // The program's own names, and errors of the scan that no name begins with.
   for (const char* const own : {"myButtonFn", "myKeyFn", "siBehaviorOff", "siBehaviorOn"})
     named.erase(own);
   for (const std::string& name : named) {

@@ -10,8 +10,8 @@
 
 #include "process.hpp"
 
-/// The manual's own programs, as they are printed, where the manual is there. What the scan has
-/// lost or misread is mended by tables, and by nothing else.
+/// The manual's own programs, as printed, if the manual is there. Tables, and nothing else, correct
+/// the errors of the scan.
 namespace saphira::test {
 
 struct Mend {
@@ -19,7 +19,7 @@ struct Mend {
   std::string meant;
 };
 
-/// $SAPHIRA_MANUAL, or where it is beside the source tree.
+/// $SAPHIRA_MANUAL, or the file beside the source tree.
 inline std::string manual() {
   const char* const given = std::getenv("SAPHIRA_MANUAL");
   std::ifstream in(given != nullptr ? given : source("../shared/seeds/saphira-manual-5.3.txt"));

@@ -38,13 +38,14 @@ TEST_F(Printed, Direct) {
       << program.output();
 }
 
-// It pauses by its own clock for two minutes, as examples/async.c does for seconds: that one runs.
+// It pauses by its own clock for two minutes, while examples/async.c does for seconds: that one
+// runs.
 TEST_F(Printed, Async) {
   built(printed("4.3.2. The Async", "4.3.3.",
                 {kMain, kStartup, kBrace, {"char **argv)\n", "char **argv)\n{"}, {"</pre>", ""}}));
 }
 
-// Its behaviors and its intention do not run before somebody switches them on.
+// Its behaviors and its intention wait until they are switched on from outside.
 TEST_F(Printed, Saphira) {
   simulate();
   Process program = start(built(test::printed_saphira()));

@@ -30,7 +30,7 @@ inline const std::string& prefix() {
   return path;
 }
 
-/// The library's sanitizer is the program's too.
+/// The program gets the library's sanitizer.
 inline std::string sanitized() {
   const std::string which = SANITIZE;
   return which.empty() ? "" : " -g -fsanitize=" + which;
@@ -60,8 +60,8 @@ class Programs : public testing::Test {
         dir_.path("sim"));
     ASSERT_TRUE(wait_until([this] { return ::access(socket().c_str(), F_OK) == 0; }));
   }
-  /// `things`: what stands in the world besides, in the form of its file.
-  /// `rate`: how many times real time.
+  /// `things`: further things in the world, in the form of its file.
+  /// `rate`: times real time.
   void simulate(const std::string& position = "19000 19000 0", const std::string& world = "simple",
                 const std::string& things = "", const std::string& rate = "4") {
     std::vector<std::string> argv{
@@ -75,7 +75,7 @@ class Programs : public testing::Test {
     simulator_.emplace(argv, dir_.path("sim"));
     ASSERT_TRUE(wait_until([this] { return ::access(socket().c_str(), F_OK) == 0; }));
   }
-  /// As C++, which is to compile as well, and as C, which runs.
+  /// Compiles as C++ for a check, and as C for the run.
   std::string build(const std::string& file) {
     compiled(file, dir_, true);
     return compiled(file, dir_, false);
@@ -98,7 +98,7 @@ class Programs : public testing::Test {
     text << in.rdbuf();
     return sim::parse_trace(text.str(), "trace");
   }
-  /// Along the heading of the start [m].
+  /// The greatest way along the heading of the start [m].
   double farthest() const {
     double most = 0.0;
     const std::vector<sim::TraceRow> rows = truth();

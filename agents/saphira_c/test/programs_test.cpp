@@ -1,5 +1,5 @@
 // Programs in C, built with the system's compiler as C and as C++ against the installed library,
-// and the truth of the simulator that they drive in.
+// and the simulator's true state while they drive.
 
 #include "programs.hpp"
 
@@ -90,7 +90,7 @@ TEST_F(Programs, ABlobIsSearchedForAndApproached) {
   EXPECT_EQ(truth().back().contacts, 0);
 }
 
-// As other projects take it: by CMake's find_package, by pkg-config's folder and the manual's -lsf.
+// As in other projects: by CMake's find_package, by pkg-config's folder and the manual's -lsf.
 TEST(Installed, IsFoundByCMakeAndUnderBothNamesOfTheManual) {
   const test::TempDir dir;
   const std::string installed = dir.path("installed");
@@ -112,7 +112,7 @@ TEST(Installed, IsFoundByCMakeAndUnderBothNamesOfTheManual) {
   EXPECT_EQ(make.wait(std::chrono::minutes(2)), std::optional<int>(0)) << make.output();
 }
 
-// As the manual's programs are made (4.2.2): by the folders handler/include and handler/obj.
+// As in the manual's makefiles (4.2.2): by the folders handler/include and handler/obj.
 TEST(Installed, IsFoundByMakefilesInTheManualsShape) {
   const test::TempDir dir;
   std::filesystem::copy_file(test::source("agents/saphira_c/examples/packet.c"),

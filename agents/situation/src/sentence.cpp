@@ -21,7 +21,7 @@ std::string Sentence::text() const {
   int most = 0;
   for (const Part& part : parts)
     most = std::max(most, part.rank);
-  // Of what is equally important the last is the less important one.
+  // Among equal ranks, the last part is less important.
   for (int rank = most; rank >= 0 && !fits(); --rank)
     for (std::size_t i = parts.size(); i-- > 0 && !fits();)
       if (parts[i].rank == rank && !parts[i].brief.empty())

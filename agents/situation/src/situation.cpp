@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::array kMakeItGo{"bridge", "behaviors", "intentions"};
 
-constexpr std::uint64_t kLateCycles = 3;   // behind: worth a word
-constexpr std::uint64_t kHungCycles = 10;  // behind: nothing comes any more
-constexpr double kListened = 1.0;          // [s] of listening after which silence means something
+constexpr std::uint64_t kLateCycles = 3;   // behind: worth mentioning
+constexpr std::uint64_t kHungCycles = 10;  // behind: no more samples come
+constexpr double kListened = 1.0;          // [s] of listening after which silence counts
 constexpr double kFresh = 5.0;             // [s] after its start
-constexpr std::uint64_t kLongRun = 100;    // [cycles] of the robot: then a fresh program came late
+constexpr std::uint64_t kLongRun = 100;    // [cycles] of the robot: a fresh program is late
 
 double seconds_of(std::uint64_t cycles) {
   return 0.1 * static_cast<double>(cycles);
 }
 
-/// The newest instance that is heard; of those that are not, the one that was heard last.
+/// The newest instance that is heard; otherwise the one that was heard last.
 const Program* find(const std::vector<Program>& programs, const std::string& name) {
   const Program* found = nullptr;
   const auto better = [](const Program& a, const Program& b) {
@@ -47,11 +47,11 @@ std::string of_several(const std::string& words, std::size_t count) {
 
 struct Expected {
   Known known;
-  std::uint64_t cycle = 0;  ///< which sample is wanted
+  std::uint64_t cycle = 0;  ///< the expected sample
   bool there = false;
 };
 
-/// The topic of a program that comes in each cycle; nothing: it is not known of this one.
+/// The cyclic topic of a program; nothing: unknown for this one.
 std::optional<Expected> expected(const Situation& s, const std::string& program) {
   if (program == "behaviors")
     return Expected{s.behaviors_known, s.cycle, s.behaviors.has_value()};
@@ -60,7 +60,7 @@ std::optional<Expected> expected(const Situation& s, const std::string& program)
   return std::nullopt;
 }
 
-/// Of a past cycle: only what was kept of that time counts.
+/// In a past cycle only the samples of that time count.
 Condition past_condition(const Situation& s, const std::string& program) {
   const auto wanted = expected(s, program);
   if (!wanted)
@@ -83,7 +83,7 @@ Condition past_condition(const Situation& s, const std::string& program) {
 
 Condition present_condition(const Situation& s, const std::string& name) {
   const Program* const program = find(s.programs, name);
-  // A program that is there may not have spoken yet.
+  // A present program may not have published yet.
   if (program == nullptr)
     return s.listened < kListened
                ? Condition{}
@@ -141,7 +141,7 @@ Condition condition(const Situation& situation, const std::string& program) {
 }
 
 std::string trouble(const Situation& situation) {
-  // Of what is the case for several it is said once.
+  // The same trouble of several programs is stated once.
   std::vector<std::pair<std::string, std::vector<std::string>>> all;
   for (const char* const name : kMakeItGo) {
     const Condition how = condition(situation, name);
@@ -171,7 +171,8 @@ std::string suspended(const Situation& situation) {
   std::string text;
   for (const v1::ProcessSet& service : situation.processes)
     for (const v1::Process& process : service.processes())
-      // One that was suspended later was not then; one that goes on again is not told apart.
+      // A task that was suspended later was not suspended then; one resumed since cannot be told
+      // apart.
       if (process.state() == v1::PROCESS_SUSPENDED &&
           (!situation.past || process.since() <= situation.cycle))
         text += (text.empty() ? "" : ", ") + process.name() + " of " + service.service();

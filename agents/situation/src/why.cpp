@@ -49,7 +49,7 @@ void Reason::add_conditions(Cause& cause) const {
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
       cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
-  // It serves its robot, and not as it should: a bad line, motors that are off.
+  // The robot is served with limitations: a bad line, or motors that are off.
   if (scene_.past)
     return;
   for (const Program& program : scene_.programs)
@@ -110,7 +110,7 @@ Explanation Reason::by_hand() const {
   return finish(sentence, std::move(cause));
 }
 
-/// The robot itself is not heard: what was, and why there is no more.
+/// The robot itself is silent: its last state, and the cause of the silence.
 Explanation Reason::silent() {
   const Condition bridge = condition(scene_, "bridge");
   Sentence sentence;
@@ -156,7 +156,7 @@ Explanation Reason::by_behaviors_known() {
   };
   few(speeds);
   few(turns);
-  // Going straight on needs no reason unless somebody wanted something else.
+  // Straight on needs no reason unless some behavior wanted to turn.
   std::erase_if(turns, [](const Say& say) { return std::abs(say.behavior->turn()) < kNoTurn; });
   if (std::abs(told_turn()) < kNoTurn && turns.size() < 2)
     turns.clear();
@@ -181,7 +181,7 @@ Explanation Reason::by_behaviors_known() {
     rank = 4;
   }
   if (speeds.empty() && !guarded && !aged) {
-    // The rest of a speed of before comes down by itself.
+    // The rest of an earlier speed decreases by itself.
     add(rank, std::abs(told_speed()) >= kNoSpeed
                   ? "it slows down, no behavior wants a speed any more"
                   : "no behavior wants a speed");

@@ -4,7 +4,7 @@
 
 namespace saphira::situation {
 
-/// True where what it is told, by whichever program, is just that.
+/// True where the robot's command, from any program, is that motion.
 bool Reason::does(Wish wish) const {
   const double turn = told_turn();
   const double speed = scene_.grant->role() == v1::ROLE_NONE ? 0.0 : told_speed();
@@ -72,7 +72,7 @@ Explanation Reason::why_not(Wish wish) {
     return rule.action() == v1::CONTROL_DECELERATE ||
            (rule.action() == v1::CONTROL_SPEED && rule.value() < speed - kNoSpeed);
   };
-  // The best reason is of the rule that came nearest to having its way.
+  // The best reason comes from the rule that was nearest to success.
   enum Rank { not_true, too_little, no_activity, suppressed, outweighed };
   struct Best {
     int rank = -1;
@@ -86,13 +86,13 @@ Explanation Reason::why_not(Wish wish) {
   };
   const std::vector<Say> say = says(channel);
   for (const v1::BehaviorState& behavior : all.behaviors()) {
-    // The rules of a behavior that does not run are not known.
+    // The rules of a behavior that is not running are unknown.
     if (!behavior.running())
       continue;
     for (const v1::RuleState& rule : behavior.rules()) {
       if (!would(rule))
         continue;
-      // A setpoint of a rule that does not hold is nobody's wish.
+      // The setpoint of a rule that does not hold is no wish.
       if (wish == Wish::faster && rule.action() == v1::CONTROL_SPEED && rule.strength() < kNoSay)
         continue;
       const std::string who =
@@ -130,7 +130,7 @@ Explanation Reason::why_not(Wish wish) {
           if (opposed && other.weight >= kNoSay && against == nullptr)
             against = &other;
         }
-        // Within one behavior, too, a rule may speak against another.
+        // Rules within one behavior may oppose each other, too.
         std::string what = who + ", but ";
         if (against == nullptr)
           what += "it weighs too little for it";

@@ -8,7 +8,7 @@
 namespace saphira::situation {
 namespace {
 
-/// [s] What is older is worth mentioning.
+/// [s] Older inputs are worth mentioning.
 constexpr double kOldInput = 0.3;
 
 bool later(const v1::Stamp& a, const v1::Stamp& b) {
@@ -48,7 +48,7 @@ std::vector<Say> Reason::says(Channel channel) const {
       if (channel_of(rule) != channel)
         continue;
       say.weight += clamp01(rule.strength()) * weight_of(behavior, channel);
-      // Of turns what counts is how far they turn; of speeds, how strongly they hold.
+      // The size of turns counts, and the strength of speeds.
       const auto counts = [&](const v1::RuleState& r) {
         return r.strength() * (channel == Channel::turn ? std::abs(r.value()) : 1.0);
       };
@@ -106,7 +106,7 @@ std::string Reason::meanwhile() const {
   std::vector<std::string> parts;
   if (std::abs(velocity - speed) >= kFarFromTold)
     parts.push_back(speed_text(velocity));
-  // It may well turn where it is told a heading.
+  // A robot without speed may well turn towards its heading setpoint.
   if (stands && std::abs(rotation) >= kTurning)
     parts.push_back("turns " + turn_text(rotation, true));
   if (parts.empty())
@@ -124,8 +124,7 @@ const v1::RuleText* Reason::text_of(const v1::BehaviorState& behavior,
   return nullptr;
 }
 
-/// The rule's antecedent as it is written, with the values of what is in it; empty where it is not
-/// known.
+/// The rule's antecedent as written, with the values of its variables; empty where unknown.
 std::string Reason::antecedent(const v1::BehaviorState& behavior, const v1::RuleState& rule) const {
   const v1::RuleText* const text = text_of(behavior, rule);
   if (text == nullptr || text->antecedent().empty())
@@ -145,7 +144,7 @@ const v1::IntentionNode* Reason::node(std::uint32_t id) const {
   return nullptr;
 }
 
-/// The intention that wants the behavior.
+/// The intention that intends the behavior.
 const v1::IntentionNode* Reason::node_of(const v1::BehaviorState& behavior) const {
   if (scene_.intentions)
     for (const v1::IntendedBehavior& intended : scene_.intentions->behaviors())
@@ -164,7 +163,7 @@ const v1::GoalStatus* Reason::status(const v1::GoalId& id) const {
   return nullptr;
 }
 
-/// Empty where nothing is known of it.
+/// Empty for an unknown goal.
 std::string Reason::goal_text(const v1::GoalId& id) const {
   for (const v1::Goal& goal : scene_.goals)
     if (same(goal.id(), id))
@@ -186,8 +185,7 @@ std::string Reason::requester(const v1::GoalId& id) const {
   return known == nullptr || known->requester().empty() ? "somebody" : known->requester();
 }
 
-/// For which intention and goal (of a program's own mind: which program) these behaviors are there,
-/// where that is known.
+/// The intention and goal of these behaviors (or the program, for its own ones), where known.
 void Reason::add_purpose(Sentence& sentence,
                          const std::vector<const v1::BehaviorState*>& behaviors) const {
   if (scene_.own_mind)
@@ -222,7 +220,7 @@ std::string Reason::of_say(const Say& say, Channel channel, bool with_rule) cons
          (with_rule && say.main_rule != nullptr ? " (rule " + say.main_rule->name() + ")" : "");
 }
 
-/// A behavior's recommendation on both channels, as far as it is to be mentioned.
+/// A behavior's recommendation on both channels, as far as it is worth mentioning.
 std::string Reason::wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
                           const v1::BehaviorState& behavior, bool with_rules) const {
   std::vector<std::string> parts;
@@ -304,7 +302,7 @@ Cause Reason::goal_cause(const v1::GoalId& id) const {
 
 std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
   Cause cause{"intention", "for " + with_arguments(of), {}};
-  // Its label is the state that comes next, which says nothing about now.
+  // Its label is the next state, which does not describe the present.
   if (!of.step().empty())
     cause.text += ": " + of.step();
   if (!told_nodes_.insert(of.id()).second) {
@@ -323,8 +321,7 @@ std::optional<Cause> Reason::chain(const v1::IntentionNode& of) {
   return cause;
 }
 
-/// The advice of people on the subject of the intention: each once, where it counts
-/// first.
+/// People's advice on the subject of the intention: each once, at its first use.
 void Reason::add_advice(const v1::IntentionNode& of, Cause& cause) {
   for (const v1::Belief& belief : scene_.beliefs)
     if (belief.said_by().find(" said ") != std::string::npos && concerns(belief, of) &&
@@ -411,7 +408,7 @@ std::string Reason::idle_reason() const {
   return goals_reason();
 }
 
-/// Of a robot for which no behavior is intended.
+/// For a robot without an intended behavior.
 std::string Reason::goals_reason() const {
   const v1::GoalStatus* newest = nullptr;
   for (const v1::GoalStatus& status : scene_.statuses) {

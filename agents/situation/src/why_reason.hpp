@@ -12,13 +12,13 @@
 
 namespace saphira::situation {
 
-/// [s] Without a packet of the robot for so long, what was last says little about now.
+/// [s] After this time without a packet, the last state says little about the present.
 inline constexpr double kSilence = 1.0;
 
 /// How a behavior takes part in a channel of the blend.
 struct Say {
   const v1::BehaviorState* behavior = nullptr;
-  double weight = 0.0;  ///< its rules' strengths times what is left of its activity
+  double weight = 0.0;  ///< its rules' strengths times its remaining activity
   double share = 0.0;   ///< [0..1] of all weights on the channel
   const v1::RuleState* main_rule = nullptr;
 };
@@ -26,7 +26,7 @@ struct Say {
 /// "behaviors (behaviors) was refused: ..."
 std::string refused(const v1::Refusal& refusal);
 
-/// Walks over what is known and puts it into words.
+/// Walks over the situation and puts it into words.
 class Reason {
  public:
   explicit Reason(const Situation& situation) : scene_(situation) {}
@@ -64,7 +64,7 @@ class Reason {
   std::string requester(const v1::GoalId& id) const;
   void add_purpose(Sentence& sentence,
                    const std::vector<const v1::BehaviorState*>& behaviors) const;
-  /// Why no behavior drives; empty where that is not known.
+  /// The reason why no behavior drives; empty where unknown.
   std::string idle_reason() const;
   std::string goals_reason() const;
 
@@ -88,7 +88,7 @@ class Reason {
   Explanation by_behaviors_unknown() const;
   Explanation by_behaviors_known();
   Explanation finish(const Sentence& sentence, Cause cause) const;
-  /// Of how the programs are that this rests on, those that are not simply well.
+  /// Adds the conditions of the programs involved, as far as they are not well.
   void add_conditions(Cause& cause) const;
 
   const Situation& scene_;

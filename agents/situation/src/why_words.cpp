@@ -104,7 +104,7 @@ bool nameless(const std::string& name, const std::string& schema) {
 }
 
 std::string intention_name(const v1::IntentionNode& node) {
-  // The root of a goal's tree has the goal's id for a name.
+  // The root of a goal's tree has the goal's id as its name.
   return node.parent() == 0 || nameless(node.name(), node.schema())
              ? node.schema()
              : node.schema() + " (" + node.name() + ")";

@@ -8,19 +8,19 @@
 #include "saphira/geometry/pose.hpp"
 #include "saphira/situation/format.hpp"
 
-// The words and small questions that explanations are made of.
+// The words and simple predicates of explanations.
 namespace saphira::situation {
 
-inline constexpr double kNoSpeed = 0.005;        // [m/s] below it stands
-inline constexpr double kNoTurn = radians(1.0);  // below it goes straight on
-inline constexpr double kNoSay = 0.005;          // [0..1] below that a rule or behavior has no say
-inline constexpr double kMentioned = 0.1;     // [0..1] a share that is worth words in the sentence
-inline constexpr double kFarFromTold = 0.05;  // [m/s] from the setpoint: said
-inline constexpr double kTurning = radians(3.0);  // [rad/s] a turn that is seen
+inline constexpr double kNoSpeed = 0.005;         // [m/s] below it stands
+inline constexpr double kNoTurn = radians(1.0);   // below it goes straight on
+inline constexpr double kNoSay = 0.005;           // [0..1] smaller parts of a rule are ignored
+inline constexpr double kMentioned = 0.1;         // [0..1] a share worth mentioning in the sentence
+inline constexpr double kFarFromTold = 0.05;      // [m/s] from the setpoint: mentioned
+inline constexpr double kTurning = radians(3.0);  // [rad/s] a visible turn
 inline constexpr std::size_t kMostMentioned = 3;  // behaviors in the sentence
 
 std::string speed_text(double speed);
-/// "12 degrees"; so little that nobody sees it turn with a decimal.
+/// Such as "12 degrees"; invisibly small angles with a decimal.
 std::string angle_text(double angle);
 /// `rate`: [rad/s] instead of [rad].
 std::string turn_text(double turn, bool rate = false);
@@ -38,13 +38,13 @@ bool recommends(const v1::BehaviorState& behavior, Channel channel);
 std::string wish_of(const v1::BehaviorState& behavior, Channel channel);
 
 std::string control_text(const v1::RuleState& rule);
-/// A name without the number behind it that makes it unique: follow of follow#8.
+/// A name without its unique number: follow of follow#8.
 std::string without_number(const std::string& name);
 std::string plain(const std::string& name);
-/// True where an instance has its name from its schema: KeepOff#3, keep-off.
+/// True where an instance is named after its schema: KeepOff#3, keep-off.
 bool nameless(const std::string& name, const std::string& schema);
 std::string intention_name(const v1::IntentionNode& node);
-/// True where what is believed is about an argument of the intention: "place-of-karen" about
+/// True where the belief concerns an argument of the intention: "place-of-karen" concerns
 /// "name=karen".
 bool concerns(const v1::Belief& belief, const v1::IntentionNode& node);
 std::string with_arguments(const v1::IntentionNode& node);

@@ -17,7 +17,7 @@ Case when(const std::string& words, const std::string& question, const Situation
   return one;
 }
 
-/// Its samples ended `cycles` ago; its newest is not the one that is wanted.
+/// Its samples ended `cycles` ago; its newest is not the expected one.
 Change silent(const std::string& name, std::uint64_t cycles) {
   return [=](Situation& s) {
     if (name == "behaviors") {

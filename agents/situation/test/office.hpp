@@ -4,13 +4,13 @@
 
 #include "saphira/situation/situation.hpp"
 
-/// A robot in an office, for tests: what its programs say while all is well.
+/// A robot in an office, for tests: the samples of its programs in normal operation.
 namespace saphira::situation::test {
 
 v1::GoalId id(std::uint64_t number);
 v1::RuleState rule(const std::string& name, double strength, v1::ControlAction action,
                    double value);
-/// A program that runs since a minute, and was heard just now.
+/// A program that has run for a minute, and was heard just now.
 Program program(const std::string& name);
 /// The status of goal 2, go_to (3, 1).
 v1::GoalStatus goal_status(v1::GoalState state, const std::string& reason = {});
@@ -20,7 +20,7 @@ v1::GoalStatus goal_status(v1::GoalState state, const std::string& reason = {});
 Situation driving();
 /// The same robot at rest: no goal was ever asked for.
 Situation resting();
-/// It stands, and nobody drives: `reason` is the bridge's.
+/// The robot stands without a driver: `reason` is the bridge's.
 void stand(Situation& situation, const std::string& reason = "nobody asks to drive");
 /// A person drives by keyboard: [m/s], [rad/s].
 void by_keyboard(Situation& situation, double velocity, double rotation);

@@ -9,23 +9,23 @@
 namespace saphira::situation::test {
 
 struct Case {
-  std::string words;     ///< what is the case, for people
+  std::string words;     ///< the situation, for people
   std::string question;  ///< why, why not turn left, why tree, drive, trouble
   Situation situation;
   std::vector<std::string> must;      ///< parts of the answer
   std::vector<std::string> must_not;  ///< no parts of it
 };
 
-/// Where all is well, and where people drive.
+/// Normal operation, and people driving.
 std::vector<Case> good_cases();
-/// Where something is missing, slow, or past.
+/// Missing, slow, or past samples.
 std::vector<Case> bad_cases();
 /// Both.
 std::vector<Case> all_cases();
 
 /// The sentences in the situation.
 std::string answer(const Case& one);
-/// The trouble with the answer; empty: nothing.
+/// The errors in the answer; empty: none.
 std::vector<std::string> faults(const Case& one);
 /// All as one table.
 std::string to_markdown(const std::vector<Case>& cases);

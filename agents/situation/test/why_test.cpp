@@ -183,7 +183,7 @@ TEST_F(WhyTest, ASlowNetworkIsSaidAndHowSlow) {
             std::string::npos)
       << slow.sentence;
   EXPECT_NE(to_text(slow).find("- the network, or a computer, is slow"), std::string::npos);
-  // Where it drives no faster anyway the sentence is about something else.
+  // Where it could drive no faster anyway, the sentence has another subject.
   scene.behaviors->limit_reason("");
   scene.grant->command_age(0.4);
   const Explanation slower = why(scene);
@@ -294,7 +294,7 @@ TEST_F(WhyTest, NotSinceItIsSoLittle) {
       "is as good as straight on.");
 }
 
-// A setpoint that is computed for a case that is not there is nobody's wish.
+// A setpoint for a case that does not hold is no wish.
 TEST_F(WhyTest, NotFasterByARuleThatDoesNotHold) {
   keep_off().rules().push_back(rule("slow_down", 0.0, v1::CONTROL_SPEED, 1.5));
   EXPECT_TRUE(sentence(Wish::faster).starts_with("It does not go faster: no running"))

@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBlock = kRate / 50;
-constexpr std::size_t kMost = 10 * kRate;          // samples that wait to be taken
+constexpr std::size_t kMost = 10 * kRate;          // samples in the queue
 constexpr unsigned kLatency = 100'000;             // [us] of a device
-constexpr std::chrono::milliseconds kAgain{5000};  // before a device is tried again
+constexpr std::chrono::milliseconds kAgain{5000};  // between two attempts with a device
 constexpr std::chrono::milliseconds kLook{200};    // within which a thread notices its end
 
 struct ClosePcm {
@@ -52,7 +52,7 @@ Pcm open_device(const std::string& name, snd_pcm_stream_t direction) {
   return pcm;
 }
 
-/// After a device has reported an error that it does not recover from.
+/// The error after a device has failed for good.
 std::runtime_error failed(const std::string& device, snd_pcm_sframes_t error) {
   return std::runtime_error("the sound device \"" + device +
                             "\": " + snd_strerror(static_cast<int>(error)));
@@ -80,7 +80,7 @@ bool Microphone::ended() const {
   return at_end_ && waiting_.empty();
 }
 
-/// waits: what comes from a file or a pipe is not lost.
+/// waits: sound from a file or a pipe is not lost.
 void Microphone::put(const Sound& sound, bool waits) {
   std::unique_lock lock(mutex_);
   while (waits && waiting_.size() > kMost && !stop_)
@@ -120,7 +120,7 @@ void Microphone::read_once() {
     const int file = open(source_.c_str(), O_RDONLY | O_NONBLOCK);
     if (file < 0)
       throw std::runtime_error("the pipe " + source_ + " cannot be read");
-    read_pipe(file);  // whoever writes next is read next
+    read_pipe(file);  // the next writer is read next
     close(file);
   } else {
     read_device();
@@ -137,7 +137,7 @@ void Microphone::read_pipe(int file) {
     std::array<char, 4096> block{};
     const ssize_t count = read(file, block.data(), block.size());
     if (count == 0 && !begun && file != STDIN_FILENO) {
-      std::this_thread::sleep_for(kLook);  // nobody has opened it to write yet
+      std::this_thread::sleep_for(kLook);  // no writer yet
       continue;
     }
     if (count <= 0)

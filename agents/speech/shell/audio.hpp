@@ -12,20 +12,20 @@
 
 namespace saphira::speech {
 
-/// Where sound comes from: a device of ALSA, a WAV file, `-` or a FIFO with raw samples (16 bits,
-/// 16 kHz, one channel), or `none`. Reads in a thread of its own; at most a few seconds wait to be
-/// taken, and of a device what is older is lost.
+/// The source of sound: a device of ALSA, a WAV file, `-` or a FIFO with raw samples (16 bits, 16
+/// kHz, one channel), or `none`. Reads in a thread of its own; the queue holds a few seconds at
+/// most, and a device's older sound is lost.
 class Microphone {
  public:
-  /// `trouble` is told, from the thread, why nothing comes; an empty text: it comes again. A device
-  /// that fails is tried again.
+  /// `trouble` gets, from the thread, the reason for missing sound; an empty text: it comes again.
+  /// A failed device is tried again.
   Microphone(std::string source, std::function<void(const std::string&)> trouble);
   ~Microphone();
   Microphone(const Microphone&) = delete;
   Microphone& operator=(const Microphone&) = delete;
 
   Sound take();
-  /// A file is at its end, and all of it has been taken.
+  /// True at the end of a file, with an empty queue.
   bool ended() const;
 
  private:
@@ -46,7 +46,7 @@ class Microphone {
   std::thread thread_;
 };
 
-/// Where sound goes to: a device of ALSA, a folder (a WAV file for each), or `none`. Plays in a
+/// The target of sound: a device of ALSA, a folder (a WAV file for each), or `none`. Plays in a
 /// thread of its own.
 class Speaker {
  public:

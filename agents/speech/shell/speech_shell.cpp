@@ -93,7 +93,7 @@ void SpeechShell::tell(const Conversation::Outputs& out) {
     utterance.speaker(options_.person);
     utterance.text(text);
     utterance.means(v1::UTTERANCE_SPOKEN);
-    // A keyword alone: what was behind it was not understood.
+    // A keyword alone: the rest was not understood.
     utterance.confidence(text.find(' ') == std::string::npos ? 0.5 : 1.0);
     utterance.time(unix_time());
     heard_.write(utterance);
@@ -114,7 +114,7 @@ void SpeechShell::reload() {
   }
 }
 
-/// Reports the trouble of the sound threads. Each trouble is told once.
+/// Reports the errors of the sound threads, each once.
 void SpeechShell::report() {
   const std::lock_guard lock(mutex_);
   if (trouble_ == told_)

@@ -18,14 +18,13 @@ struct SpeechOptions {
   std::string microphone = "default";
   std::string speaker = "default";
   std::string voice = "slt";
-  std::string person;  ///< whoever speaks, where it is known
+  std::string person;  ///< the speaker, if known
 };
 
-/// Speech on the bus: what is heard becomes utterances, and what the robot says is spoken.
+/// Speech on the bus: recognized speech becomes utterances, and the robot's utterances are spoken.
 class SpeechShell {
  public:
-  /// FileError, std::runtime_error or std::invalid_argument where a file, the model or the voice
-  /// is wrong.
+  /// FileError, std::runtime_error or std::invalid_argument for a wrong file, model or voice.
   SpeechShell(bus::Node& node, const SpeechOptions& options);
 
   void step();

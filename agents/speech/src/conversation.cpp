@@ -7,7 +7,7 @@ namespace saphira::speech {
 namespace {
 
 constexpr double kEcho = 0.3;       // [s] of a room, after the robot has spoken
-constexpr double kPatience = 20.0;  // [s] for a reply; as the dialogue has it
+constexpr double kPatience = 20.0;  // [s] for a reply; as in the dialogue
 
 }  // namespace
 
@@ -67,7 +67,7 @@ Conversation::Outputs Conversation::hear(const Sound& sound, bool speaking) {
   replies_ = std::max(0.0, replies_ - (speaking ? 0.0 : length));
   deaf_ = speaking ? kEcho : deaf_ - length;
   if (speaking || deaf_ > 0.0) {
-    recognizer_.end();  // what was being said is lost in the robot's own voice
+    recognizer_.end();  // the robot's own voice covers the present speech
     return {};
   }
   if (!recognizer_.in_speech())

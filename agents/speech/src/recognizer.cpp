@@ -12,7 +12,7 @@
 namespace saphira::speech {
 namespace {
 
-// Phones behind the keyword that are no word: breath, or the noise of the room.
+// Phones after the keyword that are no word: breath, or room noise.
 constexpr int kBreath = 4;
 constexpr const char* kPhone = "p_";  // begins the token of a phone; words are w0, w1, ...
 
@@ -47,11 +47,11 @@ struct Recognizer::Self {
   std::unique_ptr<Pronunciations> pronunciations;
   std::map<std::string, std::string> tokens;  ///< of the words
   std::map<std::string, std::string> words;   ///< of the tokens
-  bool listens = false;                       ///< an utterance has been begun
+  bool listens = false;                       ///< an utterance has begun
   bool in_speech = false;
   int grammars = 0;
-  std::string keyword;   ///< that was heard alone: what follows belongs to it
-  double attends = 0.0;  ///< [s] for how long still
+  std::string keyword;   ///< a keyword alone: further words belong to it
+  double attends = 0.0;  ///< [s] remaining time for that
 
   std::string token(const std::string& word);
   std::string name_of(bool continued) const {
@@ -95,7 +95,7 @@ bool Recognizer::in_speech() const {
   return self_->in_speech || !self_->keyword.empty();
 }
 
-/// The recognizer's dictionary is not asked for words with signs or digits in them.
+/// Words with signs or digits are not looked up in the recognizer's dictionary.
 std::string Recognizer::Self::token(const std::string& word) {
   const auto known = tokens.find(word);
   if (known != tokens.end())
@@ -113,7 +113,7 @@ std::string Recognizer::Self::token(const std::string& word) {
   return name;
 }
 
-/// continued: the keyword was said before.
+/// continued: the keyword came before.
 void Recognizer::Self::take(const agent_interface::WordGraph& graph, bool continued) {
   using agent_interface::WordGraph;
   logmath_t* const log = ps_get_logmath(decoder.get());
@@ -205,7 +205,7 @@ Heard Recognizer::Self::result() const {
   return heard;
 }
 
-/// The utterance has ended. A keyword alone waits for what follows it.
+/// The utterance has ended. A keyword alone waits for further words.
 void Recognizer::Self::finish(std::vector<Event>& events) {
   if (!listens)
     return;
@@ -229,7 +229,7 @@ void Recognizer::Self::finish(std::vector<Event>& events) {
   events.push_back({Event::Kind::heard, heard});
 }
 
-/// Nothing has followed.
+/// No further words came.
 void Recognizer::Self::give_up_attention(std::vector<Event>& events) {
   if (keyword.empty() || in_speech)
     return;

@@ -50,7 +50,7 @@ Sound read_wav(const std::string& bytes, const std::string& file) {
   std::uint32_t rate = 0;
   for (std::size_t at = 12; at + 8 <= bytes.size();) {
     const std::string chunk = bytes.substr(at, 4);
-    // A stream that was written without knowing its length says so by a length beyond its end.
+    // A stream of unknown length has a length beyond its end.
     const std::size_t length =
         std::min<std::size_t>(number(bytes, at + 4, 4), bytes.size() - at - 8);
     at += 8;

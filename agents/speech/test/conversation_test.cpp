@@ -15,7 +15,7 @@ class ConversationTest : public WithModel {
         std::make_unique<Recognizer>(RecognizerSettings{}, pronunciations(), "pronunciations");
     conversation = std::make_unique<Conversation>(*recognizer, shipped_grammar());
   }
-  /// In pieces of 0.1 s, as they come from a device.
+  /// In pieces of 0.1 s, as from a device.
   std::vector<std::string> hear(const Sound& sound, bool speaking = false) {
     std::vector<std::string> all;
     ums = 0;

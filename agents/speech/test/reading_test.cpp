@@ -14,7 +14,7 @@ TEST(Reading, EverySpeakerKeepsAVoiceOfTheirOwn) {
       "alice: Flakey, stop\nflakey: I stop\n\njohn: Flakey, stop\nalice: Flakey, stop\n");
   ASSERT_EQ(passages.size(), 4U);
   EXPECT_EQ(passages[0].speaker, "alice");
-  // flite adds noise of its own to each: a voice is known by how long it takes.
+  // flite adds noise of its own to each: a voice is recognized by its duration.
   const auto length = [](const char* voice, const char* text) {
     return Voice(voice).say(text).size();
   };

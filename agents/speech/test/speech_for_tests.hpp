@@ -38,7 +38,7 @@ inline agent_interface::Grammar shipped_grammar() {
   return {read_file(file), file};
 }
 
-/// Tests that need the recognizer's model, which a Debian package of its own holds.
+/// Tests that need the recognizer's model, which is in a separate Debian package.
 class WithModel : public testing::Test {
  protected:
   void SetUp() override {

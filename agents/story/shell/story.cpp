@@ -11,9 +11,9 @@
 namespace saphira::story {
 namespace {
 
-constexpr double kThought = 1.0;    // [s] before somebody answers
+constexpr double kThought = 1.0;    // [s] before an answer
 constexpr double kStanding = 0.03;  // [m/s] a robot no faster than this stands
-constexpr double kPause = 1.5;      // [s] of standing, before it is told something
+constexpr double kPause = 1.5;      // [s] of standing, before the next line
 
 double unix_time() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();

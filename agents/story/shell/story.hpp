@@ -16,37 +16,37 @@
 namespace saphira::story {
 
 struct StoryOptions {
-  std::vector<std::string> services;  ///< that have to run before the first line
+  std::vector<std::string> services;  ///< required before the first line
   double time_limit = 1200.0;         ///< [s] of robot time
-  /// Takes what is said, as it is said: the robot's time, its place, and "alice: Flakey, ...".
+  /// Gets each utterance as it comes: the robot's time, its place, and "alice: Flakey, ...".
   std::function<void(double time, const std::string& place, const std::string& line)> show;
 };
 
-/// "   12.3 s  EJ-247           alice: Flakey, ...": what is said as people and programs read it.
+/// "   12.3 s  EJ-247           alice: Flakey, ...": an utterance for people and programs.
 std::string story_line(double time, const std::string& place, const std::string& line);
 bool is_story_line(std::string_view line);
 /// Of a story line: "alice: Flakey, ...".
 std::string_view said_in(std::string_view story_line);
 
-/// Plays the people of a cast on the bus: they say their lines, and answer what the robot asks them
-/// where they are. They take the same way as everybody who speaks to the robot. The robot's cycles
+/// Plays the people of a cast on the bus: they say their lines, and answer the robot's questions at
+/// their places. They use the same topics as everybody who speaks to the robot. The robot's cycles
 /// are their only clock. For the node's own thread.
 class Story {
  public:
   Story(bus::Node& node, Cast cast, StoryOptions options);
 
-  /// Takes what has come, and says what is due. True when the story has come to its end.
+  /// Takes the input, and says due lines. True when the story has come to its end.
   bool step();
 
-  /// True where the robot knows where it is, and the services run.
+  /// True where the robot has its place on the map, and the services run.
   bool ready() const { return waiting_for_.empty() && !place_.empty(); }
-  /// True where it ended as the cast says.
+  /// True where the end is the cast's.
   bool well() const { return ended_ && cast_.ends_well(outcome_); }
   /// The robot's last answer to the newest line; empty: none.
   const std::string& outcome() const { return outcome_; }
   double time() const { return time_; }  ///< [s] of the robot
   std::size_t utterances() const { return utterances_; }
-  /// Of all that was said, in its order.
+  /// Hash of all utterances, in order.
   std::string hash() const { return hash_.text(); }
 
  private:
@@ -71,15 +71,15 @@ class Story {
   std::string place_;  ///< of the robot
   std::string outcome_;
   double time_ = 0.0;
-  bool waits_ = false;  ///< for the end of the newest line
+  bool waits_ = false;  ///< for the last answer to the newest line
   bool ended_ = false;
   std::optional<Cast::Line> answer_;
-  double answer_time_ = 0.0;  ///< [s] of the robot, when somebody gives that answer
+  double answer_time_ = 0.0;  ///< [s] robot time of that answer
   std::size_t next_ = 0;      ///< line of the cast
   std::uint64_t number_ = 0;  ///< of the newest utterance
   std::uint64_t line_ = 0;    ///< number of the newest line of the cast
-  /// The robot's task while it is told more, such as to follow somebody. Where it gives up
-  /// too soon it is told again.
+  /// The robot's task during further lines, such as to follow a person. If it gives up too soon,
+  /// the line is repeated.
   struct Errand {
     Cast::Line line;
     std::uint64_t number = 0;

@@ -21,7 +21,7 @@ std::optional<std::string> between(std::string_view text, std::string_view befor
   return std::string(text);
 }
 
-/// The rest of the line from a word on, as it was written.
+/// The rest of the line from a word on, as written.
 std::string rest(const saphira::Line& line, std::size_t word) {
   const auto from = static_cast<std::size_t>(line.words[word].column - 1);
   const Word& last = line.words.back();

@@ -11,7 +11,7 @@ Guarded slow_for_age(Guarded guarded, double age, double fresh) {
   const double limit = speed_for_age(age - fresh);
   if (std::abs(guarded.velocity) <= limit)
     return guarded;
-  // The stronger limit is the reason that is told.
+  // The stronger limit gives the reason.
   if (guarded.action <= GuardAction::limit) {
     char text[128];
     std::snprintf(text, sizeof text,

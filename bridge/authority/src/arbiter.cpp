@@ -8,8 +8,8 @@ namespace saphira::authority {
 namespace {
 
 constexpr std::size_t kMaxRefused = 16;    // the sequence in Grant
-constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that strangers can take
-constexpr std::size_t kMaxPressed = 64;    // the same of emergency stops
+constexpr std::size_t kMaxWriters = 1024;  // bounds the memory that unknown writers can take
+constexpr std::size_t kMaxPressed = 64;    // the same for emergency stops
 constexpr double kTick = 1e-9;             // [s] 3 cycles x 0.1 s are not over after 3 cycles
 constexpr double kNever = -1e300;          // [s]
 constexpr double kCycle = 0.1;             // [s]
@@ -96,7 +96,7 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   };
   if (command.role == Role::none)
     return no("no role");
-  // An emergency stop is heard whatever its number, and whatever it answers.
+  // An emergency stop is heard with any number, and for any cycle.
   if (command.role == Role::estop) {
     if (command.active)
       press(command);
@@ -155,8 +155,8 @@ bool Arbiter::offer(const Command& command, std::uint64_t cycle) {
   return true;
 }
 
-/// Why a command does not take the role from another one who was heard in it; empty where it does.
-/// run_began: when the writer began to say without a pause that it drives, or that it stops.
+/// The reason why a command does not take the role from the writer that holds it; empty where it
+/// does. run_began: start of the writer's unbroken run of driving, or of stopping.
 std::string Arbiter::held_by_another(const Command& command, double run_began) const {
   const Player& p = player(command.role);
   if (command.role != Role::teleop)
@@ -177,7 +177,7 @@ std::string Arbiter::held_by_another(const Command& command, double run_began) c
   return p.newest.source + " has just stopped the robot: let go, then drive in a moment";
 }
 
-/// A release is never refused to the one who drives: whatever is wrong with it, it means stop.
+/// A release by the present driver is never refused: even a faulty one means stop.
 bool Arbiter::release(const Command& command, std::uint64_t cycle) {
   Player& p = player(command.role);
   const bool held = p.held && p.newest.active && fresh(p, command.received);
@@ -209,7 +209,7 @@ bool Arbiter::release(const Command& command, std::uint64_t cycle) {
   return true;
 }
 
-/// Why a command that asks for something cannot be meant for now; empty where it can.
+/// The reason why a command that asks for motion is stale; empty where it is not.
 std::string Arbiter::stale(const Command& command, std::uint64_t cycle) const {
   if (epoch_ == 0)
     return "no robot is connected";
@@ -255,9 +255,9 @@ std::string Arbiter::reset(const std::string& source, double now) {
   pressed_.clear();
   latches_.estopped = false;
   latches_.estop_source.clear();
-  // Only what was at rest before the reset, and heard to be, can begin anew by itself. The
-  // behaviors come to rest when their goals end, which an emergency stop does. Whoever was not
-  // heard may not know of it.
+  // Only a driver that was at rest before the reset, and was heard to be, may begin again by
+  // itself. The behaviors come to rest when their goals end, which an emergency stop causes. A
+  // driver that was not heard may not know of the stop.
   const Player& behaviors = player(Role::behaviors);
   const Player& direct = player(Role::direct);
   const bool rests = behaviors.held && !behaviors.newest.active && fresh(behaviors, now) &&
@@ -270,7 +270,7 @@ std::string Arbiter::reset(const std::string& source, double now) {
   return {};
 }
 
-/// Heard within its lease. What came later than now came before the cycles began anew.
+/// Heard within its lease. A receipt later than now is from before the cycles began anew.
 bool Arbiter::fresh(const Player& p, double now) const {
   return now >= p.newest.received - kTick && now - p.newest.received <= settings_.lease + kTick;
 }
@@ -300,7 +300,7 @@ Role Arbiter::strongest(double now, std::uint64_t cycle) const {
   return Role::none;
 }
 
-/// Why a role with a live command does not drive; empty where it may.
+/// The reason why a role with a live command may not drive; empty where it may.
 std::string Arbiter::why_to_stand(Role role) const {
   if (latches_.estopped)
     return "an emergency stop is latched, pressed by " + latches_.estop_source +
@@ -324,7 +324,7 @@ std::string Arbiter::why_to_stand(Role role) const {
   return {};
 }
 
-/// By option, the quiet time of a person whose program is alive hands the robot back.
+/// With the option `quiet`, the quiet time of a person whose program is alive hands the robot back.
 void Arbiter::end_wait(double now) {
   if (latches_.wait == Wait::driven && now - quiet_heard_ <= settings_.lease + kTick &&
       now - quiet_since_ >= settings_.quiet - kTick)
@@ -363,7 +363,7 @@ Grant Arbiter::decide(double now, std::uint64_t cycle) {
   if (role == Role::none) {
     for (const Role each : kDriving) {
       const Player& p = player(each);
-      // A driver that has let go is no reason: a person who drove minutes ago least of all.
+      // A driver that has let go is no reason to wait, least of all a person who drove minutes ago.
       if (p.held && p.newest.active)
         grant.reason = why_not(p, now, cycle);
     }

@@ -9,8 +9,8 @@ namespace {
 constexpr double kTowards = radians(60.0);
 constexpr std::uint64_t kTurnCycles = 10;
 
-/// A robot may take ten seconds past a person whom it does not hear any more. Where nothing was,
-/// somebody may step in: space that was heard to be free makes no echo less believable.
+/// A robot may take ten seconds past a person whose echo has ended. A person may step into a space
+/// that was free, so free space does not make an echo less believable.
 lps::MemorySettings cautious_memory() {
   lps::MemorySettings settings;
   settings.least = 0.0;

@@ -9,12 +9,12 @@ namespace saphira::authority {
 
 namespace {
 
-constexpr double kCreep = 0.02;        // [m/s] slower is as good as standing
+constexpr double kCreep = 0.02;        // [m/s] counts as standing
 constexpr double kDeceleration = 0.3;  // [m/s2] of a robot that does not say its own
 constexpr double kSameWay = radians(3.0);
-// [m] A robot whose sonars reach less keeps this share of their reach as margin.
+// [m] A robot with a smaller sonar range keeps this share of the range as margin.
 constexpr double kShareOfReach = 0.25;
-// A thing that comes closer takes no more than this share of the reach until the robot brakes.
+// An approaching obstacle takes at most this share of the range until the robot brakes.
 constexpr double kShareOfWay = 0.1;
 
 std::string text(const char* format, double a, double b) {
@@ -38,7 +38,7 @@ double free_distance(const std::vector<Vec2>& points, double radius, double side
   for (const Vec2& point : points) {
     const double ahead = forward ? point.x() : -point.x();
     const double aside = std::abs(point.y());
-    // A thing beside or behind is left by driving on. Within 60 degrees of the path it is ahead.
+    // Driving on leaves an obstacle beside or behind. Within 60 degrees of the path it is ahead.
     if (aside >= width || ahead <= 0.0 || aside > std::sqrt(3.0) * ahead)
       continue;
     const double nose = aside < radius ? std::sqrt(radius * radius - aside * aside) : 0.0;
@@ -62,16 +62,16 @@ namespace {
 
 /// The speed that the points allow straight ahead (or back).
 struct Allowed {
-  double free = std::numeric_limits<double>::infinity();   // [m] of the hull's path
-  double speed = std::numeric_limits<double>::infinity();  // [m/s] past what stands beside it...
-  double beside = 0.0;                                     // [m] ...so far from the hull
-  // [m] until the hull is beside what may step into its path
+  double free = std::numeric_limits<double>::infinity();   // [m] along the hull's path
+  double speed = std::numeric_limits<double>::infinity();  // [m/s] past an obstacle...
+  double beside = 0.0;                                     // [m] ...at this distance from the hull
+  // [m] until the hull is beside an obstacle that may step into its path
   double until_beside = std::numeric_limits<double>::infinity();
 };
 
-/// The hull may come as near as a person reaches to what stands beside the path, and no nearer
-/// faster than `touch_velocity`. What is driven past at an angle is approached more slowly than the
-/// robot moves.
+/// The hull passes an obstacle beside the path at the reach of a person, and approaches it closer
+/// only up to `touch_velocity`. The approach to an obstacle that is passed at an angle is slower
+/// than the robot's own motion.
 void pass(const GuardSettings& settings, const Body& body, double ahead, double aside,
           Allowed& allowed) {
   const double deceleration = body.deceleration;
@@ -79,7 +79,7 @@ void pass(const GuardSettings& settings, const Body& body, double ahead, double 
   if (ahead <= 0.0 || aside >= room)
     return;
   const double away = std::hypot(ahead, aside);
-  // Where the hull has come so near, and how straight it then goes for it.
+  // The point where the hull reaches that distance, and the angle of its approach there.
   const double meets = std::min(ahead, std::sqrt(room * room - aside * aside));
   const double towards = meets / std::hypot(meets, aside);
   const double at_last = settings.touch_velocity / std::max(towards, 1e-3);
@@ -102,7 +102,7 @@ Allowed allow(const GuardSettings& settings, const Body& body, const std::vector
       pass(settings, body, forward ? point.x() : -point.x(), std::abs(point.y()), allowed);
   };
   look(points);
-  // The robot turns meanwhile: also where it will point.
+  // The robot turns meanwhile: also check the heading that it will have.
   const double turn = turning * body.reaction;
   if (std::abs(turn) >= kSameWay) {
     const ToFrame turned({0.0, 0.0, turn});
@@ -115,7 +115,7 @@ Allowed allow(const GuardSettings& settings, const Body& body, const std::vector
   return allowed;
 }
 
-/// A motion that is cut, limit by limit. The tightest one gives the reason.
+/// A motion and its limits, one by one. The tightest limit gives the reason.
 class Cut {
  public:
   Cut(const GuardSettings& settings, const Body& body, double velocity)
@@ -212,7 +212,7 @@ class Cut {
   const GuardSettings& settings_;
   Body body_;
   double wanted_;
-  double reach_;   // [m] how far ahead a person is surely heard
+  double reach_;   // [m] range at which a person is surely heard
   double margin_;  // [m]
   double speed_;
   double turning_ = 0.0;

@@ -17,7 +17,7 @@ Body body_of(const protocol::RobotParameters& parameters) {
   body.max_rotation_velocity = parameters.max_rotation_velocity;
   body.deceleration = parameters.deceleration;
   body.sonar_range = parameters.sonar_max_range;
-  // On average a sonar's turn is half a round away.
+  // The mean wait for a sonar's turn is half a round.
   const double round = parameters.sonar_period * static_cast<double>(parameters.sonars.size()) /
                        std::max(parameters.sonar_arrays, 1);
   body.reaction = 0.5 * round + kLinkAndServer;

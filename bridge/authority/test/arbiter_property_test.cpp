@@ -1,6 +1,6 @@
-// Random streams of commands, with any mix of ages, epochs, numbers, writers and gaps: the robot is
-// driven by nobody who has no live grant. What "live" means is written here a second time, from the
-// whole history and without state, so that the two can disagree.
+// Random streams of commands, with any mix of ages, epochs, numbers, writers and gaps: nobody
+// drives the robot without a live grant. The definition of "live" is written here a second time,
+// from the whole history and without state, so that the two can disagree.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ TEST_P(Stream, NeverDrivesWithoutALiveGrant) {
   std::uint64_t epoch = 0;
   double not_before = -1.0;  // of the newest connection or gap
   bool estopped = false;
-  bool handed_over = true;  // to autonomy: no person drove since, and no reset came
+  bool handed_over = true;  // to autonomy: no person has driven since, and there was no reset
   int driven = 0;
   for (int step = 0; step < 12000; ++step) {
     const double what = random.uniform();
@@ -49,7 +49,7 @@ TEST_P(Stream, NeverDrivesWithoutALiveGrant) {
       if (arbiter.reset("reset", now).empty()) {
         ASSERT_TRUE(was) << step;
         estopped = false;
-        // Behaviors that were heard to be at rest may begin anew.
+        // Behaviors that were known to be at rest may begin again.
         const Command* newest = nullptr;
         bool direct = false;
         for (const Heard& heard : history) {
@@ -68,7 +68,7 @@ TEST_P(Stream, NeverDrivesWithoutALiveGrant) {
     } else {
       Command c;
       c.role = kRoles[random.next() % 4];
-      // Emergency stops and teleoperators are rarer, or nobody else would ever drive.
+      // Emergency stops and teleoperators are rarer, or no other role would ever drive.
       if (c.role != Role::direct && c.role != Role::behaviors &&
           random.chance(c.role == Role::estop ? 0.99 : 0.9))
         c.role = Role::behaviors;
@@ -95,7 +95,7 @@ TEST_P(Stream, NeverDrivesWithoutALiveGrant) {
     if (grant.role == Role::none || grant.role == Role::estop)
       continue;
     ++driven;
-    // The newest word of the one who drives is an accepted, active, young, fresh command.
+    // The driver's newest command is accepted, active, young and fresh.
     const Command* newest = nullptr;
     for (const Heard& heard : history) {
       if (heard.accepted && heard.command.role == grant.role &&

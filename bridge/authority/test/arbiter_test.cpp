@@ -19,7 +19,7 @@ TEST(Arbiter, NobodyAskedNobodyDrives) {
   EXPECT_EQ(grant.reason, "nobody asks to drive");
 }
 
-// Every set of roles that want to drive: the strongest does, the others hear why not.
+// Every set of roles that want to drive: the strongest drives, the others get the reason.
 TEST(Arbiter, TheStrongestLiveRoleDrives) {
   for (unsigned set = 1; set < 8; ++set) {
     Scene s;
@@ -55,7 +55,7 @@ TEST(Arbiter, ALeaseEnds) {
   EXPECT_NE(grant.reason.find("lease of direct1 (direct) ran out"), std::string::npos);
 }
 
-// A person who drove is not why the robot stands afterwards.
+// A person who drove is no reason for a robot to stand afterwards.
 TEST(Arbiter, WhoHasLetGoIsNoReason) {
   Scene s;
   s.offer(Role::teleop, 1);
@@ -127,7 +127,7 @@ TEST(Arbiter, ASecondWriterWaitsUntilTheFirstIsDone) {
   EXPECT_TRUE(s.offer(Role::direct, 1)) << "the lease of the second ended";
 }
 
-/// Two persons with keyboards, who say ten times a second what they want.
+/// Two persons with keyboards, who send their wish ten times a second.
 struct Persons : Scene {
   enum class Wish { none, drive, stop };
   Persons() : Scene() {}
@@ -137,7 +137,7 @@ struct Persons : Scene {
     c.stop = wish == Wish::stop;
     arbiter.offer(c, cycle);
   }
-  /// For so many cycles. The last one's grant; each person's newest refusal is kept.
+  /// Runs the given cycles. Returns the last cycle's grant; keeps each person's newest refusal.
   Grant go_on(int cycles, Wish first, Wish second) {
     Grant last;
     for (int i = 0; i < cycles; ++i) {
@@ -187,7 +187,7 @@ TEST(Arbiter, AForgottenStopDoesNotKeepTheRole) {
   s.go_on(20, Wish::none, Wish::stop);
   EXPECT_EQ(s.go_on(20, Wish::drive, Wish::stop).source, "teleop1");
   EXPECT_EQ(s.refused["teleop2"], "teleop1 drives since: stop again to stop the robot");
-  // Pressed again, it stops again.
+  // A second press stops again.
   s.go_on(4, Wish::drive, Wish::none);
   EXPECT_EQ(s.go_on(1, Wish::drive, Wish::stop).source, "teleop2");
 }
@@ -229,7 +229,7 @@ TEST(Arbiter, AWriterWithoutCyclesMayDriveAnyConnection) {
 
 TEST(Arbiter, ADriverThatIsSlowDrivesForAsLongAsItMovesOn) {
   Scene s;
-  // Over a slow network: each command answers what was 0.6 s ago, and some are lost.
+  // Over a slow network: each command answers a state 0.6 s old, and some are lost.
   for (int i = 0; i < 202; ++i) {
     s.wait(1);
     if (i % 7 == 3)

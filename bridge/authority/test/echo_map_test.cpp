@@ -32,7 +32,7 @@ TEST(EchoMap, TakesAnEchoForAnArc) {
     const double bearing = radians(10.0 + off);
     EXPECT_TRUE(any_near(map.spots(), {0.16 + std::cos(bearing), 0.03 + std::sin(bearing)})) << off;
   }
-  // So what is straight ahead is in the lane, whichever of the two sonars beside it hears it.
+  // So an object straight ahead is in the lane, whichever of the two sonars beside it hears it.
   EXPECT_TRUE(any_near(map.spots(), {1.16, 0.01}));
 }
 
@@ -71,7 +71,7 @@ TEST(EchoMap, RemembersWhatEntersABlindSector) {
   map.update(1, {}, {echo(at_50, 0.6)});
   map.update(4, {}, {echo(at_50, 0.6)});
   const Vec2 thing(0.114 + 0.6 * std::cos(radians(50.0)), 0.119 + 0.6 * std::sin(radians(50.0)));
-  // The robot drives on: the thing falls back to 70 degrees, and the sonar looks past it.
+  // The robot drives on: the object falls back to 70 degrees, beside the sonar's beam.
   const Pose robot{0.25, 0.0, 0.0};
   for (std::uint64_t cycle = 5; cycle < 40; ++cycle)
     map.update(cycle, robot, {echo(at_50, 2.0)});
@@ -116,7 +116,7 @@ TEST(Robot, ReactsAfterHalfARoundOfItsSonars) {
   EXPECT_NEAR(body_of(parameters).reaction, 0.36, 1e-9);
 }
 
-// A person who steps in is believed at his first echo, however long nobody was there.
+// The first echo of a person who steps in is believed, however long the space was free.
 TEST(EchoMap, BelievesTheFirstEchoInSpaceThatWasFree) {
   EchoMap map;
   for (std::uint64_t cycle = 0; cycle < 100; ++cycle)

@@ -56,7 +56,7 @@ TEST(EmergencyStop, HoldsOverAGapAndConnections) {
   EXPECT_EQ(s.driver(), Role::estop);
   s.arbiter.connect(2);
   EXPECT_EQ(s.driver(), Role::estop);
-  s.now = 0.0;  // where cycles are the clock, it begins anew with them
+  s.now = 0.0;  // where cycles are the clock, the clock restarts with them
   s.cycle = 1;
   EXPECT_EQ(s.driver(), Role::estop);
 }
@@ -114,7 +114,7 @@ TEST(EmergencyStop, BehaviorsThatStillAskAtTheResetWaitForAPerson) {
   s.offer(Role::behaviors, 1);
   ASSERT_EQ(s.arbiter.reset("keyboard", s.now), "");
   for (int i = 0; i < 200; ++i) {
-    s.offer(Role::behaviors, 1, i % 20 != 10);  // also when they pause: nobody knows why
+    s.offer(Role::behaviors, 1, i % 20 != 10);  // also with pauses: their cause is unknown
     const Grant grant = s.grant();
     ASSERT_EQ(grant.role, Role::none);
     ASSERT_TRUE(grant.waits_for_hand_back);
@@ -129,7 +129,7 @@ TEST(EmergencyStop, BehaviorsThatWereNotHeardAtTheResetWaitForAPerson) {
   Scene s;
   s.offer(Role::behaviors, 1);
   press_and_let_go(s);
-  s.wait(50);  // cut off: they do not know of the stop
+  s.wait(50);  // cut off: they do not hear the stop
   ASSERT_EQ(s.arbiter.reset("keyboard", s.now), "");
   s.offer(Role::behaviors, 1, false);
   s.offer(Role::behaviors, 1);

@@ -81,7 +81,7 @@ TEST(Guard, LimitsToTheRobotAndTheRole) {
 }
 
 TEST(Guard, ApproachesSlowlyWhereAPersonMayReachIntoThePath) {
-  // A shin 12 cm beside the path: the person it belongs to is wider.
+  // A shin 12 cm beside the path: the person is wider than the shin.
   const Vec2 shin(0.15, 0.32);
   const Guarded out = guard({}, kPioneer, {shin}, 0.4, 0.0);
   EXPECT_EQ(out.action, GuardAction::slow);
@@ -92,8 +92,8 @@ TEST(Guard, ApproachesSlowlyWhereAPersonMayReachIntoThePath) {
   EXPECT_EQ(guard({}, kPioneer, {{-0.05, 0.34}}, 0.4, 0.0).action, GuardAction::none) << "passed";
 }
 
-// Nothing that was heard is touched faster than allowed by what reaches 0.14 m farther, wherever it
-// stands and however fast the robot was.
+// An object that reaches 0.14 m beyond its echo is never touched faster than allowed, at any place
+// and from any speed of the robot.
 TEST(Guard, TouchesNobodyFasterThanAllowed) {
   Random random(5);
   for (int run = 0; run < 50; ++run) {
@@ -125,7 +125,7 @@ TEST(Guard, TakesNoMoreForFreeThanSonarsCanHear) {
   EXPECT_EQ(out.action, GuardAction::limit);
   EXPECT_NEAR(out.velocity, approach_speed(1.25, 0.0, 0.3, 0.3), 1e-9);
   EXPECT_LT(out.velocity * 0.3 + out.velocity * out.velocity / 0.6, 1.2501);
-  // A Khepera hears 60 mm far.
+  // The sonars of a Khepera have a range of 60 mm.
   const Body khepera{0.028, 0.4, 3.0, 2.0, 0.36, 0.06};
   const double v = guard({}, khepera, {}, 0.4, 0.0).velocity;
   EXPECT_GT(v, 0.05);
@@ -147,14 +147,14 @@ TEST(Guard, SlowZone) {
 }
 
 // A robot that obeys at once, with the reaction time and the deceleration that the guard assumes,
-// stands before the margin is used up, from any speed and distance.
+// stops before the margin is used up, from any speed and distance.
 TEST(Guard, BrakesInTime) {
   Random random(3);
   for (int run = 0; run < 500; ++run) {
     double x = 0.0;
     double v = random.uniform(0.0, 0.4);
     const double wall = 0.22 + 0.25 + random.uniform(0.16, 1.0);
-    double seen = wall;  // as of the newest reading, which comes every 0.3 s
+    double seen = wall;  // by the newest reading, which comes every 0.3 s
     for (int tick = 0; tick < 2000; ++tick) {
       if (tick % 30 == 0)
         seen = wall;
@@ -167,7 +167,7 @@ TEST(Guard, BrakesInTime) {
   }
 }
 
-// Contact that is meant: slower than stopping would be, and only forward.
+// Wanted contact: slower than a stop would need, and only forward.
 TEST(Guard, LetsADriverTouchWhoMeansIt) {
   GuardSettings settings;
   Body body;

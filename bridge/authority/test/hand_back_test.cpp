@@ -17,7 +17,7 @@ struct Driven : Scene {
     EXPECT_EQ(driver(), Role::teleop);
     EXPECT_FALSE(grant().waits_for_hand_back);
   }
-  /// A cycle in which the behaviors ask to drive; who does.
+  /// A cycle in which the behaviors ask to drive; returns the role that drives.
   Role next() {
     wait(1);
     offer(Role::behaviors, 2);
@@ -131,7 +131,7 @@ TEST(HandBack, TheQuietTimeCountsOnlyWhileThatProgramIsHeard) {
     s.offer(Role::teleop, 5, false);  // another joystick, at rest
     ASSERT_EQ(s.next(), Role::none) << i;
   }
-  // It is back: its pause was no quiet time.
+  // The program is back: its pause was no quiet time.
   const double back = s.now;
   while (s.now - back < 1.85) {
     s.offer(Role::teleop, 1, false);

@@ -16,7 +16,8 @@ using authority::Role;
 using State = reflector::Connection::State;
 
 /// The commands that stop a robot in a session at once: zero setpoints, and the server's emergency
-/// stop where it should have one. Both, since some servers of that generation do not know it.
+/// stop where it should have one. Both, since some servers of that generation lack the emergency
+/// stop.
 protocol::Bytes stop_packets(const protocol::RobotParameters& robot) {
   protocol::Bytes out = protocol::encode(protocol::Velocity{0.0});
   const protocol::Bytes turn = protocol::encode(protocol::RotationVelocity{0.0});
@@ -80,8 +81,8 @@ void Core::tend_session(double now, const Surroundings& around) {
   }
   if (connection_.open())
     return mind_silence(now);
-  // A serial line is the same line when it is opened anew; a socket has another server, or a server
-  // another client.
+  // A serial line is the same line when it is opened anew. A socket may have another server, or a
+  // server another client.
   if (!around.serial && connection_.is_hopeless(now))
     return lost("no answer from " + around.address + ": connected anew", now);
   for (protocol::Bytes& packet : connection_.tick(now))
@@ -104,7 +105,7 @@ void Core::mind_silence(double now) {
     return;
   session_.silent = true;
   if (session_.stamp.cycle == 0)
-    send(protocol::encode(protocol::Open{}));  // it may have been lost
+    send(protocol::encode(protocol::Open{}));  // the first one may have been lost
   line_.damage(bad_packets());
   arbiter_.forget(session_.stamp.cycle, kForEver);
   reflector_.zero_first();
@@ -134,7 +135,7 @@ void Core::open(const protocol::RobotParameters& parameters, std::uint64_t epoch
   session_.body = authority::body_of(reflector_.parameters());
   session_.bad_before = parser_.counters().bad_packets();
   line_.begin();
-  // Until it says how it is set: it may not take what it is asked for.
+  // Until the robot reports its configuration: it may not accept the values that it is given.
   own_deceleration_ = parameters.deceleration;
   session_.body.deceleration = own_deceleration_;
   set_delay(connection_.round_trip());
@@ -170,7 +171,7 @@ void Core::refuse_robot(const std::string& why, double now) {
 
 void Core::lost(const std::string& why, double now, Note::Level level) {
   if (in_session()) {
-    // The server may hear us where we do not hear it, and would go on with what it was told last.
+    // The server may hear us although we do not hear it, and would continue the last command.
     send(stop_packets(reflector_.parameters()));
     send(protocol::encode(protocol::Close{}));
     put(Note{level, "connection to the robot ended: " + why});
@@ -204,7 +205,7 @@ void Core::end(double now) {
 
 void Core::received(protocol::ByteView bytes, double now) {
   last_bytes_ = now;
-  // Packets that waited while the bridge stood still tell of a robot as it was.
+  // Packets that waited while the bridge stood still give an old state of the robot.
   if (now >= stale_until_)
     parser_.feed(bytes);
 }
@@ -261,7 +262,7 @@ std::uint64_t Core::bad_packets() const {
   return parser_.counters().bad_packets() - session_.bad_before;
 }
 
-/// The robot brakes as it says that it is set, whatever it was asked for.
+/// The reported deceleration counts, not the one that was asked for.
 void Core::heed(const protocol::ConfigPacket& set, double now) {
   if (const double asked = std::exchange(session_.delay_asked, now);
       session_.delay > 0.0 && asked > 0.0)
@@ -280,7 +281,8 @@ void Core::heed(const protocol::ConfigPacket& set, double now) {
   }
 }
 
-/// One that does not say how it is set is reckoned to brake as its parameter file says.
+/// A robot that does not report its configuration counts with the deceleration of its parameter
+/// file.
 void Core::mind_brakes() {
   const double asked = reflector_.parameters().deceleration;
   if (session_.stamp.cycle != kConfigCycles || session_.configured || own_deceleration_ >= asked)
@@ -293,7 +295,7 @@ void Core::mind_brakes() {
   warn(text);
 }
 
-/// How long a packet and its answer take. On a slow line a stop takes effect that much later.
+/// The time of a packet and its answer. On a slow line a stop takes effect that much later.
 void Core::set_delay(double round_trip) {
   const double before = session_.delay;
   session_.delay = settings_.lockstep || round_trip <= kSlowLine ? 0.0 : round_trip;
@@ -315,8 +317,8 @@ std::string Core::delay_words() const {
   return text;
 }
 
-/// A machine that was busy when the session began makes a line look slow: it is asked again, where
-/// the robot answers such a question.
+/// A machine that was busy when the session began makes a line look slow. So the delay is measured
+/// again where the robot answers such a question.
 void Core::mind_delay(double now) {
   if (session_.delay == 0.0 || session_.stamp.cycle == 0 ||
       reflector_.parameters().protocol == protocol::Protocol::kPsos ||
@@ -338,7 +340,7 @@ void Core::begin_cycle(const protocol::InformationPacket& packet, double now) {
   session_.last_packet = now;
 }
 
-/// All that need not come before the services begin with the cycle.
+/// The part of a cycle that the services need not wait for.
 void Core::finish_cycle(double now) {
   const reflector::State& state = reflector_.state();
   const std::uint64_t odom_before = *std::exchange(session_.odom_before, std::nullopt);
@@ -357,7 +359,7 @@ void Core::finish_cycle(double now) {
                                                 : "a new odom frame begins");
   } else if (state.odom != odom_before) {
     warn("the robot's position jumped: a new odom frame begins");
-    arbiter_.forget(session_.stamp.cycle - 1, time(now));  // what was meant in the old frame
+    arbiter_.forget(session_.stamp.cycle - 1, time(now));  // targets were in the old frame
     session_.echoes.clear();
   }
   session_.echoes.update(session_.stamp.cycle, state.pose_in_odom,
@@ -371,7 +373,7 @@ void Core::finish_cycle(double now) {
   }
   decide(now);
   // The driver that follows the cycles answers this packet in a moment, and there is one command a
-  // cycle: so it is waited for. Not where the robot is to stand.
+  // cycle. So the bridge waits for the answer, unless the robot has to stand.
   const bool stops = guarded_.velocity == 0.0 && reflector_.sent_velocity() != 0.0;
   if (!driver(grant_.role).follows_cycles || stops)
     flush(now);
@@ -392,9 +394,9 @@ void Core::loop(double now) {
   std::snprintf(text, sizeof text,
                 "the bridge stood still for %.2f s: the robot is stopped, a new grant is needed",
                 gap);
-  // A link that was silent before is silent still.
+  // A silent link stays silent.
   arbiter_.forget(session_.stamp.cycle, session_.silent ? kForEver : now + kSettle);
-  session_.last_packet = now;  // it was the bridge that was silent, not the link
+  session_.last_packet = now;  // the bridge was silent, not the link
   stale_until_ = now + kSettle;
   parser_.reset();
   reflector_.zero_first();
@@ -416,7 +418,7 @@ void Core::tick(double now, const Surroundings& around) {
       decide(now);
       flush(now);
     } else if (now - session_.last_packet > 1.5 * kCycle && reflector_.pending(now)) {
-      flush(now);  // no packets come, so no cycle makes the beat
+      flush(now);  // no packets come, so no cycle keeps the beat
     }
   }
   report(now, around);

@@ -48,7 +48,7 @@ std::string trouble(const reflector::Motion& motion, double contact_speed) {
                  {"heading", motion.heading},
                  {"contact_speed", contact_speed}};
   for (const auto& number : numbers) {
-    // Beyond any robot and any angle that means something; also keeps the packet's integers whole.
+    // Beyond any real robot and angle; also keeps the packet's integers in range.
     if (!std::isfinite(number.value) || std::abs(number.value) > 1e4)
       return std::string(number.name) + " is no usable number";
   }
@@ -59,11 +59,11 @@ void Core::command(const DriveCommand& in, double now) {
   authority::Command command = in.command;
   command.received = time(now);
   command.stop = command.active && is_stop(in.motion);
-  // Even a wrong command is an answer: lockstep could wait for a better one for ever.
+  // Even a wrong command is an answer: lockstep could wait for ever for a better one.
   if (command.role == Role::behaviors && command.epoch == session_.stamp.epoch &&
       command.cycle == session_.stamp.cycle)
     session_.answered = true;
-  // A release and an emergency stop mean stop, whatever else they say.
+  // A release and an emergency stop mean stop, whatever their other fields are.
   if (command.active && command.role != Role::estop) {
     const std::string wrong = in.wrong.empty() ? trouble(in.motion, in.contact_speed) : in.wrong;
     if (!wrong.empty())
@@ -102,8 +102,8 @@ void Core::answer(double now) {
   keep_latches(now);
 }
 
-/// The latched stop, to the file and to everybody, when it has changed. Neither waits for a cycle
-/// of the robot: there may be none.
+/// Puts out changed latches, for the file and for the bus. Neither waits for a cycle of the robot:
+/// there may be none.
 void Core::keep_latches(double now) {
   const authority::Latches& latches = arbiter_.latches();
   if (latches == kept_)
@@ -128,8 +128,7 @@ void Core::decide(double now) {
   authority::Grant grant = arbiter_.decide(t, session_.stamp.cycle);
   const bool changed = !grant.same_driver(grant_);
   grant_ = std::move(grant);
-  // Loss, release and change of hands are a stop: nothing of one driver's wishes is left to the
-  // next.
+  // Loss, release and change of driver are a stop: no wish of one driver passes to the next.
   if (changed || !drives(grant_.role))
     reflector_.stop();
   if (drives(grant_.role))
@@ -152,7 +151,7 @@ void Core::decide(double now) {
   grant_changed_ = grant_changed_ || changed;
 }
 
-/// Cuts what is wanted to what is safe.
+/// Limits the setpoints to safe ones.
 void Core::guard(reflector::Setpoints& wanted) {
   const authority::GuardAction before = guarded_.action;
   guarded_ = {wanted.velocity, wanted.rotation_velocity, authority::GuardAction::none, {}};
@@ -183,7 +182,7 @@ void Core::flush(double now) {
     if (!std::exchange(session_.reacted, true))
       put(Answered{});
   }
-  // After the packets: nobody waits for these words.
+  // After the packets: nothing waits for the log.
   for (std::string& text : std::exchange(words_, {}))
     info(std::move(text));
   if (grant_changed_ && !settings_.lockstep)

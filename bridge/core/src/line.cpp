@@ -10,12 +10,12 @@ namespace saphira::bridge {
 
 namespace {
 
-constexpr std::size_t kEnough = 20;  // packets, to say how bad a line is
+constexpr std::size_t kEnough = 20;  // packets needed to judge a line
 constexpr double kUnheard =
-    0.35;                   // [s] without a whole packet: the lease of a driver, 0.3 s, has run out
+    0.35;                   // [s] without a whole packet: longer than the lease of a driver, 0.3 s
 constexpr int kBegins = 5;  // whole packets in motion, after which it is heard
 constexpr int kForgiven = 2;      // times
-constexpr double kStands = 20.0;  // [s] at the first time that is not forgiven; then twice that...
+constexpr double kStands = 20.0;  // [s] at the first time not forgiven; then doubled...
 constexpr double kMostStands = 300.0;
 
 }  // namespace

@@ -43,7 +43,7 @@ Condition Core::condition(double now, const Surroundings& around) const {
   return {};
 }
 
-/// Of a robot that is connected.
+/// The condition while a robot is connected.
 Condition Core::robot_condition(double now) const {
   const std::uint64_t cycle = session_.stamp.cycle;
   const std::string doubt = session_.doubts.newest(now);
@@ -81,7 +81,7 @@ Condition Core::robot_condition(double now) const {
   return {};
 }
 
-/// The obstacle that keeps it from its robot for a while is told in the log, once.
+/// An obstacle that keeps the bridge from its robot for a while is logged, once.
 void Core::tell_wait(const Condition& now_is, double now) {
   const bool waits = now_is.health == Health::waiting && !settings_.lockstep;
   if (!waits || wait_.reason != now_is.reason)
@@ -97,7 +97,7 @@ void Core::report(double now, const Surroundings& around) {
     return;
   reported_at_ = now;
   if (!in_session()) {
-    // Without a robot there are no cycles; what is latched is told all the same.
+    // Without a robot there are no cycles; latches are published all the same.
     grant_ = arbiter_.decide(time(now), 0);
     publish_grant();
   }

@@ -107,7 +107,7 @@ class Player {
   protocol::InformationPacket shown_;
 };
 
-/// The robot's server: it answers SYNC, and moves as it is told.
+/// The robot's server: it answers SYNC, and moves as commanded.
 void Player::hear(const protocol::Bytes& sent) {
   protocol::PacketParser parser;
   parser.feed(sent);
@@ -199,7 +199,7 @@ void Player::tell(const DriveCommand& command) {
   rules_.answered(core_);
 }
 
-/// A command of a program that does what it should, unless it is strange.
+/// A command of a correct program, unless `strange`.
 void Player::drive(Role role, bool strange) {
   constexpr std::array kNumbers{0.0, 0.1, 0.3, -0.2, 1.5, 1e5};
   const unsigned what = script_.byte();
@@ -320,7 +320,7 @@ void Player::event() {
       return drive(authority::kRoles[script_.choice(4)], true);
     case 8:
       return drive(Role::behaviors, true);
-    case 9: {  // an emergency stop, and letting it go
+    case 9: {  // an emergency stop, and its release
       DriveCommand in;
       in.command.role = Role::estop;
       in.command.writer[0] = static_cast<std::uint8_t>(script_.choice(2));
@@ -357,7 +357,7 @@ void Player::event() {
     case 16:
       core_.room(script_.byte());
       return;
-    case 17: {  // what a person hands back
+    case 17: {  // hand-back by a person
       DriveCommand in;
       in.command.role = Role::teleop;
       in.command.source = "a person";

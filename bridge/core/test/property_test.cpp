@@ -1,4 +1,4 @@
-// Random plays: what happens, in any order, at any time. The rules are in play.hpp.
+// Random plays: events in any order, at any time. The rules are in play.hpp.
 #include <gtest/gtest.h>
 
 #include "play.hpp"
@@ -25,7 +25,7 @@ TEST(Plays, KeepEveryRule) {
     all.silences += played.silences;
     all.gaps += played.gaps;
   }
-  // Otherwise the rules were not tried.
+  // Otherwise the rules had no test.
   EXPECT_GT(all.sessions, 1000);
   EXPECT_GT(all.cycles, 10000);
   EXPECT_GT(all.motions, 2000);

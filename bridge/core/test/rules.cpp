@@ -10,7 +10,7 @@ namespace {
 
 using authority::Role;
 
-constexpr double kLate = 2e-4;  // [s] a lease ends at the next look at the clock
+constexpr double kLate = 2e-4;  // [s] a lease ends at the next check of the clock
 
 template <class... Kinds>
 bool is_any(const protocol::Command& command) {
@@ -167,7 +167,7 @@ void Rules::packets(const protocol::Bytes& bytes) {
 void Rules::command_sent(const protocol::Command& command) {
   using namespace protocol;
   if (std::holds_alternative<Open>(command) || std::holds_alternative<Pulse>(command)) {
-    // Either may also be a SYNC. What was held before a session begins is not known.
+    // Either may also be a SYNC. The setpoints before a session are unknown.
     if (stamp_.epoch == 0)
       zero_velocity_ = zero_turn_ = velocity_is_zero_ = turn_is_zero_ = false;
   } else if (const auto* const velocity = std::get_if<Velocity>(&command)) {

@@ -13,7 +13,7 @@
 
 namespace saphira::bridge::test {
 
-/// The rules of play.hpp. Told of each event before the core, and of each output after it.
+/// The rules of play.hpp. Gets each event before the core, and each output after it.
 class Rules {
  public:
   Rules(const CoreSettings& settings, Played& played) : settings_(settings), played_(played) {}
@@ -25,14 +25,14 @@ class Rules {
   void released(bool latched_now);
   void permit(std::uint64_t until) { permit_ = until; }
   void gap();
-  /// The core is about to look at the time.
+  /// The core is about to check the time.
   void tick();
 
   // ---- Outputs.
   void output(const Output& output);
-  /// The outputs of one event, or piece of work, are out.
+  /// All outputs of one event, or piece of work, are out.
   void settled(const Core& core);
-  /// All that an event led to is out.
+  /// All consequences of an event are out.
   void answered(const Core& core);
 
  private:
@@ -59,7 +59,7 @@ class Rules {
   Stamp stamp_;  ///< epoch 0: no session
   std::uint64_t last_epoch_ = 0;
   double last_packet_ = 0.0;
-  double good_after_ = 0.0;  ///< [s] what was received before is old
+  double good_after_ = 0.0;  ///< [s] commands received before this time are old
   bool silent_ = false;
   bool must_stop_ = false;  ///< zero setpoints are due in the outputs of this event
 

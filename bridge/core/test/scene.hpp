@@ -11,8 +11,8 @@
 
 namespace saphira::bridge::test {
 
-/// A core with a robot that answers SYNC, a clock, and drivers. Everything that the core says is
-/// kept in `said`, in order.
+/// A core with a robot that answers SYNC, a clock, and drivers. All outputs of the core are kept in
+/// `said`, in order.
 struct Scene {
   explicit Scene(CoreSettings settings = {}) : core(settings) {
     robot.protocol = protocol::Protocol::kP2os;
@@ -130,7 +130,7 @@ struct Scene {
     }
   }
 
-  // ---- What was said.
+  // ---- The outputs.
 
   template <class What>
   std::vector<What> all() const {
@@ -171,7 +171,7 @@ struct Scene {
     const std::vector<StatusReport> reports = all<StatusReport>();
     return reports.empty() ? Condition{} : reports.back().condition;
   }
-  /// Forgets what was said and sent.
+  /// Forgets all outputs and sent packets.
   void forget() {
     said.clear();
     sent.clear();
@@ -190,7 +190,7 @@ struct Scene {
   std::vector<protocol::Command> sent;
 };
 
-/// One with a robot that has been driven for a while.
+/// A scene with a robot that has been driven for a while.
 struct Driven : Scene {
   explicit Driven(authority::Role role = authority::Role::behaviors) {
     connect();

@@ -64,7 +64,7 @@ TEST(Session, ASlowLineIsToldAndDrivenSlowly) {
   const double slow = fastest();
   EXPECT_GT(slow, 0.1);
   EXPECT_LT(slow, 0.22);
-  // It was the machine that was busy: the next answer comes at once.
+  // The machine was busy: the next answer comes at once.
   protocol::ConfigPacket set;
   set.deceleration = 600;
   for (int i = 0; i < 25; ++i) {
@@ -314,8 +314,8 @@ TEST(Session, ARobotThatBrakesLessIsToldOnce) {
             1);
 }
 
-/// Drives for so long with a robot of which each packet is damaged while it moves; how often it
-/// began to move.
+/// Drives for the given time with a robot whose packets are all damaged while it moves. Returns the
+/// number of starts of motion.
 int lurches(Scene& scene, double seconds, bool damages) {
   int begun = 0;
   bool moves = false;
@@ -348,7 +348,7 @@ TEST(Session, ARobotThatIsNotHeardWhileItMovesStands) {
     });
   })) << "the driver hears why";
   EXPECT_LE(lurches(scene, 300.0, true), 3);
-  // The line is mended: it moves by itself, and goes on.
+  // The line is repaired: the robot moves by itself, and continues.
   EXPECT_EQ(lurches(scene, 400.0, false), 1);
   EXPECT_EQ(scene.core.grant().role, Role::behaviors);
   EXPECT_EQ(scene.condition().health, Health::running) << scene.condition().reason;

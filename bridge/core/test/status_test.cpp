@@ -7,7 +7,7 @@ namespace {
 
 using authority::Role;
 
-/// A driven robot of ARCOS, whose packets say more.
+/// A driven robot of ARCOS, whose packets have more fields.
 struct Later : Scene {
   Later() {
     robot.protocol = protocol::Protocol::kArcos;

@@ -1,5 +1,5 @@
-// saphira-protocol-check: stands between a client and a robot server and says what of their
-// conversation is not as the tables say. It changes nothing.
+// saphira-protocol-check: relays between a client and a robot server and reports deviations from
+// the tables. It changes nothing.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -14,7 +14,7 @@ constexpr std::string_view kWake = "WMS2\r";
 constexpr double kLate = 1.0;          // [s]
 constexpr double kGone = 8.0;          // [s] ARIA's patience
 constexpr double kWatchdog = 2.0;      // [s] manual 5.2
-constexpr int kMaxAfterClose = 1;      // information packets that may have been on their way
+constexpr int kMaxAfterClose = 1;      // information packets that may be on their way
 constexpr std::size_t kSmallest = 25;  // body of an information packet without sonars
 constexpr std::array<std::size_t, 10> kTrailingEnds{0, 2, 3, 5, 7, 9, 10, 11, 15, 19};
 
@@ -103,7 +103,7 @@ void Checker::junk(Side side, std::size_t count) {
   at_ = stream.offset;
   const std::string text(stream.pending.begin(),
                          stream.pending.begin() + static_cast<std::ptrdiff_t>(count));
-  // One client family wakes modems so, before it synchronizes; servers skip it.
+  // One client family sends this to wake modems before it synchronizes; servers skip it.
   if (side == Side::kClient && state_ == State::kSync0 &&
       kWake.find(text) != std::string_view::npos)
     note(side, "\"WMS2\" before the synchronization");
@@ -166,7 +166,7 @@ void Checker::client_packet(ByteView body) {
     return;
   }
   if (!number) {
-    // A careful client, as a server that is still in a session takes SYNC0 for a PULSE.
+    // A careful client: a server that is still in a session takes SYNC0 for a PULSE.
     if (stops(body))
       note(Side::kClient, "a zero setpoint before the synchronization");
     else
@@ -175,7 +175,7 @@ void Checker::client_packet(ByteView body) {
   }
   if (*number == 2 && state_ != State::kSync2) {
     if (state_ == State::kSynchronized) {
-      // SYNC2 again or CLOSE: the same bytes. Only what the server answers tells.
+      // SYNC2 again or CLOSE: the same bytes. Only the server's answer tells them apart.
       ++echoes_due_[2];
       return;
     }
@@ -278,11 +278,11 @@ void Checker::argument(const CommandRule& rule, ByteView body) {
                                  (rule.unit.empty() ? "" : " ") + std::string(rule.unit));
 }
 
-// Commands that change what the server may send.
+// Commands that change the packets that the server may send.
 void Checker::remember(const Command& command) {
   const auto ask = [this](PacketType type, int mode) {
     Asked& asked = asked_[type];
-    // A packet asked for with each may still be on its way when that ends.
+    // A packet that was requested with each cycle may still be on its way after the end of that.
     if (asked.with_each && mode != 2)
       ++asked.once;
     asked.with_each = mode == 2;
@@ -403,7 +403,7 @@ void Checker::information(ByteView body) {
       violation(Side::kServer, "position of more than 15 bits");
   if (packet->battery == 0)
     violation(Side::kServer, "a battery of 0 V");
-  // A busy machine may be late; after this long, clients believe that the robot has gone.
+  // A busy machine may be late; after this long, clients take the robot for gone.
   if (const double pause = last_packet_ && time_ ? *time_ - *last_packet_ : 0.0; pause > kLate) {
     const std::string text =
         "no information packet for " + std::to_string(pause) + " s; expected 0.1 s";
@@ -415,7 +415,7 @@ void Checker::information(ByteView body) {
   last_ = *packet;
 }
 
-// The rules that need to know the robot.
+// The rules that depend on the robot.
 void Checker::position(const InformationPacket& packet) {
   const RobotParameters& p = *parameters_;
   for (const RawSonar& sonar : packet.sonars)
@@ -439,7 +439,7 @@ void Checker::position(const InformationPacket& packet) {
     return;
   const double dx = position_difference(last_->x, packet.x) * p.distance_unit;
   const double dy = position_difference(last_->y, packet.y) * p.distance_unit;
-  // Two periods, in case a packet was lost on the way here.
+  // Two periods, in case a packet was lost on the way.
   const double most = 1.2 * p.max_velocity * 0.2 + 2.0 * p.distance_unit + 0.02;
   if (std::hypot(dx, dy) > most)
     violation(Side::kServer, "the position jumps by " + std::to_string(std::hypot(dx, dy)) + " m");

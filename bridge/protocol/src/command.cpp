@@ -58,15 +58,15 @@ Bytes with_string(Number number, const Bytes& text, StringForm form) {
   return frame(body);
 }
 
-// The argument of a command, as far as there is one.
+// The argument of a command, as far as it is complete.
 struct Argument {
   enum class Kind { kNone, kInt, kString, kBroken } kind = Kind::kNone;
   int value = 0;
   Bytes text;
 };
 
-// A counted string may end in a NUL of its own, and one that ends with NUL may begin with its own
-// count; which is meant depends on what the command's clients do.
+// A counted string may end in a NUL, and a NUL-terminated one may begin with its own count. The
+// habits of the command's clients decide.
 Argument read_argument(ByteView body, bool counted) {
   if (body.size() <= 2)
     return {};
@@ -105,7 +105,7 @@ void put32(Bytes& out, int value) {
     out.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(value) >> shift & 0xFFU));
 }
 
-// MobileSim: three 32-bit integers behind a type byte that says nothing.
+// MobileSim: three 32-bit integers behind a meaningless type byte.
 Bytes with_pose(Number number, const Pose& pose) {
   Bytes body{static_cast<std::uint8_t>(number), kArgInt};
   put32(body, rounded(pose.x * 1000.0, -2'000'000'000, 2'000'000'000));
@@ -298,7 +298,7 @@ Command decode_command(ByteView body, double vel2_unit) {
   const Argument argument = read_argument(body, false);
   const bool is_string = argument.kind == Argument::Kind::kString;
   const auto number = static_cast<Number>(body[0]);
-  switch (number) {  // those for which an argument says nothing, whatever it is
+  switch (number) {  // those whose argument has no meaning
     case Number::kPulse:
       return Pulse{};
     case Number::kOpen:

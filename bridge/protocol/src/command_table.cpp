@@ -7,8 +7,8 @@ namespace saphira::protocol {
 
 namespace {
 
-// By number. The names of later commands are those of the robots' own header files; ranges are what
-// the argument can mean, where that is known, and else what it can carry.
+// By number. The names of later commands are from the robots' own header files. Ranges are those of
+// the argument's meaning, where it is known, and otherwise those of its form.
 constexpr std::array kRules{
     CommandRule{Number::kPulse, "PULSE", ArgumentForm::kNone, Origin::kManual, 0, 0, ""},
     CommandRule{Number::kOpen, "OPEN", ArgumentForm::kOptional, Origin::kManual, 0, 1, ""},

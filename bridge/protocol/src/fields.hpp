@@ -40,7 +40,7 @@ inline std::string printable(std::string text) {
   return text;
 }
 
-/// Reads them; zero and a mark where the packet has ended. Half a field is none.
+/// Reads the fields; zero and a mark behind the packet's end. Half a field counts as missing.
 class Fields {
  public:
   explicit Fields(ByteView bytes) : bytes_(bytes) {}
@@ -65,7 +65,7 @@ class Fields {
   std::int8_t i8() { return static_cast<std::int8_t>(u8()); }
   std::int16_t i16() { return static_cast<std::int16_t>(u16()); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
-  /// Up to its NUL; what no terminal should show is a question mark.
+  /// Up to its NUL; unprintable characters become question marks.
   std::string string() {
     const ByteView rest = bytes_.subspan(at_);
     const auto end = std::find(rest.begin(), rest.end(), 0);

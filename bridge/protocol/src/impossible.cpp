@@ -9,11 +9,11 @@ namespace saphira::protocol {
 
 namespace {
 
-// A robot that is pushed, or runs downhill, goes faster than by itself.
+// A robot that is pushed, or runs downhill, exceeds its own speed.
 constexpr double kFaster = 2.0;
 constexpr double kPush = 1.0;               // [m/s]
 constexpr double kSpin = kPi;               // [rad/s]
-constexpr double kTurn = 2.0 * kPi * 1.05;  // no server counts headings beyond a turn
+constexpr double kTurn = 2.0 * kPi * 1.05;  // no server counts headings beyond a full turn
 constexpr double kCycle = 0.1;              // [s] from one information packet to the next
 constexpr int kHighestVoltage = 600;        // [0.1 V] of any robot's battery
 constexpr int kColdest = -40;               // [deg C] of a controller that works
@@ -41,8 +41,8 @@ std::string wrong_turn(double rotation, const RobotParameters& p) {
          number(p.max_rotation_velocity);
 }
 
-/// Readings that can come in one packet: each sonar once, or, of few that fire over and over, what
-/// the arrays take in a cycle.
+/// The most readings in one packet: each sonar once, or, with few sonars that fire over and over,
+/// the firings of the arrays in a cycle.
 std::size_t most_readings(const RobotParameters& p) {
   const auto firings = static_cast<std::size_t>(kCycle / p.sonar_period + 2.0);
   return std::max(p.sonars.size(), firings * static_cast<std::size_t>(p.sonar_arrays));
@@ -90,7 +90,7 @@ std::string take_out_trailing(TrailingFields& more, const RobotParameters& p) {
   std::string what;
   if (p.protocol != Protocol::kArcos)
     return what;
-  // Behind an impossible field, what stands where is in doubt.
+  // The layout behind an impossible field is in doubt.
   const auto keep = [&what](auto& field, const auto& wrong_with) {
     if (what.empty() && field)
       what = wrong_with(*field);
@@ -171,7 +171,7 @@ struct Look {
     return std::nullopt;
   }
 
-  // Every value of their fields can be true.
+  // Every value of their fields is possible.
   template <class T>
   std::optional<Impossible> operator()(const T&) const {
     return std::nullopt;

@@ -43,14 +43,14 @@ struct NumberKeyword {
   double unit;  // of the file's number, in SI
   double low;   // in the file's unit
   double high;
-  std::string_view means = "";  // that unit, where a value in another one would pass unnoticed
+  std::string_view means = "";  // that unit, for values whose wrong unit would pass unnoticed
 };
 
 using P = RobotParameters;
 constexpr double kDegree = kPi / 180.0;
 constexpr double kMaxRotAcceleration = 300.0 * kDegree;   // [rad/s2]
 constexpr double kStopRotDeceleration = 200.0 * kDegree;  // [rad/s2]
-// The later names of the same things are taken as well, so that the files of later robots load.
+// The later names of the same parameters are accepted too, so that the files of later robots load.
 constexpr std::array kNumbers{
     NumberKeyword{"AngleConvFactor", &P::angle_unit, 1.0, 1e-6, 0.0246,
                   "in radians a tick, of which a turn has 256 at least"},
@@ -120,8 +120,8 @@ constexpr std::array kCounts{
     CountKeyword{"SideBuffer", &P::side_buffer, 1, 200},
 };
 
-// Parameters that every robot needs. The manual's own file (chapter 10) names no class and says
-// less: it is a Pioneer 1's, and so are the defaults.
+// Parameters that every robot needs. The manual's own file (chapter 10) names no class and has
+// fewer parameters: it is a Pioneer 1's, and so are the defaults.
 struct NeededKeyword {
   std::string_view name;
   bool with_class_only;
@@ -134,13 +134,13 @@ constexpr std::array kNeeded{
     NeededKeyword{"MaxRVelocity", true},     NeededKeyword{"SonarNum", false},
 };
 
-// Those of ARIA's sections that say what this program asks for; the others are about lasers,
-// cameras and the like, some in the same keywords.
+// The ARIA sections with parameters of this program. The others are about lasers, cameras and the
+// like, some with the same keywords.
 constexpr std::array<std::string_view, 5> kAriaSections{
     "general settings", "conversion factors", "accessories the robot has",
     "movement control parameters", "sonar parameters"};
 
-/// In the case in which they are usually written.
+/// In their usual case.
 const std::vector<std::string>& keywords() {
   static const std::vector<std::string> all = [] {
     std::vector<std::string> names{
@@ -198,7 +198,7 @@ class Parser {
 
  private:
   // ARIA's files have sections, keywords and columns beyond ours, and comments that are broken over
-  // two lines. An acceleration of 0 there is the robot's own.
+  // two lines. An acceleration of 0 there means the robot's own.
   bool is_passed_over(const Line& line) {
     const std::string name = lower(line.words[0].text);
     if (name == "configversion")
@@ -304,7 +304,7 @@ class Parser {
     parameters_.switch_to_baud = static_cast<int>(rate);
   }
 
-  // ARIA's files do not say it; the names of the servers' versions do.
+  // ARIA's files do not give the protocol; the servers' version names do.
   Protocol protocol_of_subclass() const {
     const std::string name = lower(parameters_.subclass);
     if ((name + "-").find("-sh-") != std::string::npos)
@@ -329,8 +329,8 @@ class Parser {
       parameters_.width = 2.0 * parameters_.radius;
   }
 
-  // The limits are those of the servers since P2OS, the decelerations what stops a robot of their
-  // size softly enough for what stands on it.
+  // The limits are those of the servers since P2OS. The decelerations stop a robot of that size
+  // softly enough for its load.
   void finish_accelerations() {
     P& p = parameters_;
     if (!p.settable_accelerations) {
@@ -352,7 +352,7 @@ class Parser {
         std::min(p.stop_rotation_deceleration, p.max_rotation_acceleration);
   }
 
-  // Steps to the line behind where the value stands there.
+  // Steps to the next line where the value stands there.
   void to_value(LineReader& in) {
     if (in.at_end() && next_ < lines_.size() && begins_number(lines_[next_].words[0].text))
       in = LineReader(parameters_.file, lines_[next_++]);
@@ -412,11 +412,11 @@ class Parser {
   std::vector<Line> lines_;
   std::size_t next_ = 0;
   bool aria_ = false;          // the form of ARIA's files, with sections
-  bool aria_section_ = false;  // that is read
+  bool aria_section_ = false;  // a section that is read
   RobotParameters parameters_;
   std::map<std::string, int> seen_;        // keyword, line
   std::map<int, int> unit_lines_;          // sonar, line
-  std::optional<LineReader> sonar_count_;  // where an error about the number of units points to
+  std::optional<LineReader> sonar_count_;  // the line for an error about the number of units
   long sonar_count_number_ = 0;
 };
 

@@ -131,7 +131,7 @@ VisionPacket read_vision(Fields& in) {
   for (VisionChannel& channel : out.channels) {
     const std::uint8_t mode = in.u8();
     if (mode > 2) {
-      in.u8();  // no such mode: nothing behind it can be read
+      in.u8();  // unknown mode: the rest cannot be read
       while (!in.ended())
         in.u8();
       return out;
@@ -191,7 +191,7 @@ std::optional<ServerPacket> decode_known(PacketType type, Fields& in) {
   switch (type) {
     case PacketType::kConfig: {
       ConfigPacket out;
-      // The older servers' packets end early; their first strings are what makes it one.
+      // The older servers' packets end early; their first strings identify them.
       out.robot_class = in.string();
       out.subclass = in.string();
       if (in.ended())
@@ -271,7 +271,7 @@ ServerPacket decode_packet(ByteView body) {
 }
 
 bool is_read(PacketType type) {
-  // Zeros make a packet of each type that has one.
+  // Zeros give a packet of each type that has a reader.
   const Bytes zeros(kMaxBody);
   Fields in(zeros);
   return decode_known(type, in).has_value();
@@ -490,7 +490,7 @@ ConfigPacket config_of(const RobotParameters& parameters, const std::string& nam
   c.subclass = p.subclass;
   c.serial = serial;
   c.four_motors = 0;
-  // The top values are what the robot can do at all, the others what it is set to.
+  // The top values are the robot's limits, the others its present settings.
   c.rotation_velocity_top = c.rotation_velocity_max = counts(degrees(p.max_rotation_velocity));
   c.velocity_top = c.velocity_max = counts(p.max_velocity * 1000.0);
   c.rotation_acceleration = counts(degrees(p.rotation_acceleration));

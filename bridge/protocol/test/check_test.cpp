@@ -159,7 +159,7 @@ TEST_F(CheckTest, ArgumentsThatMayBeMissing) {
   EXPECT_EQ(checker_.violations(), 0U);
 }
 
-// As clients of later robots have it for a laser.
+// As used by clients of later robots for a laser.
 TEST_F(CheckTest, TheTimersCommandSwitchesAPortToo) {
   open();
   for (const Bytes& body : {Bytes{31, 0x3B, 7, 0}, Bytes{31, 0x3B, 0, 11}, Bytes{31, 0x3B, 1, 11}})

@@ -99,7 +99,7 @@ TEST(Impossible, FlagsOfALaterServerAreNoFault) {
   EXPECT_EQ(std::get<InformationPacket>(any).ptu, 0);
 }
 
-// A robot of each shipped file at its limits, in both directions, says nothing impossible.
+// A robot of each shipped file at its limits, in both directions, sends nothing impossible.
 TEST(Impossible, NotWhatARobotCanDo) {
   for (const auto& entry : std::filesystem::directory_iterator(source("config/robots"))) {
     if (entry.path().extension() != ".p")
@@ -164,7 +164,7 @@ TEST(Impossible, InOtherPackets) {
   EXPECT_EQ(what(vision), "");
 }
 
-// The values that are left of a random packet lie within the limits of the contract.
+// The remaining values of a random packet lie within the limits of the contract.
 TEST(Impossible, NothingElseIsLeftOfRandomPackets) {
   Random random(5);
   int kept = 0;
@@ -175,7 +175,7 @@ TEST(Impossible, NothingElseIsLeftOfRandomPackets) {
       const Bytes whole = encode(usual());
       Bytes body(whole.begin() + 3, whole.end() - 2);
       body.resize(body.size() + random.next() % 24);
-      // From nearly right to nothing but noise.
+      // From nearly right to pure noise.
       const std::uint64_t spoiled = 1 + random.next() % (i % 2 == 0 ? 4 : body.size());
       for (std::uint64_t n = 0; n < spoiled; ++n)
         body[1 + random.next() % (body.size() - 1)] = static_cast<std::uint8_t>(random.next());

@@ -72,7 +72,7 @@ TEST(Information, AppendedFieldsAreSkippedAndCounted) {
   EXPECT_EQ(packet, arcos_sample());
 }
 
-// Order and size of what ARCOS appends; a packet may end anywhere in it.
+// Order and size of the fields that ARCOS appends; a packet may end anywhere in them.
 TEST(Information, EachTrailingFieldMayBeMissing) {
   const Bytes body = body_of(encode(arcos_sample()));
   const std::size_t start = body_of(encode(sample())).size();
@@ -188,7 +188,7 @@ TEST(Information, InSiUnits) {
   EXPECT_FALSE(in.sonars[1].echo);
 }
 
-// 5000 says that no echo was received, whatever the robot's unit of range.
+// 5000 means that no echo was received, whatever the robot's unit of range.
 TEST(Information, FiveThousandMillimetresAreNoEcho) {
   for (const double unit : {0.1734e-3, 0.229e-3, 0.268e-3, 1e-3}) {
     RobotParameters parameters;

@@ -97,7 +97,7 @@ TEST(PacketParser, SkipsJunkBeforeTheHeader) {
 }
 
 TEST(PacketParser, FindsThePacketInsideABadOne) {
-  // A damaged count swallows the next packet; it must be found all the same.
+  // A damaged count swallows the next packet; the parser must still find it.
   Bytes stream = encode(Velocity{0.1});
   const std::size_t own_size = stream.size();
   stream[2] = static_cast<std::uint8_t>(own_size - 3 + 7);
@@ -152,8 +152,8 @@ TEST(PacketParser, ResetForgetsTheBytesAndKeepsTheCounters) {
   EXPECT_EQ(parser.counters().packets, 2U);
 }
 
-// A noisy line: bytes are changed, dropped or doubled. No packet may come out that was not sent,
-// but for a collision of the 16-bit checksum.
+// A noisy line: bytes are changed, dropped or doubled. The parser may return only packets that were
+// sent, except for a collision of the 16-bit checksum.
 class NoisyLine : public ::testing::TestWithParam<std::tuple<double, int>> {};
 
 TEST_P(NoisyLine, YieldsNoPacketThatWasNotSent) {
@@ -192,8 +192,8 @@ TEST_P(NoisyLine, YieldsNoPacketThatWasNotSent) {
     while (auto got = parser.next())
       (sent.contains(*got) ? good : wrong)++;
   }
-  // The additive checksum does not see two changes that cancel, nor zero bytes that move by a pair;
-  // random errors pass one candidate in 65536 at the least. The bound is some ten times that.
+  // The additive checksum misses two changes that cancel, and zero bytes that move by a pair.
+  // Random errors pass at least one candidate in 65536. The bound is some ten times that.
   EXPECT_LE(wrong, rate < 0.05 ? 3 : 8) << "of " << kPackets;
   EXPECT_GT(good, kPackets * (rate < 0.05 ? 0.7 : 0.1));
   EXPECT_GT(parser.counters().bad_packets(), 0U);

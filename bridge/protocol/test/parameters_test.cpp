@@ -153,7 +153,7 @@ TEST(Parameters, SonarsOfEveryFileLookOutward) {
 // Each shipped file, broken in each of these ways, gives the error at the right place.
 struct Breakage {
   const char* name;
-  // Changes the lines; where the error must be.
+  // Changes the lines; returns the place of the error.
   std::pair<int, int> (*apply)(std::vector<std::string>& lines);
   const char* expected;
 };
@@ -306,7 +306,7 @@ TEST(Parameters, ThePioneer) {
   EXPECT_DOUBLE_EQ(p.sonars[0].pose_in_robot.th, kPi / 2);
 }
 
-// The least that a file must say, as the manual's own says it.
+// The least content of a file, as in the manual's own.
 constexpr const char* kLeast =
     "AngleConvFactor 0.001\nDistConvFactor 0.08\nVelConvFactor 2\nRangeConvFactor 0.2\n"
     "RobotRadius 220\n";
@@ -330,7 +330,7 @@ TEST(Parameters, KeywordsInAnyCaseAndOrder) {
 }
 
 // A file of ARIA's: sections, units of other equipment, columns beyond ours, comments that are
-// broken over two lines, and zeros for what the robot is to decide.
+// broken over two lines, and zeros for values that the robot decides.
 constexpr const char* kAriaForm =
     "ConfigVersion 2.0\n"
     "Section General settings\n"
@@ -380,8 +380,8 @@ TEST(Parameters, AFileInTheFormOfAria) {
   EXPECT_DOUBLE_EQ(p.sonars[1].pose_in_robot.th, radians(50));
 }
 
-// A file that was cut off anywhere is refused with a message that names the place, or nothing that
-// counts was lost.
+// A file that was cut off anywhere is refused with a message that names the place, or has lost
+// nothing that counts.
 void expect_no_silent_cut(const std::string& text) {
   auto whole = parse_parameters(text, "cut.p");
   whole.warnings.clear();

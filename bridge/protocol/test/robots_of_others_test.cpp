@@ -1,5 +1,5 @@
-// Parameter files as owners of other robots have them, and docs/robots-of-others.md, which says
-// what becomes of each.
+// Parameter files as owners of other robots have them, and docs/robots-of-others.md, which gives
+// the result for each.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::string saphira_form(const std::string& lines = "") {
   return text + lines;
 }
 
-/// In ARIA's form, with equipment that nobody here knows.
+/// In ARIA's form, with unknown equipment.
 std::string aria_form(const std::string& subclass, const std::string& more = "") {
   return "ConfigVersion 2.0\nSection General settings\nClass Pioneer\nSubclass " + subclass +
          "\nRobotRadius 250.00000 ; radius in mm\nRobotWidth 425\nSomethingNew true\n"
@@ -43,7 +43,7 @@ std::string aria_form(const std::string& subclass, const std::string& more = "")
          more;
 }
 
-/// The complaint about a text; empty: it is taken.
+/// The error message for a text; empty: it is accepted.
 std::string trouble(const std::string& text) {
   try {
     parse_parameters(text, "mine.p");
@@ -80,8 +80,8 @@ TEST(RobotsOfOthers, AreTaken) {
 
 struct Refused {
   const char* lines;     ///< in place of the usual ones
-  const char* says;      ///< the complaint has it
-  const char* page_has;  ///< and the page this
+  const char* says;      ///< part of the message
+  const char* page_has;  ///< the same in the page
 };
 const Refused kRefused[] = {
     {"RobotRadus 250\n", "did you mean RobotRadius?", "did you mean RobotRadius?"},

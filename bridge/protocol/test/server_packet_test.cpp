@@ -42,7 +42,7 @@ TEST(ServerPacket, SurviveTheWire) {
   EXPECT_EQ(std::get<InformationPacket>(decode_packet(body_of(encode(information)))), information);
 }
 
-// Where each field stands, from the client's reader of it.
+// The place of each field, from the client's reader.
 TEST(ServerPacket, Config) {
   RobotParameters p;
   p.robot_class = "Pioneer";
@@ -74,7 +74,7 @@ TEST(ServerPacket, Config) {
   EXPECT_EQ(early.velocity_max, 0);
 }
 
-// Any packet cut anywhere is read or is an OtherPacket; never half of one.
+// Any packet cut anywhere is read, or is an OtherPacket; never half of a packet.
 TEST(ServerPacket, CutPackets) {
   const Bytes bodies[] = {body_of(encode(EncoderPacket{1, 2})),
                           body_of(encode(IoPacket{{1}, {2}, {3}})),

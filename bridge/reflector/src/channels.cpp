@@ -14,7 +14,7 @@ constexpr protocol::Number kEstop = protocol::Number::kEmergencyStop;
 constexpr double kTick = 1e-6;           // [s] five cycles of 0.1 s are 0.5 s
 constexpr double kShownVelocity = 0.02;  // [m/s]
 constexpr double kShownHeading = 0.03;   // [rad] a degree, and the server's own rounding
-constexpr double kShownRotation = 0.09;  // [rad/s] by wheel velocities this is coarse
+constexpr double kShownRotation = 0.09;  // [rad/s] coarse, since it comes from wheel velocities
 
 constexpr Order kNoMove{kVel, 0};
 constexpr Order kNoTurn{kRvel, 0};
@@ -56,7 +56,7 @@ void Channels::brake(bool on) {
   if (!on) {
     brake_.reset();
   } else if (!brake_) {
-    // Earlier setpoints mean nothing after it: when the brake ends, setpoints go out anew.
+    // The brake voids earlier setpoints: when it ends, setpoints are sent anew.
     connect();
     brake_ = Channel{{kEstop, 0}, {}, 0.0, false, false};
   }
@@ -96,7 +96,7 @@ void Channels::cycle(const Shown& shown) {
 
 bool Channels::is_due(const Channel& channel, double now) {
   const bool changed = channel.sent != channel.want;
-  // Where no packet comes there are no cycles; the beat goes on without.
+  // Without packets there are no cycles; the beat goes on.
   if (now - channel.at >= kRepeat - kTick)
     return true;
   if (channel.in_cycle)
@@ -121,7 +121,7 @@ std::vector<Order> Channels::due(double now) {
     out.push_back(channel.want);
   };
   if (brake_) {
-    // These stop a server that does not know the emergency stop.
+    // For a server without the emergency stop.
     if (is_due(*brake_, now))
       out = {kNoMove, kNoTurn};
     take(*brake_);

@@ -54,8 +54,8 @@ Packets Connection::packet(protocol::ByteView body, double now) {
   if (body.empty() || state_ == State::closed || state_ == State::open)
     return {};
   if (protocol::is_information(body[0])) {
-    // The server is still open from a session before. Once in a while is enough: what comes now
-    // may have been on its way.
+    // The server is still open from a session before. One reaction per while is enough: these
+    // packets may have been on their way.
     if (now - sent_ < kRetry / 2.0 && tries_ > 1)
       return {};
     Packets out = zero_setpoints();

@@ -9,7 +9,7 @@ namespace saphira::reflector {
 
 namespace {
 
-constexpr double kTick = 1e-6;
+constexpr double kRetryTick = 1e-6;
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -20,7 +20,7 @@ Overloaded(Ts...) -> Overloaded<Ts...>;
 
 // ARIA's and Player's numbers of the gripper's actions, in the order of GripperAction.
 constexpr std::array<std::uint16_t, 11> kGripperNumbers{1, 2, 3, 4, 5, 6, 7, 8, 15, 16, 17};
-/// Which of a device's settings it is: each is asked for, and shown, by itself.
+/// The number of a device's setting: each is requested, and shown, by itself.
 int action_of(const Wish& wish) {
   if (const auto* server = std::get_if<ServerWish>(&wish))
     return static_cast<int>(server->action);
@@ -169,7 +169,7 @@ void Devices::begin(const protocol::RobotParameters& parameters) {
     note(item);
     if (wish.action != ServerAction::configuration)
       continue;
-    // Before the question how the robot is set, so that the answer shows what it takes of this.
+    // Before the question for the configuration, so that the answer shows the accepted values.
     std::vector<protocol::Command> brakes;
     if (parameters.stop_deceleration > 0.0)
       brakes.emplace_back(protocol::Acceleration{-parameters.stop_deceleration});
@@ -284,7 +284,7 @@ bool Devices::pending(double now) const {
   return std::any_of(items_.begin(), items_.end(), [&](const auto& entry) {
     const Item& item = entry.second;
     return !ended(item.request.answer.code) &&
-           (item.request.sent == 0 || now - item.at >= kRetry - kTick);
+           (item.request.sent == 0 || now - item.at >= kRetry - kRetryTick);
   });
 }
 
@@ -292,7 +292,7 @@ std::vector<protocol::Command> Devices::due(double now, std::size_t room) {
   std::vector<protocol::Command> out;
   for (auto& [key, item] : items_) {
     if (ended(item.request.answer.code) ||
-        (item.request.sent != 0 && now - item.at < kRetry - kTick))
+        (item.request.sent != 0 && now - item.at < kRetry - kRetryTick))
       continue;
     if (item.deadline > 0.0 && now - item.first.value_or(now) >= item.deadline) {
       end(item, AnswerCode::too_late, "given up; the robot has not shown it before the deadline");

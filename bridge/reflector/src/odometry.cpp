@@ -74,7 +74,7 @@ bool Odometry::update(const RawPose& raw, double dt, std::uint64_t fresh) {
       return true;
     }
     memory_ = *remembered_;
-    // Half of what the counters can tell apart is a way the other way round.
+    // Beyond half the range of the counters, the direction is ambiguous.
     allowed = std::min(settings_.near_distance + slack_.distance,
                        std::max(settings_.near_distance, 0.4 * kCounts * settings_.distance_unit));
     if (std::abs(norm2_angle(raw.th - memory_.raw.th)) > settings_.near_angle + slack_.angle) {

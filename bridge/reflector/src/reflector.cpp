@@ -7,9 +7,9 @@ namespace saphira::reflector {
 
 namespace {
 
-constexpr double kTick = 1e-6;
-// A position is ended more gently than the server stops: the server's own way of braking is not
-// known exactly, and passengers like it.
+constexpr double kCountTick = 1e-6;
+// A position ends more gently than a server's stop: the server's own way of braking is not known
+// exactly, and passengers like it.
 constexpr double kGentle = 0.5;   // [m/s2]
 constexpr double kBraking = 0.5;  // [s] and the line's delay
 
@@ -17,7 +17,7 @@ constexpr double kBraking = 0.5;  // [s] and the line's delay
 
 void Reflector::configure(const protocol::RobotParameters& parameters) {
   parameters_ = parameters;
-  // As the session sets it (Devices::begin).
+  // As set in the session (Devices::begin).
   parameters_.deceleration = std::max(parameters.deceleration, parameters.stop_deceleration);
   parameters_.rotation_deceleration =
       std::max(parameters.rotation_deceleration, parameters.stop_rotation_deceleration);
@@ -53,14 +53,14 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
                                std::uint64_t fresh) {
   state_.information = protocol::interpret(packet, parameters_);
   const RawPose raw{packet.x, packet.y, state_.information.th};
-  // The way since it was told to begin at the origin is at most one cycle's.
+  // Since the command to begin at the origin the robot has moved for at most one cycle.
   const double unit = parameters_.distance_unit;
   const bool origin = std::abs(protocol::position_difference(0, packet.x)) * unit < 0.1 &&
                       std::abs(protocol::position_difference(0, packet.y)) * unit < 0.1 &&
                       std::abs(raw.th) < 0.2;
   const bool began = odometry_.update(raw, now - last_packet_, fresh);
   if (began) {
-    motion_.stop();  // a heading or a way that was meant in the old frame means nothing now
+    motion_.stop();  // headings and ways were in the old frame
     state_.buckets.clear();
   } else {
     motion_.moved(odometry_.advance());
@@ -79,9 +79,9 @@ const State& Reflector::packet(const protocol::InformationPacket& packet, double
 
   packet_times_.push_back(now);
   sonar_times_.emplace_back(now, packet.sonars.size());
-  while (packet_times_.front() <= now - 1.0 + kTick)
+  while (packet_times_.front() <= now - 1.0 + kCountTick)
     packet_times_.pop_front();
-  while (sonar_times_.front().first <= now - 1.0 + kTick)
+  while (sonar_times_.front().first <= now - 1.0 + kCountTick)
     sonar_times_.pop_front();
   state_.motor_packets_per_s = static_cast<unsigned>(packet_times_.size());
   state_.sonar_readings_per_s = 0;
@@ -124,7 +124,7 @@ std::vector<protocol::Command> Reflector::due(double now, std::size_t room) {
     out.push_back(to_command(order));
   for (protocol::Command& command : devices_.due(now, room))
     out.push_back(std::move(command));
-  if (out.empty() && now - last_sent_ >= Channels::kRepeat - kTick)
+  if (out.empty() && now - last_sent_ >= Channels::kRepeat - kCountTick)
     out.emplace_back(protocol::Pulse{});
   if (!out.empty())
     last_sent_ = now;

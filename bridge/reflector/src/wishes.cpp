@@ -45,7 +45,7 @@ std::vector<std::string> all(const std::array<const char*, count>& words) {
   return {words.begin(), words.end()};
 }
 
-/// Which of the words a text argument is.
+/// The index of a text argument among the words.
 template <std::size_t count>
 int which(const std::array<const char*, count>& words, const std::string& word) {
   return static_cast<int>(std::find(words.begin(), words.end(), word) - words.begin());

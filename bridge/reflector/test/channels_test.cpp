@@ -26,7 +26,7 @@ TEST(Channels, ZeroSetpointsComeFirst) {
   channels.connect();
   EXPECT_EQ(channels.due(100.0), (std::vector<Order>{kVelZero, kRvelZero}));
   EXPECT_TRUE(channels.due(100.0).empty());
-  // And again on the next connection, although zero was what was sent last.
+  // Zeros are sent again on the next connection, although zero was sent last.
   channels.connect();
   EXPECT_EQ(channels.due(100.1), (std::vector<Order>{kVelZero, kRvelZero}));
 }
@@ -132,8 +132,7 @@ TEST(Channels, HeadingsAreTheServersDegrees) {
   EXPECT_EQ(channels.due(100.3), (std::vector<Order>{{kHead, 0}})) << "not 360";
 }
 
-// Over a line that loses 60 % of the commands, a server that keeps what it gets comes to hold every
-// setpoint that stays.
+// Over a line that loses 60 % of the commands, the server reaches every setpoint that stays.
 TEST(Channels, GetThroughALossyLine) {
   Random random(5);
   Channels channels;

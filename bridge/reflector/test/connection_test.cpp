@@ -61,7 +61,7 @@ TEST(Connection, ALineThatEchoesIsNoRobot) {
   Connection c;
   double now = 1.0;
   Packets out = c.begin(now);
-  // Everything that is sent comes back at once.
+  // Everything that is sent is echoed at once.
   for (int i = 0; i < 40; ++i) {
     const Packets sent = std::exchange(out, {});
     for (const Bytes& packet : sent)
@@ -72,7 +72,7 @@ TEST(Connection, ALineThatEchoesIsNoRobot) {
       out = c.tick(now = c.due());
   }
   EXPECT_NE(c.waiting_for().find("sends back what it is sent"), std::string::npos);
-  // A robot is put there.
+  // A robot is connected to the line.
   c.begin(now);
   c.packet(Bytes{0}, now);
   c.packet(Bytes{1}, now);
@@ -100,7 +100,7 @@ TEST(Connection, MeasuresHowSlowTheLineIs) {
     c.tick(now);
   c.packet(Bytes{0}, 1.8);
   c.tick(2.0);
-  c.packet(Bytes{0}, 2.0);  // answers to what was sent again
+  c.packet(Bytes{0}, 2.0);  // answers to the repeated packet
   c.packet(Bytes{1}, 2.6);
   EXPECT_NEAR(c.round_trip(), 0.8, 1e-9);
   c.packet(identity("Robot", "Pioneer", "PION1M"), 3.3);
@@ -166,7 +166,7 @@ TEST(Connection, ComesAboutOverALossyLine) {
       next.insert(next.end(), more.begin(), more.end());
       out = next;
       if (c.open() && !open && out.empty())
-        break;  // OPEN itself was lost: the one who listens for information packets begins anew
+        break;  // OPEN itself was lost: the listener for information packets begins anew
     }
     ASSERT_TRUE(c.open()) << seed;
   }

@@ -10,7 +10,7 @@ namespace {
 using protocol::Command;
 using protocol::InformationPacket;
 
-/// A robot that is asked things, cycle by cycle.
+/// A robot that gets requests, cycle by cycle.
 struct Bench {
   explicit Bench(protocol::RobotParameters p = {}) : parameters(std::move(p)) { devices.connect(); }
   void ask(const Wish& wish) {
@@ -20,7 +20,7 @@ struct Bench {
     request.deadline = deadline;
     devices.request(request, wish, parameters);
   }
-  /// One cycle; how often this command was sent in it.
+  /// Runs one cycle; returns how often this command was sent in it.
   int cycle(const Command& command) {
     devices.reflect(packet, protocol::interpret(packet, parameters), origin);
     now += 0.1;

@@ -85,8 +85,8 @@ TEST(DirectMotion, AnInterruptedMoveIsOver) {
   EXPECT_GT(direct.setpoints().velocity, 0.0) << "another one's seventh move";
 }
 
-/// A robot that follows velocity setpoints with the accelerations of the manual's Pioneer, heard
-/// every 0.1 s, obeying one packet late.
+/// A robot that follows velocity setpoints with the accelerations of the manual's Pioneer, with
+/// packets every 0.1 s, and a delay of one packet.
 double drive(DirectMotion& direct, double* top, double* overshoot, double distance) {
   double v = 0.0;
   double x = 0.0;

@@ -87,7 +87,7 @@ TEST(Reflector, ABucketHoldsTheNewestReadingOfItsSonar) {
   EXPECT_GT(range, 0.0);
   EXPECT_NEAR(state.buckets[1].point.x(), 0.1 + range * std::cos(0.8), 1e-9);
   EXPECT_NEAR(state.buckets[1].point.y(), -0.1 - range * std::sin(0.8), 1e-9);
-  // Where a new odom frame begins, the poses mean nothing any more.
+  // Poses of an old odom frame are meaningless in a new one.
   packet.x = 20000;
   packet.sonars = {};
   EXPECT_TRUE(r.packet(packet, 0.3, 3).buckets.empty());

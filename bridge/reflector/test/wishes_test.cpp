@@ -12,7 +12,7 @@
 namespace saphira::reflector {
 namespace {
 
-/// The meaning of the request, or its mistake.
+/// The meaning of the request, or its error.
 std::string meant(Request request) {
   for (const Device device : kEnumerators<Device>) {
     const auto refused = refusal(functors(device), request);

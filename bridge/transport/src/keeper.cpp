@@ -23,9 +23,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPause{1000};  // between two starts
-constexpr int kUnanswered = 40;       // heartbeats: 2 s, by a keeper that has its own to do
+constexpr int kUnanswered = 40;       // heartbeats: 2 s, by a keeper that is busy
 
-/// The keeper inherits its socket and stderr alone: a pipe of the bridge held by it would not end.
+/// The keeper inherits its socket and stderr alone: an inherited pipe of the bridge would stay
+/// open.
 struct Inherited {
   posix_spawn_file_actions_t files{};
   posix_spawnattr_t attributes{};
@@ -87,8 +88,8 @@ std::string Keeper::start() {
   return {};
 }
 
-/// It ends by itself when it does not hear the bridge any more, after stopping a robot that it
-/// keeps; one that hangs does not.
+/// A keeper ends by itself when it does not hear the bridge any more, after stopping its robot; a
+/// hanging one does not.
 void Keeper::end() {
   if (socket_ >= 0)
     ::close(std::exchange(socket_, -1));
@@ -120,7 +121,7 @@ bool Keeper::send(char word, int fd, const std::vector<std::uint8_t>& rest) {
   }
   if (::sendmsg(socket_, &message, MSG_NOSIGNAL) >= 0)
     return true;
-  // A full queue means that the keeper is stopped; it is told later.
+  // A full queue means that the keeper is stopped; it gets the message later.
   if (errno != EAGAIN && errno != EINTR)
     alive_ = false;
   return false;

@@ -26,13 +26,13 @@ using std::chrono::milliseconds;
 constexpr milliseconds kRepeat{100};  // the manual's most frequent command (5.2)
 
 void say(const char* text) {
-  // Nothing can be done where stderr is gone or nobody reads it; the robot matters more.
+  // Without a reader of stderr the message is dropped; the robot matters more.
   pollfd ready{STDERR_FILENO, POLLOUT, 0};
   if (::poll(&ready, 1, 0) == 1 && (ready.revents & POLLOUT) != 0) [[maybe_unused]]
     const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// Writes to the robot, whatever kind of line it is, without waiting long for it.
+/// Writes to the robot, over any kind of line, without a long wait.
 void write_stop(int fd, std::span<const std::uint8_t> stop) {
   std::size_t done = 0;
   for (int tries = 0; done < stop.size() && tries < 5; ++tries) {
@@ -48,7 +48,7 @@ void write_stop(int fd, std::span<const std::uint8_t> stop) {
   }
 }
 
-constexpr std::size_t kMostBytes = 64;  // of what stops a robot
+constexpr std::size_t kMostBytes = 64;  // of the stop packets
 
 struct Message {
   char word =
@@ -82,7 +82,8 @@ Message receive(int socket) {
   return out;
 }
 
-/// So that the bridge knows that it is kept. One that nobody takes is left out.
+/// Shows the bridge that the keeper is alive. An answer that does not fit into the queue is
+/// dropped.
 void answer(int socket) {
   const char word = 'b';
   [[maybe_unused]] const ssize_t n = ::send(socket, &word, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -91,8 +92,8 @@ void answer(int socket) {
 }  // namespace
 
 void keep(int socket, milliseconds silence) {
-  // It outlives what ends the bridge: the signals of the terminal are for the bridge, whose end is
-  // heard on the socket.
+  // The keeper outlives the signals of the terminal, which are for the bridge. It sees the bridge's
+  // end on the socket.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGQUIT, SIGPIPE, SIGUSR1, SIGUSR2})
     ::signal(signal, SIG_IGN);
   int robot = -1;
@@ -115,7 +116,7 @@ void keep(int socket, milliseconds silence) {
       if (message.word == '\0') {
         if (robot >= 0) {
           write_stop(robot, stop);
-          write_stop(robot, stop);  // once for a line that was cut within a packet
+          write_stop(robot, stop);  // a first time, for a line that was cut within a packet
           say("saphira-bridge keeper: the bridge is gone; the robot is stopped\n");
         }
         ::_exit(0);

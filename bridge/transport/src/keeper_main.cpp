@@ -1,4 +1,4 @@
-// saphira-keeper: started by saphira-bridge, with what it hears the bridge by.
+// saphira-keeper: started by saphira-bridge, with the socket to it.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

@@ -32,10 +32,10 @@ namespace {
 constexpr double kFirstBackoff = 0.05;  // [s]
 constexpr double kLastBackoff = 0.5;    // [s]
 constexpr double kConnectTime = 3.0;    // [s] for a TCP connection to come about
-// At 9600 baud these are 0.33 s: a command that waits longer is not worth sending.
+// At 9600 baud these are 0.33 s: a command that waits longer is stale.
 constexpr std::size_t kMaxWaiting = 320;
-// For the motion of the cycles meanwhile. The longest packet of a device, 207 bytes, fits into the
-// rest.
+// Reserved for motion commands of the cycles meanwhile. The longest packet of a device, 207 bytes,
+// fits into the rest.
 constexpr std::size_t kForMotion = 64;
 
 std::string error_text() {
@@ -90,7 +90,7 @@ std::string holder(int fd) {
 
 }  // namespace
 
-/// The result of a thread; written before `done`, read behind it.
+/// The result of a thread; written before `done`, read after it.
 struct Link::LookUp {
   struct Place {
     sockaddr_storage address{};
@@ -167,8 +167,8 @@ void Link::open(double now) {
       return close(address_.name + ": no permission (are you in the group dialout?)", now);
     if (fd_ < 0 && errno == EBUSY)
       return close(address_.name + ": in use by another program", now);
-    // Two programs on one line would each hear half of the robot, and drive it both. The lock is
-    // for other bridges, the exclusive mode for whatever else.
+    // Two programs on one line would each hear half of the robot, and both drive it. The lock is
+    // for other bridges, the exclusive mode for any other program.
     if (fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       return close(address_.name + ": in use by " + holder(fd_), now);
     if (fd_ >= 0 && ::isatty(fd_) == 0)
@@ -196,8 +196,8 @@ void Link::open(double now) {
   look_up(now);
 }
 
-/// A resolver that has no network takes its time, and meanwhile others want to be heard: so a
-/// thread asks it. A numeric address needs none.
+/// A resolver without a network is slow, and the loop must not wait: so a thread asks it. A numeric
+/// address needs no resolver.
 void Link::look_up(double now) {
   look_up_ = std::make_shared<LookUp>();
   look_up_->find(address_.name, address_.port, AI_NUMERICHOST);
@@ -213,7 +213,8 @@ void Link::look_up(double now) {
 }
 
 void Link::open_tcp(double now) {
-  // A name may have several addresses, of which the robot listens to one: a try, one of them.
+  // A name may have several addresses, and the robot listens to one of them: each try takes the
+  // next.
   const std::shared_ptr<LookUp> found = std::exchange(look_up_, nullptr);
   if (found->code != 0)
     return close(address_.name + ": " + ::gai_strerror(found->code), now);
@@ -223,7 +224,7 @@ void Link::open_tcp(double now) {
   const int result = fd_ < 0 ? -1 : ::connect(fd_, place, chosen.size);
   if (result != 0 && (fd_ < 0 || errno != EINPROGRESS))
     return close(address_.text() + ": " + error_text(), now);
-  // A command packet is sent when it is ready, not when there are more.
+  // Command packets are sent at once, without waiting for more data.
   const int on = 1;
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   if (result == 0)
@@ -275,7 +276,7 @@ bool Link::read(std::vector<std::uint8_t>& out, double now) {
     const ssize_t n = ::read(fd_, buffer, sizeof buffer);
     if (n > 0) {
       heard_ = true;
-      backoff_ = 0.0;  // a server that talks is worth a quick second try
+      backoff_ = 0.0;  // a server that answered deserves a quick second try
       out.insert(out.end(), buffer, buffer + n);
       if (static_cast<std::size_t>(n) < sizeof buffer)
         return true;
@@ -293,7 +294,7 @@ bool Link::read(std::vector<std::uint8_t>& out, double now) {
 }
 
 std::size_t Link::queued() const {
-  int in_kernel = 0;  // a terminal's own queue is longer than what we want to wait for
+  int in_kernel = 0;  // a terminal's own queue is longer than the wait that is acceptable
   if (address_.kind == Address::Kind::serial && ::ioctl(fd_, TIOCOUTQ, &in_kernel) != 0)
     in_kernel = 0;
   return waiting_.size() + static_cast<std::size_t>(std::max(in_kernel, 0));
@@ -317,7 +318,7 @@ bool Link::write(std::span<const std::uint8_t> bytes, double now) {
 
 bool Link::flush(double now) {
   while (!waiting_.empty()) {
-    // A plain write on a serial line; on a socket without the signal that a lost one raises.
+    // A plain write on a serial line; on a socket without SIGPIPE.
     const ssize_t n = address_.kind == Address::Kind::serial
                           ? ::write(fd_, waiting_.data(), waiting_.size())
                           : ::send(fd_, waiting_.data(), waiting_.size(), MSG_NOSIGNAL);

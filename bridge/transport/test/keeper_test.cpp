@@ -81,7 +81,7 @@ TEST(Keeper, KeepsWhatItIsGivenAlone) {
   EXPECT_EQ(other.hear(5000), "STOP");
   EXPECT_EQ(robot.hear(0), "");
   keeper.unwatch();
-  // Told to leave it, the keeper holds no copy: the end is heard.
+  // After unwatch the keeper holds no copy: the end is seen.
   ::close(other.ends[0]);
   other.ends[0] = -1;
   std::string heard;

@@ -216,7 +216,7 @@ struct Terminal {
   int master = ::posix_openpt(O_RDWR | O_NOCTTY);
 };
 
-// A path without a prefix is whatever is there: also what a person linked to, and what comes later.
+// A path without a prefix is judged by its present file: also a link, and a file that comes later.
 TEST(Link, AnyPathMayBeALine) {
   const Terminal terminal;
   const std::string path = "/tmp/saphira-link-test-line-" + std::to_string(::getpid());
@@ -262,7 +262,7 @@ TEST(Link, OneProgramALine) {
   Link second(parse_address(terminal.device()));
   second.advance(1.0);
   EXPECT_EQ(second.state(), Link::State::closed);
-  // The exclusive mode does not hold for root; the lock then says who it is.
+  // The exclusive mode does not hold for root; the lock then names the holder.
   EXPECT_NE(second.trouble().find(": in use by "), std::string::npos) << second.trouble();
   if (::getuid() == 0) {
     EXPECT_NE(second.trouble().find(std::to_string(::getpid())), std::string::npos)
@@ -286,7 +286,7 @@ TEST(Link, SaysWhatIsWrongWithALine) {
   EXPECT_NE(nobody.trouble().find("does the simulator run?"), std::string::npos);
   Link nowhere(parse_address("tcp:no-such-host.invalid:8101"));
   nowhere.advance(1.0);
-  // Nobody waits for the resolver, which may be quick.
+  // The test does not wait for the resolver, which may be quick.
   if (nowhere.state() != Link::State::closed) {
     EXPECT_EQ(nowhere.trouble(), "looks up no-such-host.invalid");
   }

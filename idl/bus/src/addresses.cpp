@@ -10,12 +10,12 @@ bool Addresses::due(const Set& seen, Time now) {
   if (!only_.empty())
     std::erase_if(usable, [&](const std::string& address) { return address != only_; });
   if (usable != usable_ || !looked_) {
-    // Nothing to settle where the program begins.
+    // At the start of the program no address has to settle.
     changed_ = looked_ ? now : now - kSettled;
     looked_ = true;
     usable_ = std::move(usable);
   }
-  // A socket that is bound to one address does not outlive it.
+  // A socket that is bound to one address ends with that address.
   if (!only_.empty() && usable_.empty())
     made_with_.clear();
   const bool has_new =

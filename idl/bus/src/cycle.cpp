@@ -18,25 +18,25 @@ using internal::Peers;
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(500);
-// Between two looks. Samples come one by one: a look after each would take most of the time.
-constexpr auto kSpin = std::chrono::microseconds(200);
-constexpr auto kLook = std::chrono::milliseconds(5);
-// Seconds without a step before the status says what is waited for.
+// The interval of looks. Samples come one by one: a look after each would take most of the time.
+constexpr auto kStepSpin = std::chrono::microseconds(200);
+constexpr auto kStepLook = std::chrono::milliseconds(5);
+// [s] without a step before the status names the missing input.
 constexpr double kQuietLive = 0.5;
 constexpr double kQuietLockstep = 2.0;
-// A step that was late shows in the state for so many steps.
+// A late step shows in the state for this number of steps.
 constexpr std::uint64_t kDegradedSteps = 10;
 // RobotStates that wait: more than a bridge in lockstep can be ahead.
 constexpr std::size_t kPending = 32;
-// Until a state is refused whose writer has described no robot.
+// [s] before a state is refused whose writer has described no robot.
 constexpr double kUndescribed = 2.0;
-// So many states in a row that are behind the newest one: that one was wrong, not they.
+// After so many states in a row behind the newest one, the newest one counts as wrong.
 constexpr int kBehind = 3;
-// [s] without a state of the robot, while others step, after which this program is deaf; and until
-// it tries again to be heard.
+// [s] without a state of the robot, while other programs step: this program counts as deaf. Also
+// the time to the next attempt.
 constexpr double kDeaf = 10.0;
 constexpr double kDeafAgain = 60.0;
-// Refusals that are told. Whoever makes more of them makes them up.
+// Maximum number of logged refusals. A larger number is forged.
 constexpr std::size_t kMostTold = 1000;
 // Descriptions that are kept: of this bridge's last epochs, and of other bridges of this robot.
 constexpr std::size_t kDescriptions = 64;
@@ -108,7 +108,7 @@ struct Cycle::Impl {
     });
   }
 
-  // Another program of this name serves this robot: two of them would contradict each other.
+  // Another program of this name serves this robot. Two such programs would contradict each other.
   bool yields() {
     const auto other = neighbours.serves_instead(status);
     if (!other)
@@ -119,7 +119,7 @@ struct Cycle::Impl {
     return true;
   }
 
-  // The library may leave one side of a match deaf for ever. Others hear the robot: begin anew.
+  // Fast DDS may leave one side of a match deaf for ever. If others hear the robot, begin anew.
   void note_deafness() {
     if (!pending.empty() || since(waiting_since) < kDeaf || since(renewed) < kDeafAgain ||
         !neighbours.stepping_since(waiting_since, Clock::now()))
@@ -148,7 +148,7 @@ struct Cycle::Impl {
         return refuse(topics::kRobotState.name, state.stamp(), "without epoch or cycle");
       arrived.push_back({state, info.writer, Clock::now()});
     });
-    // Those whose description has not come yet stay, in their order.
+    // States whose description has not come yet stay, in their order.
     std::erase_if(arrived, [&](const Arrived& one) { return !undecided(one); });
     while (arrived.size() > kPending) {
       refuse_stray(arrived.front());
@@ -165,8 +165,8 @@ struct Cycle::Impl {
       });
   }
 
-  // An epoch is adopted only after its description has come. Where so many others came meanwhile
-  // that it is forgotten, those who write them use a robot's name that is not theirs.
+  // An epoch is adopted only after its description has come. If the description was displaced by
+  // many others meanwhile, the writers of those use this robot's name wrongly.
   v1::RobotDescription description_of(std::uint64_t epoch) const {
     for (auto one = described.rbegin(); one != described.rend(); ++one)
       if (one->stamp().epoch() == epoch)
@@ -216,7 +216,7 @@ struct Cycle::Impl {
     const std::uint64_t cycle = state.stamp().cycle();
     if (cycle <= (pending.empty() ? last : pending.back().stamp().cycle())) {
       refuse(topics::kRobotState.name, state.stamp(), "behind the newest one");
-      // The bridge counts up. One wrong number must not make all that come after it deaf.
+      // The bridge counts up. One wrong number must not block all later states.
       behind = cycle == behind_cycle + 1 ? behind + 1 : 1;
       behind_cycle = cycle;
       if (behind < kBehind)
@@ -252,7 +252,7 @@ struct Cycle::Impl {
       if (found + 1 == cycle)
         continue;
       step.stale = true;
-      // Its writers may be starting as well: the first step blames nobody.
+      // Its writers may be starting as well: the first step counts no missing input.
       if (!joining)
         trouble(std::string(found == 0 ? "runs without " : "runs on an old sample of ") +
                 slot->name());
@@ -269,7 +269,7 @@ struct Cycle::Impl {
     for (const auto& slot : inputs) {
       if (cycle == 1 || slot->newest(epochs.epoch(), cycle - 1) == cycle - 1)
         continue;
-      // Samples of a writer come in order: one that is later says that this one will not come.
+      // A writer's samples come in order: a later sample means that this one will not come.
       if (slot->newest(epochs.epoch(), kAny) >= cycle)
         return Inputs::gone;
       if (joining && quiet && slot->newest(epochs.epoch(), kAny) == 0)
@@ -295,7 +295,7 @@ struct Cycle::Impl {
         return {};
       if (ready == Inputs::gone) {
         pending.pop_front();
-        // Only who comes late into a running lockstep may pass a cycle over.
+        // Only a service that joins a running lockstep late may skip a cycle.
         if (!joining) {
           ++status.late_cycles();
           trouble("lost an input");
@@ -357,7 +357,7 @@ struct Cycle::Impl {
       degraded.clear();
     if (!refusal.empty() && status.steps() >= refusal_until)
       refusal.clear();
-    // That somebody else meddles is worse than that a sample came late, and may be its cause.
+    // A refused sample is worse than a late one, and may be its cause.
     status.reason() = refusal.empty() ? degraded : refusal;
     status.state() = status.reason().empty() ? v1::SERVICE_RUNNING : v1::SERVICE_DEGRADED;
   }
@@ -380,17 +380,17 @@ struct Cycle::Impl {
   Reader<v1::ServiceStatus> statuses;
   internal::Neighbours neighbours;
   Epochs epochs;
-  std::deque<Arrived> arrived;  // and not known yet whose they are
+  std::deque<Arrived> arrived;  // whose bridge is not known yet
   std::vector<std::unique_ptr<detail::InputSlot>> inputs;
   std::deque<v1::RobotDescription> described;
   v1::RobotDescription robot_now;  // of this epoch
   std::vector<Gate> gates;
-  std::string missing;                 // what a gate waits for
+  std::string missing;                 // the input that a gate waits for
   std::deque<v1::RobotState> pending;  // of this epoch, not yet stepped, in order
   std::uint64_t last = 0;              // cycle of this epoch that was stepped last
   bool joining = true;                 // no step of this epoch yet
   bool fresh = true;                   // the next step is the first of its epoch
-  bool quiet = false;                  // nothing was due for so long that it should be said
+  bool quiet = false;                  // no step was due for so long that the status says it
   bool yielding = false;               // to another program of this name
   int behind = 0;                      // states in a row that were behind the newest one
   std::uint64_t behind_cycle = 0;
@@ -442,7 +442,7 @@ std::optional<Step> Cycle::poll() {
 
 bool Cycle::look(const std::function<void()>& idle) {
   Impl& self = *impl_;
-  if (Clock::now() - self.looked < kLook)
+  if (Clock::now() - self.looked < kStepLook)
     return false;
   if (!self.yielding) {
     self.note_waiting();
@@ -462,13 +462,13 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
   while (!stop.requested()) {
     if (auto step = poll())
       return step;
-    if (self.lockstep && !self.yielding && self.node.spin(kSpin))
+    if (self.lockstep && !self.yielding && self.node.spin(kStepSpin))
       self.node.clear_wake();
     else if (look(idle))
       self.node.wait(kIdle, &stop);
     else
       self.node.wait(
-          std::chrono::ceil<std::chrono::milliseconds>(self.looked + kLook - Clock::now()), &stop);
+          std::chrono::ceil<std::chrono::milliseconds>(self.looked + kStepLook - Clock::now()), &stop);
   }
   return {};
 }
@@ -480,7 +480,7 @@ void Cycle::done() {
   impl_->max_ms = std::max(impl_->max_ms, ms);
   impl_->waiting_since = Clock::now();
   impl_->quiet = false;
-  // After the step, not before it: what it costs must not delay the robot.
+  // After the step, not before: the cost of publishing must not delay the robot.
   impl_->publish_status();
   impl_->looked = Clock::now();
 }

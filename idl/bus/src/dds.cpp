@@ -1,4 +1,4 @@
-// The bus over Fast DDS. The only places that know it are the files dds*.
+// The bus over Fast DDS. Only the files dds* use Fast DDS.
 
 #include <algorithm>
 #include <array>
@@ -60,7 +60,7 @@ EndpointEntry own_entry(const std::string& robot, const char* topic, const TypeI
   return own;
 }
 
-/// Where a session is not, or is not to be made yet, an endpoint has no part in it.
+/// In a session that is missing or cannot be made yet, an endpoint has no part.
 class DdsWriter : public RawWriter, public Endpoint {
  public:
   DdsWriter(std::shared_ptr<Bus> bus, const char* topic, const Policies& policies,
@@ -137,15 +137,15 @@ class DdsWriter : public RawWriter, public Endpoint {
       // An instance that another writer has written is withdrawn as well: it has to be made known
       // here first.
       writer.register_instance(const_cast<void*>(sample));
-      // Not only dispose(): after that Fast DDS keeps the instance for ever, here and at the
+      // Not dispose() alone: after it Fast DDS keeps the instance for ever, here and at the
       // readers.
       return writer.unregister_instance(const_cast<void*>(sample), fdds::HANDLE_NIL) ==
              ReturnCode_t::RETCODE_OK;
     });
   }
   bool wait_acknowledged(int timeout_ms) override {
-    // Fast DDS does not say which reader has not acknowledged. One that is gone never will, and the
-    // others have it, or have asked for it again, within a few heartbeats.
+    // Fast DDS does not say which reader has not acknowledged. A reader that is gone never will.
+    // The others have the sample, or have asked for it again, within a few heartbeats.
     constexpr int kSlice = 50;
     constexpr int kHeartbeats = 400;
     for (int waited = 0; waited < timeout_ms; waited += kSlice) {
@@ -191,11 +191,11 @@ class DdsWriter : public RawWriter, public Endpoint {
   };
 
   Part& part_of(const Session& session) { return parts_[static_cast<std::size_t>(session.side)]; }
-  /// True where a later session is told again what it holds.
+  /// True where a later session gets the stored samples again.
   bool keeps() const {
     return policies_.kept_by_session || (policies_.transient_local && policies_.writer_depth == 1);
   }
-  /// Loopback first. Whether it went well in all.
+  /// Loopback first. True where it went well in all sessions.
   template <class Do>
   bool each_part(Do&& act) {
     bool well = true;
@@ -352,7 +352,7 @@ class DdsReader : public RawReader, public Endpoint {
     }
   }
 
-  // The session is held for this call alone: who takes may write meanwhile.
+  // The session is held for this call alone: the caller may write between calls.
   bool take_next(Part& part, fdds::SampleInfo& from, SampleInfo& info, bool& malformed) {
     const auto session = bus_->hold();
     if (part.reader == nullptr ||
@@ -384,7 +384,7 @@ class DdsReader : public RawReader, public Endpoint {
     return false;
   }
 
-  // get_key_value() is not supported: what was withdrawn is known by this alone.
+  // get_key_value() is not supported: this map alone gives the key of a withdrawn instance.
   void remember(const rtps::InstanceHandle_t& handle) {
     auto found = last_.find(handle);
     if (found == last_.end())
@@ -392,7 +392,7 @@ class DdsReader : public RawReader, public Endpoint {
     type_.copy(scratch_.get(), found->second.get());
   }
 
-  // Writers come and go for months. Forgetting them costs no more than a sample that comes twice.
+  // Writers come and go for months. A forgotten writer costs at most a sample that comes twice.
   static constexpr std::size_t kMostWriters = 1000;
 
   std::shared_ptr<Bus> bus_;
@@ -402,7 +402,7 @@ class DdsReader : public RawReader, public Endpoint {
   std::array<Part, 2> parts_;  // by Side
   Holder scratch_;
   std::map<rtps::InstanceHandle_t, Holder> last_;
-  // Of each writer the number of the sample that was taken last: now, and when the session began.
+  // For each writer the number of the sample that was taken last: now, and at the session's start.
   std::map<rtps::GUID_t, std::uint64_t> taken_;
   std::map<rtps::GUID_t, std::uint64_t> taken_before_;
   std::atomic<bool> begun_anew_{false};

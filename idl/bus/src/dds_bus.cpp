@@ -26,17 +26,17 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 namespace {
 
-// Above, ports are higher than there are.
+// The highest domain: above it, port numbers would exceed 65535.
 constexpr std::uint32_t kMaxDomain = 231;
-// After so long a silence somebody may be about to drop us, or we somebody.
+// After a silence of this length, other programs may drop this one, or this one them.
 constexpr std::chrono::seconds kLongSleep{kLease - std::chrono::seconds(15)};
-// A turn of the thread that took so long was a sleep.
+// A turn of the thread that took this long was a sleep.
 constexpr std::chrono::seconds kSleep{1};
-// Turns of the thread from one look at the machine's addresses to the next.
-constexpr int kLook = 2;
+// Turns of the thread between two looks at the machine's addresses.
+constexpr int kTurnsToLook = 2;
 // The time after which a wait for the network is logged.
 constexpr std::chrono::seconds kTellWait{3};
-// Between two attempts to look up the names of peers of which nothing is heard.
+// Between two lookups of the names of silent peers.
 constexpr std::chrono::seconds kLookUp{5};
 
 // The period of returning free memory to the system. It takes some ms, for which other threads may
@@ -45,8 +45,7 @@ constexpr std::chrono::seconds kGiveBack{30};
 
 }  // namespace
 
-/// Looks up the addresses of the peers, in a thread that nobody waits for: a lookup may take
-/// seconds.
+/// Looks up the addresses of the peers, in a thread of its own: a lookup may take seconds.
 struct Bus::Names {
   static void look_up(std::shared_ptr<Names> names, std::shared_ptr<Machines> machines,
                       const std::vector<std::string>& peers) {
@@ -224,7 +223,7 @@ void Bus::run() {
       renew(Side::network, true);
       write_log(v1::LOG_WARNING, options_.name + ": began anew on the bus");
     }
-    if (++turns_ % kLook == 0)
+    if (++turns_ % kTurnsToLook == 0)
       look_at_network();
     lock.lock();
     ended_.wait_for(lock, std::chrono::milliseconds(Peers::kTickMs), [this] { return ends_; });
@@ -353,7 +352,8 @@ void Bus::replace(Side side, std::unique_ptr<Session> fresh, bool after_sleep) {
       endpoint->open(*fresh, after_sleep);
     }
   } catch (const std::exception& error) {
-    // Half of the endpoints are better than a program that nobody restarts, and worse than none.
+    // A program with half of its endpoints is better than one that nobody restarts, and worse than
+    // one that has ended.
     write_log(v1::LOG_ERROR, options_.name + ": could not begin anew: " + error.what());
     std::_Exit(kExitBroken);
   }
@@ -364,7 +364,7 @@ void Bus::replace(Side side, std::unique_ptr<Session> fresh, bool after_sleep) {
   retire(std::move(fresh));
 }
 
-// In a thread of its own: it may take as long as the others need not wait.
+// In a thread of its own: the end of a session may take long, and the others need not wait.
 void Bus::retire(std::unique_ptr<Session> old) {
   if (!old)
     return;

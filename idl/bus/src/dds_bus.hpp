@@ -30,7 +30,7 @@ namespace saphira::bus::internal {
 
 class Presence;
 
-/// A participant on one side, and what is made of it.
+/// A participant on one side, and the objects made from it.
 class Session {
  public:
   /// std::runtime_error where it cannot be made.
@@ -43,9 +43,9 @@ class Session {
 
   eprosima::fastdds::dds::Topic* topic(const char* name, const char* type);
 
-  /// Ends without a farewell. The others drop what is silent when its lease is over; told of its
-  /// end while they still send it what it missed, they may come to a deadlock (Fast DDS 2.9:
-  /// matched_reader_remove against a writer's asynchronous thread).
+  /// Ends without a farewell. The others drop a silent participant when its lease is over. If they
+  /// learn of its end while they still send it missed samples, they may come to a deadlock (Fast
+  /// DDS 2.9: matched_reader_remove against a writer's asynchronous thread).
   void mute() { *mute_ = true; }
 
   /// Tells the others from which machines this program hears announcements.
@@ -64,7 +64,7 @@ class Session {
   const std::shared_ptr<std::atomic<bool>> mute_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-/// Something that has a part in each session, made again in the next one.
+/// An object that has a part in each session, made again in the next one.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
@@ -75,15 +75,15 @@ class Endpoint {
 };
 
 /// The state that the endpoints of a node share; lives as long as the last of them. Ten times a
-/// second its thread tells the others that this program is there, and looks whether they are.
+/// second its thread announces this program's presence, and checks that of the others.
 ///
 /// There is a session on loopback, for the programs of this machine, and with the profiles lan and
 /// wan one on the network, as soon as the machine has an address. When it gets another address, the
 /// session on the network is made anew, and the one on loopback goes on.
 ///
 /// A program that stood still for about as long as the lease of discovery, or longer, may have been
-/// dropped by the others without having dropped them, and would not be heard again by some (Fast
-/// DDS 2.9). It notices that it stood still and begins anew, with participants that nobody knows.
+/// dropped by the others without having dropped them. Some would not hear it again (Fast DDS 2.9).
+/// So the program detects the pause and begins anew, with participants that nobody knows.
 class Bus {
  public:
   Bus(const NodeOptions& options, std::uint64_t instance, std::shared_ptr<Wake> wake);
@@ -95,9 +95,9 @@ class Bus {
   void add(Endpoint& endpoint);
   void remove(Endpoint& endpoint);
 
-  /// While it is held, the sessions are the same.
+  /// The sessions do not change while the lock is held.
   std::shared_lock<std::shared_mutex> hold() const { return std::shared_lock(mutex_); }
-  /// Those that there are, under hold().
+  /// The existing sessions, under hold().
   template <class Each>
   void each_session(Each&& each) const {
     for (const auto& session : sessions_)
@@ -105,13 +105,13 @@ class Bus {
         each(*session);
   }
   const std::string& robot() const { return options_.robot; }
-  /// As after a long sleep.
+  /// Begins anew soon, as after a long sleep.
   void renew_soon();
   /// None on an open bus.
   const std::shared_ptr<Guard>& guard() const { return guard_; }
-  /// Named peers from which nothing was heard lately.
+  /// Named peers that were silent lately.
   std::vector<std::string> silent_peers() const;
-  /// In words, what the network side waits for: an address, or that of a named peer.
+  /// In words, the missing address: this machine's or that of a named peer.
   std::vector<std::string> waits() const;
 
   const std::shared_ptr<Wake> wake;
@@ -138,7 +138,7 @@ class Bus {
   const std::shared_ptr<Machines> machines_;  // wan alone
   const std::shared_ptr<Names> names_;        // wan alone
   mutable std::shared_mutex
-      mutex_;                   // exclusive for who changes a session or an endpoint's part in it
+      mutex_;                   // exclusive for changes of a session or of an endpoint's part in it
   std::mutex endpoints_mutex_;  // before mutex_
   std::array<std::unique_ptr<Session>, 2> sessions_;  // by Side
   std::unique_ptr<Presence> presence_;
@@ -147,7 +147,7 @@ class Bus {
   mutable std::mutex addresses_mutex_;
   Addresses addresses_;  // of this machine
   BootClock::time_point waits_since_;
-  std::string told_;  // of what is waited for
+  std::string told_;  // the waits in the last log message
   int turns_ = 0;
 
   std::mutex thread_mutex_;

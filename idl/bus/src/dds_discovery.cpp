@@ -15,10 +15,10 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-// Until an endpoint that does not match is told by its policy alone: it is usually known sooner.
+// After this time a mismatch is told by its policy alone. The endpoint is usually known sooner.
 constexpr std::chrono::seconds kUnexplained{2};
-// Mistakes that are told. Whoever makes more of them makes them up.
-constexpr std::size_t kMostTold = 1000;
+// Maximum number of logged mistakes. A larger number is forged.
+constexpr std::size_t kMostProgramsTold = 1000;
 
 const char* policy_name(fdds::QosPolicyId_t id) {
   switch (id) {
@@ -124,7 +124,7 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   const auto& prefix = info.info.m_guid.guidPrefix;
   Program& program = programs_[prefix];
   if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
-    // Fast DDS may tell that a program was found again before it tells that it was dropped.
+    // Fast DDS may report that a program was found again before it reports that it was dropped.
     if (--program.discovered <= 0) {
       if (machines_)
         machines_->forget(to_text(prefix));
@@ -136,7 +136,7 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
   } else {
     if (info.status == Info::DISCOVERED_PARTICIPANT) {
       ++program.discovered;
-      // Not what it announces later: the handshake checked the certificate with the first.
+      // Later announcements do not count: the handshake checked the certificate with the first one.
       if (guard_) {
         program.identity = guard_->identify(prefix, announced_subject(info.info.identity_token_));
         if (!program.identity->name.empty())
@@ -165,10 +165,10 @@ std::shared_ptr<const Identity> Discovery::identity_of(const rtps::GUID_t& write
   return found == programs_.end() || !found->second.identity ? stranger : found->second.identity;
 }
 
-// Fast DDS refuses the match, and says neither whose nor why.
+// Fast DDS refuses the match, without naming the endpoint or the reason.
 void Discovery::tell_forbidden(const rtps::GUID_t& guid, const EndpointEntry& endpoint) {
   const auto program = programs_.find(guid.guidPrefix);
-  if (!guard_ || told_.size() >= kMostTold || program == programs_.end() ||
+  if (!guard_ || told_.size() >= kMostProgramsTold || program == programs_.end() ||
       !program->second.identity)
     return;
   const std::string why =
@@ -221,7 +221,7 @@ void Discovery::add_incompatible(const std::string& topic, bool own_writes,
 void Discovery::add_malformed(const std::string& topic, const rtps::GUID_t& writer) {
   const std::scoped_lock lock(mutex_);
   ++malformed_.count;
-  if (told_.size() >= kMostTold ||
+  if (told_.size() >= kMostProgramsTold ||
       !told_.insert({"malformed " + topic, to_hex(to_id(writer))}).second)
     return;
   EndpointEntry from;

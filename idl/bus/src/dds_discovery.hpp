@@ -23,8 +23,8 @@ namespace saphira::bus::internal {
 class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
   /// most_here: programs of this machine that others can find [0: any number].
-  /// machines: are told what each program hears, where there are any.
-  /// guard: knows who each program is, and is told which are let in; none on an open bus.
+  /// machines: gets the machines that each program hears; may be null.
+  /// guard: identifies each program, and learns which are let in; none on an open bus.
   Discovery(std::shared_ptr<Wake> wake, const Peers& peers, std::shared_ptr<Machines> machines,
             std::shared_ptr<Guard> guard, std::size_t most_here)
       : wake_(std::move(wake)),
@@ -44,11 +44,11 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
 
   /// Fast DDS found an endpoint on the other side of this topic that does not match, by this
-  /// policy. It says so again at each announcement, and may say so before the endpoint of ours is
-  /// made or the other's is told.
+  /// policy. Fast DDS repeats that at each announcement, and may report it before our endpoint is
+  /// made or the other one is discovered.
   void add_incompatible(const std::string& topic, bool own_writes,
                         eprosima::fastdds::dds::QosPolicyId_t policy);
-  /// A sample that is none of the topic's type.
+  /// A sample that is not of the topic's type.
   void add_malformed(const std::string& topic, const eprosima::fastrtps::rtps::GUID_t& writer);
   void add_own(const EndpointEntry& own);
   void remove_own(const std::string& id);
@@ -67,7 +67,7 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
     std::string name;
     std::string host;
     std::uint32_t pid = 0;
-    int discovered = 0;                        ///< less how often it was dropped
+    int discovered = 0;                        ///< times found minus times dropped
     std::shared_ptr<const Identity> identity;  ///< none on an open bus
   };
 
@@ -82,8 +82,8 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
     auto operator<=>(const Incompatible&) const = default;
   };
 
-  /// Each pair of endpoints once; where no pair explains it in time, the policy once. False: not
-  /// yet.
+  /// Logs each pair of endpoints once; where no pair explains the mismatch in time, the policy
+  /// once. False: not yet.
   bool tell_incompatible(const Incompatible& found, bool late, std::vector<std::string>& texts);
 
   void count_programs_here();

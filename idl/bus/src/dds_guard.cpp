@@ -14,10 +14,10 @@
 namespace saphira::bus::internal {
 namespace {
 
-// Between two looks for a list of what was revoked.
-constexpr std::chrono::seconds kLook{5};
+// Between two looks for a list of revoked certificates.
+constexpr std::chrono::seconds kGuardLook{5};
 constexpr std::int64_t kDay = 86400;
-// Before that a certificate's end is told.
+// The time before a certificate's end at which the end is told.
 constexpr std::int64_t kSoon = 30;  // [days]
 
 std::int64_t now() {
@@ -131,7 +131,7 @@ void Guard::take(const security::Revoked& list) {
 }
 
 void Guard::look(const std::string& program) {
-  if (BootClock::now() - looked_ < kLook)
+  if (BootClock::now() - looked_ < kGuardLook)
     return;
   looked_ = BootClock::now();
   std::string trouble;

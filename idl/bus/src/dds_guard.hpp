@@ -18,41 +18,41 @@
 
 namespace saphira::bus::internal {
 
-/// The security of a node: its credentials, who the others are, and which of them were revoked or
-/// are not let in.
+/// The security of a node: its credentials, the identities of the others, and the programs that are
+/// revoked or not let in.
 class Guard {
  public:
-  /// None for an open bus. std::invalid_argument where the credentials are of no use.
+  /// None for an open bus. std::invalid_argument where the credentials are unusable.
   static std::shared_ptr<Guard> make(const NodeOptions& options);
 
   Guard(std::string folder, security::Credentials credentials);
 
   void secure(eprosima::fastdds::dds::DomainParticipantQos& qos) const;
 
-  /// The identity of a participant, by the subject that it announced at discovery; empty where the
+  /// The identity of a participant, by the subject that it announced at discovery. Empty where the
   /// site is another one or the prefix is not that subject's. Fast DDS 2.9 takes samples only where
-  /// the certificate has the announced subject. It checks within the handshake that the prefix is
-  /// the certificate's, but does not compare it with the prefix of the samples.
+  /// the certificate has the announced subject. Its handshake checks that the prefix is the
+  /// certificate's, but does not compare that prefix with the prefix of the samples.
   std::shared_ptr<const Identity> identify(const eprosima::fastrtps::rtps::GuidPrefix_t& prefix,
                                            const std::string& announced) const;
 
-  /// Why somebody may not write or read a topic, in words; empty where it may.
+  /// The reason why a program may not write or read a topic, in words; empty where it may.
   std::string why_not(const Identity& identity, const std::string& topic, bool writes) const;
   const Identity& own() const { return own_; }
 
-  /// Of a packet's sender. From any thread.
+  /// True where the certificate of a packet's sender is revoked. From any thread.
   bool revoked(const std::uint8_t* prefix) const;
 
   // The handshakes with programs that announce themselves. From any thread.
   void begin_handshake(const Handshakes::Program& program);
   void end_handshake(const Handshakes::Program& program);
-  /// That a packet's sender announces itself. True: it is to be forgotten, so that both begin anew.
+  /// A packet's sender announces itself. True: forget the sender, so that both begin anew.
   bool announced(const std::uint8_t* prefix);
 
-  /// Looks for a newer list of what was revoked, now and then.
+  /// Looks for a newer list of revoked certificates, at intervals.
   void look(const std::string& program);
 
-  /// In words where the certificate expires soon; empty otherwise.
+  /// A warning in words where the certificate expires soon; empty otherwise.
   std::string expiry() const;
 
  private:

@@ -36,13 +36,12 @@ namespace {
 namespace fdds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
-// [ms] between two announcements of a program: what a restarted one waits at the most until it is
-// found.
+// [ms] between two announcements of a program: the longest time until a restarted program is found.
 constexpr int kAnnouncement = 250;
-// By unicast to every place where a peer may be: less often, for the sake of a radio.
+// By unicast to every place where a peer may be: less often, to spare a radio link.
 constexpr int kPeerAnnouncement = 500;
 
-/// Of an endpoint of somebody else: Discovery tells whose, and why.
+/// True for a message about another program's endpoint: Discovery tells whose it is, and why.
 bool is_refusal(const std::string& message) {
   return message.starts_with("Security manager returns an error") ||
          message.starts_with("Error checking create remote ") ||
@@ -55,7 +54,7 @@ class DdsLog : public fdds::LogConsumer {
     if (is_refusal(entry.message))
       return;
     const std::string text = "Fast DDS: " + entry.message;
-    // An error of Fast DDS is logged as a warning, since the system goes on.
+    // An error of Fast DDS is logged as a warning, since the program goes on.
     write_log(entry.kind == fdds::Log::Kind::Info ? v1::LOG_DEBUG : v1::LOG_WARNING, text);
   }
 };
@@ -64,7 +63,7 @@ class DdsLog : public fdds::LogConsumer {
 // announcements that are for other machines, and the other way round.
 constexpr std::uint16_t kLoopbackPorts = 125;
 
-/// A number of this machine since it was started, or of this network namespace.
+/// A number of this machine since its boot, or of this network namespace.
 std::uint32_t machine() {
   static const std::uint32_t number = [] {
     std::string text;
@@ -78,8 +77,8 @@ std::uint32_t machine() {
   return number;
 }
 
-/// Fast DDS makes it of the addresses that the machine has at that moment, so that machines without
-/// one would be the same.
+/// Fast DDS makes the prefix from the machine's present addresses, so that machines without an
+/// address would have the same one.
 rtps::GuidPrefix_t new_prefix() {
   static const std::uint32_t process = std::random_device{}();
   static std::atomic<std::uint32_t> count{0};
@@ -120,7 +119,7 @@ class OwnAddress {
 };
 
 /// Programs of this machine are heard on loopback, and would be heard twice. With security the
-/// first bytes of a prefix say who a program is and not where.
+/// first bytes of a prefix identify a program, not its machine.
 SieveDescriptor::Ignore own_programs(bool secured) {
   if (!secured)
     return [](const std::uint8_t* prefix, const rtps::Locator_t& /*from*/) {
@@ -209,7 +208,7 @@ fdds::DomainParticipantQos participant_qos(const NodeOptions& options, Side side
     qos.wire_protocol().port.portBase += kLoopbackPorts;
   } else {
     ignore = own_programs(guard != nullptr);
-    // A packet that waits for a neighbour's address holds up nobody.
+    // A packet that waits for a neighbour's address must not hold up the sender.
     udp->non_blocking_send = true;
     if (!options.interface.empty())
       udp->interfaceWhiteList.push_back(options.interface);

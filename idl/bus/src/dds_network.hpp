@@ -15,14 +15,14 @@
 
 namespace saphira::bus::internal {
 
-/// Silence after which discovery drops a program. Long: one that stood still and comes back before
-/// is still matched, while one that was dropped by one side alone may never be heard again by that
-/// side (Fast DDS 2.9 keeps the other side's half of the match). That a program has died is noticed
-/// by its presence.
+/// The silence after which discovery drops a program. It is long: a program that stood still and
+/// comes back before is still matched, while a program that was dropped by one side alone may never
+/// be heard again by that side (Fast DDS 2.9 keeps the other side's half of the match). The death
+/// of a program is noticed by its presence.
 constexpr std::chrono::seconds kLease{60};
 
-/// wan: how many programs of one machine can be found by a peer that knows nothing but its address.
-/// Each announces itself to so many places on each peer.
+/// wan: number of programs of one machine that a peer can find by its address alone. Each program
+/// announces itself to this number of places on each peer.
 constexpr std::uint32_t kProgramsPerPeer = 20;
 
 /// A program has two sides on the bus, each with a participant of its own: programs of this machine
@@ -40,8 +40,8 @@ std::string look_up(const std::string& host);
 /// Settings of Fast DDS as a whole, before the first participant.
 void set_up_library();
 
-/// How a program finds others on one side, and by which addresses. While `mute` is set it sends
-/// nothing. `machines`, `guard`: see SieveDescriptor.
+/// The discovery settings and addresses of one side. While `mute` is set the side sends nothing.
+/// `machines`, `guard`: see SieveDescriptor.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(
     const NodeOptions& options, Side side, std::shared_ptr<const std::atomic<bool>> mute,
     std::shared_ptr<Machines> machines = nullptr, std::shared_ptr<Guard> guard = nullptr);

@@ -13,11 +13,11 @@
 
 namespace saphira::bus::internal {
 
-/// Says that this program is there, and hears which others are.
+/// Announces the presence of this program, and watches that of the others.
 ///
-/// This is about processes that are gone: a program that is slow in one cycle is not, so a thread
-/// beside its loop turns it. Neither Fast DDS's liveliness nor a deadline does it: they take a
-/// program that slept for a witness of everybody else's death.
+/// Presence detects processes that are gone. A program that is slow in one cycle is not gone, so a
+/// thread beside its loop sends the presence. Fast DDS's liveliness and deadline do not fit: after
+/// a program's own sleep they report all others as dead.
 class Presence : public Endpoint {
  public:
   /// instance: as in ServiceStatus.
@@ -28,7 +28,7 @@ class Presence : public Endpoint {
 
   /// Ten times a second, from one thread.
   void tick();
-  /// Of the programs that are expected, the one that was not heard for longest.
+  /// The longest silence among the expected programs.
   BootClock::duration longest_silence(BootClock::time_point now) const;
 
  private:

@@ -26,8 +26,8 @@ namespace transport = eprosima::fastdds::rtps;
 
 // Between two announcements of a program.
 constexpr std::chrono::milliseconds kOnce{50};
-// Between two packets of a handshake that is sent to all. While many programs begin, one follows
-// the other; a packet waits no longer than this.
+// Between two packets of a handshake that is sent to all. While many programs begin, the packets
+// queue; each waits no longer than this.
 constexpr std::chrono::milliseconds kHandshake{4};
 constexpr std::chrono::milliseconds kLongestHandshake{40};
 
@@ -110,7 +110,7 @@ class Sieve : public transport::ChainingTransport {
       for (const std::uint32_t port : descriptor_.ports) {
         rtps::Locator_t place;
         rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, address, port, place);
-        // An assertion of Fast DDS's statistics wants each place to have been opened.
+        // An assertion of Fast DDS's statistics requires that each place was opened.
         if (opened_.emplace(address, port).second)
           low_level_transport_->OpenOutputChannel(openers_, place);
         places.push_back(place);
@@ -119,8 +119,8 @@ class Sieve : public transport::ChainingTransport {
   }
 
   /// Fast DDS 2.9 drops the part of a handshake that comes while it still sends its own to the same
-  /// program. Each says its part again every second, so that two that began together would drop
-  /// each other's for good.
+  /// program. Each side repeats its part every second, so that two sides that began together would
+  /// drop each other's part for ever.
   void wait_for_own_handshake() const {
     const auto begun = BootClock::now();
     for (auto now = begun; now - begun < kLongestHandshake &&
@@ -144,7 +144,7 @@ class Sieve : public transport::ChainingTransport {
   std::set<std::pair<std::string, std::uint32_t>> opened_;
   transport::SendResourceList openers_;
   Sequences sequences_;
-  std::atomic<BootClock::rep> handshake_sent_{0};  // when it last sent a part of one
+  std::atomic<BootClock::rep> handshake_sent_{0};  // time of the last own part of one
 };
 
 }  // namespace

@@ -17,18 +17,17 @@
 namespace saphira::bus::internal {
 
 /// A filter between the network and Fast DDS: only sound messages pass, and exceptions are caught.
-/// Fast DDS takes a packet in a thread of its own, where an exception would end the process.
+/// Fast DDS takes a packet in its own thread, where an exception would end the process.
 struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
   using Mute = std::shared_ptr<const std::atomic<bool>>;
   /// True where a packet is to be dropped, by its sender's GUID prefix and address.
   using Ignore = std::function<bool(const std::uint8_t* prefix,
                                     const eprosima::fastrtps::rtps::Locator_t& from)>;
 
-  /// While `mute` is set nothing is sent. Where there are `machines`, they hear from where
-  /// announcements come, and the program announces itself to them, at each of these ports. With a
-  /// `guard` nothing passes of those whose certificate was revoked, and no farewell, which anybody
-  /// can forge; and who announces itself for long and is not let in is
-  /// forgotten.
+  /// While `mute` is set nothing is sent. `machines`, if any, get the sources of announcements; the
+  /// program announces itself to them, at each of these ports. With a `guard`, packets from senders
+  /// with a revoked certificate are dropped, and so are farewells, which anybody can forge. A
+  /// sender that announces itself for long and is not let in is forgotten.
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
                   Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
                   std::vector<std::uint32_t> the_ports = {},

@@ -12,9 +12,9 @@ namespace {
 thread_local bool last_was_malformed = false;
 
 /// Adds the safety that the generated code lacks. That code throws at a sample that is not of its
-/// type, also in a thread of Fast DDS, which ends the process. And its getKey works in a buffer of
-/// the object, while one object serves every endpoint of a participant: a write by the program and
-/// a sample received by the transport would use the buffer at the same time.
+/// type, also in a thread of Fast DDS, which ends the process. Its getKey uses a buffer of the
+/// object, while one object serves every endpoint of a participant: a write by the program and a
+/// sample received by the transport would use the buffer at the same time.
 template <class Generated>
 class Guarded : public Generated {
  public:
@@ -27,8 +27,8 @@ class Guarded : public Generated {
       return false;
     }
   }
-  // "Read" also where it was not: what Fast DDS cannot read it does not take from the history, and
-  // one such sample would stand before all later ones.
+  // Returns true for an unreadable sample as well. Fast DDS does not remove a sample that it cannot
+  // read, and one such sample would block all later ones.
   bool deserialize(Payload* payload, void* data) override {
     last_was_malformed = true;
     try {

@@ -8,8 +8,8 @@ namespace saphira::bus::internal {
 /// A fresh TypeSupport for each type of the contract.
 std::vector<eprosima::fastdds::dds::TypeSupport> all_types();
 
-/// True where the sample that this thread took last, since the last call, is none of its type.
-/// Nothing of it may be used.
+/// True where the newest sample that this thread took since the last call is not of its type. Such
+/// a sample must not be used.
 bool take_malformed();
 
 }  // namespace saphira::bus::internal

@@ -9,7 +9,7 @@ bool Epochs::followed(const Program& program, const Known& known) const {
 }
 
 void Epochs::describe(const Program& program, std::uint64_t instance, std::uint64_t epoch) {
-  // Programs come and go for months; of those that are gone nothing is kept that matters.
+  // Programs come and go for months; a program that is gone need not be remembered.
   if (described_.size() >= kMostPrograms && !described_.contains(program))
     std::erase_if(described_,
                   [&](const auto& known) { return !followed(known.first, known.second); });
@@ -17,7 +17,8 @@ void Epochs::describe(const Program& program, std::uint64_t instance, std::uint6
 }
 
 void Epochs::lose(const Program& program) {
-  // Its description stays: after a nap it is matched as before, and not told again.
+  // Its description stays: after a pause the program is matched as before, without a new
+  // description.
   const auto lost = described_.find(program);
   if (lost != described_.end())
     lost->second.present = false;
@@ -52,7 +53,7 @@ bool Epochs::useful(std::uint64_t epoch) const {
     return true;
   if (left_.contains(epoch))
     return false;
-  // One that nobody has described yet may be our bridge's next.
+  // An epoch without a description may be our bridge's next one.
   return !bridge_ || std::none_of(described_.begin(), described_.end(), [&](const auto& known) {
     return known.second.epoch == epoch && !followed(known.first, known.second);
   });

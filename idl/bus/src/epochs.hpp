@@ -1,6 +1,6 @@
 #pragma once
 
-// Which bridge's epochs a service follows. Pure.
+// The choice of the bridge whose epochs a service follows. Pure.
 
 #include <array>
 #include <cstdint>
@@ -13,10 +13,11 @@
 namespace saphira::bus::internal {
 
 /// An epoch belongs to the bridge that has described its robot for it. A service follows one bridge
-/// until that one is gone; whatever others of the same robot's name write is refused.
+/// until that bridge is gone; samples of other bridges of the same robot name are refused.
 ///
-/// A bridge is known by the instance that it describes itself with, not by its participant: it has
-/// one on each side of its machine, and makes them anew after a nap or for another address.
+/// A bridge is known by the instance in its description, not by its participant: it has one
+/// participant on each side of its machine, and makes them anew after a pause or for another
+/// address.
 class Epochs {
  public:
   using Program = Peers::Program;  ///< a participant
@@ -31,11 +32,11 @@ class Epochs {
   /// The bridge `instance` [0: unknown, each participant is one] has described its robot for an
   /// epoch by this participant.
   void describe(const Program& program, std::uint64_t instance, std::uint64_t epoch);
-  /// A participant is gone. Another bridge may be followed when none is left of the one that is.
+  /// A participant is gone. Another bridge may be followed when the followed one has none left.
   void lose(const Program& program);
   /// The verdict on a state of the robot. Follows its bridge where none is followed yet.
   Verdict judge(const Program& writer, std::uint64_t epoch);
-  /// True where what other services write for this epoch is of use, now or soon.
+  /// True where other services' samples of this epoch are of use, now or soon.
   bool useful(std::uint64_t epoch) const;
   /// The epoch that is followed; 0 before the first.
   std::uint64_t epoch() const { return epoch_; }
@@ -50,7 +51,7 @@ class Epochs {
     std::uint64_t epoch = 0;
     bool present = true;
   };
-  /// True where it is of the bridge that is followed.
+  /// True where the participant belongs to the followed bridge.
   bool followed(const Program& program, const Known& known) const;
 
   /// The participant by which the bridge that is followed was heard last.

@@ -15,7 +15,7 @@ NodeOptions for_inside(const Node& outside) {
   return options;
 }
 
-/// Only the newest count, so that nothing is lost while nobody reads them.
+/// Of these only the newest sample counts, so nothing is lost while nobody reads them.
 bool is_periodic(Qos qos) {
   return qos == Qos::cyclic || qos == Qos::motion || qos == Qos::recall;
 }
@@ -52,7 +52,7 @@ struct Gateway::In {
     const std::vector<WriterId> gone = outside->take_lost();
     outside->take([&](const void* sample, const SampleInfo& info) {
       if (self.is_own(info.writer))
-        return;  // carried outwards by ourselves
+        return;  // our own copy, carried outwards
       auto& writer = inside[info.writer];
       if (!writer)
         writer = node.make_writer(topic, qos, *type);
@@ -99,7 +99,7 @@ void Gateway::wait(std::chrono::milliseconds timeout, const Stop& stop) {
 }
 
 void Gateway::carry() {
-  // This thread looks by itself: what comes need not wake it.
+  // This thread looks by itself: incoming samples need not wake it.
   outside_.rouse();
   inside_->rouse();
   if (internal::wake_of(outside_).pending() || woken_) {

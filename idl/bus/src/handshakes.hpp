@@ -9,25 +9,25 @@
 
 namespace saphira::bus::internal {
 
-/// Programs that announce themselves and were not let in yet. On a machine without time to spare a
-/// handshake may come to a dead end, where each of the two waits for the other for good (Fast DDS
-/// 2.9). To forget the other and find it again is the way out. Pure bookkeeping: no DDS, no clock.
+/// Programs that announce themselves and were not let in yet. On a loaded machine a handshake may
+/// come to a dead end, where each of the two waits for the other for ever (Fast DDS 2.9). The
+/// remedy is to forget the other and find it again. Pure bookkeeping: no DDS, no clock.
 class Handshakes {
  public:
   using Program = std::array<std::uint8_t, 12>;
   using Time = BootClock::time_point;
 
-  /// Announcements that count are this far apart: those that waited in a socket while this program
-  /// stood still are as one.
+  /// The minimum interval of announcements that count: announcements that queued in a socket while
+  /// this program stood still count as one.
   static constexpr std::chrono::milliseconds kApart{200};
-  /// So many of them are a dead end: 8 s. A handshake that loses a tenth of its packets takes up to
-  /// 4 s.
+  /// This many announcements are a dead end: 8 s. A handshake that loses a tenth of its packets
+  /// takes up to 4 s.
   static constexpr int kPatience = 32;
 
   void begin(const Program& program) { pending_.try_emplace(program); }
-  /// It is let in, or gone.
+  /// The program is let in, or gone.
   void end(const Program& program) { pending_.erase(program); }
-  /// True where it is to be forgotten now.
+  /// True where the program is to be forgotten now.
   bool announced(const Program& program, Time now);
 
  private:

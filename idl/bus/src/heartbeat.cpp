@@ -10,8 +10,8 @@
 namespace saphira::bus::internal {
 namespace {
 
-// The environment is handed on to grandchildren, and the descriptor is not: by then its number may
-// be something else's.
+// Grandchildren inherit the environment but not the descriptor: its number may stand for another
+// file by then.
 int open_pipe() {
   const char* const text = std::getenv(kHeartbeatVariable);
   int fd = -1;
@@ -29,8 +29,8 @@ int open_pipe() {
 void send(const Heartbeat& beat) {
   static const int fd = open_pipe();
   if (fd >= 0)
-      // A full pipe has enough of them; without a reader the supervisor is gone, and so are we
-      // soon.
+      // A full pipe has enough heartbeats. Without a reader the supervisor is gone, and this
+      // program will end soon.
       [[maybe_unused]]
     const auto written = write(fd, &beat, sizeof beat);
 }

@@ -4,7 +4,7 @@
 
 namespace saphira::bus::internal {
 
-/// Sends it to the supervisor; without one it does nothing. Never waits.
+/// Sends a heartbeat to the supervisor, if there is one. Never waits.
 void send(const Heartbeat& beat);
 
 }  // namespace saphira::bus::internal

@@ -22,8 +22,8 @@ struct Policies {
   int reader_depth = 1;
   int lifespan_ms = 0;   ///< [0: for ever]
   int heartbeat_ms = 0;  ///< of a reliable writer; how soon a lost sample is noticed
-  /// A node that begins anew on the bus writes again what this writer holds: a state is told again,
-  /// an event or a wish is not.
+  /// A node that begins anew on the bus writes the samples of this writer again: a state is
+  /// repeated, an event or a wish is not.
   bool kept_by_session = false;
 };
 
@@ -42,8 +42,8 @@ class Wake {
   void clear();
   /// Its thread does not sleep, and looks at pending() by itself: signals need not wake it.
   void rouse() { asleep_.store(false); }
-  /// Its thread is about to poll fd(). False where something is pending already: then fd() may not
-  /// say so.
+  /// Its thread is about to poll fd(). False where a signal is pending already, which fd() may not
+  /// show.
   bool rest() {
     asleep_.store(true);
     return !pending_.load();
@@ -58,7 +58,7 @@ class Wake {
   std::atomic<bool> written_{false};  ///< fd() is readable
 };
 
-/// Samples that were none of their topic's type, since the last call.
+/// Samples that were not of their topic's type, since the last call.
 struct Malformed {
   std::uint64_t count = 0;
   std::vector<std::string> texts;  ///< each topic and writer once
@@ -82,7 +82,7 @@ class Transport {
   /// As Node has them.
   virtual std::vector<std::string> silent_peers() const { return {}; }
   virtual std::vector<std::string> network_waits() const { return {}; }
-  /// With security, what this node is, and in words where its certificate expires soon.
+  /// With security, the identity of this node, and a warning where its certificate expires soon.
   virtual std::optional<Identity> identity() const { return std::nullopt; }
   virtual std::string expiry() const { return {}; }
   /// Begins anew on the bus, as after a long sleep; soon, in a thread of its own.
@@ -94,13 +94,13 @@ class Transport {
 /// instance: as in ServiceStatus.
 std::unique_ptr<Transport> make_dds_transport(const NodeOptions& options, std::uint64_t instance,
                                               std::shared_ptr<Wake> wake);
-/// Throws where the credentials that the options name would not do.
+/// Throws where the credentials that the options name are unusable.
 void check_credentials(const NodeOptions& options);
 std::unique_ptr<Transport> make_memory_transport(const NodeOptions& options,
                                                  std::shared_ptr<MemoryBus> bus,
                                                  std::shared_ptr<Wake> wake);
 
-/// True where two partitions, either of them with wildcards, have something in common.
+/// True where two partitions, either of them with wildcards, overlap.
 bool partitions_meet(const std::string& one, const std::string& other);
 
 std::string host_name();
@@ -115,7 +115,7 @@ inline std::string to_hex(const WriterId& id) {
   return text;
 }
 
-/// True where a node of this program that has ended was at work: had a cycle of a robot.
+/// True where a node of this program that has ended had a cycle of a robot.
 std::atomic<bool>& has_worked();
 
 /// A node's transport, for tests that need a QoS that no name has.

@@ -13,8 +13,8 @@
 
 namespace saphira::bus::internal {
 
-/// Writes a sample of a generated type as JSON: numbers so that they read back to the same value,
-/// what JSON has no number for as null.
+/// Writes a sample of a generated type as JSON. Numbers read back to the same value; NaN and
+/// infinities are null.
 class JsonWriter {
  public:
   template <class T>

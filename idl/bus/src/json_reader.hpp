@@ -15,7 +15,7 @@
 namespace saphira::bus::internal {
 
 /// Sets a sample of a generated type from JSON: members that are not named stay as they are.
-/// std::invalid_argument that names the place and what was expected.
+/// std::invalid_argument that names the place and the expected text.
 class JsonReader {
  public:
   template <class T>

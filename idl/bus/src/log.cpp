@@ -22,8 +22,8 @@ spdlog::logger& logger() {
   return *instance;
 }
 
-/// Somebody may have stopped the terminal, or read the pipe no further: what holds a robot does not
-/// wait for that. A pipe that can be written to takes a line at once.
+/// False while stderr would block: the terminal may be stopped, or the pipe unread, and a program
+/// that holds a robot must not wait. A pipe that can be written to takes a line at once.
 bool can_write() {
   pollfd ready{STDERR_FILENO, POLLOUT, 0};
   return ::poll(&ready, 1, 0) == 1 && (ready.revents & POLLOUT) != 0;

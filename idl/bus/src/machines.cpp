@@ -9,7 +9,7 @@ namespace saphira::bus::internal {
 
 namespace {
 
-/// True where it is the address of one other machine, as one writes it.
+/// True for the unicast address of one other machine, in its usual notation.
 bool is_machine(const std::string& text) {
   in_addr address{};
   if (inet_pton(AF_INET, text.c_str(), &address) != 1)

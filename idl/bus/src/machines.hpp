@@ -1,6 +1,6 @@
 #pragma once
 
-// Which other machines there are, where no multicast tells. Pure bookkeeping: no DDS, no clock.
+// The other machines, where multicast does not find them. Pure bookkeeping: no DDS, no clock.
 
 #include <chrono>
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace saphira::bus::internal {
 /// The machines that a program announces itself to: those that the options name, and others.
 ///
 /// Each program tells the others from which machines it hears announcements. So two machines that
-/// both know a third one find each other: whoever is told of a machine announces itself there, and
-/// to be announced to by one side is enough.
+/// both know a third one find each other: a program that learns of a machine announces itself
+/// there. An announcement in one direction is enough.
 class Machines {
  public:
   using Time = std::chrono::nanoseconds;  ///< since some moment
@@ -28,26 +28,27 @@ class Machines {
   /// A peer of the options has this address; empty: none is known yet.
   void name(const std::string& peer, const std::string& address);
 
-  /// An announcement came from there.
+  /// An announcement came from this address.
   void hear(const std::string& address, Time now);
-  /// That program hears these: separated by commas, as heard() says it. Damaged ones are left out.
+  /// The machines that a program hears, separated by commas, as from heard(). Damaged addresses are
+  /// left out.
   void tell(const std::string& program, const std::string& addresses);
   void forget(const std::string& program);
   /// Forgets the addresses that all programs told.
   void forget_told();
 
-  /// From where announcements come, for other programs.
+  /// The sources of announcements, for other programs.
   std::string heard(Time now) const;
-  /// Where to announce oneself.
+  /// The machines to announce this program to.
   Addresses others(Time now) const;
-  /// Named ones of which nothing was heard lately.
+  /// Named peers that were silent lately.
   std::vector<std::string> silent(Time now) const;
-  /// Named ones that have no known address.
+  /// Named peers without a known address.
   std::vector<std::string> unknown() const;
 
   /// The silence after which a machine counts as gone.
   static constexpr std::chrono::seconds kGone{60};
-  /// The limit of each list of machines: a longer list is made up.
+  /// The limit of each list of machines: a longer list is forged.
   static constexpr std::size_t kMost = 16;
 
  private:

@@ -59,7 +59,8 @@ std::string why_incompatible(const EndpointEntry& writer, const EndpointEntry& r
     return text.str();
   }
   if (writer.liveliness != reader.liveliness) {
-    // Kinds are ordered as their names are not; a reader without lease asks for nothing but a kind.
+    // The order of the kinds is not that of their names; a reader without lease requires a kind
+    // only.
     const auto kind = [](const std::string& text) {
       return text.starts_with("manual_by_topic")         ? 2
              : text.starts_with("manual_by_participant") ? 1

@@ -8,7 +8,7 @@ namespace saphira::bus::internal {
 
 namespace {
 
-// [s] For less than this it is a newcomer, which may not have known who serves.
+// [s] A program that serves for less is a newcomer, which may not have known of the other.
 constexpr double kMoment = 3.0;
 // Statuses come once a second.
 constexpr std::chrono::seconds kBreak{3};

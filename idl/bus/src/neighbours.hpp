@@ -1,6 +1,6 @@
 #pragma once
 
-// The meaning of the status of this robot's other programs for a service. Pure.
+// The status of this robot's other programs, as a service uses it. Pure.
 
 #include <chrono>
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace saphira::bus::internal {
 
-/// Of several programs of one name for one robot (two deployments, or one that is started again
-/// before the death of the last one was noticed) one serves: the one that serves already; of two
-/// that do, the one that has done so for longer than a moment; of two that have, the one with the
-/// smaller instance. Each comes to the same end by itself.
+/// Of several programs of one name for one robot (two deployments, or a restart before the death of
+/// the last one was noticed) one serves: the one that serves already; of two that do, the one that
+/// has served for longer than a moment; of two that have, the one with the smaller instance. Each
+/// program comes to the same result by itself.
 class Neighbours {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -26,8 +26,8 @@ class Neighbours {
 
   /// The program that serves in place of `own`, in words.
   std::optional<std::string> serves_instead(const v1::ServiceStatus& own) const;
-  /// True where some other program has been stepping without a break since that time, so that its
-  /// robot is heard.
+  /// True where another program has been stepping without a break since that time, which shows that
+  /// its robot is heard.
   bool stepping_since(Time since, Time now) const;
 
  private:

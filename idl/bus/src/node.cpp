@@ -82,7 +82,7 @@ struct Node::Impl {
       log(v1::LOG_WARNING, std::string(kStartedAgain) + why);
   }
 
-  // To the supervisor, which cannot tell by the bus whether a program is deaf or not heard.
+  // To the supervisor. The bus does not show whether a program is deaf or is not heard.
   void beat(std::uint64_t flags) const {
     if (waits_for_robot(status))
       flags |= Heartbeat::kWaitsForRobot;
@@ -104,7 +104,7 @@ struct Node::Impl {
   }
 
   void log(v1::LogLevel level, std::string text) {
-    // Somebody's file or message may have a line without an end.
+    // The text of a person's file or message may have a line without an end.
     if (text.size() > kLongestLog)
       text = text.substr(0, kLongestLog) + "... (" + std::to_string(text.size()) + " characters)";
     internal::write_log(level, options.name + ": " + text);
@@ -157,7 +157,7 @@ Node::~Node() {
   if (impl_->status.stamp().cycle() > 0)
     internal::has_worked() = true;
   impl_->beat(Heartbeat::kEnds);
-  // Gone in good order: nobody has to wait until the status is old.
+  // A clean end: nobody has to wait until the status is old.
   if (impl_->published) {
     impl_->status_writer->dispose(impl_->status);
     impl_->status_writer->wait_acknowledged(100);
@@ -267,7 +267,7 @@ bool Node::publish_status() {
   self.status.incompatible() = self.health.incompatible;
   self.status.uptime() = std::chrono::duration<double>(now - self.started).count();
   self.status.rss_mb() = resident_mb();
-  // A share of too short a time would only show the grain of the measurement.
+  // A share over too short a time would show only the resolution of the clock.
   if (since > 0.5) {
     const double cpu = cpu_seconds();
     self.status.cpu_percent() = 100.0 * (cpu - self.last_cpu) / since;

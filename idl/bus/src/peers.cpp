@@ -72,7 +72,7 @@ void Peers::forget(const Program& program) {
   const auto found = programs_.find(program);
   if (found == programs_.end())
     return;
-  // Of one that is absent the other matches end soon as well, and were told as lost already.
+  // The other matches of an absent program end soon as well, and were reported lost already.
   if (found->second.absent && has_matches(program))
     found->second.expected = false;
   else

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which of the programs that a node is matched with are there. Pure bookkeeping: no DDS, no clock.
+// The presence of the programs that a node is matched with. Pure bookkeeping: no DDS, no clock.
 
 #include <array>
 #include <atomic>
@@ -19,7 +19,7 @@ namespace saphira::bus::internal {
 /// The other ends that one endpoint is matched with.
 class Ends {
  public:
-  enum class Side { readers, writers };  ///< what they are; only of writers it is told who is lost
+  enum class Side { readers, writers };  ///< of the other ends; losses are told of writers
   explicit Ends(Side side) : side_(side) {}
   /// Those whose program is there.
   std::size_t present() const { return present_; }
@@ -40,13 +40,12 @@ class Ends {
   std::atomic<std::size_t> present_{0};
 };
 
-/// A program that is killed stays matched until its participant's lease is over, which is long, so
-/// that a program that stood still for a while is not taken for gone and discovered anew. Its
-/// presence is missed within a second: from then on its endpoints count as unmatched, until it is
-/// heard again.
+/// A killed program stays matched until its participant's lease is over. The lease is long, so that
+/// a program that stood still for a while is not dropped and discovered anew. Its presence is
+/// missed within a second: from then on its endpoints count as unmatched, until it is heard again.
 ///
-/// Silence is counted in ticks of this program's own, not by a clock: a program that stood still
-/// itself does not take all others for dead.
+/// Silence is counted in ticks of this program, not by a clock: a program that stood still itself
+/// does not report all others as dead.
 class Peers {
  public:
   /// The first part of an endpoint's id, which is the same for all endpoints of a program.
@@ -56,9 +55,9 @@ class Peers {
   static constexpr int kTickMs = 100;
   /// Ticks of silence after which a program counts as gone.
   static constexpr int kSilent = 7;
-  /// The same for a program that was never heard: it may still be on its way to find our reader.
+  /// The same for a program that was never heard: it may not have found our reader yet.
   static constexpr int kSilentAtFirst = 50;
-  /// Ticks for the matches of the session before to be made again.
+  /// Ticks in which the matches of the session before have to be made again.
   static constexpr int kRestart = 50;
 
   explicit Peers(std::shared_ptr<Wake> wake) : wake_(std::move(wake)) {}
@@ -68,7 +67,7 @@ class Peers {
   void remove(Ends& ends);
   void match(Ends& ends, const WriterId& other);
   void unmatch(Ends& ends, const WriterId& other);
-  /// This node begins anew on the bus: what was matched is to be matched again soon, or is lost.
+  /// This node begins anew on the bus: its matches are to be made again soon, or count as lost.
   void restart(Ends& ends);
   /// Other ends that are gone since the last call, by discovery or by their program's silence.
   std::vector<WriterId> take_lost(Ends& ends);

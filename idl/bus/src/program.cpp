@@ -18,7 +18,7 @@ namespace saphira::bus {
 namespace {
 
 /// The folder of credentials of this user, or else of this machine; empty: there is none. A user
-/// with an authority needs one even before it exists, so that nothing starts open by accident.
+/// with an authority needs a folder even before it exists, so that nothing starts open by accident.
 std::string usual_security() {
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
@@ -106,7 +106,7 @@ int run_program(int argc, char** argv, const std::string& name, const std::strin
     return *code;
   internal::has_worked() = false;
   std::string what;
-  std::string usage;  // what of that is told to the person who gave us something wrong
+  std::string usage;  // the first such error, for the person who gave the input
   try {
     Stop stop;
     stop_on_signals(stop);

@@ -4,16 +4,16 @@
 
 namespace saphira::bus::internal {
 
-// The one table. Why each is as it is: idl/README.md.
+// The one table. Reasons: idl/README.md.
 Policies policies(Qos qos, bool lockstep) {
   switch (qos) {
     case Qos::cyclic:
     case Qos::motion:
-      // Live, a lost sample is replaced by the next; the reader is a little deeper than the writer
+      // Live, a lost sample is replaced by the next. The reader is a little deeper than the writer,
       // so that a service that was slow for one cycle still finds the sample before the newest, and
       // two writers of one role do not overwrite each other.
-      // In lockstep nothing may be lost, and who starts later must find the cycle that is waited
-      // for.
+      // In lockstep nothing may be lost, and a program that starts later must find the cycle that
+      // the others wait for.
       return lockstep ? Policies{.reliable = true,
                                  .transient_local = true,
                                  .writer_depth = 8,
@@ -37,8 +37,8 @@ Policies policies(Qos qos, bool lockstep) {
               .heartbeat_ms = 100,
               .kept_by_session = true};
     case Qos::goal:
-      // Not told again after a long sleep: what was asked for then may be over, or canceled because
-      // its agent fell silent, and nobody is there to see the robot drive off.
+      // Not repeated after a long sleep: the wish may be over, or canceled because its agent fell
+      // silent, and nobody may be there to see the robot drive off.
       return {.reliable = true, .transient_local = true, .heartbeat_ms = 100};
     case Qos::status:
       return {
@@ -52,7 +52,7 @@ Policies policies(Qos qos, bool lockstep) {
     case Qos::presence:
       return {.reader_depth = 1};
     case Qos::recall:
-      // Without a reader a sample costs no more than being kept.
+      // Without a reader a sample costs only its storage.
       return {.reliable = true,
               .transient_local = true,
               .writer_depth = 600,

@@ -44,7 +44,7 @@ struct Submessage {
   std::uint64_t number(std::size_t at) const { return word(at) << 32U | word(at + 4); }
 };
 
-/// The one that begins there; `next` is where the one behind it does.
+/// The submessage that begins there; `next` is where its successor begins.
 Submessage submessage(const std::uint8_t* message, std::size_t size, std::size_t at,
                       std::size_t& next) {
   Submessage result{message[at], (message[at + 1] & 1U) != 0, message + at + kSubmessageHeader, 0};
@@ -58,7 +58,7 @@ Submessage submessage(const std::uint8_t* message, std::size_t size, std::size_t
   return result;
 }
 
-/// True where the inline QoS of data tells what became of its instance, or cannot be read.
+/// True where the inline QoS of data gives the status of its instance, or cannot be read.
 bool may_tell_status(const Submessage& data) {
   constexpr std::uint64_t kEnd = 0x0001;
   constexpr std::uint64_t kStatus = 0x0071;
@@ -93,8 +93,8 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size) {
 }
 
 const std::uint8_t* handshake_for(const std::uint8_t* message, std::size_t size) {
-  // Behind the encapsulation: the message's own GUID and number, those of the one that it answers,
-  // and who is meant.
+  // Behind the encapsulation: the message's own GUID and number, those of the message that it
+  // answers, and the addressee.
   constexpr std::size_t kMeant = 20 + 4 + 24 + 24;
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
@@ -141,7 +141,7 @@ std::vector<std::uint8_t> farewell(const std::uint8_t* prefix) {
   add({kData, 0x0b, 0, 0, 0, 0, 16, 0});
   add({0x00, 0x01, 0x00, 0xc7});
   message.insert(message.end(), std::begin(kParticipantWriter), std::end(kParticipantWriter));
-  // A number above all that the participant has used: an older one would be passed over.
+  // A number above all that the participant has used: a smaller one would be ignored.
   add({1, 0, 0, 0, 0, 0, 0, 0});
   add({0x70, 0x00, 16, 0});  // the hash of the key
   add_participant();
@@ -175,7 +175,7 @@ bool Sequences::plausible(const std::uint8_t* message, std::size_t size, Time no
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);
     if (part.id == kInfoSource)
-      return true;  // what follows is of somebody else, whom we do not know
+      return true;  // the rest belongs to another, unknown participant
     const bool data = part.id == kData || part.id == kDataFragment;
     // Where the writer's id and the highest number stand, as the standard has it.
     const std::size_t writer = data ? 8 : 4;

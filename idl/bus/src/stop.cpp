@@ -13,7 +13,7 @@ namespace {
 
 std::atomic<Stop*> signal_stop{nullptr};
 
-// Only what is allowed in a signal handler: an atomic and write(2).
+// Only calls that are allowed in a signal handler: an atomic and write(2).
 void on_signal(int /*signal*/) {
   const int saved = errno;
   if (Stop* stop = signal_stop.load())
@@ -37,7 +37,7 @@ Stop::~Stop() {
 void Stop::request() {
   requested_.store(true, std::memory_order_release);
   const std::uint64_t one = 1;
-  // Can only fail where the counter is full, and then it is readable already.
+  // Fails only where the counter is full, and then fd_ is readable already.
   [[maybe_unused]] const auto written = write(fd_, &one, sizeof one);
 }
 
@@ -48,7 +48,7 @@ void stop_on_signals(Stop& stop) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // The terminal is gone; nohup asks to go on nevertheless.
+  // The terminal is gone; nohup asks to continue nevertheless.
   struct sigaction hangup {};
   sigaction(SIGHUP, nullptr, &hangup);
   if (hangup.sa_handler != SIG_IGN)

@@ -18,7 +18,7 @@ Wake::~Wake() {
 }
 
 void Wake::signal() {
-  // First the flag, then whether it sleeps; rest() the other way round: one of both sees the other.
+  // First the flag, then the sleep state; rest() in reverse order: one of both sees the other.
   if (pending_.exchange(true) || !asleep_.load())
     return;
   const std::uint64_t one = 1;
@@ -29,9 +29,9 @@ void Wake::signal() {
 void Wake::clear() {
   if (!pending_.load() && !written_.load())
     return;
-  // First the descriptor, then the flag: a signal in between writes nothing, but what it announces
-  // is there already when the caller takes. The other way round its write would be read away and
-  // the flag left standing, for ever.
+  // First the descriptor, then the flag: a signal in between writes nothing, but its samples are
+  // there already when the caller takes. In reverse order its write would be consumed and the flag
+  // would stay set, for ever.
   if (written_.exchange(false)) {
     std::uint64_t count = 0;
     [[maybe_unused]] const auto got = read(fd_, &count, sizeof count);

@@ -394,8 +394,8 @@ TEST_P(Cycles, QuietBridgeIsSaid) {
   EXPECT_EQ(service_->status().reason(), "waits for robot/state of cycle 2: nobody writes it");
 }
 
-// Two services that read each other and a bridge that waits for one of them, in threads of their
-// own: the lockstep of the whole system, whoever starts first.
+// Two services that read each other and a bridge that waits for one of them, each in a thread: the
+// lockstep of the whole system, in any order of start.
 class Lockstep : public OnEachBus {
  protected:
   static constexpr std::uint64_t kCycles = 50;

@@ -104,7 +104,7 @@ TEST_F(GatewayTest, WhatIsAskedInsideIsNotHeardTwice) {
   EXPECT_EQ(goals_.take().size(), 1U);
 }
 
-// There is one source of what the robot does each cycle.
+// RobotState has a single source in each cycle.
 TEST_F(GatewayTest, StatesOfOthersDoNotComeIn) {
   Writer<v1::RobotState> states(person_.writer(topics::kRobotState));
   for (int i = 0; i < 5; ++i) {

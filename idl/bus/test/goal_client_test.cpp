@@ -69,7 +69,7 @@ TEST(GoalClient, KnowsTheNewestStatusAndKeepsItsOwn) {
   client.poll();
   EXPECT_EQ(client.status(own.id())->state(), v1::GOAL_SUCCEEDED);
   EXPECT_EQ(client.statuses().size(), 2U);
-  // Withdrawn a minute after the end: who asked may still look at how it ended.
+  // Withdrawn a minute after the end: the requester may still read the final state.
   statuses.dispose(own);
   statuses.dispose(foreign);
   client.poll();
@@ -135,7 +135,7 @@ TEST(GoalClient, ForgetsWhatEndedLongAgo) {
   ASSERT_EQ(withdrawn.size(), 1U);
   EXPECT_TRUE(withdrawn[0].info.disposed);
   EXPECT_EQ(withdrawn[0].data.id(), done);
-  // Of what is forgotten, nothing is withdrawn again.
+  // A forgotten goal is not withdrawn again.
   client.poll();
   EXPECT_TRUE(goals.take().empty());
 }

@@ -41,7 +41,7 @@ class OnEachBus : public testing::TestWithParam<std::string> {
     return GetParam() == "dds" ? std::make_unique<Node>(options)
                                : std::make_unique<Node>(options, memory_);
   }
-  /// How long the absence of something is watched: what is in memory is there at once.
+  /// Duration of a check for absence. Samples of the memory transport arrive at once.
   milliseconds absence() const { return milliseconds(GetParam() == "dds" ? 200 : 1); }
 
  private:

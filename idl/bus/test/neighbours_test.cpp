@@ -1,4 +1,4 @@
-// Which of two programs of one name serves, and who hears the robot.
+// Which of two programs of one name serves, and which hears the robot.
 #include "neighbours.hpp"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(Neighbours, OneThatStepsWithoutABreakHearsTheRobot) {
   EXPECT_TRUE(neighbours.stepping_since(begin, now));
   EXPECT_FALSE(neighbours.stepping_since(begin - seconds(1), now));
   EXPECT_FALSE(neighbours.stepping_since(begin, now + seconds(4)));
-  // It stood for a while: what came before does not count.
+  // The program stood still for a while: earlier steps do not count.
   status.stamp().cycle(100);
   neighbours.hear({1}, status, now += seconds(5));
   EXPECT_FALSE(neighbours.stepping_since(begin, now));

@@ -1,5 +1,5 @@
-// A program for tests that need another process or another machine: writes what tests read, or
-// reads and says what came.
+// A program for tests that need another process or another machine: writes samples for the test, or
+// reads samples and reports them.
 //
 //   saphira-bus-peer --role writer                a goal, and RobotState at --hz, until stopped
 //   saphira-bus-peer --role reader --count N      ends when it has the goal and N states: exit 0;

@@ -1,4 +1,4 @@
-// Two processes: what becomes of one's samples when it dies, stops, and comes back.
+// Two processes: the samples of one when it dies, stops, and comes back.
 #include "process.hpp"
 
 #include <algorithm>
@@ -69,7 +69,7 @@ TEST_F(Processes, WriterThatIsKilledIsLostWithinASecond) {
   EXPECT_EQ(lost, std::vector<WriterId>{got[0].info.writer});
   EXPECT_LT(seconds_since(killed), 10.0);  // far from the lease of discovery, on a busy machine
   EXPECT_EQ(goals.matched(), 0U);
-  // It was not withdrawn: what becomes of it is for its reader to say.
+  // The goal was not withdrawn: its reader decides about it.
   EXPECT_TRUE(goals.take().empty());
 }
 
@@ -161,7 +161,7 @@ TEST_F(Processes, NodeThatBeginsAnewHearsNothingTwiceAndMissesNothing) {
   EXPECT_EQ(take_at_least(sleeper, hears, 1).size(), 1U);
   EXPECT_EQ(take_at_least(sleeper, reads, 2).size(), 2U);
 
-  writer.signal(SIGKILL);  // what dies during the sleep
+  writer.signal(SIGKILL);  // a death during the sleep
   writer.wait();
   internal::transport_of(sleeper).renew();
   message.text("two");

@@ -126,7 +126,7 @@ TEST(Security, WhatAMemberWritesComesWithItsName) {
   ASSERT_TRUE(eventually(*bridge, [&] { return reader.matched() == 1; }));
   std::vector<Sample<v1::MotorCommand>> samples;
   ASSERT_TRUE(eventually(*bridge, [&] {
-    writer.write(command_of("bridge"));  // what it says of itself is another matter
+    writer.write(command_of("bridge"));  // the source named in the sample is not checked here
     for (auto& sample : reader.take())
       samples.push_back(std::move(sample));
     return !samples.empty();
@@ -244,7 +244,7 @@ TEST_F(EveryLine, IsKeptByTheOthers) {
                              return untold.empty();
                            }))
         << untold.size() << " are not told, such as " << *untold.begin();
-    // All that it has made was looked at by now, and what it may not have is still not matched.
+    // All endpoints of the node were looked at by now, and the forbidden ones are still unmatched.
     for (const security::TopicRule& rule : roles.topics)
       EXPECT_TRUE(as_the_line_says(rule.topic)) << rule.topic;
   }

@@ -143,9 +143,9 @@ TEST(Sequences, LeapIsBelievedWhenItIsSaidThreeTimes) {
     return sequences.plausible(bytes.data(), bytes.size(), kAwake);
   };
   wake(sequences);
-  EXPECT_TRUE(ask(heartbeat(1, 0, 5000)));  // whoever comes late begins anywhere
+  EXPECT_TRUE(ask(heartbeat(1, 0, 5000)));  // a late reader begins at any number
   EXPECT_TRUE(ask(heartbeat(1, 0, 5001)));
-  EXPECT_TRUE(ask(heartbeat(1, 0, 10)));  // what is sent again is behind
+  EXPECT_TRUE(ask(heartbeat(1, 0, 10)));  // a repeated heartbeat is behind
   EXPECT_FALSE(ask(heartbeat(1, 7, 5002)));
   EXPECT_FALSE(ask(heartbeat(1, 0x7fffffff, 5002)));
   EXPECT_TRUE(ask(heartbeat(1, 0, 5002)));

@@ -35,7 +35,7 @@ std::string read(const std::string& file) {
   }
 }
 
-/// Calls f(); what it says is told with the file that it concerns.
+/// Calls f(), and adds the name of the file to its error.
 template <class F>
 auto checked(const std::string& file, F&& f) {
   try {

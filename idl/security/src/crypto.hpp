@@ -15,7 +15,7 @@ struct KeyPair {
   std::string certificate;  ///< PEM
 };
 
-/// How long something holds [s since 1970].
+/// A period of validity [s since 1970].
 struct Validity {
   std::int64_t from = 0;
   std::int64_t until = 0;
@@ -33,7 +33,7 @@ KeyPair make_member(const Subject& subject, Validity validity, const KeyPair& au
 /// S/MIME, as DDS Security wants its documents.
 std::string sign(const std::string& text, const KeyPair& authority);
 
-// All of these throw std::runtime_error that says what is wrong, without the file.
+// All of these throw std::runtime_error with the reason, without the file.
 
 /// The text of a document that this authority has signed.
 std::string verified(const std::string& document, const std::string& authority_certificate);

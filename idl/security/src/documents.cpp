@@ -45,8 +45,8 @@ std::string governance() {
       element("enable_liveliness_protection", "true") +
       element("enable_read_access_control", "true") +
       element("enable_write_access_control", "true") +
-      // The submessages: data, and what says which of them there are. The data alone once more
-      // would cost time and hide nothing.
+      // The submessages: the data and their headers. A second encryption of the data alone would
+      // cost time and hide nothing.
       element("metadata_protection_kind", "ENCRYPT") + element("data_protection_kind", "NONE");
   return std::string(kHeader) + "omg_shared_ca_governance.xsd\">\n" +
          element("domain_access_rules",

@@ -4,7 +4,7 @@
 #include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/agent_interface/knowledge.hpp"
 
-/// Between the bus and plain types: pure functions, nothing else.
+/// Conversions between the bus and plain types: pure functions.
 namespace saphira::agent_interface {
 
 AgentInfo from_bus(const v1::Agent& agent);

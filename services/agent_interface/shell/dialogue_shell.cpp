@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 constexpr const char* kName = "dialogue";
 constexpr const char* kQuestion = "asking-about";  // the belief of config/activities/people.act
 
-constexpr double kOld = 60.0;  // [s] after which nobody waits for it to be done
+constexpr double kOld = 60.0;  // [s] after which an utterance is too old to act on
 
-constexpr std::chrono::seconds kTakenUp{5};  // a goal that nobody knows by then is withdrawn
+constexpr std::chrono::seconds kTakenUp{5};  // an unclaimed goal is withdrawn then
 constexpr const char* kNotTakenUp =
     "no program has taken up the goal: saphira status shows whether intentions runs";
 
@@ -33,7 +33,7 @@ std::string folder_of(const std::string& file) {
   return folder.empty() ? "." : folder;
 }
 
-/// As the activity language writes a text: "karen's office".
+/// A text in the activity language: "karen's office".
 std::string literal(const std::string& text) {
   std::string result = "\"";
   for (const char c : text)
@@ -247,7 +247,7 @@ void DialogueShell::take_utterances() {
   for (const auto& sample : heard_.take()) {
     if (sample.info.disposed)
       continue;
-    // A writer that lives keeps what it wrote: who has just begun hears it too.
+    // A living writer repeats its earlier sentences to a new reader.
     if (sample.data.time() > 0.0 && unix_time() - sample.data.time() > kOld) {
       node_.info("not acted on, since it is older than a minute: " +
                  saphira::quoted(sample.data.text()));

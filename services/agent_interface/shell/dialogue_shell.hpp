@@ -13,19 +13,19 @@ namespace saphira::agent_interface {
 
 struct DialogueOptions {
   std::string grammar;  ///< a file
-  std::string memory;   ///< where what was told outlives a restart; empty: nowhere
+  std::string memory;   ///< file of the knowledge over a restart; empty: none
 };
 
-/// The dialogue on the bus: utterances in and out, goals, claims and what the robot knows. For the
+/// The dialogue on the bus: utterances in and out, goals, claims and the robot's knowledge. For the
 /// node's own thread.
 class DialogueShell {
  public:
   /// FileError where the grammar has a mistake.
   DialogueShell(bus::Node& node, const DialogueOptions& options);
 
-  /// Takes what has come and does what follows.
+  /// Takes the inputs and carries out the results.
   void step();
-  /// Reads the grammar again where its file has changed; one with a mistake is not taken.
+  /// Reads the grammar again where its file has changed; a file with an error is not accepted.
   void reload();
   void run(const bus::Stop& stop);
 

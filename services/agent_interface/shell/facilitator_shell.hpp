@@ -12,7 +12,7 @@ class FacilitatorShell {
  public:
   explicit FacilitatorShell(bus::Node& node);
 
-  /// Takes what has come and sends what follows from it. now: [s] of a clock that never goes back.
+  /// Takes the inputs and sends the outputs. now: [s] of a clock that never goes back.
   void step(double now);
   void run(const bus::Stop& stop);
 
@@ -30,7 +30,7 @@ class FacilitatorShell {
   bus::Writer<v1::Answer> solved_;
   Facilitator facilitator_;
   bool awaits_ = false;  ///< the last step has sent a request to an agent
-  /// The writer of each: it goes with its writer.
+  /// The writer of each agent: an agent ends with its writer.
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
   std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;
 };

@@ -15,10 +15,10 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr const char* kHazards = "hazards";  // the belief: "leak at lab; fire at hall"
-constexpr double kSure = 0.5;         // confidence of a recognizer below which it is not acted on
-constexpr double kDoorInSight = 5.0;  // [m] "this office" is no farther
-constexpr double kAhead = 10.0;       // [m] of the point to turn to
-constexpr double kLongestWay = 20.0;  // [m] that one command of motion may take
+constexpr double kSure = 0.5;                // a lower confidence of a recognizer is ignored
+constexpr double kDoorInSight = 5.0;         // [m] "this office" is no farther
+constexpr double kAhead = 10.0;              // [m] of the point to turn to
+constexpr double kLongestWay = 20.0;         // [m] that one command of motion may take
 constexpr std::size_t kHeard = 256;
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
@@ -43,7 +43,7 @@ bool is_room(lps::PointType type) {
   return type == lps::PointType::office;
 }
 
-/// "at 10:02 ", as clocks show it here; nothing where the time is not known.
+/// "at 10:02 ", in local time; empty for an unknown time.
 std::string time_text(double unix_time) {
   const auto seconds = static_cast<std::time_t>(unix_time);
   std::tm local{};
@@ -85,8 +85,8 @@ std::string Dialogue::place(const std::string& name, const Situation& situation)
   return {};
 }
 
-/// Where "here" is for what is to be brought. A corridor is long: in one it is the speaker's own
-/// place, where its doorway is near.
+/// The destination "here" of things to bring. A corridor is long: there it is the speaker's own
+/// place, if its doorway is near.
 std::string Dialogue::bring_to(const Utterance& utterance, const Situation& situation) const {
   const std::string own = place(lower(knowledge_.place_of(lower(utterance.speaker))), situation);
   if (!situation.pose_in_map)
@@ -131,7 +131,7 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
     wrong = "I do not know where I am on the map";
     return {};
   }
-  // "This office" is the nearest doorway (paper 4.5), and what the robot stands in before that.
+  // "This office" is the nearest doorway (paper 4.5), or before that the room around the robot.
   const Pose& robot = *situation.pose_in_map;
   if (meaning.functor != "office_of") {
     const std::string here = place_at(situation.map, robot.position());
@@ -321,7 +321,7 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& o
     say(utterance, "I know: " + describe(advice), true, out);
     return;
   }
-  // Where somebody is changes all the time; whose office it is does not.
+  // A person's place changes all the time; the owner of an office does not.
   if (known != nullptr && advice.kind == Advice::Kind::office_of) {
     say(utterance,
         (known->speaker.empty() ? std::string("somebody") : known->speaker) + " told me that " +
@@ -361,7 +361,7 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
     const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
     if (known == nullptr && slot(meaning, "place") == "this")
-      known = knowledge_.find(Advice::Kind::hazard, advice.about);  // said from elsewhere
+      known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
     if (known == nullptr) {
       say(utterance, "I knew of no " + advice.about + " at " + advice.value, true, out);
     } else {
@@ -377,7 +377,7 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   return true;
 }
 
-/// The answer to what an activity, or this dialogue, has asked.
+/// The answer to a question of an activity, or of this dialogue.
 bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                      Outputs& out) {
   const bool yes = meaning.functor == "yes";
@@ -419,7 +419,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     return false;
   }
   if (situation.asked_about.empty())
-    return true;  // to nobody's question
+    return true;  // no question is open
   say(utterance, "thank you", true, out);
   out.claims.push_back({situation.asked_about, value,
                         (utterance.speaker.empty() ? "somebody" : utterance.speaker) + " said \"" +

@@ -9,7 +9,7 @@ namespace saphira::agent_interface {
 namespace {
 
 constexpr double kUsualDeadline = 10.0;  // [s] of a request that names none
-constexpr double kAgain = 0.3;           // [s] until an agent that says nothing is asked again
+constexpr double kAgain = 0.3;           // [s] until a silent agent is asked again
 constexpr std::size_t kOpenOfOne = 64;   // requests of one asker at a time
 constexpr std::size_t kEnded = 256;      // ends that are remembered
 constexpr const char* kName = "facilitator";
@@ -19,7 +19,7 @@ Arguments without(Arguments arguments, const std::string& name) {
   return arguments;
 }
 
-/// The trouble with the arguments, as complete() says it. A slot that is left open fits.
+/// The error in the arguments, from complete(). An open slot fits.
 std::string misfit(const Functor& functor, const Arguments& arguments) {
   Functor asked = functor;
   Arguments bound;
@@ -35,7 +35,7 @@ std::string misfit(const Functor& functor, const Arguments& arguments) {
   return complete(asked, bound);
 }
 
-/// Nothing was done: another agent may be asked for the same.
+/// Nothing was done: another agent may get the same request.
 bool untouched(AnswerCode code) {
   return code == AnswerCode::refused || code == AnswerCode::unknown_functor ||
          code == AnswerCode::bad_argument || code == AnswerCode::nobody;
@@ -177,7 +177,7 @@ void Facilitator::send(Open& open, std::uint64_t agent, double now) {
   out_.requests.push_back(std::move(request));
 }
 
-/// Asks who is next, or ends the request.
+/// Asks the next agents, or ends the request.
 void Facilitator::advance(const Id& id, double now) {
   Open& open = open_.at(id);
   if (open.wanted == 1 ? open.asked.empty() : true) {
@@ -315,7 +315,7 @@ Facilitator::Outputs Facilitator::step(double now) {
     if (armed.trigger.kind == TriggerKind::event || now < armed.next ||
         (armed.trigger.times != 0 && armed.fired >= armed.trigger.times))
       continue;
-    // Events that this program slept through are not made up for.
+    // Times that this program slept through are skipped.
     armed.next = now + armed.trigger.period;
     if (armed.trigger.kind == TriggerKind::time) {
       fire(armed, {}, now);

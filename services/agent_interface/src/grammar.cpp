@@ -9,7 +9,7 @@
 namespace saphira::agent_interface {
 namespace {
 
-constexpr std::size_t kLongestUtterance = 40;  // words; more is no command
+constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no command
 constexpr std::size_t kLongestName = 3;        // words
 constexpr std::size_t kMostMatches = 1000;
 
@@ -112,7 +112,7 @@ class Grammar::Reader {
     if (!take(c))
       fail(std::string("expected ") + c);
   }
-  /// A word of the file: letters, digits, hyphens and what follows an apostrophe.
+  /// A word of the file: letters, digits, hyphens and a part behind an apostrophe.
   std::string word(const char* what) {
     skip();
     const std::size_t from = at_;
@@ -343,8 +343,8 @@ std::vector<Grammar::Match> Grammar::entry(const Node& node, const std::vector<s
   return matches;
 }
 
-/// A name is anything that is no word of other use: whether there is such a place or person is not
-/// the grammar's business.
+/// A name is any word without another use. The grammar does not check that such a place or person
+/// exists.
 std::vector<Grammar::Match> Grammar::name(const Node& node, const std::vector<std::string>& words,
                                           const Match& from) const {
   std::vector<Match> matches;
@@ -432,14 +432,14 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
       continue;
     for (const Node& pattern : rule.patterns)
       for (const Match& match : this->match(pattern, words, {})) {
-        // A mere name is a reply, and no word to the robot by its name.
+        // A mere name is a reply, not a word to the robot by its name.
         if (match.end != words.size() || match.literal < best ||
             (match.literal == 0 && result.addressed))
           continue;
         Meaning meaning = rule.meaning;
         for (const auto& [slot, value] : match.slots)
           meaning.slots[slot] = value;
-        // The meaning that explains more of the words by itself is better.
+        // The meaning whose pattern explains more of the words is better.
         if (match.literal > best)
           result.meanings.clear();
         best = match.literal;

@@ -19,7 +19,7 @@ constexpr std::array<std::pair<Advice::Kind, const char*>, 4> kKinds{{
     {Advice::Kind::hazard, "hazard"},
 }};
 
-/// Fields of a line are separated by tabs; what a person said has none.
+/// Fields of a line are separated by tabs; tabs in people's words are replaced.
 std::string field(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');

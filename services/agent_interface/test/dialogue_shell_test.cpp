@@ -12,7 +12,7 @@
 namespace saphira::agent_interface {
 namespace {
 
-/// The dialogue, and all that it talks to, on a bus in memory.
+/// The dialogue and its partners, on a bus in memory.
 class DialogueOnTheBus : public testing::Test {
  protected:
   DialogueOnTheBus() {
@@ -165,7 +165,7 @@ TEST_F(DialogueOnTheBus, ATaskGoesOnOverARestartAndItsEndIsSaid) {
   EXPECT_EQ(told[0].data.text(), "done: brought");
   EXPECT_EQ(told[0].data.listener(), "Alice");
   EXPECT_EQ(told[0].data.answers().number(), number);
-  // Its end is not told again.
+  // Its end is not reported again.
   start();
   dialogue->step();
   EXPECT_TRUE(answers().empty());

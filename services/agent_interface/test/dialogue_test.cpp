@@ -38,7 +38,7 @@ struct DialogueTest : testing::Test {
       all += (all.empty() ? "" : " / ") + one.text;
     return all;
   }
-  /// The goals that were asked for last.
+  /// The newest goals.
   std::string goals() const {
     std::string all;
     for (const WantedGoal& goal : last.goals)
@@ -150,7 +150,7 @@ TEST_F(DialogueTest, HazardsAreKnownUntilTheyAreGone) {
 }
 
 TEST_F(DialogueTest, HazardsAreClaimedWithTheirPlacesSoThatRoutesAvoidThem) {
-  // The clock of the machine says when it was.
+  // The machine's clock gives the time.
   setenv("TZ", "UTC", 1);
   tzset();
   hear("Flakey, there's a water leak in this corridor");
@@ -162,7 +162,7 @@ TEST_F(DialogueTest, HazardsAreClaimedWithTheirPlacesSoThatRoutesAvoidThem) {
       last.claims[0].source,
       "Alice said at 01:46 \"Flakey, there's a water leak in this corridor\"; Bob said at 01:46 "
       "\"Flakey, there is a spill in EJ-233\"");
-  // From elsewhere: the one that is known is meant.
+  // From elsewhere: the known hazard is meant.
   EXPECT_EQ(said("Flakey, the spill is gone"), "good: no spill at EJ-233 any more");
   ASSERT_EQ(last.claims.size(), 2u);
   EXPECT_EQ(last.claims[0].value, "");

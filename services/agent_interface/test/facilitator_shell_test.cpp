@@ -31,7 +31,7 @@ v1::Answer library(const v1::Request&) {
   return bus::done({bus::text("place", "library")});
 }
 
-/// Agents of this process, and the program, on the bus itself.
+/// Agents of this process, and the program, on the bus.
 class OnTheBus : public testing::Test {
  protected:
   OnTheBus() : robot(test::unique_robot()) { start(); }
@@ -43,7 +43,7 @@ class OnTheBus : public testing::Test {
         std::map<std::string, std::string>{{"SAPHIRA_ROBOT", robot},
                                            {"SAPHIRA_DOMAIN", test::domain()}});
   }
-  /// Asks until the answer is what is wanted: what agents can do takes a moment to be known.
+  /// Asks until the answer has the wanted code: discovery of the agents takes a moment.
   v1::Answer ask_until(bus::Agent& asker, v1::AnswerCode code) {
     v1::Answer answer;
     test::wait_until([&] {

@@ -241,8 +241,8 @@ TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
   EXPECT_EQ(noted, std::vector<std::string>{"kitchen"});
 }
 
-/// Agents come, go and answer at random: each request has one end, no more answers than were
-/// wanted, and no agent is begun with what another one may have done.
+/// Agents come, go and answer at random. Each request has one end, and no more answers than wanted;
+/// no agent starts an action that another one may have done.
 TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);

@@ -9,15 +9,15 @@
 
 namespace saphira::agent_interface {
 
-/// Sentences, and the meaning that a person would give them: a functor with its slots,
-/// `what?`, `nothing` for what is not meant for the robot, or `ambiguous`.
+/// Sentences, and the meaning that a person would give them: a functor with its slots, `what?`,
+/// `nothing` for words that are not meant for the robot, or `ambiguous`.
 struct SaidAndMeant {
   std::string text;
   std::string meaning;
-  bool reply = false;  ///< the robot has asked
+  bool reply = false;  ///< the robot has asked a question
 };
 
-/// The lines of utterances.txt, "utterance => meaning". std::runtime_error where a line is no such.
+/// The lines of utterances.txt, "utterance => meaning". std::runtime_error for any other line.
 inline std::vector<SaidAndMeant> read_utterances(const std::string& content) {
   std::vector<SaidAndMeant> phrases;
   bool replies = false;

@@ -74,7 +74,7 @@ void Service::look() {
   Notes notes;
   for (const std::string& fault : news.faults)
     notes.error(fault + (first ? "" : "\nWhat this file gave before stays in use."));
-  // At the start the shipped files are as everybody has them.
+  // At the start, warnings about the shipped files are not logged.
   for (const std::string& warning : news.warnings)
     if (!first || !warning.starts_with(behaviors_folder()))
       notes.warn(warning);

@@ -21,7 +21,7 @@ runtime::Component component();
 /// The behaviors service on the bus.
 class Service final : public runtime::Service {
  public:
-  /// std::runtime_error where a plug-in, or the shipped behaviors, cannot be had at all.
+  /// std::runtime_error where a plug-in, or the shipped behaviors, cannot be loaded at all.
   Service(runtime::Ports& ports, const Options& options);
 
   ProcessTable& processes() override { return core_.processes(); }

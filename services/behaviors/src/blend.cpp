@@ -41,7 +41,7 @@ double clamp01(double x) {
   return std::clamp(x, 0.0, 1.0);
 }
 
-/// The turn of rules that weigh `sum`: what is missing to 1 says "straight on".
+/// The turn of rules with the weight `sum`: the rest to 1 counts as "straight on".
 double turn_of(const Sum& sum) {
   return sum.value / std::max(1.0, sum.weight);
 }

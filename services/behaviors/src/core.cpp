@@ -5,7 +5,7 @@
 namespace saphira::behaviors {
 namespace {
 
-/// [s] A command is replaced a cycle after the one that it answers, where nothing is slow.
+/// [s] Without delays a command is replaced a cycle after the one that it answers.
 constexpr double kOrdinaryAge = 0.1;
 
 }  // namespace
@@ -17,7 +17,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
   now.robot = inputs.robot;
   now.sonars = inputs.sonars;
   now.delay = std::max(delay_.hear(inputs.command_age.value_or(kOrdinaryAge) - kOrdinaryAge), 0.0);
-  // The points that were intended before are elsewhere in another frame.
+  // Points of an earlier intent have another place in the new frame.
   if (inputs.intent && inputs.intent->cycle >= frame_since_)
     now.intent = &*inputs.intent;
   Intent nothing;

@@ -18,13 +18,13 @@
 namespace saphira::behaviors {
 namespace {
 
-/// The parameter by which a behavior says that it means contact: [m/s] at no more than this.
+/// The parameter by which a behavior wants contact: [m/s] at most.
 constexpr const char* kContact = "contact";
 constexpr double kCycle = 0.1;           // [s]
-constexpr double kFarEnough = 3.0;       // [m] of free way that is looked at
-constexpr double kMargin = 0.05;         // [m] by which what the sonars see may be nearer,
+constexpr double kFarEnough = 3.0;       // [m] of free way that counts
+constexpr double kMargin = 0.05;         // [m] by which a sonar's obstacle may be nearer,
 constexpr double kMarginOfRange = 0.03;  // and that per metre
-// Where a hull touches that stalls one wheel.
+// The bearing of a contact that stalls one wheel.
 constexpr double kTouchBearing = radians(60.0);
 constexpr const char* kSlow = "the network, or a computer, is slow: ";
 
@@ -48,7 +48,7 @@ double intent_cycles(const Inputs& inputs) {
   return inputs.cycle > intended ? static_cast<double>(inputs.cycle - intended) : 0.0;
 }
 
-/// Nothing that is not a number may get to the robot. Returns what is wrong.
+/// No NaN or infinity may reach the robot. Returns the errors.
 std::string check(Evaluation& evaluation) {
   std::string wrong = std::move(evaluation.trouble);
   const auto bad = [&](const std::string& what) {
@@ -86,7 +86,7 @@ void Executive::reset(RobotModel model) {
   *this = Executive(std::move(registry_), std::move(model), settings_);
 }
 
-// A stall says on which side, and the way that the robot was told to go says the rest.
+// A stall gives the side, and the sign of the commanded speed gives front or back.
 void Executive::feel(const RobotNow& robot) {
   if (!robot.left_stalled && !robot.right_stalled)
     return;
@@ -109,8 +109,8 @@ Output Executive::step(const Inputs& inputs) {
       newest_intent_ = inputs.intent->cycle;
       intent_came_ = inputs.cycle;
     }
-    // That of the cycle before is as young as it can be. What grows old in silence is no delay:
-    // when the network is back, the delay is what it was.
+    // The intent of the cycle before has no delay. Ageing in silence is no delay: when the network
+    // is back, the delay is as before.
     if (!silent(inputs))
       intent_age_.hear(kCycle * (intent_cycles(inputs) - 1.0));
     output.input_age = kCycle * intent_cycles(inputs);
@@ -134,7 +134,7 @@ Output Executive::step(const Inputs& inputs) {
     if (!instance.intended.running)
       continue;
     running = true;
-    // A plug-in may throw; the others run on, and it is asked again in the next cycle.
+    // A plug-in may throw; the others continue, and it is called again in the next cycle.
     try {
       if (!std::exchange(instance.initialised, true))
         instance.behavior->init(instance.parameters, context);
@@ -155,7 +155,7 @@ Output Executive::step(const Inputs& inputs) {
 
   output.inactive_reason = why_inactive(inputs, running);
   output.active = output.inactive_reason.empty();
-  // Where nobody recommends a speed the robot stands: the last setpoint belongs to a past context.
+  // Without a recommended speed the robot stands: the last setpoint belongs to a past context.
   const double limit = model_.max_velocity;
   output.speed = output.blend.moving ? std::clamp(output.blend.speed, -limit, limit) : 0.0;
   output.heading_in_odom = norm2_angle(ahead.pose_in_odom.th + output.blend.turn);
@@ -217,11 +217,11 @@ void Executive::limit_speed(const Inputs& inputs, Output& output) {
     why = "intentions are " + seconds(old) + " old" + (why.empty() ? "" : ", " + why);
   if (output.speed_limit < std::max(std::abs(output.speed), model_.max_velocity))
     output.slow = kSlow + why;
-  // Obstacles were seen from where the robot was then.
+  // The obstacles are from the robot's place at that time.
   if (inputs.delay > 0.0 && output.speed != 0.0) {
     const double free =
         free_path(lps_.obstacles(), output.speed > 0.0 ? 0.0 : kPi, model_.radius, kFarEnough);
-    const double stops = std::max(output.contact_speed,  // that much where contact is meant
+    const double stops = std::max(output.contact_speed,  // that much for wanted contact
                                   speed_that_stops(free - kMargin - kMarginOfRange * free,
                                                    inputs.delay + kCycle, model_.deceleration));
     if (stops < output.speed_limit) {
@@ -236,7 +236,7 @@ void Executive::limit_speed(const Inputs& inputs, Output& output) {
 }
 
 std::string Executive::reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom) {
-  // Most cycles want what the one before has wanted.
+  // Most cycles have the same intent as the one before.
   if (reconciled_revision_ == registry_.revision() && reconciled_ == intended)
     return reconcile_trouble_;
   std::map<std::string, Instance*> known;  // by copies: instances are moved from below
@@ -261,7 +261,7 @@ std::string Executive::reconcile(const std::vector<Intended>& intended, const Po
     if (!wrong.empty())
       trouble += (trouble.empty() ? "" : "; ") + wanted.name + ": " + wrong;
   }
-  // By name among equals: the order of the set must not show in the result.
+  // By name among equals: the order of the set must not affect the result.
   std::stable_sort(next.begin(), next.end(), [](const Instance& a, const Instance& b) {
     return std::tie(a.intended.priority, a.intended.name) <
            std::tie(b.intended.priority, b.intended.name);
@@ -281,7 +281,7 @@ std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom, 
     instance.intended = wanted;
     next.push_back(std::move(instance));
   };
-  // One whose schema is gone stays as long as nothing else is wanted of it.
+  // An instance whose schema is gone stays until its parameters change.
   const bool current = same != nullptr && (schema == nullptr || same->revision == schema->revision);
   if (current && same->intended.parameters == wanted.parameters) {
     keep();
@@ -299,7 +299,7 @@ std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom, 
   if (!parameters) {
     if (same == nullptr || same->intended.parameters != wanted.parameters)
       return trouble;
-    // The new version wants other parameters than those that were fine: the old one runs on.
+    // The new version does not accept the parameters of the old one: the old one continues.
     keep();
     return "its schema has changed, and the old version runs on: " + trouble;
   }
@@ -307,7 +307,7 @@ std::string Executive::adopt(const Intended& wanted, const Pose& robot_in_odom, 
   if (current) {
     instance = std::move(*same);
   } else {
-    // That of a plug-in may throw.
+    // The factory of a plug-in may throw.
     try {
       instance.behavior = schema->make();
       if (instance.behavior == nullptr)

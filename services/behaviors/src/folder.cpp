@@ -26,8 +26,8 @@ Folder::News Folder::look(Registry& registry) {
   return news;
 }
 
-/// Also those that were wrong before, which may be right by now; and as long as one is taken, whose
-/// names another one may have waited for.
+/// Includes files that had errors before, since they may be right by now. Repeats while a file is
+/// accepted, since another file may have waited for its names.
 void Folder::take_changed(const std::vector<std::string>& changed, Registry& registry, News& news) {
   std::vector<std::string> open = changed;
   std::map<std::string, std::string> before;

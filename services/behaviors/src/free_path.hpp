@@ -6,13 +6,14 @@
 
 namespace saphira::behaviors {
 
-/// How far [m] a disc of `radius` [m] at the robot's centre can go in `direction` [rad from ahead]
-/// until one of `points` (robot frame) is on its rim; at most `limit`. A point that is within the
-/// disc counts as soon as it lies towards the direction: then there is no way at all.
+/// The way [m] of a disc of `radius` [m] at the robot's centre in `direction` [rad from ahead]
+/// until one of `points` (robot frame) is on its rim; at most `limit`. A point within the disc
+/// counts when it lies towards the direction: then the way is 0.
 double free_path(const std::vector<Vec2>& points, double direction, double radius, double limit);
 
-/// How far [m] from the nearest of `points` (robot frame) the robot's centre passes on a way of
-/// `reach` [m] in `direction` [rad from ahead]; at most `most`. What is beside or behind is passed.
+/// The smallest distance [m] of `points` (robot frame) from the way of the robot's centre, of
+/// length `reach` [m] in `direction` [rad from ahead]; at most `most`. Points beside or behind do
+/// not count.
 double clearance(const std::vector<Vec2>& points, double direction, double reach, double most);
 
 }  // namespace saphira::behaviors

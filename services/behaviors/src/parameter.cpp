@@ -14,12 +14,12 @@ bool finite(const Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.th);
 }
 
-/// The trouble with the argument; empty when nothing is.
+/// The error of the argument; empty: none.
 std::string fault(const ParameterSpec& spec, const Argument& argument) {
   if (argument.kind != spec.kind)
     return std::string("expected ") + describe(spec.kind) + " (" + spec.meaning + ")";
   if (argument.kind == Kind::number) {
-    // Written so that not-a-number is a fault.
+    // Written so that NaN is a fault.
     if (!(argument.number >= spec.low && argument.number <= spec.high))
       return "expected a number from " + plain(spec.low) + " to " + plain(spec.high) + " (" +
              spec.meaning + "), got " + plain(argument.number);

@@ -33,7 +33,7 @@ TEST(Blend, FullActivitySuppressesLowerPriorities) {
   EXPECT_EQ(result.speed, 0.0);
   EXPECT_EQ(b[1].turn_weight, 0.0);
   EXPECT_EQ(b[1].speed_weight, 0.0);
-  // Its recommendation is still told.
+  // Its recommendation is still reported.
   EXPECT_EQ(b[1].turn, -0.9);
   EXPECT_EQ(b[1].speed, 0.4);
 }
@@ -75,8 +75,8 @@ TEST(Blend, AcceleratesFromThePresentVelocity) {
   EXPECT_EQ(blend(b, 0.2).speed, 0.0);  // to a stop, not into reverse
 }
 
-/// Any behaviors, any activities: what comes out lies among what was recommended (for turns, with
-/// "straight on" among it), and whoever is fully active leaves nothing to those below.
+/// Any behaviors, any activities: the result lies among the recommendations (for turns, with
+/// "straight on" among them), and a fully active behavior leaves nothing to those below.
 TEST(Blend, StaysWithinTheRecommendations) {
   Random random(17);
   for (int trial = 0; trial < 20000; ++trial) {

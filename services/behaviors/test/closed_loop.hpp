@@ -15,7 +15,7 @@
 #include "saphira/sim/sonar.hpp"
 #include "saphira/sim/world.hpp"
 
-// The executive and the simulated robot in one loop, without packets: what the behaviors are worth.
+// The executive and the simulated robot in one loop, without packets: the quality of the behaviors.
 namespace saphira::behaviors {
 
 struct Drive {
@@ -25,7 +25,7 @@ struct Drive {
   std::uint64_t limit = 1500;  ///< [cycles]
   std::uint64_t seed = 1;
   sim::SonarModel sonar;
-  std::size_t late = 0;  ///< [cycles] each command works so long after what it answers
+  std::size_t late = 0;  ///< [cycles] delay of each command
 };
 
 struct DriveResult {
@@ -72,7 +72,7 @@ inline DriveResult drive(const sim::World& world, const protocol::RobotParameter
     double heading;
   };
   std::deque<Command> on_the_way;
-  double heading = 0.0;  // that the robot was told last
+  double heading = 0.0;  // the newest heading setpoint
   double swing = 0.0;    // [rad] turned since it last changed sides
   Pose last = robot.pose_in_world();
   while (run.cycles < what.limit) {
@@ -115,7 +115,7 @@ inline DriveResult drive(const sim::World& world, const protocol::RobotParameter
       continue;
     const Command now = on_the_way.front();
     on_the_way.pop_front();
-    // Whole millimetres and degrees, as the robot's commands have them.
+    // Whole millimetres and degrees, as in the robot's commands.
     robot.set_velocity(now.active ? std::round(now.speed * 1000.0) / 1000.0 : 0.0);
     if (now.active) {
       heading = radians(std::round(degrees(now.heading)));

@@ -11,7 +11,7 @@ class CoreTest : public testing::Test {
  protected:
   CoreTest() { core_.registry() = predefined(); }
 
-  /// A step in which ConstantVelocity was intended in the cycle before.
+  /// A step with ConstantVelocity intended in the cycle before.
   Core::Outputs step() {
     inputs_.intent = Intent{inputs_.cycle, true, {{"v", "ConstantVelocity", 2, true, {}}}};
     return step_with_that_intent();
@@ -39,7 +39,7 @@ TEST_F(CoreTest, DrivesAsIsIntendedAndNumbersItsCommands) {
   EXPECT_EQ(first.notes.lines()[0], (Note{Note::Level::info, "drives"}));
 }
 
-// The earlier intent is a place in another frame.
+// The earlier intent stands for a place in another frame.
 TEST_F(CoreTest, AnIntentOfAnotherOdomFrameDoesNotDrive) {
   step();
   EXPECT_TRUE(step().output.active);

@@ -28,7 +28,7 @@ TEST(Foresight, TurnsNoFurtherThanItWasTold) {
   for (const double side : {1.0, -1.0}) {
     const RobotNow robot{{0.0, 0.0, kPi}, 0.0, side, norm2_angle(kPi + side * 0.2)};
     EXPECT_NEAR(norm2_angle(foresee(robot, 0.5).pose_in_odom.th - kPi), side * 0.2, 1e-12);
-    // A turn beyond that, or against it, is coming to an end.
+    // A turn beyond the setpoint, or against it, is coming to an end.
     const RobotNow past{{0.0, 0.0, 0.0}, 0.0, side, -side * 0.1};
     EXPECT_EQ(foresee(past, 0.5).pose_in_odom.th, 0.0);
   }
@@ -36,7 +36,7 @@ TEST(Foresight, TurnsNoFurtherThanItWasTold) {
 
 class DelayTest : public ::testing::Test {
  protected:
-  /// A cycle with what was intended `age` cycles ago; it goes on ahead at 0.4 m/s.
+  /// A cycle with an intent of `age` cycles ago; the robot drives ahead at 0.4 m/s.
   Output step(std::uint64_t age, double delay = 0.0, std::vector<lps::SonarReading> sonars = {}) {
     ++cycle;
     const Intent intent{cycle - age, true, {{"on", "ConstantVelocity", 2, true, {{"speed", 0.4}}}}};
@@ -81,7 +81,7 @@ TEST_F(DelayTest, AnIntentOfLongAgoDoesNotDrive) {
       << output.inactive_reason;
 }
 
-// A cut is told from a delay by its silence.
+// Silence separates a cut from a delay.
 TEST_F(DelayTest, ACutStopsItAsSoonHoweverSlowTheNetworkIs) {
   for (const std::uint64_t usual : {1U, 3U, 7U, 20U}) {
     for (int i = 0; i < 30; ++i)
@@ -97,7 +97,7 @@ TEST_F(DelayTest, ACutStopsItAsSoonHoweverSlowTheNetworkIs) {
 
 TEST_F(DelayTest, AfterACutItDrivesAsBefore) {
   ASSERT_EQ(step(1).speed, 0.4);
-  // The link is cut for four seconds: the robot's state comes again before the next intent does.
+  // The link is cut for four seconds: the robot's state returns before the next intent.
   cycle += 40;
   EXPECT_FALSE(step(42).active);
   for (int i = 0; i < 5; ++i) {
@@ -143,7 +143,7 @@ TEST_F(DelayTest, TheDelayOfTheCommandsCountsAsWell) {
 }
 
 TEST_F(DelayTest, WhatIsNearStopsItBeforeTheWordThatItIsNearerWould) {
-  // The middle sonar sees something 0.18 m ahead of the hull, cycle by cycle.
+  // The middle sonar has an echo 0.18 m ahead of the hull, in each cycle.
   const std::vector<lps::SonarReading> near{{3, 0.30, true}};
   double slowest = 1.0;
   Output output;

@@ -3,9 +3,8 @@
 #include "closed_loop.hpp"
 #include "process.hpp"
 
-// The behaviors at work: the executive drives the simulated Pioneer, with the noise of its
-// sonars and its dead reckoning, through worlds that a reactive robot has to manage. Ten seeds
-// each.
+// The behaviors at work: the executive drives the simulated Pioneer, with the noise of its sonars
+// and its dead reckoning, through worlds for a reactive robot. Ten seeds each.
 namespace saphira::behaviors {
 namespace {
 
@@ -17,7 +16,7 @@ const protocol::RobotParameters& pioneer() {
   return parameters;
 }
 
-/// A rectangle as a world file has it; centre and sides in mm, angle in degrees.
+/// A rectangle in the form of a world file; centre and sides in mm, angle in degrees.
 std::string box(double x, double y, double angle, double width, double height) {
   const auto number = [](double v) { return std::to_string(v) + " "; };
   const double xs[] = {-width / 2, width / 2, width / 2, -width / 2};
@@ -29,7 +28,7 @@ std::string box(double x, double y, double angle, double width, double height) {
   return text + "pop\n";
 }
 
-/// A hall of 20 by 20 m with things in it.
+/// A hall of 20 by 20 m with objects.
 sim::World hall(const std::string& things) {
   return sim::parse_world(
       "width 20000 height 20000\n"
@@ -38,8 +37,8 @@ sim::World hall(const std::string& things) {
       "hall");
 }
 
-/// Twelve boxes in the middle of the hall, of different sizes and askew; wherever two are near each
-/// other there is at least a metre between them.
+/// Twelve boxes in the middle of the hall, of different sizes and askew, with at least a metre
+/// between neighbours.
 sim::World field(std::uint64_t seed) {
   Random random(seed);
   std::string things;
@@ -140,9 +139,9 @@ TEST(Drive, ThroughACorridorOfAMetre) {
                   {10, 0}, {.detour = 1.1});
 }
 
-// Its walls are mirrors to the sonars: now and then the robot forgets them, and goes in again. The
-// edges of its sides are heard within 8 degrees of an axis only, so that it passes them nearer than
-// other things.
+// Its walls are mirrors to the sonars: at times the robot forgets them, and goes in again. The
+// edges of its sides are heard only within 8 degrees of an axis, so that the robot passes them
+// nearer than other objects.
 TEST(Drive, OutOfAPocket) {
   expect_arrivals(hall(box(7000, 10000, 0, 200, 2000) + box(6500, 11000, 0, 1200, 200) +
                        box(6500, 9000, 0, 1200, 200)),
@@ -185,7 +184,7 @@ TEST(Drive, WandersOnAvoidCollisionAlone) {
   }
 }
 
-/// StopCollision does not turn: it stands before a wall.
+/// StopCollision does not turn: it stops before a wall.
 TEST(Drive, StopCollisionStandsBeforeAWall) {
   const sim::World world = hall(box(6000, 10000, 0, 200, 4000));
   Drive what;
@@ -248,7 +247,8 @@ double goal_of(const Output& output, const std::string& name) {
   return -1.0;
 }
 
-/// Drives until the task says that its goal is reached; returns the cycles, 0 where it never does.
+/// Drives until the task reports that its goal is reached; returns the cycles, 0 where it never
+/// does.
 std::uint64_t drive_until_done(const sim::World& world, const Pose& start, Drive what,
                                const std::string& task, DriveResult& run) {
   std::uint64_t done = 0;
@@ -349,8 +349,8 @@ TEST(Drive, AttendsAtAPosition) {
   EXPECT_NEAR(std::atan2(goal.y, goal.x), 0.0, 0.1);
 }
 
-/// The example of manual 7.2, from its file. As it is printed it turns away from what is beside it,
-/// and gets to what is straight ahead.
+/// The example of manual 7.2, from its file. As printed it turns away from obstacles beside it, and
+/// runs into obstacles straight ahead.
 TEST(Drive, TheManualsExample) {
   struct Case {
     const char* schema;

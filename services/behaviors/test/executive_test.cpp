@@ -11,7 +11,7 @@
 namespace saphira::behaviors {
 namespace {
 
-/// Counts what is done with it.
+/// Counts the calls.
 struct Counts {
   int made = 0;
   int inits = 0;
@@ -60,7 +60,7 @@ TEST_F(ExecutiveTest, MakesWhatIsIntendedAndKeepsIt) {
   EXPECT_EQ(counts_.updates, 2);
   EXPECT_TRUE(output.active);
   EXPECT_EQ(output.blend.speed, 0.5);
-  EXPECT_EQ(output.speed, 0.4);  // cut to the robot's
+  EXPECT_EQ(output.speed, 0.4);  // limited to the robot's
 }
 
 TEST_F(ExecutiveTest, TakesOverChangedParametersWithoutInit) {
@@ -193,13 +193,13 @@ TEST_F(ExecutiveTest, APointInTheRobotsFrameIsPlacedOnce) {
   const std::vector<Intended> set{
       {"g", "GoToPos", 0, true, {point("goal", {2.0, 0.0, 0.0}, Frame::robot)}}};
   EXPECT_NEAR(step(set).heading_in_odom, kPi / 2, 1e-9);
-  // Had it moved along, the robot would still go ahead.
+  // A point that moved along would still be ahead.
   robot_.pose_in_odom = {2.0, 2.0, kPi / 2};
   EXPECT_EQ(step(set).behaviors[0].blended.evaluation.rules[0].strength, 1.0);
   EXPECT_GT(step(set).blend.turn, 0.3);
 }
 
-/// A behavior of somebody's plug-in, which goes wrong.
+/// A faulty behavior of a plug-in.
 class Faulty : public Behavior {
  public:
   Evaluation update(const Parameters& parameters, const Context&) override {
@@ -226,7 +226,7 @@ TEST_F(ExecutiveTest, ABehaviorThatThrowsOrIsNotANumberDoesNotDriveAndIsTold) {
   }
 }
 
-// Sonars do not hear what touches the hull between two beams: a stall tells it.
+// Sonars miss an obstacle that touches the hull between two beams: a stall reveals it.
 TEST_F(ExecutiveTest, ItTurnsAwayFromWhatItHasRunInto) {
   const auto drive = [&] {
     return step({{"avoid", "AvoidCollision", 0, true, {}},

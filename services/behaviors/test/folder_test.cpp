@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A behavior that counts its cycles, and says so as its speed in mm/s.
+/// A behavior that counts its cycles, and puts out the count as its speed in mm/s.
 std::string counter(const std::string& speed, const std::string& more = "") {
   return "BeginBehavior Counter\nParams\n  sfFLOAT p = 1 from 0 to 9\n" + more +
          "Rules\n  If 1.0 Then Speed v\nInit\n  float n = 0;\nUpdate\n  n += 1;\n  float v = " +
@@ -29,7 +29,7 @@ class FolderTest : public ::testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) {
     std::ofstream(path_ / name) << text;
-    // Files that are written within a tick of the clock are of one age.
+    // Files that are written within a tick of the clock have the same time.
     fs::last_write_time(path_ / name, fs::file_time_type(std::chrono::seconds(++time_)));
   }
   double step(Executive& executive, std::string* trouble = nullptr) {
@@ -192,8 +192,7 @@ TEST_F(FolderTest, AFolderThatIsNotThereIsAFaultAndTakesNothingAway) {
   EXPECT_THROW(load_behaviors(path_.string()), std::runtime_error);
 }
 
-/// The shipped files with one word left out, doubled, or another in its place: more than a
-/// thousand.
+/// The shipped files with one word removed, doubled, or replaced: more than a thousand.
 TEST(BrokenFiles, GiveMessagesAndNoneIsTakenHalf) {
   Random random(7);
   const char* const others[] = {"(",     ")",  ";",    "If", "Then",   "BeginBehavior",

@@ -11,16 +11,15 @@
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/folder.hpp"
 
-// The output of each shipped behavior in a scripted world, cycle by cycle, beside its output when
-// test/golden was written. A change there is to be meant: SAPHIRA_GOLDEN=renew writes the files
-// anew.
+// The output of each shipped behavior in a scripted world, cycle by cycle, compared with
+// test/golden. A change there must be intended: SAPHIRA_GOLDEN=renew rewrites the files.
 namespace saphira::behaviors {
 namespace {
 
 constexpr int kCycles = 60;
 
-/// The robot goes ahead in a long bow, something comes near on its right and then ahead, and goes
-/// again.
+/// The robot drives ahead in a long bow; an obstacle comes near on its right, then ahead, and
+/// leaves again.
 Inputs scripted(int step) {
   Inputs inputs;
   inputs.cycle = static_cast<std::uint64_t>(step + 1);
@@ -46,7 +45,7 @@ std::string number(double value) {
 
 std::string trace(const Registry& registry, const Schema& schema) {
   Intended intended{"it", schema.name, 0, true, {}};
-  // Points that make each of them do something: ahead and to the left.
+  // Points that make each behavior active: ahead and to the left.
   for (const ParameterSpec& spec : schema.parameters)
     if (spec.kind == Kind::point)
       intended.parameters.push_back(

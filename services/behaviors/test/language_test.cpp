@@ -24,7 +24,7 @@ std::string with_update(const std::string& update, const std::string& rules = "I
          "\nActivity\n  Speed x\nEndBehavior\n";
 }
 
-/// Runs one behavior for cycles on end.
+/// Runs one behavior over consecutive cycles.
 class Runner {
  public:
   explicit Runner(const std::string& text, std::vector<Argument> arguments = {}) {
@@ -68,7 +68,7 @@ class Runner {
   std::uint64_t cycle_ = 0;
 };
 
-/// The value that an expression comes to, by way of a rule's speed [mm/s].
+/// The value of an expression, by way of a rule's speed [mm/s].
 double value_of(const std::string& expression, const std::string& before = "") {
   Runner runner(with_update(before + "x = 1; float v = " + expression + ";"));
   const Evaluation evaluation = runner.update();
@@ -120,7 +120,7 @@ TEST(Language, FuzzyFunctionsAreThoseOfTheLibrary) {
   EXPECT_DOUBLE_EQ(value_of("f_and(f_not(0.3), f_or(0.2, 0.6))"), 0.6);
 }
 
-// Manual 7.6.3: Init sets what the behavior remembers.
+// Manual 7.6.3: Init sets the behavior's memory.
 TEST(Language, VariablesOfInitPersistAndThoseOfUpdateDoNot) {
   Runner runner(
       with_update("n += 1; k = k + 10; if (n == 1) { once = 5; float inside = 7; } x = 1;"
@@ -207,7 +207,7 @@ TEST(Language, TheManualsExampleRunsAsItIsPrinted) {
   const std::string text = read_file(test::source("services/behaviors/test/data/manual-7.2.beh"));
   const Compiled compiled = compile(text, "manual-7.2.beh");
   ASSERT_EQ(all(compiled.errors), "");
-  // Three underscores that the print has lost.
+  // Three underscores lost in print.
   EXPECT_EQ(compiled.warnings.size(), 3U) << all(compiled.warnings);
   ASSERT_EQ(compiled.schemas.size(), 1U);
   EXPECT_EQ(compiled.schemas[0].name, "myGoto");

@@ -5,7 +5,7 @@
 #include "saphira/base/random.hpp"
 #include "saphira/behaviors/blend.hpp"
 
-// Properties of every blend, tried on many random ones.
+// Properties of every blend, tested with many random ones.
 namespace saphira::behaviors {
 namespace {
 
@@ -58,7 +58,7 @@ TEST(BlendProperty, LiesWithinTheHullOfWhatIsRecommended) {
   for (int trial = 0; trial < kTrials; ++trial) {
     std::vector<Blended> set = behaviors(random);
     const double velocity = random.uniform(-0.4, 0.4);
-    double turn_low = 0.0;  // "straight on" is always among what is recommended
+    double turn_low = 0.0;  // "straight on" is always among the recommendations
     double turn_high = 0.0;
     double speed_low = 1e9;
     double speed_high = -1e9;

@@ -175,7 +175,7 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
   std::thread later([&] {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (!said && std::chrono::steady_clock::now() < end) {
-      state();  // refused after a while: nobody has described the robot
+      state();  // refused after a while: the robot has no description
       bridge.wait(std::chrono::milliseconds(50));
       for (const auto& sample : statuses.take())
         said = said || sample.data.reason() == "waits for robot/description";
@@ -191,11 +191,11 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
   behaviors.take();
   one({});
   EXPECT_TRUE(command.active());
-  // It may say that it skipped a cycle.
+  // The status may report a skipped cycle.
   EXPECT_NE(service.status().state(), v1::SERVICE_WAITING) << service.status().reason();
 }
 
-// Manual 6.5: who suspends what drives has a robot that stands.
+// Manual 6.5: suspending the driver stops the robot.
 TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
   bus::Writer<v1::Request> requests{bridge.writer<v1::Request>(bus::topics::kProcessRequest)};
   const auto request = [&](const char* functor) {
@@ -224,7 +224,7 @@ TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
   EXPECT_EQ(told.behaviors().size(), 1U);
 }
 
-// A minute of what was published is kept for who comes late.
+// A minute of published samples is kept for late readers.
 TEST_P(ShellTest, RecallsWhatItPublished) {
   describe();
   for (int i = 0; i < 20; ++i)
@@ -236,7 +236,7 @@ TEST_P(ShellTest, RecallsWhatItPublished) {
   EXPECT_EQ(samples.back().data.stamp().cycle(), cycle);
 }
 
-/// A shell with a folder of a person's own, and the example plug-in.
+/// A shell with a user's folder, and the example plug-in.
 TEST(ShellFiles, AreTakenWhileItRunsAndTold) {
   namespace fs = std::filesystem;
   const test::TempDir temporary;

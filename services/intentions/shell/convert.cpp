@@ -63,8 +63,8 @@ constexpr EnumPairs<Localization, v1::RegistrationState, 4> kLocalizations{
         {Localization::kTracking, v1::REGISTRATION_TRACKING},
     }},
     {Localization::kNone}};
-// The bus does not tell the first step after a suspension from the ones that follow; what is
-// removed does not get there.
+// The bus does not separate the first step after a suspension from the following ones; a removed
+// intention does not appear there.
 constexpr EnumPairs<IntentionState, v1::IntentionState, 8> kIntentionStates{
     {{
         {IntentionState::kInit, v1::INTENTION_INIT},
@@ -233,7 +233,7 @@ std::vector<BehaviorLevel> from_bus(const v1::BehaviorSet& behaviors) {
 }
 
 std::uint64_t intent_age_from_bus(const v1::BehaviorSet& behaviors) {
-  // A behaviors service that does not say so acts on what was intended in the cycle before.
+  // A behaviors service without an age uses the intent of the cycle before.
   const double cycles = std::clamp(behaviors.input_age() / kTick, 1.0, 1e6);
   return static_cast<std::uint64_t>(std::llround(std::isfinite(cycles) ? cycles : 1.0));
 }

@@ -14,8 +14,8 @@
 
 namespace saphira::intentions {
 
-/// The types of the bus to those of the library and back. What a writer that does not keep to the
-/// contract puts into an enumeration becomes the value that is refused, or the cautious one.
+/// Conversions between the types of the bus and those of the library. An enumerator outside of the
+/// contract becomes the value that is refused, or the cautious one.
 
 GoalId from_bus(const v1::GoalId& id);
 v1::GoalId to_bus(const GoalId& id);
@@ -41,20 +41,20 @@ std::vector<BehaviorSignature> from_bus(const v1::BehaviorSchemas& schemas);
 
 v1::ActivitySchema to_bus(const Schema& schema);
 v1::Belief to_bus(const Belief& belief);
-/// FileError where the claim's value is none of the activity language; also of one that is taken
-/// back, where its value does not count.
+/// FileError for a value that is not of the activity language; also of a withdrawn claim, whose
+/// value does not count.
 ClaimEvent from_bus(const v1::BeliefClaim& claim, ClaimEvent::Kind kind);
 
-/// The age [cycles] from which on a sample of registration or interpretation says nothing any more.
+/// The age [cycles] from which on a sample of registration or interpretation is ignored.
 inline constexpr std::uint64_t kRegistrationLease = 20;
-/// Its content, for the step of `cycle`: where the sample is too old, nothing.
+/// Its content, for the step of `cycle`: none where the sample is too old.
 Registered registered_from_bus(const v1::Registration& registration, std::uint64_t cycle);
-/// Where the origin of that odom frame is on the map, for the step of `cycle`; none where
-/// registration does not know, speaks of another odom frame, or has not been heard.
+/// The origin of that odom frame on the map, for the step of `cycle`; none where registration has
+/// no pose, uses another odom frame, or was not heard.
 std::optional<Pose> odom_in_map_from_bus(const v1::Registration& registration, std::uint64_t cycle,
                                          std::uint64_t odom);
-/// The percepts for the step of `cycle`: none where the sample is too old; of another
-/// odom frame, nothing.
+/// The percepts for the step of `cycle`: none where the sample is too old; empty for another odom
+/// frame.
 std::optional<std::vector<lps::Percept>> percepts_from_bus(const v1::Perception& perception,
                                                            std::uint64_t cycle, std::uint64_t odom);
 

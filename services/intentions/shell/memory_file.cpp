@@ -64,10 +64,10 @@ bool MemoryFile::begin(Memory& memory) {
   std::vector<Ending>& endings = memory.endings;
   if (endings.size() > most_)
     endings.erase(endings.begin(), endings.end() - static_cast<std::ptrdiff_t>(most_));
-  // Written beside it and moved over it: a crash in between leaves the old one whole.
+  // Written to a new file and renamed: a crash in between leaves the old file whole.
   const std::string fresh = path_ + ".new";
   std::unique_ptr<std::FILE, Close> file(std::fopen(fresh.c_str(), "we"));
-  // Without a buffer, what could not be written is not tried again behind what comes next.
+  // Without a buffer, so that failed data are not written again before later ones.
   if (!file || std::setvbuf(file.get(), nullptr, _IONBF, 0) != 0)
     return false;
   std::string lines;
@@ -76,7 +76,7 @@ bool MemoryFile::begin(Memory& memory) {
   for (const Ending& ending : endings)
     lines += write_line(ending);
   const std::size_t count = memory.placements.size() + endings.size();
-  // Before the journal has fewer lines than were counted.
+  // Before the journal has fewer lines than its count.
   if (std::fwrite(lines.data(), 1, lines.size(), file.get()) != lines.size() ||
       !keep_count(count) || std::rename(fresh.c_str(), path_.c_str()) != 0)
     return false;
@@ -92,7 +92,7 @@ bool MemoryFile::keep_count(std::size_t lines) const {
 }
 
 void MemoryFile::begin_anew() {
-  // Where that fails, on a full disk, the file goes on as it is until it has grown as much again.
+  // If that fails, on a full disk, the file goes on until it has grown as much again.
   begin_anew_at_ = lines_ + 2 * most_;
   try {
     std::vector<FileError> damaged;
@@ -115,7 +115,7 @@ bool MemoryFile::append(const std::string& lines) {
       begin_anew();
     return !file_ || keep_count(lines_);
   }
-  // On a full disk: half a line must not be the beginning of the next one.
+  // On a full disk: half a line must not become the beginning of the next one.
   const int why = errno;
   std::clearerr(file_.get());
   if (::ftruncate(::fileno(file_.get()), size_) == 0)

@@ -16,7 +16,7 @@
 namespace saphira::intentions {
 namespace {
 
-// The role that may change what others asked for.
+// The role that may change the goals of others.
 constexpr const char* kCommands = "operator";
 constexpr std::size_t kMostNodes = 1024;     // the bound of Intentions.nodes
 constexpr std::size_t kMostQuestions = 256;  // to agents, without an answer
@@ -31,7 +31,7 @@ std::vector<std::string> folders(const Options& options) {
   return paths;
 }
 
-/// Why the behaviors, which ask to, do not drive.
+/// The reason why the behaviors, which ask to drive, do not.
 std::string refusal_of(const v1::Grant& grant) {
   if (grant.role() == v1::ROLE_BEHAVIORS)
     return {};
@@ -93,14 +93,14 @@ Service::Service(runtime::Ports& ports, const Options& options)
   look();
 }
 
-/// In lockstep it is known from the first cycle on in every run what can be intended, which map
-/// registration had, and that it hears what is asked of it.
+/// In lockstep every run has, from the first cycle on, the same schemas of behaviors, the same map
+/// as registration, and a registration that takes requests.
 std::string Service::missing() {
   if (!knows_behaviors_)
     take_behavior_schemas();
   if (!knows_behaviors_)
     return bus::topics::kBehaviorSchemas.name;
-  // A request to registration before it is heard of would be lost.
+  // A request to an undiscovered registration would be lost.
   if (registration_ != nullptr && !map_requests_.is_taken())
     return std::string("registration, for ") + bus::topics::kRegistrationRequest.name;
   take_maps();
@@ -200,7 +200,7 @@ void Service::take_behavior_schemas() {
     return;
   knows_behaviors_ = true;
   if (sample->schemas().empty())
-    return;  // nobody who evaluates behaviors has none
+    return;  // no evaluator of behaviors has none
   const std::vector<BehaviorSignature> behaviors = from_bus(*sample);
   folders_.know_behaviors(behaviors);
   ports_.say(core_.know_behaviors(behaviors).lines());
@@ -216,7 +216,7 @@ void Service::take_goals(Core::Heard& heard) {
     goal.event.kind = sample.info.disposed ? GoalEvent::Kind::kDisposed : GoalEvent::Kind::kWritten;
     goal.event.goal.requester = bus::named(goal.event.goal.requester, sample.info);
     goal.writer = sample.info.writer;
-    // Later the clocks of other machines would decide what is new.
+    // Later the clocks of other machines would decide about the age.
     if (running < kStarting)
       goal.before_start = sample.info.age - running;
     if (const auto& sender = sample.info.sender)
@@ -271,7 +271,7 @@ void Service::look() {
   Notes notes;
   for (const std::string& error : news.errors)
     notes.error(error + (first ? "" : "\nWhat this file gave before stays in use."));
-  // At the start the behaviors are not known yet, and the shipped files are as everybody has them.
+  // At the start the behaviors are unknown, and warnings about the shipped files are not logged.
   if (!first)
     for (const std::string& warning : news.warnings)
       notes.warn(warning);

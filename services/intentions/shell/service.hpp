@@ -13,15 +13,14 @@
 namespace saphira::intentions {
 
 struct Options {
-  std::string memory_file;  ///< what outlives the service; empty: nothing does
-  /// True where there is a registration service: in lockstep its samples are waited for. Without
-  /// it, what is on a map cannot be found.
+  std::string memory_file;  ///< the memory over a restart; empty: none
+  /// True where there is a registration service: in lockstep its samples are awaited. Without it,
+  /// activities have no map.
   bool registration = true;
-  /// The same of interpretation. Without it, activities see no doors and corridors but those of the
-  /// map.
+  /// The same for interpretation. Without it, activities know only the map's doors and corridors.
   bool interpretation = true;
-  /// True where there is a vision service whose samples are waited for in lockstep. Live it is
-  /// heard without being asked for, as soon as there is one.
+  /// True where there is a vision service whose samples are awaited in lockstep. Live, it is used
+  /// without this option, as soon as it is there.
   bool vision = false;
   /// Activities that cover shipped ones of the same name; empty: none.
   std::string folder;
@@ -54,7 +53,7 @@ class Service final : public runtime::Service {
   void take_answers(Core::Heard& heard);
   Core::Inputs inputs_of(const runtime::Turn& turn);
   std::optional<Core::Vision> vision();
-  /// Onto the disk, before anybody hears of it: nothing that has been said or done is done again.
+  /// To the disk, before it is published: nothing reported or done is done again.
   void remember(const News& news);
   void publish(const News& news);
   void publish(const intentions::Outputs& outputs);
@@ -84,8 +83,8 @@ class Service final : public runtime::Service {
   runtime::Asker map_requests_;
   runtime::Asker agents_;
   bus::Reader<v1::Answer> answers_;
-  std::map<std::uint64_t, std::uint64_t> questions_;  ///< of the core, by the bus's number
-  std::map<GoalId, v1::GoalStatus> told_;             ///< of the goals: what goals/status holds
+  std::map<std::uint64_t, std::uint64_t> questions_;  ///< the core's number, by the bus's
+  std::map<GoalId, v1::GoalStatus> told_;             ///< the content of goals/status
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   MemoryFile memory_;
   std::shared_ptr<const Functions> functions_;

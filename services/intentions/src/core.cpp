@@ -13,13 +13,13 @@ namespace saphira::intentions {
 namespace {
 
 /// [s] Without a cycle for this long there is no robot, live.
-constexpr std::size_t kMostAnswers = 256;  // of agents, that are kept
-constexpr std::uint64_t kGone = 10;        // [cycles] without a word
+constexpr std::size_t kMostAnswers = 256;  // of agents, stored
+constexpr std::uint64_t kGone = 10;        // [cycles] without a sample
 constexpr double kSilence = 1.0;
-/// [s] A goal that was asked for so shortly before the start was meant for it: programs of a
-/// deployment start together.
+/// [s] A goal from so shortly before the start was meant for this run: programs of a deployment
+/// start together.
 constexpr double kStartsTogether = 3.0;
-constexpr std::uint64_t kVisionLease = 10;  // [cycles] what was seen before is no news
+constexpr std::uint64_t kVisionLease = 10;  // [cycles] an older result counts as missing
 
 }  // namespace
 
@@ -74,7 +74,7 @@ Core::Outputs Core::step(Inputs inputs) {
   return outputs;
 }
 
-/// Of the intention that follows a path.
+/// The points of the path of a running follow-path intention, where they have changed.
 std::optional<std::vector<Vec2>> Core::look_for_way(const intentions::Inputs& now) {
   std::vector<Vec2> way;
   for (const IntentionNode& node : nodes_)
@@ -89,8 +89,7 @@ std::optional<std::vector<Vec2>> Core::look_for_way(const intentions::Inputs& no
   return way;
 }
 
-/// The services that were heard and are not any more, in words: a goal that fails then fails for
-/// that.
+/// The services that have fallen silent, in words: the reason for a goal that fails then.
 std::string Core::who_is_gone(const Inputs& inputs) {
   const std::uint64_t now = inputs.stamp.cycle;
   if (inputs.stamp.epoch != heard_epoch_) {
@@ -113,7 +112,7 @@ std::string Core::who_is_gone(const Inputs& inputs) {
 Core::Told Core::between(const Heard& heard, double silence) {
   Told told;
   told.news = executor_.hear(events_of(heard, told.notes));
-  // A simulator that is being single-stepped may stand still for as long as it likes.
+  // A single-stepped simulator may stand still for any time.
   if (robot_here_ && !lockstep_ && silence > kSilence) {
     robot_here_ = false;
     News gone = executor_.robot_gone();
@@ -169,14 +168,14 @@ void Core::look_around(const Inputs& inputs, Surroundings& around) {
   around.answers = &answers_;
 }
 
-/// The map goes another way than what is cyclic. In lockstep it is the one that registration had in
-/// the cycle before: one that is newer waits.
+/// Maps do not come with the cyclic topics. In lockstep the map is the one that registration used
+/// in the cycle before: a newer one waits.
 void Core::take_maps(std::optional<std::uint64_t> revision) {
   const bool exact = lockstep_ && revision;
   while (!newer_maps_.empty() &&
          (!exact || newer_maps_.front().revision <= *revision || topology_ == nullptr)) {
     MapNews& news = newer_maps_.front();
-    // A thing that was put there or carried off leaves what is planned as it is.
+    // An added or removed object leaves plans as they are.
     if (topology_ == nullptr || !maps::same_places(*map_, *news.map)) {
       topology_ = std::make_shared<const maps::Topology>(*news.map);
       places_revision_ = news.revision;
@@ -207,7 +206,7 @@ std::optional<std::string> Core::ask(const std::string& name, ProcessAction acti
            "I" + std::to_string(one.id) == name;
   });
   if (node == nodes_.end()) {
-    // As people call it: by its schema, where that says which one is meant.
+    // By people's name for it: its schema, where that is unambiguous.
     const auto alike = [&](const IntentionNode& one) { return one.schema == name; };
     node = std::find_if(nodes_.begin(), nodes_.end(), alike);
     if (node == nodes_.end())
@@ -232,7 +231,7 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
     GoalEvent event = goal.event;
     if (!take_sender(goal, event, notes))
       continue;
-    // One that somebody else changes ends with the program that asked for it.
+    // A goal that another person changes still ends with the program that asked for it.
     if (event.kind == GoalEvent::Kind::kWritten && event.by.empty())
       requesters_[event.goal.id] = goal.writer;
     if (!remembers_ && !lockstep_ && goal.before_start > kStartsTogether)
@@ -255,8 +254,8 @@ std::vector<GoalEvent> Core::events_of(const Heard& heard, Notes& notes) {
   return events;
 }
 
-/// True where the sender may do that to the goal: its owner may, who asked for it first, and
-/// whoever commands. Tells the event who it is, where it is another than the owner.
+/// True where the sender may do that to the goal: the owner, who asked for it first, and the role
+/// that commands may. Names the sender in the event, where it is not the owner.
 bool Core::take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes) {
   if (!goal.sender)
     return true;
@@ -309,8 +308,8 @@ std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
   return events;
 }
 
-/// Of any grant since the last time: one that was pressed and reset meanwhile counts as well. The
-/// grant says nothing else here, so it matters to nobody when it comes.
+/// From any grant since the last time: a stop that was pressed and reset meanwhile counts as well.
+/// Nothing else of the grant is used, so its time of arrival does not matter.
 void Core::note_estops(const std::vector<Heard::Estop>& estops) {
   bool pressed = false;
   for (const Heard::Estop& estop : estops) {

@@ -21,7 +21,7 @@ class ActivityFoldersTest : public ::testing::Test {
     fs::create_directories(own);
   }
 
-  /// Each write of a test gets a time of its own: two within a tick of the file system's clock
+  /// Each write of a test has its own time: two writes within a tick of the file system's clock
   /// would look like one.
   void write(const fs::path& path, const std::string& content) {
     std::ofstream(path) << content;
@@ -71,14 +71,14 @@ TEST_F(ActivityFoldersTest, ABrokenFileLeavesWhatItGaveBefore) {
   ASSERT_FALSE(news.errors.empty());
   EXPECT_NE(news.errors[0].find((shipped / "a.act").string() + ":"), std::string::npos);
   EXPECT_NE(folders->trouble().find("a.act"), std::string::npos);
-  // A file that names definitions of the broken one is not wrong for that.
+  // A file that uses definitions of the broken one is not wrong for that.
   EXPECT_EQ(folders->trouble().find("b.act"), std::string::npos);
   write(shipped / "a.act", activity("one", "(WAIT-FOR nil :timeout 3s)"));
   EXPECT_EQ(look(), Names{"one"});
   EXPECT_EQ(folders->trouble(), "");
 }
 
-// As some editors do before they write it.
+// Some editors empty a file before they write it.
 TEST_F(ActivityFoldersTest, AFileThatIsEmptiedKeepsWhatItGave) {
   write(shipped / "a.act", activity("one", "(SUCCEED)"));
   look();

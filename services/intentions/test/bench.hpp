@@ -60,7 +60,7 @@ class Bench {
       journal += write_line(each);
   }
 
-  /// The memory of a service that is started now.
+  /// The memory of a newly started service.
   Memory memory() const {
     std::vector<FileError> damaged;
     return read_journal("memory", journal, damaged);
@@ -75,8 +75,8 @@ class Bench {
   std::uint64_t cycle = 0;
   std::vector<GoalEvent> events;
   std::vector<BehaviorTrouble> troubles;  ///< of the next step
-  Registered registration;                ///< what it says
-  std::string estop;                      ///< which program pressed the emergency stop; empty: none
+  Registered registration;                ///< the registration's output
+  std::string estop;                      ///< program that pressed the emergency stop; empty: none
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them
   std::size_t published = 0;

@@ -91,7 +91,7 @@ TEST_F(CoreTest, PursuesAGoalAndTellsEachChangeOnce) {
   EXPECT_TRUE(step().notes.empty());
 }
 
-// The robot does not come nearer since nobody drives it.
+// The robot does not come nearer, since nobody drives it.
 TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
   inputs_.heard.goals = {written(1, kKaren)};
   step();
@@ -157,7 +157,7 @@ TEST_F(CoreTest, AGoalEndsWithTheWriterThatWroteItLast) {
   step();
   EXPECT_EQ(state(1), GoalState::kCanceled);
   EXPECT_FALSE(ended(state(2)));
-  // Somebody else has written it anew: it is his from then on.
+  // Another writer has written it anew, and owns it from then on.
   inputs_.heard.goals = {written(2, kKaren)};
   step();
   inputs_.heard.lost_requesters = {kJohn};
@@ -193,7 +193,7 @@ TEST_F(OwnedGoal, AnotherMayNeitherChangeNorCancelIt) {
   EXPECT_TRUE(says(hear(by({"john"}, kDisposed)).notes,
                    "\"karen, a test\": john may not cancel it; its owner may, or an operator"));
   EXPECT_EQ(state(1), GoalState::kUnderway);
-  EXPECT_TRUE(hear(by({"john"}, kWritten, 7)).notes.lines().empty());  // once is enough
+  EXPECT_TRUE(hear(by({"john"}, kWritten, 7)).notes.lines().empty());  // one message is enough
   hear(by({""}, kDisposed));
   EXPECT_EQ(state(1), GoalState::kUnderway);
   EXPECT_EQ(status().requester, "karen, a test");
@@ -214,7 +214,7 @@ TEST_F(OwnedGoal, WhoCommandsMayAndIsNamed) {
   hear(by({"john", true}, kWritten, 7));
   EXPECT_EQ(status().reason, "changed by john");
   EXPECT_EQ(status().requester, "karen, a test");
-  // It is still hers: it does not end with the program of him who changed it.
+  // The goal is still hers: it does not end with the other person's program.
   inputs_.heard.lost_requesters = {kJohn};
   step();
   EXPECT_EQ(state(1), GoalState::kUnderway);
@@ -275,7 +275,7 @@ TEST_F(CoreTest, WithoutMemoryAGoalOfBeforeTheStartIsNotDriven) {
         << refused.reason;
     EXPECT_EQ(refused.reason.find("damaged") != std::string::npos,
               condition == Condition::kDamaged);
-    // Asked again it is another goal.
+    // A repeated request is another goal.
     inputs_.heard.goals = {written(4, kKaren)};
     step(core);
     EXPECT_EQ(state(4), GoalState::kWaiting);
@@ -392,7 +392,7 @@ TEST_F(CoreTest, AStepFromRememberedGoalsGoesOnAsTheCoreBeforeIt) {
   remember(newest.intended.news);
   ASSERT_FALSE(newest.intended.behaviors.empty());
 
-  // The requesters' goals are latched: both come again. The link goes on as well.
+  // The requesters' goals are latched: both come again. The link continues as well.
   Core next(remembering(memory));
   statuses_.clear();
   is_new_ = true;
@@ -439,7 +439,7 @@ class InLockstep : public CoreTest {
   InLockstep() : CoreTest(true) {}
 };
 
-// Plans must not depend on when the map came.
+// Plans must not depend on the map's time of arrival.
 TEST_F(InLockstep, AMapCountsFromTheStepOnForWhichRegistrationHadIt) {
   const auto map = std::make_shared<const maps::Map>();
   core_.know_map({1, map});

@@ -14,8 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A robot that lives in a thread of its own and goes as fast as the service answers, or without an
-/// answer at 10 Hz.
+/// A robot in its own thread: as fast as the service answers, or without an answer at 10 Hz.
 class Robot10Hz {
  public:
   explicit Robot10Hz(const std::string& robot)
@@ -154,7 +153,7 @@ TEST_F(IntentionsProgram, GoesOnAfterAKill) {
   EXPECT_EQ(watcher.status(done)->state(), v1::GOAL_SUCCEEDED);
 }
 
-// Killed at 90 degrees of a half turn, it turns the other 90, and not another 180.
+// Killed at 90 degrees of a half turn, it turns the other 90, not another 180.
 TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
   bus::Node node(test::node_options("robot", robot));
   ScriptedBus site(node);
@@ -171,7 +170,7 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
     for (int i = 0; i < 10 && !(acted = site.act()); ++i)
       node.wait(milliseconds(10));
     if (!acted)
-      site.world.move({}, site.cycle);  // nobody drives: it stands
+      site.world.move({}, site.cycle);  // no driver: it stands
     turned += norm2_angle(site.world.robot.pose_in_odom.th - before);
     if (!killed && turned > kPi / 2.0) {
       killed = true;

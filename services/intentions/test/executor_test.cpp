@@ -112,7 +112,7 @@ TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
   }
   EXPECT_EQ(bench.state(2), GoalState::kSucceeded);
   EXPECT_EQ(bench.state(1), GoalState::kUnderway);
-  // Without a cycle in which nothing is intended.
+  // Without a cycle of an empty intent.
   EXPECT_EQ(bench.out.behaviors.size(), 4U);
 }
 
@@ -287,7 +287,7 @@ TEST(Executor, ABadChangeDoesNotReplaceAGoodGoal) {
   EXPECT_EQ(bench.out.behaviors, before);
 }
 
-// Also where the goal waits, or waits for a robot, and has something to say of its own.
+// Also for a goal that waits, or waits for a robot, and has its own reason.
 TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
   Bench bench;
   const std::string refused =
@@ -340,14 +340,14 @@ TEST(Executor, AnEndedGoalIsKeptForAMinute) {
   EXPECT_EQ(bench.statuses.count(1), 1U);
   bench.step();
   EXPECT_EQ(bench.statuses.count(1), 0U);
-  // Its id is used up also after that.
+  // Its id stays used after that.
   bench.ask(1, "drive", kSlow);
   bench.step();
   EXPECT_EQ(bench.state(1), GoalState::kSucceeded);
   EXPECT_TRUE(bench.out.behaviors.empty());
 }
 
-// Without a robot no time passes, and a requester may go on and on.
+// Without a robot no time passes, and a requester may send goals without end.
 TEST(Executor, SoManyEndedGoalsAreKept) {
   ExecutorOptions options;
   options.max_shown = 3;
@@ -420,7 +420,7 @@ TEST(Executor, GoalsWaitForARobotThatIsGone) {
   EXPECT_EQ(bench.status(1).code, GoalCode::kNoRobot);
   EXPECT_EQ(bench.state(2), GoalState::kWaiting);
   EXPECT_EQ(bench.status(2).reason, "waits for the robot");
-  // Another connection to the same robot, which knows where it is.
+  // Another connection to the same robot, with the same odom frame.
   bench.epoch = 101;
   bench.cycle = 0;
   bench.step();
@@ -449,7 +449,7 @@ TEST(Executor, ALostPositionFailsWhatDependsOnIt) {
   bench.ask(4, "drive", kSlow);
   bench.step();
   bench.note(bench.executor.robot_gone());
-  bench.ask(5, "go_to", kFar);  // odom is still the old one, as far as anybody can know
+  bench.ask(5, "go_to", kFar);  // odom is still the old one for all programs
   bench.ask(6, "go_to", {point("position", {2.0, 0.0, 0.0}, Frame::robot)});
   bench.hear();
   bench.epoch = 101;

@@ -69,7 +69,7 @@ TEST(Forest, AFirstStepOutOfTurnIsNoSecondOne) {
   EXPECT_EQ(steps, 1);
   forest.begin(forest.plant({1, 2}, "it", "test", act(act_once)), world);
   EXPECT_EQ(steps, 2);
-  // Interrupted and resumed within the cycle, it would leave a gap in what is intended.
+  // Interruption and resumption within a cycle must leave no gap in the intent.
   forest.interrupt(id);
   forest.resume(id);
   forest.begin(id, world);
@@ -178,7 +178,7 @@ TEST(Forest, ALevelCountsOnlyForTheParametersThatItIsOf) {
                }));
   forest.step(1, kRobot);
   const std::string name = forest.behaviors().at(0).name;
-  forest.hear({{name, 0.7, 0.0}}, 1);  // may be of what was intended before
+  forest.hear({{name, 0.7, 0.0}}, 1);  // may be for the earlier parameters
   forest.step(3, kRobot);
   EXPECT_EQ(level, 0.0);
   forest.hear({{name, 0.7, 0.0}, {"another", 1.0, 0.0}}, 2);

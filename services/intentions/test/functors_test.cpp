@@ -104,7 +104,7 @@ TEST(GoTo, APointOnTheMapIsWhereRegistrationSays) {
   };
   EXPECT_NEAR(goal().x, 2.0, 1e-9);
   EXPECT_NEAR(goal().y, 0.0, 1e-9);
-  // Registration corrects itself: the point moves in odom, and the way goes on.
+  // Registration corrects itself: the point moves in odom, and the drive continues.
   bench.world.robot.odom_in_map = Pose{10.0, 5.5, kPi / 2};
   bench.step();
   EXPECT_NEAR(goal().x, 1.5, 1e-9);
@@ -149,7 +149,7 @@ TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   wait(20, false);
   wait(20, true);
   EXPECT_EQ(bench.state(1), GoalState::kUnderway) << bench.status(1).reason;
-  // And that before an interruption is none of the time behind it.
+  // Time before an interruption does not count after it.
   wait(20, false);
   bench.ask(2, "drive", {number("speed", 0.0)}, 5);
   wait(20, false);
@@ -161,7 +161,8 @@ TEST(GoTo, TheTimeWithoutAPositionIsNoTimeWithoutProgress) {
   EXPECT_EQ(bench.status(1).code, GoalCode::kNoPosition);
 }
 
-// More is heard on the move. Without it, or without an end, a told pose would be an arrival.
+// Motion gives more readings. Without it, or without an end to it, a given pose would be an
+// arrival.
 TEST(GoTo, MovesAboutUntilWhatIsHeardConfirmsWhereItIs) {
   const auto arrives = [](Bench& bench) {
     bench.world.robot.odom_in_map = Pose{};
@@ -334,7 +335,7 @@ TEST(Stop, SucceedsWhenTheRobotIsAtRest) {
   bench.step_without_moving();
   EXPECT_EQ(schemas(bench.out.behaviors), std::vector<std::string>{"Stop/0"});
   EXPECT_EQ(bench.state(1), GoalState::kUnderway);
-  // Not before what another goal may have set off a moment ago would show.
+  // Not before the effect of another goal's command would show.
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(bench.state(1), GoalState::kUnderway);
     bench.step();

@@ -14,7 +14,7 @@ const Ending kEnding{{0xfedcba9876543210ULL, 7},
 const Placement kPlacement{
     {3, 4}, 0x8000000000000001ULL, 12, 2, {{"position", {2.0, 0.1, 0.0}, {1.0 / 3.0, -4.5, 3.0}}}};
 
-/// That nothing of it is damaged.
+/// Reads the content and expects no damage.
 Memory read(const std::string& content) {
   std::vector<FileError> damaged;
   Memory memory = read_journal("memory", content, damaged);
@@ -84,7 +84,7 @@ TEST(Journal, ATornLastLineIsToldAndTheRestCounts) {
   }
 }
 
-// Each bit of a file flipped, and the file cut off at each letter: what is left is never another.
+// Each bit of a file flipped, and the file cut off at each letter: no remaining entry is wrong.
 TEST(Journal, WhatIsDamagedIsToldAndTheRestCounts) {
   const std::string first = write_line(kPlacement);
   const std::string second = write_line(kEnding);

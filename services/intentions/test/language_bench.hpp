@@ -12,7 +12,7 @@
 
 namespace saphira::intentions {
 
-/// An executor with activities from a text, and a world that does as it is told.
+/// An executor with activities from a text, and an obedient world.
 class Stage {
  public:
   explicit Stage(const std::string& activities, const Functions& functions = core_functions(),
@@ -46,7 +46,7 @@ class Stage {
     inputs.events.push_back(event);
   }
 
-  /// The level that the behavior whose name begins so has from now on.
+  /// Sets the level of the behavior whose name begins so.
   void satisfy(const std::string& name, double goal) { levels[name] = goal; }
 
   void step(int cycles = 1) {

@@ -149,7 +149,7 @@ TEST(ActivityErrors, OfParameters) {
                   "\":numbr\""}));
   EXPECT_EQ(troubles("(defintention :a :params ((n :number 9 :high 3)) :goals '((TEST t)))"),
             List({"1:27 expected a default within :low and :high"}));
-  // A default that is a number, a unit or limits make it a number.
+  // A number as default, a unit or limits make it a number.
   EXPECT_EQ(troubles("(defintention :a :params ((n 9 :high 3)) :goals '((TEST t)))"),
             List({"1:27 expected a default within :low and :high"}));
   EXPECT_EQ(troubles("(defintention :a :params ((n 'x :high 3)) :goals '((TEST t)))").size(), 1U);

@@ -116,7 +116,7 @@ TEST(Activities, AFinishedChildIsPassedUpInTheSameCycle) {
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"})) << "begun at once, three levels deep";
   EXPECT_EQ(stage.display(), "* top S2; * middle END; * bottom END; * GoToPos B");
   stage.satisfy("go", 1.0);
-  stage.step(2);  // what is said of it may still be of what was before it
+  stage.step(2);  // reports may still be for the earlier intent
   EXPECT_EQ(stage.behaviors(), Names({"GoToPos"}));
   stage.step();
   EXPECT_EQ(stage.behaviors(), Names({"Halt"}));
@@ -210,7 +210,7 @@ TEST(Activities, Figure9RunsFromItsFile) {
   stage.step();
   EXPECT_EQ(stage.display(),
             "* plan-and-execute S6; o monitor-planex CLEANUP; * follow-path END; * Follow B");
-  // A failure signalled: the monitor ends the following, and the plan is made anew.
+  // A signalled failure: the monitor ends the following, and the plan is made anew.
   stage.ask(3, "spoil");
   stage.step(4);
   EXPECT_EQ(stage.messages.size(), 3U);

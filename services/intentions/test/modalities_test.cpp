@@ -2,7 +2,7 @@
 
 #include "language_bench.hpp"
 
-// Each goal modality of Figure 8, and what PRS adds to them.
+// Each goal modality of Figure 8, and the additions of PRS.
 
 namespace saphira::intentions {
 namespace {
@@ -123,7 +123,7 @@ TEST(Modality, AReasonThatCannotBeComputedFails) {
   EXPECT_EQ(stage.messages.size(), 1U);
 }
 
-// The intentions of a SPLIT end, and are interrupted, with the goal that it stands in.
+// The intentions of a SPLIT end, and are interrupted, with the enclosing goal.
 TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
   const std::string aside = "(SPLIT (SEQ (INTEND :Watch () :blocking nil) (INTEND :Follow ())))";
   const std::string rest = "(WAIT-FOR *x* :forever t)";
@@ -137,7 +137,7 @@ TEST(Modality, ASplitStandsInTheGoalsAroundIt) {
   EXPECT_EQ(preserve.messages, Names({"broken"}));
   EXPECT_TRUE(preserve.behaviors().empty());
 
-  // Also when it is over itself, and what it has begun goes on.
+  // Also when the goal is over, and its intentions continue.
   Stage over(activity("(PRESERVE (not stalled) (SPLIT (INTEND :Watch () :blocking nil))" + rest +
                       " :else (EXECUTE (say \"broken\"))) (WAIT-FOR nil :forever t)"));
   over.ask(1, "it");
@@ -403,7 +403,7 @@ TEST(Modality, APersonInterruptsAndResumesAnIntention) {
   stage.step(3);
   EXPECT_TRUE(stage.behaviors().empty());
   EXPECT_EQ(stage.out.nodes[1].state, IntentionState::kSuspended);
-  // Another goal comes and goes: what a person holds stays held.
+  // Another goal comes and goes: an intention that a person holds stays held.
   stage.ask(2, "other", {}, 5);
   stage.step(10);
   EXPECT_TRUE(stage.behaviors().empty());
@@ -427,7 +427,7 @@ TEST(Modality, LevelsAndTrends) {
   EXPECT_EQ(stage.status(1).trend, Trend::kSteady);
   stage.dispose(1);
   stage.step();
-  // A goal that is content with less.
+  // A goal with a lower level.
   stage.satisfy("go", 0.4);
   stage.level = 0.5;
   stage.ask(2, "it");
@@ -606,7 +606,7 @@ TEST(Modality, HowMuchIsDoneIsItsOwnOrTheLevel) {
   EXPECT_EQ(stage.status(2).progress, 0.75);
 }
 
-// A question counts what is said from then on, also what has been said before in the same words.
+// A question counts statements from then on, also repeated ones.
 TEST(Modality, WhenABeliefWasSaid) {
   Stage stage(
       activity("(= since (now)) (= name (format \"an~a\" 'swer))"
@@ -683,7 +683,7 @@ TEST(Modality, NothingGrowsWithoutBound) {
   EXPECT_EQ(driving.status(1).reason,
             "there are 256 behaviors already: does an activity begin others without end?");
 
-  // Each begins two that wait: as many as there may be, and then it ends with the reason.
+  // Each begins two that wait, up to the limit, and then fails with the reason.
   Stage crowd(
       "(defintention :it :goals '((INTEND :half () :blocking nil) (INTEND :half ())))"
       "(defintention :half :goals '((SPLIT (INTEND :many ()) (INTEND :many ()))"

@@ -121,7 +121,7 @@ TEST_F(Navigation, WhatPeopleWarnOfIsNotOnThePath) {
   EXPECT_FALSE(path("north").nil());
   const std::string why = spoken(call("why-no-path", {Value(), "south"}));
   EXPECT_TRUE(why.ends_with("people warn of: water leak at south")) << why;
-  // Out of where it is itself it has to get.
+  // The robot may leave its own region.
   be_at({3.0, -3.0, 0.0});
   EXPECT_FALSE(path("north").nil());
   beliefs.unset("hazards");
@@ -196,7 +196,7 @@ TEST_F(Navigation, ExploringGoesToTheNearestEndFirstAndComesToAnEnd) {
       last = (at.position() - robot.pose_in_odom.position()).norm();
     visited = functions.function("cons")->call(world(), std::vector<Value>{next, visited});
   }
-  // The west end is where the robot is.
+  // The robot is at the west end.
   EXPECT_EQ(places, 3);
   EXPECT_NEAR(last, 8.0, 0.1);
 }

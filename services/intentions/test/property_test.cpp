@@ -84,7 +84,7 @@ TEST(ExecutorProperty, HoldsForRandomGoals) {
         bench.dispose(some);
       if (random.chance(0.03))
         bench.lose_writer(some);
-      if (random.chance(0.05) && last > 0) {  // also of goals that have ended
+      if (random.chance(0.05) && last > 0) {  // also for goals that have ended
         const std::string functor = kFunctors[random.next() % 5];
         bench.ask(1 + random.next() % last, functor, random_arguments(random, functor),
                   static_cast<int>(random.next() % 3));

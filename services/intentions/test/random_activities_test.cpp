@@ -6,7 +6,7 @@
 #include "saphira/base/random.hpp"
 #include "saphira/base/text.hpp"
 
-// Random schemas in random worlds: what holds whatever they do.
+// Random schemas in random worlds: properties that always hold.
 
 namespace saphira::intentions {
 namespace {
@@ -139,7 +139,7 @@ TEST(RandomActivities, NeverLoseAParentAndLeaveNothingBehind) {
     Random random(seed);
     const std::string text = schemas(random);
     Stage stage(text, core_functions(), 400);
-    // Some goals cannot be reached, or there are two of a name: then there is nothing to run.
+    // Some goals are unreachable, or a name is used twice: then there is nothing to run.
     if (!stage.loaded.ok())
       continue;
     std::uint64_t last = 0;
@@ -197,7 +197,7 @@ TEST(RandomActivities, NeverLoseAParentAndLeaveNothingBehind) {
       ++ends[status.state];
     }
   }
-  // The worlds are not so poor that nothing happens in them.
+  // The worlds are rich enough for activity.
   EXPECT_GT(most_seen, 50U);
   EXPECT_GT(ends[GoalState::kSucceeded], 200);
   EXPECT_GT(ends[GoalState::kFailed], 200);

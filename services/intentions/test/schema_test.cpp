@@ -59,7 +59,7 @@ TEST(Schema, RefusesWhatIsNoNumber) {
   }
 }
 
-// Values with which a file of goals could not be read again, also where every kind is taken.
+// Values that would make a file of goals unreadable, also where every kind is accepted.
 TEST(Schema, RefusesPointsThatAreNowhere) {
   Schema schema;
   schema.name = "it";

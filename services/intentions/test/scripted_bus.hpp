@@ -11,7 +11,7 @@
 
 namespace saphira::intentions {
 
-/// The bridge and the behaviors service in one, as simple as can be, on the bus.
+/// The bridge and the behaviors service in one, in the simplest form, on the bus.
 class ScriptedBus {
  public:
   explicit ScriptedBus(bus::Node& node)
@@ -23,7 +23,7 @@ class ScriptedBus {
     have({});
   }
 
-  /// Says that there are these behaviors; of none nobody learns anything.
+  /// Announces these behaviors.
   void have(const std::vector<std::string>& names) {
     v1::BehaviorSchemas sample;
     for (const std::string& name : names) {
@@ -60,8 +60,8 @@ class ScriptedBus {
     state_.write(state);
   }
 
-  /// Does what the intentions of this cycle ask for, where they have come: publishes the behaviors
-  /// sample of the cycle and moves the world on.
+  /// Carries out this cycle's intent, if it has come: publishes the behaviors sample of the cycle
+  /// and moves the world on.
   bool act() {
     for (const auto& sample : intentions_.take()) {
       if (sample.data.stamp().cycle() == cycle && sample.data.stamp().epoch() == epoch)
@@ -93,7 +93,7 @@ class ScriptedBus {
     return true;
   }
 
-  /// A schema of a behavior that cannot be made, and why.
+  /// A schema of a behavior that cannot be made, and the reason.
   std::pair<std::string, std::string> missing;
   std::optional<v1::Intentions> intended;  ///< the newest that were acted on
 

@@ -8,14 +8,14 @@
 
 namespace saphira::intentions {
 
-/// A robot and a behaviors service in one, as simple as can be: it does at once what the one that
-/// has the say among the intended behaviors wants. One cycle late, as on the bus.
+/// A robot and a behaviors service in one, in the simplest form: it obeys the strongest intended
+/// behavior at once. One cycle late, as on the bus.
 class ScriptedRobot {
  public:
   Robot robot{.connected = true, .odom = 1};
   std::vector<BehaviorLevel> levels;
   std::uint64_t levels_cycle = 0;
-  bool held = false;  ///< something in the way: it does not move
+  bool held = false;  ///< blocked: it does not move
 
   /// The world moves from the cycle of `outputs` to the next.
   void move(const std::vector<IntendedBehavior>& behaviors, std::uint64_t cycle) {

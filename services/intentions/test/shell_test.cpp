@@ -35,7 +35,7 @@ class ShellTest : public testing::Test {
   }
   void cycle() {
     robot.publish_state();
-    // After a restart it first steps the cycles that it finds on the bus.
+    // After a restart it first steps the cycles on the bus.
     bool acted = false;
     for (int i = 0; i < 8 && !acted; ++i) {
       ASSERT_TRUE(shell->step(stop));
@@ -89,7 +89,7 @@ TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
   grant.estopped(true);
   grant.estop_source("button");
   grants.write(grant);
-  grants.write(v1::Grant());  // reset before the service looked
+  grants.write(v1::Grant());  // reset before the service read it
   cycle();
   EXPECT_EQ(state(id), v1::GOAL_CANCELED) << bus::describe(*goals.status(id));
   EXPECT_EQ(goals.status(id)->reason().find("emergency stop, pressed by \"button\""), 0U);
@@ -256,7 +256,7 @@ TEST_F(ShellTest, AnActivityFromAFileIsAGoalAndIsTakenAnewWhenItIsWritten) {
   EXPECT_TRUE(std::any_of(known->schemas().begin(), known->schemas().end(),
                           [](const v1::ActivitySchema& one) { return one.name() == "greet"; }));
 
-  // A broken file says so and changes nothing; the next good one is taken.
+  // A broken file gives an error and changes nothing; the next good one is accepted.
   write("(defintention :greet :params ((who :text)) :goals '((EXECUTE (say \"bye ~a\" ", 2);
   for (int i = 0; i < 120; ++i)
     cycle();
@@ -343,7 +343,7 @@ TEST_F(ShellTest, WhatSomebodyClaimsIsABeliefUntilItIsTakenBack) {
   EXPECT_FALSE(find("karen-is-in"));
 }
 
-// As soon in every run, whenever what the behaviors service has to say arrives.
+// At the same cycle in every run, whenever the behaviors service's sample arrives.
 TEST_F(ShellTest, InLockstepItKnowsWhatBehaviorsThereAre) {
   const test::TempDir files;
   folder = files.path();

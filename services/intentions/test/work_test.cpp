@@ -15,8 +15,8 @@
 #include "saphira/intentions/language.hpp"
 #include "scripted_robot.hpp"
 
-// Finished work is not done again: the service is killed and restarted at every cycle of a
-// run, and the robot does all in all what it does without that.
+// Finished work is not done again: the service is killed and restarted at every cycle of a run, and
+// the robot's total motion is the same as without a kill.
 namespace saphira::intentions {
 namespace {
 
@@ -48,7 +48,7 @@ class Site {
         ExecutorOptions{.remembers_work = true, .functions = functions_});
     events_ = {{GoalEvent::Kind::kWritten, goal_}};
   }
-  /// It is dead for so many cycles, in which the robot stands.
+  /// Dead for so many cycles, in which the robot stands.
   void kill(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       ++cycle;
@@ -89,7 +89,7 @@ class Site {
   ScriptedRobot world;
   std::uint64_t epoch = 100;
   std::uint64_t cycle = 0;
-  std::string journal;  ///< what is on the disk
+  std::string journal;  ///< the content of the disk
   std::string work;
   GoalStatus status;
   std::string said;

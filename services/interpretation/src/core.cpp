@@ -5,7 +5,7 @@
 namespace saphira::interpretation {
 namespace {
 
-/// [cycles] A tile that changes is told once a second.
+/// [cycles] A changed tile is published once a second.
 constexpr std::uint64_t kGridCycles = 10;
 
 }  // namespace
@@ -15,7 +15,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
   if (inputs.new_robot != nullptr)
     begin(*inputs.new_robot, outputs.gone);
   else if (inputs.new_frame)
-    interpretation_->reset();  // what was seen is elsewhere
+    interpretation_->reset();  // percepts were in the old frame
   outputs.output = &interpretation_->step({inputs.cycle, inputs.pose_in_odom, inputs.readings, {}});
   note_tiles(*outputs.output, inputs.cycle, outputs);
   return outputs;
@@ -27,7 +27,7 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars, std::vector<TileKey
   changed_.clear();
   Settings settings;
   settings.sonars = sonars;
-  // The same robot again: ids go on, so that none stands for two things.
+  // The same robot again: ids continue, so that none stands for two objects.
   if (interpretation_ && interpretation_->settings().sonars == settings.sonars)
     interpretation_->reset();
   else

@@ -20,8 +20,8 @@ double logit(double probability) {
 }  // namespace
 
 Grid::Grid(const GridSettings& settings) : settings_(settings), prior_(logit(settings.prior)) {
-  // With the probability `mirror` the surface of an occupied cell sends the sound elsewhere, and
-  // whatever was heard from this direction says nothing of it.
+  // With the probability `mirror` the surface of an occupied cell reflects the sound away, and the
+  // readings from this direction give no evidence.
   const double q = settings_.model == GridModel::muriel ? settings_.mirror : 0.0;
   int evidence = -kHalf;
   for (std::int16_t& weighed : weighed_) {
@@ -167,7 +167,7 @@ void Grid::for_cone(const Pose& sonar, double range, F&& f) {
         const auto [low, high] = rows.span(dy);
         if (high < low - size)
           continue;
-        // A cell more at each end, for what rounding may leave out.
+        // One more cell at each end, against rounding.
         const long begin = std::max({column0, first_column, cell_of(sonar.x + low - size)});
         const long end =
             std::min({column0 + kTile - 1, last_column, cell_of(sonar.x + high + size)});
@@ -206,7 +206,7 @@ void Grid::evidence(Tile& tile, std::size_t cell, int bin, double log_odds) {
 void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {
   const double edge = std::tan(settings_.beam);
   const double far = settings_.range;
-  // Beyond three deviations behind the echo nothing is said.
+  // Beyond three deviations behind the echo there is no evidence.
   const double deviation =
       range ? settings_.noise + settings_.relative_noise * *range : settings_.noise;
   const double half_cell = settings_.resolution / 2.0;
@@ -235,7 +235,7 @@ void Grid::add_muriel(const Pose& sonar, std::optional<double> range) {
     sum += arc.odds * arc.density;
     arc_.push_back(arc);
   });
-  // The echo came from somewhere on the arc: what is believed of the rest explains it as well.
+  // The echo came from somewhere on the arc: the beliefs in the rest of it explain it as well.
   for (const Arc& arc : arc_) {
     const double rest =
         settings_.false_echoes + settings_.attribution * (sum - arc.odds * arc.density);

@@ -23,7 +23,7 @@ void add_readings(const std::vector<const Return*>& firings, Percept& percept) {
   }
 }
 
-/// The echoes of a stretch that bear witness to one of its ends [m].
+/// The echoes of a stretch that count for one of its ends [m].
 constexpr double kWitness = 0.8;
 
 void add_witnesses(const Line& line, const Stretch& stretch, bool upper, Percept& percept) {
@@ -37,7 +37,7 @@ double angle_between(double a, double b) {
   return std::abs(norm2_angle(a - b));
 }
 
-// True where two percepts may be the same thing, and how far apart they are then.
+// The distance of two percepts that may be the same object; none where they are not.
 std::optional<double> apart(const Percept& a, const Percept& b) {
   if (a.type != b.type || a.side != b.side)
     return std::nullopt;
@@ -116,7 +116,7 @@ bool Interpretation::works(Process* Tasks::*task) const {
   return tasks_ == nullptr || (tasks_->*task)->works();
 }
 
-// Percepts of a suspended task are not kept up any more: they are taken back.
+// Percepts of a suspended task are not updated any more: they are removed.
 void Interpretation::mind_tasks() {
   if (!works(&Tasks::sides_)) {
     for (SideView& side : sides_)
@@ -137,7 +137,7 @@ void Interpretation::mind_tasks() {
     }
   });
   const auto resumed = [](const Process* task) { return task->works() && task->resumed(); };
-  // All anew: also where no wall has changed, one that works again has something to say.
+  // All anew: also without a changed wall, a resumed task has results.
   if (standing_.size() != before || resumed(tasks_->walls_) || resumed(tasks_->breaks_) ||
       resumed(tasks_->corridors_))
     changed_ = {true, true};
@@ -176,7 +176,7 @@ void Interpretation::take(const lps::SonarReading& reading, const Pose& robot_in
 
 void Interpretation::interpret() {
   if (changed_[0] || changed_[1]) {
-    // Both: what a side has put together refers to readings, of which the oldest are gone since.
+    // Both sides: their results refer to readings, of which the oldest are gone.
     for (SideView& side : sides_)
       side.interpret(travelled_, others_);
     for (Standing& standing : standing_)
@@ -199,7 +199,7 @@ void Interpretation::find_walls(std::size_t number) {
   const bool walls = works(&Tasks::walls_);
   const bool breaks = works(&Tasks::breaks_);
   for (const Wall& wall : sides_[number].walls()) {
-    // Lines of the two sides are numbered apart.
+    // Lines of the two sides have different numbers.
     const Lines lines{2 * wall.line + static_cast<std::uint32_t>(number), 0};
     const double doubt = wall.fit.sigma_heading;
     if (doubt > settings_.max_heading)
@@ -243,7 +243,7 @@ void Interpretation::find_walls(std::size_t number) {
   }
 }
 
-// The heading of a wall is doubtful, since the robot has just turned: what was said of it stands.
+// The heading of a wall is doubtful after a turn: its earlier percept stays.
 void Interpretation::hold(std::uint32_t line, bool openings_too) {
   for (Standing& standing : standing_) {
     const PointType type = standing.percept.type;
@@ -269,12 +269,12 @@ void Interpretation::stand(Percept percept, const Lines& lines) {
   if (same) {
     percept.id = same->percept.id;
     percept.since = same->percept.since;
-    // Only what has been seen anew is placed anew: the robot may have turned since.
+    // Only new percepts are placed anew: the robot may have turned since.
     if (percept.seen != same->percept.seen)
       *same = {std::move(percept), true, lines, travelled_};
     same->seen = true;
   } else {
-    // Not below the cycle: a service that was started again gives none that it gave before.
+    // Not below the cycle: a restarted service must not repeat an id.
     last_id_ = std::max(last_id_ + 1, static_cast<std::uint32_t>(cycle_));
     percept.id = last_id_;
     percept.since = cycle_;
@@ -287,7 +287,7 @@ double Interpretation::across_sigma(const Wall& wall, double u) const {
                    square(wall.fit.sigma_heading * (u - wall.fit.u_mean)));
 }
 
-// By how much dead reckoning may have carried an opening along its wall since it was seen.
+// The possible drift of dead reckoning along the wall since an opening was seen.
 double Interpretation::carried(const Line& line, const std::vector<const Return*>& through,
                                const Stretch& stretch) const {
   double way = 0.0;
@@ -310,7 +310,7 @@ Percept Interpretation::wall_percept(const Wall& wall, const Stretch& stretch, S
   const double u = (stretch.from.u + stretch.to.u) / 2.0;
   percept.length = stretch.to.u - stretch.from.u;
   const Vec2 middle = line.at(u);
-  // Along it as the robot went: from what was heard first to what was heard last.
+  // Along it in the robot's direction: from the first echo to the last.
   const Return* first = stretch.echoes.front();
   const Return* last = stretch.echoes.back();
   const Vec2 along = first->travelled <= last->travelled ? line.along() : Vec2(-line.along());
@@ -403,7 +403,7 @@ void Interpretation::find_corridors() {
       if (high - low < settings_.min_overlap)
         continue;
       const double t = (low + high) / 2.0;
-      // Where the walls are at t: normal and along are nearly the lines' own.
+      // The walls at t: normal and along are nearly the lines' own.
       const auto across = [&](const Line& line) {
         return (line.offset - t * line.normal.dot(along)) / line.normal.dot(normal);
       };

@@ -6,26 +6,26 @@
 namespace saphira::interpretation {
 namespace {
 
-/// Echoes nearer together than this say too little of a line's heading [m].
+/// Closer echoes give too little of a line's heading [m].
 constexpr double kPair = 0.3;
 constexpr double kPairMost = 2.5;
-/// Seeks among so many of the newest echoes that are of no line.
+/// Searches among so many of the newest echoes without a line.
 constexpr std::size_t kSeek = 40;
-/// An established line lives on with so many echoes.
+/// An established line is kept with so many echoes.
 constexpr std::size_t kFew = 4;
-/// A single echo or silence among others is taken for a mistake.
+/// A single echo or silence among others counts as an error.
 constexpr std::size_t kStretch = 3;
-/// A wall is bent where so many neighbouring echoes say so.
+/// A wall is bent where so many neighbouring echoes agree.
 constexpr std::size_t kBent = 4;
-/// Nobody looked between readings farther apart than this [m].
+/// Between readings farther apart than this the wall is unseen [m].
 constexpr double kUnseen = 0.45;
 /// The wall beside an opening [m].
 constexpr double kBeside = 0.8;
-/// A post that is heard from elsewhere is where the wall seems to end, to this [m]...
+/// The distance of a post's echoes from the apparent end of the wall [m]...
 constexpr double kPostNear = 0.2;
-/// ...and the echoes agree with each other to this [m].
+/// ...and their distance from each other [m].
 constexpr double kPostAgree = 0.06;
-/// They were heard so shortly before or after, by travel [m] and turns [rad].
+/// The time of the post's echoes before or after, by travel [m] and turns [rad].
 constexpr double kPostWay = 4.0;
 constexpr double kPostTurn = 0.6;
 
@@ -102,7 +102,7 @@ std::optional<double> SideView::misses(const Return& firing, const Line& line, d
   return off;
 }
 
-// Long enough not to be one corner, which is heard at nearly the same range over its whole cone.
+// Longer than one corner, which is heard at nearly the same range over its whole cone.
 bool SideView::is_wall(const Candidate& candidate) const {
   const Line& line = candidate.fit.line;
   std::size_t first = 0;
@@ -119,7 +119,7 @@ bool SideView::is_wall(const Candidate& candidate) const {
   return false;
 }
 
-// Every echo to the line that it misses least, and every line to its echoes.
+// Assigns every echo to its nearest line, and every line to its echoes.
 void SideView::assign() {
   for (int round = 0; round < 2; ++round) {
     for (Candidate& line : lines_)
@@ -154,7 +154,7 @@ void SideView::assign() {
   }
 }
 
-// A new line through the newest echo, if that is of none.
+// A new line through the newest echo, if that has none.
 void SideView::seek() {
   std::vector<const Return*> loose;
   for (auto it = returns_.rbegin(); it != returns_.rend() && loose.size() < kSeek; ++it) {
@@ -292,13 +292,12 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
     place_end(line, stretch, false, beyond, others, stretch.from);
     wall.stretches.push_back(std::move(stretch));
   }
-  // A stretch must be more than one corner.
+  // A stretch must be longer than one corner.
   const auto is_more = [&](const Stretch& stretch) {
     return length(stretch.echoes, line) >
            2.0 * stretch.echoes.front()->range * std::tan(settings_.corner_cone) + 0.1;
   };
-  // Where the wall is beside the opening, off the line: the fronts of a sofa and a shelf are no
-  // wall.
+  // The wall beside the opening must lie on the line: the fronts of a sofa and a shelf are no wall.
   const auto off = [&](const Stretch& stretch, double end) {
     double sum = 0.0;
     double count = 0.0;
@@ -348,8 +347,8 @@ void SideView::describe(const Candidate& candidate, const std::deque<Return>& ot
   walls_.push_back(std::move(wall));
 }
 
-/// True where what stands back is flat, and deep enough to be a door in its frame: a closed one.
-/// others: readings there of anything else.
+/// True where the echoes behind the line are flat, and deep enough to be a closed door in its
+/// frame. others: other readings there.
 bool SideView::has_door_in(const Line& line, Opening& opening, std::size_t others) const {
   const auto& echoes = opening.through;
   if (echoes.size() < static_cast<std::size_t>(settings_.min_back_echoes) ||
@@ -383,7 +382,7 @@ void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
     return;
   end.open = beyond.size() >= 2;
   end.through = beyond;
-  // The corner is heard for as long as it is in the cone, which may look askew.
+  // The corner is heard while it is in the cone, which may look askew.
   const double tilt = side * std::atan2(edge.axis.dot(line.along()), edge.axis.dot(line.normal));
   const double past = d * std::tan(std::max(0.0, settings_.corner_cone - tilt));
   end.u = (u + next) / 2.0 - side * past;
@@ -391,7 +390,7 @@ void SideView::place_end(const Line& line, const Stretch& stretch, bool upper,
   const double step = next - u;
   end.sigma = std::sqrt(step * step / 12.0 + doubt * doubt + 1e-4);
 
-  // The same corner as it was heard from elsewhere: on a circle and on the line.
+  // The same corner as heard from other places: on a circle and on the line.
   std::vector<std::pair<double, const Return*>> posts;
   for (const Return& other : others) {
     const double h = line.distance(other.sonar);

@@ -74,7 +74,7 @@ LineFit fit_line(const std::vector<const Return*>& echoes, const Line& near,
   fit.line = {normal, offset + normal.dot(middle)};
   fit.u_mean = fit.line.u(middle);
   double squares = 0.0;
-  // The heading is owed to echoes by their leverage.
+  // The heading comes from the echoes by their leverage.
   for (std::size_t i = 0; i < echoes.size(); ++i) {
     const double off = normal.dot(echoes[i]->sonar - middle) + echoes[i]->range - offset;
     squares += weights[i] * off * off;

@@ -19,7 +19,7 @@ TEST(Grid, AnEchoIsAnObstacleAndTheWayToItIsFree) {
     grid.add(0, {0.0, 0.1 * i, 0.0}, 1.0);
   EXPECT_GT(grid.probability({1.0, 0.15}).value_or(0.0), 0.5);
   EXPECT_LT(grid.probability({0.5, 0.15}).value_or(1.0), 0.2);
-  EXPECT_FALSE(grid.probability({2.0, 0.0}));  // behind it nothing is said
+  EXPECT_FALSE(grid.probability({2.0, 0.0}));  // no evidence behind it
   EXPECT_FALSE(grid.probability({-0.5, 0.0}));
 }
 
@@ -70,7 +70,7 @@ TEST(Grid, IsClearedFromSeveralDirections) {
   for (int i = 0; i < 5; ++i)
     grid.add(0, {0.0, 0.07 * i, 0.0}, 1.0);
   ASSERT_GT(grid.probability({1.0, 0.15}).value_or(0.0), 0.5);
-  // The box has gone: all around it sonars hear the wall behind.
+  // The box is gone: all around it sonars hear the wall behind.
   for (int i = 0; i < 62; ++i) {
     const double angle = 0.1 * i;
     grid.add(0, {1.0 - std::cos(angle), 0.15 - std::sin(angle), angle}, 3.0);
@@ -95,7 +95,7 @@ TEST(Grid, GoesWithTheRobotInTiles) {
   EXPECT_LT(most, 60U);
   EXPECT_FALSE(grid.probability({-25.0, 1.0}));
 
-  // Each cell of a tile is where probability says.
+  // Each cell of a tile agrees with probability().
   const Vec2 at(29.0, 2.0);
   const TileKey key = grid.tile_of(at);
   const std::vector<std::uint8_t> cells = grid.cells(key);

@@ -18,8 +18,8 @@ using lps::Side;
 
 constexpr double kSpeed = 0.03;  // [m] a cycle
 
-/// A robot with one sonar to each side in a corridor along x: the side sonars hear what the two
-/// functions say at the robot's x; nothing where that is not positive.
+/// A robot with one sonar to each side in a corridor along x. The two functions give the ranges at
+/// the robot's x; no echo where they are not positive.
 class Corridor {
  public:
   using Range = std::function<double(double x)>;
@@ -150,7 +150,7 @@ TEST(Interpretation, AClosedDoorThatStandsBackIsADoor) {
     EXPECT_NEAR(doors[0].pose_in_odom.x, 2.45, 0.06);
     EXPECT_NEAR(doors[0].pose_in_odom.y, 1.0, 0.02);
     EXPECT_NEAR(doors[0].width, 0.9, 0.1);
-    // It is no end of a wall.
+    // The place is no end of a wall.
     EXPECT_TRUE(of(corridor.drive(4.6), PointType::breach).empty());
   }
 }
@@ -206,7 +206,7 @@ TEST(Interpretation, TwoParallelWallsAreACorridor) {
   EXPECT_TRUE(corridors[0].is_hypothesis());
 }
 
-// A box before the wall, or a person: nobody has looked through the wall there.
+// A box before the wall, or a person: the wall there is unseen.
 TEST(Interpretation, WhatHidesAWallIsNoOpening) {
   Corridor corridor([](double x) { return x > 2.0 && x < 2.9 ? 0.5 : 1.0; }, nothing);
   const Output& output = corridor.drive(4.5);

@@ -67,7 +67,7 @@ TEST(Fit, IsRightForSonarsThatLookAskewAndKnowsHowSureItIs) {
 TEST(Fit, FollowsTheNewestEchoesWhereDeadReckoningHasTurned) {
   std::vector<Return> firings;
   firings.reserve(37);
-  // The robot's heading strays by 3 degrees while it turns by 0.5 rad at x = 2.
+  // The robot's heading drifts by 3 degrees while it turns by 0.5 rad at x = 2.
   for (int i = 0; i < 25; ++i)
     firings.push_back(heard({0.08 * i, 0.0}, 1.0, 0.0, 0.0));
   for (int i = 0; i < 12; ++i) {

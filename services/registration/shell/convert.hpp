@@ -6,7 +6,7 @@
 #include "map.h"
 #include "saphira/registration/core.hpp"
 
-/// Between the types of the bus and those of the library: pure functions, nothing else.
+/// Conversions between the types of the bus and those of the library: pure functions.
 namespace saphira::registration {
 
 /// The registration sample of a step at `pose_in_odom`; stamp, odom, revision and switches are the

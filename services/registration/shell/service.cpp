@@ -13,8 +13,8 @@
 namespace saphira::registration {
 namespace {
 
-/// The path of what a person means by `name`: a map file, or one that is shipped; empty for "none"
-/// and for nothing. std::invalid_argument that lists what there is where it is neither.
+/// The path of the map `name`: a map file, or a shipped one; empty for "none" and for an empty
+/// name. std::invalid_argument that lists the existing maps where it is neither.
 std::string find_map(const std::string& name) {
   if (name.empty() || name == "none")
     return "";
@@ -54,7 +54,7 @@ Service::Service(runtime::Ports& ports, Options options)
     const std::string trouble =
         read_or_set_aside(options_.memory_file, [&](const std::string& content) {
           Remembered found = parse_remembered(content, options_.memory_file);
-          Core(settings, found);  // throws where nothing can be made of it
+          Core(settings, found);  // throws where it is unusable
           remembered = std::move(found);
         });
     if (!trouble.empty())

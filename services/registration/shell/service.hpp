@@ -10,10 +10,10 @@
 namespace saphira::registration {
 
 struct Options {
-  std::string map_file;  ///< a map file, or the name of one that is shipped; "none", empty: no map
-  /// Where the robot is at the start: as start_pose has it.
+  std::string map_file;  ///< a map file, or the name of a shipped one; "none", empty: no map
+  /// The robot's start pose: as in start_pose.
   std::string start = "start";
-  std::string memory_file;  ///< what outlives the service; empty: nothing does
+  std::string memory_file;                          ///< the memory over a restart; empty: none
   std::optional<bool> add_features = std::nullopt;  ///< as Core::Settings has it
   bool snap = true;                                 ///< the same
 };
@@ -23,7 +23,7 @@ runtime::Component component();
 /// The registration service on the bus.
 class Service final : public runtime::Service {
  public:
-  /// Throws FileError, std::runtime_error or std::invalid_argument for what the options name.
+  /// Throws FileError, std::runtime_error or std::invalid_argument for wrong options or files.
   Service(runtime::Ports& ports, Options options);
 
   ProcessTable& processes() override { return core_->processes(); }

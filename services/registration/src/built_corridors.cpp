@@ -11,7 +11,7 @@ namespace {
 
 using Corridor = BuiltCorridor;
 
-// Echoes from ahead that tell of the end of a corridor: so straight on, so many.
+// Echoes from ahead that define the end of a corridor: largest angle and least number.
 constexpr double kStraight = radians(10.0);
 constexpr std::size_t kEchoes = 4;
 
@@ -46,7 +46,7 @@ std::vector<Corridor> Finder::pairs() const {
         continue;
       Corridor corridor;
       const Pose near = one.pose();
-      // The stretches of both in the first one's frame, which is that of its left side too.
+      // The stretches of both in the first one's frame, which is also that of its left side.
       const auto of = [&](const GraphLine& line) {
         Stretches out;
         for (const SeenLine& seen : line.seen) {
@@ -67,8 +67,8 @@ std::vector<Corridor> Finder::pairs() const {
       corridor.width = lps::yo(far, {across.x(), across.y(), 0.0});
       if (corridor.width < settings_.min_width || corridor.width > settings_.max_width)
         continue;
-      // One of walls that look at one another through a third one is no corridor: the robot was
-      // between them.
+      // Only walls with the robot's way between them make a corridor: two walls may face each other
+      // through a third one.
       const Vec2 middle = transform(near, {at, corridor.width / 2});
       corridor.frame = {middle.x(), middle.y(),
                         norm2_angle(one.heading + norm2_angle(far.th + kPi - one.heading) / 2)};
@@ -92,7 +92,7 @@ std::vector<Corridor> Finder::pairs() const {
   return pairs;
 }
 
-// Pairs that follow one another on one line are one.
+// Merges pairs that follow one another on one line.
 std::vector<Corridor> Finder::in_line(std::vector<Corridor> pairs) const {
   std::stable_sort(pairs.begin(), pairs.end(), [](const Corridor& a, const Corridor& b) {
     return total(a.both) > total(b.both);
@@ -128,7 +128,7 @@ std::vector<Corridor> Finder::in_line(std::vector<Corridor> pairs) const {
   return groups;
 }
 
-// Gaps part them, where nobody drove through.
+// Divides corridors at gaps, unless the robot drove through.
 std::vector<Corridor> Finder::parted(const std::vector<Corridor>& groups) const {
   std::vector<Corridor> out;
   for (const Corridor& group : groups) {
@@ -161,7 +161,7 @@ std::vector<Corridor> Finder::parted(const std::vector<Corridor>& groups) const 
       corridor.from = part.front().first;
       corridor.to = part.back().second;
       for (const auto& w : group.walls) {
-        // A wall that goes on beyond a wall ahead is another corridor's.
+        // A wall that continues beyond a wall ahead belongs to another corridor.
         const auto drove = [&](double from, double to) {
           return std::any_of(driven.begin(), driven.end(),
                              [&](const auto& d) { return d.first <= from && d.second >= to; });
@@ -183,8 +183,8 @@ std::vector<Corridor> Finder::parted(const std::vector<Corridor>& groups) const 
   return out;
 }
 
-// Walls that face one another over a corridor, from a niche to its far side, make none: the one
-// with more of both walls is it.
+// Walls may face one another across a corridor, from a niche to its far side: only the pair with
+// the longer stretches of both walls is a corridor.
 std::vector<Corridor> Finder::outermost(std::vector<Corridor> out) const {
   std::stable_sort(out.begin(), out.end(), [](const Corridor& a, const Corridor& b) {
     return total(a.both) > total(b.both);
@@ -208,14 +208,14 @@ std::vector<Corridor> Finder::outermost(std::vector<Corridor> out) const {
   return kept;
 }
 
-// Where corridors end at a wall ahead.
+// Ends corridors at a wall ahead.
 void Finder::end_at_walls_ahead(std::vector<Corridor>& corridors) const {
   for (Corridor& corridor : corridors) {
     for (const bool upper : {false, true}) {
       double& end = upper ? corridor.to : corridor.from;
       const double sign = upper ? 1.0 : -1.0;
-      // How far the robot has been, or the walls go: what was heard nearer than that has gone.
-      // Driven without a gap, that is: beyond a wall it may have been, too.
+      // The end of the robot's way or of the walls: nearer echoes are outdated. The way counts
+      // without gaps only, since the robot may have been beyond a wall, too.
       std::vector<double> been;
       for (const GraphNode& node : graph_.nodes) {
         const Pose in = relative(corridor.frame, node.in_map);
@@ -247,8 +247,8 @@ void Finder::end_at_walls_ahead(std::vector<Corridor>& corridors) const {
   }
 }
 
-// Corridors that meet: at a T the one ends at the near wall of the other; at an L both end at the
-// outer wall of the other.
+// Ends corridors where they meet: at a T one ends at the near wall of the other; at an L both end
+// at the outer wall of the other.
 void Finder::end_at_one_another(std::vector<Corridor>& corridors) const {
   struct Meeting {
     std::size_t corridor;
@@ -265,7 +265,7 @@ void Finder::end_at_one_another(std::vector<Corridor>& corridors) const {
       const double angle = norm2_angle(other.frame.th - one.frame.th);
       if (a == b || std::abs(norm3_angle(angle)) < radians(60.0))
         continue;
-      // Where the middle lines cross, along each of them.
+      // The crossing of the middle lines, along each of them.
       const Vec2 between = other.frame.position() - one.frame.position();
       const Vec2 u = one.frame.direction();
       const Vec2 v = other.frame.direction();
@@ -279,8 +279,8 @@ void Finder::end_at_one_another(std::vector<Corridor>& corridors) const {
         continue;
       const bool ends_too =
           at_other < other.from + half_one + 0.6 || at_other > other.to - half_one - 0.6;
-      // It goes on behind the other one where it has both its walls there, too: what is behind one
-      // wall, or a door that the robot looked through, is none of it.
+      // A corridor continues behind the other one only with both its walls: the part behind one
+      // wall, or behind a door that the robot looked through, does not belong to it.
       const auto ends = [&](double end, double sign) {
         const double beyond = sign * (end - at);
         const Stretches there{sign > 0.0 ? std::pair(at + half, end) : std::pair(end, at - half)};

@@ -9,7 +9,7 @@
 
 namespace saphira::registration {
 
-/// A corridor as its walls were seen and the robot drove between them.
+/// A corridor, from its walls and the robot's way between them.
 struct BuiltCorridor {
   Pose frame;  ///< a point of its middle line, and along it
   double width = 0.0;
@@ -23,8 +23,8 @@ struct BuiltCorridor {
   double length() const { return to - from; }
 };
 
-/// The corridors that the lines of the graph make. `ahead`: echoes from straight ahead, which tell
-/// where corridors end.
+/// The corridors of the lines of the graph. `ahead`: echoes from straight ahead, which mark the
+/// ends of corridors.
 std::vector<BuiltCorridor> find_corridors(const FeatureGraph& graph,
                                           const std::vector<SeenPoint>& ahead,
                                           const MapBuilderSettings& settings);

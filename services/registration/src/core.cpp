@@ -12,7 +12,7 @@
 namespace saphira::registration {
 namespace {
 
-constexpr double kOutside = 5.0;  // [m] beyond the rectangle round the map one may stand
+constexpr double kOutside = 5.0;  // [m] allowed beyond the rectangle round the map
 constexpr const char* kBuilding = "the map is being built: switch that off first (features off)";
 
 /// Throws where no robot can be registered on the map.
@@ -21,7 +21,7 @@ void check(const maps::Map& map) {
     throw std::invalid_argument(*why);
 }
 
-/// While the map is being built there is nothing yet to be registered on.
+/// True for functors that need a map, which does not exist while it is being built.
 bool needs_a_map(const std::string& functor) {
   return functor == "put" || functor == "remove" || functor == "place" || functor == "find" ||
          functor == "switch";
@@ -102,7 +102,7 @@ Core::Core(Settings settings, std::optional<Remembered> remembered) {
   now_.snaps = settings.snap;
   now_.pose_in_map = settings.start.value_or(Pose{});
   now_.editor.replace(std::move(settings.map));
-  // Somebody wants another map than when it was written: the memory is of another place.
+  // The start option has changed: the memory is of another place.
   if (remembered && remembered->option == now_.option)
     take_up(std::move(*remembered));
   now_.adds_features = settings.add_features.value_or(map().features.empty());
@@ -132,7 +132,7 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars) {
     closed = now_.remembered->closed_doors;
   }
   now_.remembered.reset();
-  // Later it may be anywhere.
+  // Later the robot may be anywhere.
   registration_.emplace(settings, now_.editor.map(), first ? now_.start : std::nullopt);
   if (memory && memory->placed)
     registration_->restore(*memory, first ? now_.start : std::nullopt);
@@ -141,7 +141,7 @@ void Core::begin(const std::vector<lps::SonarMount>& sonars) {
     set_builder();
 }
 
-/// Begins to add to the map as it is now, or ends that, as adds_features says.
+/// Starts or ends additions to the map, according to adds_features.
 void Core::set_builder() {
   if (now_.building)
     end_building();
@@ -156,14 +156,14 @@ void Core::set_builder() {
   now_.builder->take_ids(now_.editor);
 }
 
-/// From now on the pose is registered on the map that was built.
+/// From now on registration uses the map that was built.
 void Core::end_building() {
   now_.building = false;
   registration_->set_map(now_.editor.map());
   registration_->set_pose(now_.builder->pose_in_map());
   const std::vector<std::uint32_t> closed = now_.builder->closed();
   registration_->recall_closed({closed.begin(), closed.end()});
-  // It has not been stepped meanwhile: the robot has driven, but not since this pose.
+  // Registration was not stepped meanwhile: the robot has driven, but not since this pose.
   Memory here = registration_->save();
   here.odom = now_.odom;
   here.pose_in_odom = now_.pose_in_odom;
@@ -183,7 +183,7 @@ Core::Outputs Core::step(const Inputs& inputs) {
   return outputs;
 }
 
-/// The pose on a map that is known; what is new is put down from there.
+/// The pose on a known map; new artifacts are placed from it.
 Core::Outputs Core::registered(const Inputs& inputs) {
   registration_->switch_on(now_.on && match_.works());
   const Output output = registration_->step({inputs.cycle, inputs.odom, inputs.pose_in_odom,
@@ -222,13 +222,12 @@ Core::Outputs Core::built(const Inputs& inputs) {
   outputs.reason = "builds the map";
   outputs.pose_in_map = now_.builder->pose_in_map();
   outputs.covariance = now_.builder->covariance();
-  outputs.confidence = 1.0;  // pose and map are one: there is no other place to be
+  outputs.confidence = 1.0;  // pose and map are one: no other place is possible
   outputs.closed_doors = now_.builder->closed();
   return outputs;
 }
 
-/// Takes missing artifacts from the map and puts new ones onto it; true where it has become
-/// another.
+/// Removes missing artifacts from the map and adds new ones; true where the map has changed.
 bool Core::amend(const Presence::News& news, const std::vector<maps::Feature>& objects,
                  Notes& notes) {
   const auto say = [&](std::uint32_t id, const char* what) {
@@ -261,7 +260,7 @@ bool Core::amend(const Presence::News& news, const std::vector<maps::Feature>& o
   return true;
 }
 
-/// True where the map has become another.
+/// True where the map has changed.
 bool Core::grow(const Inputs& inputs, std::optional<Pose> pose_in_map, Notes& notes) {
   if (!now_.builder || !now_.builder->step({inputs.cycle, inputs.odom, inputs.pose_in_odom,
                                             inputs.percepts, inputs.readings, pose_in_map}))
@@ -322,7 +321,7 @@ Registration& Core::placed() {
   return *registration_;
 }
 
-/// Does it, or throws what is told to the one who asked.
+/// Carries out the request, or throws the message for the asker.
 Arguments Core::obey(const Request& request) {
   const std::string& what = request.functor;
   const Arguments& with = request.arguments;
@@ -363,8 +362,8 @@ Arguments Core::obey(const Request& request) {
   return {};
 }
 
-/// The map from now on, by somebody else than the builder, which begins anew with it. Where it
-/// throws, nothing has changed.
+/// A new map from another source than the builder, which begins anew with it. If it throws, nothing
+/// has changed.
 void Core::use(maps::Editor editor) {
   check(editor.map());
   if (registration_)
@@ -377,7 +376,7 @@ void Core::use(maps::Editor editor) {
   set_builder();
 }
 
-/// Nothing that was known of the map before holds on this one.
+/// Discards the state that belongs to the old map.
 void Core::begin_anew(const std::string& source) {
   now_.source = source;
   now_.changed = false;

@@ -37,7 +37,7 @@ class Problem {
     }
   }
 
-  /// The step, and the covariance of the three variables from `pose` on, where it is asked for.
+  /// The step, and the covariance of the three variables from `pose` on, where requested.
   std::optional<Eigen::VectorXd> solve(int pose, Eigen::Matrix3d& covariance) const {
     const auto n = gradient_.size();
     Eigen::SparseMatrix<double> matrix(n, n);
@@ -110,7 +110,7 @@ double FeatureGraph::optimize(int iterations) {
         continue;
       const bool from_before = i > 0 && !nodes[i].broken;
       if (!from_before) {
-        // The start, or where dead reckoning began anew: about where it is thought to be.
+        // The start, or a new beginning of dead reckoning: near its estimated place.
         const double position = first ? settings.start_position : 0.5;
         const double heading = first ? settings.start_heading : 0.3;
         pull(of_node[i], nodes[i].in_map.x - before[i].in_map.x, position);
@@ -141,7 +141,7 @@ double FeatureGraph::optimize(int iterations) {
                    norm2_angle(to.th - from.th - way.th + drift * length) * s},
                   1.0);
     }
-    // Cauchy: what is far off is likely something else.
+    // Cauchy: a distant measurement probably belongs to another object.
     const auto doubtful = [&](const Row& a, const Row& b) {
       const double far =
           (a.error * a.error + b.error * b.error) / (settings.kernel * settings.kernel);

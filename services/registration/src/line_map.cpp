@@ -15,10 +15,10 @@ namespace {
 using lps::PointType;
 using maps::Feature;
 
-constexpr double kOnWall = 0.25;   // [m] a door is on a wall that is as near as this
-constexpr double kBeyond = 0.1;    // [m] what begins so near behind a side is open to it
+constexpr double kOnWall = 0.25;   // [m] largest distance of a door from its wall
+constexpr double kBeyond = 0.1;    // [m] a region this near behind a side is open to it
 constexpr double kShortest = 0.1;  // [m] of surfaces that are kept
-// Of a field, which has one number for each of them and up to 24 bytes for each cell of 0.1 m.
+// Of a field, which has a 16-bit number for each surface and up to 24 bytes for each cell of 0.1 m.
 constexpr std::size_t kMostSurfaces = 65000;
 constexpr double kMostArea = 250e3;  // [m2]
 
@@ -35,7 +35,7 @@ bool is_way(const Feature& feature) {
   return is_region(feature) && maps::traits(feature.type).region != maps::RegionKind::room;
 }
 
-/// True where one walks from the one into the other where they touch.
+/// True where there is a free passage between two touching features.
 bool open_to(const Feature& a, const Feature& b) {
   if (is_way(a) && is_way(b))
     return true;
@@ -70,7 +70,7 @@ std::optional<Interval> clip(const Vec2& start, const Vec2& way, double length,
   return part;
 }
 
-/// The rest of [0, length].
+/// [0, length] without the holes.
 std::vector<Interval> without(double length, std::vector<Interval> holes) {
   std::sort(holes.begin(), holes.end(),
             [](const Interval& a, const Interval& b) { return a.from < b.from; });
@@ -127,7 +127,7 @@ std::array<Side, 4> sides(const Feature& box) {
 LineMap::LineMap(const maps::Map& map) {
   for (std::size_t i = 0; i < map.features.size(); ++i) {
     const Feature& feature = map.features[i];
-    // An artifact that was placed by the pose that is to be corrected corrects nothing.
+    // An artifact that was placed by the pose cannot correct the pose.
     if (feature.type == PointType::object && feature.learned)
       continue;
     if (feature.type == PointType::wall) {
@@ -149,7 +149,7 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
   for (const Side& side : sides(region)) {
     const Vec2 inwards{-side.way.y(), side.way.x()};
     std::vector<Interval> holes;
-    // Doors and breaks first, so that a corridor behind one is not another opening.
+    // Doors and breaks first, so that a corridor behind one does not become another opening.
     for (std::size_t i = 0; i < map.features.size(); ++i) {
       const Feature& door = map.features[i];
       if (!maps::traits(door.type).gate)
@@ -174,7 +174,7 @@ void LineMap::add_region(const maps::Map& map, std::size_t index) {
         continue;
       holes.push_back(*part);
       const double width = part->to - part->from;
-      // A corridor that meets this one's side from aside, seen as an opening in it.
+      // A corridor that meets this side from the side is an opening in it.
       if (is_way(other) && part->from > 0.05 && part->to < side.length - 0.05 && width > 0.5) {
         const bool there = std::any_of(gaps.begin(), gaps.end(), [&](const Interval& gap) {
           return std::abs(gap.from - part->from) < 0.2 && std::abs(gap.to - part->to) < 0.2;

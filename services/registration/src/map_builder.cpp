@@ -15,11 +15,11 @@ namespace {
 using lps::PointType;
 using maps::Feature;
 
-// How many nodes back what is seen may be hung on.
+// How many nodes back a percept may be attached.
 constexpr std::size_t kRecent = 24;
-// The map is put together anew after so much way [m], where there is news.
+// The map is rebuilt after this way [m], if there is news.
 constexpr double kSettle = 1.0;
-// Echoes from ahead that tell of the end of a corridor: so near, so straight on.
+// Echoes from ahead that mark the end of a corridor: range and angle.
 constexpr double kAhead = 1.8;
 constexpr double kStraight = radians(10.0);
 
@@ -36,7 +36,7 @@ MapBuilder::MapBuilder(MapBuilderSettings settings, maps::Map known, Pose start_
       start_in_map_(start_in_map),
       pose_in_map_(start_in_map) {
   graph_.settings = settings_.graph;
-  // The grid decides which way the map is turned.
+  // The grid defines the map's orientation.
   if (settings_.snap_to_right_angle_grid && given_.features.empty())
     graph_.settings.start_heading = 0.3;
 }
@@ -58,7 +58,7 @@ bool MapBuilder::step(const MapBuilderInputs& inputs) {
   return publish();
 }
 
-// Follows the robot, and remembers places on its way.
+// Follows the robot, and adds nodes on its way.
 void MapBuilder::drive(const MapBuilderInputs& inputs) {
   const bool jumped = placed_ && inputs.odom != odom_;
   if (placed_ && !jumped)
@@ -82,7 +82,7 @@ void MapBuilder::drive(const MapBuilderInputs& inputs) {
       return;
   }
   if (believed_) {
-    // As sure as registration is where it tracks.
+    // As certain as a tracking registration.
     covariance_ = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
   } else if (jumped) {
     covariance_ = Eigen::Vector3d(0.25, 0.25, 0.1).asDiagonal();
@@ -169,7 +169,7 @@ std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
   for (std::size_t i = 0; i < graph_.lines.size(); ++i) {
     const GraphLine& line = graph_.lines[i];
     if (line.seen.empty())
-      continue;  // it has become another one's part
+      continue;  // it has become part of another one
     const double turned = std::abs(norm2_angle(wall.th - line.heading));
     const double most_turned = settings_.same_heading + stray_heading();
     if (turned > most_turned)
@@ -185,7 +185,7 @@ std::optional<std::size_t> MapBuilder::match_line(const SeenLine& seen) const {
       gap = std::min(gap, std::max(s.first - at, at - s.second) - seen.length / 2);
     if (gap > settings_.wall_gap)
       continue;
-    // A stretch that is farther along must fit the better.
+    // A stretch farther along the line must fit better.
     const double cost = across / most_across + turned / most_turned + 0.1 * std::max(0.0, gap);
     if (!best || cost < nearest) {
       best = i;
@@ -234,7 +234,7 @@ bool MapBuilder::take_line(const lps::Percept& percept, std::uint64_t cycle) {
     GraphLine& line = graph_.lines[taken.index];
     taken.cycle = cycle;
     known_lines_[taken.index].last_way = way_;
-    // The aperture moves on with the robot: after a while the same wall is seen from elsewhere.
+    // The aperture moves on with the robot: after a while the same wall is seen from another place.
     if (way_ - taken.way < settings_.again_way) {
       line.seen[taken.seen] = seen;
       return false;
@@ -273,7 +273,7 @@ bool MapBuilder::take_opening(const lps::Percept& percept, std::uint64_t cycle) 
   }
   const Match match = match_opening(seen, percept.type);
   if (match.is_ambiguous)
-    return false;  // the pose may be better known in a while
+    return false;  // the pose may improve in a while
   auto index = match.index;
   if (index && way_ - known_points_[*index].last_way > settings_.closure_way)
     ++closures_;
@@ -302,7 +302,7 @@ bool MapBuilder::take(const lps::Percept& percept, std::uint64_t cycle) {
     case PointType::junction:
       return take_opening(percept, cycle);
     default:
-      return false;  // ends of openings and corridors: what they are made of is here already
+      return false;  // ends of openings and corridors: their parts are here already
   }
 }
 
@@ -325,7 +325,7 @@ void MapBuilder::listen_ahead(const MapBuilderInputs& inputs) {
   }
 }
 
-// True where a door was there when the robot came by: counted when it has gone on.
+// Checks the doors that the robot passes: counted when it has gone on.
 void MapBuilder::pass() {
   for (std::size_t i = 0; i < known_points_.size(); ++i) {
     Known& known = known_points_[i];
@@ -409,7 +409,7 @@ void MapBuilder::settle() {
         compose(graph_.nodes.back().in_map, relative(graph_.nodes.back().in_odom, pose_in_odom_));
 }
 
-// Two lines that have come to lie on one another are one.
+// Merges two lines that have come to lie on one another.
 void MapBuilder::merge_lines() {
   for (std::size_t a = 0; a < graph_.lines.size(); ++a)
     for (std::size_t b = a + 1; b < graph_.lines.size(); ++b) {
@@ -443,10 +443,10 @@ void MapBuilder::merge_lines() {
     }
 }
 
-// The map from what is known now. What is built again keeps its id.
+// Makes the map from the graph. Rebuilt artifacts keep their ids.
 bool MapBuilder::publish() {
   std::vector<Feature> fresh;
-  std::vector<std::optional<std::size_t>> sources;  // of a wall the line, of an opening the point
+  std::vector<std::optional<std::size_t>> sources;  // line of a wall, point of an opening
   const auto add = [&](Feature feature, std::optional<std::size_t> source = std::nullopt) {
     if (maps::problem(feature))
       return;
@@ -474,7 +474,7 @@ bool MapBuilder::publish() {
     halls.push_back(feature);
     add(feature);
   }
-  // Their junctions: the graph of what there is so far knows where corridors meet.
+  // Their junctions: the graph of the halls so far knows where corridors meet.
   maps::Map halls_only;
   for (Feature hall : halls) {
     hall.id = static_cast<std::uint32_t>(halls_only.features.size() + 1);
@@ -496,7 +496,7 @@ bool MapBuilder::publish() {
     feature.pose_in_map = {point.in_map.x(), point.in_map.y(), known_points_[i].heading};
     for (const SeenPoint& seen : point.seen)
       feature.width += seen.width / static_cast<double>(point.seen.size());
-    // In the wall of its corridor, square to it.
+    // In the wall of its corridor, at a right angle to it.
     for (const Feature& hall : halls) {
       const Pose in = relative(hall.pose_in_map, feature.pose_in_map);
       const double side = in.y > 0.0 ? 1.0 : -1.0;

@@ -16,11 +16,11 @@ struct Candidate {
   Eigen::Matrix<double, 2, 4> jacobian = Eigen::Matrix<double, 2, 4>::Zero();
   Eigen::Matrix2d noise = Eigen::Matrix2d::Identity();
   double distance = 0.0;
-  Vec2 correction{0.0, 0.0};  // that it asks for, at the percept
+  Vec2 correction{0.0, 0.0};  // of the pose, at the percept
   double turned = 0.0;
 };
 
-/// A line and a line: modulo half a turn.
+/// The angle between two lines: modulo half a turn.
 double turned_line(double a, double b) {
   const double turned = norm2_angle(a - b);
   return std::abs(turned) <= kPi / 2 ? turned : norm2_angle(turned + kPi);
@@ -112,7 +112,7 @@ void find_walls(const Percept& percept, const LineMap& lines, Matcher& matcher) 
     const double overlap = std::min(std::max(a, b), surface.length) - std::max(std::min(a, b), 0.0);
     if (overlap < std::min(0.5 * percept.length, 0.5) - (matcher.reach() - 0.5))
       continue;
-    // One does not see the back of a wall.
+    // The back of a wall cannot be seen.
     if ((matcher.robot().position() - surface.from).dot(surface.free) < -matcher.reach() + 0.3 &&
         surface.free != Vec2(0.0, 0.0))
       continue;

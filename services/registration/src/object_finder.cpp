@@ -28,7 +28,7 @@ std::pair<double, double> extent(std::vector<double> values) {
 
 }  // namespace
 
-/// Things that have been put on the map have an id; those that were taken from it are no more.
+/// Candidates on the map get their ids; those removed from it are dropped.
 void ObjectFinder::follow_map(const maps::Map& map) {
   for (Candidate& candidate : candidates_) {
     if (!candidate.told || candidate.told->id != 0)
@@ -43,8 +43,7 @@ void ObjectFinder::follow_map(const maps::Map& map) {
   });
 }
 
-/// The object of an echo from there: best one that has been told. Echoes that have not been
-/// told join it.
+/// The object of an echo from there: preferably one on the map. New echoes join it.
 ObjectFinder::Candidate* ObjectFinder::candidate_at(const Vec2& position) {
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < candidates_.size(); ++i)
@@ -74,7 +73,7 @@ ObjectFinder::Candidate* ObjectFinder::candidate_at(const Vec2& position) {
   return &candidates_[home];
 }
 
-/// True where an echo may be of something that the map has, wherever in the cone it came from.
+/// True where a feature of the map may explain the echo, from anywhere in the cone.
 bool ObjectFinder::is_explained(const maps::Map& map, const Field& field, const Look& look,
                                 std::uint32_t own) const {
   if (!field.known(look.end()))
@@ -94,7 +93,7 @@ bool ObjectFinder::is_explained(const maps::Map& map, const Field& field, const 
   });
 }
 
-/// Sound that goes through a few echoes' place shows that nothing stands there any more.
+/// An echo from behind a candidate shows that nothing stands there any more.
 void ObjectFinder::look_through(const Look& look, const Candidate* met) {
   for (Candidate& candidate : candidates_) {
     if (&candidate == met || candidate.told)
@@ -117,8 +116,8 @@ bool ObjectFinder::is_thing(const Candidate& candidate) const {
   return span >= settings_.span;
 }
 
-/// Along the nearest wall, as things stand indoors. A cone meets a thing before its axis does, and
-/// only the faces of a thing are met, the rest is behind them.
+/// Aligned with the nearest wall, as objects indoors. A cone meets an object before its axis does,
+/// and meets its faces only; the rest is behind them.
 Feature ObjectFinder::outline(const Candidate& candidate, const Field& field) const {
   const Field::Nearest wall = field.nearest(middle_of(candidate.met));
   Feature thing;

@@ -65,7 +65,7 @@ std::vector<double> ParticleCloud::weights() const {
 
 void ParticleCloud::learn(const Pose& before, const Eigen::Matrix3d& covariance_before,
                           const Pose& after, const Eigen::Matrix3d& covariance_after) {
-  constexpr double kLeast = -4.5;  // three sigmas: it may have been another one, after all
+  constexpr double kLeast = -4.5;  // three sigmas: the match may be wrong
   const Eigen::Matrix3d information = covariance_after.inverse();
   const Eigen::Matrix3d learnt = information - covariance_before.inverse();
   const auto off = [&before](const Pose& pose) {
@@ -91,7 +91,7 @@ void ParticleCloud::select() {
   const auto count = static_cast<double>(particles_.size());
   if (squares * count < 2.0)
     return;
-  // Each survives by its weight, with one draw for all.
+  // Each survives by its weight, with one random number for all.
   std::vector<Particle> next;
   next.reserve(particles_.size());
   std::size_t at = 0;

@@ -17,7 +17,7 @@ void PoseFilter::move(const Pose& moved) {
   const double way = moved.x;
   const double length = std::hypot(moved.x, moved.y);
   const double turn = moved.th - state_[3] * way;
-  // Dead reckoning has turned by half of its drift when it was half-way.
+  // Half-way, dead reckoning had turned by half of its drift.
   const double heading = state_[2] - state_[3] * way / 2.0;
   const double c = std::cos(heading);
   const double s = std::sin(heading);

@@ -12,10 +12,10 @@ namespace {
 using lps::PointType;
 using maps::Feature;
 
-constexpr double kMoved = 0.2;      // [m] what is farther off than before is another thing
-constexpr double kOnTheWall = 0.3;  // [m] an opening so near to a wall is one in it
+constexpr double kMoved = 0.2;      // [m] a larger displacement is another object
+constexpr double kOnTheWall = 0.3;  // [m] distance of an opening in a wall
 
-/// The artifacts that are watched, and the consequence.
+/// The checked kinds of artifacts.
 enum class Kind { none, thing, door };
 
 Kind kind_of(const Feature& feature) {
@@ -29,13 +29,13 @@ Kind kind_of(const Feature& feature) {
   return of_type.gate ? Kind::door : Kind::thing;
 }
 
-/// Where a line goes in and out of something [m].
+/// The entry and exit of a line through a box [m].
 struct Crossing {
   double in = 0.0;
   double out = 0.0;
 };
 
-/// Where the axis of a sonar goes through a rectangle; nothing where it misses that which is
+/// The path of a sonar's axis through a rectangle; nothing where it misses the rectangle made
 /// smaller by `inside` on each side.
 std::optional<Crossing> cross(const Feature& box, const Pose& sensor, double inside) {
   const ToFrame to_box(box.pose_in_map);
@@ -65,7 +65,7 @@ std::optional<Crossing> cross(const Feature& box, const Pose& sensor, double ins
   return crossing;
 }
 
-/// A wall, as thick as the pose is unsure.
+/// A wall as a box of 0.1 m.
 Feature slab(const Feature& wall) {
   Feature slab = wall;
   slab.width = 0.1;
@@ -77,7 +77,7 @@ bool is_opening(const Feature& feature) {
          feature.type == PointType::junction;
 }
 
-/// True where a wall has an opening there by the map.
+/// True where the map has an opening there.
 bool in_an_opening(const maps::Map& map, const Vec2& at) {
   return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& feature) {
     return is_opening(feature) && (feature.pose_in_map.position() - at).norm() <
@@ -102,7 +102,7 @@ void Presence::look_at(Watched& watched, const Look& look, const maps::Map& map)
   const auto crossing = cross(wall ? slab(feature) : feature, look.sensor_in_map, settings_.inside);
   if (!crossing || crossing->in > settings_.range)
     return;
-  // A wall that is met at a slant throws the sound on, to where an echo comes from behind it.
+  // A wall at a slant deflects the sound, and an echo may come from behind it.
   if (wall && (std::abs(std::sin(look.sensor_in_map.th - feature.pose_in_map.th)) <
                    std::cos(settings_.facing) ||
                in_an_opening(map, look.sensor_in_map.position() +
@@ -113,7 +113,7 @@ void Presence::look_at(Watched& watched, const Look& look, const maps::Map& map)
   } else if (std::abs(look.range - crossing->in) < settings_.near &&
              take_look(watched.at, look.sensor_in_map, settings_.spacing) &&
              watched.at.size() > 2 * watched.through.size()) {
-    // It is there; what goes through it later is news.
+    // The object is there; count later looks through it anew.
     watched.through.clear();
     watched.at.clear();
   }
@@ -134,7 +134,7 @@ void Presence::look_at_door(Watched& watched, const Look& look, std::uint64_t cy
                       std::abs(ahead) > std::cos(settings_.facing);
   if (!open && !closed)
     return;
-  // One look that disagrees makes it doubtful.
+  // One look that disagrees makes the state doubtful.
   if (watched.score != 0 && open != (watched.score > 0)) {
     watched.score = 0;
     watched.agreeing.clear();
@@ -167,7 +167,7 @@ Presence::News Presence::step(const maps::Map& map, std::uint64_t cycle, const V
     if (is_seen)
       watched.score = settings_.door_looks;
     for (const Look& look : looks) {
-      // Silence says nothing: what is there may have thrown the sound off.
+      // Silence is no evidence: the object may have deflected the sound.
       if (!look.echo)
         continue;
       if (kind == Kind::door)
@@ -186,7 +186,7 @@ Presence::News Presence::step(const maps::Map& map, std::uint64_t cycle, const V
       news.opened.push_back(feature.id);
     }
   }
-  // An artifact that the map has lost is no news.
+  // An artifact that is not on the map any more is no news.
   if (!closed_.empty())
     std::erase_if(closed_, [&](std::uint32_t id) { return maps::find(map, id) == nullptr; });
   return news;

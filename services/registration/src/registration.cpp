@@ -16,8 +16,8 @@ using lps::PointType;
 constexpr double kNear = 1.0;                // [m] another place within this and...
 constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther off it was lost
 constexpr std::size_t kTurns = 600;          // cycles
-constexpr std::size_t kKeptReadings = 4000;  // used ones that are remembered
-constexpr double kUnconfirmed = 0.5;         // the highest confidence of a pose that was only told
+constexpr std::size_t kKeptReadings = 4000;  // used ones that are stored
+constexpr double kUnconfirmed = 0.5;         // the highest confidence of a given pose
 constexpr std::uint64_t kNoFrame = 0;        // no frame of a robot has this number
 
 Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
@@ -102,7 +102,7 @@ class Registration::Self {
 
   Settings settings_;
 
-  // From the map and the settings.
+  // Derived from the map and the settings.
   maps::Map map_;
   LineMap lines_;
   Field field_;
@@ -133,7 +133,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   forget_looks();
 }
 
-/// All that was heard before was heard elsewhere.
+/// The robot may have been carried: discard all earlier readings.
 void Registration::Self::suspect_it_was_carried() {
   if (!now_.filter)
     return;
@@ -147,7 +147,7 @@ void Registration::Self::suspect_it_was_carried() {
   now_.state = State::lost;
 }
 
-/// Nothing that is heard in this odometry frame has been held against the pose yet.
+/// No reading of this odometry frame has tested the pose yet.
 void Registration::Self::doubt() {
   if (!now_.filter)
     return;
@@ -181,7 +181,7 @@ void Registration::Self::switch_on(bool on) {
     now_.cloud.clear();
 }
 
-/// The state is of another version of the map: what names its artifacts is of that one.
+/// Drops references to artifacts of the old version of the map from the state.
 void Registration::Self::follow_edit(const maps::Map& old) {
   now_.output.matches.clear();
   now_.output.presence = {};
@@ -194,7 +194,7 @@ void Registration::Self::follow_edit(const maps::Map& old) {
       now_.output.environment = static_cast<std::size_t>(same - map_.features.begin());
   }
   find_environment();
-  // Places that explain what was seen on a map of somewhere else explain nothing here.
+  // Hypotheses from a map of another place are of no use here.
   const bool elsewhere =
       std::none_of(map_.features.begin(), map_.features.end(), [&](const maps::Feature& feature) {
         return std::find(old.features.begin(), old.features.end(), feature) != old.features.end();
@@ -284,7 +284,7 @@ bool Registration::Self::uses_old_readings(const Percept& percept) const {
 }
 
 double Registration::Self::turned_since(const Percept& percept) const {
-  // Half of what made it is newer.
+  // Half of its readings are newer.
   const std::uint64_t cycle =
       percept.readings.empty() ? percept.seen : percept.readings[percept.readings.size() / 2].cycle;
   const auto at = std::lower_bound(
@@ -307,7 +307,7 @@ std::vector<const Percept*> Registration::Self::fresh(const Inputs& inputs) {
       const Pose since = relative(last->pose_in_odom, inputs.pose_in_odom);
       const bool point = percept.type == PointType::door || percept.type == PointType::junction ||
                          percept.type == PointType::breach;
-      // An opening is not seen better by driving on; a wall is seen anew.
+      // An opening does not improve on the way; a wall is seen anew.
       if (point ? std::abs(last->width - percept.width) < 0.05
                 : std::hypot(since.x, since.y) < settings_.again &&
                       std::abs(since.th) < settings_.again_turned)
@@ -340,7 +340,7 @@ void Registration::Self::correct(const std::vector<const Percept*>& percepts) {
     const Eigen::Matrix3d covariance_before = now_.filter->pose_covariance();
     const Match result =
         match(*percept, now_.pose_in_odom, map_, lines_, settings_.match, *now_.filter);
-    // Walls are drawn through what dead reckoning put together; the cloud has their readings.
+    // Walls combine readings by dead reckoning; the cloud has those readings already.
     if (result.accepted && !now_.cloud.empty() && !maps::traits(percept->type).straight)
       now_.cloud.learn(before, covariance_before, now_.filter->pose(),
                        now_.filter->pose_covariance());
@@ -394,8 +394,8 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     return;
   }
   const double way = std::hypot(now_.moved.x, now_.moved.y);
-  // Turning on the spot shows the same things again: what the map does not have, as a door that is
-  // closed, would weigh more with each turn.
+  // Turning on the spot shows the same surroundings again: an object that is not on the map, such
+  // as a closed door, would gain weight with each turn.
   now_.way += way;
   const double fading = std::exp(-way / settings_.lead_memory);
   now_.lead *= fading;
@@ -433,7 +433,7 @@ void Registration::Self::look_around(const std::vector<PlacedReading>& readings)
     return;
   if (now_.lead < -settings_.lead)
     now_.cloud.clear();  // and begins anew from the filter
-  // Where the filter has fitted better on the whole, it is what is seen here that the map lacks.
+  // If the filter has fitted better in total, the map lacks an object here.
   else if (now_.lead > settings_.lead && now_.cloud_score > now_.search.own_score && dense(there))
     follow(there, now_.cloud_score);
 }
@@ -443,11 +443,11 @@ bool Registration::Self::dense(const ParticleCloud::Estimate& cloud) const {
          cloud.covariance(2, 2) < settings_.dense_turned * settings_.dense_turned;
 }
 
-/// Dead reckoning is worse than the filter may take it to be: for some way the cloud leads.
+/// Dead reckoning is worse than the filter may assume: for some way the cloud leads.
 void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double score) {
   if ((cloud.pose.position() - now_.filter->pose().position()).norm() > kNear ||
       std::abs(norm2_angle(cloud.pose.th - now_.filter->pose().th)) > kNearTurn)
-    now_.state = State::lost;  // said, so that who relies on the pose hears that it did not hold
+    now_.state = State::lost;  // reported, so that users of the pose learn that it did not hold
   now_.filter.emplace(cloud.pose, cloud.covariance, cloud.drift, cloud.drift_variance,
                       settings_.reckoning);
   now_.search.own_score = score;
@@ -459,7 +459,7 @@ void Registration::Self::follow(const ParticleCloud::Estimate& cloud, double sco
   now_.lead = 0.0;
 }
 
-/// Those that do not repeat what their sonar heard a moment ago.
+/// The readings that do not repeat a recent one of their sonar.
 std::vector<PlacedReading> Registration::Self::fresh_ones(
     const std::vector<PlacedReading>& readings) {
   std::vector<PlacedReading> result;
@@ -490,7 +490,7 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
                     (there.position() - now_.filter->pose().position()).norm() < kNear &&
                     std::abs(norm2_angle(there.th - now_.filter->pose().th)) < kNearTurn;
   if (now_.state == State::tracking && !near) {
-    // Said before it is mended, so that who relies on the pose hears that it did not hold.
+    // Reported before the correction, so that users of the pose learn that it did not hold.
     if (best->likely)
       now_.state = State::lost;
     return;
@@ -500,7 +500,7 @@ void Registration::Self::look_elsewhere(const std::vector<PlacedReading>& readin
   const PoseFilter found = best->hypothesis->filter;
   const double drift_variance = found.covariance()(3, 3);
   place(found.pose(), found.pose_covariance(), found.drift(), drift_variance, 1.0);
-  // It is the best of many: its own matches have made it surer than it may be.
+  // As the best of many, its own matches have made it too certain.
   now_.filter->widen(0.1, radians(3.0));
 }
 
@@ -578,7 +578,7 @@ void Registration::Self::find_environment() {
     const int r = of_type.environment;
     if (!of_type.region || r < best || !maps::contains(feature, now_.filter->pose().position()))
       continue;
-    // Where two of a kind cross, it stays in the one that it is in.
+    // Where two of a kind cross, the robot stays in its present one.
     if (r > best || (before && *before == i)) {
       best = r;
       now_.output.environment = i;

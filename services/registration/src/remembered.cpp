@@ -11,7 +11,7 @@ namespace saphira::registration {
 namespace {
 
 constexpr std::string_view kMapFollows = "\nmap\n";
-constexpr long kMostOdom = 1L << 53;  // what a double counts to
+constexpr long kMostOdom = 1L << 53;  // the whole numbers of a double
 constexpr long kMostId = 2147483647;
 
 std::string write(const char* word, const double* values, std::size_t count) {
@@ -34,8 +34,7 @@ Pose read_pose(LineReader& reader) {
   return pose;
 }
 
-/// Blanks, semicolons and line breaks as %20: one word, whatever the name. Nothing where it is
-/// empty.
+/// Blanks, semicolons and line breaks as %20: one word for any name. Empty for an empty name.
 std::string to_word(const std::string& name) {
   std::string word;
   for (const char c : name) {
@@ -90,7 +89,7 @@ std::string to_text(const Remembered& remembered) {
   text += "changed " + std::string(remembered.changed ? "1" : "0") + "\nclosed";
   for (const std::uint32_t door : remembered.closed_doors)
     text += " " + std::to_string(door);
-  // A map file does not say so.
+  // A map file does not contain this flag.
   text += "\nlearned";
   for (std::size_t i = 0; i < remembered.map.features.size(); ++i)
     if (remembered.map.features[i].learned)

@@ -6,9 +6,9 @@
 namespace saphira::registration {
 namespace {
 
-constexpr double kOpening = 3.0;   // score of a door or junction that is there, or is not
-constexpr double kCorridor = 0.5;  // the same of a corridor
-constexpr double kPoor = 6.0;  // a new place is not begun where the readings are so much against it
+constexpr double kOpening = 3.0;   // score of a present or missing door or junction
+constexpr double kCorridor = 0.5;  // the same for a corridor
+constexpr double kPoor = 6.0;      // evidence of the readings against a new place that prevents it
 
 bool same_place(const Pose& a, const Pose& b, double way, double turn) {
   return std::hypot(a.x - b.x, a.y - b.y) < way && std::abs(norm2_angle(a.th - b.th)) < turn;
@@ -119,7 +119,7 @@ void Search::count_own(double worth) {
   now_.own_recent += worth;
 }
 
-/// The evidence of an object that is there, or is not, for a place.
+/// The score of a present or missing object, for a place.
 double Search::worth(const lps::Percept& percept, const Match& match,
                      const Pose& robot_in_map) const {
   if (!percept.is_hypothesis() || match.ambiguous)
@@ -129,7 +129,7 @@ double Search::worth(const lps::Percept& percept, const Match& match,
   const double each = corridor ? kCorridor : kOpening;
   if (match.accepted)
     return each;
-  // A map of walls alone does not say where there is no corridor and no door, but where a wall is.
+  // A map of walls alone defines the places of walls, but not those without corridors and doors.
   const Pose seen_in_map = compose(robot_in_map, relative(*now_.odom, percept.pose_in_odom));
   const bool denied = corridor
                           ? maps_corridors_
@@ -155,7 +155,7 @@ void Search::propose(const lps::Percept& percept) {
       continue;
     Hypothesis fresh{PoseFilter(pose, covariance, 0.0, drift_error_ * drift_error_, reckoning_),
                      0.0, 0.0, 1, false};
-    // The newest first: most places need no more than a few.
+    // The newest first: most places need only a few.
     for (auto reading = now_.history.rbegin();
          reading != now_.history.rend() && fresh.score > -kPoor; ++reading)
       fresh.score += weigh(pose, *reading);
@@ -174,7 +174,7 @@ void Search::thin_out() {
   for (Hypothesis& h : now_.hypotheses) {
     if (left.size() >= settings_.hypotheses)
       break;
-    // A young one has not had the time to be as good.
+    // A young hypothesis had no time for a high score.
     if (h.score < (h.way < settings_.way ? -kPoor : least))
       continue;
     const auto twice = std::find_if(left.begin(), left.end(), [&](const Hypothesis& other) {
@@ -200,7 +200,7 @@ bool Search::own_is_best() const {
 bool Search::leads(const Pose& pose, double score) const {
   return score >= settings_.evidence &&
          std::none_of(now_.hypotheses.begin(), now_.hypotheses.end(), [&](const Hypothesis& h) {
-           // Anywhere in the map is less likely than where it was or was to be.
+           // Any place in the map is less likely than the earlier or the given one.
            const double ahead = h.told ? settings_.margin : -settings_.margin;
            return elsewhere(h.filter.pose(), pose) && score < h.score + ahead;
          });
@@ -226,7 +226,7 @@ std::optional<Search::Best> Search::best(bool beside_own) const {
       [&](const Hypothesis& h) { return !own || elsewhere(h.filter.pose(), *now_.own); });
   if (first == now_.hypotheses.end())
     return std::nullopt;
-  double second = 0.0;  // nothing in particular
+  double second = 0.0;  // the average place
   if (own)
     second = std::max(second, now_.own_score);
   for (const Hypothesis& h : now_.hypotheses)
@@ -234,7 +234,7 @@ std::optional<Search::Best> Search::best(bool beside_own) const {
       second = std::max(second, h.score);
   const double margin = first->score - second;
   const bool enough = first->score >= settings_.evidence && first->way >= settings_.way;
-  // With fewer openings explained it has to be better by more.
+  // With fewer explained openings it needs a larger lead.
   const bool sure =
       enough && ((first->openings >= settings_.matches && margin >= settings_.margin) ||
                  (first->openings >= settings_.matches - 1 && margin >= 1.6 * settings_.margin));

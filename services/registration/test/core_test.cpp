@@ -1,4 +1,4 @@
-// The registration service without a bus: what it answers, decides, remembers and says.
+// The registration service without a bus: its answers, decisions, memory and outputs.
 #include "saphira/registration/core.hpp"
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ std::vector<lps::SonarMount> mounts() {
   return result;
 }
 
-/// A corridor of 2 m, whose walls the robot hears as it drives to and fro. What it is asked for and
-/// what is lost comes with a step.
+/// A corridor of 2 m, whose walls the robot hears as it drives to and fro. Requests and lost links
+/// come with a step.
 class Robot {
  public:
   explicit Robot(std::uint64_t seed = 1) : random_(seed) {}
@@ -332,7 +332,7 @@ TEST(RegistrationCore, WhileAMapIsBuiltWhatWouldBeLostIsRefused) {
     robot.step(core);
   ASSERT_FALSE(core.map().features.empty());
   EXPECT_TRUE(core.map_changed());
-  // The robot is registered on what was built, where it was.
+  // Registration uses the built map, with the robot at the same place.
   const Pose before = robot.stand(core).pose_in_map;
   EXPECT_EQ(core.act(request("add_features", false)).text, "");
   const Core::Outputs after = robot.stand(core);
@@ -531,7 +531,7 @@ void happen(int cycle, Core& core, Robot& robot) {
   }
 }
 
-/// Two cores get the same; of one, `exchange` makes another between any two steps.
+/// Two cores get the same inputs; `exchange` replaces one of them between any two steps.
 void expect_no_difference(const std::string& map, const std::function<void(Core&)>& exchange) {
   Core a(settings(map));
   Core b(settings(map));
@@ -558,7 +558,7 @@ TEST(RegistrationCore, AStateThatWasSavedAndRestoredGoesOnToTheLastBit) {
     std::optional<Core> another;
     expect_no_difference(map, [&](Core& core) {
       const CoreState saved = core.save();
-      // One with another past.
+      // One with another history.
       another.emplace(settings("CORRIDOR (9) 0, 0, 0, 5000, 3000\n"));
       Robot robot;
       robot.step(*another);

@@ -56,7 +56,7 @@ TEST(Field, TellsTheNearestWallOfTheOfficeFloor) {
   EXPECT_TRUE(field.known({17.5, 7.0}));
   EXPECT_TRUE(field.known({14.5, 9.6}));
   EXPECT_FALSE(field.known({34.0, 20.0}));
-  // Exact against all surfaces, at every place that is known.
+  // Exact against all surfaces, at every known place.
   double worst = 0.0;
   for (std::size_t i = 0; i < field.known_cells().size(); i += 37) {
     const Vec2 p = field.known_cells()[i] + Vec2(0.03, -0.02);

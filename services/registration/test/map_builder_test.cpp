@@ -13,8 +13,8 @@ using lps::Percept;
 using lps::PointType;
 using lps::Side;
 
-/// A robot that drives along a way, with dead reckoning that turns a little too far, and sees what
-/// a test says is there.
+/// A robot that drives along a way, with dead reckoning that turns a little too far. A test gives
+/// the visible objects.
 class Driven {
  public:
   explicit Driven(MapBuilderSettings settings = {}, maps::Map known = {}, Pose start = {})
@@ -31,14 +31,14 @@ class Driven {
       move({0.0, 0.0, angle / 30}, {0.0, 0.0, angle / 30});
   }
 
-  /// A wall from one point of the map to another; seen within 2.5 m of the robot, up to 4 m back.
+  /// A wall between two points of the map; visible within 2.5 m of the robot, up to 4 m back.
   struct Wall {
     Vec2 from;
     Vec2 to;
   };
   std::vector<Wall> walls;
   std::vector<maps::Feature> doors;
-  bool believe = false;  ///< hand the true pose over, as registration would
+  bool believe = false;  ///< hand over the true pose, as registration would
 
   MapBuilder builder;
   Pose pose;     ///< in the map
@@ -234,7 +234,7 @@ TEST(MapBuilder, WhatIsTakenFromTheMapComesBackWhenItIsSeenAgainAndThingsStay) {
   EXPECT_TRUE(d.builder.remove(walls[0].id));
   EXPECT_TRUE(d.builder.remove(doors[0].id));
   EXPECT_FALSE(d.builder.remove(walls[0].id));
-  // News from elsewhere: the map is put together anew, without them.
+  // Percepts from another place: the map is rebuilt without them.
   d.walls = {{{14.0, 1.0}, {24.0, 1.0}}};
   d.drive(12.0);
   EXPECT_EQ(of_type(d.builder.map(), PointType::wall).size(), 1U);
@@ -271,7 +271,7 @@ TEST(MapBuilder, SwitchedOffItAddsNothing) {
 }
 
 TEST(FeatureGraph, ALoopThatClosesCorrectsTheWholeWay) {
-  // Round a square of 10 m with a heading that strays; the first wall is seen again at the end.
+  // Round a square of 10 m with a drifting heading; the first wall is seen again at the end.
   FeatureGraph graph;
   graph.settings.start_heading = 0.001;
   graph.lines.push_back({{5.0, 1.0}, kPi, 0.0, {}, true});

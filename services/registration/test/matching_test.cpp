@@ -67,7 +67,7 @@ TEST(Matching, ADoorThatCouldBeTwoIsLeftAlone) {
   EXPECT_FALSE(result.accepted);
   EXPECT_TRUE(result.ambiguous);
   EXPECT_EQ(filter.pose(), (Pose{3.5, 0.0, 0.0}));
-  // A robot that is sure enough of its pose takes the nearer one.
+  // A robot with a certain pose takes the nearer one.
   PoseFilter sure = filter_at({3.1, 0.0, 0.0}, 0.1);
   EXPECT_TRUE(match(percept(PointType::door, {3.0, 1.0, -kPi / 2}, 0.0, 0.9), {3.0, 0.0, 0.0}, kMap,
                     lines, {}, sure)

@@ -32,14 +32,14 @@ double range_of(const Pose& sensor, bool box) {
   const double to_wall = 1.5 - sensor.y;
   if (!box)
     return to_wall;
-  // The cone meets what its axis misses.
+  // The cone meets an object that its axis misses.
   const double reach = 0.3 + (1.1 - sensor.y) * std::tan(radians(12.0));
   return std::abs(sensor.x - 1.0) < reach ? 1.1 - sensor.y : to_wall;
 }
 
 class ObjectFinderTest : public testing::Test {
  protected:
-  /// Along the corridor, with a sonar to the left. What is told is put on the map.
+  /// Along the corridor, with a sonar to the left. Reported objects are put on the map.
   std::vector<maps::Feature> pass(bool box, double from = -1.0, double to = 3.0) {
     std::vector<maps::Feature> told;
     for (double x = from; x < to; x += 0.015) {
@@ -73,7 +73,7 @@ TEST_F(ObjectFinderTest, ABoxByTheWallIsFoundWhereItStands) {
   EXPECT_TRUE(box.learned);
   EXPECT_NEAR(box.pose_in_map.x, 1.0, 0.15);
   EXPECT_NEAR(box.length, 0.6, 0.25);
-  // Its face at 1.1 m is what was met.
+  // The sonar met its face at 1.1 m.
   EXPECT_NEAR(box.pose_in_map.y - box.width / 2.0, 1.1, 0.1);
   EXPECT_EQ(map.features.size(), 3U);
   EXPECT_TRUE(pass(true).empty());

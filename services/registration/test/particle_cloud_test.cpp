@@ -70,7 +70,7 @@ TEST(ParticleCloud, LearnsWhatAFilterLearnt) {
   cloud.learn(before, wide, {5.3, 5.0, 0.0}, narrow);
   const auto seen = cloud.estimate();
   EXPECT_NEAR(seen.pose.x, 5.3, 0.05);
-  // It may have been another door, after all: a few stay where they were.
+  // The match may be wrong: a few stay where they were.
   EXPECT_NEAR(std::sqrt(seen.covariance(0, 0)), 0.13, 0.04);
   EXPECT_NEAR(std::sqrt(seen.covariance(1, 1)), std::sqrt(wide(1, 1)), 0.05);
 }

@@ -26,7 +26,7 @@ TEST(PoseFilter, MovesAndGetsLessSure) {
 TEST(PoseFilter, LearnsTheDriftOfDeadReckoningFromWalls) {
   constexpr double kDrift = 0.006;  // [rad/m]
   PoseFilter filter({}, diagonal(0.05, 0.05), 0.0, 0.01 * 0.01, {});
-  // The robot goes straight on; dead reckoning says that it turns.
+  // The robot drives straight; dead reckoning shows a turn.
   for (int i = 1; i <= 1000; ++i) {
     filter.move({0.03, 0.0, kDrift * 0.03});
     if (i % 20 == 0) {

@@ -22,7 +22,7 @@ maps::Feature feature(PointType type, std::uint32_t id, const Pose& pose, double
   return made;
 }
 
-// The robot drives along y = 0; what it passes is at y = 1.
+// The robot drives along y = 0 and passes artifacts at y = 1.
 maps::Map a_map() {
   return {{feature(PointType::wall, 1, {2.0, 1.0, 0.0}, 1.0, 0.0),
            feature(PointType::wall, 2, {6.0, 1.0, 0.0}, 1.5, 0.0, true),
@@ -32,7 +32,7 @@ maps::Map a_map() {
 
 class PresenceTest : public testing::Test {
  protected:
-  /// One way past `x` with three sonars to the left, which hear what is so far from the way.
+  /// Passes `x` once with three sonars to the left, with echoes at that distance from the way.
   Presence::News pass(double x, double distance, bool echo = true) {
     Presence::News all;
     for (double at = x - 2.0; at < x + 2.0; at += 0.03) {

@@ -48,8 +48,8 @@ lps::Percept percept(std::uint32_t id, PointType type, const Pose& pose, std::ui
   return result;
 }
 
-/// Drives along the corridor, turns now and then, and hears walls, doors and what is not on the
-/// map.
+/// Drives along the corridor, turns at times, and hears walls, doors and objects that are not on
+/// the map.
 class Robot {
  public:
   explicit Robot(std::uint64_t seed) : random_(seed) {}
@@ -68,7 +68,7 @@ class Robot {
     for (int sonar = 0; sonar < kSonars; ++sonar)
       hear(sonar);
     percepts_.clear();
-    // Walls and doors are seen some cycles after their readings, from where they were then.
+    // Percepts of walls and doors come some cycles after their readings, at the place of that time.
     if (cycle_ % 5 == 0)
       see(PointType::wall, {std::round(truth_.x), 1.0, 0.0});
     for (const double x : {3.0, 6.0})

@@ -24,10 +24,10 @@
 
 namespace {
 
-/// The bytes on the disk, and the content of the file that is named there, at that time.
+/// The bytes on the disk, and the content of the file named there, at that time.
 struct Synced {
   std::string path;
-  std::string target;  ///< the content of the file that is to be replaced
+  std::string target;  ///< the content of the file to be replaced
 };
 std::vector<Synced> synced;
 std::string watched;
@@ -120,7 +120,7 @@ class RegistrationShell : public testing::Test {
     }
     states.write(state);
     ASSERT_TRUE(eyes_shell.step(stop));
-    // A service that comes late steps the oldest cycle first that it finds.
+    // A service that starts late steps the oldest available cycle first.
     do {
       ASSERT_TRUE(shell->step(stop));
       const auto newest = registrations.take_newest();
@@ -137,10 +137,10 @@ class RegistrationShell : public testing::Test {
     describe();
   }
 
-  /// The service ends when all that was until now is in the memory, and another one begins.
+  /// The service ends when the memory has its whole state, and another one begins.
   void restart(const Options& options) {
     const std::string file = options.memory_file;
-    // The first one may have been under way before.
+    // The first save may have been under way before.
     for (int saves = 0; saves < 2; ++saves) {
       std::filesystem::remove(file);
       const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
@@ -154,7 +154,7 @@ class RegistrationShell : public testing::Test {
     cycle();
   }
 
-  /// Through the corridor of the office to and fro, by where the service says the robot is.
+  /// To and fro through the corridor of the office, by the service's pose.
   void tour(test::Tour& tour, int cycles) {
     for (int i = 0; i < cycles; ++i) {
       if (!tour.act(drive, lps::from_bus(registration.pose_in_map())))
@@ -212,7 +212,7 @@ class RegistrationShell : public testing::Test {
     return made;
   }
 
-  /// To and fro until `done`, or for so many cycles; whether it was.
+  /// To and fro until `done`, or for so many cycles; returns the result of `done`.
   bool tour_until(const std::function<bool()>& done, int cycles) {
     test::Tour to_and_fro({{11.0, 7.0}, {2.0, 7.0}}, true);
     for (int i = 0; i < cycles && !done() && !HasFatalFailure(); i += 10)
@@ -224,7 +224,7 @@ class RegistrationShell : public testing::Test {
       newest_map = maps::from_bus(*newest);
     return newest_map;
   }
-  /// The object that the robot has put on the map where the crate stands.
+  /// The robot's object on the map at the crate's place.
   const maps::Feature* crate() {
     for (const maps::Feature& feature : known_map().features)
       if (feature.type == lps::PointType::object && feature.learned &&
@@ -480,7 +480,7 @@ TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
   EXPECT_FALSE(map->changed());
   EXPECT_EQ(map->artifacts().size(), 2U);
   EXPECT_NEAR(registration.pose_in_map().x(), -3.0, 0.1);
-  // An option of the command line counts again when it has changed.
+  // A changed option of the command line counts again.
   Options other = given;
   other.map_file = map_path("loop");
   restart(given);
@@ -557,7 +557,7 @@ TEST_F(RegistrationShell, BuildsAnEmptyMapAndRefusesWhatWouldBeLost) {
   tour(there, 400);
   EXPECT_GT(maps.take_newest()->artifacts().size(), 0U);
   EXPECT_TRUE(done(on_or_off("add_features", false)));
-  // On what was built, where it was.
+  // On the built map, at the same place.
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
   EXPECT_LT((lps::from_bus(registration.pose_in_map()).position() -

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kSonars = 8;
 
-/// Each sonar hears `range`, but `changed` of them what is so far away.
+/// Each sonar hears `range`, except `changed` of them, which hear the other one.
 std::vector<lps::SonarReading> around(double range, int changed = 0, double other = 0.0) {
   std::vector<lps::SonarReading> readings;
   for (int sonar = 0; sonar < kSonars; ++sonar)
@@ -17,7 +17,7 @@ std::vector<lps::SonarReading> around(double range, int changed = 0, double othe
   return readings;
 }
 
-/// In how many cycles it says that the robot was carried.
+/// The number of cycles in which it reports that the robot was carried.
 int carried(Standing& standing, const std::vector<lps::SonarReading>& readings, int cycles,
             const Pose& moved = {}) {
   int times = 0;

@@ -32,7 +32,7 @@ std::vector<Functor> functors() {
           {"resume", "the process goes on", {process}}};
 }
 
-/// Of one of functors().
+/// The action of one of functors().
 ProcessAction action_of(const std::string& functor) {
   return functor == "interrupt" ? ProcessAction::interrupt
          : functor == "suspend" ? ProcessAction::suspend

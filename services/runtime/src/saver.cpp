@@ -25,7 +25,7 @@ std::string Saver::offer(const std::function<std::string()>& text) {
       return replace_file(file, content, true);
     });
   } catch (const std::system_error&) {
-    good = false;  // no thread was to be had
+    good = false;  // no thread was available
   }
   return std::exchange(works_, good) && !good ? path_ + " cannot be written" : "";
 }

@@ -3,7 +3,7 @@
 namespace saphira::runtime {
 namespace {
 
-/// Between two looks at files: in cycles, and where there are none.
+/// Between two checks of files: in cycles, and without cycles in time.
 constexpr std::uint64_t kLook = 10;
 constexpr std::uint64_t kLookInLockstep = 100;  // there they are milliseconds
 constexpr std::chrono::seconds kIdleLook{1};
@@ -53,7 +53,7 @@ void Shell::step_now(const bus::Step& step) {
                   step.new_epoch,
                   odom_.has_value() && *odom_ != odom});
   odom_ = odom;
-  // Only now, when the robot has its command.
+  // After the robot has its command.
   if (++steps_ % (node_.options().lockstep ? kLookInLockstep : kLook) == 0)
     look();
   cycle_.done();

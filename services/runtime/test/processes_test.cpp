@@ -8,7 +8,7 @@
 namespace saphira::runtime {
 namespace {
 
-/// A service and somebody who looks at it and asks, on a bus in memory.
+/// A service and a client of its processes, on a bus in memory.
 class ProcessesOnBusTest : public ::testing::Test {
  protected:
   std::optional<v1::Answer> ask(const std::string& whom, const std::string& process,
@@ -72,7 +72,7 @@ TEST_F(ProcessesOnBusTest, ObeysAndAnswers) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->code(), v1::ANSWER_DONE);
   EXPECT_EQ(answer->number(), number);
-  // Told at once, also while the cycles stand still.
+  // Published at once, also while the cycles stand still.
   EXPECT_EQ(states.take_newest().value().processes()[0].state(), v1::PROCESS_INTERRUPTED);
   cycle();
   EXPECT_TRUE(doors.interrupted());

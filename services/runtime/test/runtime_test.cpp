@@ -14,10 +14,10 @@ struct Seen {
   std::vector<bool> new_frame;
   int between = 0;
   int looks = 0;
-  std::string missing;  ///< what its gate says
+  std::string missing;  ///< the result of its gate
 };
 
-/// A service that repeats what is intended, and asks for a map.
+/// A service that repeats the intent, and asks for a map.
 class Repeater final : public Service {
  public:
   Repeater(Ports& ports, Seen& seen)

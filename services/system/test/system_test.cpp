@@ -61,7 +61,7 @@ TEST(System, TheDrawingInTheDocumentsIsOfToday) {
          "docs/wiring.svg";
 }
 
-// Programs that run several services offer them together.
+// Programs that run several services have all their options together.
 TEST(System, NoTwoServicesHaveAnOptionOfTheSameName) {
   CommandLine app("all", "all");
   for (const runtime::Component& service : services()) {

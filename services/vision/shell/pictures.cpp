@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kKept = 4;
 constexpr int kRetry = 500;  // [ms]
 
-// A file descriptor of -1 with errno where nobody listens there.
+// A file descriptor; -1 with errno without a listener.
 int connect_to(const std::string& path) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
@@ -130,7 +130,7 @@ void Pictures::read(int fd) {
       while (auto picture = stream.take()) {
         {
           const std::lock_guard lock(mutex_);
-          // A new connection of the robot counts anew: what is older belongs to the last one.
+          // A new connection of the robot counts anew: older pictures belong to the last one.
           if (!pictures_.empty() && pictures_.back().cycle >= picture->cycle)
             pictures_.clear();
           pictures_.push_back(std::move(*picture));

@@ -12,22 +12,22 @@
 
 namespace saphira::vision {
 
-/// The pictures of a stereo socket (sim/README.md, Vision), read in a thread of its own; it
-/// connects anew by itself.
+/// The pictures of a stereo socket (sim/README.md, Vision), read in a thread of its own, which
+/// reconnects by itself.
 class Pictures {
  public:
-  /// An empty path: there are none. `came` is called, in the thread that reads, for every picture.
+  /// An empty path: no pictures. `came` is called for every picture, in the reading thread.
   explicit Pictures(std::string path, std::function<void()> came = {});
   ~Pictures();
   Pictures(const Pictures&) = delete;
   Pictures& operator=(const Pictures&) = delete;
 
-  /// The newest one of no later cycle, and drops those before it.
+  /// The newest picture up to that cycle; drops earlier ones.
   std::optional<StereoPicture> take(std::uint64_t cycle);
-  /// True where that of this cycle, or of a later one, has come.
+  /// True where the picture of this cycle, or of a later one, has come.
   bool has(std::uint64_t cycle) const;
   bool connected() const;
-  /// Why there are no pictures, in words; empty: they come.
+  /// The reason why there are no pictures, in words; empty: they come.
   std::string trouble() const;
 
  private:

@@ -58,7 +58,7 @@ std::string Service::missing(const v1::RobotState& state) {
   if (stereo_ && !pictures_.has(cycle))
     return "the stereo picture of cycle " + std::to_string(cycle);
   if (state.stamp().epoch() != epoch_)
-    return {};  // the first step of an epoch: how many there were is not known
+    return {};  // the first step of an epoch: their number is unknown
   take_channels(epoch_);
   if (!core_.has_channels(cycle, state.vision_packets_per_s(), seen_))
     return std::string(bus::topics::kVisionChannels.name) + " of cycle " +

@@ -10,7 +10,7 @@
 namespace saphira::vision {
 
 struct Options {
-  std::string stereo_socket;  ///< where stereo pictures come from; empty: nowhere
+  std::string stereo_socket;  ///< the source of stereo pictures; empty: none
   ColorCamera camera;         ///< of the channels
 };
 

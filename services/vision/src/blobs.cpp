@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kLeast = 4;            // [pixels] of area: smaller ones are noise
 constexpr double kPixelError = 0.7;  // one sigma, of an edge
-constexpr double kUncertain = 0.3;   // of the range: more is no range
+constexpr double kUncertain = 0.3;   // of the range: above it the range counts as unknown
 constexpr double kNearest = 0.1;     // [m]
 constexpr double kSomewhere = 2.0;   // [m] where the range is unknown
 constexpr double kFarthest = 10.0;   // [m]

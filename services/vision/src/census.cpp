@@ -8,7 +8,7 @@
 namespace saphira::vision {
 namespace {
 
-// 24 of the 7 x 7 neighbours: as good as all 48 and half as dear, for 24 bits fit a word of which
+// 24 of the 7 x 7 neighbours: as good as all 48 at half the cost, since 24 bits fit a word of which
 // four are counted at a time.
 constexpr int kReach = 3;
 constexpr std::array<std::array<int, 2>, 24> kNeighbours{{
@@ -30,7 +30,7 @@ void census_row(const ImageView& image, int row, std::uint32_t* words) {
 
 }  // namespace
 
-// Of one row of words, for each disparity and column.
+// For one row of words, for each disparity and column.
 void Census::add_differences(const Words& left, const Words& right, int row, bool add) {
   const std::size_t start = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
   const std::int16_t sign = add ? 1 : -1;

@@ -7,7 +7,7 @@ namespace saphira::vision {
 namespace {
 
 constexpr std::size_t kPlaces = 32;    // [cycles] a picture may be late
-constexpr std::uint64_t kRecent = 20;  // [cycles] eyes that showed nothing for longer are shut
+constexpr std::uint64_t kRecent = 20;  // [cycles] a camera silent for longer counts as off
 constexpr std::uint64_t kSecond = 10;  // [cycles] over which the bridge counts the channels
 
 }  // namespace
@@ -59,7 +59,7 @@ void Core::look_at(const StereoPicture& picture) {
   vision_.see(picture, place->pose_in_odom);
 }
 
-/// The channels come behind the cycle that they are of: a step sees those of the cycles before.
+/// The channels come after their cycle: a step sees those of earlier cycles.
 void Core::look_at_channels(const Inputs& inputs) {
   newer_.insert(newer_.end(), inputs.seen.begin(), inputs.seen.end());
   while (!newer_.empty() && newer_.front().cycle < inputs.cycle) {
@@ -77,7 +77,7 @@ void Core::look_at_channels(const Inputs& inputs) {
 
 bool Core::has_channels(std::uint64_t cycle, unsigned channels_per_s,
                         const std::vector<Seen>& waiting) const {
-  // The number is of the second before the cycle; who came into it later cannot count.
+  // The number is of the second before the cycle; a service that joined within it cannot count.
   if (joined_ != 1 && joined_ + kSecond > cycle)
     return true;
   const auto counts = [&](std::uint64_t one) { return one < cycle && one + kSecond >= cycle; };

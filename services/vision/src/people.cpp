@@ -7,12 +7,12 @@
 namespace saphira::vision {
 namespace {
 
-constexpr int kColumnStep = 2;            // of the columns of a picture every second is looked at
-constexpr double kAboveHeads = 1.97;      // [m] doors reach so far up, people do not
+constexpr int kColumnStep = 2;            // every second column of a picture is used
+constexpr double kAboveHeads = 1.97;      // [m] doors reach so high, people do not
 constexpr double kAboveHalf = 0.05;       // [m]
 constexpr double kBandHalf = 0.08;        // [m] above and below a band's height
-constexpr double kGap = radians(2.0);     // what is not matched for so wide does not part a shape
-constexpr double kBeside = radians(4.0);  // so far beside a shape its background is looked for
+constexpr double kGap = radians(2.0);     // width of unmatched columns within one shape
+constexpr double kBeside = radians(4.0);  // angle beside a shape for its background
 constexpr double kTellsRound = 0.15;      // [m] of two sigmas of a range
 constexpr double kSigmaDisparity = 0.3;   // [pixels]
 constexpr double kTooNear = 1.2;          // [m]
@@ -97,7 +97,7 @@ class Shapes {
       found.push_back(shape);
   }
 
-  // How much nearer the middle half is than the sides [m], whichever way it is turned.
+  // The lead of the middle half over the sides [m], for any turn of the shape.
   double bulge(const std::vector<std::size_t>& run) const {
     const double centre = (band_[run.front()]->y() + band_[run.back()]->y()) / 2.0;
     const double half = (band_[run.front()]->y() - band_[run.back()]->y()) / 4.0;

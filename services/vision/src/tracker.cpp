@@ -10,10 +10,10 @@ namespace {
 
 using Kind = lps::SeenThing::Kind;
 constexpr double kCycle = 0.1;        // [s]
-constexpr double kRangeKnown = 0.35;  // of the range: a place that is less sure is a direction
-constexpr double kLearn = 0.35;       // of the way to certainty that a sight brings
-constexpr double kSlow = 0.7;         // [s] in which what is out of sight loses its velocity
-constexpr double kTentative = 0.4;    // [s] of misses for what is not confirmed
+constexpr double kRangeKnown = 0.35;  // of the range: a less certain place is a direction
+constexpr double kLearn = 0.35;       // share of the way to certainty for each sight
+constexpr double kSlow = 0.7;         // [s] in which a track out of sight loses its velocity
+constexpr double kTentative = 0.4;    // [s] of misses for an unconfirmed track
 constexpr std::size_t kMost = 64;
 
 double seconds(std::uint64_t from, std::uint64_t to) {

@@ -5,7 +5,7 @@
 namespace saphira::vision {
 namespace {
 
-/// A robot that stands, with a camera whose channel A shows a thing each cycle.
+/// A standing robot with a camera whose channel A shows an object each cycle.
 class CoreTest : public testing::Test {
  protected:
   CoreTest() { inputs_.odom = 1; }
@@ -48,7 +48,7 @@ TEST_F(CoreTest, SeesColorsWhileChannelsCome) {
   EXPECT_FALSE(step().sees_colors);
 }
 
-// A step sees what was before it, whenever it came.
+// A step sees the samples before it, whenever they came.
 TEST_F(CoreTest, ChannelsOfTheCycleAreLeftToTheNextStep) {
   step();
   inputs_.seen = {seen(2)};
@@ -69,7 +69,7 @@ TEST_F(CoreTest, ASuspendedTaskSeesNothing) {
   EXPECT_FALSE(step().sees_colors);
 }
 
-// The robot's state says how many came in the second before: lockstep waits for as many.
+// The robot's state gives the number of the second before: lockstep waits for that many.
 TEST_F(CoreTest, KnowsWhetherAllChannelsOfASecondHaveCome) {
   EXPECT_TRUE(core_.has_channels(1, 0, {}));
   step();

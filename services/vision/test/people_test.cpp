@@ -36,7 +36,7 @@ TEST(People, TwoAreTwo) {
   EXPECT_EQ(people_in("person ann 5000 2400 person ben 5200 3600").size(), 2U);
 }
 
-// A false person is followed: walls, doors, boxes, posts and robots are none.
+// A false person would be followed: walls, doors, boxes, posts and robots are none.
 TEST(People, WhatIsNoneIsNoPerson) {
   const char* const things[] = {
       "",
@@ -68,7 +68,7 @@ TEST(People, WhoIsBehindSomethingIsNotInView) {
   EXPECT_FALSE(in_view(seen, {-2.0, 0.0}));
 }
 
-// Not a bound that a busy machine could miss: only that it is no slideshow.
+// Not a limit that a busy machine could miss, only a check against very slow frames.
 TEST(People, APairIsQuicklyDone) {
   const sim::World world = room("person ann 5000 3000");
   sim::Scene scene(world);

@@ -73,7 +73,7 @@ TEST(Tracker, WhoIsHiddenGoesOnAndIsFoundAgain) {
   const std::uint32_t id = tracker.things(cycle, {}).at(0).id;
   for (; cycle <= 45; ++cycle)
     tracker.see(Kind::person, cycle, {}, {}, nowhere);
-  // As if it had gone on for a second and a half.
+  // As if it had continued for a second and a half.
   EXPECT_NEAR(tracker.things(45, {}).at(0).pose_in_odom.y, -1.0 + 0.05 * 45.0, 0.3);
   tracker.see(Kind::person, 46, {}, {person_at(3.1, 1.4)}, everywhere);
   ASSERT_EQ(tracker.things(46, {}).size(), 1U);
@@ -114,7 +114,7 @@ TEST(Tracker, OneSightIsNobody) {
   EXPECT_TRUE(tracker.things(9, {}).empty());
 }
 
-// A thing that is seen from two places in two directions has a range.
+// An object that is seen from two places in two directions has a range.
 TEST(Tracker, DirectionsFromSeveralPlacesMakeAPlace) {
   Tracker tracker;
   const Vec2 blob(3.0, 1.0);

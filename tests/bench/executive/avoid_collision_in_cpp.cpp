@@ -21,24 +21,25 @@ Side side_from(const std::string& text) {
 }
 
 constexpr double kLookahead = 2.0;  ///< [m]
-/// [m] The path that must be free is wider than the hull by this on each side: what the noise of
-/// ranges and the width of a sonar's cone can hide.
+/// [m] The path that must be free is wider than the hull by this on each side: for the noise of
+/// ranges and the width of a sonar's cone.
 constexpr double kSlack = 0.04;
-/// [m] per unit of sensitivity: over so much before the bubble the front goes from free to blocked.
+/// [m] per unit of sensitivity: the distance before the bubble over which the front goes from free
+/// to blocked.
 constexpr double kFrontScale = 0.2;
 constexpr double kSideScale = 0.1;
-/// [1/s] Before the bubble the robot goes at no more than this times what is left.
+/// [1/s] Before the bubble the speed is at most this times the remaining distance.
 constexpr double kBraking = 0.8;
 /// [rad] of turn per unit of turn gain.
 constexpr double kTurnScale = radians(5.0);
 
-/// [m] before the bubble: from the first on the robot is blocked, until there is the second.
+/// [m] before the bubble: below the first distance the robot is blocked, until there is the second.
 constexpr double kBlocked = 0.03;
 constexpr double kClear = 0.2;
 
 /// The obstacles ahead and to the sides, from the LPS: the fuzzy variables of paper 3.1.
 struct Blocked {
-  double gap = 0.0;  ///< [m] from the bubble to what is ahead
+  double gap = 0.0;  ///< [m] from the bubble to the obstacle ahead
   Fuzzy front = 0.0;
   Fuzzy front_left = 0.0;
   Fuzzy front_right = 0.0;
@@ -107,8 +108,8 @@ class AvoidCollision : public Behavior {
   }
 
  private:
-  /// Blocked: nothing is left before the bubble. Then the robot turns on the spot to one side, and
-  /// to no other, until there is a way.
+  /// Blocked: no distance is left before the bubble. Then the robot turns on the spot to one side
+  /// only, until there is a way.
   void choose_side(const Blocked& blocked, const Parameters& parameters, const Context& context) {
     if (side_ != Side::none) {
       if (blocked.gap > kClear)

@@ -63,8 +63,8 @@ BeginBehavior Load
 EndBehavior
 )";
 
-/// [ms] of CPU a step, of `count` behaviors with five rules each. Each cycle one parameter of each
-/// of them is another, as with points of the map.
+/// [ms] of CPU a step, of `count` behaviors with five rules each. One parameter of each changes
+/// every cycle, as with points of the map.
 double step_ms(std::size_t count, int steps) {
   Compiled compiled = compile(kFiveRules, "load.beh");
   if (!compiled.errors.empty())
@@ -99,7 +99,8 @@ double step_ms(std::size_t count, int steps) {
   return (cpu_seconds() - begin) * 1000.0 / steps;
 }
 
-/// [s] of CPU for so many updates of one behavior. The LPS stands still: it is the same for both.
+/// [s] of CPU for that number of updates of one behavior. The LPS is constant: it is the same for
+/// both.
 double updates(const Schema& schema, const std::vector<Argument>& arguments, int count,
                double& check) {
   const RobotModel model = pioneer();
@@ -150,7 +151,7 @@ double language_over_cpp() {
   };
   for (const Pair& pair :
        {Pair{avoid_collision_in_cpp(), {}}, Pair{go_to_pos_in_cpp(), {place(5.0, 1.0)}}}) {
-    // The best of some, in turns: what disturbs one run does not disturb the ratio.
+    // The best of several, in turns: a disturbance of one run does not affect the ratio.
     double cpp = 1e9;
     double language = 1e9;
     for (int run = 0; run < 5; ++run) {

@@ -2,8 +2,8 @@
 
 #include "saphira/behaviors/behavior.hpp"
 
-// Two of the predefined behaviors written in C++, to the last bits what config/behaviors has: what
-// the behavior language is measured against.
+// Two of the predefined behaviors in C++, equal to config/behaviors up to the last bits: the
+// reference for the behavior language.
 namespace saphira::bench {
 
 behaviors::Schema avoid_collision_in_cpp();

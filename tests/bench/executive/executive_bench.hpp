@@ -6,10 +6,10 @@ namespace saphira::bench {
 
 double behaviors_10_ms();    ///< 10 behaviors with 5 rules each
 double behaviors_1000_ms();  ///< 1,000 behaviors with 5 rules each
-/// An update of a behavior from the language over one of the same behavior in C++.
+/// The time of an update of a behavior in the language, relative to the same behavior in C++.
 double language_over_cpp();
 
-/// A delivery as in Figure 10 of the paper: 12 intentions, whose behaviors say how far they are.
+/// A delivery as in Figure 10 of the paper: 12 intentions, with reported levels of their behaviors.
 double intentions_12_ms();
 double intentions_10000_ms();  ///< 10,000 intentions that wait for a condition
 

@@ -10,12 +10,12 @@ using namespace behaviors;
 
 namespace {
 
-/// [rad] Further than this off its course the robot slows down, and at the second it turns on the
-/// spot. It turns several times as fast as it could orbit the goal.
+/// [rad] Beyond the first deviation from its course the robot slows down, and beyond the second it
+/// turns on the spot. It turns several times as fast as it could orbit the goal.
 constexpr double kOnCourse = radians(15.0);
 constexpr double kOffCourse = radians(60.0);
 constexpr double kMostTurn = radians(40.0);
-/// [1/s] The robot arrives at no more than this times what is left to go, and not slower than
+/// [1/s] The robot arrives with at most this times the remaining distance, and not slower than
 /// kCreep [m/s].
 constexpr double kApproach = 1.0;
 constexpr double kCreep = 0.05;
@@ -32,8 +32,8 @@ class GoToPos : public Behavior {
       whole_way_ = distance;
       goal_ = goal_in_odom.position();
     }
-    // Over the middle half of the success radius: at its rim the behavior is in full force, so that
-    // the robot does arrive within it.
+    // Over the middle half of the success radius: at its rim the behavior is at full strength, so
+    // that the robot does arrive within it.
     const Fuzzy at_goal = down_straight(distance, 0.5 * radius, radius);
     const Fuzzy off_course = straight_up(std::abs(phi), kOnCourse, kOffCourse);
     const double speed = std::min(parameters.number("speed"),

@@ -17,7 +17,7 @@ double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// Figure 10, with behaviors of today: avoidance beside the delivery, six intentions that wait for
+// Figure 10, with present behaviors: avoidance beside the delivery, six intentions that wait for
 // others, monitors that wait for conditions, and a loop that computes.
 const char* const kDelivery = R"(
 (defintention :avoid
@@ -84,7 +84,7 @@ GoalEvent ask(std::uint64_t number, const std::string& functor) {
   return event;
 }
 
-/// [ms] a cycle, each of which sees another place of the robot and other levels.
+/// [ms] a cycle, each with another pose of the robot and other levels.
 double cycle_ms(Executor& executor, Inputs& inputs, const Outputs& first, int cycles) {
   std::vector<BehaviorLevel> levels;
   for (const IntendedBehavior& behavior : first.behaviors)
@@ -127,7 +127,7 @@ double intentions_12_ms() {
 }
 
 double intentions_10000_ms() {
-  // A tree of 1 + 10 + 10 * 999 intentions: nearly as many children as one may have.
+  // A tree of 1 + 10 + 10 * 999 intentions: nearly the limit of children.
   std::string text = "(defintention :top :goals '(";
   for (int i = 0; i < 10; ++i)
     text += "(INTEND :crowd () :blocking nil)";

@@ -14,7 +14,7 @@
 namespace saphira::test {
 namespace {
 
-/// A rectangle: its pose is in the middle of its near side and looks along its length.
+/// A rectangle: its pose is in the middle of its near side, directed along its length.
 struct Area {
   Pose in_world;
   double length = 0.0;
@@ -29,7 +29,7 @@ struct Area {
 
 struct Corridor {
   Area area;
-  double from = 0.0;  ///< along it: where it leaves the corridor that it branches off
+  double from = 0.0;  ///< along it: the place of its branch from another corridor
   std::vector<Area> crossings = {};
 };
 
@@ -38,7 +38,7 @@ struct Line {
   Vec2 to;
 };
 
-/// Where two corridors meet at a place.
+/// The crossing of two corridors at a place.
 Area crossing(const Pose& at, double length, double width) {
   return {compose(at, {-length / 2, 0.0, 0.0}), length, width};
 }
@@ -258,7 +258,7 @@ void Builder::lay_rooms(const Corridor& corridor, double side) {
       room.in_world =
           compose(area.in_world, {along + width / 2, side * area.width / 2, side * kPi / 2});
       room.length = depth;
-      room.width = width - 0.12;  // half of the walls to its neighbours
+      room.width = width - 0.12;  // without half of the walls to its neighbours
     };
     make();
     while (!is_free(room) && depth > 2.2) {
@@ -278,7 +278,7 @@ void Builder::lay_rooms(const Corridor& corridor, double side) {
   }
 }
 
-/// The front of a room: what is between the side of the corridor and the room, and the leaf.
+/// The front of a room: the reveal between the corridor's side and the room, and the leaf.
 void Builder::lay_door(const Corridor& corridor, double side, const Area& room,
                        const std::string& name) {
   const double opening = one_of(std::array{0.8, 0.9, 0.9, 0.9, 0.9, 1.0, 1.2});
@@ -300,7 +300,7 @@ void Builder::lay_door(const Corridor& corridor, double side, const Area& room,
   wall(room.at(room.length, -room.width / 2), room.at(room.length, room.width / 2));
   for (const double jamb : {-opening / 2, opening / 2})
     wall(at(0.0, jamb), at(wall_depth, jamb));
-  // The leaf turns into the room.
+  // The leaf opens into the room.
   const double along = -hinge * std::cos(leaf) * opening;
   wall(at(reveal, hinge * opening / 2),
        at(reveal + std::sin(leaf) * opening, hinge * opening / 2 + along));
@@ -350,7 +350,7 @@ void Builder::lay_things(const Corridor& corridor) {
   }
 }
 
-/// The sides of corridors and halls, without what is inside of another and without doors.
+/// The sides of corridors and halls, without parts inside of others and without doors.
 void Builder::lay_walls() {
   std::vector<Area> areas = halls_;
   for (const Corridor& corridor : corridors_)
@@ -408,7 +408,7 @@ std::string Builder::world(const Vec2& size, const Pose& start) const {
 
 Floor Builder::make() {
   lay_corridors();
-  // Everything is a metre from the edge of the world, whatever rooms there will be.
+  // A metre of margin to the edge of the world, for any rooms.
   constexpr double kRoom = 7.0;
   Vec2 least{0.0, 0.0};
   Vec2 most{0.0, 0.0};

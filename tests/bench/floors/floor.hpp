@@ -8,23 +8,23 @@
 
 namespace saphira::test {
 
-/// A floor of offices that nobody has drawn: a world, its true map, and a way through its
-/// corridors. All lengths in metres, in the frame of the world, which is that of the map.
+/// A generated floor of offices: a world, its true map, and a way through its corridors. All
+/// lengths in metres, in the frame of the world, which is that of the map.
 struct Floor {
   std::string world;  ///< text of a world file
   std::string map;    ///< text of a map file: every corridor, room and door
-  /// The same without the doors that are closed or ajar.
+  /// The same without closed or ajar doors.
   std::string open_doors;
-  /// The doors that are closed and stand back from the corridor's wall by 0.15 m and more, alone.
+  /// Only the closed doors that stand back from the corridor's wall by 0.15 m or more.
   std::string recessed_doors;
-  std::vector<Vec2> tour;  ///< along all corridors; each two that follow see each other
+  std::vector<Vec2> tour;  ///< along all corridors; consecutive points see each other
 };
 
-/// The same seed makes the same floor. A spine with branches, some of them slanted, some joined to
+/// The same seed gives the same floor. A spine with branches, some of them slanted, some joined to
 /// a loop; a hall at the end of some. Widths, doors, reveals, leaves and furniture are drawn from
-/// what was measured in office buildings: corridors 1.2 to 2.4 m, door openings 0.8 to 1.2 m,
-/// reveals 0 to 0.35 m, leaves closed, ajar, open at 90 and at 170 degrees (building codes ADA 404
-/// and DIN 18040; maps of ActivMedia's and SRI's offices).
+/// measurements in office buildings: corridors 1.2 to 2.4 m, door openings 0.8 to 1.2 m, reveals 0
+/// to 0.35 m, leaves closed, ajar, open at 90 and at 170 degrees (building codes ADA 404 and DIN
+/// 18040; maps of ActivMedia's and SRI's offices).
 Floor make_floor(std::uint64_t seed);
 
 }  // namespace saphira::test

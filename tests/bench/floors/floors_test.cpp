@@ -76,7 +76,7 @@ TEST_P(Floors, DoorsAreOpenings) {
        maps::parse_map(floor_.recessed_doors, "recessed.map").features) {
     EXPECT_NE(maps::find(map_, door.id), nullptr);
     EXPECT_EQ(maps::find(open, door.id), nullptr);
-    // Flat, and so far back.
+    // Flat, and at that depth.
     const double back = sim::distance(world_.segments, transform(door.pose_in_map, Vec2(0.0, 0.0)));
     EXPECT_GT(back, 0.149) << maps::describe(door);
     EXPECT_LT(back, 0.351) << maps::describe(door);
@@ -99,7 +99,7 @@ TEST_P(Floors, TheMapHangsTogether) {
 }
 
 TEST_P(Floors, NobodyGetsOut) {
-  // Wherever the tour leads, a ray meets a wall.
+  // At every point of the tour, a ray meets a wall.
   for (const Vec2& at : floor_.tour)
     for (int i = 0; i < 720; ++i) {
       const Vec2 direction = transform(Pose{0.0, 0.0, i * kPi / 360}, {1.0, 0.0});
@@ -148,7 +148,7 @@ TEST(RecessedDoors, AreNoticedInPassingAndMatched) {
   EXPECT_GE(passed, 6);
   EXPECT_GE(found, 0.9 * passed);
   EXPECT_GE(real, 0.98 * reported) << reported;
-  // On the map, they say where the robot is.
+  // On the map, they identify the robot's place.
   EXPECT_GE(all_matched, on_map - 1) << on_map;
 }
 

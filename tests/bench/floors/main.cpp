@@ -1,5 +1,5 @@
-// The robot on floors of offices that it was not tuned on: where it believes to be, which doors it
-// notices, what it builds, and whether it says that it has arrived where it has not.
+// The robot on floors of offices that it was not tuned on: its estimated pose, the detected doors,
+// the built maps, and false reports of arrival.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,7 +35,7 @@ struct Options {
   bool json = false;
 };
 
-/// A floor as the robot has it.
+/// A floor with the robot's maps.
 struct Site {
   std::uint64_t seed;
   test::Floor floor;
@@ -79,7 +79,7 @@ struct Patrolled {
   int recessed = 0;  ///< of these, closed ones that stand back
   int recessed_noticed = 0;
   int reported = 0;  ///< hypotheses of doors
-  int real = 0;      ///< of any door, also one that is ajar
+  int real = 0;      ///< of any door, also of one that is ajar
 };
 
 Patrolled patrol(const Options& options, const Site& site) {
@@ -146,8 +146,8 @@ const maps::Feature* door_of(const maps::Feature& corridor, const maps::Map& ope
 struct Carried {
   int goals = 0;
   int arrived = 0;
-  int false_success = 0;         ///< said so, more than two metres away
-  std::vector<double> sure_way;  ///< [m] of each that it drove, wrong, with a confidence of 0.9
+  int false_success = 0;         ///< reported more than two metres away
+  std::vector<double> sure_way;  ///< [m] way of each with a wrong pose at a confidence of 0.9
 };
 
 Carried carry(const Options& options, const Site& site) {
@@ -170,7 +170,7 @@ Carried carry(const Options& options, const Site& site) {
     whole_options.made_map = site.map;
     test::Whole whole(whole_options);
     const auto stand = [&] { whole.advance_until([] { return false; }, kStands); };
-    // It has driven, so that its place is confirmed.
+    // It has driven, so that its pose is confirmed.
     whole.achieve("go_to", {point("position", {first.x(), first.y(), 0.0}, Frame::map)}, 1500);
     stand();
     if (!whole.drive().robot().place(corridors[i].pose_in_map))

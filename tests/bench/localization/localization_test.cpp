@@ -32,7 +32,7 @@ DriveOptions doubled(std::uint64_t seed) {
   return options;
 }
 
-/// Where the robot starts, facing south.
+/// The robot's start, facing south.
 const Pose kStart{17.5, 14.0, -kPi / 2};
 
 /// With registration on the map of the office, from the true start on.
@@ -40,7 +40,7 @@ DriveOptions on_office(DriveOptions options) {
   return registered_on(office(), std::move(options));
 }
 
-/// The office floor with more in it, as a file.
+/// The office floor with additions, as a file.
 std::string office_with(const std::string& name, const std::string& more) {
   const std::string path = testing::TempDir() + "saphira-" + name + ".wld";
   std::ifstream in(source("config/worlds/office-floor.wld"));
@@ -92,7 +92,7 @@ TEST(Localization, AWrongInitialPoseIsCorrected) {
     options.registration->start = wrong;
     Drive robot(options);
     const PatrolResult result = patrol(robot, office_tour(), 1800);
-    // The worst of them is noticed and mended: the robot says that it is lost meanwhile.
+    // The worst error is detected and corrected: the robot reports that it is lost meanwhile.
     EXPECT_LT(result.not_tracking, 300) << "seed " << seed;
     EXPECT_LT(quantile(result.registered.position, 0.5), 0.2) << "seed " << seed;
     EXPECT_LT((robot.believed().position() - robot.truth().position()).norm(), 0.4)
@@ -234,7 +234,7 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   patrol(robot, office_tour(), 900);
   const auto remembered = robot.cores().registration().remembered();
   Core again({office(), "", std::nullopt, false, true}, remembered);
-  // Two seconds were missed; the way in them is made up for by dead reckoning.
+  // Two seconds were missed; dead reckoning bridges the way of that time.
   Tour tour(office_tour(), true);
   for (int i = 0; i < 20; ++i) {
     tour.act(robot, robot.believed());
@@ -248,8 +248,8 @@ TEST(Localization, ARestartGoesOnWithoutAJump) {
   EXPECT_LT((output.pose_in_map.position() - robot.truth().position()).norm(), 0.2);
 }
 
-/// A registration that remembers one drive, beside a robot that begins another. True where it has
-/// found its pose, and has never said that it tracks while it was more than 0.6 m off.
+/// A registration with the memory of one drive, in a robot that begins another. True where it has
+/// found its pose, and has never reported tracking at an error above 0.6 m.
 bool finds_itself(const registration::Remembered& remembered, const Pose& truth,
                   const std::vector<Vec2>& way, std::uint64_t cycles) {
   DriveOptions options = doubled(2);

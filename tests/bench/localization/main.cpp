@@ -1,5 +1,5 @@
-// Ten simulated hours of patrol in the office floor with twice the Pioneer's errors, and how well
-// the robot finds itself without a pose and after it was carried away.
+// Ten simulated hours of patrol in the office floor with twice the Pioneer's errors, and the rates
+// of finding the pose without a start and after being carried away.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -25,7 +25,7 @@ struct Options {
   bool json = false;
 };
 
-/// Of this process alone, so that others on the machine do not count.
+/// CPU time of this process alone, without other work on the machine.
 double seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
@@ -42,9 +42,9 @@ test::DriveOptions drive_of(const Options& options, int seed) {
 }
 
 struct Found {
-  double way = -1.0;      // [m] until it said so; negative: never
-  double off = 0.0;       // [m] then
-  double said_lost = -1;  // [m] until it said that it is lost
+  double way = -1.0;      // [m] until it reported tracking; negative: never
+  double off = 0.0;       // [m] error then
+  double said_lost = -1;  // [m] until it reported to be lost
 };
 
 /// The tour is driven by the true pose, since a lost robot cannot drive to a place.
@@ -129,7 +129,7 @@ int run(const Options& options) {
       ++(result.off < 0.5 ? found : wrong);
       ways.push_back(result.way);
     }
-    // The same robot goes on for a while, and is carried to the east corridor.
+    // The same robot continues for a while, and is carried to the east corridor.
     test::Tour tour(points, true);
     for (int i = 0; i < 600; ++i) {
       tour.act(robot, robot.truth());
@@ -137,7 +137,7 @@ int run(const Options& options) {
     }
     if (!robot.robot().place({25.6, 12.0 + 0.7 * (seed % 5), kPi / 2}))
       continue;
-    // From here on it counts when it says that it is lost, and where it is again.
+    // From here on the reports of being lost, and the pose found afterwards, count.
     Found after;
     {
       test::Tour there({{25.6, 24.0},

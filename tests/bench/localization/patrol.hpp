@@ -7,7 +7,7 @@
 
 namespace saphira::test {
 
-/// How far off in each cycle.
+/// The errors in each cycle.
 struct Offs {
   std::vector<double> position;  // [m]
   std::vector<double> heading;   // [rad]
@@ -23,9 +23,9 @@ struct PatrolResult {
   double way = 0.0;          ///< [m]
   std::size_t reached = 0;   ///< points of the tour
   int not_tracking = 0;      ///< cycles
-  std::vector<double> took;  ///< [s] of a cycle, where there is a clock
+  std::vector<double> took;  ///< [s] of a cycle, if there is a clock
 };
-/// Drives by what it believes.
+/// Drives by its own estimate.
 PatrolResult patrol(Drive& robot, const std::vector<Vec2>& points, int cycles);
 
 }  // namespace saphira::test

@@ -14,17 +14,17 @@ namespace saphira::test {
 
 constexpr double kCell = 0.1;     // [m]
 constexpr double kRoom = 0.15;    // [m] beside the hull
-constexpr double kComfort = 0.7;  // [m] more room than this is no better
+constexpr double kComfort = 0.7;  // [m] more room has no further value
 constexpr double kPersonRadius = 0.25;
-constexpr double kPersonRoom = 0.15;  // [m] more than beside a wall
+constexpr double kPersonRoom = 0.15;  // [m] in addition to that beside a wall
 constexpr double kShortest = 2.0;     // [m] of a way worth driving
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// A way on which the robot comes no nearer for so long is blocked, as in the robot's navigation.
+// A way without progress for this time is blocked, as in the robot's navigation.
 constexpr double kPatience = 20.0;  // [s]
 constexpr double kNearer = 0.05;    // [m]
-constexpr double kBefore = 0.25;    // [m] the robot stands so far from what blocks it
+constexpr double kBefore = 0.25;    // [m] distance of the robot from the obstacle
 
-/// Room round each cell of a world, and the cheapest ways from one of them.
+/// Room round each cell of a world, and the cheapest ways from one cell.
 class Ways {
  public:
   Ways(const sim::World& world, double needed)
@@ -51,14 +51,14 @@ class Ways {
     return nearest_of(at, [this](int cell) { return length_.empty() || length(cell) < kNever; });
   }
 
-  /// A person stands here. Ways lead past him as they lead past walls.
+  /// A person stands here. Ways pass him like walls.
   void block(const Vec2& at) {
     for (int i = 0; i < columns_ * rows_; ++i)
       room_[static_cast<std::size_t>(i)] =
           std::min(room(i), (centre(i) - at).norm() - kPersonRadius);
   }
 
-  /// From here to everywhere: cost, length [m] and the cell before.
+  /// From here to all cells: cost, length [m] and the cell before.
   void spread(int from) {
     ways_ = ShortestWays(room_.size());
     ways_.reach(static_cast<std::size_t>(from), 0.0);
@@ -84,7 +84,7 @@ class Ways {
     }
   }
 
-  /// The farthest cell within so many meters.
+  /// The farthest cell within that distance.
   int farthest(double most) const {
     int best = -1;
     for (int i = 0; i < columns_ * rows_; ++i)
@@ -100,13 +100,13 @@ class Ways {
         way.push_back(centre(static_cast<int>(at)));
     return way;
   }
-  /// A point so many cells along the way to where the ways begin.
+  /// A point that many cells along the way to the ways' start.
   Vec2 back_from(const Vec2& at, int cells) const {
     const auto here = cell_at(at);
     const std::vector<Vec2> way = way_to(here && length(*here) < kNever ? *here : *nearest(at));
     return way[way.size() - 1 - std::min(way.size() - 1, static_cast<std::size_t>(cells))];
   }
-  /// [m] from here to where the ways begin; infinite where none leads there.
+  /// [m] from here to the ways' start; infinite without a way.
   double left(const Vec2& at) const {
     auto here = cell_at(at);
     if (!here || room(*here) < needed_)
@@ -158,7 +158,7 @@ Vec2 along(const std::vector<Vec2>& way, std::size_t at) {
   return (way[to] - way[from]).normalized();
 }
 
-/// Somebody stands on the way or a little aside, so that there is still a way.
+/// A person stands on the way or a little aside, so that a way remains.
 void add_standing(Crossing& crossing, const CrossingOptions& options, double needed,
                   Random& random) {
   for (int tries = 0; tries < 10; ++tries) {
@@ -174,7 +174,7 @@ void add_standing(Crossing& crossing, const CrossingOptions& options, double nee
     sim::World with = crossing.world;
     with.movable.persons.push_back(
         person_at(place, "standing" + std::to_string(with.movable.persons.size())));
-    // Nobody is passed as near as a wall.
+    // The distance to people is larger than to walls.
     sim::World wide = with;
     for (sim::PersonPlan& person : wide.movable.persons)
       person.radius += kPersonRoom;
@@ -189,7 +189,7 @@ void add_standing(Crossing& crossing, const CrossingOptions& options, double nee
   }
 }
 
-/// Somebody walks to and fro along the way, to one side of it, where there is room for two.
+/// A person walks to and fro along the way, to one side of it, where two can pass.
 void add_walking(Crossing& crossing, double needed, Random& random) {
   const std::vector<Vec2>& way = crossing.way;
   const Ways ways(crossing.world, needed);
@@ -236,15 +236,14 @@ void add_walking(Crossing& crossing, double needed, Random& random) {
   }
 }
 
-/// The way to the goal as the robot knows it. When the robot comes no nearer, somebody stands in
-/// the way, and another way is taken. People move on: only the newest such place counts, and none
-/// where no way leads around it.
+/// The robot's way to the goal. Without progress a person stands in the way, and another way is
+/// taken. People move on: only the newest such place counts, and none without a way around it.
 class Navigator {
  public:
   Navigator(const Crossing& crossing, double radius)
       : at_first_(*crossing.ways), ways_(at_first_), goal_(crossing.way.back()), radius_(radius) {}
 
-  /// Where to drive now.
+  /// The present target.
   Vec2 carrot(const Vec2& robot, double seconds) {
     const double left = ways_.left(robot);
     if (left < nearest_ - kNearer) {
@@ -275,11 +274,11 @@ class Navigator {
   Ways ways_;
   Vec2 goal_;
   double radius_;
-  double nearest_ = kNever;  // [m] left, the least so far
+  double nearest_ = kNever;  // [m] least remaining way so far
   double since_ = 0.0;       // [s] of that
 };
 
-/// A line for each new contact, with what the robot thought of it.
+/// A line for each new contact, with the robot's estimates.
 void tell(const sim::ContactWatch& watch, std::size_t& told, const Drive& drive, double seconds) {
   constexpr const char* kBlames[] = {"caused", "walked into", "unseen"};
   for (; told < watch.contacts().size(); ++told) {
@@ -341,7 +340,7 @@ CrossingResult drive_crossing(const Crossing& crossing, const CrossingOptions& o
   Navigator navigator(crossing, radius);
   std::size_t told = 0;
   CrossingResult result;
-  // A Khepera creeps, since it hears so little.
+  // A Khepera creeps, since its sonars have a short range.
   const double slow = std::min(1.0, drive.parameters().sonar_max_range / 1.0);
   const double limit = 120.0 + 20.0 * crossing.length / std::max(0.2, slow);
   const double near = std::max(0.15, 0.5 * radius);

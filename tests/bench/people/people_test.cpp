@@ -5,8 +5,8 @@
 #include "crossing.hpp"
 #include "saphira/base/places.hpp"
 
-// Robots cross offices in which two people stand and two walk, with the behaviors of go_to and the
-// guard of the bridge, as the product has them.
+// Robots cross offices with two standing and two walking people, with the behaviors of go_to and
+// the guard of the bridge, as in the product.
 namespace saphira::test {
 namespace {
 

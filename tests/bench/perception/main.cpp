@@ -45,7 +45,7 @@ bool read(std::string_view word, Number& number) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-// False where it is not understood.
+// False for invalid words.
 bool parse(const std::vector<std::string>& words, Options& options) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--json") {
@@ -70,7 +70,7 @@ bool parse(const std::vector<std::string>& words, Options& options) {
   return options.seeds > 0 && !patrol(options.world).empty();
 }
 
-// Of this thread: what else runs on the machine does not count.
+// CPU time of this thread, without other work on the machine.
 double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

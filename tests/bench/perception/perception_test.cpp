@@ -30,7 +30,7 @@ struct Total {
 
 using Act = std::function<void(Drive&)>;
 
-/// Steps `cycles` and adds up what was seen.
+/// Steps `cycles` and counts the percepts.
 void run(Drive& drive, const std::string& world, std::uint64_t cycles, const Act& act,
          Total& total) {
   Score score(drive, map_of(world));
@@ -42,9 +42,9 @@ void run(Drive& drive, const std::string& world, std::uint64_t cycles, const Act
   total.add(score);
 }
 
-/// Follows a tour as a robot with activities does: it backs off where it is held up, and gives up a
-/// point that it does not reach. Behaviors alone press on where a person whom no sonar hears stands
-/// beside the hull, and do not find out of a room into which they have dodged people.
+/// Follows a tour like a robot with activities: it backs off when blocked, and gives up an
+/// unreachable point. Behaviors alone would press on against a person whom no sonar hears, and
+/// would not leave a room into which they have dodged people.
 class Walk {
  public:
   explicit Walk(const std::string& world) : tour_(patrol(world), true) {}
@@ -162,7 +162,7 @@ TEST(Perception, DrivingObliquelyIsNoHindrance) {
           const Pose& at = d.seen().true_pose_in_world;
           if (std::abs(at.y - 7.0) > 0.35)
             across = at.y > 7.0 ? -12.0 : 12.0;
-          // By its true heading: what dead reckoning says of it strays.
+          // By its true heading: that of dead reckoning drifts.
           const double error = norm2_angle(radians(across) - at.th);
           d.drive(0.3, d.seen().pose_in_odom.th + error);
         },

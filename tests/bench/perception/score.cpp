@@ -11,9 +11,9 @@ namespace {
 
 using lps::PointType;
 
-constexpr double kOnWall = 0.2;     // [m] a wall may be off
+constexpr double kOnWall = 0.2;     // [m] tolerance of a wall
 constexpr int kSamples = 20;        // along a wall
-constexpr double kOnDoor = 0.3;     // [m] a door's middle may be off
+constexpr double kOnDoor = 0.3;     // [m] tolerance of a door's middle
 constexpr double kDoorWidth = 0.4;  // [m]
 constexpr double kOnCorner = 0.3;   // [m] one end
 constexpr double kAskew = radians(5.0);
@@ -284,7 +284,7 @@ GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
   int inside = 0;
   int blocked = 0;
   for (const maps::Feature& door : truth.doorways) {
-    // Of the opening, without 0.15 m at its posts and 0.2 m to either side of the wall.
+    // The opening, without 0.15 m at its posts and 0.2 m on either side of the wall.
     const int deep = static_cast<int>(0.2 / cell);
     const int wide = static_cast<int>((door.width / 2.0 - 0.15) / cell);
     for (int i = -deep; i <= deep; ++i)

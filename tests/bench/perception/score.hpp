@@ -14,10 +14,10 @@
 
 namespace saphira::test {
 
-/// How many of one kind were reported, and how many of these are there.
+/// The number of reports of one kind, and of the true ones among them.
 struct Count {
   int reported = 0;
-  int real = 0;  ///< in every report
+  int real = 0;  ///< true in every report
   double precision() const {
     return reported == 0 ? 1.0 : static_cast<double>(real) / static_cast<double>(reported);
   }
@@ -29,7 +29,7 @@ struct Mistake {
   std::uint64_t cycle = 0;
 };
 
-/// A robot somewhere on its way.
+/// A moment of the robot's way.
 struct Moment {
   std::uint64_t cycle = 0;
   Pose pose_in_odom;
@@ -37,39 +37,39 @@ struct Moment {
   double velocity = 0.0;
 };
 
-/// A door that the robot went by.
+/// A door that the robot passed.
 struct Passage {
   std::uint32_t door = 0;   ///< its id in the map
-  std::uint64_t cycle = 0;  ///< when it was judged
+  std::uint64_t cycle = 0;  ///< time of its judgement
   bool found = false;
 };
 
-/// A percept as it was reported last.
+/// A percept in its newest report.
 struct Judged {
   lps::Percept percept;
   Pose pose_in_world;
-  bool real = true;  ///< in every report
+  bool real = true;  ///< true in every report
 };
 
-/// Holds percepts against the world and its map while a robot drives: a percept is real when every
+/// Compares percepts with the world and its map while a robot drives: a percept is real when every
 /// report of it is. Doors count as passed where the robot goes by along their wall.
 class Score {
  public:
-  /// The surfaces about a place, as they are now.
+  /// The present surfaces near a place.
   using Surfaces = std::function<sim::Things(const Vec2& about)>;
-  /// True where all that there is at a place is known; what is reported elsewhere is not judged.
+  /// True where the truth about a place is complete; reports elsewhere are not judged.
   using Covered = std::function<bool(const Vec2& at)>;
 
   Score(maps::Map map, Surfaces surfaces, Covered covered = {})
       : map_(std::move(map)), surfaces_(std::move(surfaces)), covered_(std::move(covered)) {}
-  /// Something else says what is real, as a percept and where it is. No door is passed.
+  /// Another judge of percepts, with their place. No door is passed.
   using Judge = std::function<bool(const lps::Percept& percept, const Pose& in_world)>;
   explicit Score(Judge judge) : judge_(std::move(judge)) {}
   /// In a simulated world. The drive outlives the score.
   Score(Drive& drive, maps::Map map);
 
   void look(const Moment& moment, const std::vector<lps::Percept>& percepts);
-  /// At what interpretation has just said.
+  /// Judges interpretation's newest output.
   void look(const Drive& drive);
 
   Count walls() const { return count(lps::PointType::wall); }
@@ -83,7 +83,7 @@ class Score {
   /// By id.
   const std::map<std::uint32_t, Judged>& judged() const { return judged_; }
 
-  /// Errors of what is real, and the same in sigmas.
+  /// Errors of real percepts, and the same in sigmas.
   std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
   std::vector<double> door_place, door_place_sigmas, door_width;
   std::vector<double> breach_place, breach_place_sigmas;
@@ -118,7 +118,7 @@ class Score {
 /// The ground truth for a grid, in the grid's frame.
 struct GridTruth {
   enum class Cell { unknown, free, occupied };
-  std::vector<Vec2> surfaces;           ///< points of those within 2 m of the way that it sees
+  std::vector<Vec2> surfaces;           ///< points of visible surfaces within 2 m of the way
   std::vector<maps::Feature> doorways;  ///< open ones, within 1.5 m of it
   std::function<Cell(const Vec2& at)> cell;
 };
@@ -129,15 +129,15 @@ std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const 
 GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::vector<Vec2>& path);
 
 struct GridScore {
-  double walls = 0.0;  ///< share of the surfaces along the way that are in it
-  /// Share of the open doorways along the way that it takes for blocked; nothing without any.
+  double walls = 0.0;  ///< share of the surfaces along the way that the grid has
+  /// Share of the open doorways along the way that the grid shows as blocked; nothing without any.
   std::optional<double> doorways;
-  double free = 0.0;  ///< share of the free cells that it takes for occupied
-  double auc = 0.0;   ///< that an occupied cell is likelier than a free one
+  double free = 0.0;  ///< share of the free cells that the grid shows as occupied
+  double auc = 0.0;   ///< probability that an occupied cell has a higher value than a free one
 };
 GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth);
-/// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: what is
-/// compared is the model alone.
+/// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: only the
+/// models are compared.
 std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles);
 
 /// The points of a patrol of a world of config/worlds that goes through all its corridors.

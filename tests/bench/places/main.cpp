@@ -1,5 +1,5 @@
-// Journeys from anywhere in a room of the office floor to another room by its name, and how they
-// end.
+// Journeys from any place in a room of the office floor to another room by its name, and their
+// results.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

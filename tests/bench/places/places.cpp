@@ -14,7 +14,7 @@
 namespace saphira::test {
 namespace {
 
-constexpr double kRoom = 0.22 + 0.10;  // [m] the hull, and a hand more
+constexpr double kRoom = 0.22 + 0.10;  // [m] the hull, and a hand's width
 constexpr double kStill = 0.03;        // [m/s] slower is a stop
 
 /// Watches for stops between a corridor and the door at its side.

@@ -10,19 +10,19 @@
 
 namespace saphira::test {
 
-/// A journey through the office floor: from somewhere in a room to a place by its name.
+/// A journey through the office floor: from any place in a room to a place by its name.
 struct Journey {
   std::string from;
   Pose start_in_world;
   std::string to;
 };
 
-/// So many, drawn by the seed: starts are anywhere in the room where there is space for the robot
-/// and a hand more, directed anywhere.
+/// That number of journeys, drawn by the seed: starts are anywhere in the room with space for the
+/// robot and a hand's width more, in any direction.
 std::vector<Journey> random_journeys(const maps::Map& map, const sim::World& world, int count,
                                      std::uint64_t seed);
 
-/// How a journey ended.
+/// The result of a journey.
 struct Arrival {
   bool succeeded = false;  ///< by the goal's status
   bool there = false;      ///< by the robot's true pose

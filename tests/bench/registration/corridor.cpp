@@ -89,7 +89,7 @@ CorridorFindings interpret_corridor(const std::vector<CorridorRecord>& records) 
       }
       out.walls += std::min(std::abs(off_left), std::abs(off_right)) < 0.15 ? 1U : 0U;
     } else if (p.type == lps::PointType::corridor) {
-      // It is narrower before the gap, where something stands along the right wall.
+      // It is narrower before the gap, where an object stands along the right wall.
       ++out.corridors;
       const double off = std::abs(p.width - (left.x(at.y) - right.x(at.y)));
       if (off < width_off) {

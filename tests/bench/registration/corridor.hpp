@@ -15,16 +15,16 @@ namespace saphira::bench {
 struct CorridorFindings {
   std::size_t walls = 0;        ///< along the corridor's walls
   std::size_t other_walls = 0;  ///< elsewhere
-  double left_offset = 0.0;     ///< [m] of the longest along each, from the fit at its middle
+  double left_offset = 0.0;     ///< [m] of the longest on each side, from the fit at its middle
   double right_offset = 0.0;
-  std::optional<double> width;  ///< [m] of the corridor whose width is nearest to the fit
+  std::optional<double> width;  ///< [m] of the corridor with the width nearest to the fit
   std::size_t corridors = 0;
   bool gap_found = false;
   double gap_centre_error = 0.0;       ///< [m] along the wall
   double gap_width_error = 0.0;        ///< [m]
   std::size_t gap_ends = 0;            ///< single ends within 0.3 m of one of its ends
   std::size_t other_openings = 0;      ///< doors and junctions elsewhere
-  std::vector<lps::Percept> percepts;  ///< each as it stood last
+  std::vector<lps::Percept> percepts;  ///< each in its last state
 };
 
 CorridorFindings interpret_corridor(const std::vector<CorridorRecord>& records);

@@ -10,14 +10,14 @@ using namespace logs;
 
 namespace {
 
-constexpr double kReach = 8.0;        // [m] farther away a beam is wider than a cell
+constexpr double kReach = 8.0;        // [m] beyond it a beam is wider than a cell
 constexpr double kMargin = 0.5;       // [m]
-constexpr double kShort = 0.1;        // [m] before its end a beam may graze what it hits
+constexpr double kShort = 0.1;        // [m] before its end a beam may graze the surface
 constexpr int kHits = 3;              // of an occupied cell
-constexpr double kShare = 0.2;        // and of the beams that came so far
+constexpr double kShare = 0.2;        // and share of the beams that reached it
 constexpr int kPasses = 3;            // of a free one
 constexpr double kApart = 0.15;       // [m]
-constexpr double kMostCells = 200e6;  // more is a log that is broken
+constexpr double kMostCells = 200e6;  // a larger grid means a broken log
 
 constexpr double kStep = 0.5 * LaserCells::kCell;
 

@@ -9,26 +9,26 @@
 
 namespace saphira::bench {
 
-/// A grid from laser scans: the cells where beams ended, and those that beams went through. The
-/// reference for the percepts and grids of sonars from the same drive.
+/// A grid from laser scans: the cells of beams' ends, and those that beams passed. The reference
+/// for the percepts and grids of sonars from the same drive.
 class LaserCells {
  public:
   static constexpr double kCell = 0.05;  ///< [m]
 
-  /// Scans with known poses. A scan does not say where on the robot its laser is: the beams are
-  /// taken to begin at the robot's middle.
+  /// Scans with known poses. A scan does not contain the laser's place on the robot: the beams
+  /// begin at the robot's middle.
   LaserCells(const std::vector<logs::Scan>& scans, const std::vector<Pose>& poses);
 
   bool occupied(const Vec2& at) const;
-  /// Seen through, and nothing within 0.15 m.
+  /// True for a cell that beams passed, with no surface within 0.15 m.
   bool free(const Vec2& at) const;
-  /// True where an occupied cell's middle is so near.
+  /// True where an occupied cell's middle is within that distance.
   bool near(const Vec2& at, double distance) const;
-  /// How far the nearest occupied cell lies in a direction, or against it (negative).
+  /// The distance of the nearest occupied cell in a direction, or against it (negative).
   std::optional<double> beside(const Vec2& at, double direction, double reach) const;
   /// The middles of all occupied cells, by rows.
   std::vector<Vec2> surfaces() const;
-  /// True where nothing is between the two points, up to 0.15 m before the second one.
+  /// True where the line between the two points is free, up to 0.15 m before the second one.
   bool sees(const Vec2& from, const Vec2& to) const;
   /// For a picture.
   maps::Raster raster() const;

@@ -1,4 +1,5 @@
-// Where robots were, by their logs: dead reckoning and registration beside published figures.
+// The poses of robots, from their logs: dead reckoning and registration compared with published
+// figures.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -97,7 +98,7 @@ json evaluate(const DataSet& set, const Trajectory& estimate, const std::string&
 }
 
 std::vector<Vec2> points_of(const std::vector<StampedPose>& poses, const Pose& align) {
-  constexpr double kSpacing = 0.15;  // [m] more detail only makes the file bigger
+  constexpr double kSpacing = 0.15;  // [m] more detail only enlarges the file
   std::vector<Vec2> out;
   for (const StampedPose& p : poses) {
     const Vec2 at = transform(align, p.pose.position());
@@ -115,7 +116,7 @@ std::vector<StampedPose> stamped(const std::vector<double>& times, const std::ve
 }
 
 json sonar_json(const DataSet& set, const SonarRun& run, const std::string& what, Report& report) {
-  // As it was believed at the time, without a look back.
+  // The estimates at the time, without later corrections.
   json out = evaluate(set, Trajectory(run.poses), what, report);
   const double steps = static_cast<double>(std::max<std::size_t>(run.steps, 1));
   out["tracking"] = static_cast<double>(run.tracking) / steps;
@@ -133,7 +134,7 @@ json sonar_json(const DataSet& set, const SonarRun& run, const std::string& what
   return out;
 }
 
-// Pictures of a drive: where it went, and what was seen.
+// Pictures of a drive: its way, and its percepts.
 struct Pictures {
   maps::Drawing ways;
   maps::Drawing percepts;
@@ -199,7 +200,7 @@ json measure(const DataSet& set, const std::string& log_folder, Report& report,
   if (set.ranges_only)
     return out;
 
-  // Sonar-like ranges, in the walls that the full ranges drew.
+  // Sonar-like ranges, on the walls from the full ranges.
   const maps::Map walls = walls_of(mapper.node_scans(), mapper.nodes());
   report.note(format("%zu walls drawn from the full ranges", walls.features.size()));
   SonarDrive heard = virtual_drive(set, pioneer_sonars());
@@ -211,8 +212,8 @@ json measure(const DataSet& set, const std::string& log_folder, Report& report,
   const SonarRun mapped = map_sonars(heard, full.front().pose);
   out["sonar_like_mapping"] =
       sonar_json(set, mapped, "7 virtual sonars, map built on the way", report);
-  // The same with dead reckoning calibrated, as one would for a robot that one drives. Its
-  // constants are from the full ranges of the whole drive.
+  // The same with calibrated dead reckoning, as for one's own robot. The constants are from the
+  // full ranges of the whole drive.
   std::vector<Pose> at_scans;
   for (const StampedPose& p : full)
     at_scans.push_back(p.pose);

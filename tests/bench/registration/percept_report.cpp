@@ -16,7 +16,7 @@ using lps::PointType;
 using nlohmann::json;
 using saphira::test::quantile;
 
-constexpr double kAgrees = 0.85;  // of the reference's walls that the laser sees, at least
+constexpr double kAgrees = 0.85;  // least share of the reference's walls that the laser sees
 
 json json_of(const test::Count& count) {
   return {{"reported", count.reported}, {"real", count.real}, {"precision", count.precision()}};
@@ -158,7 +158,7 @@ void draw(const PerceptRun& run, const std::optional<maps::Map>& reference, cons
 PerceptReport report_percepts(const DataSet& set, const std::string& log_folder,
                               const std::vector<StampedPose>& full,
                               const std::vector<Pose>& calibrated_in_odom, Report& report) {
-  // Into the frame of the corrected poses, as a whole.
+  // Transforms all into the frame of the corrected poses.
   const Pose place = set.reference ? alignment(pair_up(Trajectory(full), *set.reference)) : Pose{};
   std::vector<Pose> poses;
   for (const StampedPose& p : full)

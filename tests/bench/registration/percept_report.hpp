@@ -13,10 +13,10 @@ namespace saphira::bench {
 struct PerceptReport {
   nlohmann::json percepts;
   nlohmann::json grid;
-  maps::Drawing drawing;  ///< what seven sonars saw, calibrated: real, wrong, missed
+  maps::Drawing drawing;  ///< percepts of seven sonars, calibrated: real, wrong, missed
 };
 
-/// The percepts of interpretation from virtual sonars, with dead reckoning as it is and calibrated
+/// The percepts of interpretation from virtual sonars, with raw and with calibrated dead reckoning
 /// (`calibrated_in_odom`), against the reference for a log of that folder and against the laser;
 /// and the two grid models. `full`: the robot's poses at the scans.
 PerceptReport report_percepts(const logs::DataSet& set, const std::string& log_folder,

@@ -13,7 +13,7 @@ namespace {
 using lps::PointType;
 using test::GridTruth;
 
-// As test::Score has them.
+// As in test::Score.
 constexpr int kSamples = 20;
 constexpr int kEnough = 17;
 constexpr double kOnWall = 0.2;    // [m]
@@ -34,7 +34,7 @@ bool is_covered(const maps::Map& reference, const Vec2& at) {
 }
 
 bool lasts(const LaserCells& cells, const lps::Percept& wall, const Pose& at) {
-  // The surface's distance from the percept along it, and how that changes.
+  // The surface's distance from the percept along it, and the change of that.
   double n = 0.0;
   double su = 0.0;
   double sv = 0.0;

@@ -58,7 +58,7 @@ TEST(Percepts, AreHeldAgainstAReferenceAndTheLaser) {
   EXPECT_EQ(run.by_laser.walls().real, run.by_laser.walls().reported);
   EXPECT_EQ(run.by_laser.doors().real, 1);
 
-  // The same percepts half a metre aside are of nothing.
+  // The same percepts half a metre aside match nothing.
   std::vector<Pose> aside;
   for (const Pose& pose : drive.poses_in_odom)
     aside.push_back({pose.x, 0.5, 0.0});

@@ -21,7 +21,7 @@ class Report {
   /// Begins a table.
   void columns(const std::vector<std::string>& names);
   void row(const std::string& what, const std::vector<std::string>& cells);
-  /// These stand after the tables.
+  /// Adds a note after the tables.
   void note(const std::string& text);
   void picture(const std::string& title, const std::string& path);
   void end_of_set();

@@ -15,7 +15,7 @@ using namespace logs;
 
 namespace {
 
-// Rooms are cut out of the solid, with sides along the axes.
+// Rooms are cut out of a solid, with sides along the axes.
 class Solid {
  public:
   Solid(double width, double height)
@@ -72,7 +72,7 @@ class Solid {
   std::vector<char> free_;
 };
 
-// A thing with four sides, turned.
+// A rotated box.
 void put_box(Floor& floor, const Vec2& middle, double length, double width, double turn) {
   const Pose pose{middle.x(), middle.y(), turn};
   const std::array<Vec2, 4> corners{transform(pose, Vec2(length / 2, width / 2)),
@@ -83,7 +83,7 @@ void put_box(Floor& floor, const Vec2& middle, double length, double width, doub
     floor.walls.push_back({corners[i], corners[(i + 1) % 4]});
 }
 
-// The segments by the squares that they pass through.
+// The segments by the squares that they pass.
 class Caster {
  public:
   explicit Caster(const std::vector<sim::Segment>& walls) : walls_(walls) {
@@ -102,7 +102,7 @@ class Caster {
       const int steps = 1 + static_cast<int>(along.norm() / (0.25 * kSquare));
       for (int i = 0; i <= steps; ++i) {
         const Vec2 p = walls[k].from + along * (static_cast<double>(i) / steps) - low_;
-        // A corner may be cut between two samples: the squares beside have it as well.
+        // A corner may be cut between two samples: the neighbouring squares have it as well.
         for (const double dx : {-0.25 * kSquare, 0.25 * kSquare})
           for (const double dy : {-0.25 * kSquare, 0.25 * kSquare}) {
             auto& square = squares_[static_cast<std::size_t>(index(p.y() + dy) * columns_ +
@@ -160,7 +160,7 @@ class Caster {
   std::vector<std::vector<std::size_t>> squares_;
 };
 
-// The place after so much way along a route.
+// The place at that distance along a route.
 Vec2 place_on(const std::vector<Vec2>& route, double way) {
   way = std::max(0.0, way);
   for (std::size_t i = 1; i < route.size(); ++i) {
@@ -204,7 +204,7 @@ Floor office_floor(std::uint64_t seed) {
         else
           solid.cut(a0, b0, a1, b1);
       };
-      if (random.chance(0.2)) {  // shut: only the niche of its door is seen
+      if (random.chance(0.2)) {  // shut: only the niche of its door is visible
         cut(door, wall, door + 0.9, depth > 0.0 ? wall + 0.1 : wall - 0.1);
       } else {
         cut(at, near, at + width - 0.15, far);
@@ -344,7 +344,7 @@ Floor blocks(std::uint64_t seed, int rounds) {
       }
   Floor floor;
   floor.walls = solid.walls();
-  // From crossing to crossing: right around the left block, then on and on without turning back.
+  // From crossing to crossing: right around the left block, then on without turning back.
   std::size_t c = 0;
   std::size_t r = 0;
   int heading = 0;  // right, up, left, down

@@ -7,7 +7,8 @@
 #include "saphira/logs/data_set.hpp"
 #include "saphira/sim/world.hpp"
 
-/// Drives whose truth is exact, on floors, with lasers and wheels unlike those of the logs at hand.
+/// Drives with an exact truth, on floors, with lasers and wheels unlike those of the available
+/// logs.
 namespace saphira::bench {
 
 struct Floor {
@@ -15,12 +16,12 @@ struct Floor {
   std::vector<Vec2> route;  ///< of the robot, from point to point [m]
 };
 
-/// A ring of corridors with furnished rooms on both sides, no two alike; the robot goes around and
+/// A ring of corridors with furnished rooms on both sides, all different; the robot goes around and
 /// into many of them.
 Floor office_floor(std::uint64_t seed);
-/// Two corridors between rows of rooms that are all the same.
+/// Two corridors between rows of identical rooms.
 Floor rows_of_rooms(std::uint64_t seed);
-/// A grid of long corridors with niches: loops of 100 to 300 m. `rounds`: how long the drive is.
+/// A grid of long corridors with niches: loops of 100 to 300 m. `rounds`: length of the drive.
 Floor blocks(std::uint64_t seed, int rounds);
 /// One loop of 240 m of bare corridors.
 Floor bare_loop();
@@ -30,7 +31,7 @@ Floor hall();
 struct LaserKind {
   int beams = 181;
   double step = radians(1.0);
-  double reach = 80.0;  ///< [m] and what is reported when nothing is hit
+  double reach = 80.0;  ///< [m] also the range without a hit
   double noise = 0.01;  ///< [m] one sigma
   Pose in_robot;        ///< its middle beam looks along x
   double every = 0.0;   ///< [m] of way from scan to scan; 0: at every `period`
@@ -40,8 +41,8 @@ struct LaserKind {
 struct Wheels {
   double errors = 1.0;      ///< times those of manual Table 3-1
   double bias = 0.0;        ///< [rad/m]
-  double slip_every = 0.0;  ///< [m] of way between jumps of the heading; 0: none
-  double slip = 0.0;        ///< [rad] the most
+  double slip_every = 0.0;  ///< [m] of way between heading jumps; 0: none
+  double slip = 0.0;        ///< [rad] the largest
 };
 
 /// The log of a robot that drives along the route at 0.5 m/s among `people` who walk near it.

@@ -7,7 +7,7 @@
 
 #include "saphira/geometry/pose.hpp"
 
-/// Readings of real sonars, as the public data sets hold them. All in metres and radians.
+/// Readings of real sonars, from public data sets. All in metres and radians.
 namespace saphira::bench {
 
 /// One reading of an ultrasonic sensor in front of a plate, with the true range. No echo: a range
@@ -25,7 +25,7 @@ std::vector<Calibration> parse_calibration(std::string_view csv, const std::stri
 inline constexpr std::array<double, 8> kCorridorBearings{
     radians(-90.0), radians(-37.5), radians(-22.5), radians(-7.5),
     radians(7.5),   radians(22.5),  radians(37.5),  radians(90.0)};
-inline constexpr double kCorridorNoEcho = 5.105;  ///< [m] more than this is none
+inline constexpr double kCorridorNoEcho = 5.105;  ///< [m] larger ranges are no echo
 
 struct CorridorRecord {
   Pose pose_in_odom;
@@ -38,7 +38,7 @@ std::vector<CorridorRecord> parse_corridor(std::string_view measurements, std::s
 
 /// Rings of 24 sonars, 15 degrees apart, 5 m at most.
 inline constexpr std::size_t kRing = 24;
-inline constexpr double kRingNoEcho = 4.9995;  ///< [m] more than this is none
+inline constexpr double kRingNoEcho = 4.9995;  ///< [m] larger ranges are no echo
 
 std::vector<std::array<double, kRing>> parse_ring(std::string_view csv, const std::string& file);
 

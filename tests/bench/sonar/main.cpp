@@ -1,4 +1,4 @@
-// Simulated sonars beside real ones: the same statistics of both, in the same places.
+// Simulated sonars compared with real ones: the same statistics of both, at the same places.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

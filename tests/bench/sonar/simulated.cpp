@@ -9,7 +9,7 @@ namespace saphira::bench {
 
 namespace {
 
-constexpr double kNone = 9.0;  // [m] what stands for no echo: more than any of the sensors reads
+constexpr double kNone = 9.0;  // [m] stands for no echo: beyond all sensors' ranges
 
 protocol::RobotParameters with_sonars(const std::vector<Pose>& poses) {
   protocol::RobotParameters parameters;

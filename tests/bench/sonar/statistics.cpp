@@ -17,8 +17,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Least squares through the points, over and over without those that lie off: far less than what
-// a reflection by something else is off.
+// Least squares through the points, repeated without outliers: the limit is far below the error of
+// a reflection from another object.
 Line robust_line(std::vector<Vec2> points) {
   Line line;
   for (int round = 0; round < 10 && points.size() > 2; ++round) {
@@ -68,7 +68,7 @@ bool none(double range) {
 std::vector<RangeBin> range_bins(const std::vector<Calibration>& readings) {
   constexpr double kBin = 0.5;
   constexpr double kOutlier = 0.1;
-  // A sensor's constant error grows with the range; the noise is what is left of a line.
+  // A sensor's constant error grows with the range; the noise is the deviation from a line.
   std::vector<Vec2> inliers;
   for (const Calibration& r : readings)
     if (std::abs(r.reading - r.truth) < kOutlier)
@@ -120,7 +120,7 @@ Corridor fit_corridor(const std::vector<CorridorRecord>& straight) {
         points.push_back(reading_in_odom(record, side));
     (side == 0 ? corridor.right : corridor.left) = robust_line(points);
   }
-  // Where along its wall each new reading of an oblique sonar was made, if the wall made it.
+  // The place along its wall for each new reading of an oblique sonar, if the wall made it.
   constexpr double kGap = 0.15;
   constexpr std::size_t kLeast = 4;
   for (const bool right : {true, false}) {
@@ -183,7 +183,7 @@ sim::World to_world(const Corridor& corridor) {
 
 CorridorStatistics corridor_statistics(const std::vector<CorridorRecord>& straight,
                                        const Corridor& corridor) {
-  constexpr double kMatch = 0.15;            // [m] a reading is of a post
+  constexpr double kMatch = 0.15;            // [m] tolerance for a reading of a post
   constexpr double kLobeBin = radians(4.0);  // off axis
   constexpr double kHalfCone = radians(15.0);
   CorridorStatistics out;
@@ -216,7 +216,7 @@ CorridorStatistics corridor_statistics(const std::vector<CorridorRecord>& straig
         const bool match = std::abs(range - away) < kMatch;
         of_post |= match && std::abs(off) < radians(25.0);
         if (range < away - kMatch)
-          continue;  // something nearer was heard: that says nothing of this one
+          continue;  // a nearer object was heard: no evidence about this one
         Heard& heard = out.lobe[static_cast<int>(std::lround(off / kLobeBin))];
         (match ? heard.yes : heard.no) += 1;
       }

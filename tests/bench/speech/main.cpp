@@ -1,4 +1,4 @@
-// How well spoken commands are understood: voices of flite and espeak-ng say what is written in
+// The recognition of spoken commands: voices of flite and espeak-ng say the utterances of
 // services/agent_interface/test/utterances.txt, clean and with noise, with the keyword and without.
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,7 @@ std::vector<Phrase> phrases(const std::string& file) {
   return all;
 }
 
-/// Names that the utterances have, and no shipped list.
+/// Names in the utterances that are not in a shipped list.
 std::vector<std::string> names(const agent_interface::Grammar& grammar) {
   std::vector<std::string> all = grammar.names();
   for (const char* const name : {"ej-231", "ej-241", "ej-243", "ej-245", "ej-247", "bob", "mr alda",
@@ -75,7 +75,7 @@ double power(const Sound& sound) {
   return sum / static_cast<double>(std::max<std::size_t>(1, sound.size()));
 }
 
-/// White noise of so many decibels less than the voice has, all along.
+/// White noise at this level below the voice, over the whole sound.
 void add_noise(Sound& sound, double voice_power, double decibels, Random& random) {
   const double sigma = std::sqrt(voice_power / std::pow(10.0, decibels / 10.0));
   for (std::int16_t& sample : sound)
@@ -83,7 +83,7 @@ void add_noise(Sound& sound, double voice_power, double decibels, Random& random
         static_cast<std::int16_t>(std::clamp(sample + sigma * random.normal(), -32768.0, 32767.0));
 }
 
-/// Samples at the end that are next to nothing.
+/// Nearly silent samples at the end.
 std::size_t silent_end(const Sound& sound) {
   std::size_t count = 0;
   while (count < sound.size() && std::abs(sound[sound.size() - 1 - count]) < 300)
@@ -95,8 +95,8 @@ struct Tally {
   int commands = 0;
   int right = 0;
   int wrong = 0;
-  int near_misses = 0;  ///< with the keyword, and with words that mean nothing
-  int taken = 0;        ///< of them, as a command
+  int near_misses = 0;  ///< with the keyword, and meaningless words
+  int taken = 0;        ///< of them, accepted as a command
   int keyless = 0;
   int keyless_taken = 0;
 };
@@ -146,7 +146,7 @@ class Bench {
   std::vector<double> um;  ///< [s] from the end of the voice, in the sound's own time
 
  private:
-  /// The meaning of the first command in it; empty: there is none.
+  /// The meaning of the first command in it; empty: none.
   std::string understood(Recognizer& recognizer, const Sound& sound, std::size_t voice_ends,
                          bool times) {
     constexpr std::size_t kBlock = kRate / 50;

@@ -1,5 +1,5 @@
-// How many utterances have the meaning that a person would give them, and how many are acted on
-// wrongly: those of services/agent_interface/test/utterances.txt, or of a file of your own.
+// The share of utterances with the meaning that a person would give them, and of wrong actions: for
+// services/agent_interface/test/utterances.txt, or a file of your own.
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace {
 using namespace saphira;
 using namespace saphira::agent_interface;
 
-/// True where the robot would do something.
+/// True where the meaning leads to an action.
 bool acts(const std::string& meaning) {
   return meaning != "what?" && meaning != "nothing" && meaning != "ambiguous";
 }

@@ -9,7 +9,7 @@
 namespace saphira::test {
 namespace {
 
-/// A stop button with a program of its own.
+/// A stop button in its own program.
 class Button {
  public:
   explicit Button(Scene& scene) : node_(scene.node.options()) { command_.source("button"); }
@@ -45,7 +45,7 @@ struct Driving : Scene {
       return stopped();
     });
   }
-  /// For so many cycles of the robot; false where it moved, or the stop was let go.
+  /// For that number of robot cycles; false where it moved, or the stop was released.
   bool stays_stopped(std::uint64_t cycles) {
     const std::uint64_t begin = state.stamp().cycle();
     bool still = true;
@@ -65,7 +65,7 @@ TEST(BridgeEstop, HoldsWithoutItsButtonOverANewConnectionAndARestart) {
     ASSERT_TRUE(scene.press(button)) << scene.bridge_log();
   }
   EXPECT_EQ(scene.grant.estop_source(), "button");
-  // The driver asks on; the button's program is gone, its lease and any quiet time are over.
+  // The driver still asks; the button's program is gone, its lease and any quiet time are over.
   EXPECT_TRUE(scene.stays_stopped(40));
 
   const std::uint64_t epoch = scene.state.stamp().epoch();

@@ -1,5 +1,5 @@
-// Single step: the bridge steps the simulator when the driver has answered the cycle and somebody
-// holds the space bar; the run is the same every time, and as fast as the machine allows.
+// Single step: the bridge steps the simulator when the driver has answered the cycle and the permit
+// covers it; the run is the same every time, and as fast as the machine allows.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kCycles = 300;
 
-/// Drives a figure by the cycle's number alone; the trace of the run.
+/// Drives a figure by the cycle's number alone; returns the trace of the run.
 std::string run(std::uint64_t cycles, double* seconds) {
   Scene scene(true);
   scene.start_simulator();
@@ -41,7 +41,7 @@ std::string run(std::uint64_t cycles, double* seconds) {
   EXPECT_TRUE(done) << "stuck at cycle " << scene.state.stamp().cycle() << "\n"
                     << scene.bridge_log();
   *seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  // Nobody drives but by permit.
+  // Without a permit nothing moves.
   scene.watch(std::chrono::milliseconds(300));
   EXPECT_EQ(scene.state.stamp().cycle(), cycles);
   scene.bridge->signal(SIGTERM);

@@ -1,4 +1,4 @@
-// Each part dies or hangs in turn: the robot stands still soon, and all goes on when the part is
+// Each part dies or hangs in turn: the robot stops soon, and everything continues when the part is
 // back.
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(BridgeLoss, AStoppedBridgeIsSpokenFor) {
   std::printf("stood still %d cycles after SIGSTOP\n", static_cast<int>(still - stopped));
   EXPECT_LE(still, stopped + 5 + 1);
 
-  // It remains so for as long as the bridge hangs, over the server's watchdog.
+  // It stays so while the bridge hangs, beyond the server's watchdog.
   scene.watch(milliseconds(3000));
   for (const sim::TraceRow& row : scene.trace()) {
     if (row.cycle > still) {
@@ -41,7 +41,7 @@ TEST(BridgeLoss, AStoppedBridgeIsSpokenFor) {
     }
   }
 
-  // Back again with nobody at the wheel: the commands that waited are old.
+  // Back again without a driver: the commands that waited are old.
   scene.drives = false;
   scene.watch(milliseconds(200));
   const std::uint64_t resumed = scene.trace().back().cycle;
@@ -80,7 +80,7 @@ TEST(BridgeLoss, AKilledBridgeStopsTheRobotAndGoesOnWhereItWas) {
   scene.command.velocity(0.0);
   ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
   scene.watch(milliseconds(300));
-  // The world is 20 m wide, the start in the middle; the simulated odometry is that exact.
+  // The world is 20 m wide, the start in the middle; the simulated odometry is accurate enough.
   EXPECT_NEAR(scene.state.pose_in_odom().x(), scene.trace().back().pose_in_world.x - 10.0, 0.1);
 }
 

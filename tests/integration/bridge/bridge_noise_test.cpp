@@ -1,4 +1,4 @@
-// A line that damages bytes: the robot executes no command that was not sent, and the bridge
+// A line that damages bytes: the robot executes only commands that were sent, and the bridge
 // publishes no implausible state.
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ TEST(BridgeNoise, NoWrongCommandIsActedOn) {
       wait_until([&] { return scene.simulator->output().find("listening") != std::string::npos; }));
   NoisyLine line(scene.robot_port, scene.folder.path("robot"), 42);
   scene.start_bridge();
-  // Whole numbers of the packet's units, so that what is executed can be compared exactly.
+  // Whole numbers of the packet's units, so that executed commands can be compared exactly.
   Random random(7);
   std::set<int> speeds{0};
   std::set<int> turns{0};

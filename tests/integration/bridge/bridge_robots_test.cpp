@@ -1,5 +1,6 @@
-// Robots of every generation behind the bridge: it takes the parameter file that each one names,
-// drives it so that its odometry agrees with the truth, gets its sonars, and uses its devices.
+// Robots of every generation behind the bridge: it takes the parameter file that each robot names,
+// drives it so that its odometry agrees with the true motion, gets its sonars, and uses its
+// devices.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +13,7 @@ namespace {
 
 class BridgeRobots : public ::testing::TestWithParam<const char*> {};
 
-// In lockstep: a command to drive a distance is said once, and a machine that stands still for a
-// moment would end it.
+// In lockstep: a command to drive a distance is sent once, and a pause of the machine would end it.
 TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
   Scene scene(true);
   scene.robot_file = std::string(GetParam()) + ".p";
@@ -26,8 +26,8 @@ TEST_P(BridgeRobots, IsConfiguredDrivenAndHeard) {
   EXPECT_TRUE(scene.description->parameter_file().ends_with("/" + scene.robot_file))
       << scene.description->parameter_file();
 
-  // A third of a metre and a quarter turn, by the robot's own count and in truth. Slowly: the
-  // smallest of them does 0.1 m/s.
+  // A third of a metre and a quarter turn, by the robot's own count and by the true pose. Slowly:
+  // the smallest robot reaches 0.1 m/s.
   const double speed = std::min(0.25, 0.8 * scene.description->max_velocity());
   scene.command.translation(v1::TRANSLATION_POSITION);
   scene.command.distance(0.33);
@@ -119,7 +119,7 @@ TEST(BridgeDevices, OfALaterRobot) {
                 .code(),
             v1::ANSWER_SENT);
 
-  // The motors off: the user is told, and the robot does not drive until they are on again.
+  // Motors off: the user gets a message, and the robot does not drive until they are on again.
   EXPECT_EQ(motors(false), v1::ANSWER_DONE);
   ASSERT_TRUE(scene.until([&] {
     return scene.status.state() == v1::SERVICE_DEGRADED &&

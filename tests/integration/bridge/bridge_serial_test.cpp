@@ -1,4 +1,4 @@
-// The robot behind a serial line at 9600 baud: what happens to the line, and what the user sees.
+// The robot behind a serial line at 9600 baud: faults of the line, and their effect for the user.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 /// A scene with a line between bridge and robot.
 struct LineScene : Scene {
   LineScene() { robot_port = "serial:" + folder.path("tty") + "@9600"; }
-  /// Until the robot drives at 0.3 m/s.
+  /// Waits until the robot drives at 0.3 m/s.
   void drive_off() {
     start_simulator();
     ASSERT_TRUE(wait_until([this] { return line.has_robot(); }));
@@ -24,12 +24,12 @@ struct LineScene : Scene {
     drives = true;
     ASSERT_TRUE(until([&] { return state.velocity() > 0.28; })) << bridge_log();
   }
-  /// The line is about to be broken, perhaps within a packet.
+  /// The line will be broken, perhaps within a packet.
   void expect_halves() { simulator->expect_violations(); }
   bool says(const std::string& text) {
     return until([&] { return status.reason().find(text) != std::string::npos; });
   }
-  /// Cycles of the trace from `cycle` to the standstill; -1 where it did not come.
+  /// Cycles of the trace from `cycle` to the standstill; -1 without one.
   int cycles_to_stand(std::uint64_t cycle) {
     if (!until([&] { return stood_still(trace(), cycle) != 0; }))
       return -1;
@@ -48,7 +48,7 @@ TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
   scene.watch(milliseconds(3000));
   const double time =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  // Every packet comes: the line takes what the robot says in 100 ms in less than that.
+  // Every packet comes: the line needs less than 100 ms for the packets of 100 ms.
   EXPECT_GE(scene.states.size() - before, static_cast<std::size_t>(time * 10.0) - 3);
   const double rate = static_cast<double>(scene.line.from_robot() - bytes) / time;
   EXPECT_GT(rate, 300.0);
@@ -57,7 +57,7 @@ TEST(BridgeSerial, DrivesAtNinetySixHundredBaud) {
       << "commands that wait are old";
   EXPECT_EQ(scene.state.bad_packets(), 0U);
   EXPECT_EQ(scene.status.reason(), "");
-  // Release, and the robot stands: 0.3 m/s at 2 m/s2, and the line's own time.
+  // Release stops the robot: 0.3 m/s at 2 m/s2, plus the line's own time.
   scene.drives = false;
   scene.command.active(false);
   const std::uint64_t released = scene.trace().back().cycle;
@@ -79,7 +79,7 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   const std::uint64_t cut = scene.trace().back().cycle;
   ASSERT_TRUE(scene.says("robot link silent")) << scene.status.reason();
   EXPECT_EQ(scene.status.state(), v1::SERVICE_WAITING);
-  // The robot's own watchdog stops it: nobody else can.
+  // Only the robot's own watchdog can stop it.
   const int cycles = scene.cycles_to_stand(cut);
   std::printf("stood still %d cycles after the cable was pulled\n", cycles);
   EXPECT_GE(cycles, 0);
@@ -93,7 +93,7 @@ TEST(BridgeSerial, ACableThatIsPulledAndPutBack) {
   ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
 }
 
-// The bridge hears nothing but is heard: a driver that ignores the robot's state goes on sending
+// The bridge hears nothing but is heard: a driver that ignores the robot's state keeps sending
 // commands, and a SYNC0 of the bridge would reset the robot's watchdog.
 TEST(BridgeSerial, ALineThatIsBrokenOneWay) {
   LineScene scene;
@@ -153,11 +153,11 @@ TEST(BridgeSerial, ARobotThatIsSwitchedOffAndOn) {
     ASSERT_EQ(row.set_velocity, 0.0) << "nobody told it to drive";
 }
 
-/// Another bridge with the same port. Of another robot's name, so that its status is not taken for
+/// Another bridge with the same port, for another robot's name, so that its status is not taken for
 /// the first one's.
 struct SecondBridge {
   explicit SecondBridge(Scene& first) : scene(first) {}
-  /// Waits until its status says why it has no robot, with these words.
+  /// Waits until its status gives the reason for the missing robot, with these words.
   std::string wait_reason(const std::string& words) {
     std::string reason;
     EXPECT_TRUE(scene.until([&] {
@@ -194,7 +194,7 @@ TEST(BridgeSerial, ASecondBridgeOnTheSameLineSaysWhoIsThere) {
   ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
   EXPECT_EQ(scene.state.stamp().epoch(), epoch) << "the first one is not disturbed";
   EXPECT_GT(scene.state.velocity(), 0.28);
-  // When the first one ends, the second has the robot.
+  // After the end of the first one, the second has the robot.
   scene.bridge->signal(SIGTERM);
   auto states = second.node.reader(bus::topics::kRobotState);
   EXPECT_TRUE(scene.until([&] { return states.take_newest().has_value(); }))

@@ -1,5 +1,5 @@
-// The bridge over the real bus, with a simulated robot in a process of its own: who drives, and
-// that nothing else moves the robot.
+// The bridge over the real bus, with a simulated robot in its own process: the choice of the
+// driver, and no motion without one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,12 +36,12 @@ TEST(Bridge, DescribesTheRobotAndDrivesIt) {
   EXPECT_GT(scene.grant.expires_in(), 0.0);
   ASSERT_TRUE(scene.until([&] { return scene.status.state() == v1::SERVICE_RUNNING; }));
 
-  // Release is a stop at once: what remains is the robot's own braking (0.2 m/s at 2 m/s2).
+  // Release is a stop at once: only the robot's own braking remains (0.2 m/s at 2 m/s2).
   scene.drives = false;
   scene.command.active(false);
   const std::uint64_t released = scene.state.stamp().cycle();
   scene.publish();
-  // The trace, and not what the robot says of itself: its packets round a last tremble away.
+  // The trace, not the robot's own state: its packets round a last tremble away.
   ASSERT_TRUE(scene.until([&] { return stood_still(scene.trace(), released) != 0; }));
   const std::uint64_t still = stood_still(scene.trace(), released);
   EXPECT_GT(still, 0U);
@@ -102,7 +102,7 @@ TEST(Bridge, OneThatNobodyHearsBeginsAnewOnTheBus) {
   const std::uint64_t epoch = scene.state.stamp().epoch();
   forward(scene.command, 0.2);
   scene.drives = true;
-  // The only program that follows the robot says that it does not hear it.
+  // The only program that follows the robot reports that it does not hear it.
   bus::Node deaf(node_options("behaviors", scene.robot));
   deaf.status().state(v1::SERVICE_WAITING);
   deaf.status().reason("waits for robot/state of cycle 7");
@@ -110,7 +110,7 @@ TEST(Bridge, OneThatNobodyHearsBeginsAnewOnTheBus) {
     deaf.publish_status();
     return scene.bridge_log().find("began anew on the bus") != std::string::npos;
   })) << scene.bridge_log();
-  // The connection to the robot is the same, and who drove drives again.
+  // The connection to the robot is the same, and the same driver drives again.
   const std::uint64_t cycle = scene.state.stamp().cycle();
   EXPECT_TRUE(scene.until([&] {
     return scene.state.stamp().cycle() > cycle + 5 && scene.state.velocity() > 0.18;
@@ -138,13 +138,12 @@ TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   ASSERT_GE(rows.size(), 150U);
   rows.resize(150);
   EXPECT_EQ(rows.back().contacts, 0);
-  // Room for a person, who reaches farther than the shin that is heard.
+  // Room for a person, who reaches farther than the shin's echo.
   EXPECT_GT(rows.back().clearance, 0.2);
   EXPECT_LT(rows.back().clearance, 0.35) << "stopped needlessly early";
 }
 
-// In lockstep: the distance is said once, and a machine that stands still for a moment would end
-// it.
+// In lockstep: the distance is sent once, and a pause of the machine would end it.
 TEST(BridgeInLockstep, DrivesADistanceAndTurnsToAHeading) {
   Scene scene(true);
   scene.start_simulator();

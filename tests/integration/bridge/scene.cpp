@@ -81,7 +81,7 @@ void Scene::publish() {
 }
 
 void Scene::permit(std::uint64_t last) {
-  // A command that is written before the bridge listens is said to nobody, and each is said once.
+  // A command before the bridge is discovered reaches nobody, and each is sent once.
   EXPECT_TRUE(until([this] { return driver_->matched() > 0; }));
   v1::StepPermit sample;
   sample.source("test");

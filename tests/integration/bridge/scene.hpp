@@ -13,8 +13,8 @@
 
 namespace saphira::test {
 
-/// A simulator, a bridge, and a driver on the bus, each of which a test may hinder. In lockstep the
-/// robot steps as far as it is permitted to, as fast as the machine allows.
+/// A simulator, a bridge, and a driver on the bus, each of which a test may disturb. In lockstep
+/// the robot steps up to its permit, as fast as the machine allows.
 class Scene {
  public:
   explicit Scene(bool lockstep = false);
@@ -30,21 +30,22 @@ class Scene {
   void start_simulator();
   void start_bridge();
 
-  // ---- The driver. It publishes what `command` holds, on `role`'s topic, every 50 ms while it
-  // ---- is told to watch and drives.
+  // ---- The driver. It publishes `command` on `role`'s topic, every 50 ms while the scene watches
+  // and
+  // ---- `drives` is set.
   void use(const bus::Topic<v1::MotorCommand>& role);
   v1::MotorCommand command;
   bool drives = false;
   bool follows_cycles = true;  ///< stamps its commands with the newest robot state
   void publish();
-  /// In lockstep: lets the robot make its steps up to that cycle.
+  /// In lockstep: permits the robot's steps up to that cycle.
   void permit(std::uint64_t last);
 
   /// Watches and drives until the condition holds; false when the time is up.
   bool until(const std::function<bool()>& condition,
              std::chrono::milliseconds limit = std::chrono::seconds(30));
   void watch(std::chrono::milliseconds time);
-  /// Asks the bridge, and drives until that has come to an end.
+  /// Asks the bridge, and drives until the end of the request.
   v1::Answer ask(const bus::RequestTopic& topic, const std::string& functor,
                  const std::vector<v1::Argument>& arguments = {});
 
@@ -62,7 +63,7 @@ class Scene {
   /// The true states, from the simulator's trace; those of the newest connection alone.
   std::vector<sim::TraceRow> trace() const;
   std::vector<sim::TraceRow> whole_trace() const;
-  /// In lockstep: ends the simulator, which completes its trace, and gives that.
+  /// In lockstep: ends the simulator, which completes its trace; returns the trace.
   std::vector<sim::TraceRow> end();
   std::string bridge_log() const { return bridge->output(); }
 
@@ -90,7 +91,7 @@ class Scene {
 /// Makes the command one of speeds: [m/s], and [rad/s] counter-clockwise.
 void forward(v1::MotorCommand& command, double velocity, double rotation = 0.0);
 
-/// The true cycle in which the robot first stood still at or after `cycle`; 0 where it did not.
+/// The first true cycle at or after `cycle` with a standing robot; 0: none.
 std::uint64_t stood_still(const std::vector<sim::TraceRow>& rows, std::uint64_t cycle);
 
 }  // namespace saphira::test

@@ -1,5 +1,6 @@
 // A plug-in: a behavior in C++ that saphira-behaviors --plugin FILE loads. It keeps a distance from
-// what is ahead, to and fro; intended below AvoidCollision, it follows somebody who walks away.
+// the obstacle ahead, to and fro; intended below AvoidCollision, it follows a person who walks
+// away.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ class HoldDistance : public Behavior {
         {"too near", too_near, Action::speed, -most},
         {"just right", f_not(f_or(too_far, too_near)), Action::speed, 0.0},
     };
-    // Where nothing is ahead there is nobody to follow.
+    // Without an obstacle ahead there is nobody to follow.
     evaluation.activity.speed = ahead.point ? 1.0 : 0.0;
     evaluation.activity.goal = ahead.point ? down_straight(std::abs(off), 0.1, 0.3) : 0.0;
     evaluation.variables = {{"too_far", too_far}, {"too_near", too_near}};
@@ -41,7 +42,7 @@ class HoldDistance : public Behavior {
 
 extern "C" {
 
-// NOLINTNEXTLINE(readability-identifier-naming): the name is the interface's
+// NOLINTNEXTLINE(readability-identifier-naming): the name belongs to the interface
 const int saphira_behaviors_plugin = kPluginVersion;
 
 void saphira_register_behaviors(Registry& registry) {

@@ -17,7 +17,7 @@ struct Value {
   Type type = Type::real;
 };
 
-/// How many registers it takes.
+/// The number of registers of a type.
 inline std::size_t width(Type type) {
   return type == Type::point ? 3 : 1;
 }
@@ -29,9 +29,9 @@ class Assembler {
     zero_ = constant(0.0);
   }
 
-  /// Instructions go there from now on.
+  /// Following instructions go there.
   void write_to(std::vector<Instruction>& code) { code_ = &code; }
-  /// Beyond the limits the program is thrown away in the end.
+  /// Beyond the limits the program is discarded in the end.
   bool full() const;
 
   Register fresh(std::size_t count = 1);
@@ -49,7 +49,7 @@ class Assembler {
   Value call(const Function& function, const std::vector<Value>& arguments);
 
   std::size_t mark() const { return code_->size(); }
-  /// Makes the jump at `where` go to here.
+  /// Sets the target of the jump at `where` to here.
   void land(std::size_t where);
 
  private:

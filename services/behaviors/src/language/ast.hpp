@@ -7,7 +7,7 @@
 #include "lexer.hpp"
 #include "saphira/behaviors/behavior.hpp"
 
-// A behavior as it is written, before anything in it has a meaning.
+// The syntax of a behavior, before names have a meaning.
 namespace saphira::behaviors::language {
 
 enum class Type { nothing, integer, real, point, text };
@@ -32,9 +32,9 @@ struct Statement {
   Kind kind = Kind::block;
   Place place;
   Type type = Type::real;           ///< of a declaration
-  std::string name;                 ///< what is declared or assigned
+  std::string name;                 ///< the declared or assigned name
   std::optional<Expression> value;  ///< also the condition of a choice
-  std::vector<Statement> body;      ///< of a block; of a choice: where it holds
+  std::vector<Statement> body;      ///< of a block; of a choice: the taken branch
   std::vector<Statement> otherwise;
 };
 
@@ -88,11 +88,11 @@ struct ParsedBehavior {
   std::vector<Statement> init;
   std::vector<Statement> update;
   std::vector<ParsedActivity> activity;
-  /// Variables of sentences that could not be read: that they are unknown is no other mistake.
+  /// Variables of unreadable sentences: their use is not another error.
   std::vector<std::string> lost;
 };
 
-/// Parses as much as can be understood; what cannot be is in `messages`.
+/// Parses as much as possible; `messages` gets the errors.
 std::vector<ParsedBehavior> parse(const std::vector<Token>& tokens, Messages& messages);
 
 }  // namespace saphira::behaviors::language

@@ -14,9 +14,10 @@ class CParser {
   explicit CParser(Cursor& cursor) : cursor_(cursor) {}
 
   Statement statement(int depth = 0);
-  /// Past the end of a statement that could not be read, where the cursor is at it.
+  /// True past the end of a statement that could not be read.
   bool after_statement();
-  /// The variable that the present sentence declares or sets; a parameter is told here as well.
+  /// The variable that the present sentence declares or sets; the parser of parameters sets it as
+  /// well.
   std::vector<std::string>& naming() { return naming_; }
 
  private:

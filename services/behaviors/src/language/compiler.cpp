@@ -136,7 +136,7 @@ class Compiler {
     }
     auto found = variables_.find(one.name);
     if (found == variables_.end()) {
-      // The fuzzy variables of the manual's example: nobody declares them.
+      // The fuzzy variables of the manual's example have no declaration.
       Variable variable;
       variable.value.at = code_.fresh();
       variable.place = one.place;
@@ -175,7 +175,7 @@ class Compiler {
     code_.land(to_end);
   }
 
-  /// Variables that an update may leave alone begin each one as 0.
+  /// Variables that an update may leave unset start as 0 in each update.
   void clear_implied() {
     std::vector<Instruction> clear;
     for (const auto& [name, variable] : variables_)
@@ -263,7 +263,7 @@ class Compiler {
   }
 
   void activity() {
-    // A channel of which nothing is said is active where there are rules for it.
+    // A channel without an Activity statement is active where it has rules.
     bool turns = false;
     bool speeds = false;
     for (const Program::RuleCode& rule : program_->rules)

@@ -9,18 +9,18 @@
 
 namespace saphira::behaviors::language {
 
-/// Thrown where a sentence cannot be read on; caught where the next one begins.
+/// Thrown at an unreadable sentence; caught at the beginning of the next one.
 struct SyntaxError {
   Place place;
   std::string message;
 };
 
-/// Words that end a section of the language, wherever they are.
+/// Words that end a section of the language, at any place.
 bool ends_section(const Token& token);
-/// SyntaxError where something is too deep to be a person's.
+/// SyntaxError where the nesting is too deep for a person's text.
 void limit_depth(int depth, const Place& place);
 
-/// Where the parser is in a text.
+/// The parser's place in a text.
 class Cursor {
  public:
   explicit Cursor(const std::vector<Token>& tokens) : tokens_(tokens) {}
@@ -35,7 +35,7 @@ class Cursor {
   void skip(std::size_t n = 1) { at_ += n; }
   const Token& take();
   bool accept(std::string_view what);
-  // These throw a SyntaxError where there is something else.
+  // These throw a SyntaxError for any other token.
   void expect(std::string_view what);
   const Token& expect_symbol(const std::string& what);
   double expect_number(const std::string& what);

@@ -111,7 +111,7 @@ std::vector<Value> Expressions::arguments(const Expression& e, const std::vector
       messages_.error(e.parts[i].place, "argument " + std::to_string(i + 1) + " of " + e.text +
                                             ": expected " + named(types[i]) + ", found " +
                                             named(value.type));
-    // As if it had been right: the program is not used.
+    // Continues as after a valid one: the program is not used.
     values.push_back(fits ? value : Value{code_.fresh(3), types[i]});
   }
   return values;

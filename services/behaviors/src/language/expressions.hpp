@@ -12,10 +12,10 @@ inline bool is_number(Type type) {
   return type == Type::integer || type == Type::real;
 }
 
-/// Compiles the expressions of Init and Update. After a mistake it goes on as if there were none.
+/// Compiles the expressions of Init and Update. After an error it continues as if there were none.
 class Expressions {
  public:
-  /// `lost`: what is known to be unknown.
+  /// `lost`: names that are known to be missing.
   Expressions(Assembler& code, Variables& variables, Messages& messages,
               const std::vector<std::string>& lost)
       : code_(code),
@@ -25,7 +25,7 @@ class Expressions {
 
   Value expression(const Expression& e);
   bool expect_number(const Place& place, const Value& value);
-  /// Says that there is no such variable, once a name, and goes on as if it were one.
+  /// Reports an unknown variable, once for each name, and continues as if it existed.
   Value unknown(const Place& place, const std::string& name);
 
  private:
@@ -39,7 +39,8 @@ class Expressions {
   Value unary(const Expression& e);
   Value binary(const Expression& e);
   Value text_compared(const Expression& e, const Expression& name, const Expression& text);
-  /// && and ||: the right side is not looked at where the left one decides.
+  /// && and
+  /// : the right side is not evaluated where the left one decides.
   Value logical(const Expression& e);
   Value conditional(const Expression& e);
 

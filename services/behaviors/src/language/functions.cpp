@@ -67,7 +67,7 @@ void occ_plane(Call& call, const double* a, double* out) {
              .distance;
 }
 
-/// Obstacles that a disc can meet on the way of `within` [m].
+/// Obstacles that a disc can meet within `within` [m].
 const std::vector<Vec2>& near(Call& call, double within) {
   if (call.near_within < within) {
     call.near.clear();
@@ -89,7 +89,7 @@ void path(Call& call, const double* a, double* out) {
     note(call, {0.0, limit + radius, -radius, radius});
 }
 
-/// As sfFreePath straight ahead, among what is on one side alone.
+/// As sfFreePath straight ahead, with the obstacles of one side alone.
 template <Beside kSide>
 void path_beside(Call& call, const double* a, double* out) {
   const double radius = a[0] * kMetres;
@@ -107,7 +107,7 @@ void path_beside(Call& call, const double* a, double* out) {
                                      : Area{0.0, limit + radius, -radius, 0.0});
 }
 
-/// sfNearestLeft(from, to, limit): among what is from `from` to `to` along X.
+/// sfNearestLeft(from, to, limit): among the obstacles from `from` to `to` along X.
 template <Beside kSide>
 void nearest_beside(Call& call, const double* a, double* out) {
   const double from = a[0] * kMetres;
@@ -122,15 +122,15 @@ void nearest_beside(Call& call, const double* a, double* out) {
     note(call, kSide == Beside::left ? Area{from, to, 0.0, limit} : Area{from, to, -limit, 0.0});
 }
 
-constexpr double kFree = 0.8;                 ///< of the reach: a way so far is free
-constexpr double kRoom = 0.12;                ///< [m] beside the hull, where there is room
-constexpr double kTight = 0.08;               ///< [m] beside the hull, at the least
-constexpr double kTightCost = radians(40.0);  ///< a tight way is worth so much of a turn
+constexpr double kFree = 0.8;                 ///< share of the reach that counts as a free way
+constexpr double kRoom = 0.12;                ///< [m] beside the hull on a wide way
+constexpr double kTight = 0.08;               ///< [m] beside the hull, at least
+constexpr double kTightCost = radians(40.0);  ///< the cost of a tight way, as a turn
 constexpr double kWidest = radians(100.0);
 constexpr double kStep = radians(2.5);
 
-/// The cheapest direction on that side of `wish`: the way off and the turn, and more where it is
-/// tight; one that is blocked costs more than any that is free.
+/// The cheapest direction on that side of `wish`: the deviation plus the turn, and more where the
+/// way is tight. A blocked direction costs more than any free one.
 const Way& way(Call& call, const double* a) {
   for (const Call::Known& known : call.ways)
     if (known.side == a[0] && known.wish == a[1] && known.reach == a[2])
@@ -159,8 +159,8 @@ const Way& way(Call& call, const double* a) {
   return call.ways.back().way;
 }
 
-constexpr double kAside = radians(60.0);  ///< no farther from the direction asked for
-constexpr double kMatters = 0.02;         ///< [m] less more room is not worth a turn
+constexpr double kAside = radians(60.0);  ///< largest deviation from the wanted direction
+constexpr double kMatters = 0.02;         ///< [m] smaller gains of room are ignored
 
 /// sfWideWay(direction, radius, reach)
 void wide_way(Call& call, const double* a, double* out) {
@@ -327,7 +327,7 @@ const std::vector<Function>& functions() {
        {kR, kR},
        [](Call&, D a, double* o) { *o = sub2_angle(a[0], a[1]); },
        "the difference in (-pi, pi]"},
-      // Sonars (manual 6.6.2) and what is remembered of them.
+      // Sonars (manual 6.6.2) and the obstacle memory.
       {"sfOccBox",
        kR,
        {kI, kR, kR, kR, kR},
@@ -427,7 +427,7 @@ const std::vector<Function>& functions() {
        {},
        [](Call& c, D, double* o) { *o = static_cast<double>(c.context->cycle); },
        "number of the cycle; ten are a second"},
-      // Values that behaviors give to those of higher priority.
+      // Values that behaviors pass to those of higher priority.
       {"sfGoalKnown",
        kI,
        {},

@@ -6,7 +6,7 @@
 namespace saphira::behaviors::language {
 namespace {
 
-constexpr double kMetres = 0.001;  // of the language's millimetres
+constexpr double kMillimetre = 0.001;  // of the language's millimetres
 
 void run(const Program& program, const std::vector<Instruction>& code, double* r, Call& call) {
   const Instruction* const begin = code.data();
@@ -89,12 +89,12 @@ class Instance : public Behavior {
       double* const to = registers_.data() + binding.to;
       if (binding.type == Type::point) {
         const std::optional<Pose> in_odom = parameters.point(i);
-        // Of one that is not given nothing is a number: whoever forgets to ask is told.
+        // An absent point is NaN: a behavior that does not check for it gets an error.
         const double none = std::numeric_limits<double>::quiet_NaN();
         const Pose local =
             in_odom ? relative(context.robot.pose_in_odom, *in_odom) : Pose{none, none, none};
-        to[0] = local.x / kMetres;
-        to[1] = local.y / kMetres;
+        to[0] = local.x / kMillimetre;
+        to[1] = local.y / kMillimetre;
         to[2] = local.th;
       } else if (binding.type == Type::text) {
         *to = static_cast<double>(parameters.choice(i));
@@ -143,14 +143,14 @@ class Instance : public Behavior {
         break;
       case ParsedRule::Kind::speed:
         rule.action = Action::speed;
-        rule.value *= kMetres;
+        rule.value *= kMillimetre;
         break;
       case ParsedRule::Kind::accelerate:
       case ParsedRule::Kind::decelerate:
         rule.action = (code.kind == ParsedRule::Kind::accelerate) == (rule.value >= 0.0)
                           ? Action::accelerate
                           : Action::decelerate;
-        rule.value = std::abs(rule.value) * kMetres;
+        rule.value = std::abs(rule.value) * kMillimetre;
         break;
     }
     if (!std::isfinite(rule.value) || std::isnan(rule.strength)) {

@@ -23,7 +23,7 @@ class Lexer {
       skip_blanks();
       Token token = next();
       const bool end = token.kind == TokenKind::end;
-      // A word that is missing at the end is missing after the last one.
+      // A word missing at the end is reported after the last one.
       if (end && !tokens.empty()) {
         const Token& last = tokens.back();
         const bool text = last.kind == TokenKind::text;
@@ -100,7 +100,7 @@ class Lexer {
         return token;
       }
     if (std::string_view("+-*/%<>=!?:;,.(){}|").find(c) == std::string_view::npos) {
-      // All of a character of several bytes, so that there is one message.
+      // All bytes of a multi-byte character, so that there is one message.
       do
         ++at_;
       while ((static_cast<unsigned char>(peek()) & 0xC0U) == 0x80U);
@@ -113,8 +113,8 @@ class Lexer {
     return token;
   }
 
-  /// After a character that is none of the language: iterative in all(), so that a file of
-  /// nothing else does not go deep.
+  /// After an invalid character: iterative in all(), so that a file of such characters does not
+  /// recurse deeply.
   Token next_or_end() {
     Token token;
     token.place = place();
@@ -181,12 +181,12 @@ FileError Messages::made(const Place& place, const std::string& message) const {
   std::string_view line = rest.substr(0, rest.find('\n'));
   if (!line.empty() && line.back() == '\r')
     line.remove_suffix(1);
-  // Nobody looks at the end of such a line.
+  // The end of such a line is of no use.
   return FileError(file_, place.line, place.column, message, line.substr(0, 400));
 }
 
 void Messages::error(const Place& place, const std::string& message) {
-  // The first of what is wrong in one place is what people can do something about.
+  // Only the first error at one place is useful to people.
   for (const FileError& other : errors)
     if (other.line() == place.line && other.column() == place.column)
       return;

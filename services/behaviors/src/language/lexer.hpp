@@ -8,7 +8,7 @@
 
 namespace saphira::behaviors::language {
 
-/// Where something stands in the text, from 1.
+/// A place in the text, from 1.
 struct Place {
   int line = 1;
   int column = 1;
@@ -28,7 +28,7 @@ struct Token {
   }
 };
 
-/// Collects what is wrong with a text.
+/// Collects the errors of a text.
 class Messages {
  public:
   Messages(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
@@ -51,7 +51,7 @@ class Messages {
 /// The tokens of a text, without comments; the last one is an end. Views into the text.
 std::vector<Token> tokenize(std::string_view text, Messages& messages);
 
-/// As it is named in "found ...".
+/// Its name in "found ...".
 std::string found(const Token& token);
 
 }  // namespace saphira::behaviors::language

@@ -19,7 +19,7 @@ bool is_constant(std::string_view name) {
   return std::ranges::any_of(constants(), [&](const Constant& c) { return name == c.name; });
 }
 
-/// Levenshtein's, of names of people's length.
+/// Levenshtein's, for names of usual length.
 std::size_t distance(const std::string& a, const std::string& b) {
   if (a.size() > 40 || b.size() > 40)
     return 40;

@@ -31,11 +31,11 @@ struct Quick {
 const Quick* find_quick(std::string_view name);
 const Function* find_function(std::string_view name);
 
-/// True where it has a meaning that no behavior can give it.
+/// True for a name with a fixed meaning, which no behavior can define.
 bool reserved(std::string_view name);
 bool is_function(std::string_view name);
 
-/// "; did you mean ...?" where there is something like it.
+/// "; did you mean ...?" where a similar name exists.
 std::string meant_variable(const std::string& name, const Variables& variables);
 std::string meant_function(const std::string& name);
 

@@ -53,8 +53,8 @@ class Parser {
  private:
   void report(const SyntaxError& error) { messages_.error(error.place, error.message); }
 
-  /// Reads sentences until the section ends. After one that cannot be read, goes on where
-  /// `begins` says that another one does.
+  /// Reads sentences until the section ends. After an unreadable one, continues where `begins`
+  /// finds the next.
   template <class Sentence, class Begins>
   void section(Sentence&& sentence, Begins&& begins) {
     while (!cursor_.at_end() && !ends_section(cursor_.now()) && !messages_.full()) {
@@ -107,7 +107,7 @@ class Parser {
     return out;
   }
 
-  /// The word that begins a section. Where it is not there the section is taken to be empty.
+  /// The word that begins a section. Without it the section counts as empty.
   bool head(std::string_view word, bool required) {
     if (cursor_.accept(word))
       return true;
@@ -132,7 +132,7 @@ class Parser {
     ParameterSpec& spec = parameter.spec;
     spec.name = std::string(cursor_.expect_symbol("the name of the parameter").text);
     c_.naming().push_back(spec.name);
-    // An underscore that the print has lost.
+    // An underscore lost in print.
     while (cursor_.now().kind == TokenKind::symbol && !ends_section(cursor_.now()) &&
            !parameter_type(cursor_.now().text) && !cursor_.now().is("from") &&
            !cursor_.now().is("optional") && !is_unit()) {
@@ -247,7 +247,7 @@ class Parser {
       }
       rule.modifier = modifier();
       rule.action_text = cursor_.words(begin, cursor_.place());
-      // As the grammar is printed, a turn and a speed can follow one antecedent.
+      // The printed grammar allows a turn and a speed after one antecedent.
       const bool both = cursor_.now().is("Speed");
       ParsedRule second = rule;
       push(out, std::move(rule));
@@ -295,7 +295,7 @@ class Parser {
   }
 
   std::optional<RuleValue> modifier() {
-    // [rad]; 5 degrees are what the manual's Figure 2-6 shows of a gentle turn.
+    // [rad]; the manual's Figure 2-6 shows 5 degrees for a gentle turn.
     struct Named {
       std::string_view first;
       std::string_view second;
@@ -385,8 +385,8 @@ class Parser {
       cursor_.expected("a fuzzy variable, a number from 0 to 1, \"Not\" or \"(\"");
     out.kind = FuzzyExpression::Kind::name;
     out.name = std::string(cursor_.take().text);
-    // An underscore that the print has lost. What begins the next sentence is a keyword, or in the
-    // rules the name of a rule, which is followed by "If".
+    // An underscore lost in print. The next sentence begins with a keyword, or in the rules with
+    // the name of a rule, followed by "If".
     while (cursor_.now().kind == TokenKind::symbol && !fuzzy_keyword(cursor_.now().text) &&
            !channel(cursor_.now().text) && !ends_section(cursor_.now()) &&
            !cursor_.ahead(1).is("If")) {
@@ -419,7 +419,7 @@ class Parser {
   Cursor cursor_;
   Messages& messages_;
   CParser c_{cursor_};
-  std::vector<std::string> lost_;  ///< of sentences that could not be read
+  std::vector<std::string> lost_;  ///< of unreadable sentences
 };
 
 }  // namespace

@@ -15,7 +15,7 @@
 // angles in radians in it, as in the manual.
 namespace saphira::behaviors::language {
 
-/// A way around what is in front, see sfWay.
+/// A way around an obstacle in front, see sfWay.
 struct Way {
   double direction = 0.0;  ///< [rad]
   double cost = 1e9;       ///< [rad]
@@ -25,7 +25,7 @@ struct Way {
 struct Call {
   const Context* context = nullptr;
   Evaluation* evaluation = nullptr;
-  /// The ways that were asked for: sfWay and sfWayCost of the same arguments search once.
+  /// The ways found so far: sfWay and sfWayCost of the same arguments search once.
   struct Known {
     double side = 0.0;
     double wish = 0.0;
@@ -33,7 +33,7 @@ struct Call {
     Way way;
   };
   std::vector<Known> ways;
-  /// The obstacles near the robot, once they are needed.
+  /// The obstacles near the robot, collected on first use.
   std::vector<Vec2> near;
   double near_within = -1.0;  ///< [m]; negative: not yet collected
 };
@@ -99,7 +99,7 @@ inline double apply(Op op, double a, double b, double c) {
     case Op::multiply:
       return a * b;
     case Op::divide:
-      // A number in any case: what comes of it is told where it gets to a rule.
+      // Always a number: NaN is reported where it reaches a rule.
       return b == 0.0 ? std::numeric_limits<double>::quiet_NaN() : a / b;
     case Op::remainder:
       return b == 0.0 ? std::numeric_limits<double>::quiet_NaN() : std::fmod(a, b);
@@ -163,7 +163,7 @@ struct Program {
   std::vector<double> registers;    ///< constants; 0 elsewhere
   std::vector<Instruction> init;
   std::vector<Instruction> update;
-  std::vector<void (*)(Call&, const double*, double*)> calls;  ///< what Op::call's b counts
+  std::vector<void (*)(Call&, const double*, double*)> calls;  ///< indexed by b of Op::call
   std::vector<Kept> kept;                                      ///< the variables that persist
   std::vector<RuleCode> rules;
   std::vector<Shown> shown;
@@ -173,7 +173,7 @@ struct Program {
   std::uint16_t progress = 0;
 };
 
-/// Gives a parsed behavior its meaning; nothing where that was not to be had.
+/// Gives a parsed behavior its meaning; nothing where that fails.
 std::shared_ptr<const Program> compile_behavior(const ParsedBehavior& behavior, Messages& messages);
 
 /// An instance that runs the program.

@@ -1,5 +1,5 @@
-// A shared library that is no plug-in: for the test of what is said of it.
-// NOLINTNEXTLINE(readability-identifier-naming): as libraries of others name theirs
+// A shared library that is no plug-in: for the test of its error message.
+// NOLINTNEXTLINE(readability-identifier-naming): as in other libraries
 extern "C" int something_else() {
   return 7;
 }

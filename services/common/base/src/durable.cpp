@@ -89,7 +89,7 @@ std::string_view unsealed(std::string_view text, const std::string& file) {
 std::string read_or_set_aside(const std::string& path,
                               const std::function<void(const std::string& content)>& understand) {
   std::error_code error;
-  // One that is empty was made, and never written.
+  // An empty file was created and never written.
   if (!fs::is_regular_file(path, error) || fs::file_size(path, error) == 0)
     return {};
   std::string why;
@@ -111,7 +111,7 @@ bool replace_file(const std::string& path, std::string_view text, bool sync) {
   const std::string fresh = path + ".new";
   const auto written = [&] {
     const File file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
-    // The content before the name: else a power cut may leave the name of an empty file.
+    // The content before the name: otherwise a power cut may leave the name of an empty file.
     return file.write(text) && (!sync || file.sync());
   };
   if (!written() || std::rename(fresh.c_str(), path.c_str()) != 0) {

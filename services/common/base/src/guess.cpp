@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::size_t kLongest = 64;  // letters: longer words are not compared
 
-/// Letters to be left out, added, replaced, or swapped with the next (optimal string alignment).
+/// The number of letters left out, added, replaced, or swapped with the next (optimal string
+/// alignment).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> least(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)

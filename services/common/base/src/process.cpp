@@ -31,7 +31,7 @@ void Process::step(std::uint64_t cycle) {
   if (now_.state == kSuspend)
     return;
   if (now_.state < 0) {
-    // -n: the next n cycles are slept through, this one being the first.
+    // -n: sleeps through the next n cycles, including this one.
     if (now_.state == -1)
       set_state(kResume);
     else
@@ -44,7 +44,7 @@ void Process::step(std::uint64_t cycle) {
     function_(*this);
   else if (now_.state == kInit || now_.state == kResume)
     set_state(kFirstOwnState);
-  // Manual 6.5.1: interrupted is to save what is needed and then to wait for a resume.
+  // Manual 6.5.1: an interrupted process saves its state and then waits for a resume.
   if (now_.turn == Turn::interrupted && now_.state == kInterrupt)
     set_state(kSuspend);
 }
@@ -87,7 +87,7 @@ std::string ProcessTable::request(std::string_view name, ProcessAction action,
   }
   switch (action) {
     case ProcessAction::interrupt:
-      // Its things are away already.
+      // It has cleaned up already.
       if (process->state() == kSuspend)
         return "it is suspended already";
       process->interrupt();
@@ -119,7 +119,7 @@ bool ProcessTable::take_changed() {
   told_.resize(processes_.size(), kInit);
   for (std::size_t i = 0; i < processes_.size(); ++i) {
     const int state = processes_[i]->now_.state;
-    // A process that sleeps and wakes by itself is the same all the time.
+    // Its own sleeping and waking does not change the state of a process.
     if (!all && (state < 0 || state == kResume))
       continue;
     const int shown = state < 0 ? -1 : state;

@@ -8,7 +8,7 @@
 
 namespace saphira::test {
 
-/// A file's text that is wrong: where, and what was expected there.
+/// A faulty file text: the place, and the expected word.
 struct Broken {
   const char* text;
   int line;
@@ -16,7 +16,7 @@ struct Broken {
   const char* expected;
 };
 
-/// parse(text) is to throw the FileError.
+/// parse(text) has to throw the FileError.
 template <class Parse>
 void expect_mistake(const Broken& broken, Parse&& parse) {
   try {

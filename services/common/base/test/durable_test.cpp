@@ -13,7 +13,7 @@
 namespace saphira {
 namespace {
 
-/// A folder that goes with the object.
+/// A folder that is removed with the object.
 class Folder {
  public:
   Folder() {
@@ -79,7 +79,7 @@ TEST(Durable, WhatCannotBeUnderstoodIsSetAside) {
   EXPECT_NE(said.find("it is bad"), std::string::npos) << said;
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(read_file(path + ".damaged"), "bad");
-  // The next one takes its place.
+  // The next damaged file replaces it.
   write(path, "worse");
   EXPECT_NE(read_or_set_aside(path, understand), "");
   EXPECT_EQ(read_file(path + ".damaged"), "worse");

@@ -24,7 +24,7 @@ static_assert(kEnumerators<Weather>.size() == 3);
 static_assert(kEnumerators<Sky> == std::array{Sky::clear, Sky::grey, Sky::black});
 static_assert(kEnumerators<Lamp>.back() == Lamp::broken);
 
-/// True where a table compiles that has a pair for each of these.
+/// True where a table with a pair for each of these compiles.
 template <Sky... with>
 concept Compiles = requires {
   typename std::bool_constant<(

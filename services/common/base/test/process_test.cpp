@@ -7,7 +7,7 @@
 namespace saphira {
 namespace {
 
-/// The example of manual 6.5.1: finds doors, and shows what it has found every second or so.
+/// The example of manual 6.5.1: finds doors, and shows the result about every second.
 class FindDoors {
  public:
   enum State { kFind = 20, kDisplay = 21 };

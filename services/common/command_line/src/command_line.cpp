@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kUsage = 2;
 
-/// Names the word that no option or command takes, with the nearest one that there is.
+/// Reports an unknown word, with the most similar option or command.
 int not_understood(const CLI::App& app) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty())

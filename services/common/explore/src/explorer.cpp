@@ -15,9 +15,9 @@ using lps::PointType;
 using maps::Feature;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// Two places of the driven way that are so near one another hang together [m].
+// Two places of the driven way within this distance are connected [m].
 constexpr double kStep = 0.8;
-// Readings longer ago [cycles] are not of here.
+// Older readings [cycles] are from another place.
 constexpr std::uint64_t kFresh = 10;
 constexpr double kStraight = radians(10.0);  // of a sonar that looks ahead
 constexpr double kHalfWidth = 1.0;           // [m] of corridors, about
@@ -53,7 +53,7 @@ void Explorer::listen(const Inputs& inputs) {
   for (const lps::SonarReading& reading : inputs.readings)
     heard_.push_back({reading.sonar, reading.echo ? reading.range : lps::kNothing, inputs.cycle,
                       inputs.pose_in_map.th});
-  // How long the sides have been open: a door is soon passed.
+  // The length of an opening at the side: a door is soon passed.
   const double moved = (inputs.pose_in_map.position() - listened_at_).norm();
   listened_at_ = inputs.pose_in_map.position();
   for (double& way : open_way_)
@@ -81,7 +81,7 @@ bool Explorer::is_tried(const Lead& lead) const {
   });
 }
 
-// True where a corridor or junction of the map goes on from here that way.
+// True where a corridor or junction of the map continues in that direction.
 bool Explorer::mapped_along(const maps::Map& map, const Vec2& point, double heading) const {
   const Vec2 there = ahead(point, heading, 2.5);
   return std::any_of(map.features.begin(), map.features.end(), [&](const Feature& f) {
@@ -153,7 +153,7 @@ std::vector<std::size_t> Explorer::path(const std::vector<Vec2>& way, const Vec2
   std::optional<std::size_t> best;
   double best_far = kNone;
   while (const auto next = ways.next()) {
-    // As near as one gets; what is farther to go must be worth it.
+    // The nearest place; a longer way must be worth its cost.
     const double far = (way[*next] - to).norm() + 0.001 * ways.cost(*next);
     if (far < best_far) {
       best_far = far;
@@ -190,7 +190,7 @@ void Explorer::choose(const Inputs& inputs) {
   if (open.empty())
     open = wide_doors(inputs);
   if (open.empty() && settings_.home > 0.0) {
-    // Along the way that it went first, so that what was seen there is seen again.
+    // Along the first way, to see the same places again.
     std::size_t i = 0;
     for (double gone = 0.0; i + 1 < inputs.way.size() && gone < settings_.home; ++i)
       gone += (inputs.way[i + 1] - inputs.way[i]).norm();
@@ -218,7 +218,7 @@ void Explorer::choose(const Inputs& inputs) {
     }
   }
   if (!best && !shut_.empty() && reopened_ < settings_.reopen) {
-    // The only way may have been closed by the robot's own clumsiness.
+    // The robot's own trouble may have closed the only way.
     ++reopened_;
     shut_.clear();
     home_ = false;  // also the way home
@@ -230,7 +230,7 @@ void Explorer::choose(const Inputs& inputs) {
   if (!best) {
     if (open.empty())
       output_ = {true, std::nullopt, std::nullopt, 0.0, "nothing is left to explore"};
-    return;  // looks again in the next cycle, without what was given up
+    return;  // looks again in the next cycle, without the lead that was given up
   }
   lead_ = best;
   path_.clear();
@@ -279,8 +279,8 @@ void Explorer::go(const Inputs& inputs) {
     if (lead_->home)
       home_ = false;
     if (++stuck_ % 2 == 1)
-      return;  // once more, closer to the way that it came
-    // Closed since: around it, if there is a way.
+      return;  // once more, closer to its earlier way
+    // Closed since then: go around, if there is a way.
     shut_.push_back(path_.front());
     lead_.reset();
     stuck_ = 0;
@@ -289,8 +289,7 @@ void Explorer::go(const Inputs& inputs) {
   head_for(path_.front(), inputs);
 }
 
-// A turn on the spot before a way back: in a turn with a wide bow the next opening takes the robot
-// in.
+// A turn on the spot before a way back: in a wide turn the robot would drift into the next opening.
 void Explorer::head_for(const Vec2& point, const Inputs& inputs) {
   const Vec2 there = to_frame(inputs.pose_in_map, point);
   const double bearing = std::abs(std::atan2(there.y(), there.x()));
@@ -300,13 +299,13 @@ void Explorer::head_for(const Vec2& point, const Inputs& inputs) {
   output_.speed = settings_.speed;
 }
 
-// Straight on along the lead, and along what the map has of it by now.
+// Straight on along the lead, and along its mapped part.
 void Explorer::probe(const Inputs& inputs) {
   const Vec2 here = inputs.pose_in_map.position();
-  // The corridor that it has become: its middle is better known than the lead's.
+  // The lead has become a corridor: the corridor's middle is more accurate than the lead's.
   Vec2 point = lead_->point;
   double heading = lead_->heading;
-  double mapped = -kNone;  // how far along the heading the map goes
+  double mapped = -kNone;  // length of the map along the heading
   for (const Feature& f : inputs.map.features) {
     if (f.type != PointType::corridor || maps::distance_to(f, here) > settings_.beyond + 2.0)
       continue;
@@ -333,11 +332,11 @@ void Explorer::probe(const Inputs& inputs) {
   const double off = std::abs(u.x() * (here - point).y() - u.y() * (here - point).x());
   const bool away = off > settings_.aside && done > 0.5;
   if (squeeze_ && done > *squeeze_ + 1.5) {
-    squeeze_.reset();  // that was only something in the way
+    squeeze_.reset();  // it was only an obstacle
     aside_ = 0.0;
   }
   const double turned = norm2_angle(inputs.pose_in_map.th - heading);
-  // Before it is through an opening it may only see the edge of it.
+  // Within an opening the echo may be only its edge.
   const bool entering = lead_->opening && done < settings_.entering;
   const bool front = !squeeze_ && off < (entering ? 0.3 : settings_.aside) &&
                      std::abs(turned) < radians(entering ? 15.0 : 35.0) &&
@@ -345,13 +344,13 @@ void Explorer::probe(const Inputs& inputs) {
   if (lead_->door && !in_corridor_ &&
       (front || stuck || away || (done > settings_.in_door && !walled()))) {
     output_.reason = lead_->what + ": a room";
-    open_ = true;  // where it stands is no end of anything
+    open_ = true;  // the robot's place is not the end of a corridor
     finish(inputs);
     return;
   }
   if (front) {
-    // The sides first: what is ahead turns the robot away, into a door as likely as not. Then on,
-    // for it may be a box.
+    // The sides first: the obstacle ahead turns the robot away, perhaps into a door. Then on, since
+    // the obstacle may be a box.
     look_from_ = point + at * u;
     output_.reason = lead_->what + ": something ahead";
     may_squeeze_ = true;
@@ -361,7 +360,7 @@ void Explorer::probe(const Inputs& inputs) {
     return;
   }
   const double beyond = lead_->opening ? settings_.beyond_opening : settings_.beyond;
-  // Between two walls it is on its way along a corridor, however late the map has it.
+  // Between two walls it is in a corridor, even if the map is late.
   if (stuck || away || gone > (walled() ? 3.0 : 1.0) * beyond) {
     output_.reason = lead_->what + (stuck  ? ": closed"
                                     : away ? ": turned away"
@@ -369,7 +368,7 @@ void Explorer::probe(const Inputs& inputs) {
     open_ = !stuck && !away;
     if (!open_ && (lead_->opening || lead_->aside) && !in_corridor_)
       leave(*lead_, stuck ? "closed" : "turned away");
-    // An end that was left behind on the way into the open has been tried with it.
+    // An end that the robot passed on the way into the open was tried too.
     tried_.push_back({point + std::max(from, at + mapped) * u, heading, lead_->what, false, false});
     if (squeeze_) {
       finish(inputs);
@@ -421,7 +420,7 @@ bool Explorer::passable() const {
          heard(radians(-30.0)).value_or(lps::kNothing) > 2 * settings_.front;
 }
 
-// How far what looks ahead to one side (1: left) hears nothing.
+// The free way of the sonars that look ahead to one side (1: left).
 double Explorer::room(double side) const {
   double sum = 0.0;
   for (const double bearing : {15.0, 30.0})
@@ -429,7 +428,7 @@ double Explorer::room(double side) const {
   return sum;
 }
 
-// Where it goes no farther, other ways may begin.
+// Other ways may begin at the end of this one.
 void Explorer::begin_looking(const Inputs& inputs) {
   doing_ = Doing::looking;
   looks_ = {norm2_angle(lead_->heading + kPi / 2), norm2_angle(lead_->heading - kPi / 2)};
@@ -441,7 +440,7 @@ void Explorer::begin_looking(const Inputs& inputs) {
                                [](const Feature& f) { return f.type == PointType::corridor; });
   if (any && !in_corridor_)
     looks_.clear();
-  if (lead_->opening && !in_corridor_)  // a wing that stands aslant
+  if (lead_->opening && !in_corridor_)  // an opening that was met aslant
     for (const double aslant : {kPi / 4, -kPi / 4})
       looks_.push_back(norm2_angle(lead_->heading + aslant));
   aligned_ = std::abs(norm2_angle(inputs.pose_in_map.th - lead_->heading)) < radians(12.0);
@@ -450,10 +449,10 @@ void Explorer::begin_looking(const Inputs& inputs) {
     listen_aside(inputs);
 }
 
-// Along the way the sonars look aside: no need to turn to either side, which costs dead reckoning
-// more than a way.
+// Along the way the sonars look aside: a turn to either side would be of no use, and would cost
+// more dead reckoning than driving.
 void Explorer::listen_aside(const Inputs& inputs) {
-  // A way aside is as wide as corridors are: its middle is not at the wall in front.
+  // A way aside is as wide as a corridor: its middle is not at the wall in front.
   const double front = heard(0.0).value_or(lps::kNothing);
   look_from_ = ahead(look_from_, lead_->heading, front < kHalfWidth ? front - kHalfWidth : 0.0);
   std::erase_if(looks_, [&](double heading) {
@@ -477,7 +476,7 @@ void Explorer::hear_aside(double range, double heading, bool narrow, const Input
     seen_open_.push_back(side);
 }
 
-// Turns to a heading of the map. True when the robot has looked that way for a while, or cannot.
+// Turns to a heading of the map. True when the robot has looked there for a while, or cannot.
 bool Explorer::looked(double heading, const Inputs& inputs) {
   output_.look_at = ahead(inputs.pose_in_map.position(), heading, 5.0);
   if (std::abs(norm2_angle(inputs.pose_in_map.th - heading)) > radians(6.0)) {
@@ -499,7 +498,7 @@ void Explorer::look(const Inputs& inputs) {
   if (looks_.empty()) {
     output_.look_at.reset();
     if (may_squeeze_ && !open_aside_ && passable()) {
-      // No way to the sides: it may be a box. By it on the side with more room.
+      // No way to the sides: the obstacle may be a box. Pass it on the side with more room.
       aside_ = (room(1.0) > room(-1.0) ? 1.0 : -1.0) * settings_.by_a_box;
       squeeze_ = probed_;
       doing_ = Doing::probing;
@@ -541,7 +540,7 @@ void Explorer::look(const Inputs& inputs) {
 
 void Explorer::finish(const Inputs& inputs) {
   tried_.push_back(*lead_);
-  // Where it ended, too: the end of a corridor has moved on with the robot. In the open the map may
+  // Also at its end: the end of a corridor has moved on with the robot. In the open the map may
   // only be late.
   Lead here = *lead_;
   here.point = inputs.pose_in_map.position();

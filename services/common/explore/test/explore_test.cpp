@@ -77,7 +77,7 @@ TEST(Explore, AClosedWayIsADeadEndFromBothSides) {
   EXPECT_EQ(built.whole.drive().contacts(), 0);
 }
 
-// The robot finds its way by what it has built: from wherever it is to a door at the other end.
+// The robot finds its way on its own map: from its present place to a door at the other end.
 TEST(Explore, TheRobotNavigatesByTheMapThatItBuilt) {
   DriveOptions options;
   options.world = "loop";

@@ -10,8 +10,8 @@
 #include "saphira/lps/seen_thing.hpp"
 #include "vision.h"
 
-/// Between the types of the bus and those of the LPS, which every service has: pure functions,
-/// nothing else.
+/// Conversions between the types of the bus and those of the LPS, which every service has: pure
+/// functions.
 namespace saphira::lps {
 
 using saphira::from_bus;
@@ -25,7 +25,7 @@ LpsSettings settings_from_bus(const v1::RobotDescription& description);
 std::vector<SonarReading> sonars_from_bus(const v1::RobotState& state);
 
 Percept from_bus(const v1::Percept& percept);
-/// Of the readings the newest, as many as the contract takes.
+/// With the newest readings, as many as the contract takes.
 v1::Percept to_bus(const Percept& percept);
 
 SeenThing from_bus(const v1::SeenThing& thing);

@@ -61,7 +61,7 @@ void LocalPerceptualSpace::set_side_buffer(std::size_t limit) {
 
 void LocalPerceptualSpace::update(const Pose& robot_in_odom,
                                   const std::vector<SonarReading>& readings, std::uint64_t cycle) {
-  // Global and odom are the same until somebody says otherwise with move_robot.
+  // Global and odom are the same until move_robot changes that.
   if (!placed_) {
     robot_in_global_ = robot_in_odom;
     robot_in_odom_ = robot_in_odom;

@@ -8,9 +8,9 @@
 namespace saphira::lps {
 namespace {
 
-/// [m] The grid follows when the robot is so far from its middle.
+/// [m] The grid follows when the robot is this far from its middle.
 constexpr double kFollow = 0.5;
-/// [m] Whatever the robot has run into is no smaller, to each side.
+/// [m] The least size of a hit obstacle, to each side.
 constexpr double kTouched = 0.1;
 
 std::size_t area(int cells) {
@@ -111,7 +111,7 @@ void ObstacleMemory::pass(const Pose& sonar_in_odom, double range, double doubt)
 
 void ObstacleMemory::echo(const Pose& sonar_in_odom, double range) {
   pass(sonar_in_odom, range - 2.0 * settings_.thickness, settings_.passed);
-  // The arc cell that is likeliest so far takes the echo in full, the others in proportion.
+  // The likeliest arc cell so far takes the echo in full, the others in proportion.
   const auto on_arc = [&](double distance) {
     return std::abs(distance - range) <= settings_.thickness;
   };
@@ -151,7 +151,7 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
   const ToFrame to_robot(robot_in_odom);
   const double obstacle = settings_.obstacle;
   const long n = settings_.cells;
-  // Most rows hold nothing, and all of a row at once is counted faster than it is searched.
+  // Most rows are empty, and counting a whole row is faster than searching it.
   for (long row = 0; row < n; ++row) {
     const double* const beliefs = beliefs_.data() + row * n;
     long obstacles = 0;

@@ -6,7 +6,7 @@ namespace saphira::lps {
 namespace {
 
 void take_nearer(Occupancy& best, double distance, const Vec2& point) {
-  // Beyond 5 m counts as nothing, as in the manual: it is what "nothing" looks like.
+  // Beyond 5 m counts as nothing, as in the manual: 5 m is its value for "nothing".
   if (distance >= kNothing || (best.point && distance >= best.distance))
     return;
   best.distance = distance;

@@ -65,7 +65,7 @@ TEST(MoveRobot, MovesItInTheGlobalFrame) {
   lps.move_robot(1.0, 0.0, 0.0);
   expect_near(lps.robot_in_global(), {5.0, 1.0, kPi / 2});
   expect_near(lps.find(id)->local, {1.0, 0.0, 0.0});
-  // Odometry and the readings, which are relative to the robot, know nothing of it.
+  // Odometry and the readings, which are relative to the robot, are not affected.
   expect_near(lps.robot_in_odom(), {5.0, 0.0, kPi / 2});
   EXPECT_NEAR(lps.front().entries()[0].in_robot.x(), 1.0, 1e-12);
   // It lasts.

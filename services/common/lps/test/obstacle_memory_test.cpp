@@ -59,7 +59,7 @@ TEST(ObstacleMemory, GoesWithTheRobot) {
     memory.move_to(robot);
   memory.collect(robot);
   EXPECT_LT(nearest(memory, {1.0 - robot.x, 0.0}), 0.06);
-  // And leaves behind what is out of its grid.
+  // Obstacles outside of its grid are left behind.
   for (; robot.x < 5.0; robot.x += 0.1)
     memory.move_to(robot);
   memory.collect(robot);
@@ -110,7 +110,7 @@ TEST(ObstacleMemory, BeamsBesideItSayNothing) {
 }
 
 // A gap whose edge only the outer half of a beam meets: the neighbouring beam goes through, so the
-// echo is put where the neighbour does not look.
+// echo is put outside of the neighbour's cone.
 TEST(ObstacleMemory, NeighboursNarrowTheArc) {
   ObstacleMemory memory;
   memory.move_to(kOrigin);

@@ -5,8 +5,8 @@
 namespace saphira::lps {
 namespace {
 
-// Manual Figure 6-2 is known by its two worked examples alone: a reading left of the robot at
-// Y = 300 mm and one right of it at X = 600 mm, each the nearest in its rectangle.
+// Only the two worked examples describe manual Figure 6-2: a reading left of the robot at Y = 300
+// mm and one right of it at X = 600 mm, each the nearest in its rectangle.
 const std::vector<Vec2> kFigure62{{1.2, 0.3}, {0.9, 0.7}, {0.6, -0.5}, {1.3, -0.4}, {0.3, 0.1}};
 
 TEST(OccupancyBox, WorkedExamplesOfTheManual) {
@@ -24,7 +24,7 @@ TEST(OccupancyBox, IsPositiveOnTheRightToo) {
 }
 
 TEST(OccupancyBox, HeightRunsAlongX) {
-  // Inside 0.9 high, 0.2 wide; outside were the two exchanged.
+  // Inside 0.9 high, 0.2 wide; outside if the two were exchanged.
   EXPECT_TRUE(occupancy_box({{1.4, 0.0}}, Axis::front, 1.0, 0.0, 0.9, 0.2).point);
   EXPECT_FALSE(occupancy_box({{1.0, 0.4}}, Axis::front, 1.0, 0.0, 0.9, 0.2).point);
 }
@@ -33,7 +33,7 @@ TEST(OccupancyBox, NothingIsFiveMetres) {
   const Occupancy nothing = occupancy_box(kFigure62, Axis::front, -3.0, 0.0, 1.0, 1.0);
   EXPECT_EQ(nothing.distance, 5.0);
   EXPECT_FALSE(nothing.point);
-  // A farther reading looks the same as none.
+  // A farther reading gives the same result as none.
   EXPECT_FALSE(occupancy_box({{6.0, 0.0}}, Axis::front, 6.0, 0.0, 1.0, 1.0).point);
 }
 
@@ -51,7 +51,7 @@ TEST(OccupancyPlane, LooksToEverySide) {
   EXPECT_NEAR(occupancy_plane(points, Direction::back, 0.5, 0.5, 0.5).distance, 0.8, 1e-12);
   EXPECT_NEAR(occupancy_plane(points, Direction::left, 0.5, 0.5, 0.5).distance, 0.9, 1e-12);
   EXPECT_NEAR(occupancy_plane(points, Direction::right, 0.5, 0.5, 0.5).distance, 1.0, 1e-12);
-  // s1 bounds the side ahead: with 0.1 the one on the left is out.
+  // s1 bounds the side ahead: with 0.1 the left one is out.
   EXPECT_FALSE(occupancy_plane(points, Direction::left, 0.5, 0.1, 0.5).point);
   EXPECT_EQ(occupancy_plane(points, Direction::front, 0.5, 0.5, 0.5).distance, 5.0);
 }

@@ -7,7 +7,7 @@
 namespace saphira::lps {
 namespace {
 
-/// The Pioneer 1's sonars, all at the centre: only where they look counts here.
+/// The Pioneer 1's sonars, all at the centre: only their directions count here.
 LpsSettings pioneer() {
   LpsSettings settings;
   const double bearings[] = {90, 30, 15, 0, -15, -30, -90};
@@ -80,7 +80,7 @@ TEST(FrontBuffer, TakesEveryFiring) {
   lps.update({}, {{3, 1.0, true}, {2, 1.0, true}, {3, 5.0, false}}, 1);
   EXPECT_EQ(lps.front().entries().size(), 3U);
   EXPECT_EQ(valid(lps.front()), 2U);
-  // With nothing in the way it is clear after as many firings as it is long.
+  // Without echoes the buffer is clear after as many firings as its length.
   lps.update({}, {{3, 5.0, false}, {3, 5.0, false}, {3, 5.0, false}, {3, 5.0, false}}, 2);
   EXPECT_EQ(valid(lps.front()), 0U);
 }
@@ -104,7 +104,7 @@ TEST(SonarBuffers, AreAsLongAsTheyAreSet) {
   EXPECT_EQ(lps.front().entries().size(), 2U);
   EXPECT_EQ(lps.left().entries().size(), 1U);
   EXPECT_EQ(lps.right().entries().size(), 1U);
-  // Settings outlive readings.
+  // Settings are kept over a reset.
   lps.reset();
   EXPECT_TRUE(lps.front().entries().empty());
   EXPECT_EQ(lps.front().limit(), 2U);

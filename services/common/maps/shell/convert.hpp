@@ -3,7 +3,7 @@
 #include "map.h"
 #include "saphira/maps/map.hpp"
 
-/// Between maps on the bus and those of the library: pure functions, nothing else.
+/// Conversions between maps on the bus and those of the library: pure functions.
 namespace saphira::maps {
 
 Feature from_bus(const v1::MapArtifact& artifact);

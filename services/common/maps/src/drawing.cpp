@@ -16,9 +16,9 @@ namespace {
 
 using lps::PointType;
 
-constexpr double kMargin = 1.0;     // [m] around what is drawn
+constexpr double kMargin = 1.0;     // [m] around the drawing
 constexpr double kLegendRow = 0.8;  // [m]
-// Okabe and Ito 2008: told apart by everybody.
+// Okabe and Ito 2008: safe for colour-blind people.
 constexpr std::array<std::string_view, 5> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                   "#56b4e9"};
 
@@ -129,7 +129,7 @@ void Picture::raster() {
       while (end < raster.width && shade(end, y) == value)
         ++end;
       if (value >= 0) {
-        // White where it is free, dark where it is occupied, on a grey ground.
+        // White where free, dark where occupied, on a grey ground.
         const std::string grey = std::to_string(255 - value * 13);
         out_ += "<rect x=\"" + std::to_string(x) + "\" y=\"" + std::to_string(y) + "\" width=\"" +
                 std::to_string(end - x) + "\" height=\"1\" fill=\"rgb(" + grey + "," + grey + "," +
@@ -159,7 +159,7 @@ void Picture::label(const Vec2& where, std::string_view text, double size, std::
   out_.append(color).append("\">") += escaped(text) + "</text>\n";
 }
 
-// A door: its opening, and a stroke to where its normal points; black where it is closed.
+// A door: its opening, and a stroke towards its normal; black where it is closed.
 void Picture::gate(const Feature& feature) {
   const bool door = feature.type == PointType::door;
   const bool closed = drawing_.closed_doors.contains(feature.id);
@@ -275,7 +275,7 @@ void Picture::robot() {
           ")\" fill=\"none\" stroke=\"#d55e00\" stroke-width=\"0.04\"/>\n";
 }
 
-// Beside the scale, and below it where the picture is too narrow. How many rows more.
+// Beside the scale, or below it where the picture is too narrow. Returns the additional rows.
 int Picture::arrange_legend() {
   std::size_t color = 0;
   for (const Trajectory& trajectory : drawing_.trajectories)
@@ -300,7 +300,7 @@ int Picture::arrange_legend() {
 }
 
 void Picture::legend() {
-  // A scale of five metres below on the left; above it what the colours are.
+  // A scale of five metres at the lower left; above it the legend of colours.
   const int rows = named_.empty() ? 0 : named_.back().row;
   const Vec2 corner(low_.x() + 0.3, low_.y() + 0.4 + kLegendRow * rows);
   line(corner, corner + Vec2(5.0, 0.0), R"(stroke="#000" stroke-width="0.08")");

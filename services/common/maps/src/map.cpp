@@ -17,7 +17,7 @@ namespace {
 using lps::PointType;
 
 constexpr double kMillimetre = 0.001;
-constexpr double kMax = 1e7;        // [mm] 10 km: more is a slip of the pen
+constexpr double kMax = 1e7;        // [mm] 10 km: more is a typing error
 constexpr double kMaxAngle = 3600;  // [deg]
 constexpr double kMaxId = 2147483647;
 
@@ -25,7 +25,7 @@ bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
 
-/// Line breaks and their kind, which no line of a file could hold.
+/// Line breaks and other control characters, which no line of a file can hold.
 bool has_control(std::string_view text) {
   return std::any_of(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -42,7 +42,7 @@ class Scanner {
       line_.remove_suffix(1);
   }
 
-  /// Only blanks and comment are left.
+  /// True where only blanks and a comment are left.
   bool at_end() {
     while (at_ < line_.size() && blank(line_[at_]))
       ++at_;
@@ -83,7 +83,7 @@ class Scanner {
     return value;
   }
 
-  /// "..." up to the closing mark, which has been seen to be next.
+  /// "..." up to the closing mark; the caller has seen the opening one.
   std::string quoted() {
     const std::size_t end = line_.find('"', at_ + 1);
     if (end == std::string_view::npos) {
@@ -200,7 +200,7 @@ Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int 
 
 std::string millimetres(double metres, double low) {
   const double value = metres / kMillimetre;
-  // Written with three digits behind the point, so what counts is what these say.
+  // Three digits are written behind the point, so the rounded value counts.
   if (!(std::round(value * 1000.0) / 1000.0 >= low && value <= kMax))
     throw std::invalid_argument("a place or size that a map file does not hold");
   return decimal(value, 3);

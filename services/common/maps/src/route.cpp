@@ -19,7 +19,7 @@ std::string with_article(const Place& place) {
   return place.name.empty() ? "the place" : place.name;
 }
 
-// Where a link is, seen from one of its regions: before a door, in line with it.
+// The place of a link, seen from one of its regions: before a door, in line with it.
 Vec2 before(const Link& link, std::size_t region, double clearance) {
   if (link.kind == LinkKind::meeting)
     return link.pose_in_map.position();
@@ -210,7 +210,7 @@ std::vector<Vec2> Route::points() const {
   std::vector<Vec2> all;
   for (const Leg& leg : legs)
     for (const Vec2& point : leg.points)
-      // Two regions name the point where they meet, each its own.
+      // Two regions each name the point where they meet.
       if (all.empty() || (all.back() - point).norm() > 1e-6)
         all.push_back(point);
   return all;

@@ -14,13 +14,13 @@ namespace {
 
 using lps::PointType;
 
-// Corridors of a map end at the near wall of the one that they run into, or at the far one; drawn
+// Corridors of a map end at the near wall of the corridor that they meet, or at the far one. Drawn
 // by hand, or built by a robot, they may miss it by this [m].
 constexpr double kReach = 0.6;
-// Nearer to parallel than this, two corridors follow one another and have no crossing [rad].
+// At a smaller angle two corridors follow one another and have no crossing [rad].
 constexpr double kParallel = radians(30.0);
-// How far behind and before a door its regions are looked for [m]: first near, so that a thin room
-// is found, then farther, since walls have a thickness.
+// Distances behind and before a door at which its regions are searched [m]: first near, to find a
+// thin room, then farther, since walls have a thickness.
 constexpr std::array<double, 4> kProbes{0.15, 0.3, 0.6, 1.0};
 
 double cross(const Vec2& a, const Vec2& b) {
@@ -199,8 +199,8 @@ void Topology::meet(std::size_t a, std::size_t b) {
   const bool lane = first.area.type == PointType::lane || second.area.type == PointType::lane;
   if (first.kind == RegionKind::junction && second.kind == RegionKind::junction)
     return;
-  // A wall divides a room from its neighbour, unless it is the same room. A lane is a
-  // way through a room.
+  // A wall divides a room from its neighbour, unless both are the same room. A lane is a way
+  // through a room.
   if (room && !lane &&
       (first.kind != second.kind || first.area.name.empty() || first.area.name != second.area.name))
     return;
@@ -224,12 +224,12 @@ void Topology::meet(std::size_t a, std::size_t b) {
 }
 
 void Topology::open(const Feature& gate, LinkKind kind) {
-  // The side that the normal points to is the corridor's.
+  // The normal points to the corridor's side.
   const auto probe = [&](double sign, std::optional<std::size_t> other) {
     for (const double far : kProbes) {
       std::optional<std::size_t> found;
       for (const std::size_t region : at(transform(gate.pose_in_map, {sign * far, 0.0}))) {
-        // Behind a door nobody means the junction of two corridors in particular.
+        // The target behind a door is hardly ever the junction of two corridors.
         const bool better = !found || (regions_[*found].kind == RegionKind::junction &&
                                        regions_[region].kind == RegionKind::corridor);
         if (region != other && better)

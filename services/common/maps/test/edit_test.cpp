@@ -30,7 +30,7 @@ TEST(Editor, IdsStayAndAreNotGivenAgain) {
   EXPECT_EQ(editor.add(door), 10U);
   door.id = 7;  // taken
   EXPECT_EQ(editor.add(door), 11U);
-  door.id = 9;  // it was another one's
+  door.id = 9;  // it belonged to another door
   EXPECT_EQ(editor.add(door), 12U);
   door.id = 40;
   EXPECT_EQ(editor.add(door), 40U);
@@ -38,7 +38,7 @@ TEST(Editor, IdsStayAndAreNotGivenAgain) {
   EXPECT_TRUE(editor.change(7, door));
   EXPECT_EQ(find(editor.map(), 7)->width, 1.2);
   EXPECT_FALSE(editor.change(9, door));
-  // A removed artifact that was there before: the file is the same, but for the wall's id.
+  // A removed artifact that existed before: the file is the same, except for the wall's id.
   EXPECT_NO_THROW(parse_map(to_text(editor.map()), "m"));
 }
 

@@ -184,8 +184,8 @@ TEST(MapFile, ThatWasCutWithinANumberIsRefused) {
   std::remove(path.c_str());
 }
 
-// Another type, as README.md shows it: with its traits it is read, written, drawn and driven
-// through.
+// Another type, from the example of README.md: with its traits it is read, written, drawn and
+// driven through.
 TEST(ArtifactTraits, AreAllThatMapsAskOfAType) {
   std::set<std::string_view> words;
   for (const ArtifactTraits& each : kArtifactTraits) {

@@ -24,7 +24,7 @@ TEST(Route, ASequenceOfRegionsWithThePointsToDriveThrough) {
   EXPECT_NEAR((points.back() - Vec2(16.15, 5.3)).norm(), 0.0, 1e-9);
   for (const Leg& leg : route->legs)
     EXPECT_FALSE(leg.points.empty());
-  // Every point is where one can stand, a door's width from the wall in the corridors.
+  // Every point is free ground, in the corridors a door's width from the wall.
   for (const Vec2& point : points)
     EXPECT_FALSE(floor().at(point).empty() && (point - Vec2(16.15, 6.0)).norm() > 1e-9)
         << point.transpose();
@@ -46,7 +46,7 @@ TEST(Route, AWideRobotIsNotSentThroughANarrowDoor) {
   settings.needs_width = 3.5;
   EXPECT_NE(find_route(floor(), Vec2(17.6, 14.0), "library", settings).reason.find("corridor"),
             std::string::npos);
-  // Where there is no way at all, the width is not the reason.
+  // Without any way, the width is not the reason.
   settings.needs_width = 1.1;
   settings.blocked = {1265};
   EXPECT_EQ(find_route(floor(), Vec2(17.6, 14.0), "EJ-265", settings).reason.find("wide"),
@@ -60,25 +60,25 @@ TEST(Route, TheShortestOfSeveral) {
   EXPECT_EQ(text(floor(), *by_east.route),
             "corridor 1 (upper corridor), junction 14, corridor 4 (east corridor), junction 13, "
             "corridor 3 (lower corridor), door 1271, room 271 (EJ-271)");
-  // Its nearer door being closed, by the other one.
+  // Its nearer door is closed: through the other one.
   RouteSettings settings;
   settings.blocked = {1271};
   const auto other = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
   ASSERT_TRUE(other.route);
   EXPECT_NE(text(floor(), *other.route).find("door 2271"), std::string::npos);
-  // Also where it was closed when it was seen last...
+  // Also where it was closed when last seen...
   settings.blocked.clear();
   settings.closed = {1271};
   const auto doubtful = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
   ASSERT_TRUE(doubtful.route);
   EXPECT_EQ(text(floor(), *doubtful.route), text(floor(), *other.route));
-  // ...but for want of a better one it is tried.
+  // ...but without a better one it is tried.
   settings.closed = {1271, 2271};
   const auto tried = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
   ASSERT_TRUE(tried.route);
   EXPECT_EQ(text(floor(), *tried.route), text(floor(), *by_east.route));
   EXPECT_DOUBLE_EQ(tried.route->length, by_east.route->length);
-  // And around where the east corridor is.
+  // And around the region of the east corridor.
   settings.blocked = {4};
   const auto around = find_route(floor(), Vec2(22.0, 25.0), "EJ-271", settings);
   ASSERT_TRUE(around.route);

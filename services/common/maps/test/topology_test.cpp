@@ -76,7 +76,7 @@ TEST(Topology, ADoorLeadsFromTheRoomIntoTheCorridor) {
 
 TEST(Topology, TheOfficeFloor) {
   const Topology t(load_map(config_folder() + "/maps/office-floor.map"));
-  // Its junctions are in the map; none is made up.
+  // Its junctions are in the map; none is added.
   for (const Region& region : t.regions())
     EXPECT_NE(region.area.id, 0U);
   EXPECT_TRUE(linked(t, 1, 11));

@@ -51,7 +51,7 @@ Argument from_bus(const v1::Argument& argument) {
       return {argument.name(), argument.number() != 0.0};
     case v1::ARGUMENT_POINT:
       if (argument.frame() > v1::FRAME_MAP)
-        break;  // in a frame that is unknown it is nowhere
+        break;  // a point in an unknown frame has no place
       return {argument.name(),
               PlacedPoint{from_bus(argument.point()), kFrames.ours(argument.frame(), Frame::odom)}};
     case v1::ARGUMENT_UNBOUND:

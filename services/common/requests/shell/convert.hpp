@@ -3,24 +3,24 @@
 #include "request.h"
 #include "saphira/requests/request.hpp"
 
-/// Between requests on the bus and plain ones: pure functions, nothing else.
+/// Conversions between requests on the bus and plain ones: pure functions.
 namespace saphira {
 
-/// A kind that is none of the contract's reads as unbound.
+/// A kind that is not of the contract reads as unbound.
 ArgumentKind from_bus(v1::ArgumentKind kind);
 v1::ArgumentKind to_bus(ArgumentKind kind);
-/// Of the members, only the one that counts is taken over. One of a kind or frame that is none of
-/// the contract's is unbound.
+/// Takes only the member that counts. An argument with a kind or frame that is not of the contract
+/// is unbound.
 Argument from_bus(const v1::Argument& argument);
 v1::Argument to_bus(const Argument& argument);
 Arguments from_bus(const std::vector<v1::Argument>& arguments);
 std::vector<v1::Argument> to_bus(const Arguments& arguments);
 
-/// The source, as any program may write one, is cut to what a line can hold.
+/// The source, which any program may write, is cut to the length of a line.
 Request from_bus(const v1::Request& request);
 v1::Request to_bus(const Request& request);
 
-/// A code that is none of the contract's reads as lost.
+/// A code that is not of the contract reads as lost.
 Answer from_bus(const v1::Answer& answer);
 /// Stamp, ids and service are the caller's.
 v1::Answer to_bus(const Answer& answer);

@@ -9,13 +9,13 @@
 namespace saphira {
 namespace {
 
-/// With who asks for it, as the bus has checked.
+/// With the asker's identity, as checked by the bus.
 Request from(bus::Sample<v1::Request>& sample) {
   sample.data.source() = bus::named(sample.data.source(), sample.info);
   return from_bus(sample.data);
 }
 
-constexpr std::size_t kKnown = 256;  // requests of which a repetition is recognized
+constexpr std::size_t kKnown = 256;  // requests whose repetition is recognized
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void Desk::take(const Stamp& now) {
 }
 
 void Desk::take(Counter& counter) {
-  // Most of the time nobody has anything to ask. The last words of who has just left are heard.
+  // Mostly nobody has a request. The last requests of a program that has just left are still read.
   const bool asks = counter.reader.matched() > 0;
   const bool asked = std::exchange(counter.asked, asks);
   if (!asks && !asked && counter.waiting.empty())
@@ -48,7 +48,7 @@ void Desk::take(Counter& counter) {
       [&](const Request& one) { return !node_.options().lockstep || is_due(one, now_); });
   std::vector<Request> due(counter.waiting.begin(), later);
   counter.waiting.erase(counter.waiting.begin(), later);
-  if (node_.options().lockstep)  // what several services asked for, in the same order in every run
+  if (node_.options().lockstep)  // requests of several services, in the same order in every run
     std::stable_sort(due.begin(), due.end(), [](const Request& a, const Request& b) {
       return std::tie(a.stamp.cycle, a.source) < std::tie(b.stamp.cycle, b.source);
     });

@@ -13,12 +13,11 @@
 
 namespace saphira {
 
-/// Where a program takes requests from the bus and answers them. It checks each against the table
-/// of functors, sees to it that one which is written again is carried out once, and logs what was
-/// asked. For the node's own thread.
+/// Takes requests from the bus and answers them. Checks each against the table of functors, carries
+/// out a repeated request once, and logs requests. For the node's own thread.
 class Desk {
  public:
-  /// Carries out a request that was checked. Nothing: the answer follows (Desk::answer).
+  /// Carries out a checked request. Nothing: the answer follows (Desk::answer).
   using Act = std::function<std::optional<Answer>(const Request&)>;
 
   /// A desk has one topic of answers.
@@ -26,12 +25,12 @@ class Desk {
 
   void serve(const bus::RequestTopic& topic, std::vector<Functor> functors, Act act);
 
-  /// Carries out what has come. `now`: the newest step of this program.
+  /// Carries out new requests. `now`: the newest step of this program.
   void take(const Stamp& now);
-  /// Says what became of a request that was taken earlier.
+  /// The result of a request that was taken earlier.
   void answer(std::uint64_t asker, std::uint64_t number, const Answer& answer);
 
-  /// Requests, since the start, that could not be carried out.
+  /// Failed requests since the start.
   std::uint64_t refused() const { return refused_; }
 
  private:
@@ -41,7 +40,7 @@ class Desk {
     std::vector<Functor> functors;
     Act act;
     std::vector<Request> waiting{};  ///< lockstep: whose cycle has not come
-    bool asked = false;              ///< somebody could ask at the last look
+    bool asked = false;              ///< there was an asker at the last look
   };
   void take(Counter& counter);
   void handle(const Counter& counter, Request request);

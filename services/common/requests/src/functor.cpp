@@ -49,7 +49,7 @@ bool fits(const Parameter& parameter, const Argument& argument) {
   if (argument.kind != parameter.kind)
     return false;
   switch (argument.kind) {
-    case ArgumentKind::number:  // written so that not-a-number does not fit
+    case ArgumentKind::number:  // written so that NaN does not fit
       return argument.number >= parameter.low && argument.number <= parameter.high &&
              (!parameter.whole || argument.number == std::floor(argument.number));
     case ArgumentKind::text:

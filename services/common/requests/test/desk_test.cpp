@@ -9,11 +9,11 @@
 namespace saphira {
 namespace {
 
-constexpr double kPatience = 60.0;  // [s] for what has to come
+constexpr double kPatience = 60.0;  // [s] for expected samples
 
 class DeskTest : public testing::Test {
  protected:
-  /// A desk that counts what it did.
+  /// A desk that counts its calls.
   void open(bool lockstep = false) {
     service.emplace(test::memory_options("registration", lockstep), memory);
     desk.emplace(*service, bus::topics::kRegistrationAnswers);
@@ -93,7 +93,7 @@ TEST_F(DeskTest, WhatIsWrittenAgainIsDoneOnceAndAnsweredAgain) {
   writer.write(request);
   desk->take(now);
   EXPECT_EQ(total, 4.0);
-  request.number(0);  // of somebody who does not count
+  request.number(0);  // from an asker that does not count
   for (int i = 0; i < 2; ++i) {
     writer.write(request);
     desk->take(now);

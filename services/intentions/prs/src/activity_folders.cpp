@@ -23,7 +23,7 @@ void ActivityFolders::know_behaviors(std::vector<BehaviorSignature> behaviors) {
   base_.know_behaviors(std::move(behaviors));
 }
 
-/// Reads what changed in a folder; whether anything did.
+/// Reads the changes in a folder; true where there are any.
 bool ActivityFolders::read(Layer& layer, News& news, std::vector<std::string>& changed) {
   const WatchedFolder::Changes changes = layer.folder.look();
   const bool other = changes.any() || changes.missing != layer.missing;
@@ -47,7 +47,7 @@ bool ActivityFolders::read(Layer& layer, News& news, std::vector<std::string>& c
   return other;
 }
 
-/// The activities of a folder: of each file the newest content that is right.
+/// The activities of a folder: of each file the newest content without errors.
 std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known,
                                              const std::vector<std::string>& changed, News& news) {
   std::map<std::string, std::string> contents;
@@ -72,7 +72,7 @@ std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known
       wrong.insert(trouble.file);
       File& file = layer.files.at(trouble.file);
       if (contents[trouble.file] != file.newest)
-        continue;  // an older content, which something else has broken
+        continue;  // an older content, broken by another file
       file.fault += (file.fault.empty() ? "" : "\n") + text;
     }
     if (wrong.empty()) {
@@ -83,7 +83,7 @@ std::vector<Schema> ActivityFolders::compile(Layer& layer, const Registry& known
       }
       return std::move(loaded.schemas);
     }
-    // Back to what was right; what was never right, or is not any more, is left out.
+    // Back to the last good content; without one, or if that has errors too, the file is left out.
     for (const std::string& path : wrong) {
       const File& file = layer.files.at(path);
       if (file.taken && contents[path] != file.good)

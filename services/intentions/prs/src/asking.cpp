@@ -4,7 +4,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// The answer to the question of that number; nullptr while there is none.
+/// The answer to the question of that number; nullptr: none yet.
 const Answer* answer_to(const World& world, Values arguments, std::string_view function) {
   const double number = number_of(arguments, 0, function);
   if (world.around.answers == nullptr || !(number >= 0.0))

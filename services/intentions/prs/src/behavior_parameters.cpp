@@ -10,12 +10,12 @@
 namespace saphira::intentions {
 namespace {
 
-/// A point on the map that registration has moved by less is where it was: the behavior is not
-/// changed every cycle.
+/// A smaller correction of registration does not move a point on the map, so that the behavior does
+/// not change every cycle.
 constexpr double kMoved = 0.005;  ///< [m]
 constexpr double kTurned = radians(0.3);
 
-/// How the behavior itself spells a parameter.
+/// The behavior's own spelling of a parameter.
 std::string spelled(const std::string& name, const BehaviorSignature* known) {
   if (known == nullptr) {
     std::string guess = name;
@@ -37,7 +37,7 @@ BehaviorParameters::BehaviorParameters(const Bindings& given, const std::string&
   for (const auto& [name, value] : given) {
     const std::string own_name = spelled(name, known);
     if (value.nil())
-      continue;  // not given
+      continue;  // absent
     Argument argument;
     std::uint64_t moving = 0;
     const Reference* const reference = value.reference();

@@ -9,24 +9,24 @@
 
 namespace saphira::intentions {
 
-/// The parameters that an activity has given to a behavior: points that are on the map, and things
-/// that move, are where they are in odom now, for as long as the behavior lasts.
+/// An activity's parameters for a behavior. Points on the map, and moving things, follow their
+/// present place in odom while the behavior lasts.
 class BehaviorParameters {
  public:
   BehaviorParameters() = default;
-  /// `behavior`: its schema's name; `known`: what the behaviors service says of it, nullptr while
-  /// it has said nothing. ActivityError where a parameter cannot be what is given.
+  /// `behavior`: its schema's name; `known`: its signature from the behaviors service, nullptr
+  /// while there is none. ActivityError for an impossible parameter.
   BehaviorParameters(const Bindings& given, const std::string& behavior,
                      const BehaviorSignature* known, const World& world);
 
-  /// Puts them into `parameters`, or brings these up to date. What is not known now stays where it
-  /// was; false where that has never been known.
+  /// Writes them into `parameters`, or updates these. An unknown point keeps its last place; false
+  /// where it never had one.
   bool place(Arguments& parameters, const World& world) const;
 
  private:
   Arguments given_;
   std::vector<std::uint64_t> things_;  ///< of each parameter lps::SeenThing::id, or 0
-  bool on_map_ = false;                ///< some of them are
+  bool on_map_ = false;                ///< some of them are on the map
 };
 
 }  // namespace saphira::intentions

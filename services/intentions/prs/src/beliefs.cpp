@@ -8,7 +8,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// Claims of third parties at once; more are not heard.
+/// Maximum of simultaneous claims of third parties; further ones are ignored.
 constexpr std::size_t kMostClaims = 1024;
 constexpr std::size_t kMostSet = 4096;
 
@@ -31,7 +31,7 @@ void Beliefs::look(const World& world) {
 void Beliefs::set(std::string_view name, Value value, std::string_view who, Ticks now) {
   std::string key = normal(name);
   const auto found = set_.find(key);
-  // Said again, it is news where a claim has covered it meanwhile.
+  // A repeated value is news where a claim has covered it meanwhile.
   if (found != set_.end() && found->second.value == value && found->second.said_by == who &&
       stored(key) == &found->second)
     return;

@@ -10,12 +10,12 @@
 namespace saphira::intentions {
 namespace {
 
-/// How often the status of a goal that is not at its end is published anew.
+/// The publishing period of the status of an open goal.
 constexpr Ticks kStatusPeriod = 10;
 /// Goals that may begin in one cycle, each after the one before it ended in its first step.
 constexpr int kBeginsPerCycle = 8;
 
-/// Cycles over which the trend of a level is told, and by how much it has to differ.
+/// Cycles for the trend of a level, and the least difference.
 constexpr std::size_t kTrend = 20;
 constexpr double kTrendStep = 0.02;
 
@@ -35,7 +35,7 @@ std::string name_of_goal(const Goal& goal) {
   return name;
 }
 
-/// True where somebody who watches wants to hear of it at once.
+/// True where an observer needs to know at once.
 bool differs(const GoalStatus& a, const GoalStatus& b) {
   return a.state != b.state || a.code != b.code || a.reason != b.reason || a.step != b.step ||
          a.requester != b.requester || a.functor != b.functor || a.note != b.note;
@@ -45,12 +45,12 @@ bool open(const GoalStatus& status) {
   return !ended(status.state);
 }
 
-/// A point that is fixed in odom when the goal is accepted. One on the map stays where it is.
+/// A point that is fixed in odom when the goal is accepted. A point on the map stays there.
 bool to_be_placed(const Argument& argument) {
   return argument.kind == ArgumentKind::point && argument.frame != Frame::map;
 }
 
-/// True where these arguments, as they were written, are what was placed.
+/// True where the placement is of these arguments, as they were written.
 bool is_of(const Placement& placement, const Arguments& arguments) {
   auto point = placement.points.begin();
   for (const Argument& argument : arguments) {
@@ -64,7 +64,7 @@ bool is_of(const Placement& placement, const Arguments& arguments) {
   return point == placement.points.end();
 }
 
-/// To what is remembered of it. Letters of more than one byte stay whole.
+/// To the saved length. Characters of more than one byte stay whole.
 std::string shortened(const std::string& reason) {
   if (reason.size() <= kLongestReason)
     return reason;
@@ -105,8 +105,8 @@ News Executor::hear(const std::vector<GoalEvent>& events) {
   return take_news();
 }
 
-/// Withdraws what has ended long ago, and the oldest where there are too many: without a robot no
-/// time passes. Not before it has been told.
+/// Withdraws goals that ended long ago, and the oldest where there are too many: without a robot no
+/// time passes. Published goals only.
 void Executor::forget_ended() {
   while (!ended_order_.empty()) {
     const auto oldest = entries_.find(ended_order_.front());
@@ -163,8 +163,8 @@ Outputs Executor::step(const Inputs& inputs) {
     begin_concurrent(world);
   }
   forest_.step(world);
-  // The next goal begins in the cycle in which the one before it ends: without a gap in what is
-  // intended, in which the robot would be released.
+  // The next goal begins in the cycle in which the one before it ends: a gap in the intent would
+  // release the robot.
   for (int begun = 0; collect() && robot_here_ && begun < kBeginsPerCycle; ++begun) {
     if (const Entry* const next = arbitrate(world))
       forest_.begin(next->node, world);
@@ -216,7 +216,7 @@ void Executor::take_written(const GoalEvent& event) {
   if (found != entries_.end()) {
     Entry& entry = found->second;
     if (!open(entry.status))
-      return;  // an ended goal stays ended: its id is used up
+      return;  // an ended goal stays ended: its id is not used again
     if (goal != entry.goal)
       change(entry, goal, event.by);
     else
@@ -264,21 +264,21 @@ void Executor::take_written(const GoalEvent& event) {
     wait(entry, GoalCode::kNone, "accepted");
 }
 
-/// Makes the entry one for this goal, whose arguments are checked.
+/// Makes the entry one for this goal with checked arguments.
 void Executor::put_up(Entry& entry, const Goal& goal, Arguments complete) {
   entry.goal = goal;
   entry.schema = registry_->share(goal.functor);
   entry.arguments = std::move(complete);
   entry.placed = false;
   entry.odom.reset();
-  // Places in odom are in the frame that their writer could know of.
+  // Places in odom are in the frame that their writer knew.
   if (odom_ && depends_on_odom(entry, false))
     entry.odom = odom_;
   entry.status.requester = goal.requester;
   entry.status.functor = goal.functor;
 }
 
-/// True where another odom frame would make the arguments mean something else.
+/// True where another odom frame would change the meaning of the arguments.
 bool Executor::depends_on_odom(const Entry& entry, bool placed) {
   return std::any_of(entry.arguments.begin(), entry.arguments.end(), [&](const Argument& argument) {
     if (argument.kind == ArgumentKind::point)
@@ -295,7 +295,7 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
   Arguments complete;
   const std::string wrong = complaint(goal, code, complete);
   if (!wrong.empty()) {
-    // A change that is not understood leaves the goal as it was.
+    // A faulty change leaves the goal as it was.
     entry.status.code = code;
     entry.refusal = wrong;
     if (entry.status.state == GoalState::kUnderway)
@@ -392,7 +392,7 @@ void Executor::meet_odom(std::uint64_t odom) {
     for (auto& [id, entry] : entries_) {
       if (open(entry.status) && entry.odom && *entry.odom != odom)
         end(entry, GoalState::kFailed, GoalCode::kNoRobot, kPositionLost);
-      // An activity remembers places in the earlier odom: it begins anew.
+      // Its memory has places in the earlier odom: it begins anew.
       if (open(entry.status) && entry.node != 0 && entry.schema->program) {
         forest_.remove(entry.node);
         entry.node = 0;
@@ -404,7 +404,7 @@ void Executor::meet_odom(std::uint64_t odom) {
   odom_ = odom;
 }
 
-/// Fixes the arguments in odom, from where the robot is; after a restart of the service, as they
+/// Fixes the arguments in odom, from the robot's place; after a restart of the service, as they
 /// were fixed before it.
 void Executor::place(Entry& entry, const Robot& robot) {
   entry.placed = true;
@@ -447,7 +447,7 @@ void Executor::place(Entry& entry, const Robot& robot) {
   }
 }
 
-/// Tells the activities that are at work of other arguments.
+/// Passes changed arguments to the running activities.
 void Executor::pass_changes() {
   for (auto& [id, entry] : entries_) {
     if (!entry.changed || !entry.placed)
@@ -483,8 +483,8 @@ void Executor::check_deadlines(const Robot& robot) {
   }
 }
 
-/// Ends what a stop replaces: whatever drives and was asked for before it. A stop is stronger than
-/// any priority.
+/// Ends all goals that a stop replaces: every earlier driving goal. A stop is stronger than any
+/// priority.
 void Executor::replace() {
   for (auto& [id, stop] : entries_) {
     if (!open(stop.status) || !stop.schema->replaces || stop.replaced)
@@ -500,8 +500,8 @@ void Executor::replace() {
   }
 }
 
-/// While an emergency stop is latched no goal is to drive, now or after its reset: what was meant
-/// before does not go on by itself.
+/// While an emergency stop is latched no goal may drive, now or after its reset: earlier goals do
+/// not continue by themselves.
 void Executor::obey_estop(const std::string& source) {
   if (source.empty())
     return;
@@ -513,14 +513,15 @@ void Executor::obey_estop(const std::string& source) {
   }
 }
 
-/// The work of an intention, for people: one of the language says it in the words of its schema.
+/// The present work of an intention, for people: an activity of the language uses the words of its
+/// schema.
 std::string Executor::step_of(const IntentionNode& node) const {
   const Schema* const schema = registry_->find(node.schema);
   if (schema == nullptr || schema->program == nullptr)
     return node.step;
   if (!schema->summary.empty())
     return schema->name + ": " + schema->summary;
-  // Its step is what it waits for, or a goal as it is written, which is no reading for people.
+  // Its step is an awaited condition, or a goal in code, which is not for people.
   return node.step.empty() || node.step.front() == '(' ? schema->name : node.step;
 }
 
@@ -542,7 +543,7 @@ Executor::Entry* Executor::best() {
   return best;
 }
 
-/// Gives the robot to the best goal; the one that is underway now, nullptr where there is none.
+/// Gives the robot to the best goal; returns the goal that is underway now, nullptr: none.
 Executor::Entry* Executor::arbitrate(const World& world) {
   for (auto& [id, entry] : entries_) {
     if (!open(entry.status) || !waits_for_person(entry))
@@ -596,7 +597,7 @@ void Executor::begin(Entry& entry, const World& world) {
     take_up(entry, world);
 }
 
-/// Goes on with what was done of a goal before the service was restarted.
+/// Continues a goal from its progress before the restart of the service.
 void Executor::take_up(Entry& entry, const World& world) {
   const auto done = std::find_if(remembered_work_.goals.begin(), remembered_work_.goals.end(),
                                  [&](const GoalWork& work) { return work.id == entry.goal.id; });
@@ -618,7 +619,7 @@ void Executor::take_up(Entry& entry, const World& world) {
     entry.status.note = "was begun anew at its first step: intentions was restarted, and " + why;
 }
 
-/// Goes on from before a restart of the service: the clock, and what activities had set.
+/// Continues from before a restart of the service: the clock, and the values set by activities.
 void Executor::recall(const Inputs& inputs) {
   const Work& work = remembered_work_;
   if (work.epoch == 0)
@@ -643,13 +644,13 @@ std::optional<Work> Executor::take_work() {
     return std::nullopt;
   Work work{epoch_, cycle_, *odom_, now_, {}, {}};
   work.beliefs = beliefs_->set_by_activities();
-  // Its setter keeps that with its own progress.
+  // Its setter saves that with its own progress.
   std::erase_if(work.beliefs,
                 [](const Belief& belief) { return normal(belief.name) == kBehaviorControl; });
   for (const auto& [id, entry] : entries_)
     if (entry.node != 0)
       work.goals.push_back({id, entry.goal.functor, forest_.save(entry.node)});
-  // A goal that waits to be taken up is still the remembered one.
+  // The saved work of a goal that is not continued yet is still valid.
   for (const GoalWork& done : remembered_work_.goals) {
     const auto entry = entries_.find(done.id);
     if (!remembered_.contains(done.id) && (entry == entries_.end() || entry->second.before))
@@ -658,7 +659,7 @@ std::optional<Work> Executor::take_work() {
   return work;
 }
 
-/// Those that are underway beside the one that drives, from the cycle on in which they came.
+/// Goals underway beside the driving one, from the cycle of their arrival on.
 void Executor::begin_concurrent(const World& world) {
   for (auto& [id, entry] : entries_) {
     if (open(entry.status) && entry.schema->concurrent)
@@ -696,7 +697,7 @@ bool Executor::resume(std::uint32_t node) {
   return true;
 }
 
-/// Takes over how far the goal is satisfied.
+/// Updates the goal's satisfaction.
 void Executor::measure(Entry& entry) {
   GoalStatus& status = entry.status;
   if (status.state != GoalState::kUnderway || entry.node == 0) {
@@ -716,7 +717,7 @@ void Executor::measure(Entry& entry) {
                                         : Trend::kSteady;
 }
 
-/// Takes over what the step made of the goals; true where one has ended.
+/// Updates the goals from the step; true where one has ended.
 bool Executor::collect() {
   const std::map<std::uint32_t, Outcome> outcomes = forest_.take_ended();
   bool any = false;

@@ -15,14 +15,14 @@ namespace saphira::intentions {
 static constexpr std::size_t kMostQuestions = 64;  // in a cycle
 namespace {
 
-/// Of a behavior that says nothing else: as the manual's own example has it (8.1.2).
+/// Of a behavior without its own priority, as in the manual's example (8.1.2).
 constexpr int kUsualPriority = 2;
 
 Ticks ticks(double seconds) {
   return seconds > 0.0 ? std::max<Ticks>(1, std::llround(seconds / kTick)) : 0;
 }
 
-constexpr std::size_t kManyWords = 40;  ///< letters of a value; of more there is the beginning
+constexpr std::size_t kManyWords = 40;  ///< letters of a value; a longer one is cut
 
 std::string in_words(const Bindings& arguments, const World& world) {
   std::string text;
@@ -32,7 +32,7 @@ std::string in_words(const Bindings& arguments, const World& world) {
     if (words.size() > kManyWords) {
       std::size_t end = kManyWords - 3;
       while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0U) == 0x80U)
-        --end;  // not within a letter of several bytes
+        --end;  // not within a character of several bytes
       words = words.substr(0, end) + "...";
     }
     if (!text.empty())
@@ -187,7 +187,7 @@ void Forest::suspend(Node& node) {
     return;
   node.suspended = true;
   node.suspended_at = now_;
-  // An intention that was never begun has nothing to put away.
+  // An intention that never began has nothing to clean up.
   const bool put_away = node.activity != nullptr && node.shown.state != IntentionState::kInit;
   node.shown.state = put_away ? IntentionState::kInterrupted : IntentionState::kSuspended;
   if (node.activity == nullptr || !node.activity->keeps_children())
@@ -270,8 +270,8 @@ Forest::Node* Forest::child_of(const Node& parent, std::string_view label) const
   return nullptr;
 }
 
-/// The intention of that name among those that `top` has begun, the nearest to it first, of those
-/// the newest; not `seeker` itself.
+/// The intention of that name among the descendants of `top`: the nearest first, then the newest;
+/// not `seeker` itself.
 Forest::Node* Forest::named(const Node& top, std::string_view name, const Node& seeker) const {
   std::deque<const Node*> open = {&top};
   while (!open.empty()) {
@@ -321,7 +321,7 @@ void Forest::hear(const std::vector<BehaviorTrouble>& troubles) {
   }
 }
 
-/// A behavior is an intention that watches it (manual 8.5).
+/// A behavior is an intention that monitors it (manual 8.5).
 void Forest::watch(Node& node, const World& world) {
   if (node.suspended || node.shown.state != IntentionState::kRunning)
     return;
@@ -410,7 +410,7 @@ void Forest::conclude(Node& node, bool interrupted, const World& world) {
   }
   const bool ends = finished(node.shown.state);
   changed_ = changed_ || ends;
-  // Nothing is left running by one that does not run (manual 8.1.4, and rule 3 of 8.4).
+  // An intention that does not run leaves nothing running (manual 8.1.4, and rule 3 of 8.4).
   if (ends || (interrupted && !node.activity->keeps_children()))
     remove_children(node);
   if (ends)
@@ -423,7 +423,7 @@ void Forest::conclude(Node& node, bool interrupted, const World& world) {
   }
 }
 
-/// Steps what has been begun and passes up what has ended, until nothing is left of both.
+/// Steps new intentions and reports ended ones to their parents, until none are left.
 void Forest::work_off(const World& world) {
   while (!to_begin_.empty() || !to_tell_.empty()) {
     if (!to_begin_.empty()) {
@@ -449,8 +449,7 @@ void Forest::work_off(const World& world) {
   }
 }
 
-/// Removes the roots that have ended, and brings up to date what this cycle has changed too late
-/// for watch().
+/// Removes ended roots, and updates behaviors that changed in this cycle after watch().
 void Forest::end_cycle(const World& world) {
   for (const std::uint32_t id : std::exchange(woken_, {})) {
     if (Node* const node = at(id))
@@ -496,7 +495,7 @@ std::vector<Request> Forest::take_questions() {
   return std::exchange(questions_, {});
 }
 
-/// By the tick, so that a question from before a restart is not taken for a new one.
+/// Numbers follow the tick, so that a question from before a restart differs from a new one.
 std::uint64_t Forest::ask(Request request) {
   if (questions_.size() >= kMostQuestions)
     throw ActivityError("more than " + std::to_string(kMostQuestions) + " questions in a cycle");

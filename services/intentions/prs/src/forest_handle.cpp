@@ -23,8 +23,8 @@ void Forest::Handle::intend_behavior(std::string_view label, std::string_view sc
     child->label = label;
     child->shown.state = IntentionState::kRunning;
     child->shown.label = "B";
-    // Its number makes the name unique: what is left of an earlier instance in the behaviors'
-    // samples is not taken for this one.
+    // The number makes the name unique: samples about an earlier instance are not taken for this
+    // one.
     child->shown.name = std::string(label) + "#" + std::to_string(child->shown.id);
     child->behavior.name = child->shown.name;
     child->behavior.schema = schema;
@@ -103,7 +103,7 @@ bool Forest::Handle::unintend(std::string_view name) {
     const std::uint32_t id = found->shown.id;
     for (const Node* above = &node_; above != nullptr; above = forest_.at(above->shown.parent)) {
       if (above == found) {
-        // It stands in its own step: it goes when that is over.
+        // It is in its own step: it is removed after that.
         forest_.doomed_.push_back(id);
         return true;
       }
@@ -137,7 +137,7 @@ void Forest::Handle::believe(const std::string& name, Value value) {
     else
       forest_.control_off_.erase(node_.root);
     if (!forest_.behavior_control())
-      value = Value();  // another one still wants it off
+      value = Value();  // another one still keeps it off
   }
   forest_.beliefs_->set(name, std::move(value), node_.shown.schema, world_.now);
 }

@@ -12,13 +12,12 @@
 #include "saphira/intentions/forest.hpp"
 #include "saved.hpp"
 
-// The progress of a tree, over a restart of the service. Activities whose children are their
-// own affair (those built in) begin anew with their arguments, which are places and headings by
-// then.
+// The progress of a tree, over a restart of the service. Built-in activities, which manage their
+// own children, begin anew with their arguments, which are places and headings by then.
 namespace saphira::intentions {
 namespace {
 
-/// Intentions of one goal: of more than these, what has been done is not remembered.
+/// Intentions of one goal: the progress of a larger tree is not saved.
 constexpr std::size_t kMostRemembered = 256;
 
 /// The memory of one intention.
@@ -26,7 +25,7 @@ struct SavedNode {
   std::uint32_t id = 0;
   std::uint32_t parent = 0;
   bool is_activity = false;
-  std::optional<std::string> name;  ///< none: after its number
+  std::optional<std::string> name;  ///< none: named after its number
   std::string schema;
   Bindings given;
   bool blocking = true;
@@ -39,7 +38,7 @@ struct SavedNode {
   IntentionState state = IntentionState::kInit;
   GoalCode code = GoalCode::kNone;
   std::string reason;
-  Value activity;  ///< what Activity::save() gave
+  Value activity;  ///< the value of Activity::save()
 
   SavedNode() = default;
   explicit SavedNode(const Value& saved) {
@@ -61,7 +60,7 @@ struct SavedNode {
   }
 };
 
-/// No time passed for it while it was interrupted.
+/// Interrupted time does not count.
 Ticks begun_again(const SavedNode& saved, Ticks now) {
   return saved.begun + (saved.suspended_at ? now - *saved.suspended_at : 0);
 }
@@ -128,7 +127,7 @@ Forest::Node& Forest::restore_one(Node& parent, const Value& value, const World&
     if (!schema)
       throw ActivityError("there is no activity " + saved.schema + " any more");
     child.activity = instantiate(*schema, child.given, world.robot);
-    // One that keeps its children goes on; others begin, and intend again what they need.
+    // A child that keeps its children continues; others begin, and intend their children again.
     if (child.activity->keeps_children() && saved.state != IntentionState::kInit)
       child.shown.state = IntentionState::kRunning;
     child.shown.priority = saved.priority;
@@ -160,7 +159,7 @@ void Forest::restore(std::uint32_t root, const Value& saved, const World& world)
         throw ActivityError("what was remembered is not whole");
       ids[known[i].id] = restore_one(*at(parent->second), nodes[i + 1], world).shown.id;
     }
-    // The root last: it is as it was planted when anything before it fails.
+    // The root last: after an earlier failure it is as it was planted.
     for (auto one = known.rbegin(); one != known.rend(); ++one) {
       Node& node = *at(ids.at(one->id));
       if (node.activity != nullptr && !finished(node.shown.state) && !one->activity.nil())

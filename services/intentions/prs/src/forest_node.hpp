@@ -18,11 +18,11 @@ inline constexpr const char* kMustNotDrive = "a concurrent activity does not dri
 /// One intention: an activity, or a behavior that it has begun.
 struct Forest::Node {
   IntentionNode shown;
-  std::unique_ptr<Activity> activity;  ///< none: it is a behavior
+  std::unique_ptr<Activity> activity;  ///< none: a behavior
   std::vector<std::uint32_t> children;
   std::uint32_t root = 0;
   std::size_t depth = 0;
-  bool concurrent = false;  ///< must not drive, as its root
+  bool concurrent = false;  ///< must not drive, like its root
   unsigned holds = 0;
   bool suspended = false;  ///< by its own holds or with its parent
   Ticks suspended_at = 0;
@@ -30,18 +30,18 @@ struct Forest::Node {
   Ticks begun = 0;
   std::optional<double> level;
   Outcome outcome;
-  Bindings given;  ///< what it was begun with by another; points from the robot are in odom
+  Bindings given;  ///< arguments from another intention; points from the robot are in odom
   // Of a behavior.
   std::string label;
   IntendedBehavior behavior;
-  BehaviorParameters parameters;  ///< where those of `behavior` come from
+  BehaviorParameters parameters;  ///< the source of those of `behavior`
   bool until_satisfied = false;
-  Ticks since = 0;  ///< when its parameters were intended
+  Ticks since = 0;  ///< time of the intent of its parameters
   // Of an activity.
   double progress = 0.0;
-  Ticks stepped = -1;                  ///< when it was, last
+  Ticks stepped = -1;                  ///< time of the newest step
   bool gone = false;                   ///< removed, in the course of a step
-  std::optional<std::string> trouble;  ///< with a behavior that it has begun
+  std::optional<std::string> trouble;  ///< with a behavior of its own
 };
 
 }  // namespace saphira::intentions

@@ -9,8 +9,8 @@
 namespace saphira::intentions {
 namespace {
 
-/// Longer texts and lists than these are cut: a loop that makes one longer and longer comes to an
-/// end by its timeout, not by the machine's memory.
+/// Longer texts and lists are cut: a loop that keeps extending one ends by its timeout, not by the
+/// machine's memory.
 constexpr std::size_t kLongestText = 4096;
 constexpr std::size_t kLongestList = 4096;
 
@@ -43,7 +43,7 @@ Function unary(std::string name, std::string summary, Operation operation) {
           std::move(summary)};
 }
 
-/// True where it holds between each and the next.
+/// True where the comparison holds between each value and the next.
 template <class Comparison>
 Function compare(std::string name, std::string summary, Comparison holds) {
   const std::string own = name;
@@ -72,7 +72,7 @@ Value list(Value::List elements) {
   return result;
 }
 
-/// Lisp's format, of which ~a and ~% are there.
+/// Lisp's format, with ~a and ~% only.
 std::string format(Values arguments, std::string_view function) {
   const std::string& pattern = text_of(arguments, 0, function);
   std::string out;

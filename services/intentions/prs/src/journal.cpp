@@ -20,7 +20,7 @@ std::string write_id(const GoalId& id) {
   return text;
 }
 
-/// A whole word as a number to the base; fails the line where it is not one.
+/// A whole word as a number to the base; otherwise an error at that word.
 std::uint64_t read_count(LineReader& reader, std::string_view what, int base) {
   const std::string_view word = reader.word(what);
   std::uint64_t value = 0;
@@ -37,8 +37,8 @@ GoalId read_id(LineReader& reader) {
   return id;
 }
 
-/// The value that name_of gives that name; none where there is no such value. Values are numbered
-/// from 0 without gaps.
+/// The value with that name by name_of; none: no such value. Values are numbered from 0 without
+/// gaps.
 template <class Enum>
 std::optional<Enum> value_named(std::string_view name) {
   for (int i = 0; name_of(static_cast<Enum>(i)) != std::string_view("?"); ++i) {

@@ -11,12 +11,11 @@
 #include "saphira/intentions/functions.hpp"
 #include "saphira/intentions/value.hpp"
 
-/// Intentions keep a value of the language over a restart of the service: lists within
-/// lists.
+/// Saves records as values of the language, over a restart of the service: nested lists.
 namespace saphira::intentions {
 
-/// Writes the fields of a record one after the other, as a list. Reading takes the same call, so
-/// that a record names its fields once: see Loading.
+/// Writes the fields of a record one after the other, as a list. Reading takes the same calls, so
+/// that a record lists its fields once: see Loading.
 class Saving {
  public:
   template <class... T>
@@ -47,8 +46,8 @@ class Saving {
   Value::List list_;
 };
 
-/// Reads the fields that Saving has written. ActivityError where they are not there. The list has
-/// to outlive it.
+/// Reads the fields that Saving has written. ActivityError where they are missing. The list has to
+/// outlive this object.
 class Loading {
  public:
   explicit Loading(const Value& list) : list_(list.list()) {}

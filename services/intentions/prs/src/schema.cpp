@@ -9,11 +9,11 @@
 namespace saphira::intentions {
 namespace {
 
-/// Farther away than any robot goes [m]: a point beyond it is a mistake, such as millimeters.
+/// Beyond the range of any robot [m]: a farther point is an error, such as millimeters.
 constexpr double kFarthest = 10e3;
-constexpr double kMostTurns = 1e3;  ///< [rad] of a heading that somebody has added up
+constexpr double kMostTurns = 1e3;  ///< [rad] of an accumulated heading
 
-/// Without its hyphens: the same for follow-corridor and FollowCorridor.
+/// Without hyphens: the same for follow-corridor and FollowCorridor.
 std::string joined(std::string_view name) {
   std::string result = normal(name);
   std::erase(result, '-');
@@ -59,7 +59,7 @@ std::string came(const Argument& argument) {
   return describe(argument.kind);
 }
 
-/// False for what is not a number, as all comparisons here.
+/// False for NaN, as all comparisons here.
 bool fits(const Parameter& parameter, const Argument& argument) {
   if (!parameter.any && argument.kind != parameter.kind)
     return false;
@@ -173,7 +173,7 @@ std::string check_arguments(const Schema& schema, const Arguments& arguments, Ar
       return "argument " + quoted(argument->name) + " is given twice";
     Argument taken = *argument;
     taken.name = parameter->name;
-    // A number that is typed for a place is its name.
+    // A number in place of a text is a name.
     if (!parameter->any && parameter->kind == ArgumentKind::text &&
         taken.kind == ArgumentKind::number)
       taken = text(parameter->name, plain(taken.number));
@@ -210,7 +210,7 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
                                       const Robot& robot) {
   const Bindings fixed = fixed_in_odom(bindings, robot);
   Arguments arguments;
-  Bindings others;  // that no argument can hold
+  Bindings others;  // values that no argument can hold
   for (const auto& [name, value] : fixed) {
     Argument argument;
     if (to_argument(name, value, argument))
@@ -222,7 +222,7 @@ std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bind
     throw ActivityError(schema.name + ": argument " + quoted(others.front().first) + " cannot be " +
                             kind_of(others.front().second),
                         GoalCode::kBadArgument);
-  // An argument that the check cannot see counts as given.
+  // An argument that the check cannot see counts as present.
   Schema rest = schema;
   if (schema.bind) {
     for (const auto& each_fixed : fixed) {

@@ -29,7 +29,7 @@ const char* name_of(Reference::Kind kind) {
   return "?";
 }
 
-/// True where a text reads back as itself without quotes.
+/// True where a text without quotes reads back as itself.
 bool is_name(const std::string& text) {
   if (text.empty() || text == "t" || text == "nil" || text == "." || text.front() == ':' ||
       text.front() == '+' || text.front() == '-' || text.front() == '.' ||

@@ -18,11 +18,11 @@ using maps::LinkKind;
 using maps::RegionKind;
 using Kind = Reference::Kind;
 
-constexpr double kSameDoor = 0.5;   ///< [m] a door that is seen and one on the map are the same
-constexpr double kBody = 0.30;      ///< [m] half of what has to be free before the robot
-constexpr double kNear = 1.6;       ///< [m] from where on the sonars tell a closed door
-constexpr double kSeenAgain = 3.0;  ///< [s] what was seen longer ago counts no more
-constexpr double kDeep = 0.2;       ///< [m] before and behind a doorway, what stands in it
+constexpr double kSameDoor = 0.5;   ///< [m] tolerance between a seen door and the map's
+constexpr double kBody = 0.30;      ///< [m] half of the width that has to be free ahead
+constexpr double kNear = 1.6;       ///< [m] from which on the sonars detect a closed door
+constexpr double kSeenAgain = 3.0;  ///< [s] older percepts do not count
+constexpr double kDeep = 0.2;       ///< [m] before and behind a doorway, for obstacles in it
 
 /// The middle line of a corridor as a directed point, towards a way out of it or a point.
 Pose lane(const maps::Feature& area, const Vec2& towards) {
@@ -32,7 +32,7 @@ Pose lane(const maps::Feature& area, const Vec2& towards) {
   return pose;
 }
 
-/// The door that is seen where the map has one: what is seen is where it is, relative to the robot.
+/// The percept of the map's door; its place relative to the robot is the accurate one.
 const lps::Percept* seen_door(const World& world, const maps::Link& link) {
   if (world.around.percepts == nullptr || !world.robot.odom_in_map)
     return nullptr;
@@ -57,7 +57,7 @@ Value door_pose(const World& world, Values arguments) {
   const lps::Percept* const seen = seen_door(world, link);
   if (seen == nullptr)
     return on_map(link.pose_in_map);
-  // The normal of the map's door: that of what is seen is towards where it was seen from.
+  // The normal of the map's door: the percept's is towards the robot's side.
   const Pose by_map = relative(*world.robot.odom_in_map, link.pose_in_map);
   Pose pose = seen->pose_in_odom;
   if (std::abs(norm2_angle(pose.th - by_map.th)) > kPi / 2)
@@ -65,7 +65,7 @@ Value door_pose(const World& world, Values arguments) {
   return Value(Point{pose, Frame::odom});
 }
 
-/// The widest gap between what stands in the doorway [m], as the obstacle memory has it.
+/// The widest gap between obstacles in the doorway [m], from the obstacle memory.
 double widest_gap(const lps::LocalPerceptualSpace& lps, const Pose& door_in_robot, double width) {
   std::vector<double> at{-width / 2, width / 2};
   for (const Vec2& point : lps.obstacles()) {
@@ -97,8 +97,8 @@ Value door_state(const World& world, Values arguments) {
   return widest_gap(*world.around.lps, *door, link.width) < 2.0 * kBody - 0.1 ? "closed" : "open";
 }
 
-/// Which way through a door leads into a region: FollowDoor's direction. A door's normal is out
-/// into its region a.
+/// The direction through a door into a region, for FollowDoor. A door's normal is out into its
+/// region a.
 Value door_direction(const World& world, Values arguments) {
   const maps::Link& link = link_of(world, arguments, 0, "door-direction");
   const std::size_t into =
@@ -106,7 +106,7 @@ Value door_direction(const World& world, Values arguments) {
   return link.a == into ? "out" : "in";
 }
 
-/// A point on the line through a door, so far on the side of a region.
+/// A point on the line through a door, at a distance on the side of a region.
 Value before_door(const World& world, Values arguments) {
   const maps::Link& link = link_of(world, arguments, 0, "before-door");
   const std::size_t side =
@@ -117,9 +117,9 @@ Value before_door(const World& world, Values arguments) {
                 norm2_angle(link.pose_in_map.th + (sign > 0.0 ? 0.0 : kPi)));
 }
 
-// ---- What is in the way
+// ---- Obstacles
 
-/// How far the robot can go straight on [m], at most as far as the LPS says anything.
+/// The robot's free way straight on [m], at most the range of the LPS.
 double free_ahead(const World& world, double bearing) {
   double free = lps::kNothing;
   if (world.around.lps == nullptr)
@@ -154,8 +154,8 @@ Value seen_value(const lps::Percept* percept) {
   return percept == nullptr ? Value() : Value(Reference{Kind::kPercept, percept->id, 0});
 }
 
-/// The corridor that the robot is in: by registration, as current_environment of manual 8.1.2, or
-/// else as it is seen.
+/// The corridor around the robot: from registration, as current_environment of manual 8.1.2, or
+/// else from perception.
 Value corridor_here(const World& world) {
   const std::optional<Pose> robot = world.robot_in_map();
   if (robot && world.around.topology != nullptr) {
@@ -208,7 +208,7 @@ void add_corridors(Functions& functions) {
                                      : std::nullopt;
                  if (!seen)
                    return Value(middle);
-                 // As the robot goes, or towards the thing.
+                 // In the robot's direction, or towards the target.
                  const bool back = to ? relative(*seen, *to).x < relative(*seen, Pose{}).x
                                       : std::abs(seen->th) > kPi / 2;
                  if (back)

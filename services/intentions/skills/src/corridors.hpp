@@ -4,7 +4,7 @@
 
 namespace saphira::intentions {
 
-/// Corridors and doors, by the map and as they are seen, and what stands in the way.
+/// Corridors and doors, of the map and of perception, and obstacles.
 void add_corridors(Functions& functions);
 
 }  // namespace saphira::intentions

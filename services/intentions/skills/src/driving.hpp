@@ -12,9 +12,9 @@ namespace saphira::intentions {
 inline constexpr int kAvoid = 0;
 inline constexpr int kKeepOff = 1;
 inline constexpr int kTask = 2;
-inline constexpr int kRest = 3;  ///< what is left where nothing else has a say
+inline constexpr int kRest = 3;  ///< only without any other behavior
 
-/// A number that may be left out.
+/// An optional number.
 inline Parameter quantity(std::string name, std::string unit, double low, double high,
                           double usual) {
   Parameter parameter;

@@ -13,16 +13,17 @@
 namespace saphira::intentions {
 namespace {
 
-/// Cycles until a robot that had just been told to move would show it.
+/// Cycles until a motion command shows in the robot's state.
 constexpr Ticks kOnTheWay = 3;
 
-/// [s] without progress after which a goal is given up.
+/// [s] without progress before a goal fails.
 constexpr double kPatience = 20.0;
-constexpr double kGround = 0.1;  ///< [m] that driving has to gain within the patience
-constexpr double kFar = 1000.0;  ///< [m] where the point is that stands for a heading
+constexpr double kGround = 0.1;  ///< [m] least progress within the patience
+constexpr double kDetour = 3.0;  ///< patiences that a robot has which gets on
+constexpr double kFar = 1000.0;  ///< [m] distance of the point that stands for a heading
 
-/// Where what is heard does not confirm the place, the robot moves about, so often and so long each
-/// time [s], at this speed [m/s].
+/// Where the readings do not confirm the place, the robot moves about: the number of times, the
+/// duration of each [s], and the speed [m/s].
 constexpr int kChecks = 3;
 constexpr double kCheckTime = 15.0;
 constexpr double kCheckSpeed = 0.2;
@@ -47,7 +48,7 @@ double distance(const Pose& a, const Pose& b) {
   return (a.position() - b.position()).norm();
 }
 
-/// Where a point is in odom now: one on the map is where registration says; none while it does not.
+/// The point in odom now: a point on the map by registration; none without a registered pose.
 std::optional<Pose> in_odom(const Argument& point, const Robot& robot) {
   if (point.frame != Frame::map)
     return point.point;
@@ -56,10 +57,10 @@ std::optional<Pose> in_odom(const Argument& point, const Robot& robot) {
   return relative(*robot.odom_in_map, point.point);
 }
 
-/// True where something that ought to shrink still does.
+/// Detects that a shrinking measure does not shrink any more.
 class Watchdog {
  public:
-  /// step: what counts as progress, in the measure's unit.
+  /// step: the least progress, in the measure's unit.
   Watchdog(double step, double patience) : step_(step), patience_(patience) {}
 
   void restart(double measure, Ticks now) {
@@ -70,8 +71,10 @@ class Watchdog {
   bool check(double measure, Ticks now) {
     if (measure <= best_ - step_)
       restart(measure, now);
-    return static_cast<double>(now - since_) * kTick >= patience_;
+    return waited(now) >= patience_;
   }
+  /// [s] since the last progress.
+  double waited(Ticks now) const { return static_cast<double>(now - since_) * kTick; }
   double patience() const { return patience_; }
   void patience(double seconds) { patience_ = seconds; }
 
@@ -90,8 +93,7 @@ std::string why_not_moving(const Robot& robot) {
   return robot.has_power ? "" : "; the motors have no power";
 }
 
-/// The robot stands while it does not know where it is on the map, and gives up when that lasts for
-/// longer than its patience.
+/// The robot stands while its place on the map is unknown, and fails after its patience.
 void wait_for_position(Self& self, std::optional<Ticks>& since, double patience) {
   for (const char* label : {"AvoidCollision", "KeepOff", "GoToPos", "ConstantVelocity", "TurnTo"})
     self.drop_behavior(label);
@@ -104,8 +106,8 @@ void wait_for_position(Self& self, std::optional<Ticks>& since, double patience)
               format("the robot has not known where it is on the map for %.0f s", patience));
 }
 
-/// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop for where none of them has
-/// a say. When it is there, Stop alone until it stands.
+/// Drives to a point: AvoidCollision over KeepOff over GoToPos, and Stop where none of them is
+/// active. At the point, Stop alone until the robot stands.
 class GoTo : public Activity {
  public:
   explicit GoTo(const Arguments& arguments) : watchdog_(0.05, kPatience) { take(arguments); }
@@ -138,7 +140,7 @@ class GoTo : public Activity {
       return;
     if (begun || waited || checked)
       watchdog_.restart(left, self.now());
-    // The behavior's own word, within reason: it may be content a little before the radius.
+    // The behavior's own report, within limits: it may be satisfied a little before the radius.
     if (left <= radius_ || (self.level("GoToPos") >= kSatisfied && left <= 2.0 * radius_))
       there_ = true;
     if (there_) {
@@ -169,19 +171,29 @@ class GoTo : public Activity {
     self.say("driving to " + format_point(target_));
     if (whole_way_ > 0.0)
       self.progress(1.0 - left / whole_way_);
-    if (watchdog_.check(left, self.now()))
+    if (watchdog_.check(left, self.now()) && !makes_a_detour(self))
       self.fail(GoalCode::kBlocked,
-                format("no nearer for %.0f s, %.2f m from the point", watchdog_.patience(), left) +
+                format("no nearer for %.0f s, %.2f m from the point", watchdog_.waited(self.now()),
+                       left) +
                     why_not_moving(self.robot()));
   }
 
  private:
+  /// The way around an obstacle may lead away from the point, and take a slow robot long: it gets
+  /// on if it drives its radius each second on average.
+  bool makes_a_detour(Self& self) const {
+    const double waited = watchdog_.waited(self.now());
+    return self.world().around.robot_radius > 0.0 &&
+           path_ >= waited * self.world().around.robot_radius &&
+           waited < kDetour * watchdog_.patience();
+  }
+
   bool unsure(Self& self) const {
     return target_.frame == Frame::map && self.world().unsure_of_position();
   }
 
-  /// A pose that was only told, or that fits badly, is no reason to say that it has arrived: more
-  /// is heard on the move. False when that is over, and the point is to be driven to again.
+  /// A given pose, or one that fits badly, is not enough for an arrival: motion gives more
+  /// readings. False when that is over, and the robot has to drive to the point again.
   bool move_about(Self& self) {
     if (!unsure(self) || static_cast<double>(self.now() - *checking_since_) * kTick >= kCheckTime) {
       ++checks_;
@@ -219,8 +231,7 @@ class GoTo : public Activity {
   int checks_ = 0;
 };
 
-/// Goes on at a speed around what is in the way. It has no end of its own: its deadline is its
-/// success.
+/// Drives at a speed around obstacles. It has no end of its own: its deadline is its success.
 class Drive : public Activity {
  public:
   explicit Drive(const Arguments& arguments) { take(arguments); }
@@ -277,7 +288,7 @@ class Drive : public Activity {
   double path_ = 0.0;  ///< [m]
 };
 
-/// Turns on the spot. No behavior looks at obstacles: the robot is round and stays where it is.
+/// Turns on the spot. No behavior watches obstacles: the robot is round and stays in its place.
 class TurnTo : public Activity {
  public:
   explicit TurnTo(const Arguments& arguments) : watchdog_(radians(2.0), kPatience) {
@@ -293,8 +304,8 @@ class TurnTo : public Activity {
     if (self.state() == IntentionState::kInterrupted)
       return;
     const Pose& pose = self.robot().pose_in_odom;
-    // A heading is a point far away in that direction; it stays where it was first put, so that
-    // the behavior is not changed every cycle.
+    // A heading is a point far away in that direction; it keeps its first place, so that the
+    // behavior does not change every cycle.
     if (new_target_ && heading_)
       target_ = point("heading", {pose.x + kFar * std::cos(*heading_),
                                   pose.y + kFar * std::sin(*heading_), 0.0});

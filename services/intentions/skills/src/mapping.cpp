@@ -12,12 +12,12 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr double kRadius = 0.2;      ///< [m] the point to drive to is moved on before it is reached
-constexpr double kAligned = 0.05;    ///< [rad] the explorer waits for the robot to look that way
-constexpr double kWayStep = 0.4;     ///< [m] between the places of the way that are kept
+constexpr double kRadius = 0.2;      ///< [m] the target moves on before the robot reaches it
+constexpr double kAligned = 0.05;    ///< [rad] tolerance of a heading that the explorer asks for
+constexpr double kWayStep = 0.4;     ///< [m] between stored places of the way
 constexpr double kSamePoint = 0.02;  ///< [m]
 
-/// The explorer says where to drive, cycle by cycle.
+/// The explorer gives the target, cycle by cycle.
 class ExploreUnknown : public Activity {
  public:
   explicit ExploreUnknown(const Arguments& arguments) : speed_(find(arguments, "speed")->number) {}
@@ -92,7 +92,7 @@ class ExploreUnknown : public Activity {
           {point("goal", *driving_to_), number("speed", speed), number("radius", kRadius)});
   }
 
-  /// True where that is another place than the behavior has.
+  /// True where that differs from the behavior's target.
   bool aim(const Self& self, const Vec2& to) {
     const Pose there = relative(*self.robot().odom_in_map, {to.x(), to.y(), 0.0});
     const bool turns = explorer_->output().look_at.has_value();
@@ -104,7 +104,7 @@ class ExploreUnknown : public Activity {
     return true;
   }
 
-  /// The way as places that are well apart, and where it is now.
+  /// Stores places of the way at a distance from each other, and the present one.
   void remember(const Vec2& here) {
     if (way_.size() > 1 && (way_.back() - way_[way_.size() - 2]).norm() < kWayStep)
       way_.back() = here;

@@ -5,10 +5,10 @@
 
 namespace saphira::intentions {
 
-/// explore_unknown: drives where the map as it is built ends, until nothing is left.
+/// explore_unknown: drives to the ends of the map built so far, until none are left.
 Schema explore_unknown();
 
-/// Actions on the map: to forget it, and to add the artifacts that are seen.
+/// Actions on the map: clear it, and add seen artifacts.
 void add_mapping(Functions& functions);
 
 }  // namespace saphira::intentions

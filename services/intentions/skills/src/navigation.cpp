@@ -23,10 +23,10 @@ using maps::RegionKind;
 using Kind = Reference::Kind;
 
 constexpr double kForget = 300.0;  ///< [s] after which a closed way may be open again
-constexpr double kThere = 0.4;     ///< [m] so near to its point the robot is at a place
-constexpr double kVisited = 1.5;   ///< [m] around where the robot has been
-constexpr double kStep = 0.7;      ///< [m] a nearer point is not worth driving to
-constexpr double kWayIn = 1.0;     ///< [m] behind a door where a room has been visited
+constexpr double kThere = 0.4;     ///< [m] distance to its point at which a place is reached
+constexpr double kVisited = 1.5;   ///< [m] around the robot's earlier places
+constexpr double kStep = 0.7;      ///< [m] nearer points are not worth a drive
+constexpr double kWayIn = 1.0;     ///< [m] behind a door, where a room counts as visited
 
 const char* const kClosedWays = "*closed-ways*";
 const char* const kHazards = "hazards";
@@ -73,7 +73,7 @@ std::vector<Hazard> hazards(const World& world) {
   return found;
 }
 
-/// The first hazard in one of the regions; empty: none.
+/// The first hazard in the region; empty: none.
 std::string hazard_in(const std::vector<Hazard>& hazards, std::size_t region) {
   for (const Hazard& hazard : hazards)
     if (std::find(hazard.regions.begin(), hazard.regions.end(), region) != hazard.regions.end())
@@ -86,7 +86,7 @@ maps::RouteSettings route_settings(const World& world) {
   settings.tolerance = kAstray;
   if (world.around.robot_radius > 0.0)
     settings.needs_width = maps::needed_width(world.around.robot_radius);
-  // Out of where it is the robot has to get.
+  // The robot may leave its own region.
   const std::optional<std::size_t> here = region_here(world);
   for (const Hazard& hazard : hazards(world))
     for (const std::size_t region : hazard.regions)
@@ -110,7 +110,7 @@ maps::RouteResult route(const World& world, const Value& from, const Value& to,
   std::optional<Vec2> start;
   if (const std::optional<Pose> robot = world.robot_in_map())
     start = robot->position();
-  // From elsewhere than where the robot is.
+  // From another place than the robot's.
   if (const Reference* const region = from.reference()) {
     const bool here = start && region->kind == Kind::kRegion && current(world, *region) &&
                       region->id < map.regions().size() &&
@@ -168,8 +168,8 @@ Value path_of(const World& world, const maps::Route& route, const Value& to) {
   return Value(std::move(path));
 }
 
-/// The kind of the first step of a path, for follow-path to choose by: the name of a
-/// schema, or done.
+/// The kind of the first step of a path, by which follow-path chooses: the name of a schema, or
+/// done.
 Value leg_of(const World& world, Values arguments) {
   const Value::List& path = arguments[0].list();
   if (path.empty())
@@ -194,7 +194,7 @@ Value leg_of(const World& world, Values arguments) {
 
 // ---- Exploring
 
-/// Every place that exploring ends at: the ends of corridors, and rooms behind their doors.
+/// The targets of exploring: the ends of corridors, and rooms behind their doors.
 std::vector<Vec2> sights(const maps::Topology& map, bool rooms) {
   std::vector<Vec2> points;
   for (const maps::Region& region : map.regions()) {
@@ -239,8 +239,8 @@ Value next_to_explore(const World& world, Values arguments) {
   return best ? on_map(*best) : Value();
 }
 
-/// Where to look for what registration knows: on the way to the nearest corridor, by its best guess
-/// of where the robot is. In odom; nil where there is no guess.
+/// A place where registration may find known artifacts: on the way to the nearest corridor, from
+/// its best guess of the pose. In odom; nil without a guess.
 Value way_to_corridor(const World& world, Values) {
   const Registered& guess = world.around.registration;
   if (world.around.topology == nullptr || guess.state == Localization::kNone ||
@@ -368,8 +368,7 @@ void add_paths(Functions& functions) {
                "that is none of the points, or nil"});
 }
 
-/// True where the robot is where a place is: within its region, and near its point where it has
-/// one.
+/// True where the robot is at a place: within its region, and near its point where it has one.
 bool at_place(const World& world, const Value& place) {
   const std::optional<Pose> robot = world.robot_in_map();
   if (!robot || world.around.topology == nullptr)
@@ -388,7 +387,7 @@ bool at_place(const World& world, const Value& place) {
   });
 }
 
-/// The words of a text, which commas or blanks separate.
+/// The words of a text, separated by commas or blanks.
 Value split(const std::string& text) {
   Value::List words;
   std::string word;

@@ -8,11 +8,11 @@
 #include "saphira/lps/percept.hpp"
 #include "saphira/maps/topology.hpp"
 
-/// The place on the map that a value of the activity language means, and a place as such a value.
-/// A `function` is named by the ActivityError where it does not mean what it has to.
+/// Conversions between values of the activity language and places on the map. The ActivityError for
+/// a wrong value names the `function`.
 namespace saphira::intentions {
 
-/// [m] outside of its region the robot may believe to be.
+/// [m] tolerated distance of the robot from its region.
 inline constexpr double kAstray = 0.5;
 
 const maps::Topology& map_of(const World& world, std::string_view function);
@@ -27,11 +27,11 @@ const maps::Link& link_of(const World& world, Values arguments, std::size_t inde
                           std::string_view function);
 /// The percept of that number; nullptr where it is gone.
 const lps::Percept* percept(const World& world, std::uint64_t id);
-/// Where the argument is: a point is itself; regions and ways out by the map; what is seen in odom.
+/// The place of an argument: a point is its own; regions and ways out by the map; percepts in odom.
 Point point_at(const World& world, Values arguments, std::size_t index, std::string_view function);
-/// The same; none where it has no place.
+/// The same; none for a value without a place.
 std::optional<Point> place_of(const World& world, const Value& value);
-/// The place that a person or an activity means.
+/// The place with that name, from a person or an activity.
 std::optional<maps::Place> place_named(const maps::Topology& map, const Value& value);
 
 Value region_value(const World& world, std::size_t index);
@@ -39,8 +39,8 @@ Value link_value(const World& world, std::size_t index);
 Value on_map(const Pose& pose);
 Value on_map(const Vec2& position, double heading = 0.0);
 
-/// A point as the robot sees it; none while the way there goes over a map on which the robot is
-/// not.
+/// A point in the robot's frame; none where the conversion goes over a map on which the robot has
+/// no pose.
 std::optional<Pose> in_robot(const World& world, const Point& point);
 std::optional<std::size_t> region_here(const World& world);
 

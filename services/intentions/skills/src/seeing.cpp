@@ -7,10 +7,10 @@ namespace saphira::intentions {
 namespace {
 
 using lps::SeenThing;
-using Kind = SeenThing::Kind;
+using SeenKind = SeenThing::Kind;
 
 struct Wanted {
-  Kind kind = Kind::person;
+  SeenKind kind = SeenKind::person;
   int channel = -1;  ///< any
 };
 
@@ -18,9 +18,9 @@ std::optional<Wanted> wanted(const std::string& what) {
   if (what == "person")
     return Wanted{};
   if (what == "blob")
-    return Wanted{Kind::blob, -1};
+    return Wanted{SeenKind::blob, -1};
   if (what.size() == 6 && what.starts_with("blob-") && what[5] >= 'a' && what[5] <= 'c')
-    return Wanted{Kind::blob, what[5] - 'a'};
+    return Wanted{SeenKind::blob, what[5] - 'a'};
   return std::nullopt;
 }
 
@@ -28,7 +28,7 @@ double distance(const World& world, const SeenThing& thing) {
   return (thing.pose_in_odom.position() - world.robot.pose_in_odom.position()).norm();
 }
 
-/// The thing that an argument refers to; nullptr where it is nil or not seen any more.
+/// The thing of a reference; nullptr where the argument is nil or the thing is gone.
 const SeenThing* thing_at(const World& world, Values arguments, std::string_view function) {
   if (arguments[0].nil())
     return nullptr;
@@ -39,7 +39,7 @@ const SeenThing* thing_at(const World& world, Values arguments, std::string_view
   return seen_thing(world, reference->id);
 }
 
-/// A function of one thing that is nil where the thing is gone.
+/// A function of one thing; nil where the thing is gone.
 template <class F>
 Function of_thing(std::string name, std::string summary, F&& value) {
   const std::string own = name;

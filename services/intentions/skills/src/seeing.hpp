@@ -9,8 +9,8 @@
 
 namespace saphira::intentions {
 
-/// The nearest person, blob or blob of a channel ("person", "blob", "blob-a", "blob-b", "blob-c")
-/// that is seen, as a reference, or nil. None where `what` names no such kind.
+/// The nearest visible person, blob or blob of a channel ("person", "blob", "blob-a", "blob-b",
+/// "blob-c"), as a reference, or nil. None for an unknown kind in `what`.
 std::optional<Value> nearest_seen(const World& world, const std::string& what);
 
 /// Functions about people and colours that a camera sees.

@@ -24,15 +24,15 @@ enum class ThingKind { kPerson, kPost, kBox, kDoor, kRobot, kWall };
 struct Contact {
   std::uint64_t tick = 0;  ///< of the scene
   ThingKind kind = ThingKind::kWall;
-  std::string name;  ///< as the world file calls it; of a robot its number, of a wall none
+  std::string name;  ///< as in the world file; of a robot its number, of a wall none
   Blame blame = Blame::kCaused;
   double towards = 0.0;  ///< [m/s] of the robot's hull towards the thing
-  double heard = 0.0;    ///< [s] before, that the thing was within the main lobe of some sonar
-  double needed = 0.0;   ///< [s] for which it must have been, to be avoided
+  double heard = 0.0;    ///< [s] before, with the object in the main lobe of some sonar
+  double needed = 0.0;   ///< [s] of that needed to avoid the contact
   Vec2 at_in_world{0.0, 0.0};
 };
 
-/// The robot passed near to something and did not slow down.
+/// The robot passed near an object without slowing down.
 struct NearContact {
   std::uint64_t tick = 0;
   ThingKind kind = ThingKind::kWall;
@@ -44,22 +44,22 @@ struct NearContact {
 struct ContactSettings {
   double touch = 0.002;     ///< [m] a smaller gap is a contact...
   double apart = 0.05;      ///< [m] ...which has ended when the gap is larger than this
-  double towards = 0.05;    ///< [m/s] a robot that moves on more slowly is not to blame
-  double at_rest = 0.3;     ///< [s] nor one that has stood for so long
-  double reaction = 0.6;    ///< [s] from the sound to the brakes, at the worst
+  double towards = 0.05;    ///< [m/s] a slower robot is not to blame
+  double at_rest = 0.3;     ///< [s] nor one that has stood this long
+  double reaction = 0.6;    ///< [s] from the sound to the brakes, at worst
   double near_gap = 0.1;    ///< [m]
   double near_speed = 0.2;  ///< [m/s]
-  // The true range for a sonar, whether it has heard it or not.
+  // The true range for a sonar, heard or not.
   double lobe = radians(9.0);  ///< [rad] to either side of the axis
   double least_range = 0.2;    ///< [m]
   double most_range = 2.0;     ///< [m]
-  double memory = 10.0;        ///< [s] what was heard earlier says nothing about now
+  double memory = 10.0;        ///< [s] older readings do not count
 };
 
-/// Watches one robot of a scene and judges its contacts, by the truth.
+/// Watches one robot of a scene and judges its contacts, by the true state.
 class ContactWatch {
  public:
-  /// The scene outlives it.
+  /// The scene outlives this object.
   ContactWatch(const Scene& scene, RobotNumber robot, const protocol::RobotParameters& parameters,
                const ContactSettings& settings = {});
 
@@ -76,7 +76,7 @@ class ContactWatch {
   struct Thing {
     ThingKind kind = ThingKind::kWall;
     std::size_t number = 0;  // of its kind
-    Vec2 nearest{0.0, 0.0};  // its point that is nearest to the robot
+    Vec2 nearest{0.0, 0.0};  // its nearest point to the robot
     double gap = std::numeric_limits<double>::infinity();
   };
   // The present contact with it.
@@ -86,7 +86,7 @@ class ContactWatch {
     bool touches = false;
     bool near = false;
   };
-  // The past, for the seconds that count.
+  // The past, as far back as it counts.
   struct Past {
     Pose robot_in_world;
     std::vector<Vec2> persons;  // two shins each

@@ -15,10 +15,10 @@
 
 namespace saphira::sim {
 
-/// A gripper with paddles that open and close and a lift, each taking its time.
+/// A gripper with paddles that open and close and a lift; each motion takes time.
 class Gripper {
  public:
-  void act(int action);  ///< protocol::GripperAction; others do nothing
+  void act(int action);  ///< protocol::GripperAction; others are ignored
   void cycle();          ///< 100 ms
 
   /// The byte of the information packet, as Player reads it: bit 0 open, 1 closed, 2 paddles
@@ -27,7 +27,7 @@ class Gripper {
   int action() const { return action_; }  ///< the last command
 
  private:
-  /// Something between two end stops.
+  /// A motion between two end stops.
   struct Axis {
     double position = 0.0;  // 0 to 1
     int direction = 0;
@@ -38,13 +38,13 @@ class Gripper {
   int action_ = 0;
 };
 
-/// The Fast Track Vision System (manual 9): three channels, each of which looks for the things of
-/// one color. It sends packets from the first VISION_COM of a connection on.
+/// The Fast Track Vision System (manual 9): three channels, each of which detects objects of one
+/// color. It sends packets from the first VISION_COM of a connection on.
 class FastTrack {
  public:
   /// "pioneer_X_mode=N" with X a, b or c, and N 0 (blob), 1 (line) or 2 (blob with its box);
   /// "pioneer_X_color=NAME", which stands for the training of a channel; the line parameters
-  /// ("line_..."), which change nothing here. Whether it was one of those.
+  /// ("line_..."), which have no effect here. True for one of those.
   bool act(const std::string& text);
   void disconnect() { *this = {}; }
 
@@ -60,34 +60,34 @@ class FastTrack {
   std::array<Channel, 3> channels_{{{{}, "red"}, {{}, "green"}, {{}, "blue"}}};
 };
 
-/// The devices of a robot besides wheels and sonars, and the packets about it that clients ask for:
-/// configuration, encoders, I/O, gripper, gyro, joystick, battery. A request says 0 (no more), 1
-/// (one, at once) or 2 (one with each information packet).
+/// The devices of a robot besides wheels and sonars, and their packets on request: configuration,
+/// encoders, I/O, gripper, gyro, joystick, battery. A request has the value 0 (no more), 1 (one, at
+/// once) or 2 (one with each information packet).
 class Devices {
  public:
   Devices(const protocol::RobotParameters& parameters, const std::string& name);
 
   enum class Answer {
     kTaken,
-    kMissing,  ///< a device's command, and this robot has no such device
+    kMissing,  ///< a command for a device that this robot does not have
     kNotMine,
   };
-  /// Takes a command if it is a device's. What it asks for at once is added to `out`.
+  /// Takes a command for a device. Its immediate packets are added to `out`.
   Answer act(const protocol::Command& command, const Robot& robot, protocol::Bytes& out);
 
   void cycle();  ///< 100 ms
-  /// The packets that were asked for with each information packet.
+  /// The packets that were requested with each information packet.
   void add_packets(const Robot& robot, protocol::Bytes& out) const;
   /// Fills in its fields of the information packet.
   void reflect(protocol::InformationPacket& packet) const;
-  /// The connection has been closed: nobody asks for anything.
+  /// The connection has been closed: all requests end.
   void disconnect();
 
   std::uint8_t digital_output() const { return digital_output_; }
   const Gripper& gripper() const { return gripper_; }
   int bump_stall() const { return bump_stall_; }  ///< bit 0: the front bumpers stall, 1: the rear
 
-  // Effects of the world on it.
+  // Inputs from the world.
   void set_digital_input(std::uint8_t bits) { digital_input_ = bits; }
   void set_analog(std::uint8_t value) { analog_ = value; }  ///< [5 V / 255]
 

@@ -8,19 +8,19 @@
 
 namespace saphira::sim {
 
-/// Which of many moving things are near a place, at the cost of those that are near: their numbers,
-/// cell by cell of a uniform grid. Answers come in ascending order, so that a result does not
-/// depend on who moved where when.
+/// Finds the moving objects near a place, at the cost of the near ones: their numbers, cell by cell
+/// of a uniform grid. Results are in ascending order, so that they do not depend on the order of
+/// motion.
 class Grid {
  public:
-  /// Of a world of that size [m]; what is outside counts to the cells at its border.
+  /// Of a world of that size [m]; places outside belong to the cells at its border.
   Grid(double width, double height);
 
-  /// Puts a number, counting from 0, to where it is now.
+  /// Puts a number, counting from 0, at its present place.
   void put(std::uint32_t number, const Vec2& at);
 
-  /// Every number within `reach` [m] of `point`, and some that are not; ascending. Valid until the
-  /// next call.
+  /// Every number within `reach` [m] of `point`, and some beyond; ascending. Valid until the next
+  /// call.
   const std::vector<std::uint32_t>& near(const Vec2& point, double reach) const;
 
  private:

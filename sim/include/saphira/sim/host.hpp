@@ -12,52 +12,52 @@
 
 namespace saphira::sim {
 
-/// Times real time that is no limit at all; see HostOptions::rate.
+/// Times real time, without a limit; see HostOptions::rate.
 inline constexpr double kMaxRate = std::numeric_limits<double>::infinity();
 
-/// One more robot in the same world.
 class ViewFeed;
 
+/// One more robot in the same world.
 struct RobotOptions {
   std::string robot;             ///< path of a robot parameter file; empty: as the first robot
   std::optional<Pose> position;  ///< start_in_world; otherwise the world file's next one
 };
 
-/// Where a simulated robot stands and who may talk to it.
+/// A simulated robot's world, place and connections.
 struct HostOptions {
   std::string world;  ///< path of a world file
-  /// Path of a second file, for what stands and walks in that world besides; empty: none.
+  /// Path of a second file with further things and people in that world; empty: none.
   std::string things;
   std::string robot;  ///< path of a robot parameter file
-  /// Path of the local socket that is listened on; see default_socket(). Without a port only.
+  /// Path of the local socket for clients; see default_socket(). Without a port only.
   std::optional<std::string> socket;
-  /// TCP port that is listened on instead; 0 takes a free one and logs which.
+  /// TCP port for clients instead; 0 takes a free one and logs it.
   std::optional<std::uint16_t> tcp;
-  /// Numeric address that the port is bound to. The protocol has no password: whoever reaches the
-  /// port drives the robot.
+  /// Numeric address of the port. The protocol has no password: anyone who reaches the port drives
+  /// the robot.
   std::string tcp_address = "127.0.0.1";
-  /// Path of a symbolic link to a pseudo-terminal that a client opens instead, as it would open a
-  /// serial line. Of further robots as with the socket.
+  /// Path of a symbolic link to a pseudo-terminal for the client instead, like a serial line. Of
+  /// further robots as with the socket.
   std::optional<std::string> terminal;
   std::uint64_t seed = 1;
   bool step = false;  ///< single-step from the start
   /// Times real time, in (0, 1000], or kMaxRate: as fast as the machine computes and the clients
-  /// answer. In single step it says nothing.
+  /// answer. Not used in single step.
   double rate = 1.0;
   std::string trace;             ///< path of the trace file; empty: none
   std::optional<Pose> position;  ///< start_in_world; otherwise the world file's
   /// The second robot, the third, ... Number n listens on the next port but n - 2, or on the socket
   /// with "-n" behind it, and its trace is written likewise: run-2.csv.
   std::vector<RobotOptions> more;
-  /// File to which is appended what of the conversation is against the protocol's tables; not
-  /// given: default_check(); empty: nobody looks. See line_check.hpp.
+  /// File for violations of the protocol's tables, which are appended; none: default_check();
+  /// empty: no check. See line_check.hpp.
   std::optional<std::string> check;
-  /// Folder for what the robot's stereo cameras see, a picture each cycle; empty: none. Of further
+  /// Folder for the pictures of the robot's stereo cameras, one each cycle; empty: none. Of further
   /// robots as with the trace: numbered().
   std::string stereo;
-  /// Local socket on which the same pictures are sent to whoever connects. README, "Vision".
+  /// Local socket that sends the same pictures to each client. README, "Vision".
   std::optional<std::string> stereo_socket;
-  /// Local socket of the simulator's own view (view.hpp): what is true, and what people do to it.
+  /// Local socket of the simulator's own view (view.hpp): the true state, and people's actions.
   std::optional<std::string> view_socket;
   /// The files that the view may load, by name; empty: none.
   std::vector<std::string> worlds;
@@ -78,25 +78,25 @@ std::string default_terminal();
 /// The name of a file or socket for robot `number`, which counts from 1: "run.csv", "run-2.csv".
 std::string numbered(const std::string& path, std::size_t number);
 
-/// Serves simulated robots. One client each at a time: a second one's connection is closed at once,
-/// and logged. May run in a thread beside others: no signals, no globals but the files named.
+/// Serves simulated robots, with one client each: a second client's connection is closed at once,
+/// and logged. May run in a thread beside others: no signals, no globals except the named files.
 class Host {
  public:
   /// FileError or std::runtime_error where the options or their files are wrong, or the socket or
-  /// the trace cannot be had.
+  /// the trace cannot be opened.
   explicit Host(const HostOptions& options);
   ~Host();
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
-  /// Serves what has come by now, or comes within so many milliseconds; below zero: without end.
+  /// Serves inputs that are here, or come within so many milliseconds; below zero: without end.
   /// False where stop_fd is readable (it is not read).
   bool serve(int stop_fd, int most_ms = -1);
-  /// Says goodbye to the clients and ends the traces.
+  /// Closes the clients' connections and ends the traces.
   void end();
 
  private:
-  /// Another world or robot, by its name; where it cannot be had all stays as it is.
+  /// Loads another world or robot, by its name; where that fails everything stays as it is.
   void change(const std::string& world, const std::string& robot);
 
   struct Parts;

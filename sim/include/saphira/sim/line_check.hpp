@@ -8,9 +8,9 @@
 
 namespace saphira::sim {
 
-/// The strict checker on a simulated robot's line: what passes there against the protocol's tables
-/// is appended to a file, a line each, at once and in one piece, so that several simulators may
-/// share the file and one that is killed has said what it saw.
+/// The strict checker on a simulated robot's line: violations of the protocol's tables are appended
+/// to a file, a line each, at once and in one write, so that several simulators may share the file
+/// and a killed one has written all its findings.
 class LineCheck {
  public:
   /// `prefix` begins each line. std::runtime_error where the file cannot be written.
@@ -22,7 +22,7 @@ class LineCheck {
 
   /// The time [s] as for the checker: only where the robot's time is the client's.
   void pass(protocol::Side side, protocol::ByteView bytes, std::optional<double> time);
-  /// The connection is closed: writes down what has passed since the beginning, too.
+  /// The connection is closed: also writes the summary since the beginning.
   void disconnect();
 
  private:

@@ -10,9 +10,9 @@
 
 namespace saphira::sim {
 
-// Things of a world file that are no walls; README, "Worlds". Positions in the world.
+// The things of a world file that are not walls; README, "Worlds". Positions in the world.
 
-/// How high they are without the directive tall [m].
+/// Their heights without the directive tall [m].
 inline constexpr double kPersonHeight = 1.75;
 inline constexpr double kDoorHeight = 2.0;
 inline constexpr double kBoxHeight = 0.5;
@@ -23,17 +23,17 @@ inline constexpr double kWallHeight = 2.5;
 /// The appearance of a thing to vision.
 struct Look {
   std::string name;
-  std::string color;    ///< directive color; empty: none that anybody looks for
+  std::string color;    ///< directive color; empty: none for the cameras
   double height = 0.0;  ///< [m]
-  /// Directive cloth [dB]: of an echo, what the thing's surface swallows; else of a person what
-  /// sonars take all people's clothes for (SonarModel::cloth), of other things nothing.
+  /// Directive cloth [dB]: the absorption of the thing's surface; without it a person has that of
+  /// all people's clothes (SonarModel::cloth), another thing none.
   std::optional<double> cloth;
 };
 
-/// Somebody who walks by a script.
+/// A person who walks by a script.
 struct PersonPlan {
   struct Leg {
-    Vec2 to{0.0, 0.0};   ///< where to, unless speed is 0
+    Vec2 to{0.0, 0.0};   ///< the target, unless speed is 0
     double speed = 0.0;  ///< [m/s]; 0: waits
     double wait = 0.0;   ///< [s]
     bool leads = false;  ///< walks while a robot is near, and waits for one otherwise
@@ -54,7 +54,7 @@ struct DoorPlan {
   Look look;
   Vec2 hinge{0.0, 0.0};
   Vec2 end{0.0, 0.0};  ///< the other one, while it is closed
-  double swing = 0.0;  ///< [rad] how far it opens, positive to the left
+  double swing = 0.0;  ///< [rad] opening angle, positive to the left
   std::vector<Event> schedule;
   double period = 0.0;  ///< [s] after which the schedule begins again; 0: never
 };
@@ -68,7 +68,7 @@ struct BoxPlan {
   double mass = 0.0;    ///< [kg]
 };
 
-/// A round thing that stands fast: a bin, a ball, a coloured can.
+/// A fixed round thing: a bin, a ball, a coloured can.
 struct PostPlan {
   Look look;
   Vec2 at{0.0, 0.0};
@@ -87,7 +87,7 @@ struct MovablePlans {
 class MovableReader {
  public:
   /// Reads the rest of the directive `word`, whose coordinates are relative to `frame_in_world`.
-  /// False where it is none of these. FileError where it is wrong.
+  /// False for any other directive. FileError where it is wrong.
   bool read(std::string_view word, LineReader& in, const Pose& frame_in_world);
 
   const MovablePlans& plans() const { return plans_; }

@@ -12,27 +12,26 @@ namespace saphira::sim {
 
 class Scene;
 
-/// The time step of the dynamics. Live and single-step both move in these, so their physics is the
-/// same.
+/// The time step of the dynamics, the same live and in single step, so their physics is the same.
 inline constexpr double kTick = 0.010;  // [s]
 
 /// A differential drive in a scene: a disc that is stopped by walls and by other robots.
 ///
-/// Translation accelerates at a constant rate to the velocity that was set; a heading is reached by
-/// a trapezoidal velocity function that is computed anew in every tick, so a new heading in the
-/// middle of a turn is taken up smoothly (manual 5.5, Figure 5-2).
+/// Translation accelerates at a constant rate to the set velocity. A turn to a heading follows a
+/// trapezoidal velocity function that is computed anew in every tick, so a new heading in the
+/// middle of a turn is taken smoothly (manual 5.5, Figure 5-2).
 ///
-/// No wheel is faster than the fastest of two motions has it: straight on at the largest velocity
-/// that the parameters allow, or on the spot at their largest rotation. Two velocities that ask for
-/// more are made slower by the same factor, so that the arc stays. A turn to a heading is made as
-/// fast as on the spot, and the robot drives more slowly meanwhile. No speed jumps: where the robot
-/// cannot slow down so soon, the turn waits.
+/// The wheels' speed limit is that of the faster of two motions: straight on at the largest
+/// velocity of the parameters, or on the spot at their largest rotation. Two velocities beyond that
+/// are scaled by the same factor, so that the arc stays. A turn to a heading is as fast as on the
+/// spot, and the robot drives more slowly meanwhile. No speed jumps: where the robot cannot slow
+/// down in time, the turn waits.
 ///
-/// The wheels do what the motors want. The robot does what the wheels do, but that it changes its
-/// speed by no more than tyres can hold, so that they slip when it stops in an emergency, and that
-/// they slip while it pushes against what does not give. Other errors are in what the encoders say.
-/// Per tick, with the true way ds and the true turn dth, dead reckoning measures (manual Table 3-1
-/// names the parameters and does not define them):
+/// The wheels follow the motors. The robot follows the wheels, but changes its speed by no more
+/// than the grip of the tyres. So the wheels slip in an emergency stop, and while the robot pushes
+/// against a fixed obstacle. Other errors are in the encoders. Per tick, with the true way ds and
+/// the true turn dth, dead reckoning measures (manual Table 3-1 names the parameters and does not
+/// define them):
 ///
 ///     way  = ds  + N(0, EncodeJitter * sqrt(|ds| * 1 m))
 ///     turn = dth + N(0, AngleJitter * sqrt(|dth| * 1 rad)) + drift * ds
@@ -57,22 +56,21 @@ class Robot {
   void turn_by(double angle);                            ///< [rad] from the heading now
   void set_rotation_velocity(double velocity);           ///< [rad/s]
   void set_wheel_velocities(double left, double right);  ///< [m/s]
-  /// Dead reckoning becomes (0, 0, 0); a heading that was set keeps its direction in the world.
+  /// Dead reckoning becomes (0, 0, 0); a heading setpoint keeps its direction in the world.
   void set_origin();
   /// Stops and forgets all setpoints.
   void stop();
-  /// The same as hard as the motors can; the wheels may slip.
+  /// The same with the motors' hardest braking; the wheels may slip.
   void emergency_stop();
-  /// Motors without power (later robots' ENABLE): the robot brakes and takes setpoints up again
-  /// when they have it, as after brake().
+  /// Motors without power (later robots' ENABLE): the robot brakes, and follows its setpoints again
+  /// with power, as after brake().
   void enable(bool on);
-  /// Motors off and on again. While off the robot brakes; on again it takes up the velocity that
-  /// was set last, at the heading that it then has (manual 5.4.4).
+  /// Motors off and on again. While off the robot brakes; on again it takes the last velocity
+  /// setpoint, at its present heading (manual 5.4.4).
   void brake(bool on);
 
-  // ---- What later robots let the client set; the parameter file's at first. Sizes, clamped to
-  // what
-  // ---- a robot can do at all.
+  // ---- Settings of a later robot's client; the parameter file's at first. Absolute values,
+  // ---- clamped to the robot's limits.
 
   void set_max_velocity(double velocity);                                  ///< [m/s] of move_by
   double acceleration() const { return acceleration_; }                    ///< [m/s2]
@@ -87,7 +85,8 @@ class Robot {
 
   void tick();
 
-  /// A hand lifts the robot to elsewhere; dead reckoning does not notice. Whether there was room.
+  /// A person carries the robot elsewhere; dead reckoning does not change. False without room
+  /// there.
   bool place(const Pose& pose_in_world);
 
   // ---- State.
@@ -108,31 +107,31 @@ class Robot {
 
   double target_velocity() const;  ///< [m/s] in force: 0 while braked or without power
   bool controls_heading() const { return rotation_ == Rotation::kHeading; }
-  /// [rad] in odom: the heading that was set, or the heading now while none is controlled.
+  /// [rad] in odom: the heading setpoint, or the present heading while none is controlled.
   double target_heading() const;
   double target_rotation_velocity() const;  ///< [rad/s] 0 while a heading is controlled
 
-  /// A motor pushed against something since clear_stalls().
+  /// A motor pushed against an obstacle since clear_stalls().
   bool left_stalled() const { return left_stalled_; }
   bool right_stalled() const { return right_stalled_; }
   void clear_stalls() { left_stalled_ = right_stalled_ = false; }
-  /// How often the robot has run into something. Pushing on, or sliding along, is the same time.
+  /// Number of contacts. Pushing on, or sliding along, is the same contact.
   int contacts() const { return contacts_; }
 
-  /// Which of `switches` bumpers, that share the front (or rear) half of the hull, touch something:
-  /// a bit each, the lowest the leftmost as the robot looks ahead.
+  /// The touching ones of `switches` bumpers that share the front (or rear) half of the hull: a bit
+  /// each, the lowest the leftmost as the robot looks ahead.
   std::uint8_t bumpers(int switches, bool rear);
 
   double battery() const;  ///< [V]
-  /// As if it had been charged, or drained, to that voltage at rest.
+  /// Sets the charge by the battery's voltage at rest.
   void set_battery(double voltage);
 
-  /// From the robot's hull to the nearest thing [m]; infinite in an empty world.
+  /// From the robot's hull to the nearest obstacle [m]; infinite in an empty world.
   double clearance() const;
 
   std::size_t number() const { return number_; }    ///< in its scene
   double radius() const { return radius_; }         ///< [m]
-  double fastest() const { return max_velocity_; }  ///< [m/s] that its hull ever moves
+  double fastest() const { return max_velocity_; }  ///< [m/s] the greatest speed of its hull
 
  private:
   enum class Translation { kVelocity, kWay };
@@ -146,7 +145,7 @@ class Robot {
   double wanted_velocity() const;
   double wanted_rotation_velocity() const;
   double wheel_share(double turn) const;  // [m/s] of the wheels
-  // The same arc, no faster than the parameters allow.
+  // The same arc within the limits of the parameters.
   Motion possible(const Motion& wanted) const;
   Motion next_motion() const;  // of the wheels
   void move(double way, double turn);
@@ -158,11 +157,11 @@ class Robot {
   Things around_;
   Neighbourhood near_;
   double radius_;
-  double max_velocity_, max_rotation_velocity_;  // what the motors can
-  double move_velocity_, turn_velocity_;         // what moves and turns use
+  double max_velocity_, max_rotation_velocity_;  // the motors' limits
+  double move_velocity_, turn_velocity_;         // of moves and turns
   double acceleration_, deceleration_;
   double rotation_acceleration_, rotation_deceleration_;
-  double max_acceleration_, max_rotation_acceleration_;  // what they can be set to
+  double max_acceleration_, max_rotation_acceleration_;  // limits of their settings
   double rotation_per_difference_;
   double max_wheel_velocity_;  // [m/s]
   double encode_jitter_, angle_jitter_, drift_;
@@ -171,7 +170,7 @@ class Robot {
   Pose pose_in_world_;
   Pose pose_in_odom_;
   double velocity_ = 0.0;        // of the robot
-  double wheel_velocity_ = 0.0;  // of the wheels' middle; another one while they slip
+  double wheel_velocity_ = 0.0;  // of the wheels' middle; different while they slip
   double rotation_velocity_ = 0.0;
   double way_ = 0.0;     // [m] counted
   double turned_ = 0.0;  // [rad] counted
@@ -193,7 +192,7 @@ class Robot {
   bool right_stalled_ = false;
   bool in_contact_ = false;
   int contacts_ = 0;
-  double free_way_ = 0.0;  // [m] robot and others together may go so far without touching
+  double free_way_ = 0.0;  // [m] way of the robot and others together without contact
 };
 
 }  // namespace saphira::sim

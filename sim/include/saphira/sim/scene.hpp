@@ -18,15 +18,15 @@
 
 namespace saphira::sim {
 
-/// The robot that looks or moves, among those of a scene, so that none meets itself.
+/// The robot that looks or moves, in a scene, so that it does not detect itself.
 using RobotNumber = std::size_t;
 inline constexpr RobotNumber kNobody = std::numeric_limits<RobotNumber>::max();
 
 struct Person {
   const PersonPlan* plan = nullptr;
   Vec2 at{0.0, 0.0};
-  double heading = 0.0;  ///< [rad] where he looks
-  double way = 0.0;      ///< [m] walked since he stood; 0: stands
+  double heading = 0.0;  ///< [rad] of his view
+  double way = 0.0;      ///< [m] walked since he last stood; 0: stands
   std::size_t leg = 0;   ///< of the script
   double waited = 0.0;   ///< [s] in this leg
 };
@@ -36,7 +36,7 @@ struct Door {
   double angle = 0.0;     ///< [rad] 0: closed
   bool opens = false;     ///< or is open
   std::size_t event = 0;  ///< the next one of the schedule
-  double since = 0.0;     ///< [s] when this round of the schedule began
+  double since = 0.0;     ///< [s] start of this round of the schedule
 };
 
 struct Box {
@@ -44,24 +44,24 @@ struct Box {
   Pose pose_in_world;
 };
 
-/// A lower leg of a person: of one who walks, one stands on the floor while the other swings.
+/// A lower leg of a person: while the person walks, one stands on the floor and the other swings.
 struct Shin {
   Disc disc;
   bool swings = false;
 };
 std::array<Shin, 2> shins(const Person& person);
 
-/// How a thing that moves, or may be moved, answers a sonar.
+/// The reflection of sonar sound by a moving or movable thing.
 struct Surface {
-  double loss = 0.0;     ///< [dB] that its material swallows
-  bool swings = false;   ///< tilts to and fro, so that it answers half of the time at most
-  std::uint32_t id = 0;  ///< of the thing; that of a segment is followed by those of its ends
+  double loss = 0.0;     ///< [dB] absorbed by its material
+  bool swings = false;   ///< tilts to and fro: answers at most half of the time
+  std::uint32_t id = 0;  ///< of the thing; those of a segment's ends follow
 };
 
-/// The moving things that a sonar may hear.
+/// The moving things for a sonar.
 struct Echoes {
   Things things;
-  std::vector<Surface> segments;  ///< of things.segments; what follows are walls
+  std::vector<Surface> segments;  ///< of things.segments; the rest are walls
   std::vector<Surface> discs;     ///< of things.discs
 };
 
@@ -73,11 +73,11 @@ struct Ping {
   Vec2 ahead{1.0, 0.0};
 };
 
-/// A world and what moves in it: people, doors, boxes, robots. People walk by their scripts. They
-/// wait where a robot, a door or a box is in their way, push a closed door open, and after four
-/// seconds go on to the next place of the script. Doors stop where somebody stands in their way;
-/// robots push boxes. One tick() moves everything by one tick of time, always in the same order, so
-/// that a scene is the same to the last bit in every run.
+/// A world and its moving things: people, doors, boxes, robots. People walk by their scripts. They
+/// wait for a robot, a door or a box in their way, push a closed door open, and after four seconds
+/// go on to the next place of the script. Doors stop where a person stands in their way; robots
+/// push boxes. One tick() moves everything by one tick of time, always in the same order, so that a
+/// scene is the same to the last bit in every run.
 class Scene {
  public:
   /// The world outlives the scene.
@@ -85,8 +85,8 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Puts a robot into it, which stays at its address. std::invalid_argument where it would touch
-  /// something.
+  /// Adds a robot, which stays at its address. std::invalid_argument where it would touch an
+  /// obstacle.
   Robot& add_robot(const protocol::RobotParameters& parameters, const Pose& start_in_world,
                    std::uint64_t seed);
 
@@ -105,40 +105,40 @@ class Scene {
   const std::vector<Box>& boxes() const { return boxes_; }
   Segment leaf(const Door& door) const { return leaf(door, door.angle); }
   std::array<Segment, 4> sides(const Box& box) const { return outline(box, box.pose_in_world); }
-  /// Opens or closes a door; its schedule goes on. False where there is no such door.
+  /// Opens or closes a door; its schedule goes on. False for an unknown door.
   bool set_door(std::string_view name, bool open);
-  /// Somebody carries a box elsewhere. False where there is no such box, or something stands there.
+  /// A person carries a box elsewhere. False for an unknown box, or where the place is taken.
   bool set_box(std::string_view name, const Pose& pose_in_world);
-  /// Somebody goes elsewhere at once; their script goes on. False likewise.
+  /// A person is at once elsewhere; their script goes on. False likewise.
   bool set_person(std::string_view name, const Vec2& at);
 
-  /// A sonar has fired; what a robot alone in a scene does is not kept.
+  /// A sonar has fired; those of a single robot in a scene are not stored.
   void sound(const Ping& ping);
-  /// The firings whose sound may still be on its way, and some that have gone.
+  /// The firings whose sound may still be on its way, and some older ones.
   const std::vector<Ping>& pings() const { return pings_; }
 
-  /// Adds the movable things (and posts) within `reach` of `point`, and some that are not, to
-  /// `things`; not the robot `but`.
+  /// Adds the movable things (and posts) within `reach` of `point`, and some beyond, to `things`;
+  /// without the robot `but`.
   void add_movable(const Vec2& point, double reach, RobotNumber but, Things& things) const;
-  /// The same as sonars have it, at the height of a robot's ring: of a person the legs, whose
-  /// clothes swallow `cloth` [dB] unless the world says otherwise.
+  /// The same for sonars, at the height of a robot's ring: of a person the legs, whose clothes
+  /// absorb `cloth` [dB] unless the world says otherwise.
   void add_echoes(const Vec2& point, double reach, RobotNumber but, double cloth,
                   Echoes& echoes) const;
-  /// True where there is anything movable but the robot `but`.
+  /// True where there is a movable thing besides the robot `but`.
   bool has_movable(RobotNumber but) const {
     return !segments_.empty() || !persons_.empty() || !posts_.empty() ||
            robots_.size() > (but == kNobody ? 0U : 1U);
   }
-  /// No point of anything movable moves faster [m/s].
+  /// The speed limit of all movable points [m/s].
   double fastest() const { return fastest_; }
 
-  /// From `point` to the nearest thing [m], whatever it is; not the robot `but`.
+  /// From `point` to the nearest thing of any kind [m]; without the robot `but`.
   double distance(const Vec2& point, RobotNumber but = kNobody) const;
 
  private:
   friend class Robot;
   void moved(RobotNumber number);
-  /// A robot's hull at `centre` presses forward by `way`: whether a box has given way.
+  /// A robot's hull at `centre` presses forward by `way`: true where a box has given way.
   bool push(RobotNumber number, const Vec2& centre, const Vec2& way);
   void put(std::size_t box, const Pose& pose_in_world);
 

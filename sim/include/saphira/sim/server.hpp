@@ -28,26 +28,26 @@ struct ServerOptions {
   std::uint64_t seed = 1;
   bool single_step = false;        ///< from the start; otherwise from the first STEP on
   std::string name = "Simulator";  ///< Table 5-7
-  bool trace = false;              ///< whether rows are kept for take_trace()
+  bool trace = false;              ///< true: rows are kept for take_trace()
   SonarModel sonar;
-  /// True where this server alone lets the scene's time pass, in advance() and by STEP. With
-  /// several servers on one scene a Simulation does that.
+  /// True where this server alone advances the scene's time, in advance() and by STEP. With several
+  /// servers on one scene a Simulation does that.
   bool keeps_time = true;
 };
 
 /// The counts of the client's packets, since the simulator started.
 struct ServerCounters {
   std::uint64_t commands = 0;
-  std::uint64_t unknown_commands = 0;  ///< of no known number, or not to be read; ignored
-  /// Known ones that a robot of this generation, or this simulator, does not have; ignored.
+  std::uint64_t unknown_commands = 0;  ///< unknown or unreadable; ignored
+  /// Known commands that a robot of this generation, or this simulator, does not have; ignored.
   std::uint64_t unsupported_commands = 0;
   std::uint64_t watchdog_stops = 0;
   std::uint64_t bad_packets = 0;  ///< ignored, manual 5.1.3
 };
 
-/// A robot server without the line that it talks on: bytes in, ticks of time in, bytes out. It
-/// answers as the generation that the robot's file names: PSOS as the manual says; P2OS and ARCOS
-/// with their commands, bumpers, flags and packets. Their motors wait for ENABLE after OPEN.
+/// A robot server without its line: bytes in, ticks of time in, bytes out. It answers as the
+/// generation in the robot's file: PSOS as in the manual; P2OS and ARCOS with their commands,
+/// bumpers, flags and packets. Their motors wait for ENABLE after OPEN.
 ///
 /// States (manual 5.4): waiting for SYNC0, SYNC1, SYNC2; synchronized; open. A closed or lost
 /// connection stops the robot and goes back to waiting; dead reckoning goes on from where it was.
@@ -62,26 +62,26 @@ class Server {
 
   /// Bytes from the client.
   void receive(protocol::ByteView bytes);
-  /// Lets ticks of time pass. The world stands still while no client has opened it, but for a robot
-  /// that is still coming to rest, and that to the end of a cycle.
+  /// Lets ticks of time pass. The world stands still while no client has opened it, except for a
+  /// robot that is still coming to rest, up to the end of a cycle.
   void advance(int ticks);
   /// The client is gone.
   void disconnect();
-  /// The line has been silent longer than bytes of one packet are apart; see PacketParser::gap. In
+  /// The line has been silent for longer than any pause within a packet; see PacketParser::gap. In
   /// live mode advance() does this itself.
   void gap();
 
-  // ---- For who keeps the time of several servers: Scene::tick() between the first two.
+  // ---- For a caller that keeps the time of several servers: Scene::tick() between the first two.
 
   void begin_tick();
   void end_tick();
-  /// A tick of live time in which nothing has come; see gap().
+  /// A tick of live time without input; see gap().
   void quiet_tick();
-  /// The client has said STEP and waits; what it has sent since waits with it.
+  /// The client has sent STEP and waits; its later packets wait as well.
   bool step_asked() const { return step_asked_; }
-  /// The step has been made.
+  /// The step is complete.
   void end_step();
-  /// The connection has been closed in single step: the robot shall come to rest at once.
+  /// The connection has been closed in single step: the robot has to come to rest at once.
   bool rest_asked() const { return rest_asked_ && runs(); }
 
   /// The bytes for the client.
@@ -91,7 +91,7 @@ class Server {
 
   bool is_open() const { return state_ == State::kOpen; }
   bool single_step() const { return single_step_; }
-  /// True where advance() would do anything.
+  /// True where advance() would have an effect.
   bool runs() const { return is_open() ? !single_step_ : robot_.moving() || phase_ != 0; }
   /// Ticks until the next information packet.
   int ticks_to_packet() const { return kTicksPerPacket - phase_; }
@@ -101,7 +101,7 @@ class Server {
   const Robot& robot() const { return robot_; }
   const protocol::RobotParameters& parameters() const { return parameters_; }
   std::uint64_t cycle() const { return cycle_; }
-  /// Where each sonar looks [in the robot], and what it has heard last [m]; those that have fired.
+  /// The pose of each sonar [in the robot], and its newest range [m]; those that have fired.
   std::vector<std::pair<Pose, double>> beams() const;
   ServerCounters counters() const;
   const Devices& devices() const { return devices_; }
@@ -148,15 +148,15 @@ class Server {
   bool first_row_ = true;
   bool watchdog_ = false;  // has stopped the motors
   std::vector<protocol::RawSonar> readings_;
-  std::map<std::uint8_t, std::uint16_t> newest_;  // of each sonar, for who looks on
+  std::map<std::uint8_t, std::uint16_t> newest_;  // of each sonar, for observers
   ServerCounters counters_;
 
   Devices devices_;
   FastTrack vision_;
   Pose start_in_world_;
   int watchdog_ticks_;
-  bool later_;                         // than PSOS
-  std::vector<std::uint8_t> polling_;  // the sequence without what SONAR has switched off
+  bool later_;                         // a later generation than PSOS
+  std::vector<std::uint8_t> polling_;  // the sequence without the arrays switched off by SONAR
   std::uint8_t sonar_arrays_on_ = 0xFF;
   bool sim_status_with_each_ = false;
   bool emergency_ = false;  // since the last motion command

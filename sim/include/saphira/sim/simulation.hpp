@@ -10,29 +10,29 @@
 
 namespace saphira::sim {
 
-/// One scene and the robot servers in it, in one time. What is said of a single server (server.hpp)
-/// holds for one alone here.
+/// One scene and the robot servers in it, with one time. The comments on a single server
+/// (server.hpp) hold for each server here.
 ///
-/// In single step, time passes when every client that is in it has said STEP: each waits for the
+/// In single step, time passes when every connected client has sent STEP: each waits for the
 /// slowest. With ServerOptions::single_step it first passes when every robot has been opened once,
-/// so that who connects first makes no difference. Clients that have gone are not waited for.
+/// so that the order of connection makes no difference. Clients that have gone are not waited for.
 class Simulation {
  public:
   /// The world outlives it.
   explicit Simulation(const World& world) : scene_(world) {}
 
-  /// Another robot; its number. std::invalid_argument where it would touch something.
+  /// Adds a robot; returns its number. std::invalid_argument where it would touch an obstacle.
   RobotNumber add(const protocol::RobotParameters& parameters, const Pose& start_in_world,
                   ServerOptions options);
 
   std::size_t size() const { return servers_.size(); }
   const Server& server(RobotNumber number) const { return *servers_[number].server; }
-  /// For what concerns its line alone: take_output, take_trace.
+  /// For its line alone: take_output, take_trace.
   Server& server(RobotNumber number) { return *servers_[number].server; }
   const Scene& scene() const { return scene_; }
   Scene& scene() { return scene_; }
 
-  // As of a server.
+  // As for a server.
   void receive(RobotNumber number, protocol::ByteView bytes);
   void disconnect(RobotNumber number);
   void gap(RobotNumber number);

@@ -11,53 +11,53 @@
 
 namespace saphira::sim {
 
-/// How a sonar hears.
+/// The model of a sonar.
 ///
-/// A wall is a mirror to it: its echo comes from the point where it is met at a right angle,
-/// however the sonar points, or not at all. The figures are from real sonars (README, "Against real
-/// sonars").
+/// A wall is a mirror: its echo comes from the point where the sound meets it at a right angle,
+/// whatever the sonar's direction, or not at all. The figures are from real sonars (README,
+/// "Against real sonars").
 ///
-/// All other things (legs, posts, robots, edges, inner corners, narrow strips) answer with a margin
-/// above the threshold of
+/// All other objects (legs, posts, robots, edges, inner corners, narrow strips) answer with a
+/// margin above the threshold of
 ///
 ///     strength - loss by the shape - loss by the material - 2 x loss by the beam - loss by the way
 ///
-/// in dB (acoustics.hpp), and are heard with the probability Phi(margin / spread). What chance adds
-/// stays the same for one sonar and one thing for 0.3 s. The nearest thing that is heard gives the
-/// range; what stands before it hides it.
+/// in dB (acoustics.hpp), and are heard with the probability Phi(margin / spread). The random part
+/// stays the same for one sonar and one object for 0.3 s. The nearest heard object gives the range;
+/// objects before it hide it.
 struct SonarModel {
   double max_range = 5.0;         ///< [m] no echo beyond (manual 6.3.2)
-  double min_range = 0.05;        ///< [m] nearer things read as this
+  double min_range = 0.05;        ///< [m] nearer objects read as this
   double noise = 0.002;           ///< [m] standard deviation of a range...
   double relative_noise = 0.002;  ///< ...plus this share of it
   double dropout = 0.005;         ///< probability that an echo is not heard
-  /// [rad] A surface whose normal is not more than this off the sonar's axis is always heard...
+  /// [rad] A surface whose normal is within this angle of the sonar's axis is always heard...
   double critical_angle = radians(17.0);
-  /// ...and one that is off by more less and less, down to never at lost_angle for the nearest
-  /// ones, and at so much less for each metre that they are away.
+  /// ...and beyond it less and less, down to never at lost_angle for the nearest surfaces, and at
+  /// an angle smaller by the next member for each metre of distance.
   double lost_angle = radians(95.0);
   double lost_per_metre = radians(45.0);
-  /// [dB] How far an unhindered wall on the axis stands above the threshold. Real ones are between
-  /// 36 and 47. A world file may say otherwise, as of cloth and spread.
+  /// [dB] The margin of an unhindered wall on the axis above the threshold. Real ones are between
+  /// 36 and 47. A world file may set it, as well as cloth and spread.
   double strength = 40.0;
-  double cloth = 5.0;        ///< [dB] that people's clothes swallow; 2 to 10
-  double spread = 2.0;       ///< [dB] standard deviation of the strength of hard things...
+  double cloth = 5.0;        ///< [dB] absorbed by people's clothes; 2 to 10
+  double spread = 2.0;       ///< [dB] standard deviation of the strength of hard objects...
   double soft_spread = 5.0;  ///< ...and of soft ones
-  double edge = 0.005;       ///< [m] how round an edge of anything is...
-  double jamb = 0.05;        ///< [m] ...and the end of a wall, which stands for a door post
-  /// [rad] full width of the beam in which the sound of another robot's sonar is heard
+  double edge = 0.005;       ///< [m] radius of an edge...
+  double jamb = 0.05;        ///< [m] ...and of the end of a wall, which stands for a door post
+  /// [rad] full width of the beam for the direct sound of another robot's sonar
   double direct_cone = radians(20.0);
-  /// Probability that a sonar hears, where it is nearer, the echo of what the array beside it has
-  /// sent. Firings of one array are too far apart in time for that.
+  /// Probability that a sonar hears a nearer echo of the sonar that fired before, in another array.
+  /// Firings of one array are too far apart in time for that.
   double crosstalk = 0.01;
-  /// Probability that a surface sends back sound that it is met by at whatever angle: then the
-  /// nearest of `rays` over `cone` counts.
+  /// Probability that a surface reflects sound at any angle: then the nearest of `rays` over `cone`
+  /// counts.
   double roughness = 0.02;
   double cone = radians(25.0);  ///< [rad] full width
   int rays = 9;
 };
 
-/// That with what a world says.
+/// The model with the parameters of a world.
 SonarModel in_world(SonarModel model, const SonarPlan& plan);
 
 /// [m/s] of sound.
@@ -68,35 +68,35 @@ struct SonarEcho {
   std::optional<double> range;  ///< [m]; nothing: no echo
 };
 
-/// The order in which they fire until a client says another: by number within each of so many equal
-/// arrays, the arrays taking turns.
+/// The firing order until a client sets another: by number within each of so many equal arrays, the
+/// arrays taking turns.
 std::vector<std::uint8_t> default_polling(std::size_t sonars, int arrays);
 
 /// The sonars of a robot, fired in the polling sequence. Arrays that a robot fires at the same time
-/// take turns here, within the period of one: so many readings a second come as from the robot.
+/// take turns here, within the period of one: the number of readings a second is the robot's.
 ///
-/// Crosstalk: the sound of another robot's sonar that points this way is heard as if it were an
-/// echo, where it comes before the echo does; and of a robot with several arrays now and then
-/// (SonarModel::crosstalk) the echo of the sonar that fired before.
+/// Crosstalk: the sound of another robot's sonar that points this way counts as an echo, if it
+/// comes before the true echo. A robot with several arrays at times hears the echo of the sonar
+/// that fired before (SonarModel::crosstalk).
 class Sonars {
  public:
-  /// Of the robot `self`, which they do not see. The scene outlives them.
+  /// The sonars of the robot `self`, which they do not hear. The scene outlives them.
   Sonars(Scene& scene, RobotNumber self, const protocol::RobotParameters& parameters,
          const SonarModel& model, std::uint64_t seed);
 
-  /// Which sonars fire, over and over; those that the robot does not have are left out.
+  /// The firing sequence, repeated; sonars that the robot does not have are left out.
   void set_polling(const std::vector<std::uint8_t>& sequence);
   /// All of them, in order in each array.
   void set_default_polling();
 
-  /// One tick of time; a reading if one was made in it.
+  /// One tick of time; returns a reading, if any.
   std::optional<SonarEcho> tick(const Pose& robot_in_world);
 
   /// One firing.
   SonarEcho fire(std::uint8_t number, const Pose& robot_in_world);
 
  private:
-  // Which sonar fires, from where, how far aside it hears walls, and what it has heard.
+  // The firing sonar, its pose, its angle for walls, and its nearest echo.
   struct Firing {
     std::uint8_t number = 0;
     Vec2 origin;
@@ -111,13 +111,13 @@ class Sonars {
   void hear_strip(const Segment& segment, const Surface& surface, Firing& firing) const;
   void hear_corners(const Vec2& robot, Firing& firing);
   void hear_disc(const Disc& disc, const Surface& surface, Firing& firing) const;
-  // An echo from `way` away, whose shape loses shape() [dB]: asked for only where it matters.
+  // An echo from `way` away, whose shape loses shape() [dB]: called only where it matters.
   template <class Loss>
   void hear(const Vec2& way, double range, const Surface& surface, Firing& firing,
             const Loss& shape) const;
   // Random variation of the strength of one thing's echo [standard deviations].
   double luck(std::uint8_t number, std::uint32_t thing) const;
-  // True where nothing stands before that, and it is nearer than what has been heard.
+  // True where no object stands before that place, and it is nearer than the nearest echo.
   bool is_first(const Firing& firing, const Vec2& way, double range) const;
   bool in_direct_cone(const Firing& firing, const Vec2& way) const;
   void hear_others(Firing& firing) const;
@@ -128,16 +128,16 @@ class Sonars {
   SonarModel model_;
   Neighbourhood near_;
   Random random_;
-  Random crosstalk_;  // apart, so that the two can be told apart in a run
+  Random crosstalk_;  // separate, so that crosstalk does not shift the other draws
   std::vector<std::uint8_t> sequence_;
   std::size_t next_ = 0;
   int period_;          // [ticks] of one array
   int arrays_;          // firings in a period
-  int progress_ = 0;    // to the next firing, when it has come to a period
+  int progress_ = 0;    // towards the next firing, due at a period
   double reach_;        // [m] from the robot's middle
   double beam_cosine_;  // of the angle off the axis beyond which only walls are heard
   double direct_cosine_;
-  std::optional<double> before_;  // [m] what the last firing has heard
+  std::optional<double> before_;  // [m] range of the last firing
   std::uint64_t seed_;
   std::uint64_t firings_ = 0;
   Echoes in_beam_;

@@ -23,9 +23,9 @@ struct GreyImage {
 };
 
 /// Two pinhole cameras side by side that look straight ahead, parallel to each other and to the
-/// floor. A point at depth z [m] stands focal() * baseline / z pixels farther to the left in the
-/// right picture than in the left one. Pictures as large as Flakey's (Konolige and others 1996,
-/// Figure 3); the paper gives no other figures, so the rest is that of StereoCamera.
+/// floor. A point at depth z [m] is focal() * baseline / z pixels farther to the left in the right
+/// picture than in the left one. Pictures as large as Flakey's (Konolige and others 1996, Figure
+/// 3); the paper gives no other figures, so the rest is that of StereoCamera.
 struct StereoRig {
   Pose pose_in_robot;                    ///< of the middle between the two
   double height = 1.0;                   ///< [m] above the floor
@@ -34,8 +34,8 @@ struct StereoRig {
   double field_of_view = radians(60.0);  ///< [rad] from side to side
   double baseline = 0.12;                ///< [m]
   double noise = 2.0;                    ///< standard deviation of a pixel, in steps of 1/255
-  double gain_difference = 0.04;         ///< how much brighter the right one's pictures are
-  double range = 30.0;                   ///< [m] what is farther is grey
+  double gain_difference = 0.04;         ///< relative brightness of the right camera's pictures
+  double range = 30.0;                   ///< [m] farther surfaces are grey
 
   double focal() const;  ///< [pixels]
 };
@@ -46,14 +46,14 @@ struct StereoPair {
 };
 
 /// The pictures of the two cameras of a robot: walls, doors, people, boxes, posts, other robots,
-/// floor and ceiling, each with a texture of its own that is fast to it, so that a point of the
-/// world looks alike to both. People are a body with a head on it. No shadows, no mirrors, no blur.
-/// `random` is for the noise of the pixels alone.
+/// floor and ceiling, each with its own fixed texture, so that a point of the world looks alike in
+/// both. People are a body with a head. No shadows, no mirrors, no blur. `random` is for the noise
+/// of the pixels alone.
 StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig& rig,
                          Random& random);
 
-/// A pair as one picture in the format PGM, the left one on the left, with what one must know to
-/// make ranges of it in a comment:
+/// A pair as one picture in the format PGM, the left one on the left, with the parameters for
+/// ranges in a comment:
 /// "# saphira stereo cycle=12 focal=277.128 baseline=0.12 height=1 forward=0".
 std::string to_pgm(const StereoPair& pair, const StereoRig& rig, std::uint64_t cycle);
 

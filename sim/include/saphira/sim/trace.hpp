@@ -10,7 +10,7 @@
 
 namespace saphira::sim {
 
-/// The truth at the end of one cycle.
+/// The true state at the end of one cycle.
 struct TraceRow {
   bool first = false;       ///< the first since OPEN
   std::uint64_t cycle = 0;  ///< information packets since OPEN; counts on after a close
@@ -33,8 +33,8 @@ std::string to_csv(const TraceRow& row);
 /// its line break is left out: the simulator may be writing it.
 std::vector<TraceRow> parse_trace(std::string_view text, const std::string& file);
 
-/// A picture (SVG) of a world and of where the robot went in it: its outline at the start, every
-/// five seconds, and at the end, with the contacts marked.
+/// A picture (SVG) of a world and of the robot's way in it: its outline at the start, every five
+/// seconds, and at the end, with the contacts marked.
 std::string plot_svg(const World& world, const std::vector<TraceRow>& trace, double radius);
 
 }  // namespace saphira::sim

@@ -11,25 +11,25 @@
 
 namespace saphira::sim {
 
-// The simulator's own view: what is true, for people who look at the simulator and not through the
-// robot's sensors, and what they may do to it. One JSON object a line, both ways; README, "View".
+// The simulator's own view: the true state, for people who look at the simulator and not through
+// the robot's sensors, and their actions on it. One JSON object a line, both ways; README, "View".
 
-/// The part that stands still: walls and posts of the world, and the files that may be loaded.
+/// The static part: walls and posts of the world, and the loadable files.
 struct Choice {
   std::vector<std::string> worlds;
   std::vector<std::string> robots;
-  std::string world;  ///< that is loaded, as it is called
+  std::string world;  ///< name of the loaded one
 };
 std::string describe_world(const World& world, const Choice& choice);
 
-/// The part that moves, as it is now. Meters, radians, in the world.
+/// The moving part, at present. Meters, radians, in the world.
 struct Pacing {
   bool paused = false;
   double rate = 1.0;
 };
 std::string describe_scene(const Simulation& simulation, const Pacing& pacing);
 
-/// Why something that was asked for was not done.
+/// The reason why a request failed.
 std::string complaint(const std::string& text);
 
 // Requests.
@@ -60,15 +60,16 @@ struct Disconnect {
   RobotNumber robot = 0;
 };
 struct Load {
-  std::string world;  ///< a name of what is shipped [empty: the same]
+  std::string world;  ///< a shipped name [empty: the same]
   std::string robot;  ///< likewise
 };
 using Wish = std::variant<PlaceRobot, PlacePerson, PlaceBox, SetDoor, Pause, StepOnce, SetRate,
                           Disconnect, Load>;
 
-/// std::invalid_argument that says what was expected.
+/// std::invalid_argument gives the expected form.
 Wish parse_wish(std::string_view text);
-/// Does what concerns the scene. Empty: done; otherwise why not. The other wishes are the host's.
+/// Carries out a wish for the scene. Empty: done; otherwise the reason. The other wishes are the
+/// host's.
 std::string change_scene(Simulation& simulation, const Wish& wish);
 
 }  // namespace saphira::sim

@@ -23,8 +23,8 @@ struct Camera {
 };
 
 /// A patch of one color, in the camera's picture: [pixels] from its middle, x to the right, y up
-/// (manual 9.2 gives no directions). The whole is what the Fast Track's BLOB_BB_MODE says of a
-/// channel.
+/// (manual 9.2 gives no directions). The whole is the content of the Fast Track's BLOB_BB_MODE for
+/// a channel.
 struct Blob {
   int x = 0;  ///< centre of mass
   int y = 0;
@@ -34,8 +34,8 @@ struct Blob {
   bool operator==(const Blob&) const = default;
 };
 
-/// The largest patch of things of that color that the robot sees; nothing where there is none.
-/// Things are as high as they are tall and hide what stands behind them.
+/// The largest visible patch of that color; nothing without one. Things have their full height and
+/// hide others behind them.
 std::optional<Blob> see_blob(const Scene& scene, RobotNumber robot, const Camera& camera,
                              std::string_view color);
 
@@ -50,17 +50,17 @@ struct StereoCamera {
   /// 3.2.3).
   std::array<double, 3> bands{1.0, 1.2, 1.4};
   double baseline = 0.12;            ///< [m] between the cameras
-  double disparity = radians(0.09);  ///< [rad] the least one that is told from none: a pixel
-  double noise = 0.25;               ///< standard deviation of a disparity, of the least one
+  double disparity = radians(0.09);  ///< [rad] the least measurable one: a pixel
+  double noise = 0.25;               ///< standard deviation of a disparity [the least one]
   double dropout = 0.05;             ///< probability that a column has no match
 };
 
-/// Ranges [m] along the camera's axis, from the left to the right; nothing where no match was
-/// found, or where it is too far for a disparity.
+/// Ranges [m] along the camera's axis, from the left to the right; nothing without a match, or too
+/// far for a disparity.
 using RangeBand = std::vector<std::optional<double>>;
 
 /// The result of a stereo system for the scene: a range for each column at three heights. Ranges
-/// come in steps of disparity. `random` is the robot's own, for noise and what is not matched.
+/// come in steps of disparity. `random` is the robot's own, for noise and missing matches.
 std::array<RangeBand, 3> see_bands(const Scene& scene, RobotNumber robot,
                                    const StereoCamera& camera, Random& random);
 

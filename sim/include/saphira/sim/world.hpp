@@ -11,13 +11,13 @@
 
 namespace saphira::sim {
 
-/// A wall, or a side of a thing: as high as the sonars look, without thickness.
+/// A wall, or a side of a thing: up to the height of the sonars, without thickness.
 struct Segment {
   Vec2 from{0.0, 0.0};  ///< [m] in the world
   Vec2 to{0.0, 0.0};
 };
 
-/// A round thing, as high as the sonars look: a robot, a person.
+/// A round thing, up to the height of the sonars: a robot, a person.
 struct Disc {
   Vec2 centre{0.0, 0.0};  ///< [m] in the world
   double radius = 0.0;    ///< [m]
@@ -35,7 +35,7 @@ struct Hit {
   double incidence = 0.0;  ///< [rad] 0: along the normal of the segment, pi/2: grazing
 };
 
-/// Where in a world file something is said.
+/// A place in a world file.
 struct Place {
   int line = 1;
   int column = 1;
@@ -59,37 +59,37 @@ struct World {
   std::optional<Pose> start;    ///< directive position: the robot's start_in_world
   Place start_place;
   std::vector<Place> robot_places;  ///< of movable.robots
-  MovablePlans movable;             ///< what is no wall
+  MovablePlans movable;             ///< all things except walls
   SonarPlan sonar;
-  /// Oddities that do no harm, as lines to print ("file:line: ...").
+  /// Harmless oddities, as lines to print ("file:line: ...").
   std::vector<std::string> warnings;
 };
 
-/// Reads the text of a world file; `file` names it in errors. What stands or walks in it is
-/// checked against its walls. Width and height come first. Several
-/// directives may stand on one line. A position (and a robot) is absolute, whatever has been pushed
-/// (the manual gives relative coordinates to segments only). FileError where it is wrong.
+/// Reads the text of a world file; `file` names it in errors. Its things and people are checked
+/// against its walls. Width and height come first. Several directives may stand on one line. A
+/// position (and a robot) is absolute, in spite of pushed frames (the manual gives relative
+/// coordinates to segments only). FileError where it is wrong.
 World parse_world(std::string_view text, const std::string& file);
 
-/// The same from a file, whose last line has a line break: it would not be noticed otherwise that a
-/// file was cut off within a number. `things`: a second file of the same form, for what stands and
-/// walks in that world besides; empty: none.
+/// The same from a file, whose last line must have a line break: a file that was cut off within a
+/// number would not be noticed otherwise. `things`: a second file of the same form, with further
+/// things and people; empty: none.
 World load_world(const std::string& path, const std::string& things = "");
 
-/// The point of the segment that is nearest to `point`.
+/// The nearest point of the segment to `point`.
 Vec2 nearest_point(const Segment& segment, const Vec2& point);
 
-/// The nearest point on any of the segments; nothing where there are none.
+/// The nearest point on any of the segments; nothing without segments.
 std::optional<Vec2> nearest_point(const std::vector<Segment>& segments, const Vec2& point);
 
-/// The distance to the nearest of the segments; infinite where there are none.
+/// The distance to the nearest of the segments; infinite without segments.
 double distance(const std::vector<Segment>& segments, const Vec2& point);
 
-/// The nearest point on any of the things; nothing where there are none. Of a disc that the point
-/// is in, the way out.
+/// The nearest point on any of the things; nothing without things. For a point within a disc, the
+/// way out.
 std::optional<Vec2> nearest_point(const Things& things, const Vec2& point);
 
-/// The distance to the nearest of the things, negative in a disc; infinite where there are none.
+/// The distance to the nearest of the things, negative in a disc; infinite without things.
 double distance(const Things& things, const Vec2& point);
 
 /// [m2] Of two vectors: positive where b points to the left of a.
@@ -97,27 +97,27 @@ inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// True where two segments have a point in common, be it an end; not where one lies upon the other.
+/// True where two segments have a common point, including ends; not where they are collinear.
 bool intersect(const Segment& a, const Segment& b);
 
 /// The first segment that a ray meets within `range`. `direction` is a unit vector.
 std::optional<Hit> cast_ray(const std::vector<Segment>& segments, const Vec2& origin,
                             const Vec2& direction, double range);
 
-/// The first thing that a ray meets within `range`. A ray from within a disc does not meet it.
+/// The nearest thing on a ray within `range`. A ray from within a disc does not meet the disc.
 std::optional<Hit> cast_ray(const Things& things, const Vec2& origin, const Vec2& direction,
                             double range);
 
-/// The segments of a world that are near a moving point: the same answers as from all of them, at
-/// the cost of those that matter.
+/// The segments of a world near a moving point: the same results as from all of them, at the cost
+/// of the near ones.
 class Neighbourhood {
  public:
-  /// `reach` [m]: how far segments matter. The world outlives this object.
+  /// `reach` [m]: distance at which segments count. The world outlives this object.
   Neighbourhood(const World& world, double reach) : world_(&world), reach_(reach) {}
 
-  /// Every segment within the reach of `point`, and some that are not.
+  /// Every segment within the reach of `point`, and some beyond.
   const std::vector<Segment>& around(const Vec2& point);
-  /// The same of the world's corners.
+  /// The same for the world's corners.
   const std::vector<const Corner*>& corners_around(const Vec2& point);
 
  private:

@@ -9,15 +9,15 @@
 
 namespace saphira::cli {
 
-/// A word of a deployment file, with where it stands, for messages about what it turns out to mean.
+/// A word of a deployment file, with its place, for later error messages.
 struct Placed {
   std::string text;
   int line = 1;
   int column = 1;
 };
 
-/// The bus options that a deployment states. What it does not state comes from each program's own
-/// defaults: the environment, then the built-in ones.
+/// The bus options of a deployment. Missing ones come from each program's own defaults: the
+/// environment, then the built-in ones.
 struct BusOptions {
   std::optional<std::string> robot;
   std::optional<std::uint32_t> domain;
@@ -34,43 +34,42 @@ struct Program {
   Placed program;    ///< a program beside ours, or one on PATH, or a path
   std::vector<Placed> arguments;
   std::optional<std::string> robot;  ///< in place of the deployment's
-  bool bus = true;                   ///< whether it takes the bus options
-  bool restart = true;               ///< whether it is started again when it ends
+  bool bus = true;                   ///< takes the bus options
+  bool restart = true;               ///< started again when it ends
 };
 
-/// The programs that run together, as config/deployments/*.yaml states them. The format is in
+/// The programs that run together, from config/deployments/*.yaml. The format is in
 /// config/deployments/README.md.
 struct Deployment {
   std::string file;
   std::string text;  ///< of the file, for messages
   BusOptions bus;
-  /// May be set when it is started; with defaults, in which the built-in ${names} count.
+  /// Settings for the start, with defaults, which may use the built-in ${names}.
   std::map<std::string, Placed> settings;
-  /// Files of ${run} that are removed before it starts: what they remember is of a simulated world,
+  /// Files of ${run} that are removed before the start: their content belongs to a simulated world,
   /// which begins anew.
   std::vector<std::string> forget;
   std::vector<Program> programs;
 };
 
-/// Reads a deployment. FileError with line, column and what was expected where it is wrong.
+/// Reads a deployment. FileError with line, column and the expected form where it is wrong.
 Deployment parse_deployment(const std::string& text, const std::string& file);
 Deployment load_deployment(const std::string& file);
 
-/// Where things are on this machine.
+/// The folders on this machine.
 struct Places {
   std::string bin;                ///< the folder of our programs
   std::string config;             ///< the folder of our configuration: ${config}
-  std::string run;                ///< for sockets and what must outlast a restart: ${run}
-  std::string robot = "pioneer";  ///< ${robot} where the deployment states none
-  std::string own = {};           ///< an administrator's deployments; empty: there are none
+  std::string run;                ///< sockets and files that must outlast a restart: ${run}
+  std::string robot = "pioneer";  ///< ${robot} without one in the deployment
+  std::string own = {};           ///< an administrator's deployments; empty: none
 };
 /// The places of the running program: config is ../share/saphira beside it, or the source tree's.
 /// `run` is left empty; `own` is /etc/saphira where the programs are in /usr. std::runtime_error
 /// when there is no config.
 Places find_places();
 
-/// The file that a person means by "demo", "demo.yaml" or a path. std::invalid_argument that
-/// lists what there is.
+/// The file of "demo", "demo.yaml" or a path. std::invalid_argument that lists the existing ones.
 std::string find_deployment(const std::string& name, const Places& places);
 
 /// The command lines of a deployment: ${name} replaced by the settings, ${config}, ${run} and

@@ -18,12 +18,12 @@ struct DeviceCommand {
 /// The requests that a device takes, as people type them; one line each.
 extern const char* const kDeviceWords;
 
-/// A device command as a person types it: the device and what it is to do (kDeviceWords).
-/// std::invalid_argument that says what was expected where it is none.
+/// A device command as a person types it: the device and its action (kDeviceWords).
+/// std::invalid_argument with the expected form for any other.
 DeviceCommand parse_device(const std::vector<std::string>& words);
 
-/// The state of the robot's devices: name and value, of those that it has. A robot without
-/// robot/devices (an older bridge) shows what is in its state.
+/// The state of the robot's devices: name and value, of the existing ones. For a robot without
+/// robot/devices (an older bridge), from its state.
 std::vector<std::vector<std::string>> device_rows(const v1::RobotState& robot,
                                                   const std::optional<v1::Devices>& devices);
 

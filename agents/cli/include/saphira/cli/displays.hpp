@@ -11,8 +11,8 @@
 namespace saphira::cli {
 
 /// The intention display (paper, Figure 10): a line for each intention and each behavior, with the
-/// marker * (blocking) or o, the schema, the instance, and the state that comes next or B; behind
-/// that what it does. `behaviors` adds how far each is satisfied.
+/// marker * (blocking) or o, the schema, the instance, and the next state or B; then the present
+/// step. `behaviors` adds the satisfaction of each.
 std::string intentions_display(const v1::Intentions& intentions, const v1::BehaviorSet* behaviors);
 
 /// The behaviors window (manual 2.3.6, Figures 2-4 and 2-5): for each behavior on both channels its
@@ -21,21 +21,21 @@ std::string intentions_display(const v1::Intentions& intentions, const v1::Behav
 std::string behaviors_display(const v1::BehaviorSet& behaviors);
 
 /// The window of one behavior (Figure 2-6): parameters, state, rules with their antecedents, fuzzy
-/// variables. `intended` and `schema` add what only they know.
+/// variables. `intended` and `schema` add their own data.
 std::string behavior_display(const v1::BehaviorState& behavior,
                              const v1::IntendedBehavior* intended,
                              const v1::BehaviorSchema* schema);
 
-/// The window of a behavior that is not intended: parameters and rules, as its file has them.
+/// The window of a behavior that is not intended: parameters and rules, from its file.
 std::string schema_display(const v1::BehaviorSchema& schema);
 
-/// The beliefs whose name holds `part` (all: empty), with who said so and how long ago.
+/// The beliefs whose name contains `part` (all: empty), with source and age.
 std::string beliefs_table(const v1::BeliefSet& beliefs, const std::string& part = {});
 
 /// The processes window (manual 2.3.7), for all services together.
 std::string processes_table(std::vector<v1::ProcessSet> services);
 
-/// As the manual's window shows it: INIT, SUSP, or the number of its own state.
+/// In the manual's notation: INIT, SUSP, or the number of its own state.
 std::string state_text(const v1::Process& process);
 
 /// A parameter's value, such as 0.3, "left" or (1, 2) in odom.

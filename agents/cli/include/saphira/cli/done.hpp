@@ -10,7 +10,7 @@ namespace saphira::cli {
 /// One direct motion (manual 6.4).
 struct Move {
   enum class Kind {
-    move,  ///< so far along the heading (sfSetPosition)
+    move,  ///< a distance along the heading (sfSetPosition)
     turn,  ///< by an angle (sfSetDHeading)
     speed  ///< sfSetVelocity
   };
@@ -23,15 +23,15 @@ struct Move {
 /// The least change of a way or angle that counts as progress [m or rad].
 inline constexpr double kProgress = 0.01;
 
-/// The trouble with it, in words; empty: nothing.
+/// The error in the motion, in words; empty: none.
 std::string trouble_of(const Move& move);
 /// The command to repeat until it is done.
 v1::MotorCommand command_of(const Move& move);
-/// The rest of it [m or rad, not negative], by the grant that it holds; 0 of a speed.
+/// The remaining way [m or rad, not negative], by the grant; 0 for a speed.
 double left_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
-/// sfDonePosition, sfDoneHeading: it is there, and at rest. A speed is never done.
+/// sfDonePosition, sfDoneHeading: at the target, and at rest. A speed is never done.
 bool done(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
-/// Such as ", 0.35 m left"; empty where nothing is.
+/// Such as ", 0.35 m left"; empty without a rest.
 std::string rest_of(const Move& move, const v1::Grant& grant, const v1::RobotState& robot);
 
 }  // namespace saphira::cli

@@ -18,11 +18,11 @@ using situation::describe;
 ///   position=3,1,1.57@robot    with a heading [rad] (or 90deg), and the frame: odom, robot or map
 ///   door=kitchen               text
 ///
-/// std::invalid_argument that says what was expected where it is none of these.
+/// std::invalid_argument with the expected form for any other word.
 v1::Argument parse_argument(const std::string& word);
 
 /// A goal from its functor and the words of its arguments. std::invalid_argument as above, and for
-/// a name that is there twice.
+/// a repeated name.
 v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& words);
 
 /// A goal as a person types it: a functor and its arguments, or in short

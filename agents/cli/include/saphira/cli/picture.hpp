@@ -11,19 +11,18 @@
 
 namespace saphira::cli {
 
-/// The content of the terminal's picture, in odom: the walls of the map, the echoes that the sonars
-/// returned, where the robot has been, where it is, and where it is to go. After the local
-/// perceptual space of manual 2.3.3.
+/// The content of the terminal's picture, in odom: the walls of the map, the sonars' echoes, and
+/// the robot's way, pose and goal. After the local perceptual space of manual 2.3.3.
 class Picture {
  public:
   void set_radius(double radius) { radius_ = radius; }
   void set_goal(const Vec2& goal) { goal_ = goal; }
   void move_robot(const Pose& pose);
-  /// An echo; those that fall on the same 5 cm are one.
+  /// Adds an echo; echoes in the same 5 cm are one.
   void add_echo(const Vec2& point);
   void clear();
-  /// Walls and the sides of rooms and corridors, from point to point, of the map; shown where they
-  /// lie within what else is.
+  /// Walls and the sides of rooms and corridors, from point to point, of the map; shown within the
+  /// range of the other contents.
   void set_walls(std::vector<std::pair<Vec2, Vec2>> walls) { walls_ = std::move(walls); }
   /// The meaning of each character and color.
   static std::string legend(bool utf8);

@@ -10,7 +10,7 @@ namespace saphira::cli {
 
 /// The bus of programs that run on this machine.
 struct RunningBus {
-  std::string what;  ///< whose it is: "the demo", "the deployment laptop"
+  std::string what;  ///< its owner: "the demo", "the deployment laptop"
   std::string robot;
   std::uint32_t domain = 0;
   std::string profile = "host";
@@ -19,15 +19,15 @@ struct RunningBus {
   bool deployment = false;  ///< of `saphira up`, not of a demonstration
 };
 
-/// As files keep it. A text that is not whole is none.
+/// The form in files. An incomplete text reads as nothing.
 std::string to_text(const RunningBus& bus);
 std::optional<RunningBus> parse_running_bus(std::string_view text);
 
-/// The bus that a command joins without options. `running`: newest first. It is the usual one where
-/// that runs or nothing does (nullptr), otherwise the newest deployment, else the newest.
+/// The bus that a command without bus options joins. `running`: newest first. The usual bus if it
+/// runs or no bus runs (nullptr), otherwise the newest deployment, else the newest.
 const RunningBus* bus_meant(const RunningBus& usual, const std::vector<RunningBus>& running);
 
-/// The options by which a program joins it, without those that are usual anyway.
+/// The options to join it, without defaults.
 std::string options_of(const RunningBus& bus, const RunningBus& usual);
 
 }  // namespace saphira::cli

@@ -6,9 +6,9 @@
 
 namespace saphira::cli {
 
-/// Tells the service manager that has started this process (systemd, Type=notify) how it is. The
-/// protocol is that of sd_notify(3): lines in a datagram to $NOTIFY_SOCKET. Without a manager
-/// nothing happens.
+/// Reports the state of this process to the service manager that has started it (systemd,
+/// Type=notify). The protocol is that of sd_notify(3): lines in a datagram to $NOTIFY_SOCKET. No
+/// effect without a manager.
 class ServiceManager {
  public:
   /// Takes the two variables out of the environment, so that children do not use them.
@@ -17,15 +17,15 @@ class ServiceManager {
   /// Everything has been started.
   void ready(const std::string& status) const;
   void stopping() const;
-  /// This process works: the manager starts it anew where that is not said in time.
+  /// A sign of life: without it in time, the manager restarts this process.
   void alive() const;
-  /// How often to say so; none: the manager does not ask for it.
+  /// The period of the sign of life; none: the manager does not require it.
   std::optional<std::chrono::milliseconds> period() const { return period_; }
 
  private:
   void send(const std::string& lines) const;
 
-  std::string socket_;  ///< empty: there is no manager
+  std::string socket_;  ///< empty: no manager
   std::optional<std::chrono::milliseconds> period_;
 };
 

@@ -12,8 +12,8 @@ class StickDrive {
  public:
   struct Settings {
     double dead_zone = 0.1;     ///< [0..1] of the stick's way
-    double silence = 5.0;       ///< [s] a joystick that says nothing so long may be out of reach
-    double max_velocity = 0.4;  ///< [m/s] of a stick that is pushed all the way
+    double silence = 5.0;       ///< [s] a joystick silent for this long may be out of reach
+    double max_velocity = 0.4;  ///< [m/s] at full deflection
     double max_turn = 1.0;      ///< [rad/s] likewise
   };
   struct Setpoint {
@@ -23,15 +23,15 @@ class StickDrive {
   };
 
   void set_max_velocity(double limit) { settings_.max_velocity = limit; }
-  /// Bytes of the device, which may end within an event. A button that is held when the device is
-  /// opened counts when it is pressed again.
+  /// Bytes of the device, which may end within an event. A button that was held when the device was
+  /// opened counts after a new press.
   void take(std::string_view bytes, double now);
-  /// A button that is held has to be pressed again.
+  /// A held button has to be pressed again.
   void let_go() { held_ = 0; }
   /// The device is gone: nothing is held.
   void lost();
   Setpoint setpoint(double now) const;
-  /// It is held and says nothing any more: it has to be let go.
+  /// A button is held and the device is silent: the button has to be let go.
   bool is_silent(double now) const;
 
  private:

@@ -23,56 +23,55 @@ struct ChildSpec {
   std::vector<std::string> argv;                   ///< argv[0] is a path
   std::map<std::string, std::string> environment;  ///< added to our own
   bool restart = true;
-  std::string robot = {};  ///< whose program it is on the bus; empty: it knows nothing of the bus
+  std::string robot = {};  ///< the robot of its node; empty: it is not on the bus
 };
 
-/// Runs programs: starts them in order, prints what they print line by line, starts again what
-/// ends (after 100 ms, then twice as long each time up to 5 s; back to 100 ms once it has proven
-/// itself by running for 10 s), kills what hangs or is deaf, as the watchdog has it, so that it is
-/// started again, and stops all in the reverse order. The children get SIGTERM from
-/// the kernel when the supervisor dies, and a process group each, so that Ctrl-C reaches the
-/// supervisor alone.
+/// Runs programs: starts them in order, prints their lines, restarts ended ones (after 100 ms, then
+/// twice as long each time up to 5 s; back to 100 ms after a run of 10 s), kills hanging or deaf
+/// ones, by the watchdog, so that they are restarted, and stops all in the reverse order. The
+/// children get SIGTERM from the kernel when the supervisor dies, and a process group each, so that
+/// Ctrl-C reaches the supervisor alone.
 ///
 /// For one thread, which must outlive the children (PR_SET_PDEATHSIG is about the thread).
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
-  /// A line that a child wrote, or (from is empty) something that the supervisor has to say.
+  /// A line of a child, or (from is empty) a message of the supervisor.
   using Print = std::function<void(std::string_view from, std::string_view line)>;
 
   struct Child {
     std::string name;
     pid_t pid = 0;  ///< 0: not running now
     int starts = 0;
-    std::string ended;     ///< how it ended last, in words
+    std::string ended;     ///< the way of its last end, in words
     bool crashed = false;  ///< at some time, by a fault of its own
   };
 
   Supervisor(std::vector<ChildSpec> children, Print print,
              std::chrono::milliseconds proven = std::chrono::seconds(10));
-  /// Stops what still runs.
+  /// Stops the running children.
   ~Supervisor();
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
   /// Starts every child. std::runtime_error when one cannot be started at all.
   void start();
-  /// Waits for something to do, for one of `wake_fds` or the timeout, and does what is due. What
-  /// cannot be started again now is tried again later.
+  /// Waits for due work, for one of `wake_fds` or the timeout, and does the due work. A failed
+  /// restart is tried again later.
   void step(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
-  /// SIGTERM to each in the reverse order, the next one when it has ended; SIGKILL to what is left
-  /// after `limit`.
+  /// SIGTERM to each in the reverse order, the next when one has ended; SIGKILL to the rest after
+  /// `limit`.
   void stop(std::chrono::milliseconds limit = std::chrono::seconds(2));
 
-  /// Takes in new versions: each child whose program is another file than the one that it was
-  /// started from is ended and started again, the next one when it has run for two seconds. Those
-  /// stay to which `objection` (of a program's path) has something to say, and those that are not
-  /// on the bus, such as a simulator. The work is done by step().
+  /// Takes new versions: each child whose program file was replaced is ended and restarted, the
+  /// next one after it has run for two seconds. Children stay if `objection` (of the program's
+  /// path) gives a reason, or if they are not on the bus, such as a simulator. step() does the
+  /// work.
   void renew(const std::function<std::string(const std::string& program)>& objection);
 
   std::vector<Child> children() const;
-  /// A child that ended with a usage error (exit code 2) right after its first start, before it
-  /// had proven itself: what it was given is wrong, so to start it again is of no use.
+  /// A child that ended with a usage error (exit code 2) right after its first start, before it had
+  /// proven itself: its input is wrong, so a restart is of no use.
   std::optional<std::string> misused() const;
   /// True where no child runs and none will be started again.
   bool finished() const;
@@ -85,13 +84,13 @@ class Supervisor {
     int starts = 0;
     std::string ended;
     Clock::time_point started;
-    std::optional<Clock::time_point> due;  ///< when to start it again
+    std::optional<Clock::time_point> due;  ///< time of its restart
     std::chrono::milliseconds backoff{};
     bool misused = false;
     bool crashed = false;
     int beats = -1;       ///< the pipe of its heartbeats
-    std::string trouble;  ///< for which it was killed
-    std::string file;     ///< which file it was started from; see file_of()
+    std::string trouble;  ///< the reason for its kill
+    std::string file;     ///< identity of its program file at the start; see file_of()
   };
   struct Stream {
     int fd;
@@ -101,7 +100,8 @@ class Supervisor {
 
   void launch(std::size_t index);
   void launch_again(std::size_t index);
-  /// When to start it again: later each time, unless it had `proven` itself. Returns the delay.
+  /// Sets the time of its restart: later each time, unless it had `proven` itself. Returns the
+  /// delay.
   std::chrono::milliseconds put_off(Slot& slot, bool proven);
   void poll_once(std::chrono::milliseconds timeout, std::initializer_list<int> wake_fds = {});
   bool read_stream(Stream& stream);
@@ -118,7 +118,7 @@ class Supervisor {
   Watchdog watchdog_;
   bool stopping_ = false;
   std::vector<std::size_t> to_renew_;    ///< the next one first
-  std::optional<std::size_t> renewing_;  ///< ended for a new version, and not proven yet
+  std::optional<std::size_t> renewing_;  ///< ended for a new version, and not yet proven
 };
 
 }  // namespace saphira::cli

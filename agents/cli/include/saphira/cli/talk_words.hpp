@@ -5,22 +5,22 @@
 #include "agents.h"
 #include "request.h"
 
-/// Agents and what is said, as people read and type it.
+/// Agents and utterances in words.
 namespace saphira::cli {
 
-/// name=? for a slot that the answer fills; otherwise as parse_argument. std::invalid_argument says
-/// what was expected.
+/// name=? for a slot that the answer fills; otherwise as parse_argument. std::invalid_argument
+/// gives the expected form.
 v1::Argument parse_slot(const std::string& word);
 
-/// "alice: Flakey, stop"; of the robot with its name.
+/// Such as "alice: Flakey, stop"; the robot's own with its name.
 std::string line_of(const v1::Utterance& utterance, const std::string& robot = {});
 
-/// "calendar: place="library"", or the code and the reason.
+/// Such as "calendar: place="library"", or the code and the reason.
 std::string line_of(const v1::Answer& answer);
 
 /// An agent with a line for each capability.
 std::string describe(const v1::Agent& agent);
-/// "ann: every 5 s: note()"
+/// Such as "ann: every 5 s: note()".
 std::string describe(const v1::Trigger& trigger);
 
 /// The advice to the robot, each with its number, speaker and time.

@@ -7,7 +7,7 @@
 namespace saphira::cli {
 
 /// The figures of a drive, from the simulator's trace. The trace is the ground truth: true poses,
-/// not those that the robot believes.
+/// not the robot's estimates.
 struct Track {
   std::uint64_t cycles = 0;    ///< of the last connection, until the cut
   double path = 0.0;           ///< [m] that the robot's center moved
@@ -21,7 +21,7 @@ struct Track {
 
 /// Evaluates the text of a trace (saphira-sim --trace) up to and with `last_cycle` of its last
 /// connection; each connection begins with a header line. A last line without its end is left out:
-/// the simulator was still writing it. FileError where a line is not one of a trace.
+/// the simulator was still writing it. FileError for any other line.
 Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std::string& file);
 
 /// The result of a demo.

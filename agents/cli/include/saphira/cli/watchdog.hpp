@@ -11,11 +11,10 @@
 
 namespace saphira::cli {
 
-/// Which children hang, are deaf or are mute, by what they say of themselves. Pure: time is given
-/// to it.
+/// Detects hanging, deaf and mute children, by their heartbeats. Pure: the time is an argument.
 ///
-/// A node hangs when it has said something regularly and then nothing for 10 s. A program has as
-/// many nodes as it likes; one that says nothing is not judged.
+/// A node hangs when it has sent heartbeats regularly and then none for 10 s. A program may have
+/// any number of nodes; a silent program is not judged.
 ///
 /// A node that waits for its robot is deaf, or the bridge of that robot is mute:
 /// - deaf after 15 s, where another child hears the robot all the time;
@@ -33,12 +32,12 @@ class Watchdog {
   /// robots: of each child.
   explicit Watchdog(std::vector<std::string> robots);
 
-  /// The child was started, or has ended: nothing is known of it.
+  /// The child was started, or has ended: its state is unknown.
   void forget(std::size_t child);
   void hear(std::size_t child, const Heartbeat& beat, Time now);
-  /// The supervisor stood still itself: what it did not hear meanwhile says nothing.
+  /// The supervisor itself stood still: missing heartbeats of that time do not count.
   void slept(Time now);
-  /// The trouble with a child, in words.
+  /// The error of a child, in words.
   std::optional<std::string> trouble(std::size_t child, Time now) const;
 
  private:
@@ -48,11 +47,11 @@ class Watchdog {
     int beats = 0;
     Time last;
     std::uint64_t cycle = 0;
-    bool heard = false;           // the robot, at some time
-    std::optional<Time> stepped;  // since when it hears the robot
+    bool heard = false;           // the robot was heard at some time
+    std::optional<Time> stepped;  // time since which it hears the robot
     Time advanced;                // newest
-    std::optional<Time> waits;    // since when it hears none
-    bool bridge = false;          // it writes the robot's state, and so steps without hearing it
+    std::optional<Time> waits;    // time since which it does not hear the robot
+    bool bridge = false;          // it writes the robot's state, so it steps without hearing it
 
     bool steps_since(Time since, Time now) const;
     bool waits_for(std::chrono::seconds time, Time now) const;
@@ -60,12 +59,12 @@ class Watchdog {
   struct Child {
     std::string robot;
     std::map<std::uint64_t, Voice> voices;  // by instance
-    int deaf_lives = 0;                     // in a row, until now: it waited and never heard
+    int deaf_lives = 0;                     // in a row: lives without hearing the robot
 
     bool was_deaf() const;
   };
 
-  /// True where some node of the robot is so; `but` is a child that does not count.
+  /// True where some node of the robot satisfies `Is`; `but` is a child that does not count.
   template <class Is>
   bool any(const std::string& robot, std::optional<std::size_t> but, Is is) const;
   bool deaf(std::size_t child, const Voice& voice, Time now) const;

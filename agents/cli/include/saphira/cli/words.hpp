@@ -8,7 +8,7 @@
 
 namespace saphira::cli {
 
-// One wording for the robot and its programs in every command.
+// The same wording for the robot and its programs in every command.
 using situation::describe;
 using situation::kLostAge;
 using situation::latched;
@@ -16,8 +16,8 @@ using situation::missing_services;
 using situation::name_of;
 using SeenProcess = situation::Program;
 
-/// Text in aligned columns; numbers (what starts with a digit) to the right. The first row is the
-/// heading. A last column is not padded. Ends with a line break.
+/// Text in aligned columns; numbers (a leading digit) to the right. The first row is the heading.
+/// The last column is not padded. Ends with a line break.
 std::string table(const std::vector<std::vector<std::string>>& rows);
 
 /// The table of processes, sorted by name.

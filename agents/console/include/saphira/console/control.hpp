@@ -7,29 +7,29 @@
 
 namespace saphira::console {
 
-/// Which of the people at the browsers drives, and what they want. Times are seconds of any clock
-/// that does not jump.
+/// The operator among the people at the browsers, and the operator's commands. Times are seconds of
+/// any clock that does not jump.
 ///
-/// One operator holds control. The operator's page says at least ten times a second what is wanted,
-/// also that nothing is: samples that stay out, come late or twice mean a link that is gone, and
-/// the robot stands. After a short gap it stands until the stick has been let go; after a long one
-/// the operator watches, and has to take control again.
+/// One operator holds control. The operator's page sends at least ten samples a second, also
+/// without a command. Missing, late or repeated samples mean a lost link, and the robot stands.
+/// After a short gap it stands until the stick has been let go; after a long one the operator
+/// watches, and has to take control again.
 class Control {
  public:
   struct Settings {
-    double hold = 0.4;  ///< [s] the newest sample counts for so long after it came
-    double lose = 1.0;  ///< [s] after such a silence control is gone
-    double late = 0.4;  ///< [s] a sample that took so much longer than the quickest is refused
+    double hold = 0.4;  ///< [s] validity of the newest sample after its arrival
+    double lose = 1.0;  ///< [s] after this silence control is lost
+    double late = 0.4;  ///< [s] a sample with this delay over the quickest is refused
   };
 
-  /// One word of the operator's page.
+  /// One sample of the operator's page.
   struct Sample {
     std::uint64_t number = 0;  ///< counts the page's samples
     double device_time = 0.0;  ///< [s] by the operator's device, any origin
-    bool active = false;       ///< the dead-man: somebody holds a stick or a key
+    bool active = false;       ///< the dead-man: a stick or a key is held
     double velocity = 0.0;     ///< [m/s]
     double rotation = 0.0;     ///< [rad/s]
-    std::uint64_t cycle = 0;   ///< of the robot state that the operator sees
+    std::uint64_t cycle = 0;   ///< of the robot state on the operator's screen
   };
 
   /// The command for the robot now.
@@ -38,11 +38,11 @@ class Control {
     double velocity = 0.0;
     double rotation = 0.0;
     std::uint64_t cycle = 0;
-    std::string source;  ///< who drives, for people
+    std::string source;  ///< name of the driver, for people
   };
 
   using OperatorId = std::uint64_t;
-  /// Why a sample is refused that a newer one has overtaken, or that came before.
+  /// The reason for refusing a sample that was overtaken by a newer one, or repeated.
   static constexpr const char* kRepeated = "a repeated sample";
 
   Control() = default;
@@ -50,15 +50,16 @@ class Control {
 
   void join(OperatorId id, const std::string& name);
   void leave(OperatorId id);
-  /// Takes control; `force` also where somebody else has it. Why not, in words; empty where it did.
+  /// Takes control; `force` also from another holder. Returns the reason of a failure, in words;
+  /// empty: done.
   std::string take(OperatorId id, bool force, double now);
-  /// Asks the holder for it. Why not, in words.
+  /// Asks the holder for control. Returns the reason of a failure, in words.
   std::string ask(OperatorId id);
   void release(OperatorId id);
-  /// Why the sample is refused, in words; empty where it counts.
+  /// The reason for refusing the sample, in words; empty where it counts.
   std::string drive(OperatorId id, const Sample& sample, double now);
 
-  /// The present order. Call it at least ten times a second: it notices what stays out.
+  /// The present order. Call it at least ten times a second: it detects missing samples.
   Order order(double now);
 
   OperatorId holder() const { return holder_; }

@@ -14,7 +14,7 @@ namespace saphira::console {
 struct Hello {
   std::string key;
   std::string name;  ///< of the operator, for people
-  /// Of the connection whose operator's samples come here as well [empty: one of its own].
+  /// Of the connection whose operator's samples come here as well [empty: its own].
   std::string ticket;
 };
 struct Rename {
@@ -24,7 +24,7 @@ struct Ack {
   std::uint64_t frame = 0;
 };
 struct Ping {
-  double at = 0.0;  ///< what the page wants back
+  double at = 0.0;  ///< returned to the page
 };
 struct TakeControl {
   bool force = false;
@@ -36,14 +36,14 @@ struct EmergencyStop {};
 struct ResetEmergencyStop {};
 struct AskGoal {
   std::uint64_t reference = 0;  ///< of the answer
-  std::string words;            ///< as `saphira goal` takes them
+  std::string words;            ///< in the form of `saphira goal`
 };
 struct Say {
   std::string text;  ///< to the robot, in a person's words
 };
 struct CancelGoal {
   std::uint64_t reference = 0;
-  std::string id;  ///< as the board names it
+  std::string id;  ///< as on the board
 };
 struct AskProcess {
   std::uint64_t reference = 0;
@@ -57,13 +57,13 @@ struct PlaceRobot {
   double y = 0.0;
   double th = 0.0;  ///< [rad]
 };
-/// A place that the programs on the bus are to know of.
+/// A place to show to the programs on the bus.
 struct PointOut {
-  double x = 0.0;  ///< [m] [map], or [odom] where there is no map
+  double x = 0.0;  ///< [m] [map], or [odom] without a map
   double y = 0.0;
   bool in_map = true;
 };
-/// Not understood.
+/// An invalid message.
 struct Wrong {
   std::string why;
 };
@@ -72,7 +72,7 @@ using Message = std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl
                              Control::Sample, HandBack, EmergencyStop, ResetEmergencyStop, AskGoal,
                              Say, CancelGoal, AskProcess, PlaceRobot, PointOut, Rename>;
 
-/// Any text gives a message: Wrong, with the expected form, where it is no valid one.
+/// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
 
 }  // namespace saphira::console

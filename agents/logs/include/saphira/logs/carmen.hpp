@@ -7,25 +7,26 @@
 
 #include "saphira/geometry/pose.hpp"
 
-/// Logs of robots as CARMEN wrote them, and the relations of the SLAM benchmark.
+/// Robot logs in CARMEN's format, and the relations of the SLAM benchmark.
 namespace saphira::logs {
 
-/// A message's two stamps [s]: of the sender, and of the logger (since the log began, in some).
+/// A message's two stamps [s]: of the sender, and of the logger (since the beginning of the log, in
+/// some).
 struct Stamps {
   double ipc = 0.0;
   double logger = 0.0;
 };
 
-/// The message that a scan was in.
+/// The message of a scan.
 enum class Laser { flaser, robot1, raw1, rlaser, robot2, raw2, laser3, laser4, raw3, raw4 };
 
 struct LaserScan {
   Stamps time;
-  Pose pose;  ///< of the robot, as the log says it: dead reckoning in raw logs
+  Pose pose;  ///< of the robot, from the log: dead reckoning in raw logs
   Pose laser_in_robot;
   double first_angle = -kPi / 2;
   double step = radians(1.0);
-  double no_return = 50.0;  ///< [m] as long as this: nothing was hit
+  double no_return = 50.0;  ///< [m] this range and longer ones: no return
   std::vector<double> ranges;
   std::string host;
   Laser laser = Laser::flaser;
@@ -34,7 +35,7 @@ struct LaserScan {
 struct OdomRecord {
   Stamps time;
   Pose pose;
-  std::size_t scans_before = 0;  ///< how many scans stand before it in the file
+  std::size_t scans_before = 0;  ///< number of earlier scans in the file
 };
 
 struct CarmenLog {
@@ -42,23 +43,23 @@ struct CarmenLog {
   std::vector<LaserScan> scans;  ///< of one laser
   std::vector<OdomRecord> odometry;
   std::vector<OdomRecord> truth;     ///< TRUEPOS, of simulators
-  std::vector<std::string> damaged;  ///< lines that could not be read, as FileError says it
-  std::vector<std::string> notes;    ///< what a person should know of how it was read
+  std::vector<std::string> damaged;  ///< unreadable lines, with their FileError
+  std::vector<std::string> notes;    ///< remarks for people about the reading
 };
 
 /// Reads the lines FLASER, RLASER, LASER3 and 4, ROBOTLASER1 and 2, RAWLASER1 to 4, ODOM, TRUEPOS
-/// and the PARAM of lasers; others are passed over. Of several lasers the front one is kept, of
-/// several messages the one with the robot's pose. Where the log does not say them, the beams'
-/// angles are those of usual lasers with so many, the laser's place is what its poses say, and the
-/// range that means no return is the one at which ranges pile up. A damaged line is passed over and
-/// told; FileError where no scan is left.
+/// and the PARAM of lasers; others are skipped. Of several lasers the front one is kept, of several
+/// messages the one with the robot's pose. Without them in the log, the beams' angles are those of
+/// usual lasers with that number of beams, the laser's place follows from its poses, and the range
+/// that means no return is the one at which ranges pile up. A damaged line is skipped and reported;
+/// FileError where no scan is left.
 CarmenLog parse_carmen(std::string_view text, const std::string& file);
 
-/// The range [m] from which on ranges are no returns: the shortest of the long ones at which they
-/// pile up. Nothing where they do not.
+/// The range [m] from which ranges are no returns: the shortest of the long ranges at which they
+/// pile up. Nothing if they do not.
 std::optional<double> find_no_return(const std::vector<LaserScan>& scans);
 
-/// Where the pose at `to` was, seen from that at `from`.
+/// The pose at `to`, relative to that at `from`.
 struct Relation {
   double from = 0.0;
   double to = 0.0;
@@ -68,9 +69,8 @@ struct Relation {
 /// Lines `t1 t2 dx dy dz roll pitch yaw`. FileError where it is wrong.
 std::vector<Relation> parse_relations(std::string_view text, const std::string& file);
 
-/// The content of a file, unpacked where it is a .gz. Of a .gz that is damaged or ends too early
-/// what could be read, and what is wrong in `trouble`. std::runtime_error where nothing could be
-/// read.
+/// The content of a file, unpacked if it is a .gz. Of a damaged or truncated .gz the readable part,
+/// with the error in `trouble`. std::runtime_error where nothing is readable.
 std::string read_log(const std::string& path, std::string* trouble = nullptr);
 
 }  // namespace saphira::logs

@@ -12,21 +12,21 @@
 
 namespace saphira::logs {
 
-/// A drive with what is known of where the robot was.
+/// A drive with the known poses of the robot.
 struct DataSet {
   std::string name;
   std::vector<double> times;  ///< of the scans [s]
   std::vector<Pose> poses_in_odom;
   std::vector<Scan> scans;
-  Trajectory odometry{{}};  ///< denser than the scans where the log is
+  Trajectory odometry{{}};  ///< denser than the scans if the log is
   std::optional<Trajectory> reference;
   std::vector<Relation> relations;
   std::vector<Relation> exact_relations;  ///< those whose stamps are both stamps of scans here
   std::size_t mended = 0;                 ///< scans whose stamps were interpolated in the log
-  std::vector<std::string> damaged;       ///< lines of the log that could not be read
-  std::vector<std::string> notes;         ///< how the log was read, where it did not say it all
+  std::vector<std::string> damaged;       ///< unreadable lines of the log
+  std::vector<std::string> notes;         ///< assumptions made in reading the log
 
-  bool ranges_only = false;  ///< of a drive without sonars, and none are to be made of its ranges
+  bool ranges_only = false;  ///< a drive without sonars, with no virtual sonars from its ranges
 
   // Of simulated drives only.
   std::optional<SonarDrive> sonars;
@@ -40,12 +40,11 @@ struct LogFiles {
   std::string relations;  ///< empty: none
 };
 
-/// The logs in a folder of data sets and in each folder in it: raw logs, and beside each a
-/// corrected one and relations, known by their names. A log is named after its folder where it is
-/// alone there.
+/// The logs in a folder of data sets and in each folder in it: raw logs, each with a corrected one
+/// and relations, matched by their names. A log that is alone in its folder has the folder's name.
 std::vector<LogFiles> find_logs(const std::string& folder);
 
-/// The records of a log by one of its clocks, scans in the log's order.
+/// The records of a log by one of its clocks, with the scans in the log's order.
 DataSet data_set_of(const std::string& name, const CarmenLog& log, Clock clock);
 
 DataSet load_data_set(const std::string& name, const LogFiles& files);

@@ -7,8 +7,8 @@
 
 namespace saphira::logs {
 
-/// The straight walls of at least 0.3 m in scans with known poses, as a map of WALL lines: what a
-/// person would draw from them. Doors and corridors are not made of them.
+/// The straight walls of at least 0.3 m in scans with known poses, as a map of WALL lines, as a
+/// person would draw them. Without doors and corridors.
 maps::Map walls_of(const std::vector<Scan>& scans, const std::vector<Pose>& poses);
 
 }  // namespace saphira::logs

@@ -16,20 +16,20 @@ struct LogMap {
   ScanMapReport report;
 };
 
-/// Maps a log from its whole scans. `goes_on` is asked after each scan; std::runtime_error where it
-/// says no, and where the log has no scan.
+/// Maps a log from its whole scans. `goes_on` is called after each scan; std::runtime_error where
+/// it returns false, and for a log without scans.
 LogMap map_log(
     const DataSet& log, const std::function<bool()>& goes_on = [] { return true; });
 
-inline constexpr double kWithin = 0.5;  ///< [m] so near a pose is right
+inline constexpr double kWithin = 0.5;  ///< [m] tolerance of a right pose
 
-/// How far from where the laser says the robot was.
+/// The distances of poses from the laser's.
 struct Accuracy {
   double ate = 0.0;            ///< [m] root mean square after the best alignment
   double drift = 0.0;          ///< [m] over 10 m of way, median
   double drift_heading = 0.0;  ///< [rad] the same
-  double within = 0.0;         ///< [0..1] share of the poses within kWithin, aligned in that way
-  std::size_t compared = 0;    ///< poses; below 2 nothing else is known
+  double within = 0.0;         ///< [0..1] share of the poses within kWithin, in that alignment
+  std::size_t compared = 0;    ///< poses; below 2 the other members are unknown
 };
 Accuracy accuracy(const std::vector<StampedPose>& poses, const Trajectory& truth);
 
@@ -40,8 +40,8 @@ struct LogEvaluation {
   SonarRun run;
 };
 
-/// Interpretation and registration, as the services have them, with what sonars would have heard
-/// where the laser scanned. `laser` is of the same log. Without a start the robot has to find it.
+/// Interpretation and registration, as in the services, with virtual sonar readings from the laser.
+/// `laser` is of the same log. Without a start the robot has to find its pose.
 LogEvaluation evaluate_log(const DataSet& log, const LogMap& laser,
                            const std::vector<lps::SonarMount>& sonars, const maps::Map& map,
                            std::optional<Pose> start_in_map);

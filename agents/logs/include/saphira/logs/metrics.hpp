@@ -13,7 +13,7 @@ struct StampedPose {
   Pose pose;
 };
 
-/// Poses in the order of time; between them as dead reckoning went, or straight.
+/// Poses in the order of time; between them by dead reckoning, or straight.
 class Trajectory {
  public:
   explicit Trajectory(std::vector<StampedPose> poses);
@@ -27,19 +27,19 @@ class Trajectory {
   std::vector<StampedPose> poses_;
 };
 
-/// Carries the poses of scans over to the stamps of a denser track: what the track did from scan to
-/// scan, bent so that it ends where the next scan is.
+/// Transfers the poses of scans to the stamps of a denser track: the track's motion from scan to
+/// scan, bent so that it ends at the next scan's pose.
 Trajectory densify(const Trajectory& scans, const Trajectory& odometry);
 
-/// The systematic error of dead reckoning, as a person finds it by driving.
+/// The systematic error of dead reckoning, as from a calibration drive.
 struct OdometryErrors {
-  double turn_per_metre = 0.0;  ///< [rad/m] it misses
+  double turn_per_metre = 0.0;  ///< [rad/m] missing turn
   double turn_scale = 1.0;      ///< true by measured
   double way_scale = 1.0;
 };
-/// The constants that fit the whole way best, over stretches of about a metre.
+/// The constants with the best fit over the whole way, by stretches of about a metre.
 OdometryErrors fit_odometry(const std::vector<Pose>& odometry, const std::vector<Pose>& truth);
-/// Dead reckoning without them.
+/// Dead reckoning without those errors.
 std::vector<Pose> calibrated(const std::vector<Pose>& odometry, const OdometryErrors& errors);
 
 struct Spread {
@@ -66,12 +66,12 @@ struct Pairs {
   std::vector<Pose> estimate;
   std::vector<Pose> reference;
 };
-/// The estimate at the reference's stamps, where both are.
+/// The estimate at the reference's stamps, where both exist.
 Pairs pair_up(const Trajectory& estimate, const Trajectory& reference);
 
 /// Root mean square of the distances after the best rigid alignment (Umeyama, without scale) [m].
 double ate_rmse(const Pairs& pairs);
-/// The same alignment: reference from estimate.
+/// The pose of the estimate's frame in the reference's, by the same alignment.
 Pose alignment(const Pairs& pairs);
 
 struct DriftErrors {

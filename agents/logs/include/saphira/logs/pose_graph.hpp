@@ -8,18 +8,18 @@
 
 namespace saphira::logs {
 
-/// Where node `to` was measured to be from node `from`.
+/// A measured pose of node `to` relative to node `from`.
 struct PoseEdge {
   std::size_t from = 0;
   std::size_t to = 0;
   Pose to_in_from;
   /// Of the deviation (x, y, th) in the frame of the measured pose.
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
-  /// May be wrong altogether: loses its weight where it disagrees with the rest.
+  /// Possibly wrong: loses its weight where it disagrees with the rest.
   bool doubtful = false;
 };
 
-/// The rest of an edge's disagreement with the poses: squared, in sigmas.
+/// The remaining disagreement of an edge with the poses: squared, in sigmas.
 double chi2(const PoseEdge& edge, const std::vector<Pose>& poses);
 
 struct GraphReport {
@@ -28,8 +28,8 @@ struct GraphReport {
   double after = 0.0;
 };
 
-/// Moves the poses to where they agree best with the edges: sparse least squares (Gauss and Newton
-/// with damping), the first pose stays. Doubtful edges count by a Cauchy kernel of `kernel` sigmas.
+/// Moves the poses to their best agreement with the edges: sparse least squares (Gauss and Newton
+/// with damping); the first pose stays. Doubtful edges have a Cauchy kernel of `kernel` sigmas.
 GraphReport optimize(std::vector<Pose>& poses, const std::vector<PoseEdge>& edges,
                      int iterations = 20, double kernel = 3.0);
 

@@ -12,7 +12,7 @@ namespace saphira::logs {
 
 /// Tunables of ScanMapper. Lengths in metres, angles in radians.
 struct ScanMapSettings {
-  // A scan becomes a node when the robot has gone on this far; others hang on the node before.
+  // A scan becomes a node after this motion; others belong to the node before.
   double node_distance = 0.1;
   double node_turn = radians(5.0);
 
@@ -23,29 +23,29 @@ struct ScanMapSettings {
   double odom_turn_per_metre = radians(5.0);
   double odom_turn_per_radian = 0.15;
 
-  double local_path = 4.0;       ///< the way back that a scan is matched with
+  double local_path = 4.0;       ///< the length of way that a scan is matched with
   std::size_t local_nodes = 30;  ///< and at most so many nodes
-  double good_overlap = 0.75;    ///< less than this after alignment: search wider
-  double lost_overlap = 0.4;     ///< less than this: dead reckoning is all there is
+  double good_overlap = 0.75;    ///< below it after alignment: search wider
+  double lost_overlap = 0.4;     ///< below it: dead reckoning alone
   AlignSettings align;
 
   // Loop closure.
-  double loop_path = 10.0;  ///< places that the robot left so far back along its path
-  double loop_every = 0.5;  ///< looked for after so much path
-  // The window is three sigmas of what the graph knows, and at least and at most:
+  double loop_path = 10.0;  ///< least way since a place that counts for a closure
+  double loop_every = 0.5;  ///< way between two searches
+  // The window: three sigmas of the graph, within these limits:
   double loop_reach = 1.0;
   double loop_reach_limit = 20.0;
   double loop_turn = radians(8.0);
   double loop_turn_limit = radians(30.0);
-  // The drift of matched scans, one sigma after one metre, growing with the root of the way: by
-  // what real lasers do, which see floors that are not even and walls that are not plumb.
+  // The drift of matched scans, one sigma after one metre, growing with the root of the way: as
+  // observed with real lasers, on uneven floors and with walls that are not vertical.
   double drift = 0.05;
   double drift_turn = radians(0.5);
-  std::size_t loop_points = 150;  ///< the least that is seen of a place
+  std::size_t loop_points = 150;  ///< least number of seen points of a place
   double loop_score = 0.55;       ///< least mean likelihood of the points
   double loop_overlap = 0.6;
-  double loop_through = 0.1;  ///< the most of the points that are seen through
-  double loop_slack = 0.25;   ///< [m] what fits as well so far away is not known at all
+  double loop_through = 0.1;  ///< largest share of points that a scan sees through
+  double loop_slack = 0.25;   ///< [m] a second fit at this distance makes the direction unknown
   double loop_agree_chi2 = 11.3;
 };
 
@@ -53,27 +53,26 @@ struct ScanMapSettings {
 struct ScanMapReport {
   std::size_t scans = 0;
   std::size_t nodes = 0;
-  std::size_t searches = 0;   ///< times that alignment alone was not good enough
+  std::size_t searches = 0;   ///< times that alignment alone was insufficient
   std::size_t unmatched = 0;  ///< scans placed by dead reckoning alone
   std::size_t loop_candidates = 0;
   std::size_t loops = 0;  ///< accepted
 };
 
 /// Builds a consistent trajectory from scans and dead reckoning: each scan is matched with the
-/// newest ones, loops are closed where a stretch of the way matches an older one and a second
-/// stretch says the same, and a graph of all relations between poses is kept in equilibrium.
-/// Deterministic; every call's cost is bounded but that of a closure and of refine().
+/// newest ones; a loop is closed where a stretch of the way matches an older one and a second
+/// stretch agrees; a graph of all relations between poses is kept optimal. Deterministic; every
+/// call's cost is bounded, except a closure and refine().
 class ScanMapper {
  public:
   explicit ScanMapper(const ScanMapSettings& settings = {}) : settings_(settings) {}
 
-  /// The next scan, with dead reckoning's pose. Answers the present belief (frame of the first).
+  /// The next scan, with dead reckoning's pose. Returns the present estimate (frame of the first).
   Pose add(const Pose& pose_in_odom, Scan scan);
-  /// Matches all neighbours with each other again and again, now that they are where they are:
-  /// what one does after the drive.
+  /// Matches all neighbours with each other repeatedly, from the final poses: after the drive.
   void refine(int rounds = 4);
 
-  /// Of all scans so far, as known now.
+  /// The poses of all scans so far, by the present estimate.
   std::vector<Pose> trajectory() const;
   const std::vector<Pose>& nodes() const { return poses_; }
   const std::vector<Scan>& node_scans() const { return scans_; }
@@ -98,9 +97,9 @@ class ScanMapper {
   std::vector<std::size_t> along_path(std::size_t about, double back, double ahead) const;
   Scan stretch(std::size_t node, double back) const;
   Eigen::Matrix3d odom_information(const Pose& step) const;
-  // Of the newest node's step, for what the graph knows.
+  // The covariance of the newest node's step, for the graph.
   Eigen::Matrix3d step_covariance(const Pose& step) const;
-  /// The covariance of nodes, seen from another: by the surest way through it.
+  /// The covariance of nodes relative to another, by the most certain path.
   std::vector<Eigen::Matrix3d> covariances(std::size_t from,
                                            const std::vector<std::size_t>& of) const;
   std::optional<Closure> find_closure(std::size_t pass, std::size_t here,

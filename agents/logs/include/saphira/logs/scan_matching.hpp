@@ -7,34 +7,34 @@
 
 #include "saphira/geometry/pose.hpp"
 
-/// Registration of whole range scans with each other: for robots with a laser, where sonars give
-/// features. Everything here is a pure function of its arguments.
+/// Registration of whole range scans with each other: for robots with a laser instead of sonars
+/// with features. All functions are pure.
 namespace saphira::logs {
 
-/// The points that a scan hit, in the robot's frame [m].
+/// The points of a scan, in the robot's frame [m].
 struct Scan {
   std::vector<Vec2> points;
-  /// Unit normals of the surface, towards the sensor; zero where the neighbours make no line.
+  /// Unit normals of the surface, towards the sensor; zero where the neighbours form no line.
   std::vector<Vec2> normals;
-  Vec2 sensor{0.0, 0.0};  ///< from where
+  Vec2 sensor{0.0, 0.0};  ///< the sensor's place
 };
 
-/// How the beams of a scan lie, and which of them are used.
+/// The angles of a scan's beams, and the used ranges.
 struct Beams {
   double first_angle = -kPi / 2;  ///< [rad] in the sensor's frame
   double step = radians(1.0);     ///< [rad] from beam to beam
   Pose sensor_in_robot;
   double min_range = 0.1;   ///< [m]
-  double max_range = 20.0;  ///< [m] longer ones are no return, or too sparse to give a surface
+  double max_range = 20.0;  ///< [m] longer ones are no return, or too sparse for a surface
 };
 
 Scan make_scan(const std::vector<double>& ranges, const Beams& beams);
 
-/// Points of one or more scans in one frame, arranged for looking up the nearest.
+/// Points of one or more scans in one frame, for searches of the nearest.
 class ScanReference {
  public:
   void add(const Scan& scan, const Pose& pose);
-  /// To be called after the last add.
+  /// Call after the last add.
   void arrange();
 
   std::size_t size() const { return points_.size(); }
@@ -56,11 +56,11 @@ class ScanReference {
 
 struct AlignSettings {
   int iterations = 25;
-  double first_gate = 0.5;  ///< [m] partners farther away are none, at the first iteration
+  double first_gate = 0.5;  ///< [m] largest distance of partners, at the first iteration
   double last_gate = 0.12;  ///< [m] and at the last ones
   double noise = 0.02;      ///< [m] of a point across its surface
-  /// Of the guess, in the frame of the reference (x, y, th): holds what the scans leave open, as
-  /// the way along a bare corridor. Zero: the guess is only a start.
+  /// Of the guess, in the frame of the reference (x, y, th): fixes directions that the scans leave
+  /// open, such as the way along a bare corridor. Zero: the guess is only a start.
   Eigen::Matrix3d guess_information = Eigen::Matrix3d::Zero();
 };
 
@@ -69,7 +69,7 @@ struct Alignment {
   /// Of (x, y, th), from the surfaces alone.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double overlap = 0.0;  ///< share of the scan's points with a partner
-  double rms = 0.0;      ///< [m] of these across the surface
+  double rms = 0.0;      ///< [m] distance of these across the surface
 };
 
 /// Point to line registration (iterated closest point with robust weights) from a guess.
@@ -87,28 +87,29 @@ struct SearchResult {
   double score = 0.0;  ///< [0..1] mean likelihood of the scan's points
 };
 
-/// The evidence of a scan about points that were seen from elsewhere.
+/// The evidence of a scan about points seen from another place.
 struct Sight {
-  std::size_t agree = 0;    ///< it saw something there too
-  std::size_t through = 0;  ///< it saw through them
+  std::size_t agree = 0;    ///< the scan has points there too
+  std::size_t through = 0;  ///< the scan saw through them
 };
-/// The points are in the scan's frame. Those behind what it saw, and those beside, are not counted.
+/// The points are in the scan's frame. Points behind the scan's own, and beside its view, do not
+/// count.
 Sight look_at(const Scan& scan, const std::vector<Vec2>& points);
 
-/// How likely a point is anywhere near a reference, with bounds for whole squares, so that the best
-/// pose in a window is found without trying all (branch and bound: Olson, ICRA 2009; Hess et al.,
-/// ICRA 2016).
+/// The likelihood of points near a reference, with bounds for whole squares, so that the best pose
+/// in a window is found without trying all (branch and bound: Olson, ICRA 2009; Hess et al., ICRA
+/// 2016).
 class ScanField {
  public:
   explicit ScanField(const ScanReference& reference, int levels = 6);
 
-  /// The best pose in the window about the guess that scores more than `at_least`.
+  /// The best pose in the window about the guess with a score above `at_least`.
   std::optional<SearchResult> search(const Scan& scan, const Pose& guess,
                                      const SearchWindow& window, double at_least) const;
   double score(const Scan& scan, const Pose& pose) const;
-  /// How far from `best` the scan fits nearly as well, within a distance of `prior` (covariance of
-  /// the position in the reference's frame): the mean square of the deviation, by all poses that
-  /// have its heading. Large along a corridor, or where one room looks like the next.
+  /// The distance from `best` at which the scan fits nearly as well, limited by `prior` (covariance
+  /// of the position in the reference's frame): the mean square of the deviation, over all poses
+  /// with the same heading. Large along a corridor, or among rooms that look alike.
   Eigen::Matrix2d slack(const Scan& scan, const Pose& best, const Vec2& expected,
                         const Eigen::Matrix2d& prior, double distance) const;
 

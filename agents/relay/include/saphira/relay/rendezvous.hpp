@@ -12,34 +12,34 @@ namespace saphira::relay {
 /// A robot that may dial in.
 struct Robot {
   std::string name;
-  int port = 0;       ///< where people reach it
-  std::string token;  ///< by which its gateway is known
+  int port = 0;       ///< the port for people
+  std::string token;  ///< identifies its gateway
 };
 
 /// The robots of a file: a line for each, `NAME PORT TOKEN`; # begins a comment.
 /// std::invalid_argument that names the line.
 std::vector<Robot> parse_robots(const std::string& file, std::string_view text);
 
-/// Where a gateway dials: wss://HOST[:PORT]/ROBOT.
+/// The address that a gateway dials: wss://HOST[:PORT]/ROBOT.
 struct Address {
   bool encrypted = true;  ///< wss, and not ws
   std::string host;
   int port = 443;
   std::string robot;
 };
-/// std::invalid_argument that says what is expected. ws:// is for this machine alone.
+/// std::invalid_argument gives the expected form. ws:// is for this machine alone.
 Address parse_address(std::string_view text);
 
-/// The path by which a gateway comes: /dial/ROBOT or /carry/ROBOT/TICKET.
+/// The path of a gateway's connection: /dial/ROBOT or /carry/ROBOT/TICKET.
 struct Path {
   std::string robot;
   std::string ticket;  ///< empty: it dials in
 };
-/// Nothing where it is neither.
+/// Nothing for any other path.
 std::optional<Path> parse_path(std::string_view text);
 
-/// Brings those who come to a robot's port together with the connections that its gateway opens for
-/// them. Pure. Times [s] may begin anywhere.
+/// Joins visitors of a robot's port with the connections that its gateway opens for them. Pure.
+/// Times [s] of any origin.
 class Rendezvous {
  public:
   using Visitor = std::uint64_t;
@@ -47,24 +47,23 @@ class Rendezvous {
   explicit Rendezvous(std::vector<Robot> robots) : robots_(std::move(robots)) {}
   const std::vector<Robot>& robots() const { return robots_; }
 
-  /// True where this is the token of that robot. Takes as long for a wrong one.
+  /// True for the token of that robot. A wrong one takes as long.
   bool knows(std::string_view robot, std::string_view token) const;
 
-  /// Somebody has come from an address of the network to the port of a robot, and is fetched by
-  /// this ticket. False: too many are there.
+  /// A visitor has come from a network address to the port of a robot, to be fetched by this
+  /// ticket. False: too many are there.
   bool arrive(const std::string& robot, const std::string& from, Visitor visitor,
               const std::string& ticket, double now);
-  /// The gateway of that robot fetches the visitor of a ticket. Nothing: nobody of that ticket
-  /// waits.
+  /// The gateway of that robot fetches the visitor of a ticket. Nothing: no such visitor waits.
   std::optional<Visitor> fetch(const std::string& robot, const std::string& ticket);
   /// The visitor has left, waiting or fetched.
   void leave(Visitor visitor);
-  /// Those who have waited too long: they have left now.
+  /// Visitors that have waited too long: they are removed.
   std::vector<Visitor> expire(double now);
 
   static constexpr std::size_t kMost = 64;         ///< visitors of a robot
-  static constexpr std::size_t kMostFromOne = 24;  ///< of these from one address
-  static constexpr double kPatience = 10.0;        ///< [s] that a visitor waits to be fetched
+  static constexpr std::size_t kMostFromOne = 24;  ///< of these from one network address
+  static constexpr double kPatience = 10.0;        ///< [s] longest wait of a visitor
 
  private:
   struct Guest {

@@ -6,14 +6,13 @@
 
 namespace saphira::situation {
 
-/// A sentence that a person can take in at once is shorter than this.
+/// The length limit of an easily read sentence.
 inline constexpr std::size_t kLongestSentence = 200;
 
-/// Puts parts together, in their order. Where that would be too long, the less important ones are
-/// said shorter, and then left out.
+/// Joins parts, in order. To fit the limit, less important parts are shortened, and then left out.
 class Sentence {
  public:
-  /// `rank` 0 is never left out; `brief` says the same in fewer words (empty: there are none).
+  /// `rank` 0 is never left out; `brief` is a shorter form (empty: none).
   void add(int rank, std::string text, std::string brief = {});
   /// Ends with a period.
   std::string text() const;
@@ -27,7 +26,7 @@ class Sentence {
   std::vector<Part> parts_;
 };
 
-/// The text, cut to so many characters at a word, with "..." where something is missing.
+/// The text, cut to that many characters at a word, with "..." for the missing part.
 std::string cut(const std::string& text, std::size_t most);
 
 }  // namespace saphira::situation

@@ -9,7 +9,7 @@
 
 namespace saphira::situation {
 
-/// Something that is so, and what makes it so.
+/// A fact, and its causes.
 struct Cause {
   std::string kind;  ///< wheels, grant, guard, speed, turn, behavior, rule, intention, belief,
                      ///< goal, trouble
@@ -24,18 +24,19 @@ struct Explanation {
   Cause cause;
 };
 
-/// Why the robot's wheels do what they do: from the command back over grant, blend, behavior, rule
-/// and intention to the goal and who asked for it (the intention display's purpose, paper 3.5).
+/// The reasons for the motion of the robot's wheels: from the command back over grant, blend,
+/// behavior, rule and intention to the goal and its requester (the intention display's purpose,
+/// paper 3.5).
 Explanation why(const Situation& situation);
 
 enum class Wish { turn_left, turn_right, faster, slower };
-/// "turn left", "turn right", "faster", "slower"; nothing where it is none of these.
+/// "turn left", "turn right", "faster", "slower"; nothing for other words.
 std::optional<Wish> parse_wish(const std::vector<std::string>& words);
 
-/// Why it does not do that: who would have wanted it, and what spoke against it.
+/// The reasons against a motion: the behaviors that wanted it, and the obstacle to it.
 Explanation why_not(const Situation& situation, Wish wish);
 
-/// The sentence, and below it the tree.
+/// The sentence, with the tree below.
 std::string to_text(const Explanation& explanation);
 /// One JSON object on one line: epoch, cycle, sentence, tree {kind, text, because}.
 std::string to_json(const Explanation& explanation);

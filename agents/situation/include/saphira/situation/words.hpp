@@ -8,20 +8,19 @@
 
 namespace saphira::situation {
 
-/// Enumerators as people read them.
+/// Enumerators for people.
 const char* name_of(v1::ServiceState state);
 const char* name_of(v1::LogLevel level);
 const char* name_of(v1::Role role);
 const char* name_of(v1::GuardAction action);
 const char* name_of(v1::GoalState state);
 
-/// Stops that hold until a person releases them, with the command that does: an emergency stop and
-/// which program pressed it, or that autonomy waits to be handed the robot back. Empty where
-/// neither does.
+/// Stops that hold until a person releases them, with the command for that: an emergency stop and
+/// its source, or autonomy's wait for a hand-back. Empty without either.
 std::string latched(const v1::Grant& grant);
-/// One line: who holds the grant and why, what is latched, and what the guard did.
+/// One line: the driver and the reason, the latches, and the guard's action.
 std::string describe(const v1::Grant& grant);
-/// The goal as a person reads it: go_to(position=(3, 1) in odom).
+/// The goal for people: go_to(position=(3, 1) in odom).
 std::string describe(const v1::Goal& goal);
 
 /// True where the node stands for a behavior: a leaf of the tree.

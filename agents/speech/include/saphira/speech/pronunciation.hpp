@@ -8,7 +8,7 @@
 
 namespace saphira::speech {
 
-/// True where a word is a code such as EJ-231, that is spelled.
+/// True for a code such as EJ-231, which is spelled.
 bool is_code(const std::string& word);
 /// "e j two three one"
 std::string spelled(const std::string& word);
@@ -16,17 +16,17 @@ std::string spelled(const std::string& word);
 /// Phones of a word, such as "F L EY K IY", in those of the CMU dictionary.
 using Phones = std::vector<std::string>;
 
-/// How words sound: as a file says, else as the dictionary has them, else by flite's rules.
+/// The pronunciation of words: from a file, else from the dictionary, else by flite's rules.
 class Pronunciations {
  public:
-  /// Of one word in the dictionary: all of its pronunciations, or none.
+  /// All pronunciations of a word in the dictionary, or none.
   using Dictionary = std::function<Phones(const std::string& word)>;
 
-  /// `text`: lines such as "flakey F L EY K IY"; several for a word are all right, # begins a
+  /// `text`: lines such as "flakey F L EY K IY"; several for a word are allowed, # begins a
   /// comment. FileError with line and column.
   Pronunciations(std::string_view text, const std::string& file, Dictionary dictionary);
 
-  /// At least one, for a word of small letters as the grammar has it.
+  /// At least one, for a word in small letters as in the grammar.
   Phones of(const std::string& word) const;
 
  private:
@@ -36,7 +36,7 @@ class Pronunciations {
   std::map<std::string, Phones> own_;
 };
 
-/// All phones that there are.
+/// All phones.
 const std::vector<std::string>& phones();
 
 }  // namespace saphira::speech

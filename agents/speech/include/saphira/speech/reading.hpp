@@ -14,12 +14,12 @@ struct Passage {
   Sound sound;
 };
 
-/// A dialogue, "speaker: what is said" a line, read with a voice for each: the robot's is kal16,
-/// people have the other voices of flite in the order in which they speak first.
-/// std::invalid_argument that names the line where one has no speaker.
+/// A dialogue, "speaker: text" a line, read with a voice for each: the robot's is kal16, people
+/// have the other voices of flite in the order of their first lines. std::invalid_argument names a
+/// line without a speaker.
 std::vector<Passage> read_aloud(std::string_view dialogue, const std::string& robot = "flakey");
 
-/// All of it, with a pause after each.
+/// All passages, with a pause after each.
 Sound joined(const std::vector<Passage>& passages);
 
 }  // namespace saphira::speech

@@ -13,7 +13,7 @@ namespace saphira::speech {
 
 /// The result of recognizing an utterance.
 enum class Outcome {
-  command,     ///< all of it is in the grammar
+  command,     ///< the grammar accepts all of it
   addressed,   ///< it began with the keyword, and the rest is not understood
   not_for_it,  ///< no keyword
 };
@@ -21,15 +21,15 @@ const char* word(Outcome outcome);
 
 struct Heard {
   Outcome outcome = Outcome::not_for_it;
-  std::string text;  ///< as the grammar reads it: "flakey turn left"; of the addressed the keyword
+  std::string text;  ///< in the grammar's form: "flakey turn left"; for `addressed` the keyword
 };
 
 /// The result for a stretch of sound.
 struct Event {
   enum class Kind {
-    begins,  ///< somebody speaks
-    ends,    ///< has stopped: the moment for an "um"
-    heard,   ///< what was said
+    begins,  ///< speech has begun
+    ends,    ///< speech has stopped: the moment for an "um"
+    heard,   ///< the utterance
   };
   Kind kind = Kind::begins;
   Heard heard{};
@@ -38,41 +38,41 @@ struct Event {
 struct RecognizerSettings {
   std::string model = "/usr/share/pocketsphinx/model/en-us";  ///< folder of Debian's
                                                               ///< pocketsphinx-en-us
-  /// Natural logarithms of the likelihood of beginning, and of each phone of, what is in no
-  /// grammar: without the keyword and behind it. Lower: more is taken for a command.
+  /// Natural logarithms of the likelihood of beginning, and of each phone of, words outside of the
+  /// grammar: without the keyword and after it. Lower: more utterances count as commands.
   double without_keyword = -2.0;
   double behind_keyword = -7.0;
-  /// The same of something else where the keyword should be: "please follow me" is not far from
-  /// "flakey follow me".
+  /// The same for other words in place of the keyword: "please follow me" is not far from "flakey
+  /// follow me".
   double instead_of_keyword = -5.0;
   double each_phone = -1.0;
   double least_voice = 3.0;  ///< [1] of the energy of the noise: -vad_threshold
   int pause = 40;            ///< [10 ms] of silence that ends an utterance
-  /// [s] after the keyword alone in which what follows belongs to it: "Flakey, ... turn left".
+  /// [s] after the keyword alone in which further words belong to it: "Flakey, ... turn left".
   double attention = 1.5;
 };
 
-/// Speech to words, by pocketsphinx with a grammar between two loops of phones: what is not in the
-/// grammar goes into one of these, so that it is not bent into a command (measured before: of 175
+/// Speech to words, by pocketsphinx with a grammar between two loops of phones. Words outside of
+/// the grammar match these loops, so that they do not become a command (measured before: of 175
 /// utterances without the keyword, the grammar alone took 115 for commands). Not thread-safe.
 class Recognizer {
  public:
-  /// `pronunciations`: the text of a file, see Pronunciations. std::runtime_error where the model
-  /// cannot be read.
+  /// `pronunciations`: the text of a file, see Pronunciations. std::runtime_error for an unreadable
+  /// model.
   Recognizer(RecognizerSettings settings, std::string_view pronunciations, const std::string& file);
   ~Recognizer();
   Recognizer(const Recognizer&) = delete;
   Recognizer& operator=(const Recognizer&) = delete;
 
-  /// From the next utterance on.
+  /// Used from the next utterance on.
   void listen_for(const agent_interface::WordGraph& graph);
 
   /// The next piece of one stream of sound.
   std::vector<Event> hear(const Sound& sound);
-  /// The stream is at its end, or interrupted: what was said up to here.
+  /// The stream has ended, or is interrupted: returns the speech so far.
   std::vector<Event> end();
 
-  /// Somebody is speaking, or was addressing the robot a moment ago.
+  /// True while a person speaks, or has addressed the robot a moment ago.
   bool in_speech() const;
 
  private:

@@ -8,14 +8,14 @@
 
 namespace saphira::speech {
 
-/// A text as it is spoken: "EJ-231" becomes "e j two three one".
+/// The spoken form of a text: "EJ-231" becomes "e j two three one".
 std::string spoken(const std::string& text);
 
 /// Text to speech: flite in this process ("slt", "rms", "awb", "kal16"), or espeak-ng as a program
 /// ("espeak:en-us", "espeak:en-gb+f3").
 class Voice {
  public:
-  /// std::invalid_argument that names the voices there are.
+  /// std::invalid_argument lists the voices.
   explicit Voice(const std::string& name);
   ~Voice();
   Voice(Voice&&) noexcept;

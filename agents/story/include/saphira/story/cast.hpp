@@ -10,11 +10,11 @@
 
 namespace saphira::story {
 
-/// People of a story (config/people): where each is, what they have and know, and what they say to
-/// the robot. They answer what the robot asks people (config/activities/people.act).
+/// People of a story (config/people): their places, their belongings and knowledge, and their lines
+/// to the robot. They answer the robot's questions to people (config/activities/people.act).
 class Cast {
  public:
-  /// Where the robot has to stand.
+  /// A place where the robot has to stand.
   struct Spot {
     std::string place;      ///< of the map: in it, or before its door
     double distance = 0.0;  ///< [m] from the door, at most
@@ -22,25 +22,25 @@ class Cast {
   struct Line {
     std::string speaker;
     std::string text;
-    std::optional<Spot> near;  ///< said when the robot stands there, whatever it is still about
+    std::optional<Spot> near;  ///< said when the robot stands there, whatever its present task
   };
 
   /// FileError where the text is wrong.
   Cast(std::string_view text, const std::string& file);
 
-  /// The sentences that people say to the robot of themselves, in order.
+  /// The sentences that people say to the robot unasked, in order.
   const std::vector<Line>& lines() const { return lines_; }
-  /// How the story has to end: with what the robot says last, from its first letter on.
+  /// The required end of the story: the beginning of the robot's last utterance.
   bool ends_well(const std::string& last) const { return last.starts_with(end_); }
   const std::string& end() const { return end_; }
-  /// The deployment that the robot runs by.
+  /// The robot's deployment.
   const std::string& deployment() const { return deployment_; }
-  /// A file for the simulator, with whom of them sensors can see; empty: nobody.
+  /// A file for the simulator, with the people that sensors can see; empty: none.
   const std::string& things() const { return things_; }
-  /// The answer of somebody at that place of the map to a sentence of the robot; nothing: nobody
-  /// hears it, or nobody has an answer. What is handed over changes hands.
+  /// The answer of a person at that place of the map to a sentence of the robot; nothing: no
+  /// hearer, or no answer. An object that is handed over changes its owner.
   std::optional<Line> answer(const std::string& said, const std::string& place);
-  /// True where somebody has it.
+  /// True where that person has it.
   bool has(const std::string& person, const std::string& object) const;
 
  private:

@@ -26,7 +26,7 @@ using WriterId = std::array<std::uint8_t, 16>;
 struct Command {
   Role role = Role::none;
   WriterId writer{};
-  std::string source;        ///< who drives, for people
+  std::string source;        ///< the driver, for people
   std::uint64_t epoch = 0;   ///< of the robot state that it answers
   std::uint64_t cycle = 0;   ///< the same; 0 from a writer without cycles
   std::uint64_t number = 0;  ///< counts the writer's commands
@@ -37,15 +37,15 @@ struct Command {
 };
 
 struct Settings {
-  /// [s] A command drives for so long after it was received. Those that follow only count where
-  /// they answer newer cycles: a lease is what tells a link that is cut, or a driver that hangs,
-  /// from one that is slow, so it does not depend on how old the commands are.
+  /// [s] A command drives for this long after its receipt. Later commands extend the lease only
+  /// where they answer newer cycles. The lease separates a cut link, or a hanging driver, from a
+  /// slow one, so it does not depend on the age of the commands.
   double lease = 0.3;
-  /// [s] After a person has driven, autonomy drives again without being handed the robot back when
-  /// the person's program has said without a pause for so long that it does not drive.
+  /// [s] After a person has driven, autonomy drives again without a hand-back once the person's
+  /// program has reported without a pause for this long that it does not drive.
   double quiet = std::numeric_limits<double>::infinity();
-  double oldest = kOldest;  ///< [s] a command that answers an older cycle than this is refused
-  double stop_hold = 2.0;   ///< [s] a person's stop keeps the role from other persons for so long
+  double oldest = kOldest;  ///< [s] a command that answers an older cycle is refused
+  double stop_hold = 2.0;   ///< [s] a person's stop keeps the role from other persons for this long
 };
 
 struct Refusal {
@@ -59,10 +59,10 @@ struct Grant {
   Role role = Role::none;  ///< none: nobody drives, the robot is to be stopped
   WriterId writer{};
   std::string source;
-  std::string reason;       ///< why this one, or why nobody
+  std::string reason;       ///< why this driver, or why none
   double expires_in = 0.0;  ///< [s] until the lease of the newest command ends
-  /// [s] Of the newest command: since the cycle that it answers; of one without cycles, since it
-  /// was received.
+  /// [s] Of the newest command: the time since the cycle that it answers, or since its receipt for
+  /// a writer without cycles.
   double command_age = 0.0;
   bool estopped = false;             ///< an emergency stop is latched
   std::string estop_source;          ///< which program pressed it
@@ -70,47 +70,48 @@ struct Grant {
   Stamp answers;             ///< the robot state that the newest command answers; cycle 0: none
   std::uint64_t number = 0;  ///< of that command
 
-  /// True where the same one drives (a change means: stop first, then obey).
+  /// True where the same writer drives. A change means: stop first, then obey.
   bool same_driver(const Grant& other) const {
     return role == other.role && writer == other.writer;
   }
 };
 
 /// Decides who drives the robot: the strongest role whose newest command is younger than its lease.
-/// It keeps what was offered and knows no clock. Refuses, with a reason: a repeated number, another
-/// epoch, an answer to an old cycle, a second writer in a role that is held.
+/// Keeps the offered commands and knows no clock. Refuses, with a reason: a repeated number,
+/// another epoch, an answer to an old cycle, a second writer in a role that is held.
 ///
 /// Anybody's stop stops: zero speed and no turn is obeyed from every person, and takes the role
-/// from the one who drives, who has to let go before driving again. It keeps the role for
+/// from the present driver, who has to let go before driving again. The stop keeps the role for
 /// stop_hold.
 ///
-/// Two things are latched, over connections and, with latches() and restore(), over a restart:
-/// - An emergency stop: nobody drives until it is reset. What asked to drive before the reset does
-///   not drive after it: a person lets go first; autonomy must have come to rest by itself, as it
-///   does when its goals end, or it waits to be handed the robot back.
-/// - After a person has driven, autonomy waits to be handed the robot back.
+/// Two states are latched, over connections and, with latches() and restore(), over a restart:
+/// - An emergency stop: nobody drives until it is reset. A driver that was active before the reset
+///   does not drive after it: a person has to let go first. Autonomy must have come to rest by
+///   itself, as it does when its goals end; otherwise it waits for a hand-back.
+/// - After a person has driven, autonomy waits for a hand-back.
 class Arbiter {
  public:
   explicit Arbiter(Settings settings = {}) : settings_(settings) {}
 
   const Settings& settings() const { return settings_; }
 
-  /// A connection to a robot began (or ended: epoch 0). Nobody holds a grant from before.
+  /// A connection to a robot began (or ended: epoch 0). Earlier grants end.
   void connect(std::uint64_t epoch);
-  /// The caller was deaf for a while (stopped, hung, without packets): nobody holds a grant from
-  /// before. What is received before `until`, or answers a cycle up to `cycle`, may have waited in
-  /// a queue and is refused, with `why` as the reason [empty: the usual one].
+  /// The caller was deaf for a while (stopped, hung, without packets): earlier grants end. Commands
+  /// received before `until`, or answering a cycle up to `cycle`, may have waited in a queue and
+  /// are refused, with `why` as the reason [empty: the usual one].
   void forget(std::uint64_t cycle, double until, std::string why = {});
 
   /// Takes a command as it comes, at robot cycle `cycle`. True when it was accepted: it is then the
-  /// newest of its role. (Accepted does not mean that it drives: see decide.)
+  /// newest of its role. An accepted command need not drive: see decide().
   bool offer(const Command& command, std::uint64_t cycle);
   /// A writer is gone from the bus: as if it had released its role. An emergency stop stays.
   void lost(Role role, const WriterId& writer, double now);
-  /// Refuses a command for a reason that the caller found (a value that is no number).
+  /// Refuses a command for a reason that the caller found (such as NaN).
   void refuse(Role role, const std::string& source, const std::string& reason);
 
-  /// Releases the emergency stop. Returns why not, in words; empty where it is released.
+  /// Releases the emergency stop. Returns the reason where it may not be released, in words; empty
+  /// where it is released.
   std::string reset(const std::string& source, double now);
   const Latches& latches() const { return latches_; }
   void restore(const Latches& latches) { latches_ = latches; }
@@ -124,11 +125,11 @@ class Arbiter {
   std::uint64_t refused_count() const { return refused_count_; }
 
  private:
-  /// The one who plays a role, by its newest accepted command.
+  /// The writer in a role, by its newest accepted command.
   struct Player {
     bool held = false;
     Command newest;
-    double moved_on = 0.0;  ///< [s] when one was received that answers a newer cycle than before
+    double moved_on = 0.0;  ///< [s] receipt of the newest command that answered a newer cycle
   };
 
   const Player& player(Role role) const { return players_[static_cast<std::size_t>(role)]; }
@@ -153,15 +154,15 @@ class Arbiter {
   std::array<Player, 5> players_;
   struct Numbers {
     std::uint64_t newest = 0;
-    std::uint64_t used = 0;  ///< which offer that was
-    // Active commands without a pause, all of them stops or none.
+    std::uint64_t used = 0;  ///< the number of that offer
+    // Active commands without a pause: all of them stops, or none.
     bool stops = false;
     double began = 0.0;         ///< [s]
     double newest_at = -1e300;  ///< [s]
   };
 
-  /// Newest number by role and writer. Kept over connections, so that an old command that is sent
-  /// again never drives.
+  /// Newest number by role and writer. Kept over connections, so that a repeated old command never
+  /// drives.
   std::map<std::pair<Role, WriterId>, Numbers> numbers_;
   std::uint64_t offers_ = 0;
 
@@ -173,11 +174,11 @@ class Arbiter {
   std::map<WriterId, Press> pressed_;  ///< emergency stops that have not been let go
   bool let_go_first_ = false;          ///< the person drove when the emergency stop was reset
   WriterId person_{};                  ///< the person's program that drove last
-  double quiet_since_ = 0.0;           ///< it says since then that it does not drive
-  double quiet_heard_ = -1e300;        ///< when it said so last
-  WriterId stopper_{};                 ///< the person who has stopped another one last
+  double quiet_since_ = 0.0;           ///< since then it reports that it does not drive
+  double quiet_heard_ = -1e300;        ///< its newest such report
+  WriterId stopper_{};                 ///< the person who last stopped another one
   std::string stopper_name_;
-  double stopped_at_ = -1e300;  ///< [s] when
+  double stopped_at_ = -1e300;  ///< [s] time of that stop
 
   std::vector<Refusal> refused_;
   std::uint64_t refused_count_ = 0;

@@ -16,23 +16,22 @@ struct Reading {
   std::optional<double> range;  ///< [m] of the echo; none: silence
 };
 
-/// Echoes of the sonars round the robot. An echo comes from somewhere on an arc across its
-/// sonar's axis, and what enters a gap between two beams is still there: the memory is that of the
-/// behaviors (saphira/lps), and forgets more slowly.
+/// Echoes of the sonars round the robot. An echo comes from somewhere on an arc across its sonar's
+/// axis, and an object that enters the gap between two beams is still there. The memory is that of
+/// the behaviors (saphira/lps), with slower forgetting.
 class EchoMap {
  public:
   /// Echoes from farther away than `range` [m] do not matter.
   explicit EchoMap(double range = 2.5);
 
-  /// A packet came, with these new readings in firing order, and the robot is here now.
+  /// A packet came, with these new readings in firing order and this pose of the robot.
   void update(std::uint64_t cycle, const Pose& robot_in_odom, const std::vector<Reading>& readings);
   void clear();
 
-  /// Where something is, in the robot's frame as of the last update.
+  /// Positions of the remembered echoes, in the robot's frame as of the last update.
   const std::vector<Vec2>& spots() const { return memory_.points(); }
   /// True where some sonar within 60 degrees of straight ahead (or back) has fired in the last
-  /// second (a Pioneer's sonars fire every third cycle). At the beginning they have not had their
-  /// turn.
+  /// second (a Pioneer's sonars fire every third cycle). At first no sonar has had its turn.
   bool sees(std::uint64_t cycle, bool ahead) const;
 
  private:

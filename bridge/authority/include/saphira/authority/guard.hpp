@@ -13,36 +13,36 @@ struct Body {
   double max_velocity = 0.0;           ///< [m/s]
   double max_rotation_velocity = 0.0;  ///< [rad/s]
   double deceleration = 0.0;           ///< [m/s2] of a stop
-  /// [s] until a stop takes effect, from an echo on: half a round of the sonars, link, server.
+  /// [s] from an echo to the effect of a stop: half a round of the sonars, link, server.
   double reaction = 0.3;
   double sonar_range = 5.0;  ///< [m] no echo beyond
   bool sees_behind = false;  ///< some sonar within 60 degrees of straight back fires
   bool sees_ahead = true;    ///< the same of straight ahead
 };
 
-/// The guard's limits for one role. They come from what a person is: what a sonar hears of a person
-/// is a shin, and the person reaches some 0.2 m farther than that, ahead and aside.
+/// The guard's limits for one role. They come from the shape of a person: a sonar hears a shin, and
+/// the person reaches some 0.2 m farther than the shin, ahead and aside.
 struct GuardSettings {
   bool enabled = true;
   double max_velocity = 0.0;           ///< [m/s]; 0: the robot's own
-  double max_blind_velocity = 0.15;    ///< [m/s] to where no sonar sees; 0: the robot's own
+  double max_blind_velocity = 0.15;    ///< [m/s] where no sonar looks; 0: the robot's own
   double max_rotation_velocity = 0.0;  ///< [rad/s]; 0: the robot's own
-  /// [m] The way is never taken to be free farther than this, whatever was not heard: a standing
-  /// person is heard dependably up to 1.5 m.
+  /// [m] The way counts as free no farther than this, even without echoes: a standing person is
+  /// heard dependably up to 1.5 m.
   double dependable_range = 1.5;
-  double margin = 0.25;       ///< [m] the hull stops so far from what is ahead
-  double side_margin = 0.08;  ///< [m] ahead is what is in the hull's path and so far beside it...
-  /// [m] A person may reach so far beyond the shin that was heard: nearer than this to anything
-  /// the hull does not approach it faster than...
+  double margin = 0.25;       ///< [m] distance at which the hull stops before an obstacle ahead
+  double side_margin = 0.08;  ///< [m] width beside the hull's path that counts as ahead
+  /// [m] A person may reach this far beyond the shin that was heard. Nearer than this the hull
+  /// approaches at `touch_velocity` at most.
   double person = 0.15;
-  double touch_velocity = 0.035;  ///< [m/s] ...this
-  /// [m/s] What stands ahead may come towards the robot meanwhile, so that it is slow in time...
+  double touch_velocity = 0.035;  ///< [m/s]
+  /// [m/s] An obstacle ahead may approach at this speed, so the robot slows early...
   double closing_velocity = 0.4;
-  double careful_velocity = 0.05;  ///< [m/s] ...down to this
-  /// [m] What stands this near beside the path may step into it: it is not passed faster than...
+  double careful_velocity = 0.05;  ///< [m/s] ...down to this speed
+  /// [m] A person this near beside the path may step into it: passed at `beside_velocity` at most.
   double beside = 0.4;
-  double beside_velocity = 0.15;       ///< [m/s] ...this
-  double max_contact_velocity = 0.15;  ///< [m/s] of a driver who means contact; 0: never
+  double beside_velocity = 0.15;       ///< [m/s]
+  double max_contact_velocity = 0.15;  ///< [m/s] for a driver who wants contact; 0: never
   double slow_distance = 0.0;          ///< [m] below which slow_velocity holds; 0: none
   double slow_velocity = 0.15;         ///< [m/s]
 };
@@ -57,21 +57,21 @@ struct Guarded {
 };
 
 /// Free distance [m] of the hull along its straight path (forward, or backward) until the first of
-/// `points` (robot frame) comes within the hull and its side margin; infinity where none does.
+/// `points` (robot frame) comes within the hull and its side margin; infinity: none does.
 double free_distance(const std::vector<Vec2>& points, double radius, double side_margin,
                      bool forward);
 
-/// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m], where
-/// a stop takes effect after `reaction` [s] with `deceleration` [m/s2], and the thing comes towards
-/// it at `closing` [m/s] until then.
+/// The greatest speed [m/s] from which the robot is down to `end` [m/s] after `distance` [m]. A
+/// stop takes effect after `reaction` [s] with `deceleration` [m/s2], and the obstacle approaches
+/// at `closing` [m/s] until then.
 double approach_speed(double distance, double end, double reaction, double deceleration,
                       double closing = 0.0);
 
-/// Cuts a wanted motion to what is safe now, for a robot that turns at `turning` [rad/s] meanwhile.
-/// `points` is what was heard, in the robot's frame. Pure. Not for the emergency stop: that only
-/// stops. Rotation on the spot is never stopped: the hull is round, and turning is the way out.
-/// `contact_speed`: the driver means to touch what is ahead, forward and at no more than this
-/// [m/s]; 0: it does not.
+/// Limits a wanted motion to a safe one, for a robot that turns at `turning` [rad/s] meanwhile.
+/// `points` are the echoes, in the robot's frame. Pure. Not for the emergency stop, which stops
+/// anyway. Rotation on the spot is never stopped: the hull is round, and turning is the way out.
+/// `contact_speed`: the driver wants to touch an obstacle ahead, forward and at no more than this
+/// [m/s]; 0: no contact is wanted.
 Guarded guard(const GuardSettings& settings, const Body& body, const std::vector<Vec2>& points,
               double velocity, double rotation_velocity, double turning = 0.0,
               double contact_speed = 0.0);

@@ -21,8 +21,7 @@ struct Latches {
 
 /// One line of text. Empty where nothing is latched.
 std::string to_text(const Latches& latches);
-/// The same back. A text that cannot be read means an emergency stop: nobody can tell that there
-/// was none.
+/// Reads to_text(). An unreadable text counts as an emergency stop, since there may have been one.
 Latches latches_from_text(const std::string& text);
 
 }  // namespace saphira::authority

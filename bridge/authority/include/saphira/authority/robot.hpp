@@ -12,7 +12,7 @@ namespace saphira::authority {
 /// The guard's view of a robot.
 Body body_of(const protocol::RobotParameters& parameters);
 
-/// The readings of a packet, those of sonars that the parameters place.
+/// The readings of a packet, without sonars that the parameters do not place.
 std::vector<Reading> readings_of(const std::vector<protocol::Sonar>& sonars,
                                  const protocol::RobotParameters& parameters);
 

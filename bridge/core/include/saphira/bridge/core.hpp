@@ -26,23 +26,23 @@ struct CoreSettings {
   double lease = 0.3;      ///< [s] in lockstep cycles x 0.1
   double quiet = std::numeric_limits<double>::infinity();  ///< [s] authority::Settings
   bool guard = true;
-  double contact_speed = 0.15;  ///< [m/s] at the most where a driver means contact; 0: never
-  bool keeps_latches = false;   ///< what is latched outlives a restart
+  double contact_speed = 0.15;  ///< [m/s] at most, for a driver who wants contact; 0: never
+  bool keeps_latches = false;   ///< the latches outlive a restart
 };
 
-/// The bridge without bus, clock, files and sockets. Its decisions: the session with the robot, too
-/// old links and commands, pauses of the bridge's own loop, the program that drives, packets to the
-/// robot, the status. The caller passes each event with its time, in seconds of a steady clock, and
+/// The bridge without bus, clock, files and sockets. It decides on: the session with the robot, old
+/// links and commands, pauses of the bridge's own loop, the driving program, packets to the robot,
+/// the status. The caller passes each event with its time, in seconds of a steady clock, and
 /// carries out the outputs.
 ///
-/// After each call the caller carries out what take() returns, in that order, and then calls work()
-/// in the same way until it returns false. A cycle is two such pieces: first its state, so that the
-/// services can begin; then everything else.
+/// After each call the caller carries out the outputs of take(), in that order, and then calls
+/// work() in the same way until it returns false. A cycle is two such pieces: first its state, so
+/// that the services can begin; then everything else.
 class Core {
  public:
   explicit Core(const CoreSettings& settings);
 
-  /// The outputs since the last call, in the order in which they are to be carried out.
+  /// The outputs since the last call, in the order of execution.
   std::vector<Output> take() { return std::exchange(out_, {}); }
 
   // ---- Before the start.
@@ -51,16 +51,16 @@ class Core {
   void restore(const authority::Latches& latches);
   /// The odometry of an earlier run.
   void remember(const reflector::OdometryMemory& memory);
-  /// The robot is not asked before this time [s].
+  /// The robot is not contacted before this time [s].
   void hold_off(double until) { hold_off_ = until; }
 
   // ---- The robot's side.
 
   /// True where the link may be opened.
   bool may_connect(double now) const { return now >= hold_off_; }
-  /// The link is not open (any more).
+  /// The link is not open, or not any more.
   void link_closed(const std::string& why, double now);
-  /// Bytes came. work() says what they mean.
+  /// Bytes came. work() reads them.
   void received(protocol::ByteView bytes, double now);
   /// Room on the line for requests to the devices [bytes].
   void room(std::size_t bytes) { room_ = bytes; }
@@ -71,7 +71,7 @@ class Core {
   void open(const protocol::RobotParameters& parameters, std::uint64_t epoch, double now);
   /// The robot that Identified named cannot be served.
   void refuse_robot(const std::string& why, double now);
-  /// When the packets before the last Answered had been sent.
+  /// The time at which the packets before the last Answered were sent.
   void answered(double now);
 
   // ---- The bus's side.
@@ -79,33 +79,34 @@ class Core {
   void command(const DriveCommand& command, double now);
   /// A writer of motor commands is gone.
   void writer_lost(authority::Role role, const authority::WriterId& writer, double now);
-  /// Somebody releases the emergency stop.
+  /// Releases the emergency stop, at the request of `source`.
   Answer reset_estop(const std::string& source, double now);
   /// Lockstep: the simulator may step while its cycle is less than this.
   void permit(std::uint64_t until_cycle) { permit_ = until_cycle; }
-  /// All of the above that had come was told: decides, and answers.
+  /// All events that had come were passed on: decides, and answers.
   void answer(double now);
-  /// Lockstep: answers the cycle when the behaviors did, and lets the simulator step when it may.
+  /// Lockstep: answers the cycle when the behaviors have answered, and lets the simulator step when
+  /// it may.
   void step(double now);
 
   // ---- Time.
 
-  /// The loop of the caller came round. Where it did not for too long, all that waited meanwhile is
+  /// The caller's loop came round. After too long a pause, all inputs that waited meanwhile are
   /// old.
   void loop(double now);
-  /// Looks at everything that depends on time.
+  /// Handles everything that depends on time.
   void tick(double now, const Surroundings& around);
-  /// When to call tick again, at the latest [s].
+  /// The latest time for the next tick [s].
   double due(double now) const;
-  /// Ends: the robot is stopped, and let go.
+  /// Ends: stops the robot and releases it.
   void end(double now);
 
-  // ---- What holds now.
+  // ---- The present state.
 
   /// Epoch 0: no session.
   const Stamp& stamp() const { return session_.stamp; }
   bool in_session() const { return session_.stamp.epoch != 0; }
-  /// The driver's answer to the newest packet is awaited: it is a fraction of a millisecond away.
+  /// The driver's answer to the newest packet is expected within a fraction of a millisecond.
   bool awaits_answer() const { return flush_at_ > 0.0; }
   const authority::Grant& grant() const { return grant_; }
   const authority::Latches& latches() const { return arbiter_.latches(); }
@@ -114,22 +115,22 @@ class Core {
   reflector::Reflector& reflector() { return reflector_; }
 
  private:
-  /// All that is known of one session with the robot, and forgotten with it.
+  /// The state of one session with the robot, forgotten at its end.
   struct Session {
     Stamp stamp;
     authority::Body body;
     authority::EchoMap echoes;
     Doubts doubts;
-    std::uint64_t bad_before = 0;  ///< of the parser, when it began
-    double delay = 0.0;            ///< [s] of a slow line, there and back; 0: it is not slow
-    double delay_asked = 0.0;      ///< [s] when it was measured again; 0: no answer is awaited
+    std::uint64_t bad_before = 0;  ///< the parser's count at the start of the session
+    double delay = 0.0;            ///< [s] round trip of a slow line; 0: the line is not slow
+    double delay_asked = 0.0;      ///< [s] time of the newest measurement; 0: no answer is awaited
     double last_packet = 0.0;      ///< [s]
-    double last_heard = 0.0;       ///< [s] an information packet, though it could not be true
-    bool silent = false;           ///< the link: nobody drives what nobody sees
-    bool configured = false;       ///< it said how it is set
+    double last_heard = 0.0;       ///< [s] an information packet, also an impossible one
+    bool silent = false;           ///< the link: nobody may drive unseen
+    bool configured = false;       ///< it reported its configuration
     bool moved = false;            ///< it was told to move since the newest packet
-    bool unheard = false;          ///< it was not, again and again: it is to stand
-    std::optional<std::uint64_t> odom_before;  ///< a cycle has begun, and is to be gone on with
+    bool unheard = false;          ///< it was not heard in motion, repeatedly: it has to stand
+    std::optional<std::uint64_t> odom_before;  ///< a cycle has begun, and is to be continued
     bool reacted = true;                       ///< the newest packet was answered
     bool answered = false;                     ///< lockstep: the behaviors answered this cycle
     bool stepping = false;                     ///< lockstep: a STEP is under way
@@ -139,7 +140,7 @@ class Core {
   struct Driver {
     reflector::Motion motion;
     bool follows_cycles = false;  ///< answers each packet
-    double contact_speed = 0.0;   ///< [m/s] contact is meant
+    double contact_speed = 0.0;   ///< [m/s] for wanted contact
   };
   Driver& driver(authority::Role role) { return drivers_[static_cast<std::size_t>(role)]; }
 
@@ -196,25 +197,25 @@ class Core {
   std::optional<reflector::OdometryMemory> memory_;
   reflector::Slack slack_;
   Line line_;
-  double own_deceleration_ = 0.0;  ///< [m/s2] that its parameter file names
+  double own_deceleration_ = 0.0;  ///< [m/s2] from its parameter file
   std::string robot_trouble_;      ///< why a connected robot is not served
   std::uint64_t permit_ = 0;       ///< lockstep
-  authority::Latches kept_;        ///< as they were told last
+  authority::Latches kept_;        ///< as they were put out last
 
-  // The decision of now.
+  // The present decision.
   authority::Grant grant_;
   Told told_;
   authority::Guarded guarded_;
   bool grant_changed_ = false;
-  bool driver_spoke_ = false;  ///< the one who drives, since the last answer
-  double expires_at_ = 0.0;    ///< [s] the lease of the one who drives
-  double flush_at_ = 0.0;      ///< [s] what is due is sent then without the driver's answer; 0: no
+  bool driver_spoke_ = false;  ///< the present driver, since the last answer
+  double expires_at_ = 0.0;    ///< [s] end of the present driver's lease
+  double flush_at_ = 0.0;      ///< [s] time to send without the driver's answer; 0: none
 
   std::size_t room_ = SIZE_MAX;
   std::optional<double> last_loop_;  ///< [s]
   double last_bytes_ = 0.0;          ///< [s]
-  double stale_until_ = 0.0;         ///< [s] what comes before waited during a gap
-  double hold_off_ = 0.0;            ///< [s] the robot is not asked before
+  double stale_until_ = 0.0;         ///< [s] inputs before this time waited during a gap
+  double hold_off_ = 0.0;            ///< [s] the robot is not contacted before this time
 
   // The status.
   bool keeper_alive_ = true;

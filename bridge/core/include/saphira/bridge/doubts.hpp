@@ -8,7 +8,7 @@
 
 namespace saphira::bridge {
 
-/// Keeps what the robot said that cannot be true, for the counter, the status and the log.
+/// Keeps the robot's impossible values, for the counter, the status and the log.
 class Doubts {
  public:
   /// For a new connection.
@@ -16,9 +16,9 @@ class Doubts {
   void add(const protocol::Impossible& impossible, double now);
 
   std::uint64_t count() const { return count_; }
-  /// The newest doubt, of the last seconds; empty: none.
+  /// The newest doubt of the last seconds; empty: none.
   std::string newest(double now) const;
-  /// Once for what is new, and not more often than a person reads.
+  /// New doubts, each once, and no more often than a person can read.
   std::optional<std::string> take_words(double now);
 
  private:

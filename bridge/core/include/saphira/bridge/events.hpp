@@ -17,21 +17,20 @@
 
 namespace saphira::bridge {
 
-// ---- What the core is told.
+// ---- Inputs of the core.
 
 /// A motor command, as it came from the bus.
 struct DriveCommand {
   authority::Command command;  ///< without the time: the core sets it
   reflector::Motion motion;    ///< without the driver: the core sets it
-  double contact_speed = 0.0;  ///< [m/s] contact is meant; 0: it is not
-  std::string wrong;           ///< what could not be converted; empty: nothing
+  double contact_speed = 0.0;  ///< [m/s] for wanted contact; 0: none
+  std::string wrong;           ///< the parts that could not be converted; empty: none
 };
 
-/// The trouble with the numbers of a motor command; empty where nothing is. Any program may write
-/// one.
+/// The error in the numbers of a motor command; empty: none. Any program may write such a command.
 std::string trouble(const reflector::Motion& motion, double contact_speed);
 
-/// A robot in words, by what it says of itself.
+/// A robot in words, from its own identity strings.
 std::string name_of(const protocol::RobotIdentity& robot);
 
 /// The surroundings that the shell sees.
@@ -39,27 +38,28 @@ struct Surroundings {
   bool link_open = false;
   std::string link_trouble;  ///< why it is not open
   std::string address;       ///< of the robot, for people
-  bool serial = false;       ///< the line is the same after it was lost, and so is the session
-  /// Another bridge that has a robot of this name, in words; empty: there is none.
+  bool serial = false;       ///< the line is the same after a loss, and so is the session
+  /// Another bridge with a robot of this name, in words; empty: none.
   std::string namesake;
   bool has_keeper = false;
   bool keeper_alive = false;
   int keeper_restarts = 0;
 };
 
-// ---- What the core wants done. The order counts.
+// ---- Outputs of the core. The order counts.
 
 /// Bytes to the robot: one or more whole packets.
 struct Send {
   protocol::Bytes bytes;
 };
-/// The newest packet was answered by what was sent just now: Core::answered is to be told the time.
+/// The newest packet was answered by the outputs so far. The caller passes the time to
+/// Core::answered.
 struct Answered {};
-/// A robot says what it is: Core::open or Core::refuse_robot is to be called.
+/// A robot has identified itself. The caller calls Core::open or Core::refuse_robot.
 struct Identified {
   protocol::RobotIdentity robot;
 };
-/// A session begins: the robot is to be described to the bus.
+/// A session begins: the caller describes the robot on the bus.
 struct SessionBegan {
   Stamp stamp;
   protocol::RobotIdentity robot;
@@ -75,13 +75,13 @@ struct Told {
   reflector::Setpoints setpoints;
   double distance_left = 0.0;  ///< [m] of a position
 };
-/// Any packet but an information packet, for devices and cameras.
+/// Any packet except an information packet, for devices and cameras.
 struct OtherPacket {
   protocol::ServerPacket packet;
   std::uint8_t type = 0;
   Stamp stamp;
 };
-/// The devices may have something new to tell.
+/// The devices may have news.
 struct DevicesChanged {
   Stamp stamp;
 };
@@ -92,19 +92,19 @@ struct GrantDecided {
   std::vector<authority::Refusal> refused;
   Stamp stamp;
 };
-/// The keeper is to send these bytes when the bridge falls silent.
+/// The keeper sends these bytes when the bridge falls silent.
 struct WatchLink {
   protocol::Bytes stop;
 };
-/// The session is over, and the link to be closed; the keeper has nothing to watch.
+/// The session is over: close the link; the keeper has nothing to watch.
 struct CloseLink {
   std::string why;
 };
-/// To be kept over a restart.
+/// Save over a restart.
 struct KeepLatches {
   authority::Latches latches;
 };
-/// To be kept over a restart.
+/// Save over a restart.
 struct KeepOdometry {
   reflector::OdometryMemory memory;
 };
@@ -121,7 +121,7 @@ struct StatusReport {
   std::uint64_t steps = 0;
   std::uint64_t late = 0;     ///< cycles whose answer did not come in time
   std::uint64_t refused = 0;  ///< motor commands
-  /// Once a second: from a packet to the commands that answer it.
+  /// Once a second: the time from a packet to the commands that answer it.
   struct Reaction {
     double mean = 0.0;  ///< [s]
     double max = 0.0;   ///< [s]

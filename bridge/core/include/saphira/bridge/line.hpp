@@ -7,24 +7,24 @@
 
 namespace saphira::bridge {
 
-/// How well the robot is heard: which of the newest packets came damaged, and how often it was not
-/// heard while it moved. Outlives sessions. Pure; times are seconds of the caller's clock.
+/// The quality of the line to the robot: damaged packets among the newest, and losses while it
+/// moved. Outlives sessions. Pure; times are seconds of the caller's clock.
 class Line {
  public:
   /// A session begins, with its count of damaged packets at 0.
   void begin() { damaged_ = 0; }
-  /// A whole packet came, `gap` [s] after the one before, and the line has damaged so many of the
-  /// session. `moved`: the robot was told to move meanwhile. True where it has to stand from now on
-  /// for a while: it was not heard when it began to move, again and again.
+  /// A whole packet came, `gap` [s] after the one before; `damaged` counts the session's damaged
+  /// packets. `moved`: the robot was told to move meanwhile. True where the robot has to stand for
+  /// a while: repeatedly it was not heard after it began to move.
   bool packet(std::uint64_t damaged, double gap, bool moved, double now);
-  /// The session ends, so long after its last whole packet.
+  /// The session ends, `gap` [s] after its last whole packet.
   void end(double gap, bool moved, double now) { listen(gap, moved, now); }
-  /// No whole packet comes.
+  /// Damaged packets without a whole one.
   void damage(std::uint64_t damaged);
 
-  /// One packet in ten is damaged, or more.
+  /// True where one packet in ten is damaged, or more.
   bool bad() const;
-  /// "the line to the robot is bad: 12 of its last 50 packets were damaged (...)".
+  /// Such as "the line to the robot is bad: 12 of its last 50 packets were damaged (...)".
   std::string words() const;
   /// Nobody drives before this time.
   double stands_until() const { return stands_until_; }
@@ -42,7 +42,7 @@ class Line {
   std::size_t next_ = 0;
   std::uint64_t damaged_ = 0;
   int heard_moving_ = 0;  ///< whole packets since it began to move
-  int unheard_ = 0;       ///< times in a row that it began to move and was not heard
+  int unheard_ = 0;       ///< starts of motion in a row without a packet
   double stands_until_ = 0.0;
 };
 

@@ -17,52 +17,52 @@ namespace saphira::protocol {
 
 enum class Side : std::uint8_t { kClient, kServer };
 
-/// Something that the tables do not allow, or that is worth a look.
+/// A violation of the tables, or a remark.
 struct Finding {
   enum class Kind : std::uint8_t {
     kViolation,  ///< against the manual or the robots' tables
-    kNote,       ///< allowed, and seldom meant
+    kNote,       ///< allowed, and seldom intended
   };
   Kind kind = Kind::kViolation;
   Side side = Side::kClient;
-  std::uint64_t offset = 0;  ///< of the packet (or byte) in what this side has sent
+  std::uint64_t offset = 0;  ///< of the packet (or byte) in the bytes sent by this side
   std::string text;
 };
 
 /// "client byte 120: violation: ...", without a line break.
 std::string to_string(const Finding& finding);
 
-/// Watches the bytes of one line, both ways, and says what of it is not as the tables say. Strict:
-/// where a good client or server bears with the other's fault, this one names it.
+/// Watches the bytes of one line, both ways, and reports deviations from the tables. Strict: it
+/// names faults that a good client or server tolerates.
 ///
-/// It knows what was asked for, so it finds answers without a question. Bytes must be fed in the
-/// order in which they pass. Times are the caller's [s], of any origin; rules about time are left
-/// out where he gives none.
+/// Keeps the requests, so it finds answers without a question. Bytes must be fed in the order in
+/// which they pass. Times are the caller's [s], of any origin; without them the rules about time
+/// are left out.
 class Checker {
  public:
-  /// `find_parameters` says what a robot that calls itself so is like; may be empty. Without an
-  /// answer, the rules that need it are left out.
+  /// `find_parameters` gives the parameters of a robot by its identity; may be empty. Without a
+  /// result, the rules that need it are left out.
   using FindParameters = std::function<std::optional<RobotParameters>(const RobotIdentity&)>;
   explicit Checker(FindParameters find_parameters = {});
 
   void feed(Side side, ByteView bytes, std::optional<double> time = std::nullopt);
-  /// The connection is closed; what was half sent is a finding. Offsets go on.
+  /// The connection is closed; a half sent packet is a finding. Offsets go on.
   void disconnect();
 
   const std::vector<Finding>& findings() const { return findings_; }
   std::size_t violations() const { return violations_; }
   const std::optional<RobotIdentity>& identity() const { return identity_; }
 
-  /// The counts of what has passed, by command's number and packet's type.
+  /// Counts of the packets so far, by command number and by packet type.
   const std::map<std::uint8_t, std::uint64_t>& commands() const { return commands_; }
   const std::map<std::uint8_t, std::uint64_t>& packets() const { return packets_; }
-  /// Both of them, and the number of findings, as lines to print.
+  /// Both counts, and the number of findings, as lines to print.
   std::string summary() const;
 
  private:
   enum class State { kSync0, kSync1, kSync2, kSynchronized, kOpen };
 
-  // One direction's bytes, cut into packets without mercy.
+  // One direction's bytes, cut strictly into packets.
   struct Stream {
     Bytes pending;
     std::uint64_t offset = 0;  // of pending's first byte
@@ -93,7 +93,7 @@ class Checker {
   std::array<Stream, 2> streams_;
   std::vector<Finding> findings_;
   std::size_t violations_ = 0;
-  std::uint64_t at_ = 0;  // offset of what is looked at
+  std::uint64_t at_ = 0;  // offset of the present packet
 
   State state_ = State::kSync0;  // of the client's side
   int echoes_due_[3] = {0, 0, 0};
@@ -101,7 +101,7 @@ class Checker {
   bool closed_ = false;
   std::optional<double> time_;
   std::optional<double> last_command_;  // when
-  bool silent_ = false;                 // has been said
+  bool silent_ = false;                 // already reported
   std::optional<InformationPacket> last_;
   std::optional<double> last_packet_;
   struct Asked {

@@ -16,13 +16,13 @@ namespace saphira::protocol {
 
 struct RobotParameters;
 
-// ---- What the client asks of the robot server: manual Table 5-4. SI units and radians here; the
-// ---- packet's millimetres and degrees are made and read in this file alone.
+// ---- The client's commands to the robot server: manual Table 5-4. SI units and radians here; this
+// file alone converts to and from the packet's millimetres and degrees.
 
 /// The command's number, the first byte of its body. Those of the manual's Table 5-4 (0-3, 7,
-/// 11-13, 21, 30-33, 41, 64) keep its names; the others are of the servers since (P2OS, AROS,
-/// ARCOS) and of the simulators. A number that has meant two things is the robots' one here: 62
-/// ended the old simulator and asks a robot for its battery.
+/// 11-13, 21, 30-33, 41, 64) keep its names; the others are from later servers (P2OS, AROS, ARCOS)
+/// and from simulators. A number with two meanings has the robots' meaning here: 62 ended the old
+/// simulator and asks a robot for its battery.
 enum class Number : std::uint8_t {
   kPulse = 0,
   kOpen = 1,
@@ -67,7 +67,7 @@ enum class Number : std::uint8_t {
   kHostBaud = 50,
   kAux1Baud = 51,
   kAux2Baud = 52,
-  kVision = 53,  ///< ours: the manual names VISION_COM and not its number
+  kVision = 53,  ///< our choice: the manual names VISION_COM without its number
   kEmergencyStop = 55,
   kStallEmergencyStop = 56,
   kEmergencyStop2 = 57,
@@ -132,7 +132,7 @@ enum class Number : std::uint8_t {
   kMaintenance = 255,
 };
 
-/// sfCOMPULSE: says that the client is alive.
+/// sfCOMPULSE: shows that the client is alive.
 struct Pulse {
   bool operator==(const Pulse&) const = default;
 };
@@ -144,8 +144,8 @@ struct Open {
 struct Close {
   bool operator==(const Close&) const = default;
 };
-/// sfCOMPOLLING: which sonars fire, in this order, over and over; empty switches all off. At most
-/// 12 (manual 5.6); encode() sends the first twelve.
+/// sfCOMPOLLING: the firing sequence of the sonars, repeated; empty switches all off. At most 12
+/// (manual 5.6); encode() sends the first twelve.
 struct Polling {
   std::vector<std::uint8_t> sonars;  ///< from 0; the packet carries 1 + number
   bool operator==(const Polling&) const = default;
@@ -192,7 +192,8 @@ struct Timer {
   std::uint8_t pin = 0;  ///< 0..7
   bool operator==(const Timer&) const = default;
 };
-/// sfCOMGRIPPER: 0, 1, 4 or 5; what they do is the robot's. Servers since P2OS: see GripperAction.
+/// sfCOMGRIPPER: 0, 1, 4 or 5; their effect depends on the robot. Servers since P2OS: see
+/// GripperAction.
 struct Gripper {
   std::uint16_t state = 0;
   bool operator==(const Gripper&) const = default;
@@ -206,7 +207,7 @@ struct Ptu {
 struct Step {
   bool operator==(const Step&) const = default;
 };
-// ---- The servers since: P2OS, AROS, ARCOS; and simulators. In these files a "later server".
+// ---- Later servers: P2OS, AROS, ARCOS; and simulators. In these files a "later server".
 
 /// ENABLE: motors on or off.
 struct Enable {
@@ -218,12 +219,12 @@ struct Acceleration {
   double acceleration = 0.0;  ///< [m/s2]
   bool operator==(const Acceleration&) const = default;
 };
-/// SETV: the largest velocity of a MOVE and of what else is not told one. Whole mm/s.
+/// SETV: the largest velocity of a MOVE and of other motions without their own. Whole mm/s.
 struct MaxVelocity {
   double velocity = 0.0;  ///< [m/s]
   bool operator==(const MaxVelocity&) const = default;
 };
-/// MOVE: translate by. Whole mm; ARIA keeps to 5 m.
+/// MOVE: translate by. Whole mm; ARIA limits it to 5 m.
 struct Move {
   double distance = 0.0;  ///< [m] forward positive
   bool operator==(const Move&) const = default;
@@ -259,8 +260,7 @@ struct LateralVelocity {
   double velocity = 0.0;  ///< [m/s] left positive
   bool operator==(const LateralVelocity&) const = default;
 };
-/// MobileSim's SET_POSE: where the robot really is; dead reckoning does not notice. Whole mm,
-/// degrees.
+/// MobileSim's SET_POSE: the true pose; dead reckoning does not change. Whole mm, degrees.
 struct TruePose {
   Pose pose_in_world;
   bool operator==(const TruePose&) const = default;
@@ -282,8 +282,8 @@ enum class GripperAction : std::uint8_t {
 };
 
 // Most commands of the later servers are a number and an argument whose meaning is the robot's.
-// They are held by the form of the argument, and made by a name of their own: Command(IoRequest{2})
-// is Command(Integer{Number::kIoRequest, 2}). rule() says the argument's unit and range.
+// They are stored by the form of the argument, and have names of their own: Command(IoRequest{2})
+// is Command(Integer{Number::kIoRequest, 2}). rule() gives the argument's unit and range.
 
 /// No argument.
 struct Bare {
@@ -301,7 +301,7 @@ struct Text {
   Bytes text;
   bool operator==(const Text&) const = default;
 };
-/// An argument of its own form: all that stands behind the number.
+/// An argument of another form: all bytes behind the number.
 struct Raw {
   Number number = Number::kSimControl;
   Bytes argument;
@@ -413,7 +413,7 @@ using SimMessage = TextCommand<Number::kSimMessage>;
 using SimModel = RawCommand<Number::kSimModel>;
 using SimControl = RawCommand<Number::kSimControl>;
 
-/// A command that is not in the table, or one whose argument cannot be read.
+/// A command that is not in the table, or has an unreadable argument.
 struct Unknown {
   std::uint8_t number = 0;
   bool operator==(const Unknown&) const = default;
@@ -425,10 +425,10 @@ using Command = std::variant<Pulse, Open, Close, Polling, SetOrigin, Velocity, H
                              Rotate, MaxRotationVelocity, RotationAcceleration, DeltaSetpoint,
                              SonarSwitch, LateralVelocity, TruePose, Bare, Integer, Text, Raw>;
 
-// ---- The table of all that.
+// ---- The table of the commands.
 
 enum class ArgumentForm : std::uint8_t {
-  kNone,      ///< the number alone; an argument does no harm
+  kNone,      ///< the number alone; an argument is harmless
   kInteger,   ///< 3B or 1B and two bytes
   kOptional,  ///< an integer, which may be missing
   kPair,      ///< 3B and two signed bytes
@@ -463,20 +463,20 @@ std::span<const CommandRule> rules();
 /// robots since have used a length byte. decode_command takes both.
 enum class StringForm { kNulTerminated, kLengthPrefixed };
 
-/// The wheel velocities' unit where the parameter file says nothing: 4 mm/s (Table 5-4).
+/// The unit of wheel velocities without a value in the parameter file: 4 mm/s (Table 5-4).
 inline constexpr double kVel2Unit = 0.004;
 
-/// The whole packet (frame included). Values are rounded to the packet's units and clamped to what
-/// it can say; NaN becomes 0. vel2_unit [m/s] is RobotParameters::vel2_unit.
+/// The whole packet (frame included). Values are rounded to the packet's units and clamped to its
+/// range; NaN becomes 0. vel2_unit [m/s] is RobotParameters::vel2_unit.
 Bytes encode(const Command& command, double vel2_unit = kVel2Unit,
              StringForm form = StringForm::kNulTerminated);
 
-/// The same with the unit and the form of strings that this robot's server wants.
+/// The same with this robot's unit and form of strings.
 Bytes encode(const Command& command, const RobotParameters& parameters);
 
-/// Reads a packet's body. An argument that is missing counts as 0 (OPEN, SETO and others are sent
-/// with, without, and with an argument type alone); an integer where a string is needed, or a
-/// string where an integer is needed, is Unknown.
+/// Reads a packet's body. A missing argument counts as 0 (OPEN, SETO and others are sent with,
+/// without, and with an argument type alone); an integer in place of a string, or a string in place
+/// of an integer, is Unknown.
 Command decode_command(ByteView body, double vel2_unit = kVel2Unit);
 
 // ---- Start of a connection: manual 5.4.1 and 5.4.2.
@@ -490,7 +490,7 @@ struct RobotIdentity {
 };
 
 /// SYNC0, SYNC1, SYNC2 as the client sends them and as the server echoes the first two. (The same
-/// bytes as PULSE, OPEN and CLOSE: which is meant depends on the state of the server.)
+/// bytes as PULSE, OPEN and CLOSE: the state of the server decides.)
 Bytes encode_sync(int number);
 /// The server's answer to SYNC2. Strings are cut where the packet would be too long.
 Bytes encode_sync2_reply(const RobotIdentity& identity);

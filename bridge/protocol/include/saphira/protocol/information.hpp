@@ -13,7 +13,7 @@ namespace saphira::protocol {
 /// sfSTATUSMOVING.
 enum class Motors : std::uint8_t { kNoPower = 1, kStopped = 2, kMoving = 3 };
 
-/// A range of this or more says that no echo came (manual 6.3.2).
+/// A range of this or more means: no echo (manual 6.3.2).
 inline constexpr double kNoEcho = 5.0;  // [m]
 
 struct RawSonar {
@@ -22,8 +22,7 @@ struct RawSonar {
   bool operator==(const RawSonar&) const = default;
 };
 
-/// The fields that ARCOS appends. A packet may end behind any of them: those behind are missing
-/// then.
+/// The fields that ARCOS appends. A packet may end behind any of them; the rest is missing then.
 struct TrailingFields {
   std::optional<std::uint16_t> battery;         ///< [0.1 V]
   std::optional<std::uint8_t> charge_state;     ///< the charger's; 0: not charging
@@ -53,7 +52,7 @@ struct InformationPacket {
   std::uint16_t ptu = 0;         ///< ARCOS: flags; see kFlagMotors and the others
   std::uint8_t say = 0;          ///< P2OS, ARCOS: the compass [2 deg]
   std::vector<RawSonar> sonars;  ///< the new readings, in the order of firing
-  // Everything behind the sonars is missing in the packets of some servers: 0 then.
+  // Some servers omit the fields behind the sonars: 0 then.
   std::uint16_t timer = 0;  ///< P2OS, ARCOS: the gripper's bits in the high byte
   std::uint8_t analog = 0;
   std::uint8_t digital_input = 0;
@@ -64,7 +63,7 @@ struct InformationPacket {
   bool operator==(const InformationPacket&) const = default;
 };
 
-// Bits of ARCOS' flags, in the place of `ptu`.
+// Bits of ARCOS's flags, in the place of `ptu`.
 inline constexpr unsigned kFlagMotors = 1U << 0U;
 inline constexpr unsigned kFlagSonars = 0xFU << 1U;  ///< a bit for each array
 inline constexpr unsigned kFlagEmergencyStop = 1U << 5U;
@@ -79,8 +78,8 @@ bool is_information(std::uint8_t type);
 /// The whole packet (frame included).
 Bytes encode(const InformationPacket& packet);
 
-/// Reads a packet's body. Bytes behind the fields that are known are counted and skipped. Nothing
-/// if it is another packet, or ends before its sonar readings do.
+/// Reads a packet's body. Bytes behind the known fields are counted and skipped. Nothing for
+/// another packet, or one that ends before its sonar readings do.
 std::optional<InformationPacket> decode_information(ByteView body);
 
 struct Sonar {
@@ -110,13 +109,13 @@ struct Information {
   std::uint8_t digital_input = 0;
   std::uint8_t digital_output = 0;
 
-  // Servers since the manual's; nothing where the robot's does not say.
+  // From later servers; nothing where the robot's does not report it.
   std::uint8_t front_bumpers = 0;  ///< bit 0 the first switch from the left
   std::uint8_t rear_bumpers = 0;   ///< likewise
   std::optional<bool> motors_on;
   std::optional<bool> emergency_stop;
   std::optional<double> compass;  ///< [rad] (-pi, pi], as the compass counts
-  std::uint8_t gripper_bits = 0;  ///< clients disagree on what they mean; as they came
+  std::uint8_t gripper_bits = 0;  ///< clients disagree on their meaning; as they came
   std::optional<std::uint8_t> charge_state;
   std::optional<double> state_of_charge;   ///< [1] 0 to 1
   std::optional<double> lateral_velocity;  ///< [m/s]
@@ -127,17 +126,17 @@ struct Information {
 /// Everything but the position, which rolls over: see DeadReckoning.
 Information interpret(const InformationPacket& packet, const RobotParameters& parameters);
 
-/// The way from one 15-bit coordinate to the next, in counts, the short way round: right as long as
-/// the robot moved less than half the range (0.8 m on a Pioneer 1) between the two.
+/// The way from one 15-bit coordinate to the next, in counts, the short way round. Correct if the
+/// robot moved less than half the range (0.8 m on a Pioneer 1) between the two.
 int position_difference(std::uint16_t from, std::uint16_t to);
 
 /// Follows the server's position over its roll-over.
 class DeadReckoning {
  public:
-  /// The first packet defines where the origin is: its position is what the packet says.
-  /// Returns the pose in the server's coordinates, position unwrapped [m], heading in (-pi, pi].
+  /// The first packet's position is taken as it is. Returns the pose in the server's coordinates,
+  /// position unwrapped [m], heading in (-pi, pi].
   Pose update(const InformationPacket& packet, const RobotParameters& parameters);
-  /// Until the next packet, as if there had been none.
+  /// Starts over with the next packet.
   void reset() { known_ = false; }
 
  private:

@@ -31,7 +31,7 @@ Bytes frame(ByteView body);
 struct ParserCounters {
   std::uint64_t packets = 0;        ///< good ones
   std::uint64_t bad_checksums = 0;  ///< a header and a count, but the checksum is wrong
-  std::uint64_t bad_counts = 0;     ///< a header with a count that no packet has
+  std::uint64_t bad_counts = 0;     ///< a header with an impossible count
   std::uint64_t abandoned = 0;      ///< begun and never completed: see PacketParser::gap
   std::uint64_t skipped_bytes = 0;  ///< bytes that belong to no good packet
 
@@ -40,9 +40,9 @@ struct ParserCounters {
   bool operator==(const ParserCounters&) const = default;
 };
 
-/// Finds packets in a stream of bytes. Whatever is not a packet is skipped and counted; after a
-/// bad packet the search goes on directly behind its header, so that one false header (or one
-/// damaged byte) costs no good packet behind it.
+/// Finds packets in a stream of bytes. Other bytes are skipped and counted. After a bad packet the
+/// search goes on directly behind its header, so that one false header (or one damaged byte) costs
+/// no good packet behind it.
 class PacketParser {
  public:
   /// Takes bytes as they come, in pieces of any size.
@@ -51,10 +51,10 @@ class PacketParser {
   /// The body of the next good packet (without checksum), or nothing until more bytes come.
   std::optional<Bytes> next();
 
-  /// Says that the line has been silent for longer than any pause inside a packet. A packet that
-  /// has begun will not be completed: it was a false header or lost its end. Without this, a false
-  /// header with a large count would hold back the packets behind it until so many bytes have come.
-  /// Call next() afterwards: the bytes held back may contain packets.
+  /// The line has been silent for longer than any pause inside a packet. A packet that has begun
+  /// will not be completed: it was a false header or lost its end. Without this call, a false
+  /// header with a large count would hold back the packets behind it until that many bytes have
+  /// come. Call next() afterwards: the bytes held back may contain packets.
   void gap();
 
   /// True where a packet has begun and is not complete.
@@ -69,8 +69,8 @@ class PacketParser {
   void skip(std::size_t count);
 
   Bytes buffer_;
-  std::size_t begin_ = 0;    // of what is not yet consumed
-  std::size_t give_up_ = 0;  // candidates that begin before this are not waited for
+  std::size_t begin_ = 0;    // of the bytes not yet consumed
+  std::size_t give_up_ = 0;  // candidates before this one are dropped
   ParserCounters counters_;
 };
 

@@ -17,10 +17,10 @@ struct SonarUnit {
   bool operator==(const SonarUnit&) const = default;
 };
 
-/// Which generation of server the robot runs; it says what packets look like and which commands
-/// there are.
+/// The generation of the robot's server, which gives the form of the packets and the set of
+/// commands.
 enum class Protocol {
-  kPsos,   ///< Pioneer 1 and AT, and what the manual describes
+  kPsos,   ///< Pioneer 1 and AT, as in the manual
   kP2os,   ///< P2OS and AROS: Pioneer 2 and 3, AmigoBot, PeopleBot
   kArcos,  ///< ARCOS: subclasses "...-sh"
 };
@@ -32,7 +32,7 @@ struct RobotParameters {
   std::string name;         ///< keyword Name
   std::string robot_class;  ///< Class; the second string of the SYNC2 answer
   std::string subclass;     ///< Subclass
-  /// True where that is the class and subclass that a robot names, in letters of either case.
+  /// True for the class and subclass that a robot names, in letters of either case.
   bool is_of(std::string_view of_class, std::string_view of_subclass) const;
 
   // One unit of the information packet.
@@ -80,25 +80,25 @@ struct RobotParameters {
   double deceleration = 2.0;                      ///< [m/s2] Deceleration
   double rotation_acceleration = radians(300.0);  ///< [rad/s2] RotAcceleration
   double rotation_deceleration = radians(300.0);  ///< [rad/s2] RotDeceleration
-  double max_acceleration = 0.0;  ///< [m/s2] MaxAcceleration: what SETA can set, either way
+  double max_acceleration = 0.0;  ///< [m/s2] MaxAcceleration: the limit of SETA, either way
   double max_rotation_acceleration = 0.0;  ///< [rad/s2] MaxRotAcceleration, of SETRA
   double stop_deceleration = 0.0;          ///< [m/s2] StopDeceleration: the bridge sets it; 0: none
   double stop_rotation_deceleration = 0.0;  ///< [rad/s2] StopRotDeceleration; likewise
 
-  // Errors of the simulated dead reckoning, manual Table 3-1. How the simulator reads them is said
-  // in saphira/sim/robot.hpp.
+  // Errors of the simulated dead reckoning, manual Table 3-1. saphira/sim/robot.hpp gives their use
+  // in the simulator.
   double encode_jitter = 0.0;  ///< EncodeJitter
   double angle_jitter = 0.0;   ///< AngleJitter
   double angle_drift = 0.0;    ///< AngleDrift
 
-  double battery = 12.6;         ///< [V] Battery: what the simulator reports
+  double battery = 12.6;         ///< [V] Battery: the voltage that the simulator reports
   int front_buffer = 30;         ///< readings; FrontBuffer
   int side_buffer = 40;          ///< readings of each side; SideBuffer
   double front_max_range = 2.5;  ///< [m] FrontMaxRange (sfFrontMaxRange, manual 6.6.1)
 
   std::vector<SonarUnit> sonars;  ///< SonarNum of them, by number
 
-  /// Oddities that do no harm, as lines to print ("file:line: ..."): units beyond SonarNum.
+  /// Harmless oddities, as lines to print ("file:line: ..."): units beyond SonarNum.
   std::vector<std::string> warnings;
 
   bool operator==(const RobotParameters&) const = default;
@@ -110,22 +110,22 @@ inline bool has_emergency_stop(const RobotParameters& parameters) {
 }
 
 /// Reads the text of a parameter file; `file` names it in errors. Keywords may stand in any order
-/// and case, each at most once; the value may stand on the line behind its keyword. Of a file in
-/// ARIA's form, with sections, what is not known is passed over. FileError where it is wrong, where
-/// what no robot can do without is missing, and where the last line has no line break.
+/// and case, each at most once; the value may stand on the line behind its keyword. In a file in
+/// ARIA's form, with sections, unknown entries are ignored. FileError where the file is wrong,
+/// where a required keyword is missing, and where the last line has no line break.
 RobotParameters parse_parameters(std::string_view text, const std::string& file);
 
 /// The same from a file.
 RobotParameters load_parameters(const std::string& path);
 
-/// Which parameter files fit a robot, the best first (manual 5.4.2): the lower-case subclass, if it
-/// has one, and that without its variants (p3dx-sh-lms1xx: p3dx-sh), then the lower-case class,
+/// The parameter files that fit a robot, the best first (manual 5.4.2): the lower-case subclass, if
+/// it has one, and that without its variants (p3dx-sh-lms1xx: p3dx-sh), then the lower-case class,
 /// each with ".p". The file of the class Pioneer fits the first generation alone (psos...,
-/// pion...): later ones have other units. The strings come from the robot: what is not a plain file
-/// name is left out.
+/// pion...): later ones have other units. The strings come from the robot: any that is not a plain
+/// file name is left out.
 std::vector<std::string> parameter_file_names(std::string_view robot_class,
                                               std::string_view subclass);
-/// The first of them that is in `folder`; none where there is none.
+/// The first of these files that is in `folder`, if any.
 std::optional<std::string> find_parameter_file(const std::string& folder,
                                                std::string_view robot_class,
                                                std::string_view subclass);

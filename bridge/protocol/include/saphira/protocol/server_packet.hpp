@@ -14,8 +14,8 @@
 
 namespace saphira::protocol {
 
-// ---- What a server sends besides the information packet. Units of the packets here: these are the
-// ---- devices' own.
+// ---- A server's packets besides the information packet. Units of the packets here: these are the
+// devices' own.
 
 /// The first byte of a server's packet.
 enum class PacketType : std::uint8_t {
@@ -31,7 +31,7 @@ enum class PacketType : std::uint8_t {
   kSimMapChanged = 0x66,
   kAcceleration = 0x7B,
   kTorque = 0x7C,
-  kVision = 0x80,  ///< ours: see VisionPacket
+  kVision = 0x80,  ///< our choice: see VisionPacket
   kEncoder = 0x90,
   kHeading = 0x95,
   kGyro = 0x98,
@@ -52,7 +52,7 @@ enum class PacketType : std::uint8_t {
 };
 
 /// CONFIGpac, the answer to CONFIG. Clients take their limits from it: with zeros in the velocities
-/// and accelerations they do not drive. Fields behind where a packet ends are zero.
+/// and accelerations they do not drive. Fields behind the packet's end are zero.
 struct ConfigPacket {
   std::string robot_class;
   std::string subclass;
@@ -173,8 +173,8 @@ struct BatteryPacket {
   bool operator==(const BatteryPacket&) const = default;
 };
 
-/// The blob that the camera has found in one channel (manual 9.2, struct vinfo). Pixels, the
-/// image's centre is (0, 0).
+/// The camera's blob in one channel (manual 9.2, struct vinfo). Pixels, the image's centre is (0,
+/// 0).
 struct VisionChannel {
   enum class Mode : std::uint8_t { kBlob = 0, kLine = 1, kBlobWithBox = 2 };
   Mode mode = Mode::kBlob;
@@ -188,9 +188,9 @@ struct VisionChannel {
   bool operator==(const VisionChannel&) const = default;
 };
 
-/// The Fast Track Vision System's packet, ten a second. The manual says what is in it (9.2) and not
-/// where: type and order are ours. For each channel, in the order A, B, C: mode (byte), x, y, area;
-/// in kBlobWithBox then height and width; in kLine mode, x, first, count.
+/// The Fast Track Vision System's packet, ten a second. The manual gives its content (9.2) but not
+/// its layout: type and order are ours. For each channel, in the order A, B, C: mode (byte), x, y,
+/// area; in kBlobWithBox then height and width; in kLine mode, x, first, count.
 struct VisionPacket {
   std::array<VisionChannel, 3> channels{};
   bool operator==(const VisionPacket&) const = default;
@@ -229,7 +229,7 @@ struct SimStatusPacket {
   bool operator==(const SimStatusPacket&) const = default;
 };
 
-/// A packet whose type is known by name only, or not at all.
+/// A packet of a type without a reader here, or of an unknown type.
 struct OtherPacket {
   std::uint8_t type = 0;
   Bytes data;
@@ -241,16 +241,16 @@ using ServerPacket =
                  GyroPacket, JoystickPacket, BatteryPacket, VisionPacket, SimLaserPacket,
                  SimStatusPacket, OtherPacket>;
 
-/// Reads a packet's body; OtherPacket where its type is not one of those above, or where it ends
-/// before it should. (SYNC answers are not for this: whether a body is one depends on the state of
-/// the connection.)
+/// Reads a packet's body; OtherPacket for a type that is not one of those above, or a packet that
+/// ends too early. (SYNC answers are not for this function: the state of the connection decides
+/// about them.)
 ServerPacket decode_packet(ByteView body);
 
 /// True where decode_packet reads the fields of this type.
 bool is_read(PacketType type);
 
-/// The whole packet (frame included); what does not fit is left out. AuxPacket's line is clamped to
-/// 1 to 3.
+/// The whole packet (frame included); data that do not fit are left out. AuxPacket's line is
+/// clamped to 1 to 3.
 Bytes encode(const ConfigPacket& packet);
 Bytes encode(const EncoderPacket& packet);
 Bytes encode(const IoPacket& packet);
@@ -267,7 +267,7 @@ Bytes encode(const OtherPacket& packet);
 /// The name of the type; empty for a type without one.
 std::string_view packet_type_name(std::uint8_t type);
 
-/// How many packets of each type have come, and how many there were that nobody knows.
+/// The number of packets of each type, and of unknown types.
 class PacketCounters {
  public:
   void count(ByteView body);

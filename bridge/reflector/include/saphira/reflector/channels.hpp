@@ -25,9 +25,9 @@ struct Shown {
 };
 
 /// Makes the robot server hold the setpoints although commands get lost on the way (manual 5.1.3
-/// and 6.3): sends them when they change, again in each cycle until the server's state shows them,
-/// and at least every 0.5 s, which also keeps the server's watchdog quiet. At most one command for
-/// a channel in a cycle; only a stop may come on top.
+/// and 6.3). Sends them when they change, again in each cycle until the server's state shows them,
+/// and at least every 0.5 s, which also satisfies the server's watchdog. At most one command for a
+/// channel in a cycle; only a stop may be added.
 class Channels {
  public:
   static constexpr double kRepeat = 0.5;  ///< [s]
@@ -37,15 +37,15 @@ class Channels {
   void connect();
   /// The setpoints to be held. `rotation`: server's frame to odom [rad].
   void want(const Setpoints& setpoints, double rotation);
-  /// The server's emergency stop (ESTOP) instead of setpoints, for as long as this is on: until the
-  /// server shows rest, and every 0.5 s. A velocity would end it.
+  /// The server's emergency stop (ESTOP) instead of setpoints, while on: sent until the server
+  /// shows rest, and every 0.5 s. A velocity would end it.
   void brake(bool on);
   /// An information packet came: a new cycle.
   void cycle(const Shown& shown);
 
   /// The commands to be sent now.
   std::vector<Order> due(double now);
-  /// True where due() would say anything, were it asked at `now`.
+  /// True where due() at `now` would return commands.
   bool pending(double now) const;
   /// The newest setpoint of the translation channel [m/s].
   double sent_velocity() const;

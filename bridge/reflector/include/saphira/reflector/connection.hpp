@@ -9,24 +9,24 @@ namespace saphira::reflector {
 
 using Packets = std::vector<protocol::Bytes>;
 
-/// Brings a session with a robot server about (manual 5.4): SYNC0, 1, 2, each echoed, then OPEN.
-/// Each call returns the packets to be sent. Times in seconds of any clock.
+/// Opens a session with a robot server (manual 5.4): SYNC0, 1, 2, each echoed, then OPEN. Each call
+/// returns the packets to be sent. Times in seconds of any clock.
 ///
-/// SYNC0 is PULSE to a server that is still in a session: a robot that its watchdog has stopped
-/// would drive on. So zero setpoints go before it, wherever that may be.
+/// A server that is still in a session takes SYNC0 for a PULSE: a robot that its watchdog has
+/// stopped would drive on. So zero setpoints always go before SYNC0.
 ///
-/// A line that sends back what it is sent (a modem, a terminal server, a loose plug) answers every
-/// SYNC. A robot answers SYNC2 with its name, except servers before PSOS 4.1: behind an answer
-/// without one go zero setpoints, which no robot sends back, and only the next answer counts.
+/// A line with an echo (a modem, a terminal server, a loose plug) answers every SYNC. A robot
+/// answers SYNC2 with its name, except servers before PSOS 4.1. So an answer without a name is
+/// followed by zero setpoints, which no robot echoes, and only the next answer counts.
 class Connection {
  public:
   enum class State { closed, sync0, sync1, sync2, open };
 
   static constexpr double kRetry = 0.2;     ///< [s] a lost packet is sent again
-  static constexpr double kPatience = 5.0;  ///< [s] without an answer that leads on
+  static constexpr double kPatience = 5.0;  ///< [s] without an answer that advances the state
 
   /// The link is up. `in_session`: the server may be in a session from before, as behind a serial
-  /// line, whose loss it does not see.
+  /// line, since it does not see the line's loss.
   Packets begin(double now, bool in_session = false);
   /// The link is gone.
   void end() { state_ = State::closed; }
@@ -38,15 +38,15 @@ class Connection {
   State state() const { return state_; }
   bool open() const { return state_ == State::open; }
   const protocol::RobotIdentity& identity() const { return identity_; }
-  /// Nothing that leads on has come for so long that another connection may do better: a server
-  /// that hangs, a half of a network connection whose other half is gone.
+  /// No answer has advanced the state for so long that a new connection may do better: the server
+  /// hangs, or the other half of a network connection is gone.
   bool is_hopeless(double now) const;
-  /// [s] From SYNC1 or SYNC2 to its answer, the shorter one: how slow the line is. Not exact where
+  /// [s] From SYNC1 or SYNC2 to its answer, the shorter one: the delay of the line. Inexact where
   /// packets are lost.
   double round_trip() const { return round_trip_; }
-  /// When to call tick next (while neither closed nor open).
+  /// The time of the next tick (while neither closed nor open).
   double due() const { return sent_ + kRetry; }
-  /// The thing that it waits for, in words.
+  /// The awaited answer, in words.
   std::string waiting_for() const;
 
  private:
@@ -56,11 +56,11 @@ class Connection {
   bool in_session_ = false;
   protocol::RobotIdentity identity_;
   double sent_ = 0.0;
-  double answered_ = 0.0;  ///< what led on, or the beginning
+  double answered_ = 0.0;  ///< the newest answer that advanced the state, or the beginning
   double began_ = 0.0;     ///< the state
   double round_trip_ = 0.0;
   bool nameless_ = false;  ///< SYNC2 was answered without a name
-  bool echoes_ = false;    ///< the line sends back what it is sent
+  bool echoes_ = false;    ///< the line echoes
   int tries_ = 0;
 };
 

@@ -26,36 +26,37 @@ struct DeviceRequest {
   unsigned sent = 0;  ///< how often
 };
 
-/// Sends what is asked of the devices until the robot's packets show it (manual 5.1.3). What no
-/// packet shows is sent three times where that does no harm, and once where a second one would mean
-/// something else. Keeps the newest request of each device and action, and what became of it.
+/// Sends requests to the devices until the robot's packets show their effect (manual 5.1.3). A
+/// request without a visible effect is sent three times where that is harmless, and once where a
+/// second one would have another meaning. Keeps the newest request of each device and action, and
+/// its result.
 class Devices {
  public:
   static constexpr double kRetry = 0.2;   ///< [s]
-  static constexpr unsigned kTries = 25;  ///< then it is given up: 5 s
+  static constexpr unsigned kTries = 25;  ///< then the request fails: 5 s
 
-  /// A connection begins, or ended: what was under way is lost.
+  /// A connection begins, or ended: requests under way are lost.
   void connect();
-  /// The requests that a device takes (wishes.hpp). A newer request takes the place of an older one
-  /// of the same device and action.
+  /// A request to a device (wishes.hpp). A newer request replaces an older one of the same device
+  /// and action.
   void request(const Request& request, const Wish& wish,
                const protocol::RobotParameters& parameters);
-  /// The commands at the start of a session: a robot since P2OS switches its motors on when it is
-  /// told, and says what it is like. No answer does no harm.
+  /// The commands at the start of a session: a robot since P2OS needs a command to switch its
+  /// motors on, and reports its configuration. No answer is harmless.
   void begin(const protocol::RobotParameters& parameters);
-  /// An information packet came. `origin`: its raw pose is (0, 0, 0) within what a moving robot
-  /// makes of it.
+  /// An information packet came. `origin`: its raw pose is (0, 0, 0), within the way of a moving
+  /// robot.
   void reflect(const protocol::InformationPacket& packet, const protocol::Information& information,
                bool origin);
-  /// A packet of another type came; those that nobody here reads are counted.
+  /// A packet of another type came; types without a reader are counted.
   void reflect(const protocol::ServerPacket& packet, std::uint8_t type);
-  /// The commands to be sent now, of no more than `room` bytes in all: the rest waits for the line.
+  /// The commands to be sent now, of no more than `room` bytes in all: the rest waits.
   std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const;
 
-  /// The newest of each device and action, in the order of the devices.
+  /// The newest request of each device and action, in the order of the devices.
   std::vector<DeviceRequest> requests() const;
-  /// Those of which something new is to be told since the last call, in that order.
+  /// The requests with news since the last call, in that order.
   std::vector<DeviceRequest> take_answered() { return std::exchange(answered_, {}); }
   /// The newest contents of the packets besides the information packet, in this session.
   struct Reports {
@@ -63,12 +64,12 @@ class Devices {
     std::optional<protocol::EncoderPacket> encoders;
     std::optional<protocol::IoPacket> io;
     std::optional<protocol::GripperPacket> gripper;
-    std::map<std::uint8_t, std::uint32_t> unread;  ///< packets of types that nobody reads, by type
+    std::map<std::uint8_t, std::uint32_t> unread;  ///< packets of types without a reader, by type
   };
   const Reports& reports() const { return reports_; }
-  /// True where requests() or reports() say something new since the last call.
+  /// True where requests() or reports() have changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
-  /// Requests that came to a bad end since the last call, in words.
+  /// Requests that failed since the last call, in words.
   std::vector<std::string> take_troubles() { return std::exchange(troubles_, {}); }
 
  private:
@@ -77,12 +78,12 @@ class Devices {
   struct Item {
     DeviceRequest request;
     double deadline = 0.0;        ///< [s] from the first time that it is sent; 0: none
-    std::optional<double> first;  ///< [s] when that was
+    std::optional<double> first;  ///< [s] time of that
     std::vector<protocol::Command> commands;
     Proof proof = Proof::once;
-    int value = 0;  ///< what is to be shown
+    int value = 0;  ///< the expected value
     int mask = 0;
-    bool quiet = false;  ///< asked for by nobody: no words where it comes to nothing
+    bool quiet = false;  ///< our own request: no message where it fails
     double at = 0.0;
   };
   using Key = std::pair<std::size_t, int>;  ///< device, action

@@ -16,16 +16,16 @@ struct RawPose {
   double th = 0.0;      ///< [rad] in the server's own frame
 };
 
-/// The state by which an odom frame goes on later: over a reconnection, or a restart of the
+/// The state by which an odom frame continues later: over a reconnection, or a restart of the
 /// bridge.
 struct OdometryMemory {
   std::uint64_t odom = 0;  ///< the frame's number
   RawPose raw;             ///< of the newest packet
   Pose raw_unwrapped;      ///< the same without the roll-over [m, rad], server's frame
-  Pose server_in_odom;     ///< where the server's frame stands in odom
+  Pose server_in_odom;     ///< pose of the server's frame in odom
 };
 
-/// How far a robot may have gone by itself while it was not heard.
+/// The greatest way of an unheard robot.
 struct Slack {
   double distance = 0.0;  ///< [m]
   double angle = 0.0;     ///< [rad]
@@ -35,14 +35,14 @@ struct Slack {
 std::string to_text(const OdometryMemory& memory);
 std::optional<OdometryMemory> from_text(const std::string& text);
 
-/// Unwraps the position counters and says in which odom frame they are.
+/// Unwraps the position counters and gives their odom frame.
 class Odometry {
  public:
   struct Settings {
     double distance_unit = 0.001;            ///< [m] of one count
-    double near_distance = 0.3;              ///< [m] a robot that is so near was not carried away
+    double near_distance = 0.3;              ///< [m] nearer: the robot was not carried away
     double near_angle = 20.0 * kPi / 180.0;  ///< [rad]
-    double max_velocity = 1.0;               ///< [m/s] faster is a jump of the counters
+    double max_velocity = 1.0;               ///< [m/s] a faster motion is a jump of the counters
   };
 
   Odometry() = default;
@@ -53,8 +53,8 @@ class Odometry {
   /// pose is near the remembered one, and is not the exact (0, 0, 0) of a power-up; otherwise it
   /// begins frame `fresh` at (0, 0, 0). `slack` makes "near" wider, as far as the counters allow.
   void connect(std::optional<OdometryMemory> memory, std::uint64_t fresh, const Slack& slack = {});
-  /// A packet, `dt` seconds after the last. A jump that no robot makes begins frame `fresh`.
-  /// Returns whether a frame began.
+  /// A packet, `dt` seconds after the last. An impossible jump begins frame `fresh`. True where a
+  /// frame began.
   bool update(const RawPose& raw, double dt, std::uint64_t fresh);
 
   std::uint64_t odom() const { return memory_.odom; }
@@ -62,7 +62,7 @@ class Odometry {
   /// The rotation from the server's frame to odom [rad]: heading_in_odom = heading + this.
   double rotation() const { return memory_.server_in_odom.th; }
   const OdometryMemory& memory() const { return memory_; }
-  /// How far the last packet's motion went, along the robot's own heading [m].
+  /// The last packet's way along the robot's own heading [m].
   double advance() const { return advance_; }
 
  private:

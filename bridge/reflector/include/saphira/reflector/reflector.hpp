@@ -20,7 +20,7 @@ struct Bucket {
   protocol::Sonar reading;
   std::uint64_t cycle = 0;  ///< of the packet that it came with
   Pose pose_in_odom;        ///< of the robot, by that packet
-  /// [m] where the reading is on the sonar's axis, in the frame of the robot at that packet;
+  /// [m] the place of the reading on the sonar's axis, in the frame of the robot at that packet;
   /// meaningless without an echo.
   Vec2 point = Vec2::Zero();
 };
@@ -31,7 +31,7 @@ struct State {
   std::uint64_t odom = 0;
   Pose pose_in_odom;
   protocol::Information information;
-  double target_velocity = 0.0;         ///< [m/s] what was sent last
+  double target_velocity = 0.0;         ///< [m/s] sent last
   double target_heading_in_odom = 0.0;  ///< [rad] the server's own heading setpoint
   unsigned motor_packets_per_s = 0;
   unsigned sonar_readings_per_s = 0;
@@ -39,18 +39,18 @@ struct State {
 };
 
 /// The state reflector (manual 6.3): information packets in, the robot's state out; setpoints in,
-/// command packets out, until the state shows them. Knows no clock: every call is given the time in
+/// command packets out, until the state shows them. Knows no clock: every call gets the time in
 /// seconds (the steady clock live, cycles x 0.1 s in lockstep).
 class Reflector {
  public:
   void configure(const protocol::RobotParameters& parameters);
   const protocol::RobotParameters& parameters() const { return parameters_; }
 
-  /// The server was opened. `memory`: of the odom frame before, if any; `fresh`: the number of the
-  /// frame that begins otherwise. Zero setpoints are due at once.
+  /// The server was opened. `memory`: of the odom frame before, if any; `fresh`: the number of a
+  /// new frame. Zero setpoints are due at once.
   void open(double now, std::optional<OdometryMemory> memory, std::uint64_t fresh,
             const Slack& slack = {});
-  /// How far the robot may go when it is not heard from now on: until its own watchdog stops it.
+  /// The robot's greatest way while unheard, from now until its own watchdog stops it.
   Slack slack() const;
 
   /// A packet. `fresh`: the number of the odom frame that begins where continuity is lost.
@@ -58,29 +58,29 @@ class Reflector {
   const State& state() const { return state_; }
   const OdometryMemory& odometry() const { return odometry_.memory(); }
 
-  /// Direct motion control: what the driver wants. Not yet what is sent: see hold().
+  /// Direct motion control: the driver's wish. It is not sent as it is: see hold().
   void set(const Motion& motion) { motion_.set(motion, state_.pose_in_odom); }
   void stop() { motion_.stop(); }
   const DirectMotion& motion() const { return motion_; }
-  /// Zero setpoints are due at once, whatever was sent before: somebody else may have spoken to the
+  /// Zero setpoints are due at once, whatever was sent before: another client may have used the
   /// server meanwhile.
   void zero_first() {
     motion_.stop();
     channels_.connect();
   }
 
-  /// The setpoints that the server is to hold, after whatever the guard made of motion().
+  /// The setpoints that the server is to hold: motion() after the guard.
   void hold(const Setpoints& setpoints);
   /// The hardest stop that the server has, instead of setpoints, until hold() is called again.
   void emergency_stop();
-  /// The devices: what is asked of them, and what became of it.
+  /// Requests to the devices, and their results.
   void request(const Request& request, const Wish& wish) {
     devices_.request(request, wish, parameters_);
   }
   Devices& devices() { return devices_; }
 
-  /// The commands to be sent now. Includes a PULSE where nothing else was said for half a second.
-  /// `room` [bytes]: what the line takes now of what is asked of the devices.
+  /// The commands to be sent now. Includes a PULSE where nothing else was sent for half a second.
+  /// `room` [bytes]: the line's room for requests to the devices.
   std::vector<protocol::Command> due(double now, std::size_t room = SIZE_MAX);
   bool pending(double now) const { return channels_.pending(now) || devices_.pending(now); }
   double sent_velocity() const { return channels_.sent_velocity(); }

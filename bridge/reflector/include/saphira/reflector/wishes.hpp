@@ -73,8 +73,8 @@ std::string text(const Wish& wish);
 
 /// The requests that a device takes.
 const std::vector<Functor>& functors(Device device);
-/// The wish of a request that one of functors() can take; std::invalid_argument says what was
-/// expected of the arguments together.
+/// The wish of a request that one of functors() can take; std::invalid_argument says what
+/// combination of arguments was expected.
 Wish wish_of(const Request& request);
 
 }  // namespace saphira::reflector

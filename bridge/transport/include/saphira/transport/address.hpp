@@ -4,12 +4,12 @@
 
 namespace saphira::transport {
 
-/// Where a robot server is to be found (manual Table 5-6), as people write it:
+/// The address of a robot server (manual Table 5-6), as people write it:
 ///   /dev/ttyS0, /dev/ttyUSB0@19200   a serial line, or a pseudo-terminal [9600 baud, 8N1]
 ///   serial:/path@38400,8E1,rtscts    the same with all its settings
 ///   unix:/path                       a local socket (the simulator's)
-///   /path, ./path, /path@19200       either: what it is shows when it is there; with a rate, a
-///   line tcp:host:port                    a network
+///   /path, ./path, /path@19200       either, by its type when opened; with a rate, a line
+///   tcp:host:port                    a network
 struct Address {
   enum class Kind { serial, local, tcp };
   Kind kind = Kind::local;
@@ -19,15 +19,15 @@ struct Address {
   int stop_bits = 1;          ///< 1, 2
   bool flow_control = false;  ///< by RTS and CTS
   int port = 0;
-  bool plain_path = false;  ///< no prefix says what it is: `settle` finds out
+  bool plain_path = false;  ///< no prefix: `settle` finds the kind
 
-  /// Where it is a plain path, looks what is there now: a character device is a serial line, all
-  /// else a local socket.
+  /// Finds the kind of a plain path by its present file: a character device is a serial line, any
+  /// other a local socket.
   void settle();
   std::string text() const;
 };
 
-/// std::invalid_argument says what was expected.
+/// std::invalid_argument gives the expected form.
 Address parse_address(const std::string& text);
 
 /// The socket of a simulator on this machine: $ROBOT_SOCKET, else /tmp/saphira-robot-<uid>.

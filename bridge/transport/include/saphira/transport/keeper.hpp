@@ -10,14 +10,14 @@
 namespace saphira::transport {
 
 /// A second process (saphira-keeper) that holds a copy of the link to the robot and listens to the
-/// bridge's heart. When the bridge falls silent (stopped, hung, killed) it sends the stop packets
-/// to the robot by itself, again and again, until it hears the bridge. It ends with the bridge,
-/// after stopping the robot.
+/// bridge's heartbeats. When the bridge falls silent (stopped, hung, killed) the keeper repeats the
+/// stop packets to the robot until it hears the bridge. It ends with the bridge, after stopping the
+/// robot.
 ///
-/// One that dies or hangs is replaced, at most once a second.
+/// A dead or hanging keeper is replaced, at most once a second.
 class Keeper {
  public:
-  /// `silence`: how long the bridge may be silent; `program`: empty for the one beside this
+  /// `silence`: the tolerated silence of the bridge; `program`: empty for the keeper beside this
   /// program. std::runtime_error where it cannot be started.
   explicit Keeper(std::chrono::milliseconds silence = std::chrono::milliseconds(300),
                   std::string program = {});
@@ -25,16 +25,16 @@ class Keeper {
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
 
-  /// The robot is behind this descriptor from now on, of which the keeper gets a copy; `stop`: the
-  /// packets that stop it, at most 64 bytes.
+  /// The robot is behind this descriptor from now on, and the keeper gets a copy of it; `stop`: the
+  /// packets that stop the robot, at most 64 bytes.
   void watch(int fd, std::vector<std::uint8_t> stop);
-  /// There is no robot any more, or it needs no keeping (it is single-stepped).
+  /// There is no robot any more, or it needs no keeper (it is single-stepped).
   void unwatch();
   /// The bridge is alive. Cheap; at least three times as often as the silence allows.
   void beat();
-  /// False while there is none that answers.
+  /// False while no keeper answers.
   bool alive() const { return alive_; }
-  /// How often one has been replaced.
+  /// Number of replacements.
   int restarts() const { return restarts_; }
   int pid() const { return pid_; }
 
@@ -54,7 +54,7 @@ class Keeper {
   BootClock::time_point started_;
   int watched_ = -1;
   std::vector<std::uint8_t> stop_;
-  bool told_ = true;  ///< whether the keeper knows what is watched
+  bool told_ = true;  ///< true: the keeper knows the watched descriptor
 };
 
 /// The keeper's process: hears the bridge on this socket, and ends with it.

@@ -11,9 +11,9 @@
 
 namespace saphira::transport {
 
-/// The bytes to and from a robot server. Never blocks: a host's name is looked up by a thread of
-/// its own, which may outlive the link. A link that is lost is tried again, first after 50 ms, then
-/// less often, at least twice a second. Times are seconds of a steady clock.
+/// The bytes to and from a robot server. Never blocks: a host's name is looked up in a thread of
+/// its own, which may outlive the link. A lost link is tried again, first after 50 ms, then less
+/// often, at least twice a second. Times are seconds of a steady clock.
 class Link {
  public:
   enum class State { closed, connecting, open };
@@ -29,17 +29,17 @@ class Link {
   int fd() const { return fd_; }
   /// The events to poll the fd for.
   short poll_events() const;
-  /// Why it is not open, in words.
+  /// The reason why it is not open, in words.
   const std::string& trouble() const { return trouble_; }
-  /// When to call advance next; infinity where only the fd matters.
+  /// The time of the next advance; infinity where only the fd matters.
   double due() const;
 
-  /// Connects where it is time to, finishes a connection that was begun, sends what waits.
+  /// Connects when due, completes a connection in progress, sends queued bytes.
   void advance(double now);
-  /// Appends what has come. False when the other side has gone: the link is then closed.
+  /// Appends the received bytes. False when the other side has gone: the link is then closed.
   bool read(std::vector<std::uint8_t>& out, double now);
-  /// Sends the whole packet, or queues what the line does not take now. False (and the link closed)
-  /// where the line is dead, or so slow that commands would wait and become stale.
+  /// Sends the whole packet, or queues the part that the line does not take. False (and the link
+  /// closed) where the line is dead, or so slow that commands would become stale in the queue.
   bool write(std::span<const std::uint8_t> bytes, double now);
   /// [bytes] that may be written now and leave room for a driver's next command.
   std::size_t room() const;
@@ -64,8 +64,8 @@ class Link {
   double backoff_ = 0.0;
   struct LookUp;
   std::shared_ptr<LookUp> look_up_;  ///< under way, or done and not yet used
-  std::size_t tries_ = 0;            ///< of the addresses that a host's name has, in turn
-  bool heard_ = false;               ///< something came since it was opened
+  std::size_t tries_ = 0;            ///< index into the addresses of the host's name, used in turn
+  bool heard_ = false;               ///< bytes have arrived since it was opened
   std::vector<std::uint8_t> waiting_;
 };
 

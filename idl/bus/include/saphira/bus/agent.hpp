@@ -12,7 +12,7 @@
 
 namespace saphira::bus {
 
-/// A program that can be asked, and that asks others, by way of the facilitator. For the node's own
+/// A program that answers requests, and asks others, by way of the facilitator. For the node's own
 /// thread.
 ///
 ///   Node node(options);
@@ -22,7 +22,7 @@ namespace saphira::bus {
 ///             [&](const v1::Request& request) { return done({text("place", "library")}); });
 ///   while (!stop.requested()) { node.wait(500ms, &stop); agent.poll(); }
 ///
-/// Its capabilities end with it, also when it is killed.
+/// Its capabilities end with the object, also when the process is killed.
 class Agent {
  public:
   /// Its answer to a request whose arguments fit. ANSWER_UNDERWAY: the end follows by answer().
@@ -33,11 +33,11 @@ class Agent {
   Agent(const Agent&) = delete;
   Agent& operator=(const Agent&) = delete;
 
-  /// Announces one thing more that it can be asked for.
+  /// Announces one more capability.
   void can(const v1::Capability& capability, Answerer answerer);
-  /// Answers what has come. Call after each Node::wait. Not from an Answerer.
+  /// Answers the requests that have come. Call after each Node::wait. Not from an Answerer.
   void poll();
-  /// The end of a request that was underway.
+  /// Ends a request that was underway.
   void answer(const v1::Request& request, v1::Answer answer);
 
   /// Asks whichever agent can, and waits: see RequestClient::ask. Others are answered meanwhile.
@@ -48,7 +48,7 @@ class Agent {
   /// std::runtime_error where the bus did not take it.
   v1::GoalId set(v1::Trigger trigger);
   void take_back(const v1::GoalId& trigger);
-  /// Says that something happened, which triggers may wait for.
+  /// Reports an event. Triggers may wait for it.
   void tell(const std::string& functor, std::vector<v1::Argument> arguments);
 
  private:
@@ -69,16 +69,16 @@ class Agent {
   bool answering_ = false;
 };
 
-/// The address of an agent on agents/request: "1f3a/calendar".
+/// The address of an agent on agents/request, such as "1f3a/calendar".
 std::string agent_address(std::uint64_t id, const std::string& name);
 
-/// A capability, and what it takes. A fact: asking changes nothing, so several may be asked.
+/// A capability and its parameters. A fact: asking changes nothing, so several agents may be asked.
 v1::Capability capability(const std::string& functor, const std::string& summary,
                           std::vector<v1::CapabilityParameter> parameters);
-/// Something that is done: one agent is asked, once.
+/// An action: one agent is asked, once.
 v1::Capability action(const std::string& functor, const std::string& summary,
                       std::vector<v1::CapabilityParameter> parameters);
-/// Parameters that must be given, and ones that may be left open for the answer to fill.
+/// Required parameters, and optional ones that may be left open for the answer to fill.
 v1::CapabilityParameter text_slot(const std::string& name, const std::string& meaning,
                                   bool required = false);
 v1::CapabilityParameter number_slot(const std::string& name, const std::string& meaning,
@@ -91,7 +91,7 @@ v1::Answer refused(const std::string& text);
 /// The text or number of an argument of a request; nothing and 0 where it is not given.
 std::string text_of(const std::vector<v1::Argument>& arguments, const std::string& name);
 double number_of(const std::vector<v1::Argument>& arguments, const std::string& name);
-/// A slot that the answer is to fill.
+/// An unbound argument, which the answer fills.
 v1::Argument open(const std::string& name);
 
 }  // namespace saphira::bus

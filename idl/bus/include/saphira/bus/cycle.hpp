@@ -16,33 +16,33 @@ template <class T>
 class Input {
  public:
   virtual ~Input() = default;
-  /// The sample for N-1; live, the newest of this epoch where that one has not come; nullptr before
-  /// any has come. T::stamp says how old it is. Good until the next call of Cycle::next().
+  /// The sample for N-1; live, the newest of this epoch where that sample has not come; nullptr
+  /// before any has come. T::stamp gives its age. Valid until the next call of Cycle::next().
   virtual const T* value() const = 0;
 };
 
 /// The cycle that a step is for.
 struct Step {
   v1::RobotState robot;  ///< of cycle N, from the bridge
-  /// The robot of this epoch, as its bridge describes it. Good until the next call of the Cycle.
+  /// The robot of this epoch, as its bridge describes it. Valid until the next call of the Cycle.
   const v1::RobotDescription* description = nullptr;
   bool new_epoch = false;  ///< the first step of a connection: forget what belongs to the last one
-  bool stale = false;      ///< live: some input of N-1 had not come, an older one stands in for it
+  bool stale = false;      ///< live: an input of N-1 had not come, and an older one replaces it
 };
 
 namespace detail {
 
-/// An input, as the clockwork needs it, whatever its type.
+/// An input without its type, for the clockwork.
 class InputSlot {
  public:
   virtual ~InputSlot() = default;
-  /// Takes what has come; keeps a sample where `accept` says so.
+  /// Takes the samples that have come; keeps a sample where `accept` is true.
   virtual void drain(const std::function<bool(const v1::Stamp&)>& accept) = 0;
   /// Forgets the samples of an epoch.
   virtual void forget(std::uint64_t epoch) = 0;
-  /// The newest cycle of an epoch, up to a limit, that is here; 0 where there is none.
+  /// The newest cycle that is here, of an epoch and up to a limit; 0: none.
   virtual std::uint64_t newest(std::uint64_t epoch, std::uint64_t limit) const = 0;
-  /// Makes the sample of just that cycle the value; 0: none.
+  /// Makes the sample of exactly that cycle the value; 0: none.
   virtual void select(std::uint64_t epoch, std::uint64_t cycle) = 0;
   virtual std::size_t matched() const = 0;
   virtual const char* name() const = 0;
@@ -103,8 +103,8 @@ class TypedInput final : public Input<T>, public InputSlot {
 /// Samples of an epoch that was left are refused, counted and logged; a new epoch is adopted when
 /// the bridge's RobotState says it.
 ///
-/// A service that comes late into a running lockstep steps first the oldest cycle for which the
-/// inputs are still to be had, so that whoever waits for one of those cycles gets it.
+/// A service that joins a running lockstep late starts at the oldest cycle whose inputs are still
+/// available, so that a program waiting for that cycle gets it.
 ///
 ///   Cycle cycle(node);
 ///   auto& intentions = cycle.input(topics::kIntentions);
@@ -125,26 +125,26 @@ class Cycle {
     return result;
   }
 
-  /// Further conditions of a step, which lockstep waits for: empty where it is here, or
-  /// what is missing, in words. Asked when the inputs of that state are there and can be read.
+  /// Further conditions of a step, for which lockstep waits. Returns the missing input in words;
+  /// empty: none. Called when the inputs of that state are there and can be read.
   using Gate = std::function<std::string(const v1::RobotState& state)>;
   void gate(Gate missing);
 
   /// The step that is due now, or nothing. Never waits.
   std::optional<Step> poll();
-  /// Where no step is due: publishes the node's status (what is waited for, counters) and calls
-  /// `idle`; no more often than every 5 ms. False where it was too early to do so.
+  /// Where no step is due: publishes the node's status (the missing input, counters) and calls
+  /// `idle`, at most every 5 ms. False where it was too early to do so.
   bool look(const std::function<void()>& idle = {});
-  /// Waits for the next step; nothing when stop was requested. Looks meanwhile: whenever the node
-  /// woke without a step being due, and at least twice a second.
+  /// Waits for the next step; nothing when stop was requested. Calls look() meanwhile: on each wake
+  /// without a due step, and at least twice a second.
   std::optional<Step> next(const Stop& stop, const std::function<void()>& idle = {});
-  /// Ends the step that next() began: counts its time.
+  /// Ends the step that next() began and counts its time.
   void done();
 
   /// True where a bridge and a writer of each input have been found.
   bool connected() const;
 
-  /// The stamp for what is published in this step.
+  /// The stamp for samples that are published in this step.
   const v1::Stamp& stamp() const;
 
  private:

@@ -19,7 +19,7 @@ using InstanceKey = std::array<std::uint64_t, 2>;
 
 /// The identity of a program by its certificate, which the receiver has checked.
 struct Identity {
-  std::string name;  ///< of the machine or person, such as karen [empty: nobody that is known]
+  std::string name;  ///< of the machine or person, such as karen [empty: unknown]
   std::string role;  ///< such as operator
 
   bool operator==(const Identity&) const = default;
@@ -51,8 +51,8 @@ struct TypeInfo {
   void (*destroy)(void* sample);
   /// One JSON object, on one line; `prefix` is put behind its opening brace.
   std::string (*json)(const void* sample, const char* prefix);
-  /// Sets the members that the JSON object names; std::invalid_argument that says where it is
-  /// wrong.
+  /// Sets the members that the JSON object names. std::invalid_argument gives the place of an
+  /// error.
   void (*parse)(const std::string& json, void* sample);
 };
 
@@ -67,7 +67,7 @@ class RawWriter {
   /// False where the sample was not taken within the QoS's blocking time.
   virtual bool write(const void* sample) = 0;
   virtual bool dispose(const void* sample) = 0;
-  /// In memory, where nobody checks it: from now on the samples are of this sender.
+  /// In memory, where nobody checks identities: sets the sender of the following samples.
   virtual void set_sender(const std::shared_ptr<const Identity>& /*sender*/) {}
   virtual bool wait_acknowledged(int timeout_ms) = 0;
   virtual std::size_t matched() const = 0;
@@ -77,9 +77,9 @@ class RawWriter {
 class RawReader {
  public:
   virtual ~RawReader() = default;
-  /// Hands over each sample that has come, oldest first. A reference is good during the call only.
+  /// Hands over each sample that has come, oldest first. References are valid during the call only.
   virtual void take(const std::function<void(const void* sample, const SampleInfo&)>& each) = 0;
-  /// Writers that were matched and are not any more, since the last call.
+  /// Writers whose match has ended since the last call.
   virtual std::vector<WriterId> take_lost() = 0;
   virtual std::size_t matched() const = 0;
 };
@@ -92,7 +92,7 @@ class Writer {
   bool write(const T& sample) { return raw_->write(&sample); }
   /// Withdraws the instance that has the sample's key.
   bool dispose(const T& sample) { return raw_->dispose(&sample); }
-  /// True where every matched reliable reader has what was written; waits for it.
+  /// Waits until every matched reliable reader has all written samples; true where they have.
   bool wait_acknowledged(int timeout_ms) { return raw_->wait_acknowledged(timeout_ms); }
   std::size_t matched() const { return raw_->matched(); }
 
@@ -115,7 +115,7 @@ class Reader {
     return samples;
   }
 
-  /// As take(), without copies: each(const T&, const SampleInfo&), good during the call only.
+  /// As take(), without copies: each(const T&, const SampleInfo&), valid during the call only.
   template <class Each>
   void visit(Each&& each) {
     raw_->take([&](const void* sample, const SampleInfo& info) {

@@ -8,27 +8,27 @@
 
 namespace saphira::bus {
 
-/// Lets other programs watch and ask what runs on an in-memory bus: carries samples between that
-/// bus and a node of the DDS bus.
+/// Lets other programs watch and command the programs of an in-memory bus: carries samples between
+/// that bus and a node of the DDS bus.
 ///
-/// Outwards goes what is written inside. Periodic topics are carried only while somebody outside
-/// reads them. Inwards goes what is read inside, except what the inside itself writes periodically
-/// or keeps (cyclic, latched): that has one source. An outside writer is one inside as well: when
-/// it is lost outside, it is lost inside.
+/// Outwards: samples written inside. Periodic topics are carried only while an outside program
+/// reads them. Inwards: samples that are read inside, except periodic and latched topics (cyclic,
+/// latched) that have a writer inside, since these have one source. An outside writer has a
+/// counterpart inside: a writer lost outside is lost inside.
 ///
-/// For one thread, which carries between the steps of what is inside. When it does that is outside
-/// of any lockstep, as it is for programs that are not on the in-memory bus.
+/// For one thread, which carries samples between the steps of the programs inside. Its timing is
+/// outside of any lockstep, as for all programs that are not on the in-memory bus.
 class Gateway {
  public:
-  /// Of the topics that have endpoints inside now. `outside` outlives it.
+  /// Carries the topics that have endpoints inside now. `outside` outlives the gateway.
   Gateway(Node& outside, std::shared_ptr<MemoryBus> inside);
   ~Gateway();
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
-  /// Carries what has come on either side. Costs next to nothing where nothing has.
+  /// Carries the samples that have come on either side. Nearly free where none have.
   void carry();
-  /// Waits until something has come from outside, stop is requested or the time has run out.
+  /// Waits until a sample has come from outside, stop is requested or the time has run out.
   void wait(std::chrono::milliseconds timeout, const Stop& stop);
 
  private:

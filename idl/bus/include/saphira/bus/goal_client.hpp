@@ -12,8 +12,8 @@
 
 namespace saphira::bus {
 
-/// An agent's side of goals: asks for them, changes and cancels them, and follows what becomes of
-/// them. For the node's own thread.
+/// An agent's side of goals: asks for them, changes and cancels them, and follows their status. For
+/// the node's own thread.
 ///
 ///   Node node(options);
 ///   GoalClient goals(node, "my agent");
@@ -23,25 +23,25 @@ namespace saphira::bus {
 ///   const v1::GoalId id = goals.ask(goal);
 ///   while (...) { node.wait(500ms); goals.poll(); auto status = goals.status(id); ... }
 ///
-/// The goals live with the client: when it is destroyed without cancel, or its process dies, each
-/// goal's writer_lost says what becomes of it. A goal that has ended, or was canceled, is forgotten
-/// some minutes later, here and on the bus.
+/// The goals live with the client: when it is destroyed without cancel, or its process dies, the
+/// goal's writer_lost decides between cancel and keep. A goal that has ended, or was canceled, is
+/// forgotten some minutes later, here and on the bus.
 class GoalClient {
  public:
-  /// requester: who asks, for people. keep: how long the end of a goal of one's own is known; not
-  /// shorter than the minute in which its status is known to everybody.
+  /// requester: name of the asker, for people. keep: how long the end of one's own goal is
+  /// remembered; at least the minute in which everybody knows its status.
   GoalClient(Node& node, std::string requester,
              std::chrono::milliseconds keep = std::chrono::minutes(5));
 
   /// Asks for a goal; fills in its id and, where it names none, its requester.
   /// std::runtime_error where the bus did not take it.
   v1::GoalId ask(v1::Goal goal);
-  /// Asks for something else under the id of a goal that this client asked for.
+  /// Replaces the goal under the id of one that this client asked for.
   void change(const v1::GoalId& id, v1::Goal goal);
   /// Withdraws a goal: also one of another client, by its id.
   void cancel(const v1::GoalId& id);
 
-  /// Takes in what has come on goals/status, and forgets what ended long ago. Call after each
+  /// Takes the samples of goals/status, and forgets goals that ended long ago. Call after each
   /// Node::wait.
   void poll();
   /// All that is known of a goal, by anybody; nothing before its first status.
@@ -50,7 +50,7 @@ class GoalClient {
   std::vector<v1::GoalStatus> statuses() const;
 
   /// Waits until everything that was asked, changed and canceled has reached a reader of goals.
-  /// That it is understood is said by its status.
+  /// Acceptance of a goal shows in its status only.
   bool delivered(int timeout_ms);
 
  private:
@@ -59,8 +59,8 @@ class GoalClient {
 
   /// A goal that this client asked for.
   struct Own {
-    std::optional<Clock::time_point> over;       ///< since it is
-    std::optional<Clock::time_point> withdrawn;  ///< its status, while no end was heard
+    std::optional<Clock::time_point> over;       ///< time of its end
+    std::optional<Clock::time_point> withdrawn;  ///< withdrawal of its status, without an end
   };
 
   void forget();
@@ -72,7 +72,7 @@ class GoalClient {
   Reader<v1::GoalStatus> reader_;
   std::map<Key, v1::GoalStatus> known_;
   std::chrono::milliseconds keep_;
-  /// Their statuses are kept though the service has withdrawn them.
+  /// Statuses are kept after the service has withdrawn them.
   std::map<Key, Own> own_;
 };
 
@@ -80,7 +80,7 @@ class GoalClient {
 bool ended(v1::GoalState state);
 /// The state in a word, such as "underway".
 std::string describe(v1::GoalState state);
-/// "1f3a...:2" : the id as people type it. parse_goal_id reads it; nothing where it is not one.
+/// The id as people type it, such as "1f3a...:2". parse_goal_id reads it; nothing: not an id.
 std::string describe(const v1::GoalId& id);
 std::optional<v1::GoalId> parse_goal_id(const std::string& text);
 /// One line: state, step, progress, reason.

@@ -38,15 +38,15 @@ class Echo {
   const TypeInfo* type_ = nullptr;
 };
 
-/// Writes one topic by its name; samples are JSON objects as Echo tells them. What an object does
-/// not name is 0, false or empty.
+/// Writes one topic by its name. Samples are JSON objects as Echo gives them. Members that an
+/// object does not name are 0, false or empty.
 class Scribe {
  public:
   /// Throws std::runtime_error that names the known topics where `topic` is none of them.
   Scribe(Node& node, const std::string& topic);
   ~Scribe();
 
-  /// Throws std::invalid_argument that says where the object is wrong; nothing is written then.
+  /// std::invalid_argument gives the place of an error in the object; nothing is written then.
   /// False where the bus did not take the sample.
   bool write(const std::string& json);
   /// Withdraws the instance that was written last.
@@ -60,8 +60,8 @@ class Scribe {
   std::shared_ptr<void> sample_;
 };
 
-/// Sets what a JSON object names in a sample of the contract, such as a v1::MotorCommand. As
-/// Scribe::write throws.
+/// Sets the members that a JSON object names in a sample of the contract, such as a
+/// v1::MotorCommand. Throws as Scribe::write.
 template <class T>
 void from_json(const std::string& json, T& sample) {
   type_of<T>().parse(json, &sample);
@@ -82,7 +82,7 @@ struct EndpointEntry {
   std::string liveliness;  ///< automatic, or the kind with its lease, such as manual_by_topic 0.3 s
   std::string ownership;   ///< shared, exclusive
   std::string id;          ///< GUID in hexadecimal: unique
-  bool known_type = true;  ///< false: the topic is ours and the type is another
+  bool known_type = true;  ///< false: our topic with another type
 };
 
 /// Two endpoints of one topic and one robot that do not hear each other.
@@ -92,8 +92,8 @@ struct Mismatch {
   std::string why;  ///< such as "reliability: offered best effort, requested reliable"
 };
 
-/// The participants of the bus, without this node. Discovery goes on in the background: what is
-/// there after some tenths of a second on one machine is usually all.
+/// The participants of the bus, without this node. Discovery goes on in the background; on one
+/// machine it is usually complete after some tenths of a second.
 class Census {
  public:
   /// From now on a change of the census wakes the node too.

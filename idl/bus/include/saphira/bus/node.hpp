@@ -17,7 +17,7 @@ namespace saphira::bus {
 enum class Profile {
   host,  ///< this machine alone: loopback only
   lan,   ///< multicast discovery on every interface, or the one that is named
-  wan,   ///< no multicast: the listed peers, and the machines that they hear
+  wan,   ///< no multicast: the listed peers, and the machines that those hear
 };
 
 /// Instead of a folder of credentials.
@@ -32,9 +32,9 @@ struct NodeOptions {
       peers;              ///< wan: addresses of other machines; one that all name is enough
   std::string interface;  ///< lan, wan: address of the one interface to use; empty: all
   bool lockstep = false;  ///< cyclic topics lose nothing and steps wait for their inputs
-  std::string security;   ///< folder of credentials [empty or kOpenBus: a bus that is open to all]
-  std::string program;    ///< which program it is, for its role [empty: as its name]
-  bool dry_run = false;   ///< checks the credentials, and joins nothing: a bus of its own in memory
+  std::string security;   ///< folder of credentials [empty or kOpenBus: an open bus]
+  std::string program;    ///< program name, which gives its role [empty: as its name]
+  bool dry_run = false;   ///< checks the credentials only; joins nothing but a bus in memory
 };
 
 class Node;
@@ -56,7 +56,7 @@ std::shared_ptr<MemoryBus> make_memory_bus();
 /// The counts that a node publishes about itself.
 struct NodeHealth {
   std::uint32_t incompatible = 0;  ///< endpoints that did not match for their QoS or their type
-  std::string incompatible_text;   ///< the newest of them in words: topic, policy, who
+  std::string incompatible_text;   ///< the newest of them in words: topic, policy, endpoint
 };
 
 /// One program on the bus (a DDS participant). Makes endpoints, wakes its one thread when something
@@ -85,29 +85,29 @@ class Node {
   int wake_fd() const;
   /// Makes wake_fd unreadable again. Call before taking from the readers.
   void clear_wake();
-  /// Makes wake_fd readable: from any thread, for what comes another way than over the bus.
+  /// Makes wake_fd readable, from any thread: for work that does not come over the bus.
   void wake();
   /// Waits for wake_fd, stop or the timeout; clears the wake. False when the time ran out.
   bool wait(std::chrono::milliseconds timeout, const Stop* stop = nullptr);
 
-  /// Watches for a wake without sleeping, and without keeping the processor from others: for who
-  /// knows that an answer is a fraction of a millisecond away, which a sleep and a wake would
-  /// lengthen by half. True where there is one; it is not cleared.
+  /// Polls for a wake without sleeping, and without keeping the processor from others. For callers
+  /// that expect an answer within a fraction of a millisecond, which a sleep and a wake would
+  /// lengthen by half. True where there is a wake, which stays set.
   bool spin(std::chrono::microseconds limit);
-  /// Until the next wait(): what comes need not wake this thread, which is at work and will look by
-  /// itself. Not for who polls wake_fd.
+  /// Until the next wait(): incoming samples need not wake this thread, which is at work and will
+  /// look by itself. Not for callers that poll wake_fd.
   void rouse();
 
-  /// For a program that others do not hear, or that does not hear them: a new participant and all
-  /// endpoints again, soon. Readers and writers stay what they are to the program (README.md).
+  /// For a program that cannot hear others or be heard by them: makes a new participant and all
+  /// endpoints again, soon. The program's readers and writers stay valid (README.md).
   void begin_anew();
 
   /// wan: addresses of named peers from which no program was heard in the last minute.
   std::vector<std::string> silent_peers() const;
-  /// lan, wan: in words, the address of this machine or of a named peer that is waited for. Until
-  /// it comes, other machines are not reached; the programs of this machine are.
+  /// lan, wan: in words, the missing address of this machine or of a named peer. Until the address
+  /// comes, other machines are not reached; the programs of this machine are.
   std::vector<std::string> network_waits() const;
-  /// With security, what this program is; none on an open bus.
+  /// With security, the identity of this program; none on an open bus.
   std::optional<Identity> identity() const;
 
   const NodeOptions& options() const;
@@ -115,8 +115,8 @@ class Node {
   std::uint64_t instance() const;
   NodeHealth health() const;
 
-  /// The status that is published; the program sets what it knows, the node adds identity, health,
-  /// age, CPU and memory.
+  /// The published status. The program sets its own members; the node adds identity, health, age,
+  /// CPU and memory.
   v1::ServiceStatus& status();
   /// Publishes the status when a second of the wall clock has passed since the last time, or its
   /// state or reason has changed. Call at least twice a second from the node's thread: a thread

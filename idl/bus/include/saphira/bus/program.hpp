@@ -11,7 +11,7 @@ namespace saphira::bus {
 /// Exit codes of every program.
 enum Exit : int {
   kExitOk = 0,
-  kExitFailed = 1,  ///< did what was asked, and the outcome is a failure (goal not reached)
+  kExitFailed = 1,  ///< ran, and the outcome is a failure (goal not reached)
   kExitUsage = 2,   ///< an option or a file that a person wrote is wrong; stderr says where. Of a
                     ///< service: before its first cycle
   kExitBroken = 3,  ///< could not run: no bus, no memory, our own bug

@@ -2,8 +2,8 @@
 
 namespace saphira::bus {
 
-/// Quality of service by name. The one table of what each name means is in src/qos.cpp; why, in
-/// idl/README.md. No endpoint sets a policy by itself, so a writer and a reader of a topic agree.
+/// Quality of service by name. src/qos.cpp has the table of policies, idl/README.md the reasons. No
+/// endpoint sets a policy by itself, so a writer and a reader of a topic agree.
 enum class Qos {
   cyclic,    ///< periodic state; only the newest counts (in lockstep: none is lost)
   motion,    ///< motor commands; as cyclic, the age is checked by the receiver
@@ -13,7 +13,7 @@ enum class Qos {
   event,     ///< the last few events, also for late joiners
   status,    ///< keyed presence of programs
   presence,  ///< a heartbeat whose loss is noticed within a second
-  recall,    ///< the last minute of a cyclic topic, for who asks for it
+  recall,    ///< the last minute of a cyclic topic, on demand
 };
 
 }  // namespace saphira::bus

@@ -34,7 +34,7 @@ class RequestClient {
 
   /// Asks without waiting: the number of the request. Its answers come out of poll().
   std::uint64_t send(v1::Request request);
-  /// The answers to what this client asked, since the last call, oldest first.
+  /// The answers to this client's requests, since the last call, oldest first.
   std::vector<v1::Answer> poll();
 
  private:

@@ -6,8 +6,8 @@
 
 namespace saphira::bus {
 
-/// The writer of a sample, for people: what it says of itself, and with security before that who
-/// it is: "karen (operator), saphira drive".
+/// The writer of a sample, for people: its own name, and with security its identity before that:
+/// "karen (operator), saphira drive".
 inline std::string named(const std::string& says, const SampleInfo& info) {
   if (!info.sender)
     return says;

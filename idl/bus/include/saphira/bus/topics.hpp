@@ -12,7 +12,7 @@ struct Topic {
   Qos qos;
 };
 
-/// A topic of requests, and the one on which they are answered.
+/// A topic of requests, and the topic of their answers.
 struct RequestTopic : Topic<v1::Request> {
   Topic<v1::Answer> answers;
 };

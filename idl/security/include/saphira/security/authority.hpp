@@ -43,7 +43,7 @@ class Authority {
   std::string revoke(const std::string& name);
 
   std::string folder_of(const std::string& member) const;
-  /// The list of what was revoked, to be carried to all machines.
+  /// The list of revoked certificates, to be carried to all machines.
   std::string revoked_list() const;
 
  private:

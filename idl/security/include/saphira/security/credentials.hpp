@@ -37,9 +37,8 @@ struct Credentials {
 };
 
 /// The credentials in a folder for a program. Where the roles of the site name it, those of that
-/// role; for any other program the first of operator, agent, observer and recorder that is there.
-/// std::invalid_argument that names the file, says what is wrong, and what to do. `now`: [s since
-/// 1970].
+/// role; for any other program the first of operator, agent, observer and recorder in the folder.
+/// std::invalid_argument that names the file, the fault and the remedy. `now`: [s since 1970].
 Credentials load_credentials(const std::string& folder, const std::string& program,
                              std::int64_t now);
 

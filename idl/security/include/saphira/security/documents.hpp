@@ -8,9 +8,9 @@
 
 namespace saphira::security {
 
-/// The rules that every program of a site demands of every other (DDS Security 1.1, 9.4.1.2): who
-/// is not authenticated is not heard; every topic has its readers and writers; discovery and every
-/// message of a topic are encrypted, with a key that only those have who may read the topic.
+/// The rules that every program of a site demands of every other (DDS Security 1.1, 9.4.1.2).
+/// Participants without authentication are not heard. Every topic has its readers and writers.
+/// Discovery and all messages are encrypted; only the permitted readers of a topic have its key.
 std::string governance();
 
 /// The permissions of a member, until when [s since 1970, UTC] (DDS Security 1.1, 9.4.1.3).

@@ -11,7 +11,7 @@ namespace saphira::security {
 struct Role {
   std::string name;
   std::string about;                  ///< for people
-  std::vector<std::string> programs;  ///< those that have it; others have what their folder holds
+  std::vector<std::string> programs;  ///< for other programs see load_credentials()
 };
 
 /// Which roles may write and read a topic.
@@ -21,7 +21,7 @@ struct TopicRule {
   std::set<std::string> readers;
 };
 
-/// The roles of a site and what each may do: config/security/roles.yaml.
+/// The roles of a site and their permissions: config/security/roles.yaml.
 struct Roles {
   std::string text;  ///< the file
   std::vector<Role> roles;

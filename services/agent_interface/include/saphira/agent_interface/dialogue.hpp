@@ -30,29 +30,29 @@ struct Said {
   UtteranceId answers{};  ///< 0, 0: to none
   std::string listener;
   std::string text;
-  bool end = false;  ///< nothing more follows to that utterance
+  bool end = false;  ///< no more answers to that utterance follow
 };
 
-/// A goal on the bus: who asked, and its number there.
+/// A goal on the bus: its asker, and its number there.
 using GoalRef = std::pair<std::uint64_t, std::uint64_t>;
 
 /// Epoch and cycle of the robot.
 using CycleRef = std::pair<std::uint64_t, std::uint64_t>;
 
-/// A goal that the dialogue wants; `tag` is how it calls it.
+/// A goal that the dialogue wants; `tag` is its name within the dialogue.
 struct WantedGoal {
   std::uint64_t tag = 0;
   std::string functor;
   Arguments arguments;
   double deadline = 0.0;  ///< [s]; 0: none
-  bool lasting = false;   ///< a task, which goes on while the dialogue is started again
+  bool lasting = false;   ///< a task, which continues while the dialogue restarts
 };
 
-/// A claim of what is true, for activities. Empty value: taken back.
+/// A claim for activities. Empty value: withdrawn.
 struct Claimed {
   std::string name;
   std::string value;   ///< a text
-  std::string source;  ///< who said what, and when, for people
+  std::string source;  ///< speaker, words and time, for people
 };
 
 /// A new name of an artifact of the map.
@@ -62,9 +62,9 @@ struct Naming {
 
 /// The world as the dialogue knows it, beside the advice.
 struct Situation {
-  std::optional<Pose> pose_in_map;  ///< of the robot; none: not known
+  std::optional<Pose> pose_in_map;  ///< of the robot; none: unknown
   maps::Map map;
-  std::string asked_about;  ///< what an activity has asked people about; empty: nothing
+  std::string asked_about;  ///< the question of an activity to people; empty: none
 };
 
 /// The state of a goal that the dialogue asked for.
@@ -74,8 +74,8 @@ struct Outcome {
   std::string reason;
 };
 
-/// Takes what people say to meanings, and these to goals, answers and knowledge (paper 4). It says
-/// what it has understood before it acts. A value: no clock, bus or file.
+/// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
+/// States its interpretation before it acts. A value: no clock, bus or file.
 class Dialogue {
  public:
   explicit Dialogue(Grammar grammar) : grammar_(std::move(grammar)) {}
@@ -87,39 +87,40 @@ class Dialogue {
     std::vector<WantedGoal> goals;
     std::vector<Claimed> claims;
     std::vector<Naming> namings;
-    bool learned = false;  ///< knowledge() is another, or what was heard last
+    bool learned = false;  ///< knowledge(), or the newest utterance, has changed
   };
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
-  /// A lasting goal was asked for, by that name. save() keeps it.
+  /// A lasting goal was asked for, under that name. save() includes it.
   void asked(std::uint64_t tag, const GoalRef& goal);
-  /// The lasting goals whose end is waited for, by tag.
+  /// The lasting goals that have not ended, by tag.
   std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const;
-  /// An activity has something to say to people. What was said before a restart is not said again.
+  /// An activity's message to people. Messages from before a restart are not repeated.
   Outputs says(const std::string& text, const CycleRef& when);
-  /// Takes advice back, by its number. Nothing known of that number: says so.
+  /// Withdraws advice by its number. Says so where that number is unknown.
   Outputs forget(std::uint64_t number);
 
   const Knowledge& knowledge() const { return knowledge_; }
-  /// Claims for activities that follow from all advice: made anew after a start.
+  /// The claims for activities that follow from all advice, after a start.
   std::vector<Claimed> claims() const;
 
-  /// State that outlives a restart: the knowledge, which utterances were heard, and lasting goals.
+  /// The state that outlives a restart: the knowledge, the ids of heard utterances, and lasting
+  /// goals.
   std::string save() const;
-  /// The number of lines that could not be read.
+  /// Returns the number of unreadable lines.
   std::size_t restore(std::string_view text);
 
  private:
-  struct Doubt {  ///< advice that contradicts, until its speaker says yes or no
+  struct Doubt {  ///< contradicting advice, until its speaker says yes or no
     Advice advice;
     std::string speaker;
   };
   struct Open {
     std::uint64_t tag = 0;
-    std::string what;  ///< as it was paraphrased
+    std::string what;  ///< the paraphrase
     UtteranceId answers{};
     std::string listener;
-    GoalRef goal{};  ///< of one that lasts
+    GoalRef goal{};  ///< the goal of a lasting one
   };
 
   void act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -139,11 +140,11 @@ class Dialogue {
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
             Arguments arguments, Outputs& out, double deadline = 0.0, bool lasting = false);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
-  /// The place to bring things to for "here"; empty: none.
+  /// The destination "here" of things to bring; empty: none.
   std::string bring_to(const Utterance& utterance, const Situation& situation) const;
-  /// The place of the map that a name means; empty: none.
+  /// The place of the map with that name; empty: none.
   std::string place(const std::string& name, const Situation& situation) const;
-  /// The place that slots mean: "this", a side, a name, or somebody's office. Says what is wrong.
+  /// The place that slots stand for: "this", a side, a name, or a person's office. Reports errors.
   std::string referred(const Meaning& meaning, const Situation& situation, Outputs& out,
                        std::uint32_t& artifact, std::string& wrong) const;
 
@@ -154,12 +155,12 @@ class Dialogue {
   std::optional<Doubt> doubt_;
   std::vector<Open> open_;
   std::uint64_t tag_ = 0;
-  CycleRef said_{};                 ///< of what an activity said last
+  CycleRef said_{};                 ///< of an activity's newest message
   CycleRef before_{};               ///< the same, before a restart
-  std::vector<UtteranceId> heard_;  ///< the newest, so that none is acted on twice
+  std::vector<UtteranceId> heard_;  ///< the newest, so that none is carried out twice
 };
 
-/// Where the robot is, in the map's words: a room, otherwise a corridor; empty: neither.
+/// The robot's place in the map's words: a room, otherwise a corridor; empty: neither.
 std::string place_at(const maps::Map& map, const Vec2& position);
 
 }  // namespace saphira::agent_interface

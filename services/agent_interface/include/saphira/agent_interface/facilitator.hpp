@@ -11,36 +11,36 @@
 
 namespace saphira::agent_interface {
 
-/// Something that an agent can be asked for.
+/// A request that an agent can answer.
 struct Capability {
   Functor functor;
-  bool acts = false;  ///< it changes something, so it is asked of one agent, once
+  bool acts = false;  ///< changes something: one agent is asked, once
   double cost = 0.0;  ///< the cheapest are asked first
 };
 
 struct AgentInfo {
   std::uint64_t id = 0;
   std::string name;
-  std::string address;  ///< Request.service that means it
+  std::string address;  ///< Request.service of this agent
   std::vector<Capability> capabilities;
 };
 
 enum class TriggerKind { time, data, event };
 
-/// An action that is asked for when something is so (after OAA).
+/// An action that is requested when a condition holds (after OAA).
 struct Trigger {
   std::pair<std::uint64_t, std::uint64_t> id;
-  std::string source;  ///< who set it
+  std::string source;  ///< the requester
   TriggerKind kind = TriggerKind::time;
   double period = 1.0;  ///< [s] of time and data
   std::string condition;
   Arguments condition_arguments;
   std::string action;
-  Arguments action_arguments;  ///< unbound ones are filled with what the condition found
-  std::uint64_t times = 0;     ///< so often at most; 0: without end
+  Arguments action_arguments;  ///< unbound ones are filled from the condition's result
+  std::uint64_t times = 0;     ///< firings at most; 0: without end
 };
 
-/// An answer on its way to who asked, with the agent that gave it.
+/// An answer on its way to the asker, with the agent that gave it.
 struct Solved {
   std::uint64_t asker = 0;
   std::uint64_t number = 0;
@@ -48,23 +48,23 @@ struct Solved {
   Answer answer;
 };
 
-/// Matches requests with the agents that can answer them, collects the answers, and asks for the
+/// Matches requests with the agents that can answer them, collects the answers, and requests the
 /// actions of triggers (manual 2.2.8). A value without clock or bus: `now` is seconds of any clock
 /// that never goes back.
 class Facilitator {
  public:
-  /// self: the asker of what triggers ask for.
+  /// self: the asker in requests of triggers.
   explicit Facilitator(std::uint64_t self) : self_(self) {}
 
   void announce(const AgentInfo& agent);
-  /// Its open requests go to another agent, or are answered with the reason.
+  /// The agent's open requests go to another agent, or are answered with the reason.
   void leave(std::uint64_t agent);
 
   void set(const Trigger& trigger, double now);
   void take_back(const std::pair<std::uint64_t, std::uint64_t>& trigger);
   void happened(const std::string& functor, const Arguments& arguments, double now);
 
-  /// A request as it came; one that is known is not taken twice.
+  /// A new request; a known one is ignored.
   void ask(const Request& request, double now);
   /// The answer of the agent at an address.
   void hear(const std::string& address, std::uint64_t asker, std::uint64_t number,
@@ -75,9 +75,9 @@ class Facilitator {
     std::vector<Solved> solved;     ///< to askers
     std::vector<std::string> notes;
   };
-  /// Deadlines, triggers, and what has not been heard: asked again. Call after all of the above.
+  /// Handles deadlines and triggers, and repeats unanswered requests. Call after all of the above.
   Outputs step(double now);
-  /// When step() has something to do though nothing comes; none: nothing is open.
+  /// The time at which step() has work without new input; none: no open work.
   std::optional<double> due() const;
 
   std::size_t open() const { return open_.size(); }
@@ -88,25 +88,25 @@ class Facilitator {
   struct Asked {
     std::uint64_t agent = 0;
     bool acts = false;
-    double again = 0.0;  ///< when it is asked again, unless something was heard
+    double again = 0.0;  ///< time of the next repetition without an answer
     bool heard = false;
   };
   struct Open {
     Request request;
     std::size_t wanted = 1;  ///< 0: of each
     double end = 0.0;
-    std::vector<std::uint64_t> left{};  ///< agents that can, and were not asked
+    std::vector<std::uint64_t> left{};  ///< capable agents that were not asked
     std::vector<Asked> asked{};         ///< and have not answered
     std::size_t got = 0;
-    Answer trouble{AnswerCode::nobody};  ///< the newest answer that is no good
+    Answer trouble{AnswerCode::nobody};  ///< the newest failure
     std::string troubler{};
-    std::optional<Id> trigger{};  ///< whose condition it is
+    std::optional<Id> trigger{};  ///< the trigger whose condition it is
   };
   struct Armed {
     Trigger trigger;
     double next = 0.0;
     std::uint64_t fired = 0;
-    std::optional<Arguments> found{};  ///< at the last look
+    std::optional<Arguments> found{};  ///< at the last check
   };
 
   std::optional<Answer> candidates(Open& open) const;
@@ -124,8 +124,7 @@ class Facilitator {
   double now_ = 0.0;
   std::map<std::uint64_t, AgentInfo> agents_;
   std::map<Id, Open> open_;
-  std::vector<std::pair<Id, Solved>>
-      ended_;  ///< newest ends, which are said again where asked again
+  std::vector<std::pair<Id, Solved>> ended_;  ///< newest ends, repeated on a repeated request
   std::map<Id, Armed> triggers_;
   Outputs out_;
 };

@@ -19,7 +19,7 @@ struct Meaning {
   friend bool operator==(const Meaning&, const Meaning&) = default;
 };
 
-/// "move(direction=forward, distance=2)"
+/// Such as "move(direction=forward, distance=2)".
 std::string describe(const Meaning& meaning);
 
 /// The words of a text, as the grammar compares them: small letters, without punctuation; "Karen's"
@@ -54,26 +54,26 @@ class Grammar {
     bool addressed = false;         ///< it began with the keyword
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
   };
-  /// The meaning of a text. replies: also what needs no keyword, since the robot has asked
-  /// something.
+  /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
+  /// asked a question.
   Understood understand(std::string_view text, bool replies = false) const;
 
-  /// The meaning in words, for the robot to say before it acts; empty where the file has none.
+  /// The meaning in words, for the robot to say before it acts; empty without one in the file.
   std::string paraphrase(const Meaning& meaning) const;
   const std::vector<std::string>& keywords() const { return keywords_; }
-  /// Words that may be the name of a person, place or thing; `{slot}` takes any other one in
-  /// writing, too.
+  /// Words that may be the name of a person, place or thing. In writing, `{slot}` takes any other
+  /// name, too.
   const std::vector<std::string>& names() const { return names_; }
 
-  /// All that is understood, as it is spoken: with these names where the grammar has a name, and
-  /// with the words of its lists where it has a number. replies: also what needs no keyword.
+  /// All accepted phrases, as they are spoken: with these names where the grammar has a name, and
+  /// with the words of its lists where it has a number. replies: also rules without the keyword.
   WordGraph graph(const std::vector<std::string>& names, bool replies) const;
 
   struct Node {
     enum class Kind { word, list, name, number, sequence, choice, optional };
     Kind kind = Kind::sequence;
     std::string text{};  ///< of a word, or the name of a list
-    std::string slot{};  ///< that is filled
+    std::string slot{};  ///< the slot to fill
     std::vector<Node> parts{};
   };
 
@@ -83,14 +83,14 @@ class Grammar {
     std::string value;
   };
   struct Rule {
-    Meaning meaning;  ///< slots with their values where nothing is heard of them
+    Meaning meaning;  ///< slots with their default values
     bool reply = false;
     std::string paraphrase;
     std::vector<Node> patterns{};
   };
   struct Match {
     std::size_t end = 0;
-    std::size_t literal = 0;  ///< words that the pattern itself has
+    std::size_t literal = 0;  ///< words of the pattern itself
     std::map<std::string, std::string> slots{};
   };
   class Reader;

@@ -8,7 +8,7 @@
 
 namespace saphira::agent_interface {
 
-/// Knowledge that the robot has because somebody said it (paper 4.5).
+/// A fact that somebody told the robot (paper 4.5).
 struct Advice {
   enum class Kind { office_of, person_at, knows_where, hazard };
   std::uint64_t number = 0;
@@ -23,26 +23,27 @@ struct Advice {
   friend bool operator==(const Advice&, const Advice&) = default;
 };
 
-/// "office_of"
+/// Such as "office_of".
 const char* describe(Advice::Kind kind);
 /// As a sentence: "EJ-231 is karen's office".
 std::string describe(const Advice& advice);
 
 class Knowledge {
  public:
-  /// The newest about somebody or something of a kind; of a hazard: at that place.
+  /// The newest advice of a kind about a subject; of a hazard: at that place.
   const Advice* find(Advice::Kind kind, std::string_view about, std::string_view place = {}) const;
-  /// Takes the place of what was known of the same; gives it its number.
+  /// Replaces advice of the same kind and subject; sets its number.
   const Advice& learn(Advice advice);
-  /// The advice that is forgotten now; nothing where it was never known.
+  /// Forgets the advice and returns it; nothing for an unknown number.
   std::optional<Advice> forget(std::uint64_t number);
   const std::vector<Advice>& all() const { return all_; }
 
-  /// Where a person may be: where somebody saw them, otherwise their office. Empty: not known.
+  /// The probable place of a person: the place of a sighting, otherwise their office. Empty:
+  /// unknown.
   std::string place_of(std::string_view person) const;
 
-  /// As text, a sealed line for each (saphira/base/durable.hpp). What cannot be read is left out;
-  /// the number of lines that were.
+  /// As text, a sealed line for each (saphira/base/durable.hpp). Unreadable lines are left out;
+  /// restore returns their number.
   std::string save() const;
   std::size_t restore(std::string_view text);
 

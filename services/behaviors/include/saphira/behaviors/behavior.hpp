@@ -30,17 +30,17 @@ struct RobotNow {
   Pose pose_in_odom;
   double velocity = 0.0;                ///< [m/s]
   double rotation_velocity = 0.0;       ///< [rad/s]
-  double target_heading_in_odom = 0.0;  ///< [rad] that the robot turns to
+  double target_heading_in_odom = 0.0;  ///< [rad] the setpoint
   bool left_stalled = false;            ///< a wheel pushes against something
   bool right_stalled = false;
 };
 
 using lps::Side;
 
-/// Values that behaviors tell each other within a cycle: lower priorities are updated first, so
-/// that those which avoid know what those below them want. Empty again every cycle.
+/// Values that behaviors pass to each other within a cycle: lower priorities are updated first, so
+/// that avoiding behaviors know the wishes below them. Cleared every cycle.
 struct Shared {
-  /// Where the robot would go if nothing were in the way: [rad] from its heading, and how far [m].
+  /// The robot's course without obstacles: [rad] from its heading, and how far [m].
   std::optional<double> goal_bearing;
   double goal_distance = 0.0;
   /// sfPreferredTurnDir (manual 7.8): the side to turn to where the front is blocked.
@@ -63,13 +63,13 @@ struct Rule {
   std::string name;
   Fuzzy strength = 0.0;  ///< of the antecedent
   Action action = Action::speed;
-  /// Turns: [rad], as large as the turn, not negative. Speed: [m/s] the setpoint. Accelerate and
+  /// Turns: [rad], the size of the turn, not negative. Speed: [m/s] the setpoint. Accelerate and
   /// decelerate: [m/s] from the present velocity, not negative.
   double value = 0.0;
 };
 
-/// How much a behavior wants to have a say on each channel, and how it stands with its goal (the
-/// Activity section of manual 7.2).
+/// The behavior's weight on each channel, and the state of its goal (the Activity section of manual
+/// 7.2).
 struct Activity {
   Fuzzy turn = 0.0;
   Fuzzy speed = 0.0;
@@ -84,7 +84,7 @@ struct Lane {
   double right = 0.0;  ///< [m]
 };
 
-/// A part of the surroundings in which a behavior has found something, to be drawn into the LPS
+/// A part of the surroundings in which a behavior has found an object, to be drawn into the LPS
 /// (manual 2.3.2.5) [m] [robot].
 struct Area {
   double x_from = 0.0;
@@ -100,12 +100,12 @@ struct Evaluation {
   std::vector<std::pair<std::string, double>> variables = {};
   std::optional<Lane> lane = {};
   std::vector<Area> areas = {};
-  std::string trouble = {};  ///< what went wrong in this cycle; empty: nothing
+  std::string trouble = {};  ///< the errors of this cycle; empty: none
 };
 
-/// One instance of a behavior: the update function of manual 7.6.2, and what it remembers.
+/// One instance of a behavior: the update function of manual 7.6.2, and its memory.
 ///
-/// Rules with opposite consequents are to have disjoint antecedents: the blend averages them (paper
+/// Rules with opposite consequents should have disjoint antecedents: the blend averages them (paper
 /// 3.1, footnote 3).
 class Behavior {
  public:
@@ -115,20 +115,20 @@ class Behavior {
   /// Every cycle in which the behavior runs. Reads the LPS, computes the fuzzy variables and from
   /// them the rules. Parameters may have changed since the last time.
   virtual Evaluation update(const Parameters& parameters, const Context& context) = 0;
-  /// This one takes the place of `old`, which ran until now by an earlier version of the schema.
-  /// Called before init. May keep what `old` remembers.
+  /// This instance replaces `old`, which ran with an earlier version of the schema. Called before
+  /// init. May keep the memory of `old`.
   virtual void take_over(const Behavior& old);
 };
 
-/// A rule as it is written, for people.
+/// A rule in its written form, for people.
 struct RuleSpec {
   std::string name;
   std::string antecedent;  ///< such as "front_left And Not front_right"
   std::string action;      ///< such as "Turn Right Sharply"
 };
 
-/// A kind of behavior: its parameters and how an instance is made. Those written in C++ are made by
-/// a function; those written in the behavior language bring an interpreter along (language.hpp).
+/// A kind of behavior: its parameters and its factory. For C++ behaviors that is a function;
+/// behaviors in the behavior language have an interpreter (language.hpp).
 struct Schema {
   std::string name;
   std::string summary;
@@ -141,13 +141,13 @@ struct Schema {
 
 class Registry {
  public:
-  /// A schema of the same name is replaced. The executive puts the new version in the place of
-  /// instances that run, see Behavior::take_over.
+  /// A schema of the same name is replaced. The executive replaces running instances by the new
+  /// version, see Behavior::take_over.
   void add(Schema schema);
-  /// Instances that run stay. False where there is none.
+  /// Running instances stay. False for an unknown name.
   bool remove(const std::string& name);
-  /// By its name as it is written; otherwise without regard to case, "-", "_" and a leading "sf":
-  /// "follow-corridor" and "sfFollowCorridor" are FollowCorridor. nullptr where there is none.
+  /// By its exact name; otherwise without regard to case, "-", "_" and a leading "sf":
+  /// "follow-corridor" and "sfFollowCorridor" are FollowCorridor. nullptr: none.
   const Schema* find(const std::string& name) const;
   std::vector<std::string> names() const;
   /// Another number after each change.
@@ -159,8 +159,8 @@ class Registry {
   std::uint64_t revision_ = 0;
 };
 
-/// The predefined behaviors of manual 7.8: those of config/behaviors, as they were when it was
-/// first called. std::runtime_error where they cannot be had.
+/// The predefined behaviors of manual 7.8: those of config/behaviors at the first call.
+/// std::runtime_error where they cannot be loaded.
 Registry predefined();
 
 }  // namespace saphira::behaviors

@@ -10,8 +10,8 @@
 
 namespace saphira::behaviors {
 
-/// The behaviors service without the bus: one step a cycle, from what came to what goes out.
-/// Everything that is decided on the way to the executive is decided here.
+/// The behaviors service without the bus: one step a cycle, from inputs to outputs. All decisions
+/// before the executive are made here.
 class Core {
  public:
   struct Inputs {
@@ -20,16 +20,16 @@ class Core {
     bool new_frame = false;  ///< the odom frame has another origin since the last step
     RobotNow robot;
     std::vector<lps::SonarReading> sonars;  ///< new ones, in firing order
-    std::optional<Intent> intent;           ///< the newest, of whatever frame
-    /// [s] How old the commands of this service were when the bridge obeyed one, as it says;
-    /// nothing where it says nothing of them.
+    std::optional<Intent> intent;           ///< the newest, of any frame
+    /// [s] The age of this service's command when the bridge used it, from the bridge's grant;
+    /// nothing where the grant is for another driver.
     std::optional<double> command_age;
   };
   struct Outputs {
     Output output;
     std::uint64_t number = 0;  ///< of the motor command; counts up
     Notes notes;
-    std::string degraded;  ///< why the robot does not drive as it should; empty: it does
+    std::string degraded;  ///< the reason for restricted driving; empty: none
   };
 
   Outputs step(const Inputs& inputs);
@@ -42,7 +42,7 @@ class Core {
   void tell(const Output& output, Outputs& outputs);
 
   ProcessTable processes_;
-  // sfInitControlProcs. Suspended it puts all behaviors away, and nobody drives.
+  // sfInitControlProcs. While suspended, it removes all behaviors, and releases the robot.
   Process& execution_ =
       processes_.add("execute-current-behaviors", "evaluates the behaviors, and drives the robot");
   Executive executive_{Registry{}, RobotModel{}};

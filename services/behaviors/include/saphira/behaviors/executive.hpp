@@ -12,7 +12,7 @@
 
 namespace saphira::behaviors {
 
-/// A behavior that is to be there. The name is unique in its set.
+/// An intended behavior. The name is unique in its set.
 struct Intended {
   std::string name;
   std::string schema;
@@ -23,7 +23,7 @@ struct Intended {
   bool operator==(const Intended&) const = default;
 };
 
-/// All that is intended, as of some cycle.
+/// All intended behaviors, as of some cycle.
 struct Intent {
   std::uint64_t cycle = 0;
   bool control = false;  ///< sfBehaviorControl (manual 7.4)
@@ -35,24 +35,24 @@ struct Inputs {
   RobotNow robot;
   std::vector<lps::SonarReading> sonars;  ///< new ones, in firing order
   const Intent* intent = nullptr;         ///< the newest; nullptr where none has come
-  /// [s] from the cycle that a command answers until it comes to work, beyond the ordinary: what
-  /// the network takes from the robot and back to it.
+  /// [s] from a command's state to the command's effect, beyond the ordinary: the delay of the
+  /// network from the robot and back.
   double delay = 0.0;
 };
 
-/// One behavior as it stands.
+/// The state of one behavior.
 struct BehaviorState {
   std::string name;
   std::string schema;
   bool running = false;
-  Blended blended;  ///< its rules and its share; empty when it is not running
+  Blended blended;  ///< its rules and its share; empty while it is not running
 };
 
-/// A behavior that was asked for and could not be made.
+/// A requested behavior that could not be made.
 struct Missing {
   std::string name;  ///< of the instance
   std::string reason;
-  bool running = true;  ///< it was to run
+  bool running = true;  ///< it should run
 };
 
 struct Output {
@@ -60,39 +60,38 @@ struct Output {
   std::vector<BehaviorState> behaviors;  ///< by priority, highest first; then by name
   Blend blend;
   std::vector<Missing> missing;
-  std::string trouble;  ///< all that is wrong, in words; empty: nothing
+  std::string trouble;  ///< all errors, in words; empty: none
 
-  /// The motor setpoints. Not active: the robot is not to be driven by behaviors now.
+  /// The motor setpoints. Not active: the behaviors do not drive the robot now.
   bool active = false;
   std::string inactive_reason;
   double speed = 0.0;            ///< [m/s]
-  double contact_speed = 0.0;    ///< [m/s] contact is meant, at no more than this; 0: none is
+  double contact_speed = 0.0;    ///< [m/s] limit for wanted contact; 0: none
   double heading_in_odom = 0.0;  ///< [rad] (-pi, pi]
 
   double input_age = 0.0;     ///< [s] of the intent
-  double speed_limit = -1.0;  ///< [m/s] that the age of all that it acts on allows; below 0: none
+  double speed_limit = -1.0;  ///< [m/s] from the age of all inputs; below 0: none
   std::string limit_reason;   ///< empty: the speed was not limited
-  /// The input that is late, and by how much, while the robot has to drive more slowly for it;
-  /// empty: nothing is.
+  /// The late input, and its delay, while the robot has to drive more slowly for it; empty: none.
   std::string slow;
 };
 
 struct ExecutiveSettings {
-  /// [cycles] without a newer intent, however old it is, after which nobody is taken to intend
-  /// anything: that is how a service that was killed, or a link that was cut, shows.
+  /// [cycles] without a newer intent, of whatever age, after which the intent ends: the sign of a
+  /// killed service or a cut link.
   std::uint64_t intent_lease = 2;
 };
 
-/// The behavior executive (manual 7.4): keeps the LPS, makes the set of behaviors what is intended,
-/// evaluates those that run and blends them.
+/// The behavior executive (manual 7.4): keeps the LPS, makes the set of intended behaviors,
+/// evaluates the running ones and blends them.
 ///
 /// All behaviors are evaluated also while control is off, or the intent is too old to drive by.
-/// While one that is to run cannot be made the others do not drive: it may be the one that looks
-/// out.
+/// While an intended behavior cannot be made the others do not drive: it may be the one that avoids
+/// collisions.
 ///
-/// Its inputs may be old: the intent when it comes over a slow network, and the robot's state
-/// when the network lies between the robot and this. The older, the slower the robot
-/// (saphira/base/age.hpp), and behaviors see the robot where it will be when the command works.
+/// Its inputs may be old: the intent over a slow network, and the robot's state when the network
+/// lies between the robot and this service. The older the inputs, the slower the robot
+/// (saphira/base/age.hpp). Behaviors see the robot at its place when the command takes effect.
 class Executive {
  public:
   Executive(Registry registry, RobotModel model, ExecutiveSettings settings = {});
@@ -109,28 +108,28 @@ class Executive {
 
  private:
   struct Instance {
-    Intended intended;  ///< as it was asked for last
+    Intended intended;  ///< the newest request
     Parameters parameters;
     std::uint64_t revision = 0;  ///< of its schema
     std::unique_ptr<Behavior> behavior;
     bool initialised = false;
   };
-  /// Contact is meant where every behavior with a say on the speed means it: the least of what they
-  /// allow. One that avoids, and has something to say, forbids it.
+  /// Contact is wanted where every behavior that contributes to the speed wants it: the least of
+  /// their limits. An active avoiding behavior forbids contact.
   double contact_speed(const std::vector<Blended>& blended) const;
-  /// No newer intent has come for the lease.
+  /// True where no newer intent has come for the lease.
   bool silent(const Inputs& inputs) const;
-  /// The trouble with the intent's age; empty where nothing is.
+  /// The error from the intent's age; empty: none.
   std::string why_unheard(const Inputs& inputs) const;
-  /// Why the behaviors are not to drive; empty where they are.
+  /// The reason why the behaviors may not drive; empty where they may.
   std::string why_inactive(const Inputs& inputs, bool running) const;
-  /// Takes note of how old everything is, and cuts the speed to what that allows.
+  /// Records the ages of the inputs, and limits the speed by them.
   void limit_speed(const Inputs& inputs, Output& output);
-  /// Puts what a stalled wheel touches into the LPS.
+  /// Puts the obstacle at a stalled wheel into the LPS.
   void feel(const RobotNow& robot);
-  /// Makes the instances what is intended; returns what was wrong.
+  /// Makes the intended instances; returns the errors.
   std::string reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom);
-  /// `same` is the instance of that name and schema; nullptr where there is none.
+  /// `same` is the instance of that name and schema; nullptr: none.
   std::string adopt(const Intended& intended, const Pose& robot_in_odom, Instance* same,
                     std::vector<Instance>& next);
 
@@ -139,14 +138,14 @@ class Executive {
   ExecutiveSettings settings_;
   lps::LocalPerceptualSpace lps_;
   std::vector<Instance> instances_;
-  // The intent that the instances were made from, and its mistakes.
+  // The intent that the instances were made from, and its errors.
   std::vector<Intended> reconciled_;
   std::uint64_t reconciled_revision_ = 0;
   std::string reconcile_trouble_;
   std::vector<Missing> missing_;
   std::uint64_t newest_intent_ = 0;  ///< its cycle
-  std::uint64_t intent_came_ = 0;    ///< the cycle in which it was there first
-  bool backwards_ = false;           ///< the robot was told so in the cycle before
+  std::uint64_t intent_came_ = 0;    ///< the cycle of its arrival
+  bool backwards_ = false;           ///< the robot was told to go backwards in the cycle before
   PeakAge intent_age_;               ///< beyond the ordinary
 };
 

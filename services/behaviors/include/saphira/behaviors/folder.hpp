@@ -11,30 +11,30 @@
 
 namespace saphira::behaviors {
 
-/// The behavior files (*.beh) of a folder, and what they have given a registry.
+/// The behavior files (*.beh) of a folder, and the schemas that they gave to a registry.
 class Folder {
  public:
   explicit Folder(std::string path) : folder_(std::move(path), ".beh") {}
 
   /// The changes that a look has found.
   struct News {
-    bool changed = false;             ///< schemas came, changed or went, or the trouble is another
+    bool changed = false;             ///< schemas came, changed or went, or the errors changed
     std::vector<std::string> taken;   ///< files
-    std::vector<std::string> faults;  ///< of files that changed: as FileError has them
+    std::vector<std::string> faults;  ///< of changed files: as FileError has them
     std::vector<std::string> warnings;
   };
 
-  /// Takes what is new in the folder since the last look into `registry`. A file that is wrong
-  /// changes nothing: what it gave before stays. What a file that is gone gave is taken away.
+  /// Takes the changes in the folder since the last look into `registry`. A file with an error
+  /// changes nothing: its earlier schemas stay. The schemas of a removed file are removed.
   News look(Registry& registry);
 
   const std::string& path() const { return folder_.path(); }
-  /// The files that have mistakes now, and which mistakes; empty: none.
+  /// The files with errors, and the errors; empty: none.
   std::string trouble() const;
 
  private:
   struct File {
-    std::vector<std::string> schemas;  ///< that it has given
+    std::vector<std::string> schemas;  ///< given to the registry
     std::string fault;                 ///< the first one; empty: none
   };
   void take_changed(const std::vector<std::string>& changed, Registry& registry, News& news);
@@ -46,15 +46,15 @@ class Folder {
   bool missing_ = false;
 };
 
-/// Where an executive's schemas come from: layers, of which a later one covers schemas of the same
-/// name in those before it.
+/// The sources of an executive's schemas: layers. A later layer covers schemas of the same name in
+/// earlier ones.
 class Sources {
  public:
-  /// Schemas that stay as they are, such as those of a plug-in.
+  /// Fixed schemas, such as those of a plug-in.
   void add(Registry fixed);
   void add(Folder folder);
 
-  /// Looks at the folders, and makes `registry` what the layers are now. The first look takes all.
+  /// Looks at the folders, and updates `registry` from the layers. The first look takes all.
   Folder::News look(Registry& registry);
   std::string trouble() const;
 
@@ -70,10 +70,10 @@ class Sources {
     bool operator==(const Origin&) const = default;
   };
   std::vector<Layer> layers_;
-  std::map<std::string, Origin> taken_;  ///< what the registry was given
+  std::map<std::string, Origin> taken_;  ///< origin of the registry's schemas
 };
 
-/// The behaviors of a folder; std::runtime_error that says all that is wrong with its files.
+/// The behaviors of a folder; std::runtime_error with all errors of its files.
 Registry load_behaviors(const std::string& folder);
 
 /// The folder of the shipped behaviors: config/behaviors.

@@ -4,9 +4,9 @@
 
 namespace saphira::behaviors {
 
-/// Where the robot will be when a command that is computed now comes to work, `seconds` after the
-/// state that it answers: on at its speed, and turning at its rate until it points where it was
-/// told to.
+/// The robot's state when a command that is computed now takes effect, `seconds` after the state
+/// that it answers: it goes on at its speed, and turns at its rate until it reaches its heading
+/// setpoint.
 RobotNow foresee(const RobotNow& robot, double seconds);
 
 }  // namespace saphira::behaviors

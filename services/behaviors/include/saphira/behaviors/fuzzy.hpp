@@ -22,7 +22,7 @@ inline Fuzzy down_straight(double x, double low, double high) {
   return 1.0 - straight_up(x, low, high);
 }
 
-// The manual says of f_greater, f_smaller and f_eq that `delta` is "the range over which the fuzzy
+// The manual defines `delta` of f_greater, f_smaller and f_eq as "the range over which the fuzzy
 // value will vary". Here that range is centred on `c` for the first two, so that f_greater is the
 // negation of f_smaller and both are one half at equality; f_eq is 1 at `c` and 0 from `delta` off.
 

@@ -7,18 +7,18 @@
 #include "saphira/base/text.hpp"
 #include "saphira/behaviors/behavior.hpp"
 
-// The behavior language (manual 7.2, 7.3): what config/behaviors/*.beh are written in. The whole of
-// it is described in services/behaviors/LANGUAGE.md.
+// The behavior language (manual 7.2, 7.3) of config/behaviors/*.beh. Full description:
+// services/behaviors/LANGUAGE.md.
 namespace saphira::behaviors {
 
 /// The result of compiling a text in the behavior language.
 struct Compiled {
   std::vector<Schema> schemas;      ///< in the order of the text; none where there are errors
   std::vector<FileError> errors;    ///< in the order of the text, at most twenty
-  std::vector<FileError> warnings;  ///< what can be taken, and is probably a mistake
+  std::vector<FileError> warnings;  ///< acceptable, and probably mistakes
 };
 
-/// Compiles the behaviors of a text. `file` is what messages call it.
+/// Compiles the behaviors of a text. `file` is its name in messages.
 Compiled compile(std::string_view text, const std::string& file);
 
 /// For people: every function that Update and Init can call, a line each.

@@ -13,7 +13,7 @@ namespace saphira::behaviors {
 
 using Kind = ArgumentKind;
 
-/// A parameter that a schema takes.
+/// A parameter of a schema.
 struct ParameterSpec {
   std::string name;
   Kind kind = Kind::number;
@@ -21,17 +21,17 @@ struct ParameterSpec {
   bool required = false;
   double low = 0.0;  ///< of numbers
   double high = 0.0;
-  double usual = 0.0;                ///< of numbers that are not given
-  std::vector<std::string> choices;  ///< of texts; the first is the usual one
+  double usual = 0.0;                ///< default of numbers
+  std::vector<std::string> choices;  ///< of texts; the first is the default
 };
 
 /// The parameters of one behavior: every number and text that its schema has, checked; points in
 /// odom.
 class Parameters {
  public:
-  /// Checks `arguments` against `specs` and fills in what is usual. A point in the robot's frame is
-  /// placed where the robot is now. Where something is wrong: nothing, and `trouble` says what was
-  /// expected.
+  /// Checks `arguments` against `specs` and fills in defaults. A point in the robot's frame is
+  /// fixed in odom at the robot's present pose. On an error: nothing, and `trouble` gives the
+  /// expected form.
   static std::optional<Parameters> check(const std::vector<ParameterSpec>& specs,
                                          const std::vector<Argument>& arguments,
                                          const Pose& robot_in_odom, std::string& trouble);
@@ -43,14 +43,14 @@ class Parameters {
   /// In odom; nothing where it was not given.
   std::optional<Pose> point(std::string_view name) const;
 
-  // By the place in the schema's list.
+  // By the index in the schema's list.
   double number(std::size_t index) const { return std::get<double>(items_[index].value); }
   std::optional<Pose> point(std::size_t index) const;
-  /// Which of the choices a text is.
+  /// The index of a text among its choices.
   std::size_t choice(std::size_t index) const { return items_[index].choice; }
 
  private:
-  /// One for each of the schema's; nothing of a point that is not given.
+  /// One for each parameter of the schema; nothing for an absent point.
   struct Item {
     std::string name;
     std::variant<std::monostate, double, std::string, Pose> value;

@@ -19,35 +19,35 @@
 
 namespace saphira::intentions {
 
-/// The intentions service without the bus: what came since the last cycle in, what is intended now
-/// out, with all that is told of it. Files, waiting and writing are the shell's.
+/// The intentions service without the bus: in, the inputs since the last cycle; out, the intended
+/// behaviors and their status. Files, waiting and writing are the shell's.
 class Core {
  public:
   /// A writer on the bus, unique for ever.
   using Writer = std::array<std::uint8_t, 16>;
 
   struct Settings {
-    Registry registry;  ///< what can be intended, before any file is read
-    Memory memory;      ///< what was remembered over a restart
+    Registry registry;  ///< available intentions, before any file is read
+    Memory memory;      ///< the memory from before a restart
     bool remembers_work = false;
     bool lockstep = false;
     std::shared_ptr<const Functions> functions;
   };
   explicit Core(Settings settings);
 
-  /// The events of a cycle, or between two. Writers that are lost count before what has come:
-  /// what they have written earlier is among it.
+  /// The events of a cycle, or between two. Lost writers come before new samples, which include
+  /// their earlier ones.
   struct Heard {
-    /// Its writer, as the bus has checked.
+    /// Its writer, as checked by the bus.
     struct Sender {
-      std::string name;       ///< empty: nobody that is known
-      bool commands = false;  ///< may change and cancel what others asked for
+      std::string name;       ///< empty: unknown
+      bool commands = false;  ///< may change and cancel the goals of others
     };
     struct Goal {
       GoalEvent event;
       Writer writer{};
-      std::optional<Sender> sender{};  ///< none on a bus that is open to all
-      double before_start = 0.0;       ///< [s] that it was written before this start of the service
+      std::optional<Sender> sender{};  ///< none on an open bus
+      double before_start = 0.0;       ///< [s] written this long before this start of the service
     };
     struct Claim {
       ClaimEvent event;
@@ -57,7 +57,8 @@ class Core {
     struct Estop {
       bool pressed = false;
       std::string source;
-      /// Why the bridge does not let the behaviors drive [empty: it does, or they do not ask].
+      /// The reason why the bridge does not let the behaviors drive [empty: it does, or they do not
+      /// ask].
       std::string refusal{};
       /// Why goals that drive are to wait: a person drives, or drove last [empty: nobody does].
       std::string person{};
@@ -66,7 +67,7 @@ class Core {
     std::vector<Goal> goals;
     std::vector<Writer> lost_claimants;
     std::vector<Claim> claims;
-    /// As the bridge's grants have it. For steps alone: all since the last one together.
+    /// From the bridge's grants. For steps alone: all since the last one together.
     std::vector<Estop> estops;
     /// Answers of agents, by the number of the question (intentions::Outputs). For steps alone.
     std::vector<std::pair<std::uint64_t, Answer>> answers;
@@ -81,7 +82,7 @@ class Core {
   struct Vision {
     Stamp stamp;
     std::uint64_t odom = 0;
-    bool sees = false;  ///< there is a camera that shows something
+    bool sees = false;  ///< a camera delivers
     std::vector<lps::SeenThing> things;
   };
 
@@ -96,19 +97,19 @@ class Core {
     std::vector<BehaviorLevel> behaviors;
     std::vector<BehaviorTrouble> troubles;
     std::uint64_t behaviors_cycle = 0;  ///< of this epoch; 0: none yet
-    std::uint64_t intent_age = 1;       ///< [cycles] of what they were computed from
+    std::uint64_t intent_age = 1;       ///< [cycles] of the intent that they were computed from
     Registered registered;
-    std::optional<std::uint64_t> map_revision;  ///< that registration had; none: it was not heard
+    std::optional<std::uint64_t> map_revision;  ///< used by registration; none: it was not heard
     std::optional<std::vector<lps::Percept>> percepts;  ///< none: no interpretation
     std::optional<Vision> vision;
     Heard heard;
   };
   struct Outputs {
     intentions::Outputs intended;
-    /// All of them, where they have changed.
+    /// All beliefs, where they have changed.
     std::optional<std::vector<Belief>> beliefs;
-    /// The way that is followed over the map [m] [map], from where the robot is, where it has
-    /// changed; empty: none is.
+    /// The present way over the map [m] [map], from the robot's place, where it has changed; empty:
+    /// none.
     std::optional<std::vector<Vec2>> way;
     Notes notes;
   };
@@ -119,20 +120,20 @@ class Core {
     News news;
     Notes notes;
   };
-  /// Takes what does not wait for a cycle; `silence` [s] since the newest one.
+  /// Handles inputs that need no cycle; `silence` [s] since the newest one.
   Told between(const Heard& heard, double silence);
 
-  /// Takes a map. In lockstep it counts from the step on for which registration had it.
+  /// Takes a map. In lockstep it counts from the step on for which registration used it.
   void know_map(MapNews news) { newer_maps_.push_back(std::move(news)); }
-  /// True where the map that registration had is known.
+  /// True where registration's map is known.
   bool knows_map(std::uint64_t revision) const;
   /// The schemas that the behaviors service can evaluate.
   Notes know_behaviors(const std::vector<BehaviorSignature>& behaviors);
 
   Executor& executor() { return executor_; }
   ProcessTable& processes() { return processes_; }
-  /// An intention by its instance, its number or I and its number (manual 6.5, 2.3.8): empty where
-  /// it was done, the reason where not; nothing where there is none.
+  /// Carries out the action on an intention by its instance, its number, or I and its number
+  /// (manual 6.5, 2.3.8): empty where done, the reason where not; nothing: no such intention.
   std::optional<std::string> ask(const std::string& name, ProcessAction action,
                                  std::uint32_t cycles);
 
@@ -148,16 +149,16 @@ class Core {
   std::string who_is_gone(const Inputs& inputs);
 
   bool lockstep_;
-  bool remembers_ = false;  ///< what was done before this start
+  bool remembers_ = false;  ///< the memory of goals from before this start is whole
   bool memory_damaged_ = false;
   Executor executor_;
   ProcessTable processes_;
-  /// Suspended it lets nothing be intended: the goals are suspended, and the robot is released.
+  /// While suspended, nothing is intended: the goals are suspended, and the robot is released.
   Process& execution_ =
       processes_.add("execute-intentions", "pursues the goals: begins and steps intentions");
   std::string refusal_;  ///< why the bridge does not let the behaviors drive
   std::string person_;   ///< why goals that drive wait for a person
-  std::string estop_;    ///< which program pressed the emergency stop that is latched
+  std::string estop_;    ///< the program that pressed the latched emergency stop
   std::optional<lps::LocalPerceptualSpace> lps_;
   std::optional<std::vector<lps::Percept>> percepts_;
   std::vector<lps::SeenThing> things_;
@@ -166,20 +167,20 @@ class Core {
   std::shared_ptr<const maps::Topology> topology_;
   std::uint64_t map_revision_ = 0;
   std::uint64_t places_revision_ = 0;  ///< of the map when its topology changed last
-  std::deque<MapNews> newer_maps_;     ///< lockstep: than the cycle that is stepped
+  std::deque<MapNews> newer_maps_;     ///< lockstep: newer than the present cycle
   std::map<GoalId, Writer> requesters_;
-  /// With security: who asked for a goal first, whose it stays.
+  /// With security: the first asker of a goal, its owner.
   struct Owner {
     std::string name;
-    std::string requester;  ///< as the goal's status has it
-    bool told = false;      ///< that somebody else was refused
+    std::string requester;  ///< as in the goal's status
+    bool told = false;      ///< the refusal of another asker was reported
   };
   std::map<GoalId, Owner> owners_;
   std::map<std::uint64_t, Answer> answers_;  ///< the newest, by the number of the question
   std::map<GoalId, Writer> claimants_;       ///< of claims that end with their writer
   std::map<GoalId, GoalState> logged_;
   std::vector<IntentionNode> nodes_;  ///< of the newest step
-  std::vector<Vec2> way_;             ///< that was told of last, without where the robot was
+  std::vector<Vec2> way_;             ///< as reported last, without the robot's place
   std::uint64_t beliefs_revision_ = 0;
   bool robot_here_ = false;
   std::uint64_t heard_epoch_ = 0;

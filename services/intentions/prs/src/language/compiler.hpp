@@ -9,8 +9,8 @@
 
 namespace saphira::intentions {
 
-/// Compiles one (defintention ...) that `reader` read from `file`; nothing where there was a
-/// mistake, which is in `troubles` then.
+/// Compiles one (defintention ...) that `reader` read from `file`; nothing after an error, which is
+/// then in `troubles`.
 std::optional<Schema> compile_activity(const Form& form, const std::string& file,
                                        const Reader& reader, const Functions& functions,
                                        std::vector<Diagnostic>& troubles);

@@ -13,7 +13,7 @@
 
 namespace saphira::intentions {
 
-/// A mistake has been noted, and the form is given up.
+/// Thrown after a reported error: the form is skipped.
 struct Stop {};
 
 /// The positional items and the options (:key value) of a list.
@@ -28,8 +28,8 @@ bool starred(std::string_view name);
 /// ", found ...": the end of a message.
 std::string found(const Form& form);
 
-/// The definition that is being compiled, one (defintention ...): its program, its variables, the
-/// mistakes in it.
+/// The definition that is being compiled, one (defintention ...): its program, its variables, its
+/// errors.
 class Definition {
  public:
   Definition(const Reader& reader, const Functions& functions, std::vector<Diagnostic>& troubles)
@@ -45,17 +45,17 @@ class Definition {
   bool wrong() const { return errors_ > 0; }
   std::string line_text(int line) const { return reader_.trouble(line, 1, true, {}).line_text; }
 
-  /// Those of `form`, from that item on; `known` are the options that it can have.
+  /// The parts of `form`, from that item on; `known` are the allowed options.
   Parts parts(const Form& form, std::size_t from, const std::set<std::string>& known);
 
   bool is_local(const std::string& key) const { return slots_.contains(key); }
-  /// Where a local is kept: a place of its own at its first mention.
+  /// The slot of a local: a new one at its first mention.
   std::size_t slot(const Form& name);
   void uses(const Form& name) { pending_.emplace(normal(name.text), name); }
   void binds(const Form& name) { assigned_.insert(normal(name.text)); }
-  /// Fails where the name is none that can be set.
+  /// Fails for a name that cannot be set.
   void check_variable(const Form& name);
-  /// Complains of locals that nobody binds.
+  /// Reports locals that are never bound.
   void check_locals();
 
  private:

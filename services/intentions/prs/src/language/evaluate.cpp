@@ -6,7 +6,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// The arguments of a call, most of which are few.
+/// The arguments of a call; most calls have few.
 class Evaluated {
  public:
   Evaluated(const std::vector<Expression>& arguments, Scope& scope) : count_(arguments.size()) {

@@ -3,7 +3,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// Special forms: they are about the intention itself, or evaluate only some arguments.
+/// Special forms: they concern the intention itself, or evaluate only some arguments.
 struct Special {
   const char* name;
   Expression::Kind kind;
@@ -88,7 +88,7 @@ Expression Expressions::call(const Form& form, const std::string& name, bool act
   }
   if (name == "setq")
     return set(form, actions);
-  // Of a name that is not computed: found without a call.
+  // A constant name: found without a call.
   if (name == "belief" && given == 1 &&
       (form.items[1].quoted || form.items[1].kind == Form::Kind::kText)) {
     result.kind = Kind::kBelief;

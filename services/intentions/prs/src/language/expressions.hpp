@@ -13,7 +13,7 @@ class Expressions {
  public:
   explicit Expressions(Definition& definition) : definition_(definition) {}
 
-  /// `actions`: within EXECUTE, where something may be done.
+  /// `actions`: within EXECUTE, where actions are allowed.
   Expression expression(const Form& form, bool actions);
 
  private:

@@ -80,7 +80,7 @@ void Goals::body(const Form& goals) {
 
 void Goals::check_reached(const std::vector<bool>& completes,
                           const std::vector<const Form*>& places) {
-  // The goals that can be reached, from the first set on.
+  // The reachable goals, from the first set on.
   std::vector<bool> reached(places.size(), false);
   std::vector<std::size_t> open = {0};
   while (!open.empty()) {
@@ -251,7 +251,7 @@ bool Goals::assign(const Form& form) {
   return true;
 }
 
-/// Waits for nothing but the end of its time.
+/// Waits for the end of its time only.
 bool Goals::pause(const Form& form) {
   const Parts given = definition_.parts(form, 1, {});
   expect_items(form, given, 1, 1, "(WAIT seconds), such as (WAIT 5s)");
@@ -285,7 +285,7 @@ bool Goals::wait(const Form& form) {
   return true;
 }
 
-/// Asks, waits, and tests that there is a good answer.
+/// Asks, waits, and tests for a good answer.
 bool Goals::ask(const Form& form) {
   const Parts given = definition_.parts(form, 1, {"timeout", "else"});
   expect_items(form, given, 2, 3, kAsk);

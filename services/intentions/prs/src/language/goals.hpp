@@ -18,7 +18,7 @@ class Goals {
   void body(const Form& goals);
 
  private:
-  // Those that compile a goal say whether what is behind it can be reached.
+  // Functions that compile a goal return true where the code behind it is reachable.
   bool sequence(const std::vector<const Form*>& goals);
   /// A goal, or a list of goals one after the other.
   bool goal_or_goals(const Form& form);
@@ -33,7 +33,7 @@ class Goals {
   bool fork(const Form& form, Step::Op op);
   bool guard(const Form& form, Step::Op op);
 
-  /// The goals of an :else, behind the step that may fail; both meet behind them.
+  /// The goals of an :else, behind the step that may fail; both paths join behind them.
   bool otherwise(std::size_t failing, const Form* form);
   void add_branch(std::size_t at, const Form& form, const Form& whole);
   void arguments(const Form& form, Intend& intend, Mention& mention);

@@ -9,7 +9,7 @@
 namespace saphira::intentions {
 namespace {
 
-/// The trouble with one mention in an activity of a schema; nothing where it is right.
+/// The error of one mention in an activity of a schema; nothing where it is right.
 void check_mention(const Schema& activity, const Mention& mention, const Registry& registry,
                    std::vector<Diagnostic>& troubles, std::set<std::string>& told) {
   const auto trouble = [&](bool error, int line, int column, std::string message,
@@ -118,8 +118,8 @@ Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& 
         each[i].schemas.push_back(std::move(*schema));
     }
   }
-  // A file that names what a broken one has is not wrong for that: all names count. But a broken
-  // file's own schemas are not there, so that the ones of an earlier version go on to count.
+  // A file that uses names of a broken file is not wrong for that: all names count. But a broken
+  // file's own schemas are missing, so that those of an earlier version still count.
   Registry all = known;
   for (const Each& file : each) {
     for (const Schema& schema : file.schemas)

@@ -39,7 +39,7 @@ const char* word(IntentionState state) {
 }
 
 /// An intention: an instance of a compiled schema. It has one current node, its main thread, and
-/// more while goals run in parallel. In a cycle each thread begins one goal-set at most.
+/// more threads while goals run in parallel. In a cycle each thread begins one goal-set at most.
 class Machine : public Activity {
  public:
   Machine(std::shared_ptr<const Program> program, const Bindings& bindings)
@@ -100,33 +100,33 @@ class Machine : public Activity {
  private:
   struct Child {
     std::uint32_t id = 0;
-    bool kept = false;  ///< named, so that its end can be asked for
+    bool kept = false;  ///< named, so that its outcome can be queried
   };
   struct Thread {
     std::size_t id = 0;
-    std::size_t parent = 0;  ///< that waits for it; 0: none
-    /// In whose AND, PRESERVE or MAINTAIN it stands, also where it is not waited for: what ends or
-    /// interrupts that goal reaches it. 0: in none.
+    std::size_t parent = 0;  ///< the waiting thread; 0: none
+    /// The thread of the enclosing AND, PRESERVE or MAINTAIN, also where that does not wait: an end
+    /// or interruption of that goal applies to this thread. 0: none.
     std::size_t owner = 0;
     std::size_t at = 0;    ///< the step
-    bool waiting = false;  ///< in the step, which has been begun
+    bool waiting = false;  ///< for the begun step
     bool spent = false;    ///< a goal-set has been begun in this cycle
     bool fresh = true;     ///< before a goal-set
-    int holds = 0;         ///< the MAINTAINs around it whose conditions do not hold
+    int holds = 0;         ///< number of enclosing MAINTAINs whose conditions do not hold
     Ticks held_since = 0;
     bool over = false;
-    bool restores = false;  ///< it stands in the :by of its owner's MAINTAIN
-    Ticks since = 0;        ///< when the waiting began
-    Ticks limit = 0;        ///< of the waiting; 0: none
+    bool restores = false;  ///< it belongs to the :by of its owner's MAINTAIN
+    Ticks since = 0;        ///< start of the wait
+    Ticks limit = 0;        ///< of the wait; 0: none
     std::uint32_t child = 0;
     double threshold = 0.0;
-    std::vector<Child> children;  ///< that it has begun
-    std::string failed;           ///< why, when it is over
+    std::vector<Child> children;  ///< its own
+    std::string failed;           ///< the reason, when it is over
     GoalCode code = GoalCode::kNone;
     bool has_failed = false;
   };
 
-  /// The queries of expressions about this intention, and the effects of actions through it.
+  /// The queries of expressions about this intention, and the effects of its actions.
   class View : public Own, public Effects {
    public:
     View(const Machine& machine, Self& self) : machine_(machine), self_(self) {}
@@ -165,8 +165,8 @@ class Machine : public Activity {
   // --- a cycle
 
   void go_on(Self& self) {
-    // Threads that end may let others go on, which stand before them: until nothing moves. A thread
-    // begins one goal-set in a cycle at most, so that this comes to an end.
+    // A thread that ends may release an earlier one, so repeat until no thread moves. A thread
+    // begins one goal-set in a cycle at most, so this comes to an end.
     bool any = false;
     for (bool moved = true; moved && !over_;) {
       moved = false;
@@ -193,7 +193,7 @@ class Machine : public Activity {
     self.progress(program_->progress ? degree(*program_->progress, self) : level);
   }
 
-  /// How far something is so [0..1]; 0 where what it is measured by is not there.
+  /// The degree of a condition [0..1]; 0 where its measure is missing.
   double degree(const Expression& expression, Self& self) {
     try {
       const Value is = value(expression, self);
@@ -221,7 +221,7 @@ class Machine : public Activity {
       self.say(step.text);
   }
 
-  /// Runs a thread until it has to wait; whether it moved.
+  /// Runs a thread until it has to wait; true where it moved.
   bool run(Thread& thread, Self& self) {
     bool moved = false;
     while (!thread.over && thread.holds == 0 && !over_) {
@@ -325,7 +325,7 @@ class Machine : public Activity {
     ++thread.at;
   }
 
-  /// Out of AND, PRESERVE and MAINTAIN goes who waits for them; what they have begun ends.
+  /// A jump out of AND, PRESERVE or MAINTAIN: its threads end.
   void go_to(Thread& thread, std::size_t at, Self& self) {
     Thread* leaves = &thread;
     while (leaves->parent != 0)
@@ -364,7 +364,7 @@ class Machine : public Activity {
     return thread.limit > 0 && self.now() - thread.since >= thread.limit;
   }
 
-  /// True where what the thread waits for has come.
+  /// True where the thread's wait is over.
   bool poll(Thread& thread, Self& self) {
     const Step& step = program_->steps[thread.at];
     try {
@@ -435,8 +435,8 @@ class Machine : public Activity {
     }
   }
 
-  /// Removes children that have ended and cannot be asked for any more (manual 8.4 makes that the
-  /// parent's): those without a name, and one of the name that is used anew.
+  /// Removes ended children that cannot be queried any more (manual 8.4 makes that the parent's
+  /// task): those without a name, and one whose name is used anew.
   void reap(const std::string& name, Self& self) {
     const std::uint32_t older = name.empty() ? 0 : self.child_named(name);
     for (Thread& each : threads_) {
@@ -471,7 +471,7 @@ class Machine : public Activity {
                                 ? GoalCode::kActivity
                                 : outcome->code;
       const std::string& schema = program_->steps[thread.at].intend->schema;
-      // Upwards with where it comes from; to this intention without, for what people are told.
+      // With its origin for the parent; without it for people.
       const std::string bare = reason_;
       failure(thread, code, schema + ": " + bare, self);
       reason_ = bare;
@@ -492,7 +492,7 @@ class Machine : public Activity {
     thread.owner = parent.id;
     thread.at = at;
     thread.fresh = false;
-    thread.spent = true;  // its goals are part of the goal-set that is being done
+    thread.spent = true;  // its goals are part of the present goal-set
     thread.since = self.now();
     threads_.push_back(std::move(thread));
     return threads_.back();
@@ -533,8 +533,8 @@ class Machine : public Activity {
     return true;
   }
 
-  /// Intentions that the branches have begun and left go on as the parent's, and stand where it
-  /// stands.
+  /// Intentions that the branches have begun and left continue as the parent's, at the parent's
+  /// place.
   void join(Thread& thread) {
     for (Thread& each : threads_) {
       if (each.owner != thread.id)
@@ -550,8 +550,8 @@ class Machine : public Activity {
     }
   }
 
-  /// Intentions of a thread that is over go on as those of another, with which they end: one that
-  /// is waited for where it stood, or the main thread.
+  /// Intentions of an ended thread continue as those of another thread, and end with it: a sibling
+  /// that is waited for, or the main thread.
   void bequeath(Thread& dead) {
     if (dead.children.empty())
       return;
@@ -562,7 +562,7 @@ class Machine : public Activity {
     dead.children.clear();
   }
 
-  /// Ends what stands in the goal of a thread, with all that it has begun.
+  /// Ends all threads within the goal of a thread, with their intentions.
   void cut(const Thread& thread, Self& self) {
     for (Thread& each : threads_) {
       if (each.owner == thread.id)
@@ -579,8 +579,8 @@ class Machine : public Activity {
     thread.over = true;
   }
 
-  /// Holds what stands in the MAINTAIN of a thread, but for what restores its condition, or lets it
-  /// go on.
+  /// Holds the threads within the MAINTAIN of a thread, except those that restore its condition, or
+  /// releases them.
   void hold(const Thread& thread, bool held, Self& self, bool within = false) {
     for (Thread& each : threads_) {
       if (each.owner != thread.id || (each.restores && !within))
@@ -629,7 +629,7 @@ class Machine : public Activity {
         failure(thread, code, step.text + " could not be restored" + why, self);
         return true;
       }
-      // The intentions that were begun to restore it are not needed any more.
+      // The intentions that restored the condition are not needed any more.
       for (Thread& each : threads_) {
         if (each.owner == thread.id && each.restores)
           end(each, self);
@@ -649,7 +649,7 @@ class Machine : public Activity {
     return false;
   }
 
-  /// The thread has come to the end of the schema.
+  /// The thread has reached the end of the schema.
   void end_of_all(Thread& thread, Self& self) {
     if (thread.id != threads_.front().id) {
       thread.over = true;
@@ -663,7 +663,7 @@ class Machine : public Activity {
     reason_ = reason;
     cut(thread, self);
     const Step& step = program_->steps[thread.at];
-    // An intention that was waited for in vain does not go on beside its replacement.
+    // A failed intention must not continue beside its replacement.
     if (thread.child != 0 && !finished(self.child_state(thread.child)))
       self.remove_child(thread.child);
     thread.child = 0;
@@ -693,15 +693,15 @@ class Machine : public Activity {
   bool over_ = false;
   Ticks begun_at_ = -1;
   std::optional<Ticks> suspended_at_;
-  std::string outcome_;  ///< of the newest INTEND that was waited for
+  std::string outcome_;  ///< of the newest awaited INTEND
   std::string reason_;
   std::size_t shown_at_ = kNowhere;
   bool shown_waiting_ = false;
 };
 
-// --- what outlives the service
+// --- memory over a restart
 
-/// A program by what it does: what was saved of another version of it is of no use.
+/// A hash of a program's code: saved progress of another version is of no use.
 std::string mark_of(const Program& program) {
   Fnv1a hash;
   const auto add = [&](const std::string& text) {
@@ -718,7 +718,7 @@ std::string mark_of(const Program& program) {
   return "v" + hash.text();
 }
 
-/// All that is remembered of a thread but its children.
+/// The saved state of a thread without its children.
 template <class Archive, class T>
 void fields(Archive& archive, T& thread, Value::List& children) {
   archive(thread.id, thread.parent, thread.owner, thread.at, thread.waiting, thread.fresh,

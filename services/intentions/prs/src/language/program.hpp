@@ -22,9 +22,9 @@ class Own {
   virtual ~Own() = default;
   virtual Value state_of(const std::string& name) const = 0;
   virtual double level_of(const std::string& name) const = 0;
-  virtual const std::string& outcome() const = 0;  ///< of the newest INTEND that was waited for
+  virtual const std::string& outcome() const = 0;  ///< of the newest awaited INTEND
   virtual const std::string& reason() const = 0;
-  virtual double elapsed() const = 0;  ///< [s] since it began
+  virtual double elapsed() const = 0;  ///< [s] since its beginning
 };
 
 /// A compiled expression.
@@ -49,7 +49,7 @@ struct Expression {
   Kind kind = Kind::kConstant;
   Value constant;
   std::size_t slot = 0;  ///< of a local
-  std::string name;      ///< of a belief, as it was written
+  std::string name;      ///< of a belief, as written
   std::string key;       ///< its normal form
   std::shared_ptr<const Function> function;
   std::shared_ptr<const Action> action;
@@ -63,12 +63,12 @@ struct Scope {
   Effects& effects;
 };
 
-/// ActivityError where a function cannot do its work.
+/// ActivityError where a function fails.
 Value evaluate(const Expression& expression, Scope& scope);
 
 /// The target of an INTEND.
 struct Intend {
-  std::string schema;  ///< as it was written
+  std::string schema;  ///< as written
   std::vector<std::pair<std::string, Expression>> arguments;
   std::string name;  ///< empty: to be assigned
   bool waits = true;
@@ -91,7 +91,7 @@ struct Step {
     kFork,      ///< AND: a thread for each of `branches`; waits for all
     kSplit,     ///< SPLIT: the same without waiting
     kPreserve,  ///< a thread for branches[0], while the condition holds
-    kMaintain,  ///< the same; branches[1] is to make it hold again
+    kMaintain,  ///< the same; branches[1] restores the condition
     kEndThread,
     kEndSet,
     kGoto,  ///< target: a set
@@ -106,14 +106,14 @@ struct Step {
   bool has_expression = false;
   std::size_t slot = kNowhere;    ///< of a local; kAssign
   std::size_t target = kNowhere;  ///< of a jump; behind the goal, of those that fork
-  std::size_t other = kNowhere;   ///< where to go on when it fails; kNowhere: the failure goes up
+  std::size_t other = kNowhere;   ///< the step after a failure; kNowhere: the failure goes up
   std::vector<std::size_t> branches;
   std::optional<Expression> timeout;  ///< [s]
   std::optional<Expression> reason;
   std::shared_ptr<const Intend> intend;
 };
 
-/// Where a schema names another, for the check.
+/// The use of another schema's name, for the check.
 struct Mention {
   std::string schema;
   std::vector<std::string> arguments;

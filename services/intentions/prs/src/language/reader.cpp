@@ -9,8 +9,8 @@
 namespace saphira::intentions {
 namespace {
 
-constexpr int kDeepest = 100;  ///< parentheses within parentheses
-/// Beyond this many mistakes a file is no file of activities.
+constexpr int kDeepest = 100;  ///< nested parentheses
+/// A file with more errors is no file of activities.
 constexpr std::size_t kMostTroubles = 100;
 
 struct Unit {
@@ -123,7 +123,7 @@ void Reader::fail(int line, int column, std::string message) {
 }
 
 void Reader::recover() {
-  // read_list stops before a definition in the first column; anything else is passed over.
+  // read_list stops before a definition in the first column; skips anything else.
   while (more() && !at_definition())
     advance();
 }
@@ -164,7 +164,7 @@ Form Reader::read_list(int depth) {
   bool dot = false;
   for (;;) {
     skip_blank();
-    // A definition begins in the first column: what it stands in has lost a parenthesis.
+    // A definition begins in the first column: the enclosing form lacks a parenthesis.
     if (!more() || at_definition())
       fail(form.line, form.column, "expected a ) for this (");
     if (peek() == ')') {
@@ -203,7 +203,7 @@ Form Reader::read_text() {
       if (peek() == '\n')
         fail(form.line, form.column, "expected a \" for this one on the same line");
     }
-    // A text is written back on one line, in plain letters.
+    // A text is printed on one line, in plain letters.
     const auto byte = static_cast<unsigned char>(peek());
     if (byte != '\t' && (byte < 0x20 || byte == 0x7f))
       fail(line_, column_, "expected no control character");
@@ -303,7 +303,7 @@ std::string to_text(const Form& form, std::size_t longest) {
   print(form, out, longest);
   if (out.size() > longest) {
     out.resize(longest);
-    // Not in the middle of a character.
+    // Not within a character.
     while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0x80) != 0)
       out.pop_back();
     out += "...";

@@ -12,9 +12,9 @@ namespace saphira::intentions {
 struct Form {
   enum class Kind { kList, kNumber, kText, kName, kKeyword };
   Kind kind = Kind::kList;
-  std::string text;     ///< of all but lists, as it was written; a keyword without its colon
+  std::string text;     ///< of all but lists, as written; a keyword without its colon
   double number = 0.0;  ///< SI
-  std::string unit;     ///< of a number, as it was written
+  std::string unit;     ///< of a number, as written
   bool quoted = false;  ///< a ' before it
   bool dotted = false;  ///< of a list: (a . b), whose b is the last item
   std::vector<Form> items;
@@ -22,24 +22,24 @@ struct Form {
   int column = 1;
 
   bool is_list() const { return kind == Kind::kList; }
-  /// A name or keyword of that normal form.
+  /// True for a name or keyword of that normal form.
   bool is(std::string_view name) const;
 };
 
-/// Reads s-expressions. Mistakes go to `troubles`; the forms are those that could be read.
+/// Reads s-expressions. Errors go to `troubles`; the result has the readable forms.
 class Reader {
  public:
   Reader(std::string file, std::string_view content, std::vector<Diagnostic>& troubles);
   std::vector<Form> read();
 
-  /// A trouble at a place of the file.
+  /// An error at a place of the file.
   Diagnostic trouble(int line, int column, bool error, std::string message) const;
 
  private:
-  struct Stop {};  ///< thrown up to the form at the top, behind a mistake
+  struct Stop {};  ///< thrown to the top-level form after an error
   bool more() const { return at_ < content_.size(); }
   char peek() const { return content_[at_]; }
-  /// At a "(def" in the first column, where nothing but a definition stands.
+  /// True at a "(def" in the first column, where only a definition may begin.
   bool at_definition() const;
   void advance();
   void skip_blank();
@@ -48,7 +48,7 @@ class Reader {
   Form read_text();
   Form read_atom();
   [[noreturn]] void fail(int line, int column, std::string message);
-  /// Behind a mistake: to the next definition.
+  /// After an error: skips to the next definition.
   void recover();
 
   std::string file_;

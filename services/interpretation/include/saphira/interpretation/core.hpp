@@ -16,7 +16,7 @@ class Core {
  public:
   struct Inputs {
     std::uint64_t cycle = 0;
-    /// The first step of an epoch: where the robot's sonars are.
+    /// The first step of an epoch: the poses of the robot's sonars.
     const std::vector<lps::SonarMount>* new_robot = nullptr;
     bool new_frame = false;  ///< the odom frame has another origin since the last step
     Pose pose_in_odom;
@@ -24,8 +24,8 @@ class Core {
   };
   struct Outputs {
     const Output* output = nullptr;  ///< good until the next step
-    std::vector<TileKey> tiles;      ///< of grid(), to be told anew
-    std::vector<TileKey> gone;       ///< that were told and are no longer there
+    std::vector<TileKey> tiles;      ///< of grid(), to be published
+    std::vector<TileKey> gone;       ///< published earlier, and gone now
   };
 
   /// The first step has to bring a robot.
@@ -41,8 +41,8 @@ class Core {
   ProcessTable processes_;
   Tasks tasks_{processes_};
   std::optional<Interpretation> interpretation_;
-  std::set<TileKey> changed_;  ///< since they were told
-  std::set<TileKey> told_;     ///< and not gone
+  std::set<TileKey> changed_;  ///< since the last publication
+  std::set<TileKey> told_;     ///< published, and not gone
 };
 
 }  // namespace saphira::interpretation

@@ -12,39 +12,38 @@ namespace saphira::interpretation {
 
 enum class GridModel {
   /// Konolige, "Improved occupancy grids for map building", Autonomous Robots 4, 1997: evidence
-  /// counts once for each place that it was gathered from, is kept by the direction that a cell
-  /// was looked at from, and no direction alone can clear a cell, since its surface may be a mirror
-  /// from there.
+  /// counts once for each place of the sonar and is stored by the direction of view. No direction
+  /// alone can clear a cell, since its surface may be a mirror from there.
   muriel,
-  /// Log odds over the cone, every reading for itself (Elfes 1989): what the other is compared to.
+  /// Log odds over the cone, every reading by itself (Elfes 1989): for comparison.
   cone
 };
 
 struct GridSettings {
   GridModel model = GridModel::muriel;
   double resolution = 0.05;       ///< [m] edge of a cell
-  double window = 8.0;            ///< [m] what is farther from the robot, to any side, is dropped
+  double window = 8.0;            ///< [m] cells farther from the robot, to any side, are dropped
   double beam = radians(15.0);    ///< half angle of the cone
   double range = 4.0;             ///< [m] beyond it nothing is detected: a(z) of the paper is 0
   double detection = 0.6;         ///< a(0)
   double noise = 0.01;            ///< [m] s(0)...
   double relative_noise = 0.015;  ///< ...plus this share of the range
-  double false_echoes = 0.1;      ///< [1/m] density F of readings from nothing
-  /// How far what is believed of the rest of its arc explains an echo: 0, not at all (each cell for
-  /// itself, as in the paper); 1, as if all cells of the arc were heard independently. Our own;
-  /// found by trying: tests/bench/perception/README.md.
+  double false_echoes = 0.1;      ///< [1/m] density F of readings without an object
+  /// The degree to which the rest of its arc explains an echo: 0, not at all (each cell by itself,
+  /// as in the paper); 1, as if all cells of the arc were heard independently. Our own parameter,
+  /// found by experiment: tests/bench/perception/README.md.
   double attribution = 0.15;
   double mirror = 0.4;         ///< probability that a surface is a mirror to a given direction
   double prior = 0.25;         ///< probability that a cell is occupied
   double move = 0.06;          ///< [m] a sonar that has moved less, and...
   double turn = radians(6.0);  ///< ...turned less, repeats itself
-  double silence = 1.0;  ///< share of its detection that a beam without an echo is believed with
-  double passed = 0.4;   ///< cone: log odds taken where a beam has passed...
-  double met = 0.9;      ///< ...and given where it has met something
-  double most = 4.0;     ///< cone: log odds stay within this
+  double silence = 1.0;        ///< weight of a beam without an echo, of its detection
+  double passed = 0.4;         ///< cone: log odds subtracted along a beam...
+  double met = 0.9;            ///< ...and added at its echo
+  double most = 4.0;           ///< cone: log odds stay within this
 };
 
-/// Which tile: its corner is (column, row) * kTile * resolution.
+/// A tile's key: its corner is (column, row) * kTile * resolution.
 struct TileKey {
   long column = 0;
   long row = 0;
@@ -62,17 +61,17 @@ class Grid {
 
   explicit Grid(const GridSettings& settings = {});
 
-  /// A cycle begins, and the robot is here: drops what is far away. changed() and dropped() begin
-  /// anew.
+  /// A cycle begins with the robot at that place: drops distant cells. changed() and dropped()
+  /// begin anew.
   void move_to(const Vec2& robot);
-  /// A firing; nothing where there was no echo.
+  /// A firing; nothing: no echo.
   void add(int sonar, const Pose& sonar_in_grid, std::optional<double> range);
   void clear();
 
-  /// Probability that there is something; nothing where no beam has been.
+  /// Probability of an obstacle; nothing where no beam has been.
   std::optional<double> probability(const Vec2& at) const;
   /// The cells of a tile by rows from the smallest y, in each from the smallest x: the probability
-  /// times 200; kNeverSeen. Empty where there is no such tile.
+  /// times 200; kNeverSeen. Empty: no such tile.
   std::vector<std::uint8_t> cells(const TileKey& key) const;
   TileKey tile_of(const Vec2& at) const;
   /// All tiles, in order.
@@ -84,10 +83,10 @@ class Grid {
   const GridSettings& settings() const { return settings_; }
 
  private:
-  static constexpr int kBins = 12;  // of the direction that a cell is looked at from
+  static constexpr int kBins = 12;  // of the direction of view
   static constexpr std::size_t kCells = static_cast<std::size_t>(kTile * kTile);
   struct Tile {
-    // Evidence by direction, and what follows from all of it: log odds in steps of kStep.
+    // Evidence by direction, and the total: log odds in steps of kStep.
     std::array<std::array<std::int8_t, kBins>, kCells> bins{};
     std::array<std::int16_t, kCells> total{};
     std::array<bool, kCells> seen{};
@@ -97,8 +96,8 @@ class Grid {
     Tile* tile = nullptr;
     std::size_t cell = 0;
     int bin = 0;
-    double density = 0.0;  // of the reading, were the cell occupied [1/m]
-    double before = 1.0;   // that no other echo of it came before
+    double density = 0.0;  // of the reading, if the cell were occupied [1/m]
+    double before = 1.0;   // probability that no other cell gave the echo before
     double odds = 0.0;
   };
   struct Fired {
@@ -114,11 +113,11 @@ class Grid {
   double probability(const Tile& tile, std::size_t cell) const;
 
   GridSettings settings_;
-  std::array<std::int16_t, 256> weighed_{};  // what a bin says, by its evidence
+  std::array<std::int16_t, 256> weighed_{};  // a bin's log odds, by its evidence
   double prior_ = 0.0;
   std::map<TileKey, Tile> tiles_;
   std::vector<TileKey> dropped_;
-  std::vector<TileKey> cleared_;  // told with the next cycle
+  std::vector<TileKey> cleared_;  // reported with the next cycle
   std::vector<Fired> fired_;      // by sonar
   std::vector<Arc> arc_;
   std::uint64_t updates_ = 0;

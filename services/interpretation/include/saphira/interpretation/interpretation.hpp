@@ -18,33 +18,33 @@ struct Settings {
   std::vector<lps::SonarMount> sonars;
   SideSettings side;
   GridSettings grid;
-  /// [rad] the directions straight to the sides, and how far a sonar that makes walls is off them
+  /// [rad] largest angle from straight sideways of a sonar that makes walls
   double side_sector = radians(31.0);
-  double steady_turn = radians(4.0);  ///< a cycle; bearings are doubtful in faster turns
+  double steady_turn = radians(4.0);  ///< a cycle; in faster turns bearings are doubtful
   double parallel = radians(6.0);     ///< between the two walls of a corridor
   double min_corridor = 1.0;          ///< [m] wide
   double max_corridor = 3.2;
   double min_overlap = 2.0;      ///< [m] of the two walls along each other
-  double beside = 0.6;           ///< [m] a wall that ended so far back is still beside the robot
-  double min_confidence = 0.88;  ///< of a wall that is spoken of
-  double max_heading = radians(1.2);          ///< sigma of a wall that is spoken of
+  double beside = 0.6;           ///< [m] a wall that ended this far back is still beside the robot
+  double min_confidence = 0.88;  ///< of a published wall
+  double max_heading = radians(1.2);          ///< sigma of a published wall
   double max_opening_heading = radians(2.5);  ///< and of the wall of an opening
-  double encoder = 0.015;                     ///< [m] one sigma of dead reckoning's way after 1 m
-  double least_offset = 0.006;                ///< [m] sigma of where any wall is
-  double least_heading = radians(0.4);        ///< sigma of any heading
+  double encoder = 0.015;                     ///< [m] one sigma of dead reckoning after 1 m
+  double least_offset = 0.006;                ///< [m] least sigma of a wall's position
+  double least_heading = radians(0.4);        ///< least sigma of a heading
 };
 
 struct Inputs {
   std::uint64_t cycle = 0;
   Pose pose_in_odom;
   std::vector<lps::SonarReading> readings;  ///< new ones, in firing order
-  /// Where odom is in the frame of the grid: the grid is in odom when this is left as it is. It may
-  /// change a little from cycle to cycle, as registration corrects it.
+  /// The pose of odom in the frame of the grid; by default the grid is in odom. It may change a
+  /// little from cycle to cycle, as registration corrects it.
   Pose odom_in_grid{};
 };
 
 struct Output {
-  /// All that stand now: what the readings of the aperture's length of travel say.
+  /// All present percepts, from the readings within the aperture's length of travel.
   std::vector<lps::Percept> percepts;
   std::optional<lps::Percept> left_wall;   ///< sfLeftWallHyp: beside the robot now
   std::optional<lps::Percept> right_wall;  ///< sfRightWallHyp
@@ -52,9 +52,9 @@ struct Output {
   std::vector<TileKey> dropped_tiles;      ///< left behind
 };
 
-/// The micro-tasks of interpretation, by the names of sfInitInterpretationProcs: each
-/// can be suspended and resumed. What a suspended one found is gone at once, but for the grid,
-/// which stays as it was; what it would have heard meanwhile is missed.
+/// The micro-tasks of interpretation, by the names of sfInitInterpretationProcs: each can be
+/// suspended and resumed. The percepts of a suspended task are removed at once, except for the
+/// grid, which stays as it was; readings of that time are not used.
 class Tasks {
  public:
   explicit Tasks(ProcessTable& table);
@@ -71,11 +71,11 @@ class Tasks {
 /// From sonar readings to features and hypotheses (paper 3.2.1, manual 6.7): side segments by
 /// extended aperture, walls, their ends and breaks, doors, junctions and corridors.
 ///
-/// A pure function of its inputs' history. When the odom frame changes, reset() it.
+/// A pure function of its inputs' history. Call reset() when the odom frame changes.
 class Interpretation {
  public:
-  /// tasks: which parts work; all of them where there are none. They outlive the interpretation,
-  /// and their table has its turn before each step.
+  /// tasks: the parts that work; without them, all. They outlive the interpretation, and their
+  /// table is stepped before each step.
   explicit Interpretation(Settings settings, const Tasks* tasks = nullptr);
   Interpretation(const Interpretation&) = delete;
   Interpretation& operator=(const Interpretation&) = delete;
@@ -95,8 +95,8 @@ class Interpretation {
   struct Standing {
     lps::Percept percept;
     bool seen = false;
-    Lines lines{0, 0};       // what it was seen on
-    double travelled = 0.0;  // when it was placed
+    Lines lines{0, 0};       // the walls on which it was seen
+    double travelled = 0.0;  // at its placement
   };
   bool works(Process* Tasks::*task) const;
   void take(const lps::SonarReading& reading, const Pose& robot_in_odom, bool steady);

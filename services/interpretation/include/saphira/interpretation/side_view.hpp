@@ -12,41 +12,41 @@ namespace saphira::interpretation {
 
 /// Limits for walls, and for openings in them.
 struct SideSettings {
-  double aperture = 5.0;   ///< [m] of travel over which readings are put together
-  double turn_cost = 0.3;  ///< [m/rad] a turn counts as so much travel: it costs dead reckoning too
-  double max_range = 3.0;  ///< [m] of echoes that make walls
-  double step = 0.03;      ///< [m] a sonar that has moved less, and...
-  double turn = radians(5.0);  ///< ...turned less, says nothing new
+  double aperture = 5.0;       ///< [m] of travel over which readings are combined
+  double turn_cost = 0.3;      ///< [m/rad] travel for a turn, which costs dead reckoning too
+  double max_range = 3.0;      ///< [m] of echoes that make walls
+  double step = 0.03;          ///< [m] a sonar that has moved less, and...
+  double turn = radians(5.0);  ///< ...turned less, has no new information
 
-  double gate = 0.03;            ///< [m] an echo is of a line that it misses by less...
+  double gate = 0.03;            ///< [m] largest distance of an echo from its line...
   double relative_gate = 0.012;  ///< ...plus this share of its range
   EchoError error;
   double max_rms = 0.03;             ///< [m] of a wall
-  double incidence = radians(25.0);  ///< off the beam's axis up to which a wall is heard
+  double incidence = radians(25.0);  ///< off the beam's axis up to which a wall has an echo
   int min_echoes = 8;                ///< of a wall
-  double min_length = 0.7;           ///< [m] of a wall, plus what one corner can seem to be
+  double min_length = 0.7;           ///< [m] of a wall, plus the apparent length of one corner
   double run_gap = 0.35;             ///< [m] between echoes of one stretch
-  /// [m] that the echoes of a stretch of wall may lie to one side of its line: farther back it is
-  /// bent, or dead reckoning has been.
+  /// [m] Largest offset of a stretch's echoes to one side of its line: beyond it the wall, or dead
+  /// reckoning, is bent.
   double max_bend = 0.03;
 
-  /// Half the width of the cone in which a corner is heard. A wall seems longer by as much.
+  /// Half the width of the cone in which a corner is heard. A wall seems that much longer.
   double corner_cone = radians(9.5);
   double corner_doubt = radians(3.0);  ///< one sigma of it
-  double post_cone = radians(12.0);    ///< in which the others are taken to hear one
-  double sure = radians(18.0);  ///< off the axis up to which a wall would surely have been heard
-  double through = 0.45;        ///< [m] an echo from so far behind a line has gone through it
-  double max_step = 0.05;     ///< [m] from the wall on one side of an opening to that on the other
-  int min_through = 3;        ///< readings through an opening
-  double min_door = 0.6;      ///< [m]
-  double max_door = 1.4;      ///< [m] wider ones are junctions
-  double max_junction = 4.5;  ///< [m]
-  double end_run = 0.6;       ///< [m] of wall that a single end stands at
-  /// [m] what a closed door stands back from its wall (reveals of DIN 18040, ADA 404): less is no
-  /// more than a frame, more is seen through.
+  double post_cone = radians(12.0);    ///< in which other sonars may hear a corner
+  double sure = radians(18.0);         ///< off the axis up to which a wall surely has an echo
+  double through = 0.45;               ///< [m] an echo this far behind a line has gone through it
+  double max_step = 0.05;              ///< [m] offset between the walls on both sides of an opening
+  int min_through = 3;                 ///< readings through an opening
+  double min_door = 0.6;               ///< [m]
+  double max_door = 1.4;               ///< [m] wider ones are junctions
+  double max_junction = 4.5;           ///< [m]
+  double end_run = 0.6;                ///< [m] length of the wall at a single end
+  /// [m] Setback of a closed door from its wall (reveals of DIN 18040, ADA 404): a smaller one is a
+  /// frame, a larger one an open door.
   double min_back = 0.14;
   double max_back = 0.4;
-  double back_agree = 0.04;  ///< [m] its echoes agree with each other to this
+  double back_agree = 0.04;  ///< [m] spread of its echoes
   int min_back_echoes = 5;
 };
 
@@ -54,7 +54,7 @@ struct SideSettings {
 struct End {
   double u = 0.0;
   double sigma = 0.0;
-  bool open = false;  ///< seen to end here, not only seen so far
+  bool open = false;  ///< observed to end here, not merely unseen beyond
   std::vector<const Return*> through;
   std::vector<const Return*> posts;  ///< echoes of its corner from other bearings
 };
@@ -64,42 +64,41 @@ struct Stretch {
   std::vector<const Return*> echoes;  ///< in order along the line
   End from;
   End to;
-  /// Most of its echoes fit no other line better: not what was seen before the robot turned.
+  /// Most of its echoes fit no other line better, such as one from before a turn.
   bool own = true;
 };
 
-/// The straight part of it, from where it was heard last.
+/// Its straight part, from its newest echo on.
 Stretch straight_part(const Line& line, const Stretch& stretch, const SideSettings& settings);
 
-/// A gap between two stretches: one that is seen through, or a closed door that stands back from
-/// the wall.
+/// A gap between two stretches: an open one, or a closed door that stands back from the wall.
 struct Opening {
   std::size_t before = 0;  ///< the stretches
   std::size_t after = 0;
   End from;                            ///< the ends of the wall: of the stretch before it,
   End to;                              ///< and of the one after it
-  std::vector<const Return*> through;  ///< readings through it, or from what stands back
-  double depth = 0.0;                  ///< [m] that it stands back; 0: seen through
+  std::vector<const Return*> through;  ///< readings through it, or from the closed door
+  double depth = 0.0;                  ///< [m] of the closed door; 0: open
 };
 
-/// A wall as it is seen from one side: a line, and where it is.
+/// A wall as seen from one side: a line and its place.
 struct Wall {
-  std::uint32_t line = 0;  ///< stays while it is the same
+  std::uint32_t line = 0;  ///< stays for the same line
   LineFit fit;
   std::vector<Stretch> stretches;
   std::vector<Opening> openings;
 };
 
-/// The extended aperture of one side (paper 3.2.1): what its sonars heard on the last metres, and
-/// the walls in it.
+/// The extended aperture of one side (paper 3.2.1): the readings of its sonars over the last
+/// metres, and the walls in them.
 class SideView {
  public:
   explicit SideView(SideSettings settings) : settings_(settings) {}
 
-  /// A firing of one of the side's sonars. False where it says nothing new.
+  /// A firing of one of the side's sonars. False where it has no new information.
   bool add(const Return& firing);
-  /// Forgets what is farther back than the aperture, then puts the rest together. `others` are the
-  /// echoes of the sonars that look elsewhere: they hear the posts of doors.
+  /// Forgets readings beyond the aperture, then combines the rest. `others` are the echoes of the
+  /// sonars in other directions, which hear the posts of doors.
   void interpret(double travelled, const std::deque<Return>& others);
   void clear();
 
@@ -109,11 +108,11 @@ class SideView {
   struct Candidate {
     std::uint32_t id = 0;
     LineFit fit;
-    double newest = 0.0;  // travelled and turned at its last echo
+    double newest = 0.0;  // travelled and turned at its newest echo
     double turned = 0.0;
     std::vector<const Return*> echoes;
   };
-  // How far it misses the line, when it is an echo of it, that was heard last there.
+  // The distance of an echo from the line that was heard last there, if it belongs to it.
   std::optional<double> misses(const Return& firing, const Line& line, double newest,
                                double turned) const;
   bool is_wall(const Candidate& candidate) const;

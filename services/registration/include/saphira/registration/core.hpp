@@ -17,34 +17,34 @@
 
 namespace saphira::registration {
 
-/// Where `start` is on the map: the name of a POS of it, "x,y,th" [m, rad], or "unknown"; nothing
-/// for "unknown", and for "start" where the map has none. std::invalid_argument that says what was
-/// expected.
+/// The pose of `start` on the map: the name of a POS of it, "x,y,th" [m, rad], or "unknown";
+/// nothing for "unknown", and for "start" where the map has none. std::invalid_argument gives the
+/// expected form.
 std::optional<Pose> start_pose(const std::string& start, const maps::Map& map);
 
-/// All that a Core has learnt, been told and decided, as one value, apart from what follows from
-/// it: a copy that is put into another Core goes on to the last bit as the first one would have.
-/// State that a step leaves for a later one belongs here.
+/// The whole learnt state of a Core as one value, without derived data: a copy in another Core
+/// continues to the last bit as the first one would have. State that a step leaves for a later one
+/// belongs here.
 struct CoreState {
   /// State of the core itself.
   struct Own {
-    std::string option;  ///< the map that the service was started with
+    std::string option;  ///< the map at the start of the service
     maps::Editor editor;
-    std::string source;                    ///< where the map came from
-    bool changed = false;                  ///< the map, since it came from there
-    std::optional<Pose> start;             ///< on the map that the service was started with
+    std::string source;                    ///< the origin of the map
+    bool changed = false;                  ///< the map, since its origin
+    std::optional<Pose> start;             ///< on the map at the start of the service
     std::optional<Remembered> remembered;  ///< until it is used
     std::vector<lps::SonarMount> sonars;
-    bool on = true;  ///< a request may have switched it off
+    bool on = true;  ///< false: switched off by a request
     bool adds_features = false;
     bool snaps = true;
     std::optional<MapBuilder> builder;
     /// The map began empty: the builder finds the pose together with the map.
     bool building = false;
-    bool too_large = false;  ///< the map would be, if it grew further
+    bool too_large = false;  ///< the map has reached its largest size
     std::uint64_t odom = 0;  ///< of the newest step
     Pose pose_in_odom;
-    Pose pose_in_map;  ///< as it was told in the newest step; before that, the start
+    Pose pose_in_map;  ///< from the newest step; before that, the start
     State told = State::unplaced;
   };
   /// Of the Registration.
@@ -58,26 +58,26 @@ struct CoreState {
   std::vector<Process::Progress> processes;
 };
 
-/// The registration service without the bus: keeps the robot's place on the map true, and the map
-/// as it changes: by what is seen, by requests, by building it from nothing. Files are the shell's.
+/// The registration service without the bus: keeps the robot's pose on the map, and the map's
+/// changes by perception, by requests, or by building from nothing. Files are the shell's.
 class Core {
  public:
   struct Settings {
     maps::Map map;
-    std::string source;         ///< where the map came from; empty: nowhere
-    std::optional<Pose> start;  ///< of the robot in the map; none: it has to find itself
-    /// add_new_features (manual 6.9.2): what is seen and matches nothing is added to the map. Where
-    /// nothing is said, only a map that is empty at the start grows.
+    std::string source;         ///< the origin of the map; empty: none
+    std::optional<Pose> start;  ///< of the robot in the map; none: unknown
+    /// add_new_features (manual 6.9.2): percepts without a match are added to the map. By default,
+    /// only a map that is empty at the start grows.
     std::optional<bool> add_features;
     bool snap = true;  ///< snap_to_right_angle_grid (manual 6.9.2)
   };
-  /// `remembered`: of a service before this one. It counts where that one was started with the same
-  /// map, settings.source. std::invalid_argument where no robot can be registered on a map.
+  /// `remembered`: of an earlier service. It counts where that had the same map, settings.source.
+  /// std::invalid_argument where no robot can be registered on a map.
   explicit Core(Settings settings, std::optional<Remembered> remembered = {});
 
   struct Inputs {
     std::uint64_t cycle = 0;
-    /// The first step of an epoch: where the robot's sonars are.
+    /// The first step of an epoch: the poses of the robot's sonars.
     const std::vector<lps::SonarMount>* new_robot = nullptr;
     std::uint64_t odom = 0;
     Pose pose_in_odom;
@@ -89,8 +89,8 @@ class Core {
     std::uint32_t percept = 0;
     std::uint32_t artifact = 0;  ///< 0: none
     bool accepted = false;
-    std::string reason;   ///< why it was not
-    Vec2 off{0.0, 0.0};   ///< [m] seen less expected, along the artifact and across it
+    std::string reason;   ///< why it was not accepted
+    Vec2 off{0.0, 0.0};   ///< [m] seen minus expected, along the artifact and across it
     double turned = 0.0;  ///< [rad]
   };
   struct Outputs {
@@ -99,7 +99,7 @@ class Core {
     Pose pose_in_map;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
     double confidence = 0.0;
-    std::uint32_t environment = 0;  ///< id of what the robot is in; 0: nothing that is known
+    std::uint32_t environment = 0;  ///< id of the artifact around the robot; 0: none known
     std::vector<Matched> matches;
     std::vector<std::uint32_t> closed_doors;
     Notes notes;
@@ -107,23 +107,23 @@ class Core {
   /// The first step has to bring a robot.
   Outputs step(const Inputs& inputs);
 
-  /// The requests that it takes.
+  /// The requests of registration.
   static const std::vector<Functor>& functors();
-  /// In a cycle or between two: a request that functors() can take. What is refused has changed
-  /// nothing. The result "id" is that of the artifact that was put or removed.
+  /// In a cycle or between two: carries out a request that functors() can take. A refused request
+  /// has changed nothing. The result "id" is that of the added or removed artifact.
   Answer act(const Request& request);
 
   const maps::Map& map() const { return now_.editor.map(); }
-  /// Goes up with every change of the map.
+  /// Increases with every change of the map.
   std::uint64_t map_revision() const { return now_.editor.revision(); }
-  /// Where the map came from, and whether it has changed since.
+  /// The origin of the map, and its changes since.
   const std::string& map_source() const { return now_.source; }
   bool map_changed() const { return now_.changed; }
   bool adds_features() const { return now_.adds_features; }
   bool snaps() const { return now_.snaps; }
-  /// While what is seen is added to the map; nullptr otherwise.
+  /// While percepts are added to the map; nullptr otherwise.
   const MapBuilder* builder() const { return now_.builder ? &*now_.builder : nullptr; }
-  /// State that a restart takes over; none before the first robot.
+  /// State for a restart; none before the first robot.
   std::optional<Remembered> remembered() const;
 
   /// Its micro-tasks. They are stepped before the core, for the same cycle.

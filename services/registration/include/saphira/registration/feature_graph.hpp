@@ -11,7 +11,7 @@
 namespace saphira::registration {
 
 struct FeatureGraphSettings {
-  // One sigma of dead reckoning, a little worse than the worst robot that is to build a map.
+  // One sigma of dead reckoning, a little worse than the worst robot that should build a map.
   double way_error = 0.02;           ///< [m] after 1 m; grows with the root of the way
   double heading_error = 0.006;      ///< [rad] after 1 m; with the root of the way
   double turn_error = 0.04;          ///< [rad] after a turn of 1 rad; with the root of it
@@ -19,10 +19,10 @@ struct FeatureGraphSettings {
   double start_position = 0.001;     ///< [m] of the first pose
   double start_heading = 0.001;      ///< [rad]
   double grid_error = radians(0.4);  ///< [rad] of walls about the right-angle grid
-  double kernel = 2.5;  ///< [sigma] beyond this, what was seen counts for less and less
+  double kernel = 2.5;               ///< [sigma] beyond this, a measurement counts less and less
 };
 
-/// A stretch of wall as it was seen from a place on the way.
+/// A stretch of wall seen from a place on the way.
 struct SeenLine {
   std::size_t node = 0;
   Pose in_node;         ///< its middle; along it, with the free side on the left
@@ -31,7 +31,7 @@ struct SeenLine {
   double sigma_heading = 0.02;
 };
 
-/// An opening as it was seen.
+/// A seen opening.
 struct SeenPoint {
   std::size_t node = 0;
   Pose in_node;  ///< its middle; the normal, towards the robot
@@ -66,13 +66,13 @@ struct GraphPoint {
 struct GraphNode {
   Pose in_odom;
   Pose in_map;
-  bool fixed = false;   ///< its pose is known, and not to be found
-  bool broken = false;  ///< dead reckoning does not lead here from the node before
+  bool fixed = false;   ///< its pose is given
+  bool broken = false;  ///< no dead reckoning from the node before
 };
 
-/// The robot's way and the walls and openings seen on it, as one least-squares problem: dead
-/// reckoning with a constant drift, lines and points seen from nodes, and lines that follow a grid
-/// of right angles. Gauss-Newton with a Cauchy kernel; sparse, one thread, no randomness.
+/// The robot's way and the walls and openings on it, as one least-squares problem: dead reckoning
+/// with a constant drift, lines and points seen from nodes, and lines that follow a grid of right
+/// angles. Gauss-Newton with a Cauchy kernel; sparse, one thread, no randomness.
 struct FeatureGraph {
   FeatureGraphSettings settings;
   std::vector<GraphNode> nodes;
@@ -82,10 +82,9 @@ struct FeatureGraph {
   /// Of the newest node's pose in the map (x, y, th), by the last optimization.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
-  /// The growth that dead reckoning adds to the covariance of a pose on a way, in the frame where
-  /// it begins.
+  /// The covariance that dead reckoning adds to a pose on a way, in the frame of its start.
   Eigen::Matrix3d way_covariance(const Pose& way) const;
-  /// Moves everything to where it fits best. Returns the largest correction of a node [m].
+  /// Moves everything to its best fit. Returns the largest correction of a node [m].
   double optimize(int iterations = 5);
 };
 

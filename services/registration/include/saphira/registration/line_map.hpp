@@ -11,27 +11,27 @@
 
 namespace saphira::registration {
 
-/// A straight piece of what the map says is a wall.
+/// A straight surface of the map's walls.
 struct Surface {
   Vec2 from{0.0, 0.0};
   Vec2 to{0.0, 0.0};
   double heading = 0.0;      ///< [rad] from `from` to `to`
   double length = 0.0;       ///< [m]
   Vec2 free{0.0, 0.0};       ///< the unit normal towards the open side; zero where both are open
-  std::size_t feature = 0;   ///< in the map: the corridor, wall, office or object that it is of
-  bool from_is_end = false;  ///< an opening begins at `from`, which is no inner corner
+  std::size_t feature = 0;   ///< in the map: its corridor, wall, office or object
+  bool from_is_end = false;  ///< an opening begins at `from`, not an inner corner
   bool to_is_end = false;
 };
 
-/// Where a wall is interrupted: a door, a break, or where another corridor begins.
+/// An interruption of a wall: a door, a break, or the beginning of another corridor.
 struct Opening {
-  Pose pose_in_map;    ///< the middle; the heading is the normal, into the region it is seen in
-  double width = 0.0;  ///< [m]
+  Pose pose_in_map;         ///< the middle; the heading is the normal, into the region of its wall
+  double width = 0.0;       ///< [m]
   std::size_t feature = 0;  ///< the door, break or junction; else the corridor that begins here
 };
 
-/// The surfaces that reflect sound, by a map's artifacts: a corridor is its two sides and its
-/// ends, an office its four sides, without doors and breaks, and without what lies before another
+/// The surfaces of a map's artifacts that reflect sound: the two sides and the ends of a corridor,
+/// the four sides of an office, without doors and breaks, and without parts before another
 /// corridor, a junction or another part of the same office.
 class LineMap {
  public:
@@ -48,11 +48,11 @@ class LineMap {
   std::vector<Opening> openings_;
 };
 
-/// Why no robot can be registered on a map of these lines, in words; none where one can.
+/// The reason why no robot can be registered on a map of these lines, in words; none where one can.
 std::optional<std::string> problem(const LineMap& lines);
 
-/// The nearest surface to any point of the map, from a grid of which is the nearest: the distance
-/// to that one is exact.
+/// The nearest surface to any point of the map, from a grid of nearest surfaces; the distance to
+/// that surface is exact.
 class Field {
  public:
   /// std::invalid_argument where there is a `problem`.
@@ -64,8 +64,8 @@ class Field {
   };
   Nearest nearest(const Vec2& position_in_map) const;
   double distance(const Vec2& position_in_map) const { return nearest(position_in_map).distance; }
-  /// True where the map knows what is there: the inside of a corridor, junction, lane or office. In
-  /// a map of walls alone it knows all within them.
+  /// True where the map defines the place: the inside of a corridor, junction, lane or office. In a
+  /// map of walls alone, everything within them.
   bool known(const Vec2& position_in_map) const;
   const std::vector<Vec2>& known_cells() const { return known_cells_; }  ///< their middles
   double cell() const { return kCell; }

@@ -18,34 +18,34 @@ struct MapBuilderSettings {
   std::vector<lps::SonarMount> sonars;    ///< those that look ahead find the ends of corridors
   bool add_new_features = true;           ///< manual 6.9.2
   bool snap_to_right_angle_grid = true;   ///< manual 6.9.2
-  double grid_tolerance = radians(12.0);  ///< [rad] a wall that is farther off follows no grid
+  double grid_tolerance = radians(12.0);  ///< [rad] a wall with a larger deviation follows no grid
 
-  double least_confidence = 0.5;  ///< percepts that are less sure are left alone
-  double node_way = 0.5;          ///< [m] between places that are remembered
+  double least_confidence = 0.5;  ///< of percepts; those below are ignored
+  double node_way = 0.5;          ///< [m] between nodes of the way
   double node_turn = radians(20.0);
-  double again_way = 2.0;  ///< [m] of way after which a wall that is still seen counts once more
+  double again_way = 2.0;  ///< [m] of way after which a wall that is still seen counts again
 
-  // Limits for two sightings of the same thing.
+  // Limits for two sightings of the same object.
   double same_heading = radians(6.0);  ///< and three sigmas of the pose, up to...
   double most_heading = radians(25.0);
   double same_wall = 0.15;     ///< [m] across; likewise
   double same_opening = 0.45;  ///< [m] likewise
   double most_stray = 1.2;     ///< [m]
   double wall_gap = 5.5;       ///< [m] between stretches of one wall
-  double closure_way = 15.0;   ///< [m] of way after which seeing something again closes a loop
+  double closure_way = 15.0;   ///< [m] of way after which another sighting closes a loop
 
   // Limits for a corridor.
   double min_width = 1.0;
   double max_width = 3.6;
   double min_both = 1.2;    ///< [m] with a wall on either side
-  double min_ratio = 2.2;   ///< [1] of length and width; less is a room
+  double min_ratio = 2.2;   ///< [1] of length and width; a smaller one is a room
   double min_length = 3.0;  ///< [m]
   double max_gap = 0.3;     ///< [m] in both walls; more where the robot drove through
-  double one_gap = 1.4;     ///< [m] between them and a wall that goes on on one side
+  double one_gap = 1.4;     ///< [m] between them and a wall that continues on one side
   double max_driven_gap = 7.0;
-  double one_sided = 2.5;  ///< [m] by which one wall alone may make a corridor longer
-  double reach = 1.5;      ///< [m] an end so near to another corridor is a junction
-  double min_wall = 1.5;   ///< [m] of walls that are no corridor's
+  double one_sided = 2.5;  ///< [m] by which one wall alone may extend a corridor
+  double reach = 1.5;      ///< [m] an end this near to another corridor is a junction
+  double min_wall = 1.5;   ///< [m] of walls that do not belong to a corridor
 
   FeatureGraphSettings graph;
 };
@@ -56,70 +56,70 @@ struct MapBuilderInputs {
   Pose pose_in_odom;
   const std::vector<lps::Percept>& percepts;
   const std::vector<lps::SonarReading>& readings;
-  /// Where registration on a known map has the robot; then that is believed, and what is new is put
-  /// down from there. Nothing: the builder finds the pose together with the map.
+  /// The robot's pose from registration on a known map; then new artifacts are placed from it.
+  /// Nothing: the builder finds the pose together with the map.
   std::optional<Pose> pose_in_map;
 };
 
-/// How a door or object that was seen once did when the robot came by again.
+/// The later checks of a door or object that was seen once.
 struct Passes {
   int seen = 0;
   int missed = 0;  ///< in a row, since it was last seen
 };
 
-/// Maps by driving (manual 6.9.2): what is seen and matches nothing becomes an artifact. Stretches
-/// of wall are joined to lines, lines that face one another to corridors, corridors meet in
-/// junctions, openings become doors and breaks. The way and the features are one least-squares
-/// problem, so that seeing the first corridor again corrects all of the map.
+/// Builds maps by driving (manual 6.9.2): percepts without a match become artifacts. Stretches of
+/// wall are joined to lines, opposite lines to corridors, corridors meet in junctions, openings
+/// become doors and breaks. The way and the features are one least-squares problem, so that seeing
+/// the first corridor again corrects the whole map.
 ///
-/// Walls and corridors stay until removed. A door that was open and is seen closed stays, and is
-/// told as closed. A pure function of its inputs' history.
+/// Walls and corridors stay until removed. A door that was open and is seen closed stays, and
+/// counts as closed. A pure function of its inputs' history.
 class MapBuilder {
  public:
-  /// Begins with a map that is known (or none) and, where no pose is believed, at `start`.
+  /// Begins with a known map (or none) and, without a given pose, at `start`.
   explicit MapBuilder(MapBuilderSettings settings, maps::Map known = {}, Pose start_in_map = {});
 
   /// True when the map has changed.
   bool step(const MapBuilderInputs& inputs);
 
   const maps::Map& map() const { return editor_.map(); }
-  /// The known map has been edited before: ids that it gave once are not given again.
+  /// The known map was edited before: its earlier ids are not used again.
   void take_ids(const maps::Editor& known) { editor_ = known; }
-  /// Somebody else puts a thing onto the map as it is built, as maps::Editor has it; its id.
+  /// Another source adds an object to the map, as maps::Editor does; returns its id.
   std::uint32_t put(const maps::Feature& thing) { return editor_.put(thing); }
-  /// Takes something from the map. What the builder has put there it forgets, so that it must be
-  /// seen anew. False where there is no such thing.
+  /// Removes an artifact. The builder forgets its own artifact, so that it must be seen anew.
+  /// False: no such artifact.
   bool remove(std::uint32_t id);
   std::uint64_t revision() const { return editor_.revision(); }
-  /// Where the robot is by the map as it is built.
+  /// The robot's pose on the map.
   const Pose& pose_in_map() const { return pose_in_map_; }
-  /// Of x, y, th in the map, when the newest place on the way was put down.
+  /// Of x, y, th in the map, at the newest node of the way.
   const Eigen::Matrix3d& covariance() const { return covariance_; }
-  /// Doors of the map that did not open the last two times that the robot came by.
+  /// Doors of the map that were not open the last two times that the robot passed.
   std::vector<std::uint32_t> closed() const;
-  /// How often something was seen again after a long way.
+  /// The number of sightings again after a long way.
   int closures() const { return closures_; }
-  /// The way as it is believed now.
+  /// The present estimate of the way.
   std::vector<Vec2> way() const;
   const FeatureGraph& graph() const { return graph_; }
 
  private:
-  /// All that is known of a line or an opening beside where it is.
+  /// Data of a line or an opening besides its place.
   struct Known {
     lps::PointType type = lps::PointType::wall;  ///< wall, door or junction
-    double heading = 0.0;   ///< of an opening: its normal, in the map, as it was seen first
-    double last_way = 0.0;  ///< [m] driven when it was seen last
+    double heading = 0.0;   ///< of an opening: its normal, in the map, at the first sighting
+    double last_way = 0.0;  ///< [m] driven at the newest sighting
     Passes passes;
     bool beside = false;  ///< the robot is passing it
     bool found = false;   ///< ...and has seen it
   };
-  /// A percept that stands, and what it was taken for.
+  /// A present percept, and its match.
   struct Taken {
     bool is_line = true;
     std::size_t index = 0;
     std::size_t seen = 0;     ///< the newest entry of its `seen`
-    double way = 0.0;         ///< [m] driven when that was made
-    std::uint64_t cycle = 0;  ///< when it stood last
+    double way = 0.0;         ///< [m] driven at that entry
+    std::uint64_t cycle = 0;  ///< its newest cycle
   };
 
   void drive(const MapBuilderInputs& inputs);
@@ -134,7 +134,7 @@ class MapBuilder {
   /// ...and of its heading [rad].
   double stray_heading() const;
   std::optional<std::size_t> match_line(const SeenLine& seen) const;
-  /// The opening that it is, and whether it could as well be another one.
+  /// The matched opening, and the ambiguity of the match.
   struct Match {
     std::optional<std::size_t> index;
     bool is_ambiguous = false;
@@ -156,7 +156,7 @@ class MapBuilder {
   std::map<std::uint32_t, Taken> taken_;  ///< by the percept's id
   std::vector<SeenPoint> ahead_;          ///< echoes from straight ahead
   maps::Editor editor_;
-  std::vector<std::uint32_t> own_;                ///< ids of the features that were built
+  std::vector<std::uint32_t> own_;                ///< ids of the builder's features
   std::map<std::uint32_t, std::size_t> door_of_;  ///< feature to opening
   std::map<std::uint32_t, std::size_t> wall_of_;  ///< feature to line
   Pose start_in_map_;

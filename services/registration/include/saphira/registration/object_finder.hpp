@@ -12,32 +12,32 @@
 namespace saphira::registration {
 
 struct ObjectFinderSettings {
-  double range = 1.6;           ///< [m] the farthest echo: farther off the cone is too wide
+  double range = 1.6;           ///< [m] the farthest echo: beyond it the cone is too wide
   double beam = radians(10.0);  ///< [rad] half of the cone
-  double off = 0.3;             ///< [m] from all that the map has
-  double same = 0.5;            ///< [m] echoes so near to one another are of one thing
+  double off = 0.3;             ///< [m] from all features of the map
+  double same = 0.5;            ///< [m] distance of echoes of one object
   LookSpacing spacing;
-  std::size_t looks = 6;    ///< that must have met it...
-  double span = 0.4;        ///< [m] ...one from so far off the first
-  std::uint64_t time = 60;  ///< [cycles] ...in no less than this: who walks past is no thing
-  double least = 0.2;       ///< [m] sizes of things
+  std::size_t looks = 6;    ///< number of looks that have met it...
+  double span = 0.4;        ///< [m] ...one at this distance from the first
+  std::uint64_t time = 60;  ///< [cycles] ...over at least this time: a passing person is no object
+  double least = 0.2;       ///< [m] least size of an object
   double most = 1.5;
-  double clearer = 0.1;           ///< [m] by which a thing must look different to be told again
+  double clearer = 0.1;           ///< [m] change of an object that makes news
   std::size_t kept = 40;          ///< looks at each
   std::size_t candidates = 50;    ///< the most
-  std::uint64_t patience = 3000;  ///< [cycles] so long a few echoes wait for more
+  std::uint64_t patience = 3000;  ///< [cycles] for which a few echoes wait for more
 
   bool operator==(const ObjectFinderSettings&) const = default;
 };
 
-/// Things that stand where the map has nothing: what several readings from several places have met,
-/// as an OBJECT. A pure function of its inputs' history.
+/// Objects that are not on the map: obstacles met by several readings from several places, as an
+/// OBJECT. A pure function of its inputs' history.
 class ObjectFinder {
  public:
   explicit ObjectFinder(ObjectFinderSettings settings = {}) : settings_(settings) {}
 
-  /// Objects to put on the map, new ones (id 0) and ones that are seen more clearly now (with their
-  /// id): that is how the finder knows that it is there.
+  /// Objects for the map: new ones (id 0), and known ones with a better outline (with their id,
+  /// which tells the finder that they are on the map).
   std::vector<maps::Feature> step(const maps::Map& map, const Field& field, std::uint64_t cycle,
                                   const std::vector<Look>& looks);
 
@@ -46,7 +46,7 @@ class ObjectFinder {
  private:
   struct Candidate {
     std::vector<Look> met;
-    std::vector<Pose> from;  ///< of those, where they do not repeat one another
+    std::vector<Pose> from;  ///< their places, without repetitions
     std::size_t through = 0;
     std::uint64_t first = 0;
     std::uint64_t last = 0;

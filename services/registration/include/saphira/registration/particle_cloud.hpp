@@ -11,12 +11,12 @@ namespace saphira::registration {
 
 struct CloudSettings {
   std::size_t particles = 150;
-  // Dead reckoning, one sigma. More than that of a sound robot: the cloud is there for the others.
+  // Dead reckoning, one sigma. Larger than for a sound robot: the cloud is for the others.
   double way = 0.06;                 ///< [m] after 1 m
   double turn = 0.08;                ///< [rad] after a turn of 1 rad
   double heading = radians(1.5);     ///< [rad] after 1 m
-  double drift = radians(2.0);       ///< [rad/m] constant turn that is not there...
-  double drift_walk = radians(0.3);  ///< [rad/m] ...and by which it changes in 1 m
+  double drift = radians(2.0);       ///< [rad/m] error of a constant turn...
+  double drift_walk = radians(0.3);  ///< [rad/m] ...and its change in 1 m
 
   double least_position = 0.1;         ///< [m] one sigma at the start, at least...
   double least_turned = radians(4.0);  ///< [rad] ...and of the heading
@@ -24,11 +24,11 @@ struct CloudSettings {
   bool operator==(const CloudSettings&) const = default;
 };
 
-/// Many poses that the robot could have, near the one that is believed, each with a drift of dead
-/// reckoning of its own; what the readings make unlikely dies out (Monte Carlo localization,
-/// Dellaert et al. 1999). It holds where dead reckoning errs more than a filter of one pose may
-/// assume, or where the map has few walls that are seen as such; the filter is more exact where it
-/// holds. The same calls give the same poses.
+/// Possible poses of the robot near the estimated one, each with its own drift of dead reckoning;
+/// poses that the readings make unlikely die out (Monte Carlo localization, Dellaert et al. 1999).
+/// The cloud holds where dead reckoning errs more than a filter of one pose may assume, or where
+/// the map has few recognizable walls. The filter is more exact where it holds. The same calls give
+/// the same poses.
 class ParticleCloud {
  public:
   explicit ParticleCloud(CloudSettings settings) : settings_(settings) {}
@@ -37,19 +37,19 @@ class ParticleCloud {
   void clear() { particles_.clear(); }
   bool empty() const { return particles_.empty(); }
 
-  /// The robot has moved so, by dead reckoning, in its own frame before.
+  /// The robot's motion by dead reckoning, in its own earlier frame.
   void move(const Pose& moved);
-  /// A reading of a sonar at `sensor_in_robot` is worth so much at each pose. `worth` is a function
-  /// of the sensor's pose in the map.
+  /// Weighs the poses by a reading of a sonar at `sensor_in_robot`. `worth` is a function of the
+  /// sensor's pose in the map.
   template <typename Worth>
   void weigh(const Pose& sensor_in_robot, Worth&& worth) {
     for (Particle& p : particles_)
       p.log_weight += worth(compose(p.pose, sensor_in_robot));
   }
-  /// Gives all particles the correction that a filter made between these two poses.
+  /// Applies a filter's correction between these two poses to all particles.
   void learn(const Pose& before, const Eigen::Matrix3d& covariance_before, const Pose& after,
              const Eigen::Matrix3d& covariance_after);
-  /// Lets the unlikely ones die when there are too many of them.
+  /// Resamples when there are too many unlikely particles.
   void select();
 
   struct Estimate {

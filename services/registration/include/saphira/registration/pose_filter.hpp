@@ -7,18 +7,18 @@
 
 namespace saphira::registration {
 
-/// How wrong dead reckoning is; one sigma, growing with the root of the way.
+/// The errors of dead reckoning; one sigma, growing with the root of the way.
 struct ReckoningErrors {
   double way = 0.03;                  ///< [m] after 1 m
   double turn = 0.05;                 ///< [rad] after a turn of 1 rad
   double heading = radians(0.5);      ///< [rad] after 1 m
-  double drift_walk = radians(0.01);  ///< [rad/m] by which drift itself changes in 1 m
+  double drift_walk = radians(0.01);  ///< [rad/m] change of the drift itself in 1 m
 
   bool operator==(const ReckoningErrors&) const = default;
 };
 
-/// The robot's pose in the map and the drift of its dead reckoning (a constant turn per metre that
-/// is not there, as of unequal wheels), with their covariance.
+/// The robot's pose in the map and the drift of its dead reckoning (a constant false turn per
+/// metre, as from unequal wheels), with their covariance.
 class PoseFilter {
  public:
   using State = Eigen::Vector4d;  // x, y, th, drift
@@ -27,9 +27,9 @@ class PoseFilter {
   PoseFilter(const Pose& pose, const Eigen::Matrix3d& covariance, double drift,
              double drift_variance, const ReckoningErrors& errors);
 
-  /// The robot has moved so, by dead reckoning, in its own frame before.
+  /// The robot's motion by dead reckoning, in its own earlier frame.
   void move(const Pose& moved);
-  /// A measurement that differs from what was expected by `innovation` = `jacobian` * error.
+  /// A measurement whose difference from the expectation is `innovation` = `jacobian` * error.
   template <int N>
   void correct(const Eigen::Matrix<double, N, 1>& innovation,
                const Eigen::Matrix<double, N, 4>& jacobian,
@@ -48,7 +48,7 @@ class PoseFilter {
   void set_covariance(const Covariance& covariance) { covariance_ = covariance; }
   /// Another pose; the drift stays.
   void set_pose(const Pose& pose, const Eigen::Matrix3d& covariance);
-  /// Less sure of the pose.
+  /// Increases the uncertainty of the pose.
   void widen(double position, double heading);
 
   bool operator==(const PoseFilter&) const = default;

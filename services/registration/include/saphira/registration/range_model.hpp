@@ -5,22 +5,21 @@
 
 namespace saphira::registration {
 
-/// The range that a sonar would measure at a place of the map. Surfaces are mirrors to it
-/// (sim/README.md, "Against real sonars"): one that is met at a right angle is heard, one that is
-/// met at a slant mostly is not, and then the echo comes from a corner, a door post, or something
-/// that is not in the map.
+/// The expected range of a sonar at a place of the map. Surfaces are mirrors to it (sim/README.md,
+/// "Against real sonars"). A surface at a right angle is heard; one at a slant mostly is not, and
+/// then the echo comes from a corner, a door post, or an object that is not in the map.
 struct RangeModelSettings {
-  double facing = radians(15.0);  ///< [rad] a surface whose normal is not more off is heard
-  double cone = radians(10.0);    ///< [rad] half of it, for what is heard besides
-  double sigma = 0.08;            ///< [m] of an echo of a mapped surface, maps' errors included
-  double slanted_sigma = 0.12;    ///< [m] the same of the others
-  double heard = 0.85;            ///< share of firings that a facing surface answers
-  double near = 0.02;             ///< share that something nearer answers, within 0.2 m of range
-  double far = 0.008;             ///< the same of something behind it
-  double silent = 0.04;           ///< share that a facing surface does not answer
-  double slanted_silent = 0.6;    ///< share without an echo where none faces the sonar
-  double slanted_heard = 0.25;    ///< share with an echo of what the map says
-  double slanted_other = 0.03;    ///< share with an echo of something else, within 0.2 m
+  double facing = radians(15.0);  ///< [rad] largest angle of a surface's normal that is heard
+  double cone = radians(10.0);    ///< [rad] half of it, for other echoes
+  double sigma = 0.08;            ///< [m] of an echo of a mapped surface, with the map's errors
+  double slanted_sigma = 0.12;    ///< [m] the same for the others
+  double heard = 0.85;            ///< share of firings with the echo of a facing surface
+  double near = 0.02;             ///< share of nearer echoes, within 0.2 m of range
+  double far = 0.008;             ///< the same of farther echoes
+  double silent = 0.04;           ///< share of firings at a facing surface without an echo
+  double slanted_silent = 0.6;    ///< share without an echo where no surface faces the sonar
+  double slanted_heard = 0.25;    ///< share with an echo of a mapped surface
+  double slanted_other = 0.03;    ///< share with an echo of another object, within 0.2 m
   double max_range = 5.0;         ///< [m]
 };
 
@@ -29,7 +28,7 @@ class RangeModel {
   RangeModel(const Field& field, RangeModelSettings settings = {})
       : field_(&field), settings_(settings) {}
 
-  /// log of how likely a reading is, to be compared between poses.
+  /// The log likelihood of a reading, for comparison between poses.
   double log_likelihood(const Pose& sensor_in_map, double range, bool echo) const;
 
  private:

@@ -29,7 +29,7 @@ struct Sigmas {
 };
 
 struct Settings {
-  std::vector<lps::SonarMount> sonars;  ///< readings of others are left out
+  std::vector<lps::SonarMount> sonars;  ///< readings of others are ignored
   RangeModelSettings range;
 
   ReckoningErrors reckoning;
@@ -38,61 +38,61 @@ struct Settings {
   MatchSettings match;
   double again = 0.4;                   ///< [m] the same wall is matched again after this way...
   double again_turned = radians(10.0);  ///< [rad] ...or turn
-  double least_confidence = 0.5;        ///< percepts that are less sure are left alone
-  std::uint64_t fresh = 15;             ///< [cycles] percepts seen longer ago are left alone
-  /// [rad] and those since whose readings the robot has turned by more: dead reckoning errs most in
-  /// turns, so that they are not where they seem.
+  double least_confidence = 0.5;        ///< of percepts; those below are ignored
+  std::uint64_t fresh = 15;             ///< [cycles] older percepts are ignored
+  /// [rad] Percepts are also ignored after a turn of more than this: dead reckoning errs most in
+  /// turns, so that their place is wrong.
   double most_turned = radians(40.0);
 
-  // Single readings of a wall that faces the sonar: little by little, between percepts.
-  double wall_sigma = 0.15;  ///< [m] so much since they are not independent
+  // Single readings of a wall that faces the sonar: small corrections between percepts.
+  double wall_sigma = 0.15;  ///< [m] so large since they are not independent
   double wall_range = 2.5;   ///< [m] the farthest that count
 
-  // Scores of raw readings at the believed pose, see SearchSettings.
-  double sure = 15.0;        ///< from which on they fit; a robot that tracks has 20 to 50
-  double lost = -6.0;        ///< below which the pose does not hold...
-  double again_sure = 20.0;  ///< ...until it has fitted as well as this again
-  // The same of the last two metres alone: a robot that was carried off doubts before what fitted
-  // where it was has faded. On made floors (tests/bench/floors) one that tracks has 8 or more in 99
-  // % of the cycles; of those that were carried, half have less than 4 after three metres.
+  // Scores of raw readings at the present pose, see SearchSettings.
+  double sure = 15.0;        ///< from this on they fit; a tracking robot has 20 to 50
+  double lost = -6.0;        ///< below this the pose does not hold...
+  double again_sure = 20.0;  ///< ...until it has fitted this well again
+  // The same over the last two metres alone: a robot that was carried must doubt before the good
+  // readings of its old place have faded. On made floors (tests/bench/floors) a tracking robot has
+  // 8 or more in 99 % of the cycles; half of the carried ones have less than 4 after three metres.
   double recently_sure = 7.0;
   double recently_lost = -5.0;
-  double recently_again = 2.0;  ///< from which on it may hold again
+  double recently_again = 2.0;  ///< from this on it may hold again
   SearchSettings search;
 
-  // Where else near by it could be: a cloud beside the filter, which takes over where it is better.
+  // Other possible poses near by: a cloud beside the filter, which takes over where it is better.
   CloudSettings cloud;
-  /// [m] of way that it leads before the filter is tried again; doubled each time that it fails.
+  /// [m] The way of the cloud's lead before the filter is tried again; doubled at each failure.
   double trial = 30.0;
-  double lead = 8.0;                    ///< in scores of raw readings, by which either is better
-  double lead_memory = 3.0;             ///< [m] of way in which that fades to a third
-  double lead_apart = 0.2;              ///< [m] they are at the same place if not farther apart...
-  double lead_turned = radians(8.0);    ///< [rad] ...and turned
-  double dense = 0.5;                   ///< [m] one sigma of a cloud that says where it is...
+  double lead = 8.0;                    ///< in scores of raw readings: the lead of cloud or filter
+  double lead_memory = 3.0;             ///< [m] of way in which the lead fades to a third
+  double lead_apart = 0.2;              ///< [m] largest distance of the same place...
+  double lead_turned = radians(8.0);    ///< [rad] ...and turn
+  double dense = 0.5;                   ///< [m] one sigma of a cloud with a definite place...
   double dense_turned = radians(12.0);  ///< [rad] ...and of its heading
 
-  // Missing and new artifacts, from a pose that is sure.
+  // Missing and new artifacts, from a certain pose.
   double sure_position = 0.2;  ///< [m] one sigma of it
   PresenceSettings presence;
   ObjectFinderSettings objects;
 };
 
 enum class State {
-  off,       ///< switched off: the pose goes on by dead reckoning (manual 6.9.2)
-  unplaced,  ///< it has no pose, and looks for one
+  off,       ///< switched off: the pose follows dead reckoning (manual 6.9.2)
+  unplaced,  ///< no pose; searching
   tracking,
-  lost  ///< the pose does not hold; it looks for another
+  lost  ///< the pose does not hold; searching
 };
 std::string_view word(State state);
 
 struct Inputs {
   std::uint64_t cycle = 0;
   std::uint64_t odom =
-      0;  ///< number of the odometry frame; another one: the robot may be elsewhere
+      0;  ///< number of the odometry frame; after a change the robot may be elsewhere
   Pose pose_in_odom;
   const std::vector<lps::Percept>& percepts;
   const std::vector<lps::SonarReading>& readings;  ///< new ones, in firing order
-  /// True where things are looked for that the map does not have (add_new_features, manual 6.9.2).
+  /// True: search for objects that are not on the map (add_new_features, manual 6.9.2).
   bool find_objects = false;
 };
 
@@ -103,18 +103,17 @@ struct Output {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y, th
   double confidence = 0.0;  ///< [0..1] that the pose is right within its covariance
   std::vector<Match> matches;
-  /// The feature of the map that the robot is in: junction before corridor before lane before
-  /// office. current_environment of manual 8.1.2.
+  /// The feature of the map around the robot: junction before corridor before lane before office.
+  /// current_environment of manual 8.1.2.
   std::optional<std::size_t> environment;
-  /// Artifacts of the map that are gone, closed or open again, and new ones, for the owner of the
-  /// map.
+  /// Artifacts of the map that are gone, closed or open again, and new ones, for the map's owner.
   Presence::News presence;
   std::vector<maps::Feature> objects;
 
   bool operator==(const Output&) const = default;
 };
 
-/// State that a restart takes over.
+/// State for a restart.
 struct Memory {
   std::uint64_t odom = 0;
   Pose pose_in_odom;
@@ -127,13 +126,13 @@ struct Memory {
 
 struct RegistrationState;
 
-/// Where the robot is in the map: test_match_proc and test_environment_proc of manual 6.9.2, and
+/// The robot's pose in the map: test_match_proc and test_environment_proc of manual 6.9.2, and
 /// anchoring of paper 3.2.
 ///
 /// An extended Kalman filter of the pose and of dead reckoning's constant drift, corrected by
-/// percepts that are matched to artifacts: hypotheses first, then features whose readings no
-/// accepted hypothesis has. What could be two artifacts is left alone. Raw readings say whether the
-/// pose holds; where it does not, or is not known, a search over the whole map finds it.
+/// percepts that match artifacts: hypotheses first, then features whose readings no accepted
+/// hypothesis has. An ambiguous percept is ignored. Raw readings confirm or refute the pose; where
+/// it does not hold, or is unknown, a search over the whole map finds it.
 /// The same inputs give the same outputs to the last bit.
 class Registration {
  public:
@@ -145,28 +144,28 @@ class Registration {
   const Output& step(const Inputs& inputs);
   const Output& output() const;
 
-  /// Another map, or the same one changed. The state stays.
+  /// Another map, or a changed one. The state stays.
   void set_map(maps::Map map);
   const maps::Map& map() const;
-  /// Somebody says where the robot is.
+  /// Sets the robot's pose from outside.
   void set_pose(const Pose& pose_in_map, const Sigmas& sigmas = {});
-  /// Forgets where the robot is, and looks for it.
+  /// Forgets the robot's pose, and searches for it.
   void forget_pose();
   void switch_on(bool on);
   bool on() const;
-  /// Doors by id that were closed when the robot looked at them last.
+  /// Doors by id that were closed when the robot last looked at them.
   const std::set<std::uint32_t>& closed_doors() const;
   void recall_closed(std::set<std::uint32_t> doors);
 
-  /// All that it has learnt, see state.hpp.
+  /// The learnt state, see state.hpp.
   const RegistrationState& state() const;
-  /// Goes on from there: `state` is of a Registration with the same map and settings.
+  /// Continues from there: `state` is of a Registration with the same map and settings.
   void set_state(RegistrationState state);
 
-  /// The part that the service keeps over a restart: much less.
+  /// The part that the service saves over a restart: much less.
   Memory save() const;
-  /// Goes on from there in the same odometry frame. In another one the pose is a guess, beside
-  /// `start`: State::lost until the readings fit one of them and not the other.
+  /// Continues from there in the same odometry frame. In another one the pose is a guess, beside
+  /// `start`: State::lost until the readings fit only one of them.
   void restore(const Memory& memory, const std::optional<Pose>& start = std::nullopt);
 
  private:

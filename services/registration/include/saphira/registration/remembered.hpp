@@ -10,19 +10,19 @@
 
 namespace saphira::registration {
 
-/// State that outlives the service: the pose, and the map as it has become.
+/// State that outlives the service: the pose, and the changed map.
 struct Remembered {
   Memory memory;
-  std::string option;    ///< the map that the service was started with
-  std::string source;    ///< where this map came from: that one, or another that was loaded since
-  bool changed = false;  ///< since it came from there
+  std::string option;    ///< the map at the start of the service
+  std::string source;    ///< the origin of this map: that one, or another that was loaded later
+  bool changed = false;  ///< since its origin
   maps::Map map;
   std::set<std::uint32_t> closed_doors;
 };
 
-/// With its sum. std::invalid_argument where the map is none that a file holds.
+/// With its checksum. std::invalid_argument where no file can hold the map.
 std::string to_text(const Remembered& remembered);
-/// FileError with line and column where the text is none of ours.
+/// FileError with line and column for any other text.
 Remembered parse_remembered(std::string_view text, const std::string& file);
 
 }  // namespace saphira::registration

@@ -14,7 +14,7 @@
 
 namespace saphira::registration {
 
-/// One reading with the place of its sonar when it heard.
+/// One reading with the place of its sonar.
 struct PlacedReading {
   Pose sensor_in_odom;
   double range = 0.0;
@@ -25,20 +25,20 @@ struct PlacedReading {
 };
 
 struct SearchSettings {
-  std::size_t hypotheses = 100;  ///< the most that are followed
+  std::size_t hypotheses = 100;  ///< the maximum
   double trust = 0.3;            ///< exponent of the likelihoods: readings are not independent
-  double any_echo = -2.6;        ///< log likelihood of an echo by no place in particular...
+  double any_echo = -2.6;        ///< log likelihood of an echo without a place...
   double any_silence = -0.8;     ///< ...and of silence
-  double surprise = 1.5;         ///< the most that one reading speaks against a place
-  std::size_t history = 60;      ///< readings that a new hypothesis is held against
+  double surprise = 1.5;         ///< the limit of one reading's evidence against a place
+  std::size_t history = 60;      ///< readings that test a new hypothesis
   double spacing = 0.1;          ///< [m] of way between those of one sonar that count
   double memory = 6.0;           ///< [m] of way in which a score fades to a third
-  double recent = 2.0;     ///< [m] the same of what the place that is believed was worth of late
-  double evidence = 20.0;  ///< score from which on a hypothesis may be it...
-  double margin = 10.0;    ///< ...when it is so much better than any at another place...
-  double way = 2.5;        ///< [m] ...and has been followed for so long
-  int matches = 3;         ///< ...and openings that it has explained, its first one included
-  double hopeless = 25.0;  ///< below the best one's score: given up
+  double recent = 2.0;           ///< [m] the same for the recent score of the present place
+  double evidence = 20.0;        ///< score from which a hypothesis is accepted...
+  double margin = 10.0;          ///< ...with this lead over any at another place...
+  double way = 2.5;              ///< [m] ...after this way
+  int matches = 3;               ///< ...and with this many explained openings, including its first
+  double hopeless = 25.0;        ///< below the best one's score: dropped
 };
 
 /// Results of a search.
@@ -49,7 +49,7 @@ struct SearchState {
     double score = 0.0;
     double way = 0.0;  ///< [m] followed
     int openings = 0;
-    bool told = false;  ///< not proposed by an opening: somebody says that the robot starts there
+    bool told = false;  ///< not proposed by an opening: given as the robot's start
 
     bool operator==(const Hypothesis&) const = default;
   };
@@ -58,50 +58,50 @@ struct SearchState {
   std::optional<Pose> odom;
   double travelled = 0.0;
   std::optional<Pose> own;
-  double own_score = 0.0;   ///< what the place that is believed has been worth so far...
-  double own_recent = 0.0;  ///< ...and of late
+  double own_score = 0.0;   ///< the total score of the present place...
+  double own_recent = 0.0;  ///< ...and its recent score
 
   bool operator==(const SearchState&) const = default;
 };
 
-/// Where in the whole map the robot is: places that would explain an opening that was seen are
-/// followed with a filter each, matched with what is seen afterwards, and weighed by raw readings
-/// (multiple hypothesis localisation, Jensfelt and Kristensen 2001). It costs little, since an
-/// opening leaves only so many places as the map has openings of its width, and it needs no luck:
-/// a filter of 40000 particles had too few near the truth to survive in a floor of 36 by 28 m.
+/// Finds the robot in the whole map. Places that would explain a seen opening are followed with a
+/// filter each, matched with later percepts, and weighed by raw readings (multiple hypothesis
+/// localisation, Jensfelt and Kristensen 2001). That is cheap, since an opening has only as many
+/// places as the map has openings of its width, and needs no luck: a filter of 40000 particles had
+/// too few near the truth to survive in a floor of 36 by 28 m.
 class Search {
  public:
   using Hypothesis = SearchState::Hypothesis;
 
-  /// Works on `state`. That, the map and all that is made of it outlive the search.
+  /// Works on `state`, which outlives the search, as do the map and all objects made from it.
   Search(const maps::Map& map, const LineMap& lines, const RangeModel& model,
          const SearchSettings& settings, const MatchSettings& match_settings,
          const ReckoningErrors& reckoning, double drift_error, SearchState& state);
 
   void clear();
-  /// One cycle. `fresh` are the percepts that are to be matched in it; `own` is the place that is
-  /// believed, which is weighed with the others, and nullptr while there is none.
+  /// One cycle. `fresh` are the percepts to match in it; `own` is the present place, which is
+  /// weighed with the others, and nullptr while there is none.
   void step(const Pose& pose_in_odom, const std::vector<PlacedReading>& readings,
             const std::vector<const lps::Percept*>& fresh, const PoseFilter* own);
 
-  /// How much better than anywhere a reading fits where its sonar is, as scores count it.
+  /// The score of a reading at its sonar's place, relative to an average place.
   double worth(const Pose& sensor_in_map, double range, bool echo) const;
-  /// Follows a place that the robot was told, beside the one that `own` of step() is.
+  /// Follows a given place of the robot, beside `own` of step().
   void suspect(const PoseFilter& filter);
-  /// True where no other place is worth more than the one that is believed.
+  /// True where no other place has a higher score than the present one.
   bool own_is_best() const;
-  /// Of the place that is believed and the one that was told: whether it explains what is heard,
-  /// better than the other by the margin, and no place in the map does it better by that.
+  /// Tests of the present place, and of the given one: its score is high enough, it leads the other
+  /// by the margin, and no place in the map leads it by that.
   bool own_leads() const;
   const Hypothesis* told_leads() const;
-  /// The best one and how much better it is than any that is elsewhere; nothing: there is none.
-  /// While a place is believed, `beside_own`: the best one that is not there, and how much better
-  /// it is than that place, too.
+  /// The best hypothesis and its lead over any at another place; nothing: there is none. While
+  /// there is a present place, `beside_own`: the best hypothesis at another place, with its lead
+  /// over the present place, too.
   struct Best {
     const Hypothesis* hypothesis = nullptr;
     double margin = 0.0;
-    bool likely = false;  ///< enough not to believe the other place any more
-    bool sure = false;    ///< enough to believe this one
+    bool likely = false;  ///< enough to doubt the other place
+    bool sure = false;    ///< enough to accept this one
   };
   std::optional<Best> best(bool beside_own) const;
 

@@ -9,24 +9,24 @@
 namespace saphira::registration {
 
 struct StandingSettings {
-  double moved = 0.01;           ///< [m] of dead reckoning in a cycle that is no standing...
+  double moved = 0.01;           ///< [m] of dead reckoning in a cycle that counts as motion...
   double turned = radians(1.0);  ///< [rad] ...likewise
-  double same = 0.25;            ///< [m] two echoes of one thing
-  double silence = 5.0;          ///< [m] as which the lack of an echo counts
-  int learnt = 6;      ///< readings of a sonar that tell what it hears where the robot stands
-  int changed = 4;     ///< in a row that are like none of them
-  int accepted = 60;   ///< in a row, after which that is what it hears
-  double share = 0.4;  ///< of the sonars that hear something else: the robot was carried
-  int least = 3;       ///< sonars that do
+  double same = 0.25;            ///< [m] two echoes of one object
+  double silence = 5.0;          ///< [m] range that stands for silence
+  int learnt = 6;                ///< readings of a sonar that define its normal ranges at a place
+  int changed = 4;               ///< number in a row with different ranges
+  int accepted = 60;             ///< number in a row after which the new range is normal
+  double share = 0.4;            ///< of the sonars with changed ranges: the robot was carried
+  int least = 3;                 ///< sonars with changed ranges
 };
 
-/// Notices that a robot whose wheels stand is somewhere else: what its sonars hear has changed all
-/// around. A person who comes by changes it on one side. A value.
+/// Detects that a robot with standing wheels was carried: the ranges of its sonars have changed all
+/// around. A person near by changes them on one side. A value.
 class Standing {
  public:
   explicit Standing(StandingSettings settings = {}) : settings_(settings) {}
 
-  /// One cycle; `moved` is what dead reckoning says. True once where the robot was carried.
+  /// One cycle; `moved` is by dead reckoning. True once where the robot was carried.
   bool step(const Pose& moved, const std::vector<lps::SonarReading>& readings);
 
   bool operator==(const Standing& other) const { return sonars_ == other.sonars_; }
@@ -34,7 +34,7 @@ class Standing {
  private:
   struct Heard {
     std::vector<double> ranges;  ///< [m]
-    int strange = 0;             ///< readings in a row that are like none of these
+    int strange = 0;             ///< readings in a row unlike any of these
 
     bool operator==(const Heard&) const = default;
   };

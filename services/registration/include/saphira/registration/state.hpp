@@ -17,14 +17,14 @@
 
 namespace saphira::registration {
 
-/// All that a Registration has learnt since its start, and nothing that follows from its map or its
-/// settings. A value: a copy that is put back, or put into another Registration with the same map
-/// and settings, goes on to the last bit as the first one would have.
+/// The whole learnt state of a Registration, without data that follow from its map or settings. A
+/// value: a copy that is put back, or put into another Registration with the same map and settings,
+/// continues to the last bit as the first one would have.
 ///
 /// State that a step leaves for a later one belongs here. A map edit keeps this whole, so that no
 /// member can be forgotten.
 struct RegistrationState {
-  /// A percept that has been matched.
+  /// A matched percept.
   struct Done {
     std::uint32_t percept = 0;
     std::uint64_t cycle = 0;
@@ -45,22 +45,22 @@ struct RegistrationState {
   bool on = true;
   State state = State::unplaced;
   std::optional<PoseFilter> filter;
-  /// The readings have fitted the pose since it was told.
+  /// The readings have fitted the pose since it was given.
   bool confirmed = false;
-  /// Dead reckoning has begun anew: the robot may have been carried away, and what was believed
-  /// before is a guess until the readings have fitted it.
+  /// Dead reckoning has begun anew: the robot may have been carried, and the pose is a guess until
+  /// the readings have fitted it.
   bool doubted = false;
-  bool carried = false;       ///< what raised the doubt is what it hears, while it stood
-  std::optional<Pose> start;  ///< where it may be instead, then
+  bool carried = false;       ///< the doubt came from the readings at a standstill
+  std::optional<Pose> start;  ///< the alternative pose
 
   // Dead reckoning.
   std::uint64_t cycle = 0;
   std::optional<std::uint64_t> odom;
   Pose pose_in_odom;
   Pose moved;                                          ///< in the newest cycle
-  double way = 0.0;                                    ///< [m] ever
-  double turned = 0.0;                                 ///< [rad] ever, either way
-  std::deque<std::pair<std::uint64_t, double>> turns;  ///< the same by cycle, of late
+  double way = 0.0;                                    ///< [m] in total
+  double turned = 0.0;                                 ///< [rad] in total, either way
+  std::deque<std::pair<std::uint64_t, double>> turns;  ///< the same by cycle, recent
 
   // Corrections of the pose.
   std::vector<Done> done;
@@ -68,11 +68,11 @@ struct RegistrationState {
   double since_readings = 0.0;                   ///< [m] of way since readings corrected it
 
   // The cloud beside the filter.
-  double trial;                   ///< [m] that it leads before the filter is tried again
-  std::map<int, double> weighed;  ///< [m] of way when a sonar was weighed last
-  double lead = 0.0;              ///< of the cloud before the filter
+  double trial;                   ///< [m] of the cloud's lead before the filter is tried again
+  std::map<int, double> weighed;  ///< [m] of way at a sonar's newest weighing
+  double lead = 0.0;              ///< score of the cloud minus that of the filter
   double cloud_score = 0.0;
-  bool leads = false;  ///< the cloud, and the filter is set by it
+  bool leads = false;  ///< the cloud leads, and sets the filter
   double led = 0.0;    ///< [m]
   ParticleCloud cloud;
 

@@ -8,16 +8,16 @@
 
 namespace saphira::runtime {
 
-/// A service as a part of the system: what is needed to offer it, to start it and to list it.
+/// A service as a part of the system: the data to offer, start and list it.
 struct Component {
   std::string name;    ///< on the bus; its program is saphira-NAME
-  std::string effect;  ///< what it is for, in one line
-  /// Adds its options to a command line; `make` uses their values. Empty: it has none.
+  std::string effect;  ///< its purpose, in one line
+  /// Adds its options to a command line; `make` uses their values. Empty: no options.
   std::function<void(CommandLine&)> add_options;
   Shell::Make make;
 };
 
-/// The topics that a component reads and writes, found by making it on a bus of its own, without
+/// The topics that a component reads and writes, found by making it on a private bus, without
 /// starting it.
 std::vector<Port> ports_of(const Component& component);
 

@@ -17,11 +17,11 @@ struct Port {
   enum class Use {
     kState,    ///< in: robot/state of cycle N, and the robot's description of its epoch
     kCycle,    ///< in: of cycle N-1; lockstep waits for it
-    kNewest,   ///< in: the newest sample there is
+    kNewest,   ///< in: the newest sample
     kEvents,   ///< in: every sample, in a cycle or between two
     kEach,     ///< out: one sample a cycle
-    kChanges,  ///< out: when there is something new
-    kRecall    ///< out: kEach again, kept for a minute for those who ask afterwards
+    kChanges,  ///< out: on change
+    kRecall    ///< out: kEach again, kept for a minute for later readers
   };
   std::string topic;
   Use use = Use::kEach;
@@ -30,7 +30,7 @@ struct Port {
   friend bool operator==(const Port&, const Port&) = default;
 };
 
-/// How a topic is used, in a word or two, for people.
+/// The use of a topic, in a word or two, for people.
 const char* word(Port::Use use);
 
 /// The stamp of a sample: the newest step of its service.
@@ -47,7 +47,7 @@ class Stamper {
   const bus::Cycle* cycle_;
 };
 
-/// A topic that a service writes. It stamps what is written.
+/// A topic that a service writes. It adds the stamp.
 template <class T>
 class Output {
  public:
@@ -69,15 +69,15 @@ class Output {
   Stamper stamper_;
 };
 
-/// Asks other programs of a topic of requests.
+/// Sends requests to other programs.
 class Asker {
  public:
   Asker(bus::Node& node, const bus::Cycle& cycle, const bus::RequestTopic& topic)
       : node_(&node), cycle_(&cycle), writer_(node.writer<v1::Request>(topic)) {}
 
-  /// Asks. In lockstep it returns when everybody has it who takes such requests: what the service
-  /// writes after that is known to nobody who does not know of the request, too.
-  /// The number by which answers name it.
+  /// Sends a request; returns its number in the answers. In lockstep it returns when every program
+  /// that takes such requests has it: any program that knows the service's later samples knows the
+  /// request, too.
   std::uint64_t ask(Request request);
   /// True where some program takes such requests.
   bool is_taken() const { return writer_.matched() > 0; }
@@ -88,11 +88,11 @@ class Asker {
   bus::Writer<v1::Request> writer_;
 };
 
-/// The declaration of a service: what it reads from the bus and writes to it. A service takes its
-/// inputs and outputs from here when it is made; the shell knows them all from then on.
+/// The declaration of a service: its topics on the bus. A service takes its inputs and outputs from
+/// here in its constructor; the shell knows them all from then on.
 class Ports {
  public:
-  /// For a shell. All of them outlive this.
+  /// For a shell. All arguments outlive this.
   Ports(bus::Node& node, bus::Cycle& cycle);
 
   /// A cyclic topic of another service, of cycle N-1.
@@ -101,13 +101,13 @@ class Ports {
     declare(topic.name, Port::Use::kCycle);
     return cycle_.input(topic);
   }
-  /// A topic whose newest sample is asked for at any time.
+  /// A topic whose newest sample may be read at any time.
   template <class T>
   bus::Reader<T> newest(const bus::Topic<T>& topic) {
     declare(topic.name, Port::Use::kNewest);
     return node_.reader(topic);
   }
-  /// A topic of which nothing may be missed.
+  /// A topic of which no sample may be missed.
   template <class T>
   bus::Reader<T> events(const bus::Topic<T>& topic) {
     declare(topic.name, Port::Use::kEvents);
@@ -125,21 +125,21 @@ class Ports {
   Output<T> recall(const bus::Topic<T>& topic) {
     return output(topic, Port::Use::kRecall);
   }
-  /// Takes requests: each is checked against `functors` and handed to `act`, in a step or between
+  /// Takes requests: each is checked against `functors` and passed to `act`, in a step or between
   /// two.
   void requests(const bus::RequestTopic& topic, std::vector<Functor> functors, Desk::Act act);
-  /// Asks of such a topic.
+  /// Sends requests on such a topic.
   Asker asker(const bus::RequestTopic& topic) {
     declare(topic.name, Port::Use::kChanges);
     return {node_, cycle_, topic};
   }
-  /// For the shell: carries out what was asked for.
+  /// For the shell: carries out the requests.
   void take_requests();
 
-  /// Further conditions of a step, which lockstep waits for (bus::Cycle::gate).
+  /// Further conditions of a step, for which lockstep waits (bus::Cycle::gate).
   void gate(bus::Cycle::Gate missing) { cycle_.gate(std::move(missing)); }
 
-  /// Lets the shell look at the gates again: from any thread, when what they wait for may be here.
+  /// Makes the shell check the gates again: from any thread, when their inputs may be here.
   void wake() { node_.wake(); }
 
   /// The service's name on the bus.
@@ -150,9 +150,9 @@ class Ports {
   /// Of the newest step.
   const v1::Stamp& stamp() const { return cycle_.stamp(); }
 
-  /// Into the program's log.
+  /// Writes notes to the program's log.
   void say(const std::vector<Note>& notes);
-  /// The status says it, until the next step: the service works, but not as it should.
+  /// The status gives the reason, until the next step: the service works, with limitations.
   void degrade(const std::string& reason);
 
   const std::vector<Port>& table() const { return table_; }

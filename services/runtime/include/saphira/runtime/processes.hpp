@@ -9,12 +9,12 @@
 
 namespace saphira::runtime {
 
-/// A service's micro-tasks on the bus (manual 6.5, and the window of 2.3.7): tells their states,
-/// and carries out requests. For the node's own thread.
+/// A service's micro-tasks on the bus (manual 6.5, and the window of 2.3.7): publishes their
+/// states, and carries out requests. For the node's own thread.
 class ProcessesOnBus {
  public:
-  /// Handles requests for a name that is not in the table: empty where it was done,
-  /// the reason where not; nothing where there is no such thing either.
+  /// Handles requests for a name that is not in the table: empty where done, the reason where not;
+  /// nothing for an unknown name.
   using Others = std::function<std::optional<std::string>(
       const std::string& name, ProcessAction action, std::uint32_t cycles)>;
 
@@ -24,9 +24,9 @@ class ProcessesOnBus {
   ProcessesOnBus(const ProcessesOnBus&) = delete;
   ProcessesOnBus& operator=(const ProcessesOnBus&) = delete;
 
-  /// A cycle begins: takes requests, gives each process its turn, tells what has changed.
+  /// A cycle begins: takes requests, gives each process its turn, publishes changes.
   void step(const Stamp& stamp);
-  /// Between cycles: takes requests and tells what has changed. The cycles may stand still.
+  /// Between cycles: takes requests and publishes changes. The cycles may stand still.
   void idle();
 
  private:

@@ -7,15 +7,15 @@
 
 namespace saphira::runtime {
 
-/// Keeps a file of what outlives a program, at most once a second: a disk may take longer than a
-/// cycle, so it is written in the background, and whole or not at all.
+/// Saves a program's state to a file, at most once a second. A disk may take longer than a cycle,
+/// so the file is written in the background, whole or not at all.
 class Saver {
  public:
-  /// An empty path: nothing is kept.
+  /// An empty path: nothing is saved.
   explicit Saver(std::string path) : path_(std::move(path)) {}
 
-  /// Begins to write what `text` gives, where it is time to. What there is to tell the log: that it
-  /// cannot be written, once; otherwise empty.
+  /// Begins to write the result of `text`, where due. Returns a message for the log, once, where it
+  /// cannot be written; otherwise empty.
   std::string offer(const std::function<std::string()>& text);
 
  private:

@@ -10,7 +10,7 @@
 
 namespace saphira::runtime {
 
-/// The step that is due, as every service wants to know it.
+/// The present step, for every service.
 struct Turn {
   Stamp stamp;
   const v1::RobotState& robot;
@@ -19,28 +19,28 @@ struct Turn {
   bool new_frame = false;  ///< the odom frame has another origin than in the step before
 };
 
-/// A service on the bus: a core behind its ports. It converts, and decides nothing; what it reads
-/// and writes it takes from Ports in its constructor. The shell does everything else.
+/// A service on the bus: a core behind its ports. It converts, and decides nothing; its constructor
+/// takes inputs and outputs from Ports. The shell does everything else.
 class Service {
  public:
   virtual ~Service() = default;
 
   /// The core's micro-tasks.
   virtual ProcessTable& processes() = 0;
-  /// Handles interrupt and resume for a name that is no process's: empty where it was done,
-  /// the reason where not; nothing where there is no such thing either.
+  /// Handles interrupt and resume for a name that is no process's: empty where done, the reason
+  /// where not; nothing for an unknown name.
   virtual std::optional<std::string> ask(const std::string& /*name*/, ProcessAction /*action*/,
                                          std::uint32_t /*cycles*/) {
     return std::nullopt;
   }
 
-  /// One cycle: inputs, the core's step, outputs. What moves the robot is written first.
+  /// One cycle: inputs, the core's step, outputs. The output that moves the robot is written first.
   virtual void step(const Turn& turn) = 0;
-  /// Takes what need not wait for a cycle, and tells what requests have changed; `silence` [s]
-  /// since the newest step.
+  /// Takes inputs that need no cycle, and publishes the changes by requests; `silence` [s] since
+  /// the newest step.
   virtual void between(double /*silence*/) {}
-  /// Looks at the files that people edit while the robot drives. Called once a second, behind a
-  /// step; in lockstep, where cycles are short, every hundred.
+  /// Checks the files that people edit while the robot drives. Called once a second, after a step;
+  /// in lockstep, where cycles are short, every hundred.
   virtual void look() {}
 };
 

@@ -10,16 +10,16 @@
 
 namespace saphira::runtime {
 
-/// The one shell of all cyclic services: it decides which cycle is to be stepped and with which
-/// inputs (bus::Cycle), keeps epochs and odom frames, the processes, the status and the log.
+/// The one shell of all cyclic services: it chooses the next cycle and its inputs (bus::Cycle),
+/// keeps epochs and odom frames, the processes, the status and the log.
 ///
-/// To be made and used in one thread. It steps by itself (run), or as one of several that take
-/// turns in a thread (advance, idle).
+/// To be made and used in one thread. It steps by itself (run), or takes turns with others in a
+/// thread (advance, idle).
 class Shell {
  public:
   using Make = std::function<std::unique_ptr<Service>(Ports&)>;
 
-  /// Throws what the service throws for its options and files.
+  /// Throws the service's exceptions for its options and files.
   Shell(bus::Node& node, const Make& make);
   Shell(const Shell&) = delete;
   Shell& operator=(const Shell&) = delete;
@@ -31,9 +31,9 @@ class Shell {
   }
   /// Waits for one cycle and steps it; false when stop was requested.
   bool step(const bus::Stop& stop);
-  /// Steps the cycle that is due, if one is. Never waits.
+  /// Steps the cycle that is due, if any. Never waits.
   bool advance();
-  /// Where nothing is due: requests, files and status. Does nothing more often than every 5 ms.
+  /// Without a due step: requests, files and status. At most every 5 ms.
   void idle();
 
   const Ports& ports() const { return ports_; }

@@ -7,17 +7,16 @@
 
 namespace saphira::runtime {
 
-/// A program of the system in the table: what it is called, what it is for, what it reads and
-/// writes.
+/// A program in the system's table: its name, its purpose, its topics.
 struct Unit {
   std::string name;
   std::string effect;
   std::vector<Port> ports;
-  /// Of a running system: what is wrong with it now, such as "not on the bus"; empty: nothing.
+  /// Of a running system: its present error, such as "not on the bus"; empty: none.
   std::string trouble{};
 };
 
-/// A topic in the table: which programs write it and read it, by their place among the units.
+/// A topic in the table: its writers and readers, by their index among the units.
 struct Line {
   struct End {
     std::size_t unit = 0;
@@ -28,8 +27,8 @@ struct Line {
   std::vector<End> readers;
 };
 
-/// The topics that the units name, in the order in which they are named first as an output; then
-/// those that no unit writes.
+/// The topics of the units, in the order of their first use as an output; then those that no unit
+/// writes.
 std::vector<Line> lines_of(const std::vector<Unit>& units);
 
 /// The table in Markdown: a row for each topic, with its writers and readers.

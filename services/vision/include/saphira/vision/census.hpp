@@ -9,9 +9,9 @@
 namespace saphira::vision {
 
 struct CensusSettings {
-  int most = 64;        ///< [pixels] of disparity: what is nearer is not matched
-  int half_window = 4;  ///< [pixels] the costs of 9 x 9 pixels are added up
-  double worst = 0.3;   ///< [0..1] of the bits may differ: what differs more is no match
+  int most = 64;        ///< [pixels] of disparity: nearer objects are not matched
+  int half_window = 4;  ///< [pixels] the costs of 9 x 9 pixels are summed
+  double worst = 0.3;   ///< [0..1] of the bits may differ in a match
 };
 
 /// Disparities of the left picture, of rows `first_row` on.
@@ -29,10 +29,10 @@ struct DisparityMap {
   }
 };
 
-/// Ranges by the census of Zabih and Woodfill, as Flakey's (paper 2.1): a pixel is a word of which
-/// of its neighbours are darker; words are compared by the number of bits in which they differ,
-/// added up over a window. What does not match the same from the right picture to the left is left
-/// out; a parabola through the costs gives fractions of a pixel.
+/// Ranges by the census of Zabih and Woodfill, as Flakey's (paper 2.1). A pixel becomes a word with
+/// a bit for each darker neighbour; words are compared by the number of different bits, summed over
+/// a window. A match that differs from right to left is dropped; a parabola through the costs gives
+/// fractions of a pixel.
 class Census {
  public:
   explicit Census(const CensusSettings& settings = {}) : settings_(settings) {}

@@ -31,14 +31,14 @@ class Core {
     bool new_frame = false;  ///< the odom frame has another origin since the last step
     std::uint64_t odom = 0;
     Pose pose_in_odom;
-    unsigned channels_per_s = 0;           ///< as the robot's state says
+    unsigned channels_per_s = 0;           ///< from the robot's state
     std::optional<StereoPicture> picture;  ///< the newest of no later cycle
     std::vector<Seen> seen;                ///< new ones of this epoch, in order; of any cycle
-    std::string no_pictures;               ///< why none come; empty: they do
+    std::string no_pictures;               ///< the reason for missing pictures; empty: they come
   };
   struct Outputs {
     std::vector<lps::SeenThing> things;
-    std::uint64_t picture = 0;  ///< cycle of the newest one that was looked at; 0: none
+    std::uint64_t picture = 0;  ///< cycle of the newest processed one; 0: none
     bool sees_people = false;   ///< pictures come
     bool sees_colors = false;   ///< channels come
     Notes notes;
@@ -46,15 +46,15 @@ class Core {
 
   Outputs step(const Inputs& inputs);
 
-  /// True where all channels have come that a step for `cycle` sees, by what the robot's state says
-  /// of their number: all before that cycle. True also for who joined too late to know.
+  /// True where all channels for the step of `cycle` have come, by their number in the robot's
+  /// state: all before that cycle. Also true for a service that joined too late to count.
   bool has_channels(std::uint64_t cycle, unsigned channels_per_s,
                     const std::vector<Seen>& waiting) const;
 
   ProcessTable& processes() { return processes_; }
 
  private:
-  /// Where the robot was in a cycle.
+  /// The robot's pose in a cycle.
   struct Place {
     std::uint64_t cycle = 0;
     Pose pose_in_odom;
@@ -69,10 +69,10 @@ class Core {
   Process& colors_ = processes_.add("find-colors", "places what the camera's channels show");
   Vision vision_;
   std::deque<Place> places_;           ///< of the last cycles
-  std::deque<Seen> newer_;             ///< of cycles that are still to be stepped
+  std::deque<Seen> newer_;             ///< of later cycles
   std::deque<std::uint64_t> counted_;  ///< cycles of the channels of the last second
   std::uint64_t joined_ = 0;           ///< the first cycle of this epoch that was stepped
-  std::uint64_t picture_ = 0;          ///< cycle of the newest one that was looked at
+  std::uint64_t picture_ = 0;          ///< cycle of the newest processed one
   std::uint64_t color_ = 0;            ///< cycle of the newest channels
   std::string no_pictures_;
 };

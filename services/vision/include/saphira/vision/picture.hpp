@@ -9,7 +9,7 @@
 
 namespace saphira::vision {
 
-/// A grey picture in somebody's memory, its rows from the top.
+/// A view of a grey picture, its rows from the top.
 struct ImageView {
   const std::uint8_t* pixels = nullptr;
   int columns = 0;
@@ -21,7 +21,7 @@ struct ImageView {
   }
 };
 
-/// Two pinhole cameras side by side that look straight ahead, parallel to the floor.
+/// Two parallel pinhole cameras side by side, looking straight ahead, level with the floor.
 struct Rig {
   double focal = 277.128129;  ///< [pixels]
   double baseline = 0.12;     ///< [m]
@@ -31,7 +31,7 @@ struct Rig {
   bool operator==(const Rig&) const = default;
 };
 
-/// The pictures of both cameras in one cycle: the left picture on the left of one.
+/// The pictures of both cameras in one cycle: side by side, the left one first.
 struct StereoPicture {
   std::uint64_t cycle = 0;
   Rig rig;
@@ -43,12 +43,12 @@ struct StereoPicture {
   ImageView right() const { return {pixels.data() + columns, columns, rows, 2 * columns}; }
 };
 
-/// Makes pictures of a stream of PGM files with the comment that sim/README.md describes.
+/// Makes pictures of a stream of PGM files with the comment from sim/README.md.
 class PictureStream {
  public:
   void feed(std::string_view bytes);
-  /// The next picture that is whole. FileError where the stream is none of such pictures; it is of
-  /// no use from there on.
+  /// The next complete picture. FileError where the stream is invalid; it is unusable from there
+  /// on.
   std::optional<StereoPicture> take();
   void clear() { waiting_.clear(); }
 

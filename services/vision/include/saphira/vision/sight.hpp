@@ -5,11 +5,11 @@
 
 namespace saphira::vision {
 
-/// A sighting: the content of one picture, without reference to others (paper 3.2.3).
+/// A sighting in one picture, without reference to others (paper 3.2.3).
 struct Sight {
   lps::SeenThing::Kind kind = lps::SeenThing::Kind::person;
   int channel = -1;  ///< of a blob
-  /// [m] On the floor. Of unknown range: anywhere in that direction.
+  /// [m] On the floor. Without a range: any place in that direction.
   Vec2 place_in_robot{0.0, 0.0};
   bool range_known = true;
   double sigma_range = 0.1;   ///< [m] along the line of sight
@@ -17,7 +17,7 @@ struct Sight {
   double width = 0.0;         ///< [m] 0: unknown
   double height = 0.0;        ///< [m] 0: unknown
   double area = 0.0;          ///< [0..1] of the picture, of a blob
-  double evidence = 1.0;      ///< [0..1] how much it looks like one
+  double evidence = 1.0;      ///< [0..1] likeness to its kind
 };
 
 }  // namespace saphira::vision

@@ -12,27 +12,27 @@
 namespace saphira::vision {
 
 struct TrackerSettings {
-  double acceleration = 1.0;       ///< [m/s2] one sigma: how people change their way
-  double blob_acceleration = 0.5;  ///< [m/s2] what has a colour may be carried
-  /// [m/s2] What is seen in directions alone is taken to stand, or no place would come of them.
+  double acceleration = 1.0;       ///< [m/s2] one sigma: a person's changes of velocity
+  double blob_acceleration = 0.5;  ///< [m/s2] a coloured object may be carried
+  /// [m/s2] An object seen in directions alone counts as standing, or it would have no place.
   double direction_acceleration = 0.01;
   double fastest = 2.0;  ///< [m/s]
-  double gate = 9.2;   ///< squared distance in sigmas from where a sight may still be the same one
-  int confirm = 3;     ///< so many sights make one that is told of,
-  double sure = 0.45;  ///< if they are so sure
-  double forget_in_view = 2.0;       ///< [s] without a sight where it should be seen
-  double forget_out_of_view = 15.0;  ///< [s] without a sight where it cannot be
-  double coast = 1.5;  ///< [s] out of sight it goes on so long as it went, and slows down then
+  double gate = 9.2;     ///< squared distance in sigmas up to which a sight may be the same object
+  int confirm = 3;       ///< sights that make a published track,
+  double sure = 0.45;    ///< with this confidence
+  double forget_in_view = 2.0;       ///< [s] without a sight in view
+  double forget_out_of_view = 15.0;  ///< [s] without a sight out of view
+  double coast = 1.5;  ///< [s] of constant velocity out of sight, before it slows down
 };
 
-/// Decides which sights are of the same thing and where things are between and after sights (paper
-/// 3.2.3): a constant velocity for each, which changes at random. Everything is in odom.
+/// Assigns sights to tracks, and estimates the places of tracks between and after sights (paper
+/// 3.2.3): a constant velocity for each, with random changes. Everything is in odom.
 class Tracker {
  public:
   explicit Tracker(const TrackerSettings& settings = {}) : settings_(settings) {}
 
-  /// Sightings of `cycle` from there; of one kind alone, so that a picture of one camera does
-  /// not count against what the other sees. `in_view`: whether something at a place of the robot's
+  /// Sightings of `cycle` from that pose; of one kind alone, so that one camera's picture does not
+  /// count against the other's objects. `in_view`: true where an object at a place in the robot's
   /// frame would have been seen. Cycles never go back.
   void see(lps::SeenThing::Kind kind, std::uint64_t cycle, const Pose& robot_in_odom,
            const std::vector<Sight>& sights, const std::function<bool(const Vec2&)>& in_view);
@@ -40,7 +40,7 @@ class Tracker {
   /// All tracks, at their estimated places in a cycle, by id.
   std::vector<lps::SeenThing> things(std::uint64_t cycle, const Pose& robot_in_odom) const;
 
-  /// Another origin of odom: places mean nothing any more. Ids go on.
+  /// Another origin of odom: all places are void. Ids continue.
   void reset() { tracks_.clear(); }
 
  private:
@@ -51,10 +51,10 @@ class Tracker {
     State state = State::Zero();
     Covariance covariance = Covariance::Identity();
     std::uint64_t at = 0;  // cycle of the state
-    bool ranged = true;    // its newest sight
+    bool ranged = true;    // of its newest sight
     bool told = false;
     int sights = 0;
-    double missed = 0.0;  // [s] where it should have been seen
+    double missed = 0.0;  // [s] in view without a sight
   };
 
   void predict(Track& track, std::uint64_t cycle) const;

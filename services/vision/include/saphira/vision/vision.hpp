@@ -10,14 +10,14 @@
 
 namespace saphira::vision {
 
-/// From what cameras show to the people and colours around the robot. Each camera is optional, and
-/// takes its pictures when it likes; for each one must know the cycle and where the robot was then.
+/// From camera results to the people and colours around the robot. Each camera is optional, and
+/// takes pictures at its own times; the cycle and the robot's pose of each picture must be known.
 class Vision {
  public:
   explicit Vision(const ColorCamera& camera = {}) : camera_(camera) {}
 
   void see(const StereoPicture& picture, const Pose& robot_in_odom);
-  /// The result of a stereo system, where there is one.
+  /// The result of a stereo system, if there is one.
   void see(const Bands& bands, std::uint64_t cycle, const Pose& robot_in_odom);
   void see(const Channels& channels, std::uint64_t cycle, const Pose& robot_in_odom);
 
@@ -26,7 +26,7 @@ class Vision {
     return tracker_.things(cycle, robot_in_odom);
   }
 
-  /// Another origin of odom: what was seen is elsewhere. Ids go on.
+  /// Another origin of odom: all places are void. Ids continue.
   void reset() { tracker_.reset(); }
 
  private:

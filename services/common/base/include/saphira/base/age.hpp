@@ -3,8 +3,9 @@
 #include <cmath>
 #include <limits>
 
-/// How fast the robot may drive by what is old. An input is of use for as long as the robot cannot
-/// have moved further than a stated distance since: the older it is, the slower the robot.
+/// The robot's speed limit from the age of its inputs. An input is of use for as long as the robot
+/// cannot have moved further than a stated distance since: the older the input, the slower the
+/// robot.
 namespace saphira {
 
 /// [m] That distance: a quarter of the 0.6 m ahead that behaviors steer by. A robot that steers by
@@ -12,18 +13,18 @@ namespace saphira {
 inline constexpr double kUnseenWay = 0.15;
 /// [m/s] Slower is not worth driving.
 inline constexpr double kCreep = 0.05;
-/// [s] What is older does not drive the robot at all.
+/// [s] Older inputs do not drive the robot at all.
 inline constexpr double kOldest = kUnseenWay / kCreep;
 
-/// [m/s] The speed at which the robot moves kUnseenWay within `age` [s]; infinity where nothing is
-/// old, 0 beyond kOldest.
+/// [m/s] The speed at which the robot moves kUnseenWay within `age` [s]; infinity at age 0, 0
+/// beyond kOldest.
 inline double speed_for_age(double age) {
   if (age <= 0.0)
     return std::numeric_limits<double>::infinity();
   return age > kOldest ? 0.0 : kUnseenWay / age;
 }
 
-/// [m/s] The speed v from which the robot stands within `free` [m], when it begins to brake after
+/// [m/s] The speed v from which the robot stops within `free` [m], when it begins to brake after
 /// `reaction` [s]: v t + v^2 / 2a = free.
 inline double speed_that_stops(double free, double reaction, double deceleration) {
   if (free <= 0.0)
@@ -32,7 +33,7 @@ inline double speed_that_stops(double free, double reaction, double deceleration
   return std::sqrt(way * way + 2.0 * deceleration * free) - way;
 }
 
-/// An age that comes and goes with jitter and loss, taken for its recent peaks.
+/// The recent peaks of an age with jitter and loss.
 class PeakAge {
  public:
   /// The peak, one cycle later, with this new age [s].
@@ -43,7 +44,7 @@ class PeakAge {
   double peak() const { return peak_; }
 
  private:
-  // A cycle: a peak halves in 2.3 s.
+  // Per cycle: a peak halves in 2.3 s.
   static constexpr double kFading = 0.97;
 
   double peak_ = 0.0;

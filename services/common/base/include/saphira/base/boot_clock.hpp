@@ -5,8 +5,8 @@
 
 namespace saphira {
 
-/// A clock that also goes on while the machine sleeps (CLOCK_BOOTTIME), which the steady clock does
-/// not: where a lease or a silence would otherwise be taken for short. For shells.
+/// A clock that also counts while the machine sleeps (CLOCK_BOOTTIME), unlike the steady clock, by
+/// which a lease or a silence would be too short. For shells.
 struct BootClock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;

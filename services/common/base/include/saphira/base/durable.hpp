@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
-/// Files that programs keep for themselves over a restart or a crash. A file that was
-/// damaged (a bad disk, a power cut, somebody's editor) is noticed by its sums, set aside and begun
-/// anew: no state is worth not starting for.
+/// Programs' own files, kept over a restart or a crash. Checksums detect a damaged file (a bad
+/// disk, a power cut, an editor); it is set aside and begun anew. No state is worth a refusal to
+/// start.
 namespace saphira {
 
-/// The line behind the sum of its letters: "9ae16a3b placed ...".
+/// The line behind its checksum: "9ae16a3b placed ...".
 std::string sealed_line(std::string_view line);
 /// The sealed text; none where it has changed.
 std::optional<std::string_view> unsealed_line(std::string_view line);
@@ -22,14 +22,14 @@ std::string sealed(std::string text);
 std::string_view unsealed(std::string_view text, const std::string& file);
 
 /// Gives the content of a file to `understand`. Where that throws, or the file cannot be read, the
-/// file is set aside as "FILE.damaged"; what was wrong, and what became of it, in words. Empty
-/// where nothing was wrong, or there is no such file, or it is empty.
+/// file is set aside as "FILE.damaged". Returns the error and the consequence, in words. Empty
+/// without an error, and for a missing or empty file.
 std::string read_or_set_aside(const std::string& path,
                               const std::function<void(const std::string& content)>& understand);
 
-/// Puts a text in the place of a file: a crash leaves the old one or the new one, whole. `sync`:
-/// also a power cut does, which costs the time of the disk. False where it cannot be written: errno
-/// says why, and the old one is as it was.
+/// Replaces a file: a crash leaves the old one or the new one, whole. `sync`: also a power cut
+/// does, at the cost of disk time. False where it cannot be written: errno gives the reason, and
+/// the old file is unchanged.
 bool replace_file(const std::string& path, std::string_view text, bool sync = false);
 
 }  // namespace saphira

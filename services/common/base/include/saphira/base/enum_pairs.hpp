@@ -10,9 +10,10 @@
 
 namespace saphira {
 
-/// Two enumerations that say the same, such as a library's and the bus's, in pairs: both ways are
-/// one table. Where several of one side are the same to the other, the first pair counts. A table
-/// that lacks an enumerator of either side does not compile, unless it names that as left out.
+/// Pairs of two enumerations with the same meaning, such as a library's and the bus's: one table
+/// for both directions. Where several of one side are the same to the other, the first pair counts.
+/// A table that lacks an enumerator of either side does not compile, unless it lists that as left
+/// out.
 template <class Ours, class Theirs, std::size_t size>
 class EnumPairs {
  public:
@@ -32,7 +33,7 @@ class EnumPairs {
         throw "an enumerator of theirs has no pair";
   }
 
-  /// The first pair's for a value that is left out.
+  /// A value that is left out gets the first pair's.
   constexpr Theirs theirs(Ours value) const {
     for (const auto& [ours, theirs] : pairs_)
       if (ours == value)
@@ -40,7 +41,7 @@ class EnumPairs {
     return pairs_.front().second;
   }
 
-  /// Others may send what is none of the enumerators.
+  /// Others may send an unknown enumerator.
   constexpr Ours ours(Theirs value, Ours otherwise) const {
     for (const auto& [ours, theirs] : pairs_)
       if (theirs == value)

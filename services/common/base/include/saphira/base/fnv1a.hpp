@@ -7,8 +7,8 @@
 
 namespace saphira {
 
-/// A number for a row of bytes that is the same on every machine and in every run: FNV-1a of 64
-/// bits (Fowler, Noll and Vo). It holds off accidents, not people.
+/// A hash of bytes that is the same on every machine and in every run: FNV-1a of 64 bits (Fowler,
+/// Noll and Vo). It protects against accidents, not against people.
 class Fnv1a {
  public:
   void add(std::uint8_t byte) { value_ = (value_ ^ byte) * 0x100000001b3U; }

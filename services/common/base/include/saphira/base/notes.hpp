@@ -6,7 +6,7 @@
 
 namespace saphira {
 
-/// One line of a program's log, as a core writes it: the shell gives it time and name.
+/// One line of a program's log, from a core: the shell adds time and name.
 struct Note {
   enum class Level { info, warning, error };
   Level level = Level::info;

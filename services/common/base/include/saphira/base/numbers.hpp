@@ -8,7 +8,7 @@ namespace saphira {
 /// For people: six digits, "0.3", "1e+06".
 std::string plain(double value);
 
-/// All that is in it: read back, it is the same number.
+/// With all digits: it reads back to the same number.
 std::string exact(double value);
 
 /// Without an exponent, and without zeros at the end: decimal(1.5, 3) is "1.5".

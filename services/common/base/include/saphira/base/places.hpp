@@ -4,19 +4,19 @@
 
 namespace saphira {
 
-/// The folder of the running program's file; our other programs are beside it.
+/// The folder of the running program's file; the other programs are beside it.
 std::string program_folder();
 
 /// The folder of robots, worlds, maps and deployments: installed beside the program
-/// (share/saphira), otherwise that of the source tree. std::runtime_error where there is neither.
+/// (share/saphira), otherwise that of the source tree. std::runtime_error: neither exists.
 std::string config_folder();
 
 /// The folder for a user's own files: $XDG_CONFIG_HOME/saphira, or ~/.config/saphira. Empty where
 /// there is no home.
 std::string user_folder();
 
-/// The file that a person means by `name`: a path, or a file of `folder`, with or without its
-/// `extension` (".wld"). std::invalid_argument that lists what there is where it is neither.
+/// The file of that name: a path, or a file of `folder`, with or without its `extension` (".wld").
+/// std::invalid_argument that lists the existing files where it is neither.
 std::string find_file(const std::string& folder, const std::string& name,
                       const std::string& extension);
 

@@ -9,22 +9,22 @@
 
 namespace saphira {
 
-/// The reserved states of manual Table 6-3. A state of a process's own is 10 or more, and -n is
+/// The reserved states of manual Table 6-3. A process's own states are 10 or more; -n means
 /// "suspended for n cycles".
 enum ReservedState : int { kInit = 0, kSuspend = 1, kResume = 2, kInterrupt = 3 };
 inline constexpr int kFirstOwnState = 10;
 
 /// A micro-task (manual 6.5): a little work in every cycle, with a state that others can change.
 ///
-/// One with a function is called in every cycle in which it is not suspended, and changes its own
-/// state; it sees kInit until it does, and kInterrupt once: then it has to put its things away.
-/// One without a function is done by its owner, where works() says so, and is in state 10 from its
-/// first cycle on.
+/// A process with a function is called in every cycle in which it is not suspended, and changes its
+/// own state. It sees kInit until then, and kInterrupt once: then it has to clean up. The work of a
+/// process without a function is done by its owner, when works() is true; such a process is in
+/// state 10 from its first cycle on.
 class Process {
  public:
   using Function = std::function<void(Process&)>;
   enum class Turn { none, work, interrupted };
-  /// All that changes of it.
+  /// The changing part of a process.
   struct Progress {
     int state = kInit;
     std::uint64_t cycle = 0;
@@ -43,10 +43,10 @@ class Process {
   /// A description, for people.
   const std::string& effect() const { return effect_; }
   int state() const { return now_.state; }
-  /// Cycle in which it came to its state; sleeping does not count anew in each.
+  /// Cycle of the newest change of state; sleeping does not count anew in each cycle.
   std::uint64_t since() const { return now_.since; }
 
-  /// sfSetProcessState. std::invalid_argument for one that is neither reserved nor its own.
+  /// sfSetProcessState. std::invalid_argument for a state that is neither reserved nor its own.
   void set_state(int state);
   /// sfSuspendProcess, sfSuspendSelf: for so many cycles; 0: until it is resumed.
   void suspend(std::uint32_t cycles = 0);
@@ -56,11 +56,11 @@ class Process {
   void resume() { set_state(kResume); }
 
   bool suspended() const { return now_.state == kSuspend || now_.state < 0; }
-  /// In this cycle it was its turn, and not for being interrupted.
+  /// True where this cycle was its turn to work.
   bool works() const { return now_.turn == Turn::work; }
-  /// In this cycle it is told to put its things away.
+  /// True where it has to clean up in this cycle.
   bool interrupted() const { return now_.turn == Turn::interrupted; }
-  /// In this cycle it works again for the first time after a suspension.
+  /// True in its first working cycle after a suspension.
   bool resumed() const { return now_.resumed; }
 
  private:
@@ -76,10 +76,10 @@ class Process {
 /// Requests from outside.
 enum class ProcessAction { interrupt, suspend, resume };
 
-/// The micro-tasks of a service, round robin: each gets its turn once a cycle, in the order in
-/// which they were added. Since each gives the processor back by itself, there is nothing to lock.
+/// The micro-tasks of a service, round robin: each gets its turn once a cycle, in the order of
+/// addition. Each gives the processor back by itself, so there is nothing to lock.
 ///
-/// Processes cannot be deleted: one that is not needed is suspended (manual 6.5.2).
+/// Processes cannot be deleted: an unneeded one is suspended (manual 6.5.2).
 class ProcessTable {
  public:
   /// sfInitProcess. std::invalid_argument where the name is taken.
@@ -91,26 +91,26 @@ class ProcessTable {
   /// One cycle.
   void step(std::uint64_t cycle);
 
-  /// Does what somebody asks for; empty, or why it cannot be done and what there is.
+  /// Carries out a request; empty, or the reason for a failure with the existing names.
   std::string request(std::string_view name, ProcessAction action, std::uint32_t cycles = 0);
-  /// The names of those that do not work now; empty where all do.
+  /// The names of suspended processes; empty where all work.
   std::string suspended() const;
-  /// True when some state has changed since the last call. That a process puts itself to sleep for
-  /// some cycles and wakes up does not count.
+  /// True when some state has changed since the last call. A process's own sleep for some cycles
+  /// does not count.
   bool take_changed();
 
   std::vector<const Process*> processes() const;
 
-  /// How far each is, in the order in which they were added. What a process's own function keeps is
-  /// its owner's.
+  /// The progress of each process, in the order of addition. The memory of a process's own function
+  /// is its owner's.
   std::vector<Process::Progress> save() const;
-  /// Of a table with the same processes; std::invalid_argument where their number differs.
+  /// For a table with the same processes; std::invalid_argument where their number differs.
   void restore(const std::vector<Process::Progress>& saved);
 
  private:
   std::vector<std::unique_ptr<Process>> processes_;
   std::vector<int> told_;  ///< states, as of the last take_changed()
-  bool asked_ = false;     ///< somebody asked for something since
+  bool asked_ = false;     ///< a request came since then
 };
 
 }  // namespace saphira

@@ -11,10 +11,9 @@
 
 namespace saphira {
 
-/// Dijkstra's search over places that are numbered from 0. Which places are neighbours, and what
-/// the step to one costs, is the caller's: it takes the places from next(), nearest first, and says
-/// with reach() where one gets from there. Of places that cost the same the smaller number is
-/// first.
+/// Dijkstra's search over places that are numbered from 0. The caller knows the neighbours and the
+/// costs of the steps: it takes the places from next(), nearest first, and adds steps from there
+/// with reach(). Of places with the same cost the smaller number is first.
 class ShortestWays {
  public:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -22,8 +21,8 @@ class ShortestWays {
   explicit ShortestWays(std::size_t places)
       : costs_(places, kNever), before_(places), settled_(places, false) {}
 
-  /// The nearest place that was reached and not yet returned: its cost is final. None: there is no
-  /// other.
+  /// The nearest place that was reached and not yet returned: its cost is final. None: no place is
+  /// left.
   std::optional<std::size_t> next() {
     while (!open_.empty()) {
       const std::size_t place = open_.top().second;

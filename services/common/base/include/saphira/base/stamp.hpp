@@ -4,8 +4,8 @@
 
 namespace saphira {
 
-/// When something was: a cycle of one connection of one bridge to one robot (100 ms each). Epoch 0:
-/// no connection; cycle 0: before the first information packet.
+/// A time: a cycle of one connection of one bridge to one robot (100 ms each). Epoch 0: no
+/// connection; cycle 0: before the first information packet.
 struct Stamp {
   std::uint64_t epoch = 0;
   std::uint64_t cycle = 0;

@@ -7,8 +7,8 @@
 
 namespace saphira {
 
-/// A mistake in a file that a person wrote. what() reads as compilers print it, with the line and
-/// a caret under the place:
+/// A mistake in a file that a person wrote. what() has the form of compiler messages, with the line
+/// and a caret under the place:
 ///
 ///     office.wld:12:7: expected a number (x of the end point), found "abc"
 ///         0 0 abc 30000
@@ -29,7 +29,7 @@ class FileError : public std::runtime_error {
   int column_;
 };
 
-/// A word of a line, with where it stands.
+/// A word of a line, with its column.
 struct Word {
   std::string_view text;
   int column = 1;  ///< from 1
@@ -46,7 +46,7 @@ struct Line {
 /// The lines of a text that have words on them; empty lines and comments are left out.
 std::vector<Line> split_lines(std::string_view text);
 
-/// Reads the words of one line in order and says what was expected where one is wrong.
+/// Reads the words of one line in order, and reports the expected word at an error.
 class LineReader {
  public:
   LineReader(std::string file, const Line& line) : file_(std::move(file)), line_(&line) {}
@@ -72,16 +72,16 @@ class LineReader {
   std::size_t next_ = 0;
 };
 
-/// FileError where the text ends within the words of a line. Half a number would be read as a whole
+/// FileError where the text ends within the words of a line. Half a number would read as a whole
 /// one, half a line as all of it; so the last line of a file that must be whole has a line break.
 void expect_last_line_break(std::string_view text, const std::string& file);
 
-/// The whole content of a file, without a byte order mark; std::runtime_error that names it where
+/// The whole content of a file, without a byte order mark; std::runtime_error with its name where
 /// it cannot be read.
 std::string read_file(const std::string& path);
 
-/// Of a text that begins as a file of another program does, which kind of file that is, in words;
-/// empty where it does not.
+/// The kind of file, in words, of a text that begins as a file of another program; empty for any
+/// other text.
 std::string_view other_format(std::string_view text);
 
 }  // namespace saphira

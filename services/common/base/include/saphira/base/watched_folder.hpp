@@ -7,8 +7,8 @@
 
 namespace saphira {
 
-/// The files of one kind in a folder, and which of them are new since the last look. For files that
-/// people change while programs run that use them.
+/// The files of one kind in a folder, and those changed since the last look. For files that people
+/// change while programs use them.
 class WatchedFolder {
  public:
   /// extension: with its dot, such as ".act".
@@ -17,7 +17,7 @@ class WatchedFolder {
   struct Changes {
     std::vector<std::string> changed;  ///< names in the folder, sorted: came or were written
     std::vector<std::string> gone;
-    bool missing = false;  ///< the folder cannot be read: nothing else is said
+    bool missing = false;  ///< the folder cannot be read; the other members are unset
     bool any() const { return !changed.empty() || !gone.empty(); }
   };
   /// A few microseconds a file.
@@ -29,8 +29,8 @@ class WatchedFolder {
  private:
   struct Stamp {
     std::int64_t time = 0;     ///< [ns] of its content
-    std::int64_t changed = 0;  ///< [ns] of anything of it: a copy from a backup keeps the first
-    std::uint64_t file = 0;    ///< which one it is, under this name
+    std::int64_t changed = 0;  ///< [ns] of any change: a copy from a backup keeps the first
+    std::uint64_t file = 0;    ///< identity of the file under this name
     std::uint64_t size = 0;
 
     bool operator==(const Stamp&) const = default;

@@ -35,14 +35,14 @@ class Option {
   const Option& one_of(const std::vector<std::string>& words) const;
   const Option& existing_file() const;
   const Option& ipv4() const;
-  /// `complaint` returns the fault of a value in words; empty: it has none.
+  /// `complaint` returns the error of a value in words; empty: none.
   const Option& check(const std::function<std::string(const std::string&)>& complaint) const;
-  const Option& environment(const std::string& name) const;  ///< the value where it is not given
+  const Option& environment(const std::string& name) const;  ///< the value if the option is absent
   const Option& separated_by(char separator) const;          ///< many values in one word
   const Option& values(int count) const;
   const Option& values(int least, int most) const;
   const Option& one_value_each() const;  ///< a list: the option is repeated for each value
-  const Option& last_wins() const;       ///< given twice, it is no mistake
+  const Option& last_wins() const;       ///< a second value replaces the first
   const Option& needs(const Option& other) const;
   const Option& excludes(const Option& other) const;
   const Option& shows(const std::string& default_text) const;  ///< as default, in the help
@@ -51,7 +51,7 @@ class Option {
   const Option& hidden() const;                              ///< not in the help
 
   bool given() const;
-  std::string text() const;  ///< as it was given; empty: it was not
+  std::string text() const;  ///< the given text; empty: absent
 
  private:
   friend class CommandLine;
@@ -78,11 +78,11 @@ class CommandLine {
   /// "--name" sets `value`, "!--name" clears it.
   Option add_flag(const std::string& names, bool& value, const std::string& help);
   void add_version(const std::string& text);
-  /// One that was added. std::out_of_range: none is called so.
+  /// An added option. std::out_of_range: unknown name.
   Option option(const std::string& name) const;
 
-  /// Reads the words. Returns the exit code where the program has to end at once: 0 after --help
-  /// and --version, 2 after a mistake, which stderr has then.
+  /// Parses the words. Returns the exit code where the program has to end at once: 0 after --help
+  /// and --version, 2 after an error, which is on stderr then.
   std::optional<int> parse(int argc, const char* const* argv);
 
   /// The parser itself, for a program with subcommands.

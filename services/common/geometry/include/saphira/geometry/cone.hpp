@@ -8,16 +8,17 @@
 
 namespace saphira {
 
-/// Which part of a row of cells a sonar's cone can cover: grids visit these alone, which are a
-/// third of the box around the cone. It tells no cell from another: what it leaves out is outside.
+/// The part of a row of cells that a sonar's cone can cover. Grids visit only these cells, a third
+/// of the box around the cone. The span is not exact: only the cells left out are certainly
+/// outside.
 class ConeRows {
  public:
   /// From the tip along its heading; `edge` is the tangent of half the opening angle.
   ConeRows(const Pose& tip, double edge, double range)
       : c_(std::cos(tip.th)), s_(std::sin(tip.th)), edge_(edge), range_(range) {}
 
-  /// From where to where, along x from the tip [m], in the row that is dy beside it; the second is
-  /// smaller where the row has no part of the cone.
+  /// The span along x from the tip [m], in the row at dy beside it; the second is smaller where the
+  /// cone does not reach the row.
   std::pair<double, double> span(double dy) const {
     const double left = range_ * range_ - dy * dy;
     if (left < 0.0)

@@ -57,7 +57,7 @@ inline double sub2_angle(double a, double b) {
 }
 
 /// A directed point in a plane: position [m] and heading [rad, counter-clockwise]. Also the
-/// transform from the frame that it stands for (`robot` in `pose_in_odom`) to the one it is in.
+/// transform from its own frame (`robot` in `pose_in_odom`) to its reference frame.
 struct Pose {
   double x = 0.0;
   double y = 0.0;

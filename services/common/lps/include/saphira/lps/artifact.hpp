@@ -6,14 +6,14 @@
 
 namespace saphira::lps {
 
-/// cat_type of manual 6.6.3.1: what an artifact is to the LPS.
+/// cat_type of manual 6.6.3.1: the category of an artifact.
 enum class Category {
   system,   ///< with an internal function, such as the global origin
   percept,  ///< a hypothesis drawn from sensor input
   artifact  ///< made by a user: map information, goals
 };
 
-/// pt_type of manual 6.6.3.1: what an artifact stands for.
+/// pt_type of manual 6.6.3.1: the kind of object.
 enum class PointType {
   invalid,
   position,
@@ -27,7 +27,7 @@ enum class PointType {
   object
 };
 
-/// A directed point, or what is built on one (a wall is its middle and a length along it), with its
+/// A directed point, or an object on one (a wall is its middle and a length along it), with its
 /// place in the LPS and in the global frame. The point structure of manual 6.6.3.1.
 struct Artifact {
   std::uint32_t id = 0;  ///< unique in its LPS; 0: not yet in one

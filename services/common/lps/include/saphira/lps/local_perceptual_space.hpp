@@ -34,13 +34,13 @@ struct LpsSettings {
   MemorySettings memory;
 };
 
-/// Which buffer a sonar feeds (manual 6.6.1), by where it looks: within 60 degrees of ahead, the
+/// The buffer that a sonar feeds (manual 6.6.1), by its direction: within 60 degrees of ahead, the
 /// front one; within 30 degrees of straight left or right, that side's. Sonars that look backwards
 /// feed none; the obstacle memory takes them too.
 enum class Feeds { none, front, left, right };
 Feeds feeds(const Pose& sonar_in_robot);
 
-/// Which readings an occupancy function looks at.
+/// The readings that an occupancy function uses.
 enum class Source {
   front,      ///< sfFRONT
   sides,      ///< sfSIDES: both side buffers
@@ -55,13 +55,13 @@ class LocalPerceptualSpace {
   explicit LocalPerceptualSpace(LpsSettings settings = {});
 
   /// One cycle: the robot is at `robot_in_odom`, and these readings came since the last update, in
-  /// firing order. They are placed along the way between the two poses: at 100 degrees a second
-  /// the robot turns by ten in a cycle, half a sonar's cone.
+  /// firing order. They are placed along the way between the two poses: at 100 degrees a second the
+  /// robot turns by ten in a cycle, half a sonar's cone.
   void update(const Pose& robot_in_odom, const std::vector<SonarReading>& readings,
               std::uint64_t cycle);
-  /// The robot has run into something, here from its middle: as much an obstacle as what is heard.
+  /// The robot has hit an obstacle, here from its middle: it counts as an echo.
   void touch(const Vec2& at_in_robot);
-  /// The same as it will look when the robot is at `robot_in_odom`.
+  /// The LPS as seen from `robot_in_odom`.
   LocalPerceptualSpace seen_from(const Pose& robot_in_odom) const;
   /// Forgets everything but the settings.
   void reset();
@@ -97,8 +97,8 @@ class LocalPerceptualSpace {
   void set_local(Artifact& artifact) const;
   void set_global(Artifact& artifact) const;
 
-  /// sfAddPoint: registers the artifact from now on. Gives it an id where it has none, which is
-  /// returned; one with the id of an artifact that is there replaces it (sfAddPointCheck).
+  /// sfAddPoint: registers the artifact from now on. Returns its id, which is new where it has
+  /// none; an artifact with the same id is replaced (sfAddPointCheck).
   std::uint32_t add(Artifact artifact);
   /// sfRemPoint. False where there was none.
   bool remove(std::uint32_t id);
@@ -108,9 +108,9 @@ class LocalPerceptualSpace {
   /// The pointlist, in order of addition. The global origin (sfGlobalOrigin) is always the first.
   const std::vector<Artifact>& artifacts() const { return artifacts_; }
 
-  /// sfMoveRobot: the robot is in fact (dx, dy, dth) [m, rad], in its own frame, from where the
-  /// global frame had it. Artifacts keep their global place, so their local one changes; sonar
-  /// readings, which are relative to the robot, stay.
+  /// sfMoveRobot: the robot's true place is (dx, dy, dth) [m, rad], in its own frame, from its
+  /// global one. Artifacts keep their global place, so their local one changes; sonar readings,
+  /// which are relative to the robot, stay.
   void move_robot(double dx, double dy, double dth);
 
  private:

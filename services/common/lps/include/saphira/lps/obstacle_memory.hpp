@@ -7,35 +7,34 @@
 
 namespace saphira::lps {
 
-/// How obstacles are believed. Beliefs are log odds: 0 is "not known".
+/// The belief in obstacles. Beliefs are log odds: 0 is "unknown".
 struct MemorySettings {
   double cell = 0.05;           ///< [m]
   int cells = 120;              ///< along each side; the robot is near the middle
   double beam = radians(12.5);  ///< [rad] half angle of a sonar's cone
-  double sure = radians(4.0);   ///< [rad] within which it would surely have seen something
-  double thickness = 0.05;      ///< [m] an echo may be off by so much
-  double seen = 1.5;            ///< added where an echo comes from
-  double passed = 0.6;          ///< taken away where a beam with an echo has passed
-  double silent = 0.4;          ///< taken away where a beam without an echo has passed
-  double silent_range = 1.0;    ///< [m] up to which silence means something
+  double sure = radians(4.0);   ///< [rad] within which an object surely has an echo
+  double thickness = 0.05;      ///< [m] error of an echo's range
+  double seen = 1.5;            ///< added at an echo
+  double passed = 0.6;          ///< subtracted along a beam with an echo
+  double silent = 0.4;          ///< subtracted along a beam without an echo
+  double silent_range = 1.0;    ///< [m] up to which silence counts
   double most = 4.0;            ///< no belief grows above this...
   double least = -4.0;          ///< ...or below this
-  double obstacle = 0.8;        ///< belief from which on there is one
+  double obstacle = 0.8;        ///< belief that makes an obstacle
   double fading = 0.97;         ///< of all beliefs, a cycle: 4 are forgotten in 6 s
 };
 
-/// The obstacles that the sonars have seen around the robot, for as long as nothing contradicts
-/// them.
+/// The obstacles that the sonars have seen around the robot, until later readings contradict them.
 ///
 /// The manual's buffers forget by count: an obstacle that leaves the front sonars' sight while the
-/// robot rounds it (a Pioneer sees nothing between 45 and 75 degrees) is gone from the front buffer
-/// after 1.7 s, and the robot turns into it. And they put an echo on the axis of the beam, while it
-/// comes from somewhere on the arc across: a gap of a metre looks closed from a metre off. Here
-/// each beam speaks for the whole of its cone, in a grid that goes with the robot: the cone up to
-/// the arc is free, and the obstacle is on the arc, more likely where it was likely before (Moravec
-/// and Elfes 1985). Silence says less than an echo from behind, and nothing from far away, since a
-/// smooth wall that is met at a slant is silent too; and an echo from behind says little of the rim
-/// of its cone, since it may be a corner's, heard along such a wall.
+/// robot rounds it (a Pioneer sees nothing between 45 and 75 degrees) leaves the front buffer after
+/// 1.7 s, and the robot turns into it. The buffers also put an echo on the axis of the beam, while
+/// it comes from somewhere on the arc across: a gap of a metre looks closed from a metre off. Here
+/// each beam counts for its whole cone, in a grid that goes with the robot: the cone up to the arc
+/// is free, and the obstacle is on the arc, more likely where it was likely before (Moravec and
+/// Elfes 1985). Silence counts less than an echo from behind, and not at all far away, since a
+/// smooth wall at a slant is silent too. An echo from behind counts little at the rim of its cone,
+/// since it may come from a corner along such a wall.
 class ObstacleMemory {
  public:
   explicit ObstacleMemory(MemorySettings settings = {});
@@ -44,9 +43,9 @@ class ObstacleMemory {
   void echo(const Pose& sonar_in_odom, double range);
   /// A beam met nothing.
   void silence(const Pose& sonar_in_odom);
-  /// The robot has run into something here.
+  /// The robot has hit an obstacle here.
   void touch(const Vec2& at_in_odom);
-  /// A cycle has passed, and the robot is here: before the beams of the cycle.
+  /// A cycle has passed, with this pose of the robot: before the beams of the cycle.
   void move_to(const Pose& robot_in_odom);
   /// Registers the obstacles with the robot: after the beams of the cycle.
   void collect(const Pose& robot_in_odom);

@@ -7,27 +7,27 @@
 
 namespace saphira::lps {
 
-/// The result of the occupancy functions where nothing is seen: 5000 mm in manual 6.6.2.
+/// The result of the occupancy functions without a reading: 5000 mm in manual 6.6.2.
 inline constexpr double kNothing = 5.0;
 
-/// The answer of an occupancy function.
+/// The result of an occupancy function.
 struct Occupancy {
-  double distance = kNothing;  ///< [m] along the axis asked for, from the robot's centre; never < 0
-  std::optional<Vec2> point;   ///< in the robot's frame: the reading that is meant
+  double distance = kNothing;  ///< [m] along the axis, from the robot's centre; never < 0
+  std::optional<Vec2> point;   ///< in the robot's frame: the reading
 };
 
-/// Along which axis a box is measured: sfFRONT is X, sfSIDES is Y.
+/// The axis of a box's distance: sfFRONT is X, sfSIDES is Y.
 enum class Axis { front, sides };
 
-/// Which way a plane looks.
+/// The direction of a plane.
 enum class Direction { front, back, left, right };
 
-/// The nearest of `points` (robot frame) in a rectangle, measured along `axis`. The centre is
-/// (cx, cy); `h` is its extent along X and `w` its extent along Y, all [m]: only so do both worked
-/// examples of manual 6.6.2 come out (LPS pictures have X upwards, hence height and width).
+/// The nearest of `points` (robot frame) in a rectangle, measured along `axis`. The centre is (cx,
+/// cy); `h` is its extent along X and `w` its extent along Y, all [m]. Only this reading gives both
+/// worked examples of manual 6.6.2 (LPS pictures have X upwards, hence height and width).
 ///
 /// The manual prints the signature sfOccBox(xy, cx, cy, h, w) and calls it with a sixth argument, 1
-/// or 0, of which it says nothing. The signature is taken to be right.
+/// or 0, without explanation. The signature is taken as right.
 Occupancy occupancy_box(const std::vector<Vec2>& points, Axis axis, double cx, double cy, double h,
                         double w);
 

@@ -5,8 +5,8 @@
 #include "saphira/geometry/pose.hpp"
 
 // Points and lines of manual 6.6.3.1. A point is a Pose: position and direction, in the LPS (the
-// robot's frame) unless it is said otherwise. Each function names the one that it stands for. What
-// the manual's functions write through their last argument is returned here.
+// robot's frame) unless stated otherwise. Each function names its original. The results that the
+// manual's functions write through their last argument are returned here.
 namespace saphira::lps {
 
 /// sfPointPhi: the bearing of the point from the robot [rad], (-pi, pi].
@@ -55,8 +55,8 @@ inline double normal_distance(const Pose& p) {
   return normal_distance(p, Pose{});
 }
 
-/// sfPointBaricenter: midway between two points. The manual says nothing of its direction; here it
-/// is the one halfway on the smaller turn from `p` to `q`.
+/// sfPointBaricenter: midway between two points. The manual does not define its direction; here it
+/// is halfway on the smaller turn from `p` to `q`.
 inline Pose baricenter(const Pose& p, const Pose& q) {
   return {(p.x + q.x) / 2.0, (p.y + q.y) / 2.0, norm2_angle(p.th + norm2_angle(q.th - p.th) / 2.0)};
 }

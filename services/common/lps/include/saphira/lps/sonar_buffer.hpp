@@ -10,7 +10,7 @@ namespace saphira::lps {
 
 /// One slot of a sonar buffer.
 struct SonarEntry {
-  Vec2 in_odom{0.0, 0.0};   ///< [m] where the echo came from; meaningless when not valid
+  Vec2 in_odom{0.0, 0.0};   ///< [m] origin of the echo; meaningless when not valid
   Vec2 in_robot{0.0, 0.0};  ///< [m] the same, registered with the robot
   bool valid = false;
 };
@@ -28,7 +28,7 @@ class SonarBuffer {
   std::size_t limit() const { return limit_; }
 
   void add(const Vec2& in_odom, const Pose& robot_in_odom);
-  /// The sonar fired and saw nothing: takes a slot, with the valid flag off.
+  /// The sonar fired without an echo: takes a slot, with the valid flag off.
   void add_miss();
   /// The robot has moved to this pose.
   void move_to(const Pose& robot_in_odom);

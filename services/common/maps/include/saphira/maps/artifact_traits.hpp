@@ -13,35 +13,35 @@ namespace saphira::maps {
 
 enum class RegionKind { corridor, junction, room };
 
-/// The properties of the types of artifacts that a map and registration need: the one place
-/// to say so. Maps, their files, pictures and routes, and what registration makes of them, follow.
+/// The properties of the artifact types that a map and registration need, in one place. Maps, their
+/// files, pictures and routes, and registration follow this table.
 struct ArtifactTraits {
   lps::PointType type;
-  std::string_view word;  ///< on a line of a map file; empty: no map holds it
+  std::string_view word;  ///< in a map file; empty: no map has it
 
   // Its fields in a map file.
   bool id = false;
   bool length = false;
   bool width = false;
 
-  std::optional<RegionKind> region = {};  ///< of the floor, that one can be in
-  /// Where the robot is in several, it is in the one with the largest number (manual 8.1.2).
+  std::optional<RegionKind> region = {};  ///< kind of region on the floor
+  /// Where the robot is in several regions, the largest number counts (manual 8.1.2).
   int environment = 0;
   bool gate = false;      ///< an opening in a wall, a way from one region into another
-  bool straight = false;  ///< goes on along its heading, and is the same from either end
+  bool straight = false;  ///< continues along its heading, the same from either end
 
-  /// The consequence for one that is seen to be missing (paper 3.2.2).
+  /// The consequence of an artifact that is not seen any more (paper 3.2.2).
   enum class Missing {
     stays,    ///< it is never looked for
-    learned,  ///< one that the robot has put down itself is looked for; what a person wrote stays
-    watched   ///< it is looked for; a gate may be closed, anything else is gone
+    learned,  ///< only the robot's own artifacts are checked; a person's stay
+    watched   ///< checked: a gate may be closed, any other artifact is gone
   };
   Missing missing = Missing::stays;
 
-  /// Percepts are matched in this order: what constrains the pose most comes first (paper 3.2).
+  /// The order of matching: the percepts that constrain the pose most come first (paper 3.2).
   int match_order = 4;
 
-  // As an area of a picture; empty: it is none, or drawn in its own way.
+  // As an area of a picture; empty: no area, or drawn in its own way.
   std::string_view area = {};
   int layer = 0;  ///< areas of larger ones are drawn later
 };

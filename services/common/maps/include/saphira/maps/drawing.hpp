@@ -10,17 +10,17 @@
 
 namespace saphira::maps {
 
-/// An occupancy grid as it is drawn.
+/// An occupancy grid to draw.
 struct Raster {
   Pose lower_left_in_map;  ///< the corner of its first cell; rows run along the heading
   double cell = 0.1;       ///< [m]
   int width = 0;           ///< cells in a row
   int height = 0;          ///< rows
-  /// Row by row: the probability of being occupied [0..1]; less than 0: nothing is known.
+  /// Row by row: the probability of being occupied [0..1]; less than 0: unknown.
   std::vector<float> occupied;
 };
 
-/// A way that was driven.
+/// A driven way.
 struct Trajectory {
   std::string name;  ///< in the legend
   std::vector<Vec2> points_in_map;
@@ -41,14 +41,14 @@ struct Words {
   std::string color;  ///< as SVG writes it
 };
 
-/// Something seen, and what it was taken for.
+/// A percept, and its match on the map.
 struct DrawnMatch {
   Vec2 seen_in_map{0.0, 0.0};
   Vec2 artifact_in_map{0.0, 0.0};
   bool accepted = true;
 };
 
-/// Where the robot believes to be.
+/// The robot's estimated place.
 struct DrawnRobot {
   Pose pose_in_map;
   double radius = 0.22;  ///< [m]
@@ -58,13 +58,13 @@ struct DrawnRobot {
   double xy = 0.0;
 };
 
-/// The contents of a picture of a map. All but the map may be left empty.
+/// The contents of a picture of a map. All but the map may be empty.
 struct Drawing {
   Map map;
   std::string title;
   std::set<std::uint32_t> closed_doors;  ///< ids, drawn black
   std::optional<Raster> raster;
-  /// Pairs of end points: the walls of a simulated world, or percepts, under all else.
+  /// Pairs of end points: the walls of a simulated world, or percepts, drawn first.
   std::vector<Vec2> lines;
   std::vector<Trajectory> trajectories;
   /// Over the map and the ways.
@@ -74,8 +74,8 @@ struct Drawing {
   std::optional<DrawnRobot> robot;
 };
 
-/// A picture of it as an SVG document: y up, a frame in metres, a scale and a legend. Numbers are
-/// rounded to a millimetre, so that the same drawing is the same text.
+/// The picture as an SVG document: y up, a frame in metres, a scale and a legend. Numbers are
+/// rounded to a millimetre, so that the same drawing gives the same text.
 std::string to_svg(const Drawing& drawing);
 
 }  // namespace saphira::maps

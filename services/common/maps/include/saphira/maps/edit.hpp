@@ -10,25 +10,24 @@
 
 namespace saphira::maps {
 
-/// Why a feature cannot be part of a map, in words; none where it can.
+/// The reason why a feature cannot be part of a map, in words; none where it can.
 std::optional<std::string> problem(const Feature& feature);
 
-/// Why nothing can be there on a map, in words; none where something can.
+/// The reason why a pose is impossible on a map, in words; none where it is possible.
 std::optional<std::string> problem(const Pose& pose_in_map);
 
-/// How near two features must be to be the same thing.
+/// The tolerance for two features to be the same object.
 struct Sameness {
   double distance = 0.5;         ///< [m] across a line, or between two points
   double angle = radians(15.0);  ///< of headings
 };
 
-/// True where two features of one type stand for the same thing: walls and corridors by their
-/// lines, which must overlap (a stretch of a corridor is the same as the whole), all else by its
-/// middle.
+/// True where two features of one type are the same object: walls and corridors by their lines,
+/// which must overlap (a stretch of a corridor is the same as the whole), others by their middle.
 bool same(const Feature& a, const Feature& b, const Sameness& sameness = {});
 
-/// A map that changes while it is used. Every feature has an id as long as the editor lives, walls
-/// too (whose ids a file does not hold), and the id of what was removed is not given again.
+/// A map that changes while in use. Every feature has an id for the editor's life, walls too (whose
+/// ids a file does not hold), and the id of a removed feature is not used again.
 class Editor {
  public:
   explicit Editor(Map map = {});
@@ -37,18 +36,18 @@ class Editor {
   /// Goes up with every change.
   std::uint64_t revision() const { return revision_; }
 
-  /// Takes a new feature, under its id where it has one that is free and was never used, else under
-  /// a new one, which is returned. std::invalid_argument where `problem` finds one.
+  /// Adds a feature, under its id if that is free and was never used, otherwise under a new one,
+  /// which is returned. std::invalid_argument where `problem` finds an error.
   std::uint32_t add(Feature feature);
-  /// Replaces the feature of that id, which stays; its type must be the same. False where there is
-  /// none. std::invalid_argument where `problem` finds one.
+  /// Replaces the feature with that id, which stays; its type must be the same. False: no such
+  /// feature. std::invalid_argument where `problem` finds an error.
   bool change(std::uint32_t id, Feature feature);
-  /// Changes the feature of its id, or adds it where there is none; its id.
+  /// Changes the feature with its id, or adds it; returns its id.
   std::uint32_t put(const Feature& feature) {
     return change(feature.id, feature) ? feature.id : add(feature);
   }
   bool remove(std::uint32_t id);
-  /// Another map instead of this one. What is in both by id keeps its id.
+  /// Replaces the map. Features with the same id in both keep it.
   void replace(Map map);
 
  private:
@@ -57,7 +56,7 @@ class Editor {
 
   Map map_;
   std::uint32_t last_id_ = 0;     ///< the highest ever given
-  std::set<std::uint32_t> gone_;  ///< given once, and not to be given again
+  std::set<std::uint32_t> gone_;  ///< used once, and not to be used again
   std::uint64_t revision_ = 0;
 };
 

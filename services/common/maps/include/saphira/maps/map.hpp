@@ -13,8 +13,8 @@ namespace saphira::maps {
 /// One line of a map: an artifact with its place in the frame `map`.
 struct Feature {
   lps::PointType type = lps::PointType::position;
-  /// Positive and unique in its map; 0 for a wall that was read from a file, where it has none
-  /// (manual 6.9.1): what edits a map gives it one.
+  /// Positive and unique in its map; 0 for a wall from a file, where it has none (manual 6.9.1): an
+  /// Editor gives it one.
   std::uint32_t id = 0;
   /// The middle. The heading is along a corridor, lane, wall, junction, office or object; of a door
   /// or break it is the normal, from the room out into the corridor.
@@ -22,8 +22,8 @@ struct Feature {
   double length = 0.0;  ///< [m] along the heading; 0 where the type has none
   double width = 0.0;   ///< [m] across the heading; 0 where the type has none
   std::string name;     ///< of a room, and of its doors; empty: none
-  /// The robot has put it down itself; walls and breaks of those it takes back where they are seen
-  /// no more. A file does not hold this: a map that a person loads is taken at its word.
+  /// The robot has added it itself; its own walls and breaks are removed when they are not seen any
+  /// more. A file does not hold this flag: a map that a person loads is taken as true.
   bool learned = false;
 
   bool operator==(const Feature&) const = default;
@@ -39,8 +39,8 @@ struct Map {
 /// Reads the text of a map file; `file` names it in errors. FileError where it is wrong.
 Map parse_map(std::string_view text, const std::string& file);
 
-/// The same from a file. Its last line has a line break, or ends with a name: half a number would
-/// be read as a whole one.
+/// The same from a file. Its last line must have a line break, or end with a name: half a number
+/// would read as a whole one.
 Map load_map(const std::string& path);
 
 /// The text of a map file that reads as this map, to a micrometre and a millionth of a degree.

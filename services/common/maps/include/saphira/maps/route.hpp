@@ -11,13 +11,13 @@
 
 namespace saphira::maps {
 
-/// The way through one region: paths in Saphira are sequences of regions, and where exactly the
-/// robot drives in one is left to its behaviors (paper 3.4).
+/// The way through one region. Paths in Saphira are sequences of regions; the behaviors choose the
+/// exact way within a region (paper 3.4).
 struct Leg {
   std::size_t region = 0;
   std::optional<std::size_t> link;  ///< the way out of it; none in the last one
-  /// Where to drive through, in the map, up to and with the way out: along the middle of a
-  /// corridor, and straight through a door. Never empty.
+  /// The points to drive through, in the map, up to and including the way out: along the middle of
+  /// a corridor, and straight through a door. Never empty.
   std::vector<Vec2> points;
 };
 
@@ -29,34 +29,34 @@ struct Route {
   std::vector<Vec2> points() const;
 };
 
-/// [m] Between two posts or walls a robot, a circle of this radius [m], needs its diameter and what
-/// the guard beside it leaves on each side (bridge/authority, GuardSettings::side_margin).
+/// [m] Between two posts or walls a robot, a circle of this radius [m], needs its diameter and the
+/// guard's margin on each side (bridge/authority, GuardSettings::side_margin).
 inline double needed_width(double radius) {
   constexpr double kBeside = 0.08;
   return 2.0 * (radius + kBeside);
 }
 
 struct RouteSettings {
-  std::set<std::uint32_t> blocked;  ///< ids of doors, breaks and regions that are not to be used
-  std::set<std::size_t> blocked_links;  ///< by index: also those that have no id
-  /// Ids of doors that were closed when they were seen last: gone through where any other way is so
-  /// much longer.
+  std::set<std::uint32_t> blocked;      ///< ids of forbidden doors, breaks and regions
+  std::set<std::size_t> blocked_links;  ///< by index: also links without an id
+  /// Ids of doors that were closed when last seen: used only where any other way is longer by
+  /// `closed_costs`.
   std::set<std::uint32_t> closed;
   double closed_costs = 50.0;  ///< [m]
-  /// [m] that the robot needs between two posts or walls: narrower doors, openings and corridors
-  /// are not gone through. 0: any will do.
+  /// [m] The robot's width between two posts or walls: narrower doors, openings and corridors are
+  /// not used. 0: any width.
   double needs_width = 0.0;
-  double door_clearance = 0.7;  ///< [m] how far before and behind a door the robot is in line
-  double tolerance = 0.5;       ///< [m] how far outside of its region the robot may believe to be
+  double door_clearance = 0.7;  ///< [m] way in line before and behind a door
+  double tolerance = 0.5;       ///< [m] tolerated distance of the robot from its region
 };
 
-/// A route, or why there is none, in words.
+/// A route, or the reason why there is none, in words.
 struct RouteResult {
   std::optional<Route> route;
   std::string reason;
 };
 
-/// The shortest way from where the robot is to a place (Topology::place), by the lengths of the
+/// The shortest way from the robot's position to a place (Topology::place), by the lengths of the
 /// stretches between the ways out. A place without a point of its own, a room or a corridor, is
 /// reached as soon as the robot is inside.
 RouteResult find_route(const Topology& topology, const Vec2& from_in_map,

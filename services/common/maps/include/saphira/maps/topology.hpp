@@ -12,11 +12,11 @@
 
 namespace saphira::maps {
 
-/// A rectangle of the floor that one can be in: of a corridor or lane, a junction, or a room. A
-/// room of several rectangles is several regions of one name.
+/// A rectangle of the floor: of a corridor or lane, a junction, or a room. A room of several
+/// rectangles is several regions of one name.
 struct Region {
   RegionKind kind = RegionKind::room;
-  /// The artifact. A junction that the map does not hold, where two corridors meet, has id 0.
+  /// The artifact. A junction of two corridors that the map does not hold has id 0.
   Feature area;
   std::vector<std::size_t> links;  ///< ways out, by index
 };
@@ -34,18 +34,18 @@ struct Link {
   Pose pose_in_map;      ///< its middle; of doors and breaks the heading is the normal, towards `a`
   double width = 0.0;    ///< [m] of doors and breaks
   std::size_t a = 0;
-  std::optional<std::size_t> b;  ///< none: the map does not say what is behind it
+  std::optional<std::size_t> b;  ///< none: the other side is not on the map
 };
 
-/// The region or link that a name or an id stands for.
+/// The region or link of a name or an id.
 struct Place {
   std::string name;                  ///< as it is called in a message
-  std::vector<std::size_t> regions;  ///< any of them will do
+  std::vector<std::size_t> regions;  ///< any of them is a valid target
   std::optional<Vec2> point;         ///< in the map; none: anywhere inside
 };
 
-/// The graph of a map: where the robot can be, and how the regions hang together. Regions and links
-/// keep the order of the map's features; it is made anew when the map changes.
+/// The graph of a map: the regions and their connections. Regions and links keep the order of the
+/// map's features; the graph is made anew when the map changes.
 class Topology {
  public:
   Topology() = default;
@@ -56,13 +56,13 @@ class Topology {
 
   /// Every region that the position lies in; in the order of the regions.
   std::vector<std::size_t> at(const Vec2& position_in_map) const;
-  /// The region that a robot there is in: a junction before a corridor before a room; within
-  /// `tolerance` [m] of one where it is in none.
+  /// The region of a robot at that position: a junction before a corridor before a room; if there
+  /// is none, the nearest within `tolerance` [m].
   std::optional<std::size_t> region_at(const Vec2& position_in_map, double tolerance = 0.0) const;
   /// By the id of an artifact, or by a name: of a region, of a position, of a door, in that order;
-  /// letters as they are written first, then either case.
+  /// with the exact case first, then either case.
   std::optional<Place> place(std::string_view name_or_id) const;
-  /// That there is no such place, with the nearest name and some of those that there are.
+  /// A message that there is no such place, with the most similar name and some of the others.
   std::string no_place(std::string_view name) const;
   /// "corridor 2 (central corridor)".
   std::string text(std::size_t region) const;
@@ -77,8 +77,8 @@ class Topology {
   std::vector<Feature> positions_;
 };
 
-/// True where two maps have the same regions, ways and places, so that what was planned on the one
-/// holds on the other: things and walls may differ.
+/// True where two maps have the same regions, ways and places, so that a plan on one holds on the
+/// other: objects and walls may differ.
 bool same_places(const Map& a, const Map& b);
 
 /// The four corners of a feature's rectangle, counter-clockwise, made larger by `margin` [m] on
@@ -89,8 +89,8 @@ std::vector<Vec2> corners(const Feature& feature, double margin = 0.0);
 /// empty where they do not overlap.
 std::vector<Vec2> overlap(const std::vector<Vec2>& a, const std::vector<Vec2>& b);
 
-/// Why a position is not within `margin` [m] of the rectangle round the map, in words; none where
-/// it is, and of an empty map.
+/// The reason why a position is not within `margin` [m] of the rectangle round the map, in words;
+/// none where it is, and for an empty map.
 std::optional<std::string> outside(const Map& map, const Vec2& position, double margin);
 
 /// The end points of the middle line along a feature's heading.

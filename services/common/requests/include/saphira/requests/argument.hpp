@@ -10,7 +10,7 @@
 
 namespace saphira {
 
-/// Where a point is expressed.
+/// The frame of a point.
 enum class Frame { robot, odom, map };
 
 enum class ArgumentKind {
@@ -18,10 +18,10 @@ enum class ArgumentKind {
   text,
   point,
   truth,   ///< `number` is 1 or 0
-  unbound  ///< a slot that the answer is to fill
+  unbound  ///< a slot for the answer to fill
 };
 
-/// A point as somebody gave it.
+/// A point in its original frame.
 struct PlacedPoint {
   Pose pose;
   Frame frame = Frame::odom;
@@ -60,9 +60,9 @@ Argument text(std::string name, std::string value);
 Argument point(std::string name, const Pose& value, Frame frame = Frame::odom);
 Argument truth(std::string name, bool value);
 
-/// The first argument of that name; nullptr where there is none.
+/// The first argument of that name; nullptr: none.
 const Argument* find(const Arguments& arguments, std::string_view name);
-/// Its value; 0, false, an empty text, the origin where there is none.
+/// Its value; without it 0, false, an empty text or the origin.
 double number_of(const Arguments& arguments, std::string_view name);
 bool truth_of(const Arguments& arguments, std::string_view name);
 const std::string& text_of(const Arguments& arguments, std::string_view name);

@@ -15,11 +15,11 @@ struct Parameter {
   bool required = true;
   double low = 0.0;  ///< of numbers
   double high = 0.0;
-  double usual = 0.0;                  ///< of numbers and truths that are not given
+  double usual = 0.0;                  ///< default of numbers and truths
   bool whole = false;                  ///< of numbers
   std::vector<std::string> choices{};  ///< of texts; empty: any text
   Frame frame = Frame::map;            ///< of points
-  bool list = false;                   ///< may be given several times, or not at all
+  bool list = false;                   ///< may be given any number of times
 };
 
 /// Tables of functors are made of these.
@@ -32,15 +32,15 @@ Parameter truth_parameter(std::string name, std::string meaning);
 Parameter optional(Parameter parameter, double usual = 0.0);
 Parameter list(Parameter parameter);
 
-/// Something that a program can be asked for.
+/// A request that a program can carry out.
 struct Functor {
   std::string name;
   std::string summary;  ///< one line for people
   std::vector<Parameter> parameters{};
 };
 
-/// The trouble with the arguments, naming functor and argument, and saying what was expected and
-/// what came; empty where nothing is. Then what is not given has been filled in with what is usual.
+/// The error in the arguments, with functor and argument, the expected and the actual value; empty:
+/// none. Then missing arguments have been filled with their defaults.
 std::string complete(const Functor& functor, Arguments& arguments);
 
 /// A line for each functor, with its arguments, for people.

@@ -10,12 +10,12 @@
 
 namespace saphira {
 
-/// A request: asked for once.
+/// A request, for one action.
 struct Request {
   std::string functor;
   Arguments arguments{};
-  std::string source{};   ///< who asks, for people
-  std::string service{};  ///< which program is meant; empty: each that knows the functor
+  std::string source{};   ///< name of the asker, for people
+  std::string service{};  ///< the program; empty: each that knows the functor
   Stamp stamp{};          ///< of the asker's step; cycle 0: none
   std::uint64_t asker = 0;
   std::uint64_t number = 0;  ///< unique together with the asker; 0: not
@@ -27,7 +27,7 @@ struct Request {
 enum class AnswerCode {
   underway,
   done,
-  sent,  ///< to a robot, none of whose packets would show it
+  sent,  ///< to a robot, whose packets do not show it
   refused,
   unknown_functor,
   bad_argument,
@@ -40,7 +40,7 @@ enum class AnswerCode {
 inline bool ended(AnswerCode code) {
   return code != AnswerCode::underway;
 }
-/// It came to a good end, or is on its way there.
+/// True for a good end, or one under way.
 inline bool well(AnswerCode code) {
   return code <= AnswerCode::sent;
 }
@@ -48,7 +48,7 @@ inline bool well(AnswerCode code) {
 /// The state of a request.
 struct Answer {
   AnswerCode code = AnswerCode::done;
-  std::string text{};  ///< in words; empty: there is nothing to say beside the code
+  std::string text{};  ///< in words; empty: the code says all
   Arguments results{};
 
   friend bool operator==(const Answer&, const Answer&) = default;
@@ -57,13 +57,13 @@ struct Answer {
 /// "place position=(1, 2, 0)"
 std::string describe(const Request& request);
 
-/// The answer to a request that none of the functors can take; nothing where one can. Then what it
-/// leaves out has been filled in with what is usual.
+/// The answer to a request that none of the functors can take; nothing where one can. Then missing
+/// arguments have been filled with their defaults.
 std::optional<Answer> refusal(const std::vector<Functor>& functors, Request& request);
 
-/// True where a request may be acted on in a step of `now` so that every run does it in the same
-/// one: in lockstep what a service asked for in its step N is certain to be here in step N+2, since
-/// that one needs what others made of its outputs of N.
+/// True where a request may be acted on in a step of `now` so that every run acts in the same step.
+/// In lockstep a request from a service's step N is certain to be here in step N+2, since that step
+/// needs other services' results from its outputs of N.
 bool is_due(const Request& request, const Stamp& now);
 
 }  // namespace saphira

@@ -17,7 +17,7 @@ namespace saphira::intentions {
 /// The level of a behavior's own goal that counts as reached (paper 3.4, degrees of blocking).
 inline constexpr double kSatisfied = 0.9;
 
-/// How far a behavior instance says it is.
+/// The reported satisfaction of a behavior instance.
 struct BehaviorLevel {
   std::string name;       ///< of the instance
   double goal = 0.0;      ///< [0..1] how far its goal is satisfied
@@ -37,23 +37,23 @@ struct Start {
   Bindings arguments;
   Ticks timeout = 0;  ///< 0: none
   bool blocking = true;
-  /// A behavior that is satisfied has finished. Otherwise it lasts.
+  /// The behavior finishes when it is satisfied. Otherwise it lasts.
   bool until_satisfied = false;
   std::optional<int> priority;  ///< none: that of the parent; of behaviors 2
 };
 
-/// How an intention came to its end.
+/// The result of an ended intention.
 struct Outcome;
 
-/// A behavior that is wanted to exist with these parameters.
+/// A behavior that should exist with these parameters.
 struct IntendedBehavior {
   std::string name;  ///< of the instance, unique in the set
   std::string schema;
   int priority = 0;  ///< 0 is the highest
   bool running = true;
   Arguments parameters;
-  std::uint32_t intention = 0;  ///< the node that wants it
-  bool blocking = false;        ///< somebody waits for it
+  std::uint32_t intention = 0;  ///< the node that intends it
+  bool blocking = false;        ///< an intention waits for it
 
   bool operator==(const IntendedBehavior&) const = default;
 };
@@ -64,7 +64,7 @@ enum class IntentionState {
   kInit,         ///< to be stepped for the first time
   kRunning,      ///< in a state of its own
   kSuspended,    ///< not stepped until it is resumed
-  kInterrupted,  ///< to be stepped once more, to put its things away; then suspended
+  kInterrupted,  ///< one more step, to clean up; then suspended
   kResumed,      ///< to be stepped for the first time after a suspension
   kSuccess,
   kFailure,
@@ -79,8 +79,7 @@ inline constexpr bool finished(IntentionState state) {
 
 class Activity;
 
-/// The view and the means of an activity in its step. Given by the forest for one step of one
-/// intention.
+/// An activity's view and actions in its step. The forest makes it for one step of one intention.
 class Self {
  public:
   virtual ~Self() = default;
@@ -91,44 +90,44 @@ class Self {
   /// kInit, kResumed, kRunning or kInterrupted.
   virtual IntentionState state() const = 0;
 
-  /// Intends a behavior under a label of this intention's own, or changes the one that is there
+  /// Intends a behavior under a label of this intention's own, or changes the existing one
   /// (intend_beh, manual 8.5). It lasts until it is dropped or this intention ends or is
   /// interrupted.
   virtual void intend_behavior(std::string_view label, std::string_view schema, int priority,
                                Arguments parameters) = 0;
   virtual void drop_behavior(std::string_view label) = 0;
-  /// How far the behavior says its goal is satisfied [0..1]; 0 until the behaviors service has said
-  /// so of the parameters that it has now. The measure for degrees of blocking (paper 3.4).
+  /// The behavior's own satisfaction [0..1]; 0 until the behaviors service has reported it for the
+  /// present parameters. The measure for degrees of blocking (paper 3.4).
   virtual double level(std::string_view label) const = 0;
 
-  /// Intends a child; its number. Timeout in ticks, 0 for none. A child lives no longer than this
-  /// intention; what it ended with can be read until it is removed (manual 8.4).
+  /// Intends a child; returns its number. Timeout in ticks, 0: none. A child ends with this
+  /// intention at the latest; its outcome can be read until it is removed (manual 8.4).
   virtual std::uint32_t intend(std::string_view name, std::string_view schema,
                                std::unique_ptr<Activity> activity, Ticks timeout,
                                bool blocking) = 0;
   virtual IntentionState child_state(std::uint32_t child) const = 0;
   virtual void remove_child(std::uint32_t child) = 0;
 
-  /// Intends an activity or behavior by name; its number. It begins in the same cycle, after this
-  /// step. ActivityError where there is no such schema, where it does not take the arguments, or
-  /// where there are too many intentions.
+  /// Intends an activity or behavior by name; returns its number. It begins in the same cycle,
+  /// after this step. ActivityError for an unknown schema, for arguments that it does not take, or
+  /// for too many intentions.
   virtual std::uint32_t start(const Start& start) = 0;
-  /// How far a child is satisfied [0..1].
+  /// A child's satisfaction [0..1].
   virtual double child_level(std::uint32_t child) const = 0;
-  /// How it ended; nullptr while it has not, or where there is none.
+  /// A child's outcome; nullptr while it has not ended, or for an unknown child.
   virtual const Outcome* child_outcome(std::uint32_t child) const = 0;
   /// The newest child of that name; 0: none.
   virtual std::uint32_t child_named(std::string_view name) const = 0;
-  /// Interrupts a child with all that it has begun, until it is resumed. For those that keep their
+  /// Interrupts a child with its descendants, until it is resumed. For activities that keep their
   /// children (Activity::keeps_children).
   virtual void hold_child(std::uint32_t child, bool hold) = 0;
   /// Ends the nearest intention of that name in the same tree (paper 3.4, Unintend): first among
-  /// what this one has begun, then what its parent has, and so on. False where there is none.
+  /// its own descendants, then among its parent's, and so on. False: none.
   virtual bool unintend(std::string_view name) = 0;
 
-  /// The state that comes next, for the display.
+  /// The next state, for the display.
   virtual void label(const std::string& label) = 0;
-  /// How far this intention is satisfied [0..1].
+  /// This intention's satisfaction [0..1].
   virtual void level(double satisfied) = 0;
   virtual void tell(std::string text) = 0;         ///< a message to people
   virtual void request(Request request) = 0;       ///< of registration
@@ -137,18 +136,18 @@ class Self {
 
   /// The present step, for people: short, and the same from cycle to cycle.
   virtual void say(std::string step) = 0;
-  /// Tells that Activity::save() gives another value than before.
+  /// Reports that Activity::save() has changed.
   virtual void moved_on() = 0;
   virtual void progress(double done) = 0;  ///< [0..1]
   virtual void succeed(std::string reason) = 0;
   virtual void fail(GoalCode code, std::string reason) = 0;
 };
 
-/// An instance of a schema: a finite-state machine that is stepped once a cycle (manual 8.1).
+/// An instance of a schema: a finite-state machine with one step a cycle (manual 8.1).
 ///
-/// Must: return soon, use no clock and no randomness of its own, and come to an end or be one that
-/// is meant to last. May: ignore kInterrupted, since its behaviors and children are removed for it;
-/// it has to intend them anew when it is resumed.
+/// Must: return soon, use no clock and no randomness of its own, and end unless it is meant to
+/// last. May: ignore kInterrupted, since its behaviors and children are removed for it; it has to
+/// intend them anew when it is resumed.
 class Activity {
  public:
   virtual ~Activity() = default;
@@ -156,19 +155,18 @@ class Activity {
   /// A child has ended or is gone, in the cycle in which step() has been called already.
   virtual void child_ended(Self& self) { static_cast<void>(self); }
   /// True where it waits for that child's end. Where a behavior cannot be made, an intention that
-  /// does not wait for it fails: the others are not meant to drive without it.
+  /// does not wait for it fails: the other behaviors must not drive without it.
   virtual bool waits_for(std::uint32_t child) const {
     static_cast<void>(child);
     return false;
   }
-  /// While it is interrupted its children are interrupted too, and resumed with it; otherwise they
-  /// are removed.
+  /// True: interruption and resumption apply to its children as well. False: its children are
+  /// removed.
   virtual bool keeps_children() const { return false; }
-  /// The work that is done, to go on from after a restart of the service; nil: its arguments are
-  /// all that it needs.
+  /// The progress, for a restart of the service; nil: the arguments are enough.
   virtual Value save() const { return {}; }
-  /// Goes on from what save() gave. `children`: their numbers now, by those they had. ActivityError
-  /// where it cannot: then it is as if it had not been called.
+  /// Continues from the value of save(). `children`: their new numbers by the old ones.
+  /// ActivityError where it cannot: then it is unchanged.
   virtual void restore(const Value& saved, const std::map<std::uint32_t, std::uint32_t>& children) {
     static_cast<void>(saved);
     static_cast<void>(children);
@@ -178,12 +176,12 @@ class Activity {
     static_cast<void>(name);
     return nullptr;
   }
-  /// Other arguments for the one that is running; false where it has to be begun anew.
+  /// New arguments for the running activity; false where it has to be begun anew.
   virtual bool change(const Arguments& arguments) {
     static_cast<void>(arguments);
     return false;
   }
-  /// The deadline of its goal has come: a reason in words where that is its success, empty where it
+  /// The deadline of its goal has come: the reason in words where that is a success, empty where it
   /// is a failure.
   virtual std::string at_deadline(const Robot& robot) {
     static_cast<void>(robot);

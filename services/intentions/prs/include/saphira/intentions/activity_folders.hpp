@@ -11,34 +11,34 @@
 
 namespace saphira::intentions {
 
-/// The activity files (*.act) of folders, of which a later one covers activities of the same name
-/// in those before it. A file that is wrong changes nothing: what it gave before stays.
+/// The activity files (*.act) of folders. A later folder covers activities of the same name in
+/// earlier ones. A file with an error changes nothing: its earlier activities stay.
 class ActivityFolders {
  public:
-  /// base: what activities may name besides each other.
+  /// base: the schemas that activities may name besides each other.
   ActivityFolders(const std::vector<std::string>& paths, std::shared_ptr<const Functions> functions,
                   Registry base);
 
   /// The changes that a look has found.
   struct News {
-    bool changed = false;              ///< also where only the trouble is another
+    bool changed = false;              ///< also where only the errors changed
     std::vector<Schema> taken;         ///< new, or another than before
-    std::vector<std::string> removed;  ///< activities that there are no more
+    std::vector<std::string> removed;  ///< activities that are gone
     std::vector<std::string> errors;   ///< of files that changed: file, line, column, caret
     std::vector<std::string> warnings;
   };
   News look();
 
-  /// From now on a file that names another behavior is wrong.
+  /// From now on a file that names another behavior has an error.
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
-  /// The files that have mistakes now, and which mistakes; empty: none.
+  /// The files with errors, and the errors; empty: none.
   std::string trouble() const;
 
  private:
   struct File {
     std::string newest;  ///< content
-    std::string good;    ///< content that was taken last
-    bool taken = false;  ///< there is such
+    std::string good;    ///< newest accepted content
+    bool taken = false;  ///< a content was accepted
     std::string fault;   ///< of `newest`; empty: none
   };
   struct Layer {
@@ -59,7 +59,7 @@ class ActivityFolders {
   std::vector<Layer> layers_;
   std::shared_ptr<const Functions> functions_;
   Registry base_;
-  std::map<std::string, Origin> given_;  ///< by name: where each activity that was given is from
+  std::map<std::string, Origin> given_;  ///< by name: the origin of each activity
 };
 
 /// The folder of the shipped activities: config/activities.

@@ -14,52 +14,52 @@ namespace saphira::intentions {
 
 class Functions;
 
-/// One thing that is taken to be true.
+/// A belief: a name and its value.
 struct Belief {
   std::string name;
   Value value;
-  std::string said_by;  ///< an intention, "perception", or who claimed it
+  std::string said_by;  ///< an intention, "perception", or the claimant
   Ticks since = 0;      ///< of the newest change of its value
 
   bool operator==(const Belief&) const = default;
 };
 
-/// A claim that a third party makes on the bus, or takes back.
+/// A claim of a third party on the bus, or its withdrawal.
 struct ClaimEvent {
   enum class Kind { kSaid, kWithdrawn };
   Kind kind = Kind::kSaid;
   GoalId id;           ///< unique for ever, as that of a goal
-  std::string source;  ///< who, for people
+  std::string source;  ///< the writer, for people
   std::string name;
   Value value;
 };
 
-/// The beliefs of the robot (paper 3.4: the LPS and a set of environment variables): what
-/// conditions of the LPS give, what third parties claim, and what activities have set. A condition
-/// cannot be overruled; of the others the newest counts.
+/// The beliefs of the robot (paper 3.4: the LPS and a set of environment variables): the results of
+/// conditions of the LPS, the claims of third parties, and the values set by activities. A
+/// condition cannot be overruled; among the others the newest counts.
 class Beliefs {
  public:
-  /// The functions whose conditions are beliefs; they outlive this. None: no conditions.
+  /// The functions whose conditions are beliefs; they outlive this object. None: no conditions.
   explicit Beliefs(const Functions* functions = nullptr) : functions_(functions) {}
 
-  /// Conditions whose value is another than in the step before come to be since `now`.
+  /// Evaluates the conditions; one with a new value changes at `now`.
   void look(const World& world);
   void set(std::string_view name, Value value, std::string_view who, Ticks now);
   void unset(std::string_view name);
   void take(const ClaimEvent& event, Ticks now);
 
-  /// nil where nothing is known.
+  /// nil where unknown.
   Value get(std::string_view name, const World& world) const;
   bool known(std::string_view name) const;
-  /// The newest value that activities have set or others claim under a name; nullptr: nothing.
+  /// The newest value of a name from activities or claims; nullptr: none.
   const Belief* stored(std::string_view name) const;
   /// By name.
   std::vector<Belief> all() const;
   /// The values that activities have set, by name.
   std::vector<Belief> set_by_activities() const;
-  /// Larger whenever that has changed.
+  /// Increases with each change of those.
   std::uint64_t set_revision() const { return set_revision_; }
-  /// Larger whenever all() has changed.
+  /// Increases with each change of all().
   std::uint64_t revision() const { return revision_; }
 
  private:
@@ -74,7 +74,7 @@ class Beliefs {
   std::size_t claim_count_ = 0;
   std::uint64_t revision_ = 0;
   std::uint64_t set_revision_ = 0;
-  Ticks looked_ = std::numeric_limits<Ticks>::min();  ///< when conditions_ is of
+  Ticks looked_ = std::numeric_limits<Ticks>::min();  ///< time of conditions_
 };
 
 }  // namespace saphira::intentions

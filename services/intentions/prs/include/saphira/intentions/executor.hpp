@@ -23,9 +23,9 @@ struct GoalEvent {
   enum class Kind { kWritten, kDisposed, kWriterLost };
   Kind kind = Kind::kWritten;
   Goal goal;         ///< kWritten: whole; otherwise only its id counts
-  std::string by{};  ///< who did it [empty: its requester]
-  /// Why a goal that is not known is not to be done, since it may have been done already [empty: it
-  /// is to be done].
+  std::string by{};  ///< actor [empty: its requester]
+  /// The reason why an unknown goal is not carried out, since it may have been done already [empty:
+  /// carry it out].
   std::string forgotten{};
 };
 
@@ -40,21 +40,20 @@ struct Inputs {
   Surroundings around{};
   std::vector<BehaviorTrouble> troubles{};  ///< behaviors that could not be made
   std::vector<ClaimEvent> claims{};         ///< since the last step, oldest first
-  std::string hold{};                       ///< why all goals are to wait; empty: they are not
+  std::string hold{};                       ///< the reason why all goals wait; empty: they do not
   std::string person{};  ///< why goals that drive are to wait for a person; empty: they are not
-  std::string
-      estop{};  ///< which program pressed the emergency stop that is latched; empty: none is
-  /// [cycles] Of what was intended, when the behaviors were computed.
+  std::string estop{};   ///< the program that pressed the latched emergency stop; empty: none
+  /// [cycles] Age of the intent that the behaviors were computed from.
   std::uint64_t intent_age = 1;
 };
 
 /// The changes of goals since the last call.
 struct News {
-  std::vector<GoalStatus> changed;  ///< to be published, in the order in which it happened
-  std::vector<GoalId> withdrawn;    ///< ended long ago: their status is to be withdrawn
-  std::vector<Placement> placed;    ///< to be remembered over a restart
-  std::vector<Ending> endings;      ///< to be remembered over a restart
-  /// The same, in the place of what was remembered before; none: it is as it was.
+  std::vector<GoalStatus> changed;  ///< to be published, in order
+  std::vector<GoalId> withdrawn;    ///< ended long ago: withdraw their status
+  std::vector<Placement> placed;    ///< to be saved
+  std::vector<Ending> endings;      ///< to be saved
+  /// To be saved in place of the earlier work; none: unchanged.
   std::optional<Work> work;
 };
 
@@ -70,11 +69,11 @@ struct Outputs {
 };
 
 struct ExecutorOptions {
-  double keep_ended = 60.0;      ///< [s] of robot time that an ended goal's status stays
-  std::size_t max_shown = 1024;  ///< ended goals whose status stays; the oldest are withdrawn
+  double keep_ended = 60.0;      ///< [s] of robot time for an ended goal's status
+  std::size_t max_shown = 1024;  ///< ended goals with a status; the oldest are withdrawn
   std::size_t max_open = 256;    ///< goals that may be open at once
   std::size_t max_ended = kMostEndings;
-  bool remembers_work = false;  ///< whether somebody keeps News::work
+  bool remembers_work = false;  ///< true: News::work is saved
   /// The functions for activities; their conditions are beliefs. None: core_functions().
   std::shared_ptr<const Functions> functions{};
   ForestOptions forest{};
@@ -83,9 +82,9 @@ struct ExecutorOptions {
 /// Goals in, intended behaviors out (manual 8, paper 3.3): the executor of PRS-lite with a queue of
 /// goals on top.
 ///
-/// At most one goal that drives is underway: the most important, of equals the one that came first.
-/// A more important one interrupts it; it resumes afterwards. Goals of concurrent schemas are
-/// underway beside it. Nothing is intended when no goal is underway, which releases the robot.
+/// At most one driving goal is underway: the most important, of equals the earliest. A more
+/// important one interrupts it; it resumes afterwards. Goals of concurrent schemas are underway
+/// beside it. Without a goal underway nothing is intended, which releases the robot.
 class Executor {
  public:
   explicit Executor(Registry registry, const Memory& memory = {}, ExecutorOptions options = {});
@@ -93,47 +92,46 @@ class Executor {
   /// One cycle of the robot.
   Outputs step(const Inputs& inputs);
 
-  /// Takes in events between cycles, so that a requester hears of a refusal also while no robot is
-  /// connected. Starts nothing: for the step that follows it is the same whether the events came
-  /// before or with it.
+  /// Takes events between cycles, so that a requester hears of a refusal also while no robot is
+  /// connected. Starts nothing: the next step is the same whether the events came before or with
+  /// it.
   News hear(const std::vector<GoalEvent>& events);
 
-  /// There is no robot any more (no cycles come). Goals wait for it; the next step goes on.
+  /// The robot is gone (no cycles come). Goals wait for it; the next step continues.
   News robot_gone();
 
-  /// Puts a schema in, also in the place of an older one: goals that have begun and intentions go
-  /// on with theirs.
+  /// Adds a schema, or replaces an older one: begun goals and intentions keep theirs.
   void add(Schema schema);
   void remove(std::string_view name);
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
   const Registry& registry() const { return *registry_; }
   const Beliefs& beliefs() const { return *beliefs_; }
 
-  /// Interrupts an intention with all that it has begun, or lets it go on, by the number of its
-  /// node (manual 6.5, sfInterruptProcess). False where there is no such intention.
+  /// Interrupts an intention with its descendants, or resumes it, by the number of its node (manual
+  /// 6.5, sfInterruptProcess). False: no such intention.
   bool interrupt(std::uint32_t node);
   bool resume(std::uint32_t node);
-  /// The value of a variable of an intention, by the number of its node; until the next step.
-  /// nullptr where there is no such intention or variable.
+  /// The value of a variable of an intention, by the number of its node; valid until the next step.
+  /// nullptr: no such intention or variable.
   const Value* variable(std::uint32_t node, std::string_view name);
 
  private:
   struct Entry {
-    Goal goal;            ///< as it was written, to tell a change from a repetition
+    Goal goal;            ///< as written, to tell a change from a repetition
     Arguments arguments;  ///< complete; points in odom once `placed`
     std::shared_ptr<const Schema> schema;
-    bool fresh = true;  ///< no step since it was heard: acceptance counts from the next one
+    bool fresh = true;  ///< no step since it was heard: acceptance counts from the next step
     bool placed = false;
-    bool changed = false;               ///< while begun, and its activity does not know yet
-    bool replaced = false;              ///< what it replaces has been ended
-    std::optional<std::uint64_t> odom;  ///< the frame that its points are in; none: it has none
+    bool changed = false;               ///< begun, and its activity does not know yet
+    bool replaced = false;              ///< the goals that it replaces have been ended
+    std::optional<std::uint64_t> odom;  ///< the frame of its points; none: it has no points
     std::uint64_t order = 0;
     Ticks accepted = 0;
     Ticks ended = 0;
     std::uint32_t node = 0;  ///< root of its tree; 0: not begun
     GoalStatus status;
     bool before = false;  ///< it was accepted before a restart of the service
-    std::string refusal;  ///< of the newest change, which does not count; empty: none
+    std::string refusal;  ///< of the newest change, which was rejected; empty: none
     std::optional<GoalStatus> published;
     Ticks published_at = 0;
     std::deque<double> levels;  ///< of the last cycles, for the trend
@@ -182,7 +180,7 @@ class Executor {
   std::uint64_t set_revision_ = 0;
   std::map<GoalId, Ending> remembered_;
   std::deque<GoalId> remembered_order_;
-  std::deque<GoalId> ended_order_;  ///< of the entries that have ended, the first to end first
+  std::deque<GoalId> ended_order_;  ///< ended entries, in the order of their ends
   std::uint64_t next_order_ = 1;
   Ticks now_ = 0;
   std::uint64_t epoch_ = 0;

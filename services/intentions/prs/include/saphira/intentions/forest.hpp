@@ -22,20 +22,20 @@ struct IntentionNode {
   std::uint32_t parent = 0;  ///< 0: none
   std::string name;
   std::string schema;
-  std::string arguments;  ///< what it was begun with, in words; of a root its goal says it
+  std::string arguments;  ///< its arguments in words; those of a root are its goal's
   IntentionState state = IntentionState::kInit;
   bool blocking = true;
-  std::string label;  ///< the state that comes next; B: a behavior
+  std::string label;  ///< the next state; B: a behavior
   std::string step;
-  Ticks since = 0;   ///< when it came to this label
+  Ticks since = 0;   ///< start of this label
   int priority = 0;  ///< larger ones are stepped first; of a behavior 0 is the highest
   double level = 0.0;
-  GoalId goal;  ///< that it serves
+  GoalId goal;  ///< the goal that it serves
 
   bool operator==(const IntentionNode&) const = default;
 };
 
-/// How an intention came to its end.
+/// The result of an ended intention.
 struct Outcome {
   IntentionState state = IntentionState::kRunning;
   GoalCode code = GoalCode::kNone;
@@ -51,46 +51,47 @@ struct Said {
 };
 
 struct ForestOptions {
-  std::size_t max_intentions = 4096;  ///< in all: what one that begins others without end may cost
-  std::size_t max_behaviors = 256;    ///< of them: what Intentions holds
+  std::size_t max_intentions = 4096;  ///< in all: the limit of a runaway intention's cost
+  std::size_t max_behaviors = 256;    ///< of them: the bound of Intentions
   std::size_t max_children = 1024;    ///< of one intention
   std::size_t max_depth = 64;         ///< intentions within intentions
   std::size_t max_begun = 1024;       ///< in one cycle; more begin in the next one
 };
 
-/// Why an intention does not go on. All of them have to be lifted.
+/// The reasons to hold an intention. It continues when all are lifted.
 enum class Hold : unsigned { kGoal = 1, kActivity = 2, kPerson = 4 };
 
 /// The intention structures (paper 3.3.1): a forest of intentions, whose leaves are behaviors. Each
-/// step does at most one thing for each of them, which is what keeps the whole reactive.
+/// step does at most one thing for each intention, which keeps the whole reactive.
 ///
 /// In a step each intention is stepped once, those of higher priority first, then the older ones.
-/// Intentions that they begin by start() are stepped as well, and the parent of one that ended is
-/// told: an end is passed up, and what comes after it is begun, within the cycle.
+/// Intentions that begin by start() are stepped as well, and the parent of an ended intention is
+/// informed: ends go up and successors begin within the cycle.
 ///
-/// The removal rules are manual 8.4's: an intention goes when it is removed, when it has finished
-/// and has no parent that is still at work, and when its parent goes.
+/// The removal rules are manual 8.4's: an intention is removed on request, when it has finished and
+/// has no parent still at work, and with its parent.
 class Forest {
  public:
-  /// `registry`: of what start() names; `beliefs`: what activities set; either may be none.
+  /// `registry`: the schemas for start(); `beliefs`: the values set by activities; either may be
+  /// none.
   explicit Forest(std::shared_ptr<const Registry> registry = nullptr,
                   std::shared_ptr<Beliefs> beliefs = nullptr, ForestOptions options = {});
   ~Forest();
   Forest(Forest&&) noexcept;
   Forest& operator=(Forest&&) noexcept;
 
-  /// Plants a tree for a goal; the number of its root. It is stepped first in the next step(). In a
-  /// concurrent one no behavior can be intended: who tries fails.
+  /// Plants a tree for a goal; returns the number of its root. It is stepped first in the next
+  /// step(). In a concurrent tree no behavior can be intended: an attempt fails.
   std::uint32_t plant(const GoalId& goal, std::string_view name, std::string_view schema,
                       std::unique_ptr<Activity> activity, int priority = 0, double timeout = 0.0,
                       bool concurrent = false);
-  /// The work that is done in the tree of a root, to go on from after a restart of the service; nil
-  /// where it is more than can be remembered.
+  /// The progress in the tree of a root, for a restart of the service; nil where it is too large.
   Value save(std::uint32_t root) const;
-  /// Makes a tree that was planted just now what save() gave. ActivityError where that cannot be
-  /// (another version of the schema, a thing that is seen no more): it is then as it was planted.
+  /// Restores a newly planted tree from the value of save(). ActivityError where that is impossible
+  /// (another version of the schema, an object that is not seen any more): the tree is then as it
+  /// was planted.
   void restore(std::uint32_t root, const Value& saved, const World& world);
-  /// True where what save() gives may have changed since the last call.
+  /// True where the value of save() may have changed since the last call.
   bool take_changed() { return std::exchange(changed_, false); }
 
   void interrupt(std::uint32_t id, Hold why = Hold::kGoal);
@@ -98,41 +99,41 @@ class Forest {
   bool held(std::uint32_t id, Hold why) const;
   void remove(std::uint32_t id);
 
-  /// Takes in what the behaviors service said of what was intended in cycle `tick`. That of the
-  /// cycle in which a behavior's parameters were intended does not count yet, nor what is older.
+  /// Takes the behaviors service's reports on the intent of cycle `tick`. A report for the cycle in
+  /// which a behavior's parameters were intended does not count yet, nor an older one.
   void hear(const std::vector<BehaviorLevel>& levels, Ticks tick);
-  /// A behavior that cannot be made fails the intention that has begun it.
+  /// A behavior that cannot be made fails the intention that began it.
   void hear(const std::vector<BehaviorTrouble>& troubles);
   /// One cycle: one step for each intention.
   void step(const World& world);
   void step(Ticks now, const Robot& robot);
-  /// A first step out of turn for one that was planted or resumed after step(), so that nothing
-  /// intended is missing for a cycle. One that has been stepped and goes on is left alone.
+  /// A first step out of turn for an intention that was planted or resumed after step(), so that no
+  /// behavior is missing for a cycle. An intention that was stepped and continues is left alone.
   void begin(std::uint32_t id, const World& world);
 
   bool contains(std::uint32_t id) const;
-  /// True where it is an intention and not a behavior.
+  /// True for an intention that is not a behavior.
   bool is_activity(std::uint32_t id) const;
   std::size_t size() const;
-  /// How the roots that have finished ended, since the last call; they are gone.
+  /// The outcomes of finished roots since the last call; the roots are gone.
   std::map<std::uint32_t, Outcome> take_ended();
   std::vector<Said> take_said();
   std::vector<Request> take_requests();
   /// Questions to agents, with their numbers.
   std::vector<Request> take_questions();
   Activity& activity(std::uint32_t id);
-  /// The deepest intention that it waits for, and those waited for in turn; itself where it waits
-  /// for none: what is being done now.
+  /// The deepest intention that it waits for, directly or in turn; itself where it waits for none:
+  /// the present work.
   const IntentionNode& foremost(std::uint32_t id) const;
   double progress_of(std::uint32_t id) const;
-  /// How far it is satisfied [0..1].
+  /// Its satisfaction [0..1].
   double level_of(std::uint32_t id) const;
 
-  /// False while what an activity of a tree that is still there has set *behavior-control* to is
-  /// nil (sfBehaviorControl, manual 7.4).
+  /// False while an existing tree has set *behavior-control* to nil (sfBehaviorControl, manual
+  /// 7.4).
   bool behavior_control() const;
 
-  /// The behaviors that are intended now, in the order in which they were.
+  /// The intended behaviors, in the order of intending.
   std::vector<IntendedBehavior> behaviors() const;
   /// Parents before children.
   std::vector<IntentionNode> nodes() const;
@@ -173,20 +174,20 @@ class Forest {
   std::vector<Node*> behaviors_;  ///< in the order in which they were intended
   bool order_is_old_ = false;
   bool changed_ = false;
-  /// Removed since the last step: whoever is being stepped may be among them.
+  /// Removed since the last step: they may include the intention that is being stepped.
   std::vector<std::unique_ptr<Node>> graves_;
   std::uint32_t last_id_ = 0;
   Ticks now_ = 0;
   std::deque<std::uint32_t> to_begin_;  ///< started, and not stepped yet
-  std::deque<std::uint32_t> to_tell_;   ///< whose child has ended
-  std::vector<std::uint32_t> doomed_;   ///< removed by itself or by what it has begun
+  std::deque<std::uint32_t> to_tell_;   ///< parents of ended children
+  std::vector<std::uint32_t> doomed_;   ///< removed by itself or by its descendants
   std::size_t begun_ = 0;               ///< of to_begin_ in this cycle
   std::map<std::uint32_t, Outcome> ended_;
   std::vector<Said> said_;
   std::vector<Request> requests_;
   std::vector<Request> questions_;
-  std::set<std::uint32_t> control_off_;  ///< roots of what has switched behavior control off
-  std::vector<std::uint32_t> woken_;     ///< behaviors that go on, whose points may be old
+  std::set<std::uint32_t> control_off_;  ///< roots that switched behavior control off
+  std::vector<std::uint32_t> woken_;     ///< resumed behaviors, whose points may be old
 };
 
 }  // namespace saphira::intentions

@@ -14,8 +14,8 @@
 
 namespace saphira::intentions {
 
-/// Thrown by a function or action that cannot do its work: the goal that called it fails with
-/// this code and reason.
+/// Thrown by a function or action that fails: the goal that called it fails with this code and
+/// reason.
 class ActivityError : public std::runtime_error {
  public:
   explicit ActivityError(const std::string& reason, GoalCode code = GoalCode::kActivity)
@@ -28,7 +28,7 @@ class ActivityError : public std::runtime_error {
 
 using Values = std::span<const Value>;
 
-/// The ways in which an action may change the world outside of its activity.
+/// An action's ways to affect the world outside of its activity.
 class Effects {
  public:
   virtual ~Effects() = default;
@@ -58,7 +58,7 @@ struct Action {
 };
 
 /// A fact of the robot or the LPS in a cycle, under a fixed name, such as `stalled` or
-/// *cur-region*. Asked for at most once a cycle for the list of beliefs, and when a condition names
+/// *cur-region*. Evaluated at most once a cycle for the list of beliefs, and when a condition names
 /// it.
 struct Condition {
   std::string name;
@@ -69,7 +69,7 @@ struct Condition {
 /// The functions, actions and conditions that activities can use, by name.
 class Functions {
  public:
-  /// One of the same name is replaced.
+  /// Replaces a function of the same name.
   void add(Function function);
   void add(Action action);
   void add(Condition condition);
@@ -88,12 +88,12 @@ class Functions {
   Conditions conditions_;
 };
 
-/// The argument as what it has to be; ActivityError that names the function where it is not.
+/// The argument as the expected type; ActivityError with the function's name where it is not.
 double number_of(Values arguments, std::size_t index, std::string_view function);
 const std::string& text_of(Values arguments, std::size_t index, std::string_view function);
 const Point& point_of(Values arguments, std::size_t index, std::string_view function);
 
-/// Questions to agents, and their answers: what ASK is compiled to.
+/// Questions to agents, and their answers: the compiled form of ASK.
 void add_asking(Functions& functions);
 
 /// Arithmetic, comparison, lists, points and fuzzy functions; `say`; conditions of the robot. The

@@ -23,7 +23,7 @@ struct GoalId {
 
 enum class WriterLost { kCancel, kKeep };
 
-/// A goal: a state of the world that somebody asks for. Writing it again under its id changes it.
+/// A goal: a wanted state of the world. Writing it again under its id changes it.
 struct Goal {
   GoalId id;
   std::string requester;
@@ -32,7 +32,7 @@ struct Goal {
   int priority = 0;       ///< larger is more important
   double deadline = 0.0;  ///< [s] of robot time from acceptance; 0: none
   WriterLost writer_lost = WriterLost::kCancel;
-  double level = 0.0;  ///< [0..1] of satisfaction that is enough; 0: the usual one
+  double level = 0.0;  ///< [0..1] sufficient satisfaction; 0: the default
 
   bool operator==(const Goal&) const = default;
 };
@@ -45,14 +45,14 @@ enum class GoalCode {
   kBadArgument,
   kChanged,
   kTooMany,
-  kForgotten,  ///< older than this start of the service, whose memory is gone
+  kForgotten,  ///< older than this start of the service, whose memory was lost
   kDeadline,
   kBlocked,
   kNoRobot,
   kNoPosition,
   kNoRoute,   ///< the map knows no way, or every way is blocked
-  kActivity,  ///< the activity says so
-  kTimeout,   ///< a part of it took longer than it may
+  kActivity,  ///< the activity failed
+  kTimeout,   ///< a part took too long
   kDisposed,
   kWriterLost,
   kPreempted
@@ -74,17 +74,17 @@ struct GoalStatus {
   GoalState state = GoalState::kWaiting;
   GoalCode code = GoalCode::kNone;
   std::string reason;     ///< in words; always given at an end
-  std::string step;       ///< what is being done now
+  std::string step;       ///< the present work
   double progress = 0.0;  ///< [0..1]
   double elapsed = 0.0;   ///< [s] of robot time since acceptance
-  double level = 0.0;     ///< [0..1] how far it is satisfied
+  double level = 0.0;     ///< [0..1] satisfaction
   Trend trend = Trend::kSteady;
-  std::string note;  ///< what is worth knowing beside the state; empty: nothing
+  std::string note;  ///< further information; empty: none
 
   bool operator==(const GoalStatus&) const = default;
 };
 
-/// The word that stands for it in files and messages, such as "succeeded".
+/// The word for it in files and messages, such as "succeeded".
 const char* name_of(GoalState state);
 const char* name_of(GoalCode code);
 /// "1f3a:2": the id as people type it.

@@ -12,7 +12,7 @@
 
 namespace saphira::intentions {
 
-/// How a goal ended: what has to outlive the service so that it never does a goal twice.
+/// The end of a goal, saved over a restart so that the service never does a goal twice.
 struct Ending {
   GoalId id;
   GoalState state = GoalState::kSucceeded;
@@ -22,13 +22,13 @@ struct Ending {
   bool operator==(const Ending&) const = default;
 };
 
-/// Where and when a goal was accepted: after a restart of the service its points are still what
-/// they were, also those that were given from the robot, and its deadline goes on.
+/// Place and time of a goal's acceptance. After a restart of the service its points are the same,
+/// also those given from the robot, and its deadline continues.
 struct Placement {
   struct Point {
     std::string name;
-    Pose given;    ///< as it was asked for
-    Pose in_odom;  ///< what became of it
+    Pose given;    ///< as in the request
+    Pose in_odom;  ///< its place in odom
 
     bool operator==(const Point&) const = default;
   };
@@ -41,16 +41,16 @@ struct Placement {
   bool operator==(const Placement&) const = default;
 };
 
-/// Letters of an ending's reason that are remembered: thousands of goals may be refused with a list
-/// of all that could have been asked for.
+/// Letters of an ending's reason that are saved: thousands of goals may be refused with a list of
+/// all possible requests.
 inline constexpr std::size_t kLongestReason = 120;
-/// Endings that are remembered; the oldest are forgotten.
+/// Endings that are saved; the oldest are dropped.
 inline constexpr std::size_t kMostEndings = 8192;
 
-/// State that the service keeps over a restart.
+/// The state that the service saves over a restart.
 struct Memory {
   enum class Condition {
-    kNone,     ///< nothing was remembered: a first start, or the file was removed
+    kNone,     ///< nothing saved: a first start, or the file was removed
     kDamaged,  ///< a part may be missing
     kWhole
   };
@@ -68,8 +68,8 @@ struct Memory {
 std::string write_line(const Placement& placement);
 std::string write_line(const Ending& ending);
 
-/// Reads those lines; the newest of an id counts. Lines that are not as they were written are
-/// skipped and told, as is a last one without its line break.
+/// Reads those lines; the newest of an id counts. Damaged lines are skipped and reported, as is a
+/// last one without its line break.
 Memory read_journal(const std::string& file, std::string_view content,
                     std::vector<FileError>& damaged);
 

@@ -10,22 +10,22 @@
 
 namespace saphira::intentions {
 
-/// A mistake in a file of activities, or a doubtful place.
+/// An error or a warning in a file of activities.
 struct Diagnostic {
-  bool error = true;  ///< the file is not taken; otherwise a warning
+  bool error = true;  ///< the file is rejected; false: a warning
   std::string file;
   int line = 1;    ///< from 1
   int column = 1;  ///< from 1
   std::string message;
   std::string line_text;
 
-  /// As compilers print it, with the line and a caret (FileError).
+  /// In the form of compiler messages, with the line and a caret (FileError).
   std::string text() const;
 };
 
 /// The result of loading files of activities.
 struct Loaded {
-  /// Those of the files without an error.
+  /// The schemas of the files without an error.
   std::vector<Schema> schemas;
   std::vector<Diagnostic> troubles;  ///< in the order of the files
 
@@ -37,18 +37,18 @@ struct ActivityFile {
   std::string content;
 };
 
-/// Compiles activities (paper 3.3, Figure 9; the language in README.md). Nothing of a file with an
-/// error is given, so that what runs goes on. Activities may name each other across the files and
-/// what `known` has; what is named and is neither there nor a behavior that is known is an error,
-/// or a warning as long as behaviors are not known (Registry::know_behaviors). One of a file may
-/// cover one of another file that is known, but none that is built in.
+/// Compiles activities (paper 3.3, Figure 9; the language in README.md). A file with an error gives
+/// nothing, so that running activities continue. Activities may name each other across the files,
+/// and the schemas of `known`. An unknown name that is not a known behavior either is an error, or
+/// a warning while behaviors are unknown (Registry::know_behaviors). An activity of a file may
+/// cover a known one of another file, but not a built-in one.
 Loaded load_activities(const std::vector<ActivityFile>& files, const Functions& functions,
                        const Registry& known);
 Loaded load_text(const std::string& file, std::string_view content, const Functions& functions,
                  const Registry& known);
 
-/// Checks what compiled schemas name against the registry as it is now: for when behaviors have
-/// become known, or a schema changed its parameters.
+/// Checks the names in compiled schemas against the present registry: for newly known behaviors, or
+/// changed parameters of a schema.
 std::vector<Diagnostic> check_references(const Registry& registry);
 
 }  // namespace saphira::intentions

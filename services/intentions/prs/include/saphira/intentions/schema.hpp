@@ -24,19 +24,19 @@ struct Parameter {
   double low = 0.0;  ///< smallest number; points: unused
   double high = 0.0;
   bool required = false;
-  bool in_odom = false;         ///< a number that means nothing in another odom frame
-  std::optional<double> usual;  ///< the default of an optional number; none: absent where not given
+  bool in_odom = false;                   ///< a number that is meaningless in another odom frame
+  std::optional<double> usual;            ///< default of an optional number; none: absent
   std::optional<std::string> usual_text;  ///< the default of an optional text
   bool any = false;                       ///< takes every kind; `kind` does not count
 };
 
-/// A schema that can be intended: its name, what it takes and how it is made (manual 8.3). Goals
-/// name one as their functor. The activities of a language register here like the built-in ones.
+/// A schema that can be intended: its name, its parameters and its factory (manual 8.3). Goals name
+/// a schema as their functor. Activities of the language register here like the built-in ones.
 struct Schema {
   std::string name;
   std::string summary;  ///< one line for people
   std::vector<Parameter> parameters;
-  /// Checks the parameters together: the complaint, or empty. May be absent.
+  /// Checks the parameters together: the error, or empty. May be absent.
   std::function<std::string(const Arguments&)> check;
   /// Makes an instance. The arguments are checked and complete, their points in odom or on the map.
   std::function<std::unique_ptr<Activity>(const Arguments&)> make;
@@ -45,45 +45,45 @@ struct Schema {
   /// A goal of this schema may be underway beside others: it does not drive.
   bool concurrent = false;
   int priority = 0;      ///< larger ones are stepped first
-  double timeout = 0.0;  ///< [s] that an instance may take; 0: as long as it likes
+  double timeout = 0.0;  ///< [s] limit for an instance; 0: none
   std::string source;    ///< the file that it comes from; empty: built in
-  /// Makes an instance with values of every kind, as another activity intends it. May be absent:
-  /// then `make` is used, and lists and references are refused.
+  /// Makes an instance with values of every kind, for another activity. May be absent: then `make`
+  /// is used, and lists and references are refused.
   std::function<std::unique_ptr<Activity>(const Bindings&)> bind;
-  std::shared_ptr<const Program> program;  ///< of one that was compiled
+  std::shared_ptr<const Program> program;  ///< of a compiled one
 };
 
-/// All that is known of a behavior, which the behaviors service has.
+/// The signature of a behavior of the behaviors service.
 struct BehaviorSignature {
   std::string name;  ///< of the schema, such as FollowCorridor
   std::vector<Parameter> parameters;
 };
 
-/// The schemas of intentions, and what is known of behaviors. Names are the same in either case and
-/// with - or _.
+/// The schemas of intentions, and the known behaviors. Names are the same in either case and with -
+/// or _.
 class Registry {
  public:
-  /// A schema of the same name is replaced: the way a reloaded activity comes in. What is running
-  /// goes on with the one that it began with.
+  /// Replaces a schema of the same name: the way for a reloaded activity. Running instances keep
+  /// the schema that they began with.
   void add(Schema schema);
   void remove(std::string_view name);
   const Schema* find(std::string_view name) const;
   std::shared_ptr<const Schema> share(std::string_view name) const;
   /// The activity that another one means by a name; none where that is a behavior. A name with a
-  /// capital is a behavior's (TurnTo, Stop), unless an activity is spelled exactly so.
+  /// capital is a behavior's (TurnTo, Stop), unless an activity has exactly that name.
   std::shared_ptr<const Schema> intended(std::string_view name) const;
   /// By name.
   std::vector<const Schema*> all() const;
-  /// Words for an unknown functor: which one may be meant, and where all are listed.
+  /// A hint for an unknown functor: the most similar one, and the place of the list.
   std::string instead_of(std::string_view functor) const;
 
-  /// All behaviors that there are; from now on others are unknown.
+  /// All existing behaviors; from now on others are errors.
   void know_behaviors(std::vector<BehaviorSignature> behaviors);
   bool knows_behaviors() const { return knows_behaviors_; }
   /// Also by its name without hyphens: follow-corridor is FollowCorridor.
   const BehaviorSignature* behavior(std::string_view name) const;
-  /// The schema's name as the behaviors service has it; where it is not known, with its words in
-  /// capitals: follow-corridor is FollowCorridor.
+  /// The schema's name in the behaviors service; where it is unknown, its words with capitals:
+  /// follow-corridor is FollowCorridor.
   std::string behavior_name(std::string_view name) const;
 
  private:
@@ -92,15 +92,15 @@ class Registry {
   bool knows_behaviors_ = false;
 };
 
-/// The trouble with the arguments, in words that say what was expected and what came; empty where
-/// nothing is. Where nothing is, `complete` is the arguments with the defaults filled in.
+/// The error in the arguments, in words, with the expected and the actual value; empty: none. Then
+/// `complete` has the arguments with the defaults filled in.
 std::string check_arguments(const Schema& schema, const Arguments& arguments, Arguments& complete);
 
 /// The same, with points from the robot fixed in odom.
 Bindings fixed_in_odom(const Bindings& bindings, const Robot& robot);
 
 /// An instance for values of every kind. Points from the robot are fixed in odom. ActivityError
-/// where the arguments are not what the schema takes.
+/// where the schema does not take the arguments.
 std::unique_ptr<Activity> instantiate(const Schema& schema, const Bindings& bindings,
                                       const Robot& robot);
 

@@ -19,8 +19,8 @@ struct Point {
   bool operator==(const Point&) const = default;
 };
 
-/// Something that is on the map or that is perceived. The numbers mean what the kind says; a
-/// reference to the map is good for one revision of it.
+/// A reference to an object of the map or of perception. The kind gives the meaning of the numbers;
+/// a reference to the map is valid for one revision of it.
 struct Reference {
   enum class Kind {
     kRegion,    ///< maps::Topology::regions(), by index
@@ -31,13 +31,13 @@ struct Reference {
   };
   Kind kind = Kind::kArtifact;
   std::uint64_t id = 0;
-  std::uint64_t revision = 0;  ///< of the map; 0 of what is perceived
+  std::uint64_t revision = 0;  ///< of the map; 0 of perception
 
   bool operator==(const Reference&) const = default;
 };
 
-/// A value of the activity language. nil is also the empty list and what is not true; all others,
-/// the number 0 among them, are true. A name ('follow-it) is a text ("follow-it").
+/// A value of the activity language. nil is also the empty list and false; all others, including
+/// the number 0, are true. A name ('follow-it) is a text ("follow-it").
 class Value {
  public:
   using List = std::vector<Value>;
@@ -54,16 +54,15 @@ class Value {
 
   bool nil() const { return std::holds_alternative<std::monostate>(is_); }
   bool truthy() const { return !nil(); }
-  /// The value where it is of that type; nullptr where it is not.
+  /// The value if it has that type; otherwise nullptr.
   const double* number() const { return std::get_if<double>(&is_); }
   const std::string* text() const { return std::get_if<std::string>(&is_); }
   const Point* point() const { return std::get_if<Point>(&is_); }
   const Reference* reference() const { return std::get_if<Reference>(&is_); }
-  /// The elements; none of what is no list.
+  /// The elements; empty for any other type.
   const List& list() const;
   bool is_list() const { return std::holds_alternative<std::shared_ptr<const Elements>>(is_); }
-  /// How many values there are in it, those in lists within lists among them: what a list costs
-  /// whoever goes through it.
+  /// The number of values in it, with those of nested lists: the cost of a traversal.
   std::size_t weight() const;
   bool is_t() const { return std::holds_alternative<bool>(is_); }
 
@@ -76,24 +75,24 @@ class Value {
       is_;
 };
 
-/// As the activity language writes it: nil, t, 2.5, follow-it, "text", (a b),
-/// (point 1 2 0.5 :map), (region 3 12).
+/// In the form of the activity language: nil, t, 2.5, follow-it, "text", (a b), (point 1 2 0.5
+/// :map), (region 3 12).
 std::string to_text(const Value& value);
-/// As people read it, which is what ~a gives: a text without its quotes.
+/// For people, as for ~a: a text without its quotes.
 std::string spoken(const Value& value);
 /// "a number", "nil": for messages.
 std::string kind_of(const Value& value);
-/// Reads what to_text writes. FileError, with `source` as the file's name, for what is none.
+/// Reads the form of to_text. FileError, with `source` as the file's name, for any other text.
 Value parse_value(std::string_view text, const std::string& source = "value");
 
-/// Named values: what an activity is intended with.
+/// Named values: the arguments of an activity.
 using Bindings = std::vector<std::pair<std::string, Value>>;
 
 Value value_of(const Argument& argument);
-/// False where the value is of none of an argument's kinds.
+/// False where the value has none of an argument's kinds.
 bool to_argument(const std::string& name, const Value& value, Argument& argument);
 
-/// Names are the same in either case and with - or _ ("go_to", "Go-To"): this is the one for all.
+/// Names are the same in either case and with - or _ ("go_to", "Go-To"): returns the common form.
 std::string normal(std::string_view name);
 
 }  // namespace saphira::intentions

@@ -11,7 +11,7 @@
 
 namespace saphira::intentions {
 
-/// The progress of a goal that has begun.
+/// The progress of a begun goal.
 struct GoalWork {
   GoalId id;
   std::string functor;
@@ -20,13 +20,13 @@ struct GoalWork {
   bool operator==(const GoalWork&) const = default;
 };
 
-/// The progress of all open goals, and the values that activities have set: the memory that the
-/// service goes on from after a restart.
+/// The progress of all open goals, and the values set by activities: the memory for a restart of
+/// the service.
 struct Work {
-  std::uint64_t epoch = 0;  ///< when it was so; 0: nothing is known
+  std::uint64_t epoch = 0;  ///< time of this state; 0: unknown
   std::uint64_t cycle = 0;
   std::uint64_t odom = 0;
-  Ticks now = 0;  ///< the clock goes on as well: activities may remember times
+  Ticks now = 0;  ///< the clock continues as well: activities may remember times
   std::vector<GoalWork> goals;
   std::vector<Belief> beliefs;
 
@@ -38,7 +38,7 @@ struct Work {
 ///   (goal writer(hex) number functor intentions)
 ///   (belief name value said_by since)
 std::string write_work(const Work& work);
-/// FileError for what is none.
+/// FileError for any other text.
 Work read_work(const std::string& file, std::string_view text);
 
 }  // namespace saphira::intentions

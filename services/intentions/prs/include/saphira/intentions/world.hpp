@@ -28,79 +28,79 @@ class Beliefs;
 struct Reference;
 class Value;
 
-/// Cycles of 100 ms that the robot has been connected: the only time here. Negative for what
-/// happened before the service began.
+/// Cycles of 100 ms since the robot's connection: the only time here. Negative for events before
+/// the service began.
 using Ticks = std::int64_t;
 inline constexpr double kTick = 0.1;  ///< [s]
 
-/// All that is known of the robot in a cycle.
+/// The robot's state in a cycle.
 struct Robot {
   bool connected = false;
   bool has_power = true;   ///< of its motors
-  std::uint64_t odom = 0;  ///< which odom frame
+  std::uint64_t odom = 0;  ///< number of the odom frame
   Pose pose_in_odom{};
   double velocity = 0.0;           ///< [m/s]
   double rotation_velocity = 0.0;  ///< [rad/s]
-  /// The origin of odom on the map; none while the robot does not know where it is on the map.
+  /// The origin of odom on the map; none while the robot's place on the map is unknown.
   std::optional<Pose> odom_in_map{};
   bool left_stalled = false;
   bool right_stalled = false;
-  std::uint16_t bumpers = 0;  ///< as the packet has them
+  std::uint16_t bumpers = 0;  ///< as in the packet
 };
 
 enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
 
-/// Slower than this it is at rest, allowing for the rounding of the packet.
+/// Limits for rest, with room for the rounding of the packet.
 inline constexpr double kRestVelocity = 0.02;          ///< [m/s]
 inline constexpr double kRestRotation = radians(3.0);  ///< [rad/s]
 
-/// True where it neither drives nor turns.
+/// True where the robot neither drives nor turns.
 bool at_rest(const Robot& robot);
 
 /// Registration's output.
 struct Registered {
   Localization state = Localization::kNone;  ///< kNone: there is no registration
-  Pose pose_in_map;                          ///< of the robot; where it is lost: the best guess
+  Pose pose_in_map;                          ///< of the robot; while lost: the best guess
   double confidence = 0.0;                   ///< [0..1]
-  std::uint32_t environment = 0;             ///< the artifact that the robot is in; 0: none known
-  bool adds_features = false;                ///< what is seen is put on the map
-  std::set<std::uint32_t> closed_doors;      ///< by id: those that were closed when seen last
+  std::uint32_t environment = 0;             ///< the artifact around the robot; 0: none known
+  bool adds_features = false;                ///< new percepts are added to the map
+  std::set<std::uint32_t> closed_doors;      ///< by id: those that were closed when last seen
 };
 
-/// Knowledge beside the robot's state. What is pointed to outlives the step.
+/// Knowledge beside the robot's state. The pointers' targets outlive the step.
 struct Surroundings {
-  const lps::LocalPerceptualSpace* lps = nullptr;       ///< none: nothing is sensed
+  const lps::LocalPerceptualSpace* lps = nullptr;       ///< none: no sensors
   const std::vector<lps::Percept>* percepts = nullptr;  ///< none: no interpretation
-  /// People and colours; none: there is no camera, or nobody looks.
+  /// People and colours; none: no camera, or no vision service.
   const std::vector<lps::SeenThing>* things = nullptr;
-  std::uint64_t cycle = 0;  ///< of the robot, by which what is perceived counts
+  std::uint64_t cycle = 0;  ///< of the robot, as in the percepts
   Registered registration;
   std::shared_ptr<const maps::Topology> topology;  ///< none: no map
-  std::shared_ptr<const maps::Map> map;            ///< what the topology is of
-  /// Of the sonars, that came in this cycle; none: nothing is sensed.
+  std::shared_ptr<const maps::Map> map;            ///< the source of the topology
+  /// New sonar readings of this cycle; none: no sensors.
   const std::vector<lps::SonarReading>* readings = nullptr;
   std::uint64_t map_revision = 0;
   double robot_radius = 0.0;  ///< [m] of its hull, a circle; 0: unknown
-  /// Answers of agents, by the number of the question; none: nobody is asked.
+  /// Answers of agents, by the number of the question; none: no agents.
   const std::map<std::uint64_t, Answer>* answers = nullptr;
 };
 
-/// All that activities can ask for in a cycle: what the functions of their language look at.
+/// The world of activities in a cycle: the input of the functions of their language.
 struct World {
   const Robot& robot;
   const Surroundings& around;
   const Beliefs& beliefs;
   Ticks now = 0;
 
-  /// The robot on the map; none while it is not known.
+  /// The robot on the map; none while its place is unknown.
   std::optional<Pose> robot_in_map() const {
     if (!robot.odom_in_map)
       return std::nullopt;
     return compose(*robot.odom_in_map, robot.pose_in_odom);
   }
 
-  /// It has a place on the map which what it hears does not confirm: too little to say that it is
-  /// anywhere.
+  /// True where the readings do not confirm the robot's place on the map: too little evidence for
+  /// any position.
   bool unsure_of_position() const {
     constexpr double kSure = 0.9;
     return around.registration.state == Localization::kTracking &&
@@ -108,14 +108,14 @@ struct World {
   }
 };
 
-/// The same point in another frame; none where the way goes over the map and the robot does not
-/// know where it is on it.
+/// The same point in another frame; none where the conversion goes over the map and the robot's
+/// place on it is unknown.
 std::optional<Pose> in_frame(const Pose& pose, Frame from, Frame to, const Robot& robot);
 
-/// The person or blob of that number, among what is seen now; nullptr where it is gone.
+/// The person or blob of that number among the present ones; nullptr where it is gone.
 const lps::SeenThing* seen_thing(const World& world, std::uint64_t id);
 
-/// True where there is a map, and it is still the one that the reference is of.
+/// True where there is a map, and the reference is to its present revision.
 bool current(const World& world, const Reference& reference);
 
 /// The name of a value; an artifact has its name on the map.

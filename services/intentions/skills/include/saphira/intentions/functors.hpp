@@ -6,7 +6,7 @@ namespace saphira::intentions {
 
 /// The built-in functors:
 ///
-///   go_to(position, [speed], [radius], [patience])   drives to a point around what is in the way
+///   go_to(position, [speed], [radius], [patience])   drives to a point, around obstacles
 ///   drive(speed, [patience])                         goes on until its deadline or its withdrawal
 ///   turn_to(heading | position, [angle], [turn_speed], [patience])
 ///   stop()                                           ends all earlier goals that drive, and halts
