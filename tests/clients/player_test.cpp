@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cctype>
-#include <cmath>
-#include <map>
-
 #include "player_client.hpp"
 
 namespace saphira::test {

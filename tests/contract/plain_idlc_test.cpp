@@ -1,7 +1,6 @@
 // Programs of other vendors make their types of the same files.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "process.hpp"

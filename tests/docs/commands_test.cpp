@@ -1,9 +1,7 @@
 // The commands that documents and comments show can be typed as they are shown.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>

@@ -12,7 +12,6 @@
 #include <array>
 #include <atomic>
 #include <fstream>
-#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>

@@ -1,7 +1,6 @@
 #include "door.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "saphira/bus/agent.hpp"
 #include "saphira/cli/talk_words.hpp"

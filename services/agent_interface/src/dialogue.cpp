@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <numbers>
 
 #include "saphira/base/durable.hpp"

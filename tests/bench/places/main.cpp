@@ -1,6 +1,5 @@
 // Journeys from anywhere in a room of the office floor to another room by its name, and how they
 // end.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

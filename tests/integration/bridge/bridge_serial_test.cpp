@@ -1,7 +1,6 @@
 // The robot behind a serial line at 9600 baud: what happens to the line, and what the user sees.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <csignal>
 
 #include "scene.hpp"

@@ -2,8 +2,6 @@
 // that nothing else moves the robot.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "node_options.hpp"
 #include "scene.hpp"
 

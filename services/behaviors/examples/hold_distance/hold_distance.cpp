@@ -1,7 +1,6 @@
 // A plug-in: a behavior in C++ that saphira-behaviors --plugin FILE loads. It keeps a distance from
 // what is ahead, to and fro; intended below AvoidCollision, it follows somebody who walks away.
 
-#include <algorithm>
 #include <cmath>
 
 #include "saphira/behaviors/plugin.hpp"
