@@ -92,7 +92,6 @@ struct KnownRobot {
   bool moves;      ///< has MOVE and settable accelerations
   int front;       ///< a sonar that looks ahead
   double front_x;  ///< [mm] where it stands
-  double front_degrees;
 };
 const KnownRobot* find_known(const std::string& subclass);
 const std::vector<KnownRobot>& all_known();

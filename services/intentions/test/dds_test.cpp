@@ -171,7 +171,7 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
     for (int i = 0; i < 10 && !(acted = site.act()); ++i)
       node.wait(milliseconds(10));
     if (!acted)
-      site.world.move({}, site.cycle);  // nobody drives: it stands
+      site.world.move({});  // nobody drives: it stands
     turned += norm2_angle(site.world.robot.pose_in_odom.th - before);
     if (!killed && turned > kPi / 2.0) {
       killed = true;

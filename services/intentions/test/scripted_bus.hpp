@@ -72,7 +72,7 @@ class ScriptedBus {
     std::vector<IntendedBehavior> behaviors;
     for (const v1::IntendedBehavior& behavior : intended->behaviors())
       behaviors.push_back(from_bus(behavior));
-    world.move(behaviors, cycle);
+    world.move(behaviors);
     v1::BehaviorSet sample;
     sample.stamp(stamp());
     sample.control(true);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "saphira/base/guess.hpp"
@@ -309,11 +308,7 @@ std::string Topology::no_place(std::string_view name) const {
 std::optional<Place> Topology::place(std::string_view name_or_id) const {
   if (name_or_id.empty())
     return std::nullopt;
-  std::uint32_t id = 0;
-  const auto [end, error] =
-      std::from_chars(name_or_id.data(), name_or_id.data() + name_or_id.size(), id);
-  const bool is_id =
-      error == std::errc{} && end == name_or_id.data() + name_or_id.size() && id != 0;
+  const std::uint32_t id = number_in<std::uint32_t>(name_or_id).value_or(0);
 
   const auto search = [&](const auto& meant) -> std::optional<Place> {
     Place place;
@@ -337,7 +332,7 @@ std::optional<Place> Topology::place(std::string_view name_or_id) const {
     return std::nullopt;
   };
 
-  if (is_id) {
+  if (id != 0) {
     if (auto found = search([&](const Feature& feature) { return feature.id == id; }))
       return found;
     for (const Link& link : links_) {

@@ -58,11 +58,6 @@ class DirectMotion {
   /// [m] of a position: the rest of the way; 0: it is done, or none was asked for.
   double distance_left() const;
 
-  /// True where the distance is done to within `tolerance` [m]; true where no position was asked.
-  bool done_position(double tolerance) const;
-  /// True where the robot points to within `tolerance` [rad] of its heading setpoint.
-  bool done_heading(double tolerance, double heading_in_odom) const;
-
  private:
   Limits limits_;
   Setpoints setpoints_;
