@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "saphira/bus/node.hpp"
 #include "saphira/cli/running_bus.hpp"
@@ -17,5 +18,8 @@ RunningBus bus_of(const std::string& what, const bus::NodeOptions& options);
 /// A bus of our own: a robot that nobody else has, and unless one was asked for, a domain at
 /// random. name: of the command.
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name);
+
+/// Runs the program words[0] in our place. std::system_error where it cannot.
+[[noreturn]] void execute(std::vector<std::string> words);
 
 }  // namespace saphira::cli

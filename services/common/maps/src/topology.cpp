@@ -22,10 +22,6 @@ constexpr double kParallel = radians(30.0);
 // is found, then farther, since walls have a thickness.
 constexpr std::array<double, 4> kProbes{0.15, 0.3, 0.6, 1.0};
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 Vec2 middle(const std::vector<Vec2>& polygon) {
   Vec2 sum(0.0, 0.0);
   for (const Vec2& corner : polygon)

@@ -15,6 +15,9 @@ std::string config_folder();
 /// there is no home.
 std::string user_folder();
 
+/// The folder that a file is in: "." where it is named alone.
+std::string folder_of(const std::string& file);
+
 /// The file that a person means by `name`: a path, or a file of `folder`, with or without its
 /// `extension` (".wld"). std::invalid_argument that lists what there is where it is neither.
 std::string find_file(const std::string& folder, const std::string& name,
