@@ -64,14 +64,8 @@ std::vector<std::string> subclasses() {
   return out;
 }
 
-std::string printable(const ::testing::TestParamInfo<std::string>& robot) {
-  std::string name = robot.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  std::replace(name.begin(), name.end(), '+', 'p');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Robots, Aria, ::testing::ValuesIn(subclasses()), printable);
+INSTANTIATE_TEST_SUITE_P(Robots, Aria, ::testing::ValuesIn(subclasses()),
+                         [](const auto& robot) { return test_name(robot.param); });
 
 // A client that was killed did not say CLOSE; on a serial line the robot goes on talking.
 TEST(AriaAgain, FindsAnOpenRobot) {

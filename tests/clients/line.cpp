@@ -164,4 +164,10 @@ const KnownRobot* find_known(const std::string& subclass) {
   return nullptr;
 }
 
+std::string test_name(std::string robot) {
+  std::replace(robot.begin(), robot.end(), '-', '_');
+  std::replace(robot.begin(), robot.end(), '+', 'p');
+  return robot;
+}
+
 }  // namespace saphira::test

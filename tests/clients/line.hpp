@@ -95,5 +95,7 @@ struct KnownRobot {
 };
 const KnownRobot* find_known(const std::string& subclass);
 const std::vector<KnownRobot>& all_known();
+/// The robot's name with what GoogleTest allows in the name of a test.
+std::string test_name(std::string robot);
 
 }  // namespace saphira::test

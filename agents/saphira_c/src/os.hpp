@@ -204,7 +204,7 @@ class Os {
 };
 
 wall to_c(const maps::Feature& feature);
-behaviors::RobotModel model_of(const protocol::RobotParameters& parameters);
+using behaviors::model_of;
 /// How the executive calls a behavior of the program, or of the library.
 void register_behaviors(behaviors::Registry& registry);
 /// Reads "sfFLOAT, 300.0, ..., sfEND". What is no such list is said, as far as it can be known.

@@ -66,13 +66,6 @@ class IntentionsProgram : public testing::Test {
   bus::GoalClient goals{requester, "a test"};
 };
 
-v1::Goal go_to(double x, double y) {
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments().push_back(bus::point("position", x, y, 0.0, v1::FRAME_ODOM));
-  return goal;
-}
-
 v1::Goal drive() {
   v1::Goal goal;
   goal.functor("drive");
