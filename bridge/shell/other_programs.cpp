@@ -1,16 +1,9 @@
 #include "other_programs.hpp"
 
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/bus/status_words.hpp"
 
 namespace saphira::bridge {
-
-namespace {
-
-bool serves(const v1::ServiceStatus& status) {
-  return status.state() == v1::SERVICE_RUNNING || status.state() == v1::SERVICE_DEGRADED;
-}
-
-}  // namespace
 
 OtherPrograms::OtherPrograms(bus::Node& node)
     : node_(node), statuses_(node.reader(bus::topics::kStatus)) {}
@@ -41,11 +34,11 @@ void OtherPrograms::take() {
 // In lockstep the robot waits for the services.
 bool OtherPrograms::has_robot() const {
   const v1::ServiceStatus& own = node_.status();
-  return serves(own) && own.stamp().cycle() > 0 && !node_.options().lockstep;
+  return bus::serves(own) && own.stamp().cycle() > 0 && !node_.options().lockstep;
 }
 
 void OtherPrograms::note(const v1::ServiceStatus& other, const bus::SampleInfo& info) {
-  if (info.disposed || !serves(other)) {
+  if (info.disposed || !bus::serves(other)) {
     others_.erase(info.writer);
     return;
   }

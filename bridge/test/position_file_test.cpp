@@ -3,17 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 
 #include "process.hpp"
+#include "saphira/base/text.hpp"
 
 namespace saphira::bridge {
 namespace {
-
-std::string content(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 TEST(PositionFile, IsReadByTheNextOne) {
   const test::TempDir folder;
@@ -29,7 +24,7 @@ TEST(PositionFile, IsReadByTheNextOne) {
     memory.odom = 7;
     EXPECT_EQ(file.write(memory), "");
   }
-  EXPECT_EQ(content(folder.path("state")).size(), 256U) << "one line of one size";
+  EXPECT_EQ(read_file(folder.path("state")).size(), 256U) << "one line of one size";
   const auto back = PositionFile(folder.path("state")).found();
   ASSERT_TRUE(back);
   EXPECT_EQ(back->odom, 7U);
@@ -44,7 +39,7 @@ TEST(PositionFile, WhatIsDamagedIsSetAsideAndNotTakenForAnother) {
   memory.odom = 7;
   memory.raw = {100, 200, 0.5};
   EXPECT_EQ(PositionFile(path).write(memory), "");
-  const std::string whole = content(path);
+  const std::string whole = read_file(path);
   const std::size_t end = whole.find("  ");  // the padding does not count
   for (std::size_t i = 0; i < end; ++i) {
     for (int bit = 0; bit < 8; ++bit) {
@@ -54,7 +49,7 @@ TEST(PositionFile, WhatIsDamagedIsSetAsideAndNotTakenForAnother) {
       const PositionFile file(path);
       EXPECT_FALSE(file.found()) << i << " " << bit;
       EXPECT_NE(file.trouble().find("state.damaged"), std::string::npos) << file.trouble();
-      EXPECT_EQ(content(path + ".damaged"), damaged);
+      EXPECT_EQ(read_file(path + ".damaged"), damaged);
     }
     std::ofstream(path) << whole.substr(0, i);
     EXPECT_FALSE(PositionFile(path).found()) << i;

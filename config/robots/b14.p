@@ -1,18 +1,18 @@
 ;; Parameters of the B14, a synchro-drive robot of 0.35 m.
 ;;
-;; The manual names the class (Table 5-7) and gives no values: these are ours, from the robot's size,
-;; with packets in millimetres. Its server has no subclass, so the class chooses this file.
+;; The manual names the class (Table 5-7) without values. The values are assumed from the robot's
+;; size, with packets in millimetres. The server has no subclass, so the class selects this file.
 ;; Keywords: README.md.
 
 Class     B14
 Protocol  psos
 
-;; One unit of the packets
+;; Values of one unit of the packets
 AngleConvFactor  0.00153398 ; rad
 DistConvFactor   1          ; mm
 VelConvFactor    1          ; mm/s
 RangeConvFactor  1          ; mm
-DiffConvFactor   0.00714    ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.00714    ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      20         ; mm/s
 
 RobotRadius      178        ; mm
@@ -25,7 +25,7 @@ Deceleration     1000       ; mm/s2
 RotAcceleration  300        ; deg/s2
 RotDeceleration  300        ; deg/s2
 
-;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+;; Errors of the simulated dead reckoning (terms of the manual's Table 3-1)
 EncodeJitter     0.01
 AngleJitter      0.02
 AngleDrift       0.001
@@ -33,14 +33,14 @@ AngleDrift       0.001
 ;; Equipment
 Battery           12.6      ; V
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
-SideBuffer       40         ; readings of each side
+SideBuffer       40         ; readings on each side
 FrontMaxRange    2500       ; mm
 
 SonarNum 16
-SonarArrays 2   ; that fire at the same time
-SonarPeriod 40  ; ms from one firing of an array to its next
+SonarArrays 2   ; arrays that fire at the same time
+SonarPeriod 40  ; ms between two firings of an array
 ;;         #     x     y    th    mm, mm, degrees
 SonarUnit  0   170     0     0
 SonarUnit  1   157    65  22.5

@@ -1,17 +1,17 @@
 ;; Parameters of the Erratic, a small two-wheeled robot.
 ;;
-;; Values are ours: a light differential drive with eight sonars in front, packets in millimetres.
+;; Assumed values: a light differential drive, eight sonars in front, packets in millimetres.
 ;; Keywords: README.md.
 
 Class     Erratic
 Protocol  psos
 
-;; One unit of the packets
+;; Values of one unit of the packets
 AngleConvFactor  0.00153398 ; rad
 DistConvFactor   1          ; mm
 VelConvFactor    1          ; mm/s
 RangeConvFactor  1          ; mm
-DiffConvFactor   0.0056     ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.0056     ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      20         ; mm/s
 
 RobotRadius      200        ; mm
@@ -24,7 +24,7 @@ Deceleration     1000       ; mm/s2
 RotAcceleration  200        ; deg/s2
 RotDeceleration  200        ; deg/s2
 
-;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+;; Errors of the simulated dead reckoning (terms of the manual's Table 3-1)
 EncodeJitter     0.01
 AngleJitter      0.02
 AngleDrift       0.003
@@ -32,14 +32,14 @@ AngleDrift       0.003
 ;; Equipment
 Battery           12.6      ; V
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
-SideBuffer       40         ; readings of each side
+SideBuffer       40         ; readings on each side
 FrontMaxRange    2500       ; mm
 
 SonarNum 8
-SonarArrays 1   ; that fire at the same time
-SonarPeriod 40  ; ms from one firing of an array to its next
+SonarArrays 1   ; arrays that fire at the same time
+SonarPeriod 40  ; ms between two firings of an array
 ;;         #     x     y    th    mm, mm, degrees
 SonarUnit  0    69   136    90
 SonarUnit  1   114   119    50

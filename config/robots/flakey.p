@@ -1,17 +1,17 @@
-;; Parameters of the Flakey, a robot of SRI for which Saphira was made.
+;; Parameters of Flakey, the robot of SRI for which Saphira was written.
 ;;
-;; Values are ours, about its size: a round robot of 0.6 m with twelve sonars, packets in millimetres.
+;; Assumed values: a round robot of 0.6 m with twelve sonars, packets in millimetres.
 ;; Keywords: README.md.
 
 Class     Flakey
 Protocol  psos
 
-;; One unit of the packets
+;; Values of one unit of the packets
 AngleConvFactor  0.00153398 ; rad
 DistConvFactor   1          ; mm
 VelConvFactor    1          ; mm/s
 RangeConvFactor  1          ; mm
-DiffConvFactor   0.0040     ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.0040     ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      20         ; mm/s
 
 RobotRadius      300        ; mm
@@ -24,7 +24,7 @@ Deceleration     600        ; mm/s2
 RotAcceleration  100        ; deg/s2
 RotDeceleration  100        ; deg/s2
 
-;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+;; Errors of the simulated dead reckoning (terms of the manual's Table 3-1)
 EncodeJitter     0.01
 AngleJitter      0.02
 AngleDrift       0.003
@@ -32,14 +32,14 @@ AngleDrift       0.003
 ;; Equipment
 Battery           24.0      ; V
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
-SideBuffer       40         ; readings of each side
+SideBuffer       40         ; readings on each side
 FrontMaxRange    2500       ; mm
 
 SonarNum 12
-SonarArrays 1   ; that fire at the same time
-SonarPeriod 40  ; ms from one firing of an array to its next
+SonarArrays 1   ; arrays that fire at the same time
+SonarPeriod 40  ; ms between two firings of an array
 ;;         #     x     y    th    mm, mm, degrees
 SonarUnit  0   290     0     0
 SonarUnit  1   251   145    30

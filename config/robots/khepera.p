@@ -1,18 +1,18 @@
-;; Parameters of the Khepera, a robot of 55 mm whose infrared sensors stand in for sonars.
+;; Parameters of the Khepera, a robot of 55 mm. Its infrared sensors take the place of sonars.
 ;;
-;; The features are known (eight sensors, about 50 mm of range, 12 encoder counts a millimetre, wheels
-;; 53 mm apart); the packets' units are ours.
+;; Known values: eight sensors, about 50 mm of range, 12 encoder counts per millimetre, 53 mm between
+;; the wheels. The units of the packets are assumed.
 ;; Keywords: README.md.
 
 Class     Khepera
 Protocol  psos
 
-;; One unit of the packets
+;; Values of one unit of the packets
 AngleConvFactor  0.00153398 ; rad
 DistConvFactor   0.08       ; mm
 VelConvFactor    8          ; mm/s
 RangeConvFactor  1          ; mm
-DiffConvFactor   0.0377     ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.0377     ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      8          ; mm/s
 
 RobotRadius      28         ; mm
@@ -25,7 +25,7 @@ Deceleration     2000       ; mm/s2
 RotAcceleration  1000       ; deg/s2
 RotDeceleration  1000       ; deg/s2
 
-;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+;; Errors of the simulated dead reckoning (terms of the manual's Table 3-1)
 EncodeJitter     0.002
 AngleJitter      0.01
 AngleDrift       0.01
@@ -34,14 +34,14 @@ AngleDrift       0.01
 Battery           5.0       ; V
 SonarMaxRange     60        ; mm
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
-SideBuffer       40         ; readings of each side
+SideBuffer       40         ; readings on each side
 FrontMaxRange    60         ; mm
 
 SonarNum 8
-SonarArrays 1   ; that fire at the same time
-SonarPeriod 40  ; ms from one firing of an array to its next
+SonarArrays 1   ; arrays that fire at the same time
+SonarPeriod 40  ; ms between two firings of an array
 ;;         #     x     y    th    mm, mm, degrees
 SonarUnit  0     5    24    90
 SonarUnit  1    18    18    45

@@ -1,19 +1,19 @@
 ;; Parameters of the Pioneer 3 DX with the H8S controller.
 ;;
-;; Conversion factors, limits, radius and the places of the sonars are those that ARIA and Player use
-;; for this subclass. Accelerations, batteries, encoders and errors are ours: settings that such a
-;; robot may have. Keywords: README.md.
+;; Conversion factors, limits, radius and sonar places are the values of ARIA and Player for this
+;; subclass. Accelerations, batteries, encoders and errors are assumed: plausible settings for such
+;; a robot. Keywords: README.md.
 
 Class     Pioneer
 Subclass  p3dx
 Protocol  p2os
 
-;; One unit of the packets
+;; Values of one unit of the packets
 AngleConvFactor  0.00153398 ; rad
 DistConvFactor   0.485      ; mm
 VelConvFactor    1          ; mm/s
 RangeConvFactor  1          ; mm
-DiffConvFactor   0.0056     ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.0056     ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      20         ; mm/s
 
 RobotRadius      250        ; mm
@@ -28,7 +28,7 @@ Deceleration     300        ; mm/s2
 RotAcceleration  100        ; deg/s2
 RotDeceleration  100        ; deg/s2
 
-;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+;; Errors of the simulated dead reckoning (terms of the manual's Table 3-1)
 EncodeJitter     0.01
 AngleJitter      0.01
 AngleDrift       0.001
@@ -42,14 +42,14 @@ NumFrontBumpers   5
 NumRearBumpers    5
 SwitchToBaudRate  38400     ; baud
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
-SideBuffer       40         ; readings of each side
+SideBuffer       40         ; readings on each side
 FrontMaxRange    2500       ; mm
 
 SonarNum 16
-SonarArrays 2   ; that fire at the same time
-SonarPeriod 40  ; ms from one firing of an array to its next
+SonarArrays 2   ; arrays that fire at the same time
+SonarPeriod 40  ; ms between two firings of an array
 ;;         #     x     y    th    mm, mm, degrees
 SonarUnit  0    69   136    90
 SonarUnit  1   114   119    50

@@ -1,19 +1,19 @@
-;; Parameters of the Pioneer 1 whose server calls itself pion1m.
+;; Parameters of the Pioneer 1 with the server pion1m.
 ;;
-;; Conversion factors, limits, radius and the places of the sonars are those that ARIA and Player use
-;; for this subclass. Accelerations, batteries, encoders and errors are ours: settings that such a
-;; robot may have. Keywords: README.md.
+;; Conversion factors, limits, radius and sonar places are the values of ARIA and Player for this
+;; subclass. Accelerations, batteries, encoders and errors are assumed: plausible settings for such
+;; a robot. Keywords: README.md.
 
 Class     Pioneer
 Subclass  pion1m
 Protocol  psos
 
-;; One unit of the packets
+;; Values of one unit of the packets
 AngleConvFactor  0.0061359  ; rad
 DistConvFactor   0.05066    ; mm
 VelConvFactor    2.5332     ; mm/s
 RangeConvFactor  0.1734     ; mm
-DiffConvFactor   0.00333333 ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.00333333 ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      4          ; mm/s
 
 RobotRadius      220        ; mm
@@ -26,7 +26,7 @@ Deceleration     2000       ; mm/s2
 RotAcceleration  300        ; deg/s2
 RotDeceleration  300        ; deg/s2
 
-;; Errors of the simulated dead reckoning (Table 3-1 of the manual)
+;; Errors of the simulated dead reckoning (terms of the manual's Table 3-1)
 EncodeJitter     0.01
 AngleJitter      0.02
 AngleDrift       0.003
@@ -34,14 +34,14 @@ AngleDrift       0.003
 ;; Equipment
 Battery           12.6      ; V
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30         ; readings
-SideBuffer       40         ; readings of each side
+SideBuffer       40         ; readings on each side
 FrontMaxRange    2500       ; mm
 
 SonarNum 7
-SonarArrays 1   ; that fire at the same time
-SonarPeriod 40  ; ms from one firing of an array to its next
+SonarArrays 1   ; arrays that fire at the same time
+SonarPeriod 40  ; ms between two firings of an array
 ;;         #     x     y    th    mm, mm, degrees
 SonarUnit  0   100   100    90
 SonarUnit  1   120    80    30

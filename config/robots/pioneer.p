@@ -1,19 +1,19 @@
 ;; Parameters of the Pioneer 1, real or simulated.
 ;;
-;; Form: Saphira manual 5.3, chapters 3.2 and 10. Conversion factors, limits and the places of the
-;; sonars are those of ARIA's parameters for this robot (subclass psos43m); the errors of the
-;; simulated dead reckoning are those of the manual's Table 3-1.
+;; Form: Saphira manual 5.3, chapters 3.2 and 10. Conversion factors, limits and sonar places are
+;; ARIA's parameters for this robot (subclass psos43m). The errors of the simulated dead reckoning
+;; are from the manual's Table 3-1.
 
 Class     Pioneer
-Subclass  psos43m           ; the version of the robot's own PSOS
+Subclass  psos43m           ; the version of the robot's PSOS server
 Protocol  psos
 
-;; One unit of the information packet
+;; Values of one unit of the information packet
 AngleConvFactor  0.0061359   ; rad (2 pi / 1024)
 DistConvFactor   0.05066     ; mm
 VelConvFactor    2.5332      ; mm/s
 RangeConvFactor  0.1734      ; mm
-DiffConvFactor   0.00333333  ; rad of turn per mm of half the difference of the wheels
+DiffConvFactor   0.00333333  ; rad of turn per mm of half the difference of the wheel distances
 Vel2Divisor      4           ; mm/s per unit of the command VEL2
 
 RobotRadius      220         ; mm
@@ -27,20 +27,20 @@ RotAcceleration  300         ; deg/s2
 RotDeceleration  300         ; deg/s2
 
 ;; Errors of the simulated dead reckoning
-EncodeJitter     0.01        ; of distance
-AngleJitter      0.02        ; of angle
-AngleDrift       0.003       ; of angle with forward movement
+EncodeJitter     0.01        ; share of the distance
+AngleJitter      0.02        ; share of the angle
+AngleDrift       0.003       ; change of angle with forward movement
 
-Battery          12.6        ; V, simulated
+Battery          12.6        ; V, in simulation
 
-;; The sonar buffers of the LPS
+;; Sonar buffers of the LPS
 FrontBuffer      30          ; readings
-SideBuffer       40          ; readings of each side
+SideBuffer       40          ; readings on each side
 FrontMaxRange    2500        ; mm
 
 SonarNum 7
 SonarArrays 1
-SonarPeriod 40  ; ms from one firing to the next
+SonarPeriod 40  ; ms between two firings
 ;;         #    x     y    th    mm, mm, degrees
 SonarUnit  0  100   100    90
 SonarUnit  1  120    80    30

@@ -4,11 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/stop_signals.hpp"
 #include "saphira/base/text.hpp"
@@ -23,9 +23,8 @@ namespace {
 constexpr int kExitUsage = 2;
 
 bool is_rate(const std::string& text) {
-  double rate = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  return error == std::errc() && end == text.data() + text.size() && rate >= 1e-6 && rate <= 1000.0;
+  const auto rate = saphira::number_in<double>(text);
+  return rate && *rate >= 1e-6 && *rate <= 1000.0;
 }
 
 saphira::Pose parse_position(const std::string& text) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "saphira/base/overloaded.hpp"
+
 namespace saphira::sim {
 
 using namespace protocol;
@@ -24,13 +26,6 @@ bool has_table_sensors(const RobotParameters& parameters) {
   return std::find(kPeopleBots.begin(), kPeopleBots.end(), parameters.subclass) !=
          kPeopleBots.end();
 }
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 }  // namespace
 

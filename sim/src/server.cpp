@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "saphira/base/overloaded.hpp"
+
 namespace saphira::sim {
 
 using namespace protocol;
@@ -17,13 +19,6 @@ constexpr int kGapTicks = 5;
 constexpr int kSonarsInArray = 8;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 std::int16_t to_word(double value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -32768.0, 32767.0)));

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::sim {
@@ -19,12 +19,11 @@ constexpr int kRowsBetweenOutlines = 50;  // of a picture: 5 s
 // A number of a trace: unlike numbers in people's files it may be nan or inf.
 double trace_number(std::string_view text, const std::string& file, int line, int column,
                     std::string_view whole) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
+  const auto value = number_in<double>(text);
+  if (!value)
     throw FileError(file, line, column, "expected a number, found \"" + std::string(text) + "\"",
                     whole);
-  return value;
+  return *value;
 }
 
 template <class... Args>

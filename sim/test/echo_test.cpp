@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "process.hpp"
 #include "saphira/protocol/parameters.hpp"

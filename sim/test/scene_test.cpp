@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "saphira/protocol/command.hpp"
 #include "saphira/protocol/information.hpp"

@@ -210,7 +210,7 @@ TEST_F(ServerTest, UnknownCommandsAreIgnoredAndCounted) {
 TEST_F(ServerTest, TheWatchdogStopsAndACommandRevives) {
   open();
   send(protocol::Velocity{0.2});
-  server_.advance(kWatchdogTicks - 1);
+  server_.advance(199);  // two seconds are 200 ticks
   EXPECT_NEAR(server_.robot().velocity(), 0.2, 1e-12);
   server_.advance(30);
   EXPECT_FALSE(server_.robot().moving());

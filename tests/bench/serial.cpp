@@ -4,11 +4,9 @@
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 
 #include "bench.hpp"
 #include "process.hpp"

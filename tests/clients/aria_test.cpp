@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <map>
-
 #include "aria_client.hpp"
 
 namespace saphira::test {
@@ -67,14 +64,8 @@ std::vector<std::string> subclasses() {
   return out;
 }
 
-std::string printable(const ::testing::TestParamInfo<std::string>& robot) {
-  std::string name = robot.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  std::replace(name.begin(), name.end(), '+', 'p');
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Robots, Aria, ::testing::ValuesIn(subclasses()), printable);
+INSTANTIATE_TEST_SUITE_P(Robots, Aria, ::testing::ValuesIn(subclasses()),
+                         [](const auto& robot) { return test_name(robot.param); });
 
 // A killed client did not send CLOSE; on a serial line the robot continues to send.
 TEST(AriaAgain, FindsAnOpenRobot) {

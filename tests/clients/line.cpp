@@ -120,35 +120,35 @@ constexpr double kP2 = 2.0 * kPi / 4096.0;
 // From ARIA's and Player's tables.
 const std::vector<KnownRobot>& all_known() {
   static const std::vector<KnownRobot> robots{
-      {"pion1m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},
-      {"pion1x", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},
-      {"psos1m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},
-      {"psos1x", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},
-      {"psos43m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130, 0},
-      {"pionat", kP1, 0.07, 2.5332, 0.1734, 7, false, 3, 130, 0},
-      {"p2dx", kP2, 0.84, 1, 0.268, 16, true, 3, 166, 10},
-      {"p2de", kP2, 0.969, 1, 0.268, 16, true, 3, 166, 10},
-      {"p2ce", kP2, 0.826, 1, 0.268, 16, true, 3, 166, 10},
-      {"p2df", kP2, 0.485, 1, 0.268, 16, true, 3, 166, 10},
-      {"p2d8", kP2, 0.485, 1, 1, 16, true, 3, 166, 10},
-      {"p2d8+", kP2, 0.485, 1, 1, 16, true, 3, 166, 10},
-      {"p2at", kP2, 1.32, 1, 0.268, 16, true, 3, 245, 10},
-      {"p2at8", kP2, 1.32, 1, 1, 16, true, 3, 245, 10},
-      {"p2at8+", kP2, 0.465, 1, 1, 16, true, 3, 245, 10},
-      {"p3dx", kP2, 0.485, 1, 1, 16, true, 3, 166, 10},
-      {"p3dx-sh", kP2, 1, 1, 1, 16, true, 3, 166, 10},
-      {"p3at", kP2, 0.465, 1, 1, 16, true, 3, 245, 10},
-      {"p3at-sh", kP2, 1, 1, 1, 16, true, 3, 245, 10},
-      {"amigo", kP2, 0.5083, 0.6154, 1, 8, true, 2, 150, 15},
-      {"amigo-sh", kP2, 1, 1, 1, 8, true, 2, 150, 15},
-      {"p2pb", kP2, 0.424, 1, 0.268, 24, true, 3, 166, 10},
-      {"p2pp", kP2, 0.485, 1, 0.268, 24, true, 3, 166, 10},
-      {"perfpb", kP2, 0.485, 1, 1, 32, true, 3, 166, 10},
-      {"perfpb+", kP2, 0.485, 1, 1, 32, true, 3, 166, 10},
-      {"peoplebot-sh", kP2, 1, 1, 1, 32, true, 3, 166, 10},
-      {"powerbot", kP2, 0.5813, 1, 1, 32, true, 3, 414, 10},
-      {"powerbot-sh", kP2, 1, 1, 1, 32, true, 3, 414, 10},
-      {"patrolbot-sh", kP2, 1, 1, 1, 16, true, 3, 166, 10},
+      {"pion1m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130},
+      {"pion1x", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130},
+      {"psos1m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130},
+      {"psos1x", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130},
+      {"psos43m", kP1, 0.05066, 2.5332, 0.1734, 7, false, 3, 130},
+      {"pionat", kP1, 0.07, 2.5332, 0.1734, 7, false, 3, 130},
+      {"p2dx", kP2, 0.84, 1, 0.268, 16, true, 3, 166},
+      {"p2de", kP2, 0.969, 1, 0.268, 16, true, 3, 166},
+      {"p2ce", kP2, 0.826, 1, 0.268, 16, true, 3, 166},
+      {"p2df", kP2, 0.485, 1, 0.268, 16, true, 3, 166},
+      {"p2d8", kP2, 0.485, 1, 1, 16, true, 3, 166},
+      {"p2d8+", kP2, 0.485, 1, 1, 16, true, 3, 166},
+      {"p2at", kP2, 1.32, 1, 0.268, 16, true, 3, 245},
+      {"p2at8", kP2, 1.32, 1, 1, 16, true, 3, 245},
+      {"p2at8+", kP2, 0.465, 1, 1, 16, true, 3, 245},
+      {"p3dx", kP2, 0.485, 1, 1, 16, true, 3, 166},
+      {"p3dx-sh", kP2, 1, 1, 1, 16, true, 3, 166},
+      {"p3at", kP2, 0.465, 1, 1, 16, true, 3, 245},
+      {"p3at-sh", kP2, 1, 1, 1, 16, true, 3, 245},
+      {"amigo", kP2, 0.5083, 0.6154, 1, 8, true, 2, 150},
+      {"amigo-sh", kP2, 1, 1, 1, 8, true, 2, 150},
+      {"p2pb", kP2, 0.424, 1, 0.268, 24, true, 3, 166},
+      {"p2pp", kP2, 0.485, 1, 0.268, 24, true, 3, 166},
+      {"perfpb", kP2, 0.485, 1, 1, 32, true, 3, 166},
+      {"perfpb+", kP2, 0.485, 1, 1, 32, true, 3, 166},
+      {"peoplebot-sh", kP2, 1, 1, 1, 32, true, 3, 166},
+      {"powerbot", kP2, 0.5813, 1, 1, 32, true, 3, 414},
+      {"powerbot-sh", kP2, 1, 1, 1, 32, true, 3, 414},
+      {"patrolbot-sh", kP2, 1, 1, 1, 16, true, 3, 166},
   };
   return robots;
 }
@@ -162,6 +162,12 @@ const KnownRobot* find_known(const std::string& subclass) {
     if (robot.subclass == lower)
       return &robot;
   return nullptr;
+}
+
+std::string test_name(std::string robot) {
+  std::replace(robot.begin(), robot.end(), '-', '_');
+  std::replace(robot.begin(), robot.end(), '+', 'p');
+  return robot;
 }
 
 }  // namespace saphira::test

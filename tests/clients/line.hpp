@@ -92,9 +92,10 @@ struct KnownRobot {
   bool moves;      ///< has MOVE and settable accelerations
   int front;       ///< a sonar that looks ahead
   double front_x;  ///< [mm] its place
-  double front_degrees;
 };
 const KnownRobot* find_known(const std::string& subclass);
 const std::vector<KnownRobot>& all_known();
+/// The robot's name as the name of a test: letters, digits and underscores.
+std::string test_name(std::string robot);
 
 }  // namespace saphira::test

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cctype>
-#include <cmath>
-#include <map>
-
 #include "player_client.hpp"
 
 namespace saphira::test {
@@ -34,18 +30,11 @@ TEST_P(Player, ConnectsDrivesSeesAndStops) {
   EXPECT_EQ(line.violations(), "");
 }
 
-std::string printable(const ::testing::TestParamInfo<std::string>& robot) {
-  std::string name = robot.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  std::replace(name.begin(), name.end(), '+', 'p');
-  return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Robots, Player,
                          ::testing::Values("psos43m", "pionat", "p2dx", "p2at", "p2d8+", "p3dx",
                                            "p3dx-sh", "p3at", "p3at-sh", "amigo", "amigo-sh",
                                            "perfpb", "peoplebot-sh", "powerbot-sh", "patrolbot-sh"),
-                         printable);
+                         [](const auto& robot) { return test_name(robot.param); });
 
 // Without pulses the robot's watchdog stops it after two seconds, and the next command revives it.
 TEST(PlayerAgain, SilenceStopsTheRobot) {

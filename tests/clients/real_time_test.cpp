@@ -32,11 +32,9 @@ void PrintTo(const Case& which, std::ostream* out) {
 }
 
 std::string printable(const ::testing::TestParamInfo<Case>& test) {
-  std::string name = test.param.robot;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name + (test.param.way == Way::kTerminal ? "AtNinetySixHundredBaud"
-                 : test.param.way == Way::kLocal  ? "OnALocalSocket"
-                                                  : "OnTcp");
+  return test_name(test.param.robot) + (test.param.way == Way::kTerminal ? "AtNinetySixHundredBaud"
+                                        : test.param.way == Way::kLocal  ? "OnALocalSocket"
+                                                                         : "OnTcp");
 }
 
 /// saphira-sim in the hall, and a line to it.
@@ -140,11 +138,7 @@ TEST_P(PlayerInRealTime, ConnectsDrivesSeesAndStops) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, PlayerInRealTime, ::testing::Values(Case{"p2d8+", Way::kTerminal}),
-                         [](const auto& test) {
-                           std::string name = printable(test);
-                           std::replace(name.begin(), name.end(), '+', 'p');
-                           return name;
-                         });
+                         printable);
 
 class BeeInRealTime : public RealTime {};
 

@@ -1,7 +1,6 @@
 // Programs with other vendors' DDS generate their types from the same files.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "process.hpp"

@@ -1,9 +1,7 @@
 // The commands in documents and comments can be typed as shown.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>

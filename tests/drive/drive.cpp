@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "behaviors/test/robot_model.hpp"
 #include "saphira/authority/robot.hpp"
 #include "saphira/base/places.hpp"
 

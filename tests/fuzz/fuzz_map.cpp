@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
-#include <vector>
 
 #include "saphira/base/text.hpp"
 #include "saphira/maps/drawing.hpp"

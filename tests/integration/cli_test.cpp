@@ -12,7 +12,6 @@
 #include <array>
 #include <atomic>
 #include <fstream>
-#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -20,6 +19,7 @@
 
 #include "node_options.hpp"
 #include "process.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/node.hpp"
 
@@ -139,6 +139,19 @@ class CliTest : public testing::Test {
     outcome.text = process.output();
     return outcome;
   }
+  /// `saphira drive` in a terminal of its own: its process, and below 0 where there is none.
+  /// terminal, name: what forkpty tells of it.
+  pid_t drive(int& terminal, char* name = nullptr) const {
+    winsize size{24, 100, 0, 0};
+    const pid_t pid = forkpty(&terminal, name, nullptr, &size);
+    if (pid == 0) {
+      const std::string program = test::program("saphira");
+      execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
+            test::domain().c_str(), "drive", static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    return pid;
+  }
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_.path(name)) << text;
     return folder_.path(name);
@@ -166,12 +179,10 @@ TEST_F(Answers, WithoutArgumentsItHelps) {
 
 // The script shows this file where nothing is built yet.
 TEST_F(Answers, HelpIsWhatTheScriptShowsOfAFreshClone) {
-  std::ifstream in(test::source("agents/cli/help.txt"));
-  std::stringstream file;
-  file << in.rdbuf();
   const Outcome outcome = run({"help"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.text, file.str()) << "write it anew: saphira help > agents/cli/help.txt";
+  EXPECT_EQ(outcome.text, read_file(test::source("agents/cli/help.txt")))
+      << "write it anew: saphira help > agents/cli/help.txt";
   EXPECT_TRUE(has(run({"help", "goal"}).text, "Send a goal and follow it to its end"));
   EXPECT_TRUE(has(run({"--version"}).text, "saphira "));
 }
@@ -342,15 +353,8 @@ TEST_F(CliTest, AGoalThatNobodyAnswersSaysWhoIsMissing) {
 TEST_F(CliTest, DriveIsADeadMan) {
   Scripted scripted(robot_);
   int terminal = -1;
-  winsize size{24, 100, 0, 0};
-  const pid_t pid = forkpty(&terminal, nullptr, nullptr, &size);
+  const pid_t pid = drive(terminal);
   ASSERT_GE(pid, 0);
-  if (pid == 0) {
-    const std::string program = test::program("saphira");
-    execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
-          test::domain().c_str(), "drive", static_cast<char*>(nullptr));
-    _exit(127);
-  }
   // The drawn text is checked at the end.
   std::string drawn;
   std::thread reader([&] {
@@ -416,15 +420,8 @@ TEST_F(CliTest, DriveSendsOnWhenNobodyReadsItsTerminal) {
   Scripted scripted(robot_);
   int terminal = -1;
   std::array<char, 256> name{};
-  winsize size{24, 100, 0, 0};
-  const pid_t pid = forkpty(&terminal, name.data(), nullptr, &size);
+  const pid_t pid = drive(terminal, name.data());
   ASSERT_GE(pid, 0);
-  if (pid == 0) {
-    const std::string program = test::program("saphira");
-    execl(program.c_str(), program.c_str(), "--robot", robot_.c_str(), "--domain",
-          test::domain().c_str(), "drive", static_cast<char*>(nullptr));
-    _exit(127);
-  }
   std::string drawn;
   std::array<char, 4096> buffer{};
   while (!has(drawn, "12.5 V")) {

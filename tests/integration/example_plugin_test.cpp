@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "installed.hpp"
 #include "node_options.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/topics.hpp"
 
@@ -20,8 +20,7 @@ TEST(ExamplePlugin, IsBuiltFromTheInstalledTreeAndLoadedByTheService) {
   if (HasFatalFailure())
     return;
   // It needs only a pure library: the bus belongs to the service.
-  std::ifstream cache(build + "/CMakeCache.txt");
-  const std::string entries((std::istreambuf_iterator<char>(cache)), {});
+  const std::string entries = read_file(build + "/CMakeCache.txt");
   EXPECT_NE(entries.find("saphira_DIR:PATH=" + installed.prefix()), std::string::npos);
   EXPECT_EQ(entries.find("fastrtps_DIR"), std::string::npos);
 

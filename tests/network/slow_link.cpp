@@ -71,7 +71,7 @@ void make_host(const char* address, int& network, int& tap) {
 }
 
 /// True for an ARP frame, which a radio link does not lose: ARP repeats only after a second.
-bool asks_for_address(const std::vector<char>& frame) {
+bool is_arp(const std::vector<char>& frame) {
   return frame.size() > 13 && frame[12] == 0x08 && frame[13] == 0x06;
 }
 
@@ -128,7 +128,7 @@ void SlowLink::relay() {
       ssize_t size = 0;
       while ((size = read(taps_[from], buffer.data(), buffer.size())) > 0) {
         std::vector<char> frame(buffer.begin(), buffer.begin() + size);
-        if (!cut_ && (asks_for_address(frame) || chance(random) >= loss_))
+        if (!cut_ && (is_arp(frame) || chance(random) >= loss_))
           on_the_way[from].push_back({due, std::move(frame)});
       }
       auto& queue = on_the_way[from];

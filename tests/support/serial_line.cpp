@@ -73,21 +73,9 @@ void SerialLine::close_device() {
   master_ = -1;
 }
 
-void SerialLine::remove() {
-  const std::scoped_lock lock(mutex_);
-  close_device();
-  for (Direction& direction : directions_)
-    direction.waiting.clear();
-}
-
 bool SerialLine::has_robot() {
   const std::scoped_lock lock(mutex_);
   return robot_ >= 0;
-}
-
-void SerialLine::put_back() {
-  const std::scoped_lock lock(mutex_);
-  open_device();
 }
 
 /// False after the end of the other side.
@@ -101,22 +89,7 @@ bool SerialLine::take(int fd, int direction) {
     return true;
   if (d.waiting.empty())
     d.due = Clock::now() + byte_;
-  for (ssize_t i = 0; i < n; ++i) {
-    std::uint8_t byte = buffer.at(static_cast<std::size_t>(i));
-    random_ = random_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    const unsigned one_in = hurt_one_in_;
-    if (one_in != 0 && (random_ >> 33U) % one_in == 0) {
-      ++hurt_;
-      const auto how = (random_ >> 20U) % 3;
-      if (how == 0)
-        continue;
-      if (how == 1)
-        byte = static_cast<std::uint8_t>(random_ >> 24U);
-      else
-        d.waiting.push_back(byte);
-    }
-    d.waiting.push_back(byte);
-  }
+  d.waiting.insert(d.waiting.end(), buffer.begin(), buffer.begin() + n);
   waited_[direction] = std::max<std::uint64_t>(waited_[direction], d.waiting.size());
   return true;
 }

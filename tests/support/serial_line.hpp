@@ -27,11 +27,6 @@ class SerialLine {
   void cut(bool out) { cut_[0] = cut_[1] = out; }
   /// Only the robot's bytes are lost.
   void cut_from_robot(bool out) { cut_[1] = out; }
-  /// A USB adapter pulled, with its device; and put back.
-  void remove();
-  void put_back();
-  /// One byte in this number is damaged, lost or doubled, each way; 0: none.
-  void hurt_one_in(unsigned bytes) { hurt_one_in_ = bytes; }
 
   /// Bytes that went through, to and from the robot.
   std::uint64_t to_robot() const { return bytes_[0]; }
@@ -39,7 +34,6 @@ class SerialLine {
   /// The longest queue before the line [bytes].
   std::uint64_t waited_to_robot() const { return waited_[0]; }
   std::uint64_t waited_from_robot() const { return waited_[1]; }
-  std::uint64_t hurt() const { return hurt_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -62,12 +56,9 @@ class SerialLine {
   bool listened_ = false;  ///< the device is open
   int robot_ = -1;
   Direction directions_[2];  ///< to the robot, from it
-  std::uint64_t random_ = 0x9E3779B97F4A7C15ULL;
   std::atomic<bool> cut_[2]{false, false};
-  std::atomic<unsigned> hurt_one_in_{0};
   std::atomic<std::uint64_t> bytes_[2]{0, 0};
   std::atomic<std::uint64_t> waited_[2]{0, 0};
-  std::atomic<std::uint64_t> hurt_{0};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

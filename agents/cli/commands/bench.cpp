@@ -1,13 +1,10 @@
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
-#include <system_error>
 
 #include "commands.hpp"
+#include "environment.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/cli/deployment.hpp"
 
@@ -51,13 +48,7 @@ int bench(const std::string& name, const std::vector<std::string>& arguments) {
   }
   std::vector<std::string> words{bin + "/" + kPrefix + name};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  argv.reserve(words.size() + 1);
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  argv.push_back(nullptr);
-  execv(argv[0], argv.data());
-  throw std::system_error(errno, std::generic_category(), words[0]);
+  execute(std::move(words));
 }
 
 }  // namespace

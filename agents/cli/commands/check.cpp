@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 
 #include "commands.hpp"
 #include "environment.hpp"

@@ -1,8 +1,4 @@
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdlib>
-#include <system_error>
 
 #include "commands.hpp"
 #include "environment.hpp"
@@ -20,12 +16,7 @@ int become(const std::string& program, const bus::NodeOptions& options,
       setenv(name.c_str(), value.c_str(), 1);
   std::vector<std::string> words{program_folder() + "/" + program};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  argv.push_back(nullptr);
-  execv(argv[0], argv.data());
-  throw std::system_error(errno, std::generic_category(), words[0]);
+  execute(std::move(words));
 }
 
 /// A command that is a separate program, with its own options.

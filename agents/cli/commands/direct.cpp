@@ -2,7 +2,6 @@
 #include "direct.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 
 #include "commands.hpp"

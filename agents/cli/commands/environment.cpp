@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <random>
+#include <system_error>
 
 #include "watch.hpp"
 
@@ -38,6 +40,15 @@ bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name) {
   options.name = name;
   options.lockstep = false;  // this program only watches
   return options;
+}
+
+void execute(std::vector<std::string> words) {
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  argv.push_back(nullptr);
+  execv(argv[0], argv.data());
+  throw std::system_error(errno, std::generic_category(), words[0]);
 }
 
 }  // namespace saphira::cli

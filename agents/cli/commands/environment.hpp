@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "saphira/bus/node.hpp"
 #include "saphira/cli/running_bus.hpp"
@@ -17,5 +18,8 @@ RunningBus bus_of(const std::string& what, const bus::NodeOptions& options);
 /// A private bus: a robot name of its own, and unless a domain was given, a random one. name: of
 /// the command.
 bus::NodeOptions own_bus(bus::NodeOptions options, const std::string& name);
+
+/// Runs the program words[0] in our place. std::system_error where it cannot.
+[[noreturn]] void execute(std::vector<std::string> words);
 
 }  // namespace saphira::cli

@@ -1,7 +1,6 @@
 // security: the authority of a site, and the credentials of its members.
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
+#include "saphira/security/documents.hpp"
 
 namespace saphira::cli {
 namespace {
@@ -39,12 +39,7 @@ std::int64_t now() {
 }
 
 std::string day_of(std::int64_t seconds) {
-  const std::time_t time = seconds;
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  std::array<char, 16> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d", &utc);
-  return text.data();
+  return security::utc_text(seconds, "%Y-%m-%d");
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -6,9 +6,11 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/cli/talk_words.hpp"
+#include "saphira/situation/words.hpp"
 #include "watch.hpp"
 
 namespace saphira::cli {
@@ -64,15 +66,9 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
   Processes processes(node);
   auto writer = node.writer(bus::topics::kHeard);
   auto said = node.reader(bus::topics::kSaid);
-  v1::Utterance utterance;
-  utterance.id().writer(node.instance());
-  utterance.id().number(1);
-  utterance.speaker(say_options.speaker.empty() ? user() : say_options.speaker);
-  utterance.text(words_in_line(say_options.words));
-  utterance.means(v1::UTTERANCE_TYPED);
-  utterance.confidence(1.0);
-  utterance.time(
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+  const v1::Utterance utterance = situation::typed(
+      node.instance(), 1, say_options.speaker.empty() ? user() : say_options.speaker,
+      words_in_line(say_options.words), unix_time());
   writer.write(utterance);
   print("%s\n", line_of(utterance).c_str());
   const auto began = Clock::now();

@@ -1,12 +1,11 @@
 #include "saphira/cli/device_words.hpp"
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/geometry/pose.hpp"
 
 namespace saphira::cli {
@@ -50,13 +49,10 @@ constexpr std::array<std::pair<const char*, const char*>, 11> kGripperWords{
 
 long whole(const std::string& word, long low, long high, const std::string& what) {
   const bool hex = word.starts_with("0x") || word.starts_with("0X");
-  const char* begin = word.data() + (hex ? 2 : 0);
-  const char* end = word.data() + word.size();
-  long value = 0;
-  const auto [at, error] = std::from_chars(begin, end, value, hex ? 16 : 10);
-  if (error != std::errc{} || at != end || value < low || value > high)
+  const auto value = number_in<long>(std::string_view(word).substr(hex ? 2 : 0), hex ? 16 : 10);
+  if (!value || *value < low || *value > high)
     fail(what + " in " + std::to_string(low) + ".." + std::to_string(high), word);
-  return value;
+  return *value;
 }
 
 std::uint8_t byte(const std::string& word, const std::string& what, long high = 255) {
@@ -125,13 +121,10 @@ Request sound(Words& words) {
   Request out{"tones"};
   for (std::string word = first;; word = words.next("a tone")) {
     const std::size_t colon = word.find(':');
-    double seconds = 0.0;
-    const auto [at, error] =
-        std::from_chars(word.data(), word.data() + std::min(colon, word.size()), seconds);
-    if (colon == std::string::npos || error != std::errc{} || at != word.data() + colon ||
-        !(seconds >= 0.02 && seconds <= 5.1))
+    const auto seconds = number_in<double>(std::string_view(word).substr(0, colon));
+    if (colon == std::string::npos || !seconds || !(*seconds >= 0.02 && *seconds <= 5.1))
       fail("a tone as SECONDS:PITCH, such as 0.5:60, of 0.02 to 5.1 s", word);
-    out.arguments.emplace_back("duration", seconds);
+    out.arguments.emplace_back("duration", *seconds);
     out.arguments.push_back(whole_of("pitch", word.substr(colon + 1), 255, "a pitch"));
     if (!words.more())
       break;

@@ -1,6 +1,5 @@
 #include "saphira/cli/done.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "saphira/geometry/pose.hpp"

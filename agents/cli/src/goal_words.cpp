@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -25,11 +24,10 @@ std::optional<double> parse_number(std::string_view text) {
     text.remove_suffix(3);
   if (text.starts_with('+'))
     text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+  const auto value = number_in<double>(text);
+  if (!value || !std::isfinite(*value))
     return std::nullopt;
-  return angle ? radians(value) : value;
+  return angle ? radians(*value) : value;
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {

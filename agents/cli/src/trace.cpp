@@ -14,7 +14,7 @@ namespace saphira::cli {
 namespace {
 
 /// The used columns of a trace, and the number of all.
-enum Column : std::size_t { kCycle = 0, kX = 1, kY = 2, kTh = 3, kClearance = 9, kContacts = 10 };
+enum Column : std::size_t { kCycle = 0, kX = 1, kY = 2, kClearance = 9, kContacts = 10 };
 constexpr std::size_t kColumns = 11;
 constexpr std::string_view kHeader = "cycle,";
 
@@ -63,13 +63,8 @@ Track evaluate_trace(std::string_view text, std::uint64_t last_cycle, const std:
     const Row row = parse_row(line, number, file);
     if (of_newest && row[kCycle] > static_cast<double>(last_cycle))
       break;
-    if (first) {
-      track.start_x = row[kX];
-      track.start_y = row[kY];
-      track.start_th = row[kTh];
-    } else {
+    if (!first)
       track.path += std::hypot(row[kX] - x, row[kY] - y);
-    }
     first = false;
     x = row[kX];
     y = row[kY];

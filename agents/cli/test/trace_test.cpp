@@ -23,9 +23,6 @@ TEST(Trace, SumsUpTheDrive) {
   EXPECT_DOUBLE_EQ(track.path, 6.0);
   EXPECT_DOUBLE_EQ(track.min_clearance, 0.25);
   EXPECT_EQ(track.contacts, 1U);
-  EXPECT_DOUBLE_EQ(track.start_x, 1.0);
-  EXPECT_DOUBLE_EQ(track.start_y, 2.0);
-  EXPECT_DOUBLE_EQ(track.start_th, 0.5);
 }
 
 TEST(Trace, IsCutAtTheCycle) {

@@ -1,12 +1,13 @@
 // The pages' side: their messages, and the replies.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <sstream>
 
 #include "gateway.hpp"
 #include "key.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/cli/goal_words.hpp"
+#include "saphira/situation/words.hpp"
 
 namespace saphira::console {
 
@@ -292,16 +293,8 @@ void Gateway::cancel_goal(Connection connection, const CancelGoal& cancel) {
 
 /// Passes a person's typed words to the agent interface.
 void Gateway::hear(const Page& page, const Say& words) {
-  v1::Utterance utterance;
-  utterance.id().writer(node_.instance());
-  utterance.id().number(++utterances_);
-  utterance.speaker(page.name);
-  utterance.text(words.text);
-  utterance.means(v1::UTTERANCE_TYPED);
-  utterance.confidence(1.0);
-  utterance.time(
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
-  heard_.write(utterance);
+  heard_.write(
+      situation::typed(node_.instance(), ++utterances_, page.name, words.text, unix_time()));
 }
 
 void Gateway::send(bus::RequestClient& client, v1::Request request, Connection connection,

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::logs {
@@ -68,12 +69,10 @@ class Words {
   }
   bool at_end() const { return row_.text.find_first_not_of(" \t", at_) == std::string_view::npos; }
   double number(const char* expected) {
-    const std::string_view text = word(expected);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    const auto value = number_in<double>(word(expected));
+    if (!value || !std::isfinite(*value))
       fail(expected);
-    return value;
+    return *value;
   }
   // A range without a return may be written as nan or inf.
   double range() {

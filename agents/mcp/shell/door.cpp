@@ -1,10 +1,11 @@
 #include "door.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/cli/talk_words.hpp"
+#include "saphira/situation/words.hpp"
 
 namespace saphira::mcp {
 
@@ -177,15 +178,9 @@ void Door::begin(const Call& call) {
 }
 
 void Door::say(const Call& call) {
-  v1::Utterance utterance;
-  utterance.id().writer(node_.instance());
-  utterance.id().number(bus::next_request_number());
-  utterance.speaker(who_);
-  utterance.text(call.arguments.value("text", ""));
-  utterance.means(v1::UTTERANCE_TYPED);
-  utterance.confidence(1.0);
-  utterance.time(
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count());
+  const v1::Utterance utterance =
+      situation::typed(node_.instance(), bus::next_request_number(), who_,
+                       call.arguments.value("text", ""), unix_time());
   heard_writer_.write(utterance);
   waiting_[call.number] = {.what = Waiting::For::words,
                            .number = utterance.id().number(),

@@ -204,7 +204,7 @@ class Os {
 };
 
 wall to_c(const maps::Feature& feature);
-behaviors::RobotModel model_of(const protocol::RobotParameters& parameters);
+using behaviors::model_of;
 /// Adapters between the executive and the behaviors of the program and the library.
 void register_behaviors(behaviors::Registry& registry);
 /// Reads "sfFLOAT, 300.0, ..., sfEND". Reports errors in the list, as far as possible.

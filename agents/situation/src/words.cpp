@@ -161,6 +161,19 @@ std::string describe(const v1::Goal& goal) {
   return text + ")";
 }
 
+v1::Utterance typed(std::uint64_t writer, std::uint64_t number, const std::string& speaker,
+                    const std::string& text, double time) {
+  v1::Utterance utterance;
+  utterance.id().writer(writer);
+  utterance.id().number(number);
+  utterance.speaker(speaker);
+  utterance.text(text);
+  utterance.means(v1::UTTERANCE_TYPED);
+  utterance.confidence(1.0);
+  utterance.time(time);
+  return utterance;
+}
+
 bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions) {
   return node.label() == "B" ||
          std::any_of(intentions.behaviors().begin(), intentions.behaviors().end(),

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <set>
 
+#include "saphira/base/boot_clock.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::speech {
@@ -11,15 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double unix_time() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-std::string folder_of(const std::string& file) {
-  const std::string folder = fs::path(file).parent_path();
-  return folder.empty() ? "." : folder;
-}
 
 }  // namespace
 

@@ -1,12 +1,12 @@
 #include "story/shell/story.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
 #include "maps/shell/convert.hpp"
 #include "saphira/agent_interface/dialogue.hpp"
+#include "saphira/base/boot_clock.hpp"
 
 namespace saphira::story {
 namespace {
@@ -14,10 +14,6 @@ namespace {
 constexpr double kThought = 1.0;    // [s] before an answer
 constexpr double kStanding = 0.03;  // [m/s] a robot no faster than this stands
 constexpr double kPause = 1.5;      // [s] of standing, before the next line
-
-double unix_time() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -3,8 +3,6 @@
 // from the whole history and without state, so that the two can disagree.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "saphira/authority/arbiter.hpp"
 #include "saphira/base/random.hpp"
 

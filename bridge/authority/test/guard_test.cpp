@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "saphira/base/random.hpp"
 
 namespace saphira::authority {

@@ -1,7 +1,5 @@
 #include "saphira/bridge/doubts.hpp"
 
-#include <utility>
-
 namespace saphira::bridge {
 
 namespace {

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "fields.hpp"
+#include "saphira/base/overloaded.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/protocol/parameters.hpp"
 
@@ -19,13 +18,6 @@ constexpr std::uint8_t kArgInt = 0x3B;
 constexpr std::uint8_t kArgNegativeInt = 0x1B;
 constexpr std::uint8_t kArgString = 0x2B;
 constexpr std::size_t kMaxPolling = 12;
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 int rounded(double value, int low, int high) {
   if (std::isnan(value))

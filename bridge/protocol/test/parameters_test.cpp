@@ -153,112 +153,52 @@ TEST(Parameters, SonarsOfEveryFileLookOutward) {
 // Each shipped file, broken in each of these ways, gives the error at the right place.
 struct Breakage {
   const char* name;
-  // Changes the lines; returns the place of the error.
-  std::pair<int, int> (*apply)(std::vector<std::string>& lines);
+  const char* keyword;      ///< of the line that is replaced; null: a line is added
+  const char* replacement;  ///< null: the line is left out, and the count of sonars is wrong
+  int column;               ///< of the error
   const char* expected;
 };
 
-int line_with(const std::vector<std::string>& lines, const std::string& keyword) {
+std::size_t line_with(const std::vector<std::string>& lines, const std::string& keyword) {
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (lines[i].starts_with(keyword))
-      return static_cast<int>(i);
+      return i;
   ADD_FAILURE() << keyword << " is missing";
   return 0;
 }
 
-using Lines = std::vector<std::string>;
 const Breakage kBreakages[] = {
-    {"a word for a number",
-     [](Lines& l) {
-       const int i = line_with(l, "RobotRadius");
-       l[static_cast<std::size_t>(i)] = "RobotRadius  wide";
-       return std::pair{i + 1, 14};
-     },
+    {"a word for a number", "RobotRadius", "RobotRadius  wide", 14,
      "expected a number (RobotRadius in mm)"},
-    {"a number with a unit",
-     [](Lines& l) {
-       const int i = line_with(l, "MaxVelocity");
-       l[static_cast<std::size_t>(i)] = "MaxVelocity 400mm/s";
-       return std::pair{i + 1, 13};
-     },
-     "expected a number"},
-    {"an unknown keyword",
-     [](Lines& l) {
-       const int i = line_with(l, "Battery");
-       l[static_cast<std::size_t>(i)] = "  Batery 12";
-       return std::pair{i + 1, 3};
-     },
-     "expected a keyword"},
-    {"a keyword twice",
-     [](Lines& l) {
-       l.push_back("EncodeJitter 0.01");
-       return std::pair{static_cast<int>(l.size()), 1};
-     },
-     "once"},
-    {"no value",
-     [](Lines& l) {
-       const int i = line_with(l, "DiffConvFactor");
-       l[static_cast<std::size_t>(i)] = "DiffConvFactor";
-       return std::pair{i + 1, 15};
-     },
-     "expected DiffConvFactor"},
-    {"out of range",
-     [](Lines& l) {
-       const int i = line_with(l, "AngleConvFactor");
-       l[static_cast<std::size_t>(i)] = "AngleConvFactor -0.001";
-       return std::pair{i + 1, 17};
-     },
-     "between"},
-    {"one word too many",
-     [](Lines& l) {
-       const int i = line_with(l, "DistConvFactor");
-       l[static_cast<std::size_t>(i)] = "DistConvFactor 0.5 mm";
-       return std::pair{i + 1, 20};
-     },
-     "end of"},
-    {"a decimal comma",
-     [](Lines& l) {
-       const int i = line_with(l, "VelConvFactor");
-       l[static_cast<std::size_t>(i)] = "VelConvFactor 2,5";
-       return std::pair{i + 1, 15};
-     },
-     "expected a number"},
-    {"a sonar too few",
-     [](Lines& l) {
-       const int i = line_with(l, "SonarUnit  3");
-       l.erase(l.begin() + i);
-       return std::pair{line_with(l, "SonarNum") + 1, 10};
-     },
-     "SonarUnit 3 is missing"},
-    {"a sonar twice",
-     [](Lines& l) {
-       const int i = line_with(l, "SonarUnit  2");
-       l[static_cast<std::size_t>(i)] = "SonarUnit 1 100 100 90";
-       return std::pair{i + 1, 11};
-     },
-     "once"},
-    {"a sonar without bearing",
-     [](Lines& l) {
-       const int i = line_with(l, "SonarUnit  2");
-       l[static_cast<std::size_t>(i)] = "SonarUnit 2 100 100";
-       return std::pair{i + 1, 20};
-     },
-     "bearing"},
-    {"an unknown generation",
-     [](Lines& l) {
-       const int i = line_with(l, "Protocol");
-       l[static_cast<std::size_t>(i)] = "Protocol psos5";
-       return std::pair{i + 1, 10};
-     },
-     "expected psos, p2os or arcos"},
-    {"half a sonar",
-     [](Lines& l) {
-       const int i = line_with(l, "SonarNum");
-       l[static_cast<std::size_t>(i)] = "SonarNum 7.5";
-       return std::pair{i + 1, 10};
-     },
-     "whole number"},
+    {"a number with a unit", "MaxVelocity", "MaxVelocity 400mm/s", 13, "expected a number"},
+    {"an unknown keyword", "Battery", "  Batery 12", 3, "expected a keyword"},
+    {"a keyword twice", nullptr, "EncodeJitter 0.01", 1, "once"},
+    {"no value", "DiffConvFactor", "DiffConvFactor", 15, "expected DiffConvFactor"},
+    {"out of range", "AngleConvFactor", "AngleConvFactor -0.001", 17, "between"},
+    {"one word too many", "DistConvFactor", "DistConvFactor 0.5 mm", 20, "end of"},
+    {"a decimal comma", "VelConvFactor", "VelConvFactor 2,5", 15, "expected a number"},
+    {"a sonar too few", "SonarUnit  3", nullptr, 10, "SonarUnit 3 is missing"},
+    {"a sonar twice", "SonarUnit  2", "SonarUnit 1 100 100 90", 11, "once"},
+    {"a sonar without bearing", "SonarUnit  2", "SonarUnit 2 100 100", 20, "bearing"},
+    {"an unknown generation", "Protocol", "Protocol psos5", 10, "expected psos, p2os or arcos"},
+    {"half a sonar", "SonarNum", "SonarNum 7.5", 10, "whole number"},
 };
+
+// Changes the lines; the number of the one where the error must be.
+int damage(const Breakage& breakage, std::vector<std::string>& lines) {
+  if (breakage.keyword == nullptr) {
+    lines.emplace_back(breakage.replacement);
+    return static_cast<int>(lines.size());
+  }
+  std::size_t at = line_with(lines, breakage.keyword);
+  if (breakage.replacement == nullptr) {
+    lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(at));
+    at = line_with(lines, "SonarNum");
+  } else {
+    lines[at] = breakage.replacement;
+  }
+  return static_cast<int>(at) + 1;
+}
 
 TEST(BrokenFiles, OfEveryShippedRobotSayWhere) {
   for (const auto& entry : std::filesystem::directory_iterator(source("config/robots"))) {
@@ -266,13 +206,13 @@ TEST(BrokenFiles, OfEveryShippedRobotSayWhere) {
       continue;
     const std::string text = read_file(entry.path().string());
     for (const Breakage& breakage : kBreakages) {
-      Lines lines;
+      std::vector<std::string> lines;
       for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
         lines.push_back(text.substr(at, end - at));
         at = end + 1;
       }
-      const std::pair<int, int> where = breakage.apply(lines);
+      const std::pair<int, int> where(damage(breakage, lines), breakage.column);
       std::string broken;
       for (const std::string& l : lines)
         broken += l + "\n";

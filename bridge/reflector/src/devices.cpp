@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "saphira/base/overloaded.hpp"
 #include "saphira/protocol/impossible.hpp"
 
 namespace saphira::reflector {
@@ -10,13 +11,6 @@ namespace saphira::reflector {
 namespace {
 
 constexpr double kRetryTick = 1e-6;
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 // ARIA's and Player's numbers of the gripper's actions, in the order of GripperAction.
 constexpr std::array<std::uint16_t, 11> kGripperNumbers{1, 2, 3, 4, 5, 6, 7, 8, 15, 16, 17};

@@ -82,13 +82,4 @@ double DirectMotion::distance_left() const {
   return std::abs(left) < kThere ? 0.0 : left;
 }
 
-bool DirectMotion::done_position(double tolerance) const {
-  return !target_ || std::abs(*target_ - travelled_) <= tolerance;
-}
-
-bool DirectMotion::done_heading(double tolerance, double heading_in_odom) const {
-  return !setpoints_.turn_to_heading ||
-         std::abs(norm2_angle(setpoints_.heading_in_odom - heading_in_odom)) <= tolerance;
-}
-
 }  // namespace saphira::reflector

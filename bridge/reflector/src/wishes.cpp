@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+
+#include "saphira/base/numbers.hpp"
+#include "saphira/base/overloaded.hpp"
 
 namespace saphira::reflector {
 
@@ -15,13 +17,6 @@ constexpr std::size_t kMostTones = 20;
 constexpr std::size_t kMostPolled = 12;
 constexpr std::size_t kMostBytes = 180;
 constexpr double kTone = 0.02;  // [s] the steps of a tone
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 // In the order of GripperAction, ServerAction and of how often a packet is sent.
 constexpr std::array kGripperActions{"open",      "close",     "stop",  "lift up",
@@ -54,13 +49,12 @@ int which(const std::array<const char*, count>& words, const std::string& word) 
 std::vector<std::uint8_t> bytes_of(const std::string& hex) {
   std::vector<std::uint8_t> bytes;
   for (std::size_t i = 0; i < hex.size(); i += 2) {
-    std::uint8_t byte = 0;
-    const char* const end = hex.data() + std::min(i + 2, hex.size());
-    if (hex.size() % 2 != 0 || std::from_chars(hex.data() + i, end, byte, 16).ptr != end)
+    const auto byte = number_in<std::uint8_t>(std::string_view(hex).substr(i, 2), 16);
+    if (hex.size() % 2 != 0 || !byte)
       throw std::invalid_argument(
           "serial: argument \"data\": expected two hexadecimal digits for each byte, found " +
           quoted(hex));
-    bytes.push_back(byte);
+    bytes.push_back(*byte);
   }
   return bytes;
 }

@@ -42,8 +42,7 @@ TEST(DirectMotion, ARelativeHeadingIsTakenOnce) {
   direct.set(m, {0, 0, 3.5});
   EXPECT_NEAR(direct.setpoints().heading_in_odom, norm2_angle(3.0 + kPi / 2), 1e-12)
       << "the same move again";
-  EXPECT_FALSE(direct.done_heading(radians(10.0), 3.5));
-  EXPECT_TRUE(direct.done_heading(radians(10.0), 3.0 + kPi / 2 - 0.1));
+  EXPECT_TRUE(direct.setpoints().turn_to_heading);
   m.move = 2;
   direct.set(m, {0, 0, 3.5});
   EXPECT_NEAR(direct.setpoints().heading_in_odom, norm2_angle(3.5 + kPi / 2), 1e-12);
@@ -122,19 +121,19 @@ TEST(DirectMotion, APositionIsReachedWithinTheManualsTolerance) {
       m.velocity = speed;
       m.move = 1;
       direct.set(m, {});
-      EXPECT_EQ(direct.done_position(0.1), std::abs(distance) <= 0.1);
+      EXPECT_EQ(direct.distance_left(), distance);
       double top = 0.0;
       double overshoot = 0.0;
       const double x = drive(direct, &top, &overshoot, distance);
       EXPECT_NEAR(x, distance, 0.01) << distance << " at " << speed;
       EXPECT_LT(overshoot, 0.01);
       EXPECT_LE(top, (speed > 0.0 ? speed : 0.4) + 1e-9);
-      EXPECT_TRUE(direct.done_position(0.1));
+      EXPECT_NEAR(direct.distance_left(), 0.0, 0.1);
       direct.set(m, {});
-      EXPECT_TRUE(direct.done_position(0.1)) << "the same move again does not begin anew";
+      EXPECT_NEAR(direct.distance_left(), 0.0, 0.1) << "the same move again does not begin anew";
       m.move = 2;
       direct.set(m, {});
-      EXPECT_EQ(direct.done_position(0.01), std::abs(distance) <= 0.01);
+      EXPECT_NEAR(direct.distance_left(), distance, 1e-9);
     }
   }
 }

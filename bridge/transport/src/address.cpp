@@ -5,22 +5,21 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdlib>
 #include <stdexcept>
 
 #include "baud.hpp"
+#include "saphira/base/numbers.hpp"
 
 namespace saphira::transport {
 
 namespace {
 
 int number(const std::string& text, const std::string& whole, const char* what) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value <= 0)
+  const auto value = number_in<int>(text);
+  if (!value || *value <= 0)
     throw std::invalid_argument("\"" + whole + "\": expected " + what + ", found \"" + text + "\"");
-  return value;
+  return *value;
 }
 
 std::string serial_text(const Address& address) {

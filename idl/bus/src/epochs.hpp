@@ -40,7 +40,6 @@ class Epochs {
   bool useful(std::uint64_t epoch) const;
   /// The epoch that is followed; 0 before the first.
   std::uint64_t epoch() const { return epoch_; }
-  bool has_bridge() const { return bridge_.has_value(); }
 
  private:
   static constexpr std::size_t kMostPrograms = 64;

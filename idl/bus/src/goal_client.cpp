@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
+
+#include "saphira/base/numbers.hpp"
 
 namespace saphira::bus {
 namespace {
@@ -189,19 +190,13 @@ std::optional<v1::GoalId> parse_goal_id(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos)
     return std::nullopt;
-  const char* const begin = text.data();
-  const char* const middle = begin + colon;
-  const char* const end = begin + text.size();
-  std::uint64_t writer = 0;
-  std::uint64_t count = 0;
-  const auto first = std::from_chars(begin, middle, writer, 16);
-  const auto second = std::from_chars(middle + 1, end, count, 10);
-  if (first.ec != std::errc() || first.ptr != middle || second.ec != std::errc() ||
-      second.ptr != end)
+  const auto writer = number_in<std::uint64_t>(std::string_view(text).substr(0, colon), 16);
+  const auto count = number_in<std::uint64_t>(std::string_view(text).substr(colon + 1));
+  if (!writer || !count)
     return std::nullopt;
   v1::GoalId id;
-  id.writer(writer);
-  id.number(count);
+  id.writer(*writer);
+  id.number(*count);
   return id;
 }
 

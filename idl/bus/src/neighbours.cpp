@@ -13,10 +13,6 @@ constexpr double kMoment = 3.0;
 // Statuses come once a second.
 constexpr std::chrono::seconds kBreak{3};
 
-bool serves(const v1::ServiceStatus& status) {
-  return status.state() == v1::SERVICE_RUNNING || status.state() == v1::SERVICE_DEGRADED;
-}
-
 bool yields(const v1::ServiceStatus& own, const v1::ServiceStatus& other) {
   if (!serves(other) || other.instance() == own.instance())
     return false;

@@ -21,4 +21,8 @@ bool waits_for_robot(const v1::ServiceStatus& status) {
   return status.state() == v1::SERVICE_WAITING && status.reason().starts_with("waits for robot/");
 }
 
+bool serves(const v1::ServiceStatus& status) {
+  return status.state() == v1::SERVICE_RUNNING || status.state() == v1::SERVICE_DEGRADED;
+}
+
 }  // namespace saphira::bus

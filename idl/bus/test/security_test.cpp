@@ -12,6 +12,7 @@
 
 #include "harness.hpp"
 #include "liar.hpp"
+#include "process.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
@@ -30,18 +31,13 @@ std::int64_t now() {
 /// A site with a member for each role, named as the role.
 class Site {
  public:
-  explicit Site(const std::string& name)
-      : folder_(fs::temp_directory_path() / ("saphira-" + name + std::to_string(getpid()))) {
-    fs::remove_all(folder_);
+  explicit Site(const std::string& name) {
     const std::string file = config_folder() + "/security/roles.yaml";
-    authority_.emplace(security::Authority::make((folder_ / "authority").string(), name,
-                                                 read_file(file), file, now()));
+    authority_.emplace(
+        security::Authority::make(folder_.path("authority"), name, read_file(file), file, now()));
     for (const security::Role& role : authority_->roles().roles)
       add(role.name, role.name);
   }
-  ~Site() { fs::remove_all(folder_); }
-  Site(const Site&) = delete;
-  Site& operator=(const Site&) = delete;
 
   void add(const std::string& name, const std::string& role, const std::string& robot = "") {
     authority_->add(name, {role}, robot, 365, now());
@@ -50,10 +46,10 @@ class Site {
 
   /// A member's folder as somebody else has copied it.
   std::string copy_of(const std::string& member) const {
-    const fs::path copy = folder_ / ("copy-" + member);
+    const std::string copy = folder_.path("copy-" + member);
     fs::remove_all(copy);
     fs::copy(authority_->folder_of(member), copy, fs::copy_options::recursive);
-    return copy.string();
+    return copy;
   }
 
   NodeOptions options(const std::string& member, const std::string& of_robot = robot("s")) const {
@@ -77,7 +73,7 @@ class Site {
     return role == nullptr || role->programs.empty() ? member : role->programs.front();
   }
 
-  const fs::path folder_;
+  const saphira::test::TempDir folder_;
   std::optional<security::Authority> authority_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -48,12 +47,7 @@ auto checked(const std::string& file, F&& f) {
 }
 
 std::string day(std::int64_t seconds) {
-  const std::time_t time = seconds;
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
-  return text.data();
+  return utc_text(seconds, "%Y-%m-%d %H:%M UTC");
 }
 
 std::string role_for(const std::string& folder, const std::string& program, const Roles& roles) {

@@ -9,12 +9,10 @@
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
-#include <algorithm>
 #include <cstring>
 #include <ctime>
 #include <memory>
 #include <stdexcept>
-#include <vector>
 
 namespace saphira::security {
 namespace {

@@ -18,15 +18,6 @@ std::string element(const std::string& name, const std::string& content) {
   return "<" + name + ">" + content + "</" + name + ">\n";
 }
 
-std::string time_text(std::int64_t seconds) {
-  const std::time_t time = seconds;
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-  return text.data();
-}
-
 /// One direction: its topics, of one robot or of all.
 std::string criteria(const std::string& direction, const std::string& topics,
                      const std::string& robot) {
@@ -38,6 +29,15 @@ std::string criteria(const std::string& direction, const std::string& topics,
 }
 
 }  // namespace
+
+std::string utc_text(std::int64_t seconds, const char* format) {
+  const std::time_t time = seconds;
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), format, &utc);
+  return text.data();
+}
 
 std::string governance() {
   const std::string rule =
@@ -71,8 +71,8 @@ std::string permissions(const Grant& grant, const Roles& roles) {
   }
   return std::string(kHeader) + "omg_shared_ca_permissions.xsd\">\n<permissions>\n<grant name=\"" +
          common_name(grant.subject) + "\">\n" + element("subject_name", to_text(grant.subject)) +
-         element("validity", element("not_before", time_text(grant.from)) +
-                                 element("not_after", time_text(grant.until))) +
+         element("validity", element("not_before", utc_text(grant.from, "%Y-%m-%dT%H:%M:%S")) +
+                                 element("not_after", utc_text(grant.until, "%Y-%m-%dT%H:%M:%S"))) +
          element("allow_rule", kDomains + criteria("publish", writes, grant.robot) +
                                    criteria("subscribe", reads, grant.robot)) +
          element("default", "DENY") + "</grant>\n</permissions>\n</dds>\n";

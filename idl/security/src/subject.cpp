@@ -1,8 +1,9 @@
 #include "saphira/security/subject.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
+
+#include "saphira/base/numbers.hpp"
 
 namespace saphira::security {
 namespace {
@@ -57,10 +58,9 @@ std::optional<Subject> parse_subject(std::string_view text) {
   Subject subject{std::string(common.substr(0, dot)), 0, std::string(parts["OU"]),
                   std::string(parts["O"])};
   const std::string_view issue = common.substr(dot + 1);
-  const auto read = std::from_chars(issue.data(), issue.data() + issue.size(), subject.issue);
-  if (read.ec != std::errc() || read.ptr != issue.data() + issue.size() || subject.issue == 0 ||
-      issue.front() == '0' || !is_name(subject.name) || !is_name(subject.role) ||
-      !is_name(subject.site))
+  subject.issue = number_in<decltype(subject.issue)>(issue).value_or(0);
+  if (subject.issue == 0 || issue.front() == '0' || !is_name(subject.name) ||
+      !is_name(subject.role) || !is_name(subject.site))
     return std::nullopt;
   return subject;
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "site.hpp"
 
 namespace saphira::security::test {
@@ -10,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(AuthorityTest, AMemberHasAFolderToCarry) {
-  const Folder folder("add");
+  const Folder folder;
   const std::string made = folder.authority().add("flakey", {"bridge", "services"}, "", 365, kNow);
   EXPECT_EQ(roles_in(made), (std::vector<std::string>{"bridge", "services"}));
   const Credentials bridge = load_credentials(made, "bridge", kNow);
@@ -20,7 +22,7 @@ TEST(AuthorityTest, AMemberHasAFolderToCarry) {
 }
 
 TEST(AuthorityTest, KeysAreForTheirUserAlone) {
-  const Folder folder("mode");
+  const Folder folder;
   const std::string made = folder.authority().add("karen", {"operator"}, "", 365, kNow);
   int keys = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder.path("")))
@@ -34,7 +36,7 @@ TEST(AuthorityTest, KeysAreForTheirUserAlone) {
 }
 
 TEST(AuthorityTest, IsFoundAgainAsItWas) {
-  const Folder folder("again");
+  const Folder folder;
   folder.authority().add("karen", {"operator"}, "flakey", 10, kNow);
   const Authority again(folder.path());
   EXPECT_EQ(again.site(), "office");
@@ -47,14 +49,14 @@ TEST(AuthorityTest, IsFoundAgainAsItWas) {
 }
 
 TEST(AuthorityTest, IsNotMadeOverAnother) {
-  const Folder folder("twice");
+  const Folder folder;
   folder.authority();
   EXPECT_TRUE(says(trouble([&] { folder.authority("other"); }), "holds an authority already"));
   EXPECT_EQ(Authority(folder.path()).site(), "office");
 }
 
 TEST(AuthorityTest, MistakesAreTold) {
-  const Folder folder("mistakes");
+  const Folder folder;
   EXPECT_TRUE(says(trouble([&] { Authority none(folder.path()); }), "saphira security init"));
   EXPECT_TRUE(says(trouble([&] { folder.authority("Office"); }), "no name of a site"));
   Authority authority = folder.authority();
@@ -73,7 +75,7 @@ TEST(AuthorityTest, MistakesAreTold) {
 }
 
 TEST(AuthorityTest, WhatIsRenewedHoldsBesideTheOld) {
-  const Folder folder("renew");
+  const Folder folder;
   Authority authority = folder.authority();
   const std::string made = authority.add("karen", {"operator"}, "flakey", 10, kNow);
   fs::copy(made, folder.path("old"), fs::copy_options::recursive);
@@ -85,7 +87,7 @@ TEST(AuthorityTest, WhatIsRenewedHoldsBesideTheOld) {
 }
 
 TEST(AuthorityTest, WhatIsRevokedDoesNotStartAgain) {
-  const Folder folder("revoke");
+  const Folder folder;
   Authority authority = folder.authority();
   const std::string karen = authority.add("karen", {"operator"}, "", 365, kNow);
   const std::string john = authority.add("john", {"operator"}, "", 365, kNow);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "saphira/base/durable.hpp"
 #include "site.hpp"
 
@@ -12,7 +14,7 @@ namespace fs = std::filesystem;
 
 class CredentialsTest : public testing::Test {
  protected:
-  Folder folder_{"credentials"};
+  Folder folder_;
   std::string made_ = folder_.authority().add("karen", {"operator"}, "", 365, kNow);
 
   std::string loading(std::int64_t now = kNow, const std::string& program = "cli") const {

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <string>
 
+#include "process.hpp"
 #include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/security/authority.hpp"
@@ -17,16 +15,7 @@ constexpr std::int64_t kDay = 86400;
 /// A folder for a test's authority, with the shipped roles.
 class Folder {
  public:
-  explicit Folder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() /
-              ("saphira-security-" + name + std::to_string(getpid()))) {
-    std::filesystem::remove_all(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string path(const std::string& file = "authority") const { return (path_ / file).string(); }
+  std::string path(const std::string& file = "authority") const { return folder_.path(file); }
   Authority authority(const std::string& site = "office",
                       const std::string& file = "authority") const {
     const std::string roles = config_folder() + "/security/roles.yaml";
@@ -34,7 +23,7 @@ class Folder {
   }
 
  private:
-  const std::filesystem::path path_;
+  const saphira::test::TempDir folder_;
 };
 
 /// The message of the exception that f() throws; empty where it throws none.

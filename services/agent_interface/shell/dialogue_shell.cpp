@@ -8,7 +8,9 @@
 #include "geometry/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/base/boot_clock.hpp"
 #include "saphira/base/durable.hpp"
+#include "saphira/base/places.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -23,15 +25,6 @@ constexpr double kOld = 60.0;  // [s] after which an utterance is too old to act
 constexpr std::chrono::seconds kTakenUp{5};  // an unclaimed goal is withdrawn then
 constexpr const char* kNotTakenUp =
     "no program has taken up the goal: saphira status shows whether intentions runs";
-
-double unix_time() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-std::string folder_of(const std::string& file) {
-  const std::string folder = fs::path(file).parent_path();
-  return folder.empty() ? "." : folder;
-}
 
 /// A text in the activity language: "karen's office".
 std::string literal(const std::string& text) {
@@ -107,10 +100,8 @@ void DialogueShell::announce() {
 }
 
 void DialogueShell::reload() {
-  const WatchedFolder::Changes changes = folder_.look();
-  const std::string file = fs::path(options_.grammar).filename();
-  for (const std::string& name : changes.changed) {
-    if (name != file)
+  for (const std::string& name : folder_.look().changed) {
+    if (name != fs::path(options_.grammar).filename())
       continue;
     try {
       dialogue_.use(Grammar(read_file(options_.grammar), options_.grammar));

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <numbers>
 
 #include "saphira/base/durable.hpp"
@@ -29,7 +28,7 @@ std::string slot(const Meaning& meaning, const std::string& name) {
   return found == meaning.slots.end() ? std::string() : found->second;
 }
 
-double number_in(const Meaning& meaning, const std::string& name) {
+double number_of(const Meaning& meaning, const std::string& name) {
   return std::strtod(slot(meaning, name).c_str(), nullptr);
 }
 
@@ -202,7 +201,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
   if (meaning.functor == "stop") {
     want(meaning, utterance, "stop", {}, out);
   } else if (meaning.functor == "move") {
-    const double distance = number_in(meaning, "distance");
+    const double distance = number_of(meaning, "distance");
     if (distance <= 0.0 || distance > kLongestWay) {
       say(utterance, "I go up to " + plain(kLongestWay) + " m at a time", true, out);
       return true;
@@ -215,7 +214,7 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
     }
   } else if (meaning.functor == "turn" || meaning.functor == "turn_around") {
     const bool around = meaning.functor == "turn_around";
-    const double degrees = around ? 180.0 : number_in(meaning, "degrees");
+    const double degrees = around ? 180.0 : number_of(meaning, "degrees");
     if (degrees <= 0.0 || degrees > 180.0) {
       say(utterance, "I turn by up to 180 degrees at a time", true, out);
       return true;

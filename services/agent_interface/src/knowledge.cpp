@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
 #include "saphira/base/durable.hpp"
@@ -38,11 +37,8 @@ std::vector<std::string> fields(std::string_view line) {
 }
 
 std::optional<double> parse_number(const std::string& text) {
-  double value = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  return read.ec == std::errc() && read.ptr == text.data() + text.size() && value >= 0.0
-             ? std::optional(value)
-             : std::nullopt;
+  const auto value = number_in<double>(text);
+  return value && *value >= 0.0 ? value : std::nullopt;
 }
 
 std::optional<Advice> read(std::string_view line) {

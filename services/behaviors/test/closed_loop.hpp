@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "robot_model.hpp"
+#include "saphira/behaviors/executive.hpp"
 #include "saphira/sim/robot.hpp"
 #include "saphira/sim/scene.hpp"
 #include "saphira/sim/sonar.hpp"

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "pioneer.hpp"
 #include "saphira/behaviors/executive.hpp"
 #include "saphira/behaviors/foresight.hpp"

@@ -34,7 +34,7 @@ class Bench {
 
   bool step() {
     step_without_moving();
-    world.move(out.behaviors, cycle);
+    world.move(out.behaviors);
     return true;
   }
   void step_without_moving() {

@@ -65,13 +65,6 @@ class IntentionsProgram : public testing::Test {
   bus::GoalClient goals{requester, "a test"};
 };
 
-v1::Goal go_to(double x, double y) {
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments().push_back(bus::point("position", x, y, 0.0, v1::FRAME_ODOM));
-  return goal;
-}
-
 v1::Goal drive() {
   v1::Goal goal;
   goal.functor("drive");
@@ -170,7 +163,7 @@ TEST_F(IntentionsProgram, AHalfTurnIsAHalfTurnOverAKill) {
     for (int i = 0; i < 10 && !(acted = site.act()); ++i)
       node.wait(milliseconds(10));
     if (!acted)
-      site.world.move({}, site.cycle);  // no driver: it stands
+      site.world.move({});  // no driver: it stands
     turned += norm2_angle(site.world.robot.pose_in_odom.th - before);
     if (!killed && turned > kPi / 2.0) {
       killed = true;

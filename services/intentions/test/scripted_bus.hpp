@@ -7,9 +7,18 @@
 
 #include "intentions/shell/convert.hpp"
 #include "saphira/bus/node.hpp"
+#include "saphira/bus/request_client.hpp"
 #include "scripted_robot.hpp"
 
 namespace saphira::intentions {
+
+/// The goal go_to of a place [m] in odom.
+inline v1::Goal go_to(double x, double y) {
+  v1::Goal goal;
+  goal.functor("go_to");
+  goal.arguments().push_back(bus::point("position", x, y, 0.0, v1::FRAME_ODOM));
+  return goal;
+}
 
 /// The bridge and the behaviors service in one, in the simplest form, on the bus.
 class ScriptedBus {
@@ -72,7 +81,7 @@ class ScriptedBus {
     std::vector<IntendedBehavior> behaviors;
     for (const v1::IntendedBehavior& behavior : intended->behaviors())
       behaviors.push_back(from_bus(behavior));
-    world.move(behaviors, cycle);
+    world.move(behaviors);
     v1::BehaviorSet sample;
     sample.stamp(stamp());
     sample.control(true);

@@ -14,13 +14,11 @@ class ScriptedRobot {
  public:
   Robot robot{.connected = true, .odom = 1};
   std::vector<BehaviorLevel> levels;
-  std::uint64_t levels_cycle = 0;
   bool held = false;  ///< blocked: it does not move
 
   /// The world moves from the cycle of `outputs` to the next.
-  void move(const std::vector<IntendedBehavior>& behaviors, std::uint64_t cycle) {
+  void move(const std::vector<IntendedBehavior>& behaviors) {
     levels.clear();
-    levels_cycle = cycle;
     double velocity = 0.0;
     double turn = 0.0;
     for (const IntendedBehavior& behavior : behaviors) {

@@ -57,13 +57,6 @@ class ShellTest : public testing::Test {
   std::string folder;  ///< of activities
 };
 
-v1::Goal go_to(double x, double y) {
-  v1::Goal goal;
-  goal.functor("go_to");
-  goal.arguments().push_back(bus::point("position", x, y, 0.0, v1::FRAME_ODOM));
-  return goal;
-}
-
 TEST_F(ShellTest, DrivesToAGoalAndSaysSo) {
   start();
   const v1::GoalId id = goals.ask(go_to(1.0, 0.5));

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <string>
@@ -52,7 +51,7 @@ class Site {
   void kill(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       ++cycle;
-      world.move({}, cycle);
+      world.move({});
     }
     world.levels.clear();
     start();
@@ -80,7 +79,7 @@ class Site {
     for (const Said& each : out.said)
       said += each.text + "\n";
     const Pose before = world.robot.pose_in_odom;
-    world.move(out.behaviors, cycle);
+    world.move(out.behaviors);
     turned += norm2_angle(world.robot.pose_in_odom.th - before.th);
     driven += (world.robot.pose_in_odom.position() - before.position()).norm();
   }

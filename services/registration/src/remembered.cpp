@@ -1,7 +1,5 @@
 #include "saphira/registration/remembered.hpp"
 
-#include <charconv>
-
 #include "saphira/base/durable.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
@@ -61,11 +59,10 @@ std::string read_name(LineReader& reader) {
       continue;
     }
     const std::string_view code = word.substr(i + 1, 2);
-    unsigned byte = 0;
-    const auto [end, error] = std::from_chars(code.data(), code.data() + code.size(), byte, 16);
-    if (code.size() != 2 || error != std::errc() || end != code.data() + code.size())
+    const auto byte = number_in<unsigned>(code, 16);
+    if (code.size() != 2 || !byte)
       reader.fail("expected two hexadecimal digits after %");
-    name += static_cast<char>(byte);
+    name += static_cast<char>(*byte);
     i += 2;
   }
   return name;

@@ -1,7 +1,6 @@
 #include "saphira/vision/core.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace saphira::vision {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::vision {
@@ -21,11 +21,10 @@ const char* const kSource = "stereo pictures";
 
 template <class T>
 T number(std::string_view text, const std::string& what) {
-  T value{};
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc{} || end.ptr != text.data() + text.size())
+  const auto value = number_in<T>(text);
+  if (!value)
     wrong("expected a number for " + what + ", found \"" + std::string(text) + "\"");
-  return value;
+  return *value;
 }
 
 void read_comment(std::string_view comment, StereoPicture& picture) {

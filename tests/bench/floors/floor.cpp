@@ -7,7 +7,6 @@
 #include <iomanip>
 #include <limits>
 #include <sstream>
-#include <utility>
 
 #include "saphira/base/random.hpp"
 

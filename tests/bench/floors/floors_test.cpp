@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <memory>
 #include <set>
-#include <string>
 
 #include "drive/drive.hpp"
 #include "floors/floor.hpp"

@@ -1,7 +1,6 @@
 #include "localization/patrol.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace saphira::test {
 

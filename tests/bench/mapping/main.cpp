@@ -1,5 +1,4 @@
 // Maps that a simulated robot builds from nothing, exploring, against the maps drawn by hand.
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "perception/score.hpp"
+#include "saphira/base/numbers.hpp"
 #include "support/quantile.hpp"
 
 // saphira-bench-perception: percepts and grids against the ground truth, and the cost of a cycle.
@@ -41,8 +40,9 @@ struct Options {
 
 template <class Number>
 bool read(std::string_view word, Number& number) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size();
+  const auto found = number_in<Number>(word);
+  number = found.value_or(number);
+  return found.has_value();
 }
 
 // False for invalid words.

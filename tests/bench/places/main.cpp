@@ -1,6 +1,5 @@
 // Journeys from any place in a room of the office floor to another room by its name, and their
 // results.
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

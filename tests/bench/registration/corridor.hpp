@@ -13,9 +13,8 @@ namespace saphira::bench {
 /// second one: its walls are parallel and 2.14 m apart, and the left one has a gap of 0.73 m (its
 /// middle at y = -6.24 m).
 struct CorridorFindings {
-  std::size_t walls = 0;        ///< along the corridor's walls
-  std::size_t other_walls = 0;  ///< elsewhere
-  double left_offset = 0.0;     ///< [m] of the longest on each side, from the fit at its middle
+  std::size_t walls = 0;     ///< along the corridor's walls
+  double left_offset = 0.0;  ///< [m] of the longest along each, from the fit at its middle
   double right_offset = 0.0;
   std::optional<double> width;  ///< [m] of the corridor with the width nearest to the fit
   std::size_t corridors = 0;

@@ -1,7 +1,6 @@
 #include "percept_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "percept_run.hpp"
 #include "support/quantile.hpp"

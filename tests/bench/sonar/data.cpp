@@ -1,8 +1,8 @@
 #include "data.hpp"
 
-#include <charconv>
 #include <cmath>
 
+#include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira::bench {
@@ -45,12 +45,10 @@ double number(const Row& row, std::size_t cell, const std::string& file) {
   if (cell >= row.cells.size())
     throw FileError(file, row.number, static_cast<int>(row.line.size()) + 1, "expected a number",
                     row.line);
-  const std::string_view text = row.cells[cell].text;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+  const auto value = number_in<double>(row.cells[cell].text);
+  if (!value || !std::isfinite(*value))
     throw FileError(file, row.number, row.cells[cell].column, "expected a number", row.line);
-  return value;
+  return *value;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // The robot behind a serial line at 9600 baud: faults of the line, and their effect for the user.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <csignal>
 
 #include "scene.hpp"

@@ -2,8 +2,6 @@
 // driver, and no motion without one.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "node_options.hpp"
 #include "scene.hpp"
 

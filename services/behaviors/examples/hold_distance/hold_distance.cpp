@@ -2,7 +2,6 @@
 // the obstacle ahead, to and fro; intended below AvoidCollision, it follows a person who walks
 // away.
 
-#include <algorithm>
 #include <cmath>
 
 #include "saphira/behaviors/plugin.hpp"

@@ -37,6 +37,11 @@ std::string user_folder() {
   return home == nullptr || *home == 0 ? "" : std::string(home) + "/.config/saphira";
 }
 
+std::string folder_of(const std::string& file) {
+  const std::string folder = fs::path(file).parent_path();
+  return folder.empty() ? "." : folder;
+}
+
 std::string find_file(const std::string& folder, const std::string& name,
                       const std::string& extension) {
   std::error_code error;

@@ -58,9 +58,7 @@ Process& ProcessTable::add(std::string name, std::string effect, Process::Functi
 }
 
 Process* ProcessTable::find(std::string_view name) {
-  const auto found = std::find_if(processes_.begin(), processes_.end(),
-                                  [&](const auto& process) { return process->name() == name; });
-  return found == processes_.end() ? nullptr : found->get();
+  return const_cast<Process*>(std::as_const(*this).find(name));
 }
 
 const Process* ProcessTable::find(std::string_view name) const {

@@ -1,13 +1,14 @@
 #include "saphira/base/text.hpp"
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <utility>
+
+#include "saphira/base/numbers.hpp"
 
 namespace saphira {
 
@@ -27,11 +28,11 @@ std::string describe(const std::string& file, int line, int column, const std::s
   return out;
 }
 
+}  // namespace
+
 bool blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
-
-}  // namespace
 
 FileError::FileError(std::string file, int line, int column, const std::string& message,
                      std::string_view line_text)
@@ -78,17 +79,15 @@ std::string_view LineReader::word(std::string_view what) {
 
 double LineReader::number(std::string_view what, double low, double high) {
   const std::string_view text = word(what);
-  double value = 0.0;
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+  const auto value = number_in<double>(text.substr(text.starts_with('+') ? 1 : 0));
+  if (!value || !std::isfinite(*value))
     fail("expected a number (" + std::string(what) + "), found \"" + std::string(text) + "\"");
-  if (value < low || value > high) {
+  if (*value < low || *value > high) {
     std::ostringstream range;
     range << "expected " << what << " between " << low << " and " << high << ", found " << text;
     fail(range.str());
   }
-  return value;
+  return *value;
 }
 
 long LineReader::integer(std::string_view what, long low, long high) {

@@ -1,33 +1,17 @@
 #include "saphira/base/durable.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "process.hpp"
 #include "saphira/base/text.hpp"
 
 namespace saphira {
 namespace {
-
-/// A folder that is removed with the object.
-class Folder {
- public:
-  Folder() {
-    if (mkdtemp(path_.data()) == nullptr)
-      throw std::runtime_error("no folder in /tmp");
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string path(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_ = "/tmp/saphira-durable-XXXXXX";
-};
 
 void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
@@ -63,7 +47,7 @@ TEST(Durable, ASealedTextIsWhatItWas) {
 }
 
 TEST(Durable, WhatCannotBeUnderstoodIsSetAside) {
-  const Folder folder;
+  const test::TempDir folder;
   const std::string path = folder.path("state");
   const auto understand = [](const std::string& text) {
     if (text != "good")
@@ -86,7 +70,7 @@ TEST(Durable, WhatCannotBeUnderstoodIsSetAside) {
 }
 
 TEST(Durable, AFileIsReplacedWhole) {
-  const Folder folder;
+  const test::TempDir folder;
   const std::string path = folder.path("state");
   EXPECT_TRUE(replace_file(path, "one"));
   EXPECT_EQ(read_file(path), "one");

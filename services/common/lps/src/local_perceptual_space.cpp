@@ -13,7 +13,6 @@ constexpr std::uint32_t kOriginId = 1;
 Artifact origin() {
   Artifact artifact;
   artifact.id = kOriginId;
-  artifact.category = Category::system;
   return artifact;
 }
 

@@ -31,7 +31,6 @@ TEST(Artifact, LocalAndGlobalCoordinatesFollowEachOther) {
   lps.set_global(point);
   expect_near(point.global, {0.0, 1.0, kPi / 2});
   EXPECT_EQ(point.type, PointType::position);
-  EXPECT_EQ(point.category, Category::artifact);
 }
 
 TEST(Artifact, IsInTheListOnce) {
@@ -51,7 +50,6 @@ TEST(Artifact, TheGlobalOriginIsAlwaysThere) {
   LocalPerceptualSpace lps;
   lps.update({2.0, 0.0, 0.0}, {}, 1);
   const Artifact& origin = lps.artifacts().front();
-  EXPECT_EQ(origin.category, Category::system);
   expect_near(origin.local, {-2.0, 0.0, 0.0});
   EXPECT_FALSE(lps.remove(origin.id));
 }

@@ -1,7 +1,6 @@
 #include "saphira/maps/map.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -20,10 +19,6 @@ constexpr double kMillimetre = 0.001;
 constexpr double kMax = 1e7;        // [mm] 10 km: more is a typing error
 constexpr double kMaxAngle = 3600;  // [deg]
 constexpr double kMaxId = 2147483647;
-
-bool blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
-}
 
 /// Line breaks and other control characters, which no line of a file can hold.
 bool has_control(std::string_view text) {
@@ -72,15 +67,13 @@ class Scanner {
     const std::string_view text = word();
     if (text.empty())
       fail("expected " + std::string(what) + ", found the end of the line");
-    double value = 0.0;
-    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    const auto value = number_in<double>(text.substr(text.starts_with('+') ? 1 : 0));
+    if (!value || !std::isfinite(*value))
       fail("expected a number (" + std::string(what) + "), found \"" + std::string(text) + "\"");
-    if (value < low || value > high)
+    if (*value < low || *value > high)
       fail("expected " + std::string(what) + " between " + decimal(low, 0) + " and " +
            decimal(high, 0) + ", found " + std::string(text));
-    return value;
+    return *value;
   }
 
   /// "..." up to the closing mark; the caller has seen the opening one.

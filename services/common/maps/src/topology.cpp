@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "saphira/base/guess.hpp"
@@ -22,10 +21,6 @@ constexpr double kParallel = radians(30.0);
 // Distances behind and before a door at which its regions are searched [m]: first near, to find a
 // thin room, then farther, since walls have a thickness.
 constexpr std::array<double, 4> kProbes{0.15, 0.3, 0.6, 1.0};
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 Vec2 middle(const std::vector<Vec2>& polygon) {
   Vec2 sum(0.0, 0.0);
@@ -309,11 +304,7 @@ std::string Topology::no_place(std::string_view name) const {
 std::optional<Place> Topology::place(std::string_view name_or_id) const {
   if (name_or_id.empty())
     return std::nullopt;
-  std::uint32_t id = 0;
-  const auto [end, error] =
-      std::from_chars(name_or_id.data(), name_or_id.data() + name_or_id.size(), id);
-  const bool is_id =
-      error == std::errc{} && end == name_or_id.data() + name_or_id.size() && id != 0;
+  const std::uint32_t id = number_in<std::uint32_t>(name_or_id).value_or(0);
 
   const auto search = [&](const auto& meant) -> std::optional<Place> {
     Place place;
@@ -337,7 +328,7 @@ std::optional<Place> Topology::place(std::string_view name_or_id) const {
     return std::nullopt;
   };
 
-  if (is_id) {
+  if (id != 0) {
     if (auto found = search([&](const Feature& feature) { return feature.id == id; }))
       return found;
     for (const Link& link : links_) {

@@ -1,7 +1,6 @@
 #include "saphira/intentions/activity_folders.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>

@@ -1,7 +1,6 @@
 #include "saphira/intentions/journal.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <map>
 #include <optional>
@@ -23,11 +22,10 @@ std::string write_id(const GoalId& id) {
 /// A whole word as a number to the base; otherwise an error at that word.
 std::uint64_t read_count(LineReader& reader, std::string_view what, int base) {
   const std::string_view word = reader.word(what);
-  std::uint64_t value = 0;
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value, base);
-  if (result.ec != std::errc() || result.ptr != word.data() + word.size())
+  const auto value = number_in<std::uint64_t>(word, base);
+  if (!value)
     reader.fail("expected " + std::string(what) + ", found \"" + std::string(word) + "\"");
-  return value;
+  return *value;
 }
 
 GoalId read_id(LineReader& reader) {

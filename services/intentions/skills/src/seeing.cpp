@@ -1,7 +1,6 @@
 #include "seeing.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace saphira::intentions {
 namespace {

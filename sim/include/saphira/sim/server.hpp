@@ -20,9 +20,6 @@ namespace saphira::sim {
 
 /// Ticks from one information packet to the next: 100 ms (manual 5.3).
 inline constexpr int kTicksPerPacket = 10;
-/// Ticks without a packet from the client after which the motors stop: two seconds (manual 5.4.4),
-/// unless the robot's file says otherwise.
-inline constexpr int kWatchdogTicks = 200;
 
 struct ServerOptions {
   std::uint64_t seed = 1;

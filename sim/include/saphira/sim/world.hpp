@@ -92,11 +92,6 @@ std::optional<Vec2> nearest_point(const Things& things, const Vec2& point);
 /// The distance to the nearest of the things, negative in a disc; infinite without things.
 double distance(const Things& things, const Vec2& point);
 
-/// [m2] Of two vectors: positive where b points to the left of a.
-inline double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// True where two segments have a common point, including ends; not where they are collinear.
 bool intersect(const Segment& a, const Segment& b);
 

@@ -13,10 +13,7 @@ struct Track {
   double path = 0.0;           ///< [m] that the robot's center moved
   double min_clearance = 0.0;  ///< [m] from the hull to the nearest obstacle; NaN without a cycle
   std::uint64_t contacts = 0;
-  double start_x = 0.0;  ///< [m] true pose at the first cycle, in the world
-  double start_y = 0.0;
-  double start_th = 0.0;  ///< [rad]
-  std::string hash;       ///< FNV-1a 64 of the lines, as 16 hexadecimal digits
+  std::string hash;  ///< FNV-1a 64 of the lines, as 16 hexadecimal digits
 };
 
 /// Evaluates the text of a trace (saphira-sim --trace) up to and with `last_cycle` of its last

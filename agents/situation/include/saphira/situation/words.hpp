@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
+#include "agents.h"
 #include "intention.h"
 #include "motion.h"
 #include "system.h"
@@ -22,6 +24,10 @@ std::string latched(const v1::Grant& grant);
 std::string describe(const v1::Grant& grant);
 /// The goal for people: go_to(position=(3, 1) in odom).
 std::string describe(const v1::Goal& goal);
+
+/// What a person types to the robot, as it is put on the bus. time: [s] since 1970.
+v1::Utterance typed(std::uint64_t writer, std::uint64_t number, const std::string& speaker,
+                    const std::string& text, double time);
 
 /// True where the node stands for a behavior: a leaf of the tree.
 bool is_behavior(const v1::IntentionNode& node, const v1::Intentions& intentions);

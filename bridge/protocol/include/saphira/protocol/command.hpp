@@ -320,85 +320,27 @@ template <Number N>
 struct TextCommand : Text {
   explicit TextCommand(Bytes bytes = {}) : Text{N, std::move(bytes)} {}
 };
-template <Number N>
-struct RawCommand : Raw {
-  explicit RawCommand(Bytes bytes = {}) : Raw{N, std::move(bytes)} {}
-};
 
 using Stop = BareCommand<Number::kStop>;
 using EmergencyStop = BareCommand<Number::kEmergencyStop>;
-using EmergencyStop2 = BareCommand<Number::kEmergencyStop2>;
-using TrueOrigin = BareCommand<Number::kTrueOrigin>;
 using SimReset = BareCommand<Number::kSimReset>;
-using Reset = BareCommand<Number::kReset>;
-using Maintenance = BareCommand<Number::kMaintenance>;
 
 // 0: no more of these packets, 1: one, 2: one with every information packet.
-using JoystickRequest = IntCommand<Number::kJoystickRequest>;
 using ConfigRequest = IntCommand<Number::kConfigRequest>;
 using EncoderRequest = IntCommand<Number::kEncoderRequest>;
-using ImuRequest = IntCommand<Number::kImuRequest>;
 using GripperRequest = IntCommand<Number::kGripperRequest>;
 using IoRequest = IntCommand<Number::kIoRequest>;
-using GyroRequest = IntCommand<Number::kGyroRequest>;
 using BatteryRequest = IntCommand<Number::kBatteryRequest>;
 using SimStatus = IntCommand<Number::kSimStatus>;
 
 using AnalogSelect = IntCommand<Number::kAnalogSelect>;
 using GripperValue = IntCommand<Number::kGripperValue>;
-using LaserIncrement = IntCommand<Number::kLaserIncrement>;
 using Aux1Read = IntCommand<Number::kAux1Read>;
 using Aux2Read = IntCommand<Number::kAux2Read>;
 using Aux3Read = IntCommand<Number::kAux3Read>;
 using BumpStall = IntCommand<Number::kBumpStall>;
-using Compass = IntCommand<Number::kCompass>;
-using JoyDrive = IntCommand<Number::kJoyDrive>;
-using MovingBlink = IntCommand<Number::kMovingBlink>;
-using HostBaud = IntCommand<Number::kHostBaud>;
-using Aux1Baud = IntCommand<Number::kAux1Baud>;
-using Aux2Baud = IntCommand<Number::kAux2Baud>;
-using StallEmergencyStop = IntCommand<Number::kStallEmergencyStop>;
-using CompassCalibration = IntCommand<Number::kCompassCalibration>;
-using TrueHeading = IntCommand<Number::kTrueHeading>;
-using ArmInfo = IntCommand<Number::kArmInfo>;
-using ArmStatus = IntCommand<Number::kArmStatus>;
-using ArmInit = IntCommand<Number::kArmInit>;
-using ArmCheck = IntCommand<Number::kArmCheck>;
-using ArmPower = IntCommand<Number::kArmPower>;
-using ArmHome = IntCommand<Number::kArmHome>;
-using ArmPark = IntCommand<Number::kArmPark>;
-using ArmPosition = IntCommand<Number::kArmPosition>;
-using ArmSpeed = IntCommand<Number::kArmSpeed>;
-using ArmStop = IntCommand<Number::kArmStop>;
-using ArmAutoPark = IntCommand<Number::kArmAutoPark>;
-using ArmGripperPark = IntCommand<Number::kArmGripperPark>;
-using RotationKp = IntCommand<Number::kRotationKp>;
-using RotationKv = IntCommand<Number::kRotationKv>;
-using RotationKi = IntCommand<Number::kRotationKi>;
-using TranslationKp = IntCommand<Number::kTranslationKp>;
-using TranslationKv = IntCommand<Number::kTranslationKv>;
-using TranslationKi = IntCommand<Number::kTranslationKi>;
 using Sound = IntCommand<Number::kSound>;
-using Playlist = IntCommand<Number::kPlaylist>;
-using SoundToggle = IntCommand<Number::kSoundToggle>;
-using Power95 = IntCommand<Number::kPower95>;
-using Power96 = IntCommand<Number::kPower96>;
-using Power97 = IntCommand<Number::kPower97>;
-using Power98 = IntCommand<Number::kPower98>;
-using Power125 = IntCommand<Number::kPower125>;
-using Power126 = IntCommand<Number::kPower126>;
-using Power127 = IntCommand<Number::kPower127>;
-using Power128 = IntCommand<Number::kPower128>;
-using Power129 = IntCommand<Number::kPower129>;
-using LateralAcceleration = IntCommand<Number::kLateralAcceleration>;
-using SimLaser = IntCommand<Number::kSimLaser>;
-using SimLaserStart = IntCommand<Number::kSimLaserStart>;
-using SimLaserEnd = IntCommand<Number::kSimLaserEnd>;
-using SimLaserResolution = IntCommand<Number::kSimLaserResolution>;
-using SimExit = IntCommand<Number::kSimExit>;
 using BatteryTest = IntCommand<Number::kBatteryTest>;
-using TemperatureTest1 = IntCommand<Number::kTemperatureTest1>;
-using TemperatureTest2 = IntCommand<Number::kTemperatureTest2>;
 
 /// SAY: pairs of duration [20 ms] and half-cycle of the tone.
 using Say = TextCommand<Number::kSay>;
@@ -407,11 +349,6 @@ using Aux2Send = TextCommand<Number::kAux2Send>;
 using Aux3Send = TextCommand<Number::kAux3Send>;
 /// VISION_COM of manual 9.1: "pioneer_X_mode=N" and the line parameters.
 using VisionCommand = TextCommand<Number::kVision>;
-using LoadWorld = TextCommand<Number::kLoadWorld>;
-using SimMessage = TextCommand<Number::kSimMessage>;
-
-using SimModel = RawCommand<Number::kSimModel>;
-using SimControl = RawCommand<Number::kSimControl>;
 
 /// A command that is not in the table, or has an unreadable argument.
 struct Unknown {

@@ -195,8 +195,6 @@ struct VisionPacket {
   std::array<VisionChannel, 3> channels{};
   bool operator==(const VisionPacket&) const = default;
 };
-/// Pixels of that camera's image per degree (manual 9.2).
-inline constexpr double kPixelsPerDegree = 3.0;
 
 /// One piece of the simulated laser's scan.
 struct SimLaserPacket {

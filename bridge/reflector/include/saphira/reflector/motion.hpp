@@ -58,11 +58,6 @@ class DirectMotion {
   /// [m] The remaining way of a position; 0: done, or no position.
   double distance_left() const;
 
-  /// True where the distance is done to within `tolerance` [m]; true where no position was asked.
-  bool done_position(double tolerance) const;
-  /// True where the robot points to within `tolerance` [rad] of its heading setpoint.
-  bool done_heading(double tolerance, double heading_in_odom) const;
-
  private:
   Limits limits_;
   Setpoints setpoints_;

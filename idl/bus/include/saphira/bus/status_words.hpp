@@ -16,4 +16,7 @@ bool has_namesake(const v1::ServiceStatus& status);
 /// True where the program waits for a sample of its robot (robot/...), which the bridge writes.
 bool waits_for_robot(const v1::ServiceStatus& status);
 
+/// True where the program does its work, be it in part.
+bool serves(const v1::ServiceStatus& status);
+
 }  // namespace saphira::bus

@@ -8,6 +8,9 @@
 
 namespace saphira::security {
 
+/// A time [s since 1970] in UTC. format: as of strftime, for at most 31 characters.
+std::string utc_text(std::int64_t seconds, const char* format);
+
 /// The rules that every program of a site demands of every other (DDS Security 1.1, 9.4.1.2).
 /// Participants without authentication are not heard. Every topic has its readers and writers.
 /// Discovery and all messages are encrypted; only the permitted readers of a topic have its key.

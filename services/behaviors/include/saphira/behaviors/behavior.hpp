@@ -25,6 +25,22 @@ struct RobotModel {
   lps::LpsSettings lps;
 };
 
+/// Of a robot's parameter file: protocol::RobotParameters, which this library does not know.
+template <class Parameters>
+RobotModel model_of(const Parameters& parameters) {
+  RobotModel model;
+  model.radius = parameters.radius;
+  model.max_velocity = parameters.max_velocity;
+  model.max_rotation_velocity = parameters.max_rotation_velocity;
+  model.deceleration = parameters.deceleration;
+  model.lps.front_buffer = static_cast<std::size_t>(parameters.front_buffer);
+  model.lps.side_buffer = static_cast<std::size_t>(parameters.side_buffer);
+  model.lps.front_max_range = parameters.front_max_range;
+  for (const auto& sonar : parameters.sonars)
+    model.lps.sonars.push_back({sonar.number, sonar.pose_in_robot});
+  return model;
+}
+
 /// The robot in this cycle.
 struct RobotNow {
   Pose pose_in_odom;

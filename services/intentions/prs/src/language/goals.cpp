@@ -221,7 +221,6 @@ bool Goals::goal(const Form& form) {
 void Goals::take(std::size_t at, const Form& form, bool actions) {
   Expression compiled = expressions_.expression(form, actions);
   step(at).expression = std::move(compiled);
-  step(at).has_expression = true;
 }
 
 bool Goals::test(const Form& form) {

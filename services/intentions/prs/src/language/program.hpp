@@ -103,7 +103,6 @@ struct Step {
   int line = 0;
   std::string text;  ///< for people
   Expression expression;
-  bool has_expression = false;
   std::size_t slot = kNowhere;    ///< of a local; kAssign
   std::size_t target = kNowhere;  ///< of a jump; behind the goal, of those that fork
   std::size_t other = kNowhere;   ///< the step after a failure; kNowhere: the failure goes up

@@ -25,4 +25,9 @@ struct BootClock {
   }
 };
 
+/// [s] since 1970, by the machine's clock.
+inline double unix_time() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 }  // namespace saphira

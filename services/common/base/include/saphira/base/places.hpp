@@ -15,6 +15,9 @@ std::string config_folder();
 /// there is no home.
 std::string user_folder();
 
+/// The folder of a file; "." for a name without a folder.
+std::string folder_of(const std::string& file);
+
 /// The file of that name: a path, or a file of `folder`, with or without its `extension` (".wld").
 /// std::invalid_argument that lists the existing files where it is neither.
 std::string find_file(const std::string& folder, const std::string& name,

@@ -29,6 +29,9 @@ class FileError : public std::runtime_error {
   int column_;
 };
 
+/// True for a separator of words within a line.
+bool blank(char c);
+
 /// A word of a line, with its column.
 struct Word {
   std::string_view text;

@@ -9,6 +9,11 @@ namespace saphira {
 /// A position or displacement [m], x forward, y left (REP 103).
 using Vec2 = Eigen::Vector2d;
 
+/// [m2] Of two vectors: positive where b points to the left of a.
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 inline constexpr double kPi = std::numbers::pi;
 
 inline constexpr double radians(double degrees) {

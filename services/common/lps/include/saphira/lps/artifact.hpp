@@ -6,13 +6,6 @@
 
 namespace saphira::lps {
 
-/// cat_type of manual 6.6.3.1: the category of an artifact.
-enum class Category {
-  system,   ///< with an internal function, such as the global origin
-  percept,  ///< a hypothesis drawn from sensor input
-  artifact  ///< made by a user: map information, goals
-};
-
 /// pt_type of manual 6.6.3.1: the kind of object.
 enum class PointType {
   invalid,
@@ -32,7 +25,6 @@ enum class PointType {
 struct Artifact {
   std::uint32_t id = 0;  ///< unique in its LPS; 0: not yet in one
   PointType type = PointType::position;
-  Category category = Category::artifact;
   Pose local;           ///< in the robot's frame
   Pose global;          ///< in the global frame
   double length = 0.0;  ///< [m] of walls, corridors and lanes
