@@ -1,7 +1,7 @@
 ;; Parameters of the Khepera, a robot of 55 mm. Its infrared sensors take the place of sonars.
 ;;
-;; Known values: eight sensors, about 50 mm of range, 12 encoder counts per millimetre, 53 mm between
-;; the wheels. The units of the packets are assumed.
+;; Known values: eight sensors, about 50 mm of range, 12 encoder counts per millimetre, 53 mm
+;; between the wheels. The units of the packets are assumed.
 ;; Keywords: README.md.
 
 Class     Khepera
