@@ -43,6 +43,7 @@ class Bench {
     inputs.troubles = std::exchange(troubles, {});
     inputs.estop = estop;
     inputs.around.registration = registration;
+    inputs.around.robot_radius = radius;
     out = executor.step(inputs);
     note(out.news);
   }
@@ -76,6 +77,7 @@ class Bench {
   std::vector<GoalEvent> events;
   std::vector<BehaviorTrouble> troubles;  ///< of the next step
   Registered registration;                ///< the registration's output
+  double radius = 0.0;                    ///< [m] of the robot; 0: unknown
   std::string estop;                      ///< program that pressed the emergency stop; empty: none
   Outputs out;
   std::map<std::uint64_t, GoalStatus> statuses;  ///< as a reader of goals/status has them

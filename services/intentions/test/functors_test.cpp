@@ -239,6 +239,22 @@ TEST(GoTo, GivesUpWhenItComesNoNearer) {
       << bench.status(1).reason;
 }
 
+// The way around an obstacle leads away from the point. A small robot is slow, and gets on.
+TEST(GoTo, HasMorePatienceWhileItGetsOn) {
+  for (const double radius : {0.03, 0.3}) {
+    Bench bench;
+    bench.radius = radius;
+    bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
+    bench.world.held = true;
+    while (bench.cycle < 300 && (bench.cycle == 0 || bench.state(1) == GoalState::kUnderway)) {
+      bench.step();
+      bench.world.robot.pose_in_odom.y += 0.005;  // 0.05 m/s past the obstacle
+    }
+    EXPECT_EQ(bench.state(1), GoalState::kFailed);
+    EXPECT_NEAR(static_cast<double>(bench.cycle), radius < 0.1 ? 150.0 : 50.0, 5.0);
+  }
+}
+
 TEST(Drive, GoesOnUntilItsDeadlineWhichIsItsSuccess) {
   Bench bench;
   Goal goal = bench.goal(1, "drive", {number("speed", 0.2)});

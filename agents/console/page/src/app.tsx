@@ -1,17 +1,23 @@
+import type {RefObject} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {Drive} from './drive';
 import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
-import {Link} from './link';
+import {ahead, askInstead, nameOf} from './goals';
+import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
 import type {ConsoleInfo, Grant, Registration, RobotState, Why} from './types';
 import {type Layers, type Target, View} from './view';
+import {forPage, keyless} from './words';
 
 const tabs = ['Goals', 'Why', 'Behaviors', 'Intentions', 'Programs', 'Messages'] as const;
 type Tab = typeof tabs[number];
 const old = 1000;            // [ms] an older picture is marked as such
-const gone = 2000;           // [ms] nothing heard for so long: the connection is gone
 const wordsPeriod = 100;     // [ms] between two looks at the words
+const noteTime = 8000;       // [ms]
+const longNoteTime = 20_000; // [ms] of bad news
+const aside = 30;            // [pixels] of a card from the place that it is about
+const beside: {[side: string]: number} = {top: 75, bottom: 60};
 
 interface Seen { state: 'live' | 'old' | 'silent' | 'gone' | 'locked'; age: number }
 function seen(link: Link, now: number): Seen {
@@ -65,7 +71,7 @@ export function App() {
     link.onNote((text, well) => {
       clearTimeout(timer);
       setNote({text, well});
-      timer = window.setTimeout(() => setNote(undefined), 8000);
+      timer = window.setTimeout(() => setNote(undefined), well ? noteTime : longNoteTime);
     });
   }, []);
 
@@ -81,7 +87,7 @@ export function App() {
         {grant?.estopped && <Estopped link={link} grant={grant} />}
         <Now link={link} grant={grant} seen={state} />
         <DrivePanel link={link} drive={drive} grant={grant} />
-        {note && <p class={note.well ? 'note' : 'note bad'} role="status">{note.text}
+        {note && <p class={note.well ? 'note' : 'note bad'} role="status">{forPage(note.text)}
           <button class="plain" aria-label="Close this message" onClick={() => setNote(undefined)}>×</button></p>}
         <Tabs tab={tab} choose={setTab} />
         <div class="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${tab}`} tabIndex={0}>
@@ -125,8 +131,8 @@ function Header({link, seen: s, grant}: {link: Link; seen: Seen; grant?: Grant})
 
 function Estopped({link, grant}: {link: Link; grant: Grant}) {
   return <div class="alarm" role="alert">
-    <div><strong>Emergency stop</strong> pressed by {grant.estop_source}. The robot stands until it is reset; its goals are ended.</div>
-    <button disabled={!link.mayDrive} onClick={() => link.send({type: 'estop_reset'})}>Reset</button>
+    <div><strong>Emergency stop</strong> pressed by {grant.estop_source}. The robot stands until Reset; its goals are ended.</div>
+    <button disabled={!link.mayDrive} title={link.mayDrive ? 'lets the robot take goals again' : keyless} onClick={() => link.send({type: 'estop_reset'})}>Reset</button>
   </div>;
 }
 
@@ -140,13 +146,13 @@ function Now({link, grant, seen: s}: {link: Link; grant?: Grant; seen: Seen}) {
   const robot = link.data<RobotState>('robot/state');
   const registration = link.data<Registration>('registration');
   const why = link.data<Why>('why');
-  if (!robot) return <div class="now">{nothing(s.state === 'live' || s.state === 'silent' ? 'The console runs, and no robot is heard. Is the bridge there, and the robot switched on?' : 'Nothing is known of the robot yet.')}</div>;
+  if (!robot) return <div class="now">{nothing(s.state === 'live' || s.state === 'silent' ? 'The console runs, and no robot is heard. Its bridge may be missing, or its power off.' : 'Nothing is known of the robot yet.')}</div>;
   const tracking = registration?.state === 'REGISTRATION_TRACKING';
   const pose = tracking ? registration!.pose_in_map : robot.pose_in_odom;
   const sigma = tracking ? Math.sqrt(Math.max(0, (registration!.covariance.xx + registration!.covariance.yy) / 2)) : 0;
   return <div class={`now ${s.state}`}>
-    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{grant?.estopped ? 'Emergency stop: the robot stands until it is reset, and then until it gets a new goal.' : grant?.waits_for_hand_back ? 'A person drove last: autonomy waits until the robot is handed back.' : why?.sentence ?? grant?.reason}</p>
-    {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {grant.guard_reason}</p>}
+    <p class="sentence" title={why?.sentence}>{s.state === 'gone' && 'Last heard: '}{grant?.estopped ? 'Emergency stop: the robot stands until Reset, and then until it gets a new goal.' : grant?.waits_for_hand_back ? 'A person drove last: autonomy waits for Hand back.' : forPage(why?.sentence ?? grant?.reason ?? '')}</p>
+    {grant && grant.guard !== 'GUARD_NONE' && <p class="guard">Guard: {forPage(grant.guard_reason)}</p>}
     <dl>
       <div><dt>Status</dt><dd>{robot.status.replace('MOTORS_', '').replace('_', ' ').toLowerCase()}{(robot.left_stalled || robot.right_stalled) && ', stalled'}</dd></div>
       <div><dt>Driver</dt><dd>{driverWords[grant?.role ?? ''] ?? '?'}</dd></div>
@@ -177,10 +183,13 @@ function Tabs({tab, choose}: {tab: Tab; choose: (tab: Tab) => void}) {
 
 function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen}) {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const card = useRef<HTMLDivElement>(null);
   const view = useRef<View>();
   const [target, setTarget] = useState<Target>();
+  const [corner, setCorner] = useState('');
   const [layers, setLayers] = useState<Layers>();
   const [, look] = useState(0);
+  const driving = drive.mine();
   useEffect(() => {
     const v = view.current = new View(canvas.current!, link);
     setLayers({...v.layers});
@@ -194,7 +203,10 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         if (v.onMap()) v.fit();
       }
       const moving = robot && performance.now() - robot.at < 300 && (robot.data.velocity !== 0 || robot.data.rotation_velocity !== 0);
-      if (v.dirty || moving) v.draw();
+      if (v.dirty || moving) {
+        v.draw();
+        if (v.target && card.current) setCorner(was => cornerFor(v, card.current!, was));
+      }
       requestAnimationFrame(draw);
     };
     draw();
@@ -202,8 +214,17 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
       v.target = at;
       v.dirty = true;
       setTarget(at);
+      setCorner(cornerFor(v, card.current));
     });
   }, []);
+  // The stick lies over the picture: all of the map goes beside it.
+  useEffect(() => {
+    const stick = document.querySelector('.stick'), v = view.current;
+    if (!v) return;
+    v.bottom = stick && getComputedStyle(stick).position === 'absolute'
+      ? canvas.current!.getBoundingClientRect().bottom - stick.getBoundingClientRect().top : 0;
+    if (v.whole) v.fit();
+  }, [driving]);
   const v = view.current;
   const close = () => {
     if (v) v.target = undefined, v.dirty = true;
@@ -220,31 +241,48 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
   };
   const stale = s.state !== 'live';
   return <>
-    <canvas ref={canvas} class={stale ? 'stale' : ''} role="img"
-            aria-label={`${v?.local ? 'Around the robot' : 'Map'} with the robot, its sonars and what it takes them for`} />
-    {stale && <p class="banner" role="status">{bannerText(s)}</p>}
-    <div class="tools" role="group" aria-label="View">
-      <button aria-pressed={!!v?.local} title="the robot in the middle, pointing up" onClick={() => act(() => { v!.local = !v!.local; })}>Local</button>
-      <button aria-pressed={!!v?.follow && !v.local} title="the map moves with the robot" onClick={() => act(() => { v!.local = false; v!.follow = !v!.follow; })}>Follow</button>
-      <button title="the whole map" onClick={() => act(() => v!.fit())}>All</button>
-      <button aria-label="Grow" onClick={() => act(() => v!.zoom(1.3))}>+</button>
-      <button aria-label="Shrink" onClick={() => act(() => v!.zoom(1 / 1.3))}>−</button>
+    <div class="map">
+      <canvas ref={canvas} class={stale ? 'stale' : ''} role="img"
+              aria-label={`${v?.local ? 'Around the robot' : 'Map'} with the robot, its sonar echoes and percepts`} />
+      {stale && <p class="banner" role="status">{bannerText(s)}</p>}
+      <div class="tools" role="group" aria-label="View">
+        <button aria-pressed={!!v?.local} title="the robot in the middle, pointing up" onClick={() => act(() => { v!.local = !v!.local; v!.whole = false; })}>Local</button>
+        <button aria-pressed={!!v?.follow && !v.local} title="the map moves with the robot" onClick={() => act(() => { v!.local = v!.whole = false; v!.follow = !v!.follow; })}>Follow</button>
+        <button title="the whole map" onClick={() => act(() => v!.fit())}>All</button>
+        <button aria-label="Grow" onClick={() => act(() => v!.zoom(1.3))}>+</button>
+        <button aria-label="Shrink" onClick={() => act(() => v!.zoom(1 / 1.3))}>−</button>
+      </div>
+      {layers && <details class="layers"><summary>Layers</summary>
+        {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
+          <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
+        <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
+      </details>}
     </div>
-    {layers && <details class="layers"><summary>Layers</summary>
-      {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
-        <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
-      <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
-    </details>}
-    {target && <TargetCard link={link} target={target} close={close} />}
-    {drive.mine() && <Stick drive={drive} />}
+    {driving && <Stick drive={drive} />}
+    {target && <TargetCard card={card} corner={corner} link={link} target={target} close={close} />}
   </>;
 }
+// The corner of the picture for the card, so that it covers nothing of the target: as it is, else the farthest.
+function cornerFor(view: View, card: HTMLElement | null, was = ''): string {
+  const picture = view.inWindow(), points = view.targetInWindow();
+  const x = (side: string) => side === 'left' ? picture.left : picture.right, y = (side: string) => side === 'top' ? picture.top : picture.bottom;
+  const {width = 0, height = 0} = card?.getBoundingClientRect() ?? {};
+  const free = (corner: string) => {
+    const [v, h] = corner.split(' ');
+    return points.every(p => Math.abs(p.x - x(h)) > width + aside || Math.abs(p.y - y(v)) > height + beside[v]);
+  };
+  const corners = ['bottom right', 'top right', 'top left', ...(view.bottom > 0 ? [] : ['bottom left'])];   // the stick
+  if (corners.includes(was) && free(was)) return was;
+  const far = (corner: string) => Math.hypot(points[0].x - x(corner.split(' ')[1]), points[0].y - y(corner.split(' ')[0]));
+  corners.sort((a, b) => far(b) - far(a));
+  return corners.find(free) ?? corners[0];
+}
 const layerWords: {[name in keyof Layers]: string} =
-  {grid: 'occupancy grid', sonar: 'sonar echoes', map: 'the map', percepts: 'what is seen', areas: 'where behaviors find something', wake: 'wake (10 s)'};
+  {grid: 'occupancy grid', sonar: 'sonar echoes', map: 'the map', percepts: 'percepts', areas: 'sensitive areas of behaviors', wake: 'wake (10 s)'};
 function bannerText(s: Seen): string {
   const age = Number.isFinite(s.age) ? `The picture is ${(s.age / 1000).toFixed(s.age < 10_000 ? 1 : 0)} s old. ` : '';
   switch (s.state) {
-    case 'locked': return 'To watch from here the key is needed: open the address that saphira console prints.';
+    case 'locked': return 'The key is needed to watch from here: open the address that the console has printed.';
     case 'gone': return `${age}There is no connection to the console, so STOP does not work from here: use the robot's own switch. Trying again …`;
     case 'silent': return 'No robot is heard.';
     default: return `${age}The robot says nothing.`;
@@ -288,33 +326,52 @@ function listen(canvas: HTMLCanvasElement, view: View, clicked: (target: Target)
   }, {passive: false});
 }
 
-function TargetCard({link, target, close}: {link: Link; target: Target; close: () => void}) {
+function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDivElement>; corner: string; link: Link; target: Target; close: () => void}) {
   const [told, setTold] = useState('');
-  useEffect(() => setTold(''), [target]);
+  const [sure, setSure] = useState(false);   // asked whether the robot is here
+  useEffect(() => {
+    setTold('');
+    setSure(false);
+  }, [target]);
   const name = target.artifact?.name;
   const grant = link.data<Grant>('drive/grant');
   const first = grant?.waits_for_hand_back ? 'Hand back, go' : 'Go';
-  const ask = async (words: string) => {
+  const before = ahead(link);
+  const ask = async (words: string, instead: boolean) => {
     if (grant?.estopped) return setTold('The emergency stop is latched: reset it first.');
     if (grant?.waits_for_hand_back) link.send({type: 'hand_back'});
-    const answer = await link.ask({type: 'goal', words});
+    const answer = await (instead ? askInstead(link, words, before) : link.ask({type: 'goal', words}));
     if (answer.well) close();
-    else setTold(answer.text);
+    else setTold(forPage(answer.text));
   };
   const place = async () => {
     const answer = await link.ask({type: 'place', x: target.x, y: target.y, th: link.data<Registration>('registration')?.pose_in_map.th ?? 0});
+    setSure(false);
     if (answer.well) close();
     else setTold(answer.text);
   };
-  return <div class="target" role="dialog" aria-label="A place on the map">
+  const go = (where: string, words: string, main: boolean, title: string) => before.length === 0
+    ? <button class={main ? 'main' : ''} title={title} onClick={() => ask(words, false)}>{first} {where}</button>
+    : <>
+      <button class={main ? 'main' : ''} title={`${title}; ends ${before.length === 1 ? 'the goal' : `the ${before.length} goals`} before it`} onClick={() => ask(words, true)}>{first} {where} instead</button>
+      <button title={`${title}, once ${before.length === 1 ? 'the goal before it has' : `the ${before.length} goals before it have`} ended`} onClick={() => ask(words, false)}>{first} {where} after that</button>
+    </>;
+  const waiting = before.length - 1;
+  return <div ref={card} class={`target ${corner}`} role="dialog" aria-label="A place on the map" onKeyDown={e => e.key === 'Escape' && close()}>
     <div class="row"><strong>{name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
       <button class="plain" aria-label="Close" onClick={close}>×</button></div>
-    {link.mayDrive ? <div class="row">
-      {name && <button class="main" onClick={() => ask(`go-to-place place=${name}`)}>{first} to {name}</button>}
-      <button class={name ? '' : 'main'} title="straight to this point, without a route" onClick={() => ask(`go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`)}>{first} here</button>
-      <button title="a program that takes clicks gets this one" onClick={() => { link.send({type: 'point_out', x: target.x, y: target.y, in_map: target.frame === 'map'}); close(); }}>Tell programs</button>
-      {target.frame === 'map' && <button title="tell the robot that it stands here" onClick={place}>The robot is here</button>}
-    </div> : <p class="small">Without the key you may watch.</p>}
+    {link.mayDrive ? <>
+      {before.length > 0 && <p class="small">In front: {nameOf(before[0])}, by {before[0].status.requester}
+        {waiting > 0 && `; ${waiting} more ${waiting === 1 ? 'waits' : 'wait'}`}.</p>}
+      {name && <div class="row">{go(`to ${name}`, `go-to-place place=${name}`, true, 'by the route that the map gives')}</div>}
+      <div class="row">{go('here', `go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`, !name, 'straight to this point, without a route')}</div>
+      <div class="row apart">
+        {sure ? <><span class="grow">Set the robot's position here?</span>
+            <button onClick={place}>Yes</button><button onClick={() => setSure(false)}>No</button></>
+          : <><button title="a program that takes clicks gets this one" onClick={() => { link.send({type: 'point_out', x: target.x, y: target.y, in_map: target.frame === 'map'}); close(); }}>Tell programs</button>
+            {target.frame === 'map' && <button title="corrects the robot's position on the map" onClick={() => setSure(true)}>The robot is here …</button>}</>}
+      </div>
+    </> : <p class="small">Without the key you may watch.</p>}
     {told && <p class="told bad" role="status">{told}</p>}
   </div>;
 }

@@ -3,8 +3,10 @@ import {useState} from 'preact/hooks';
 import type {Drive} from './drive';
 import type {Link} from './link';
 import type {ControlState, Grant, RobotDescription} from './types';
+import {forPage} from './words';
 
 const slow = 300;            // [ms] of a round trip, from which on it is said
+const noteTime = 12_000;     // [ms] of a note on control
 
 export function DrivePanel({link, drive, grant}: {link: Link; drive: Drive; grant?: Grant}) {
   const control = link.data<ControlState>('console/control');
@@ -19,6 +21,7 @@ export function DrivePanel({link, drive, grant}: {link: Link; drive: Drive; gran
 function Other({link, control, grant}: {link: Link; control?: ControlState; grant?: Grant}) {
   const [name, setName] = useState(link.operator);
   const held = !!control && control.holder !== 0;
+  const fresh = performance.now() - (link.get<ControlState>('console/control')?.at ?? -1e9) < noteTime;
   const take = (force: boolean) => {
     (document.activeElement as HTMLElement | null)?.blur();
     link.refused = '';
@@ -40,7 +43,7 @@ function Other({link, control, grant}: {link: Link; control?: ControlState; gran
       </>}
       {grant?.waits_for_hand_back && !held && <button onClick={() => link.send({type: 'hand_back'})}>Hand back</button>}
     </div>
-    {control?.note && !held && <p class="small faint">{control.note}</p>}
+    {control?.note && !held && fresh && <p class="small faint">{control.note}</p>}
   </div>;
 }
 
@@ -58,7 +61,7 @@ function Mine({link, drive, grant, control}: {link: Link; drive: Drive; grant?: 
       <button class="main" title="gives up control; autonomy drives again" onClick={() => { drive.letGo(); link.send({type: 'hand_back'}); }}>Hand back</button></div>
     {control.asked.map(name => <div class="row asked" role="alert" key={name}><span class="grow"><strong>{name}</strong> asks for control.</span>
       <button onClick={() => drive.release()}>Give it</button></div>)}
-    {drive.active && grant && grant.role !== 'ROLE_TELEOP' && <p class="told bad">{grant.reason}</p>}
+    {drive.active && grant && grant.role !== 'ROLE_TELEOP' && <p class="told bad">{forPage(grant.reason)}</p>}
     {drive.active && link.refused && <p class="told bad">{link.refused}</p>}
     {link.roundTrip > slow && <p class="told bad">Commands take {Math.round(link.roundTrip)} ms there and back: the robot is slowed down.</p>}
     <div class="row"><label for="speed" class="small">Fastest {drive.maxVelocity.toFixed(2)} m/s</label>

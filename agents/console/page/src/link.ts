@@ -1,4 +1,5 @@
 // The two connections to the gateway, and what has come by them.
+import type {ControlState, Goal, ServiceStatus} from './types';
 
 export interface Item<T> {
   data: T;
@@ -9,6 +10,9 @@ export interface Answer { well: boolean; text: string; id: string }
 const retry = 1000;      // [ms]
 const furtherLanes = 2;     // for samples of driving
 const drift = 0.001;     // of two clocks, at the most
+const settled = 1000;    // [ms] after a cut, until what was on its way has come
+const mostGoals = 200;   // that are remembered
+export const gone = 2000;   // [ms] nothing heard for so long: the connection is gone
 const keyName = 'saphira key';
 const operatorName = 'saphira operator';
 
@@ -42,6 +46,9 @@ export class Link {
   delays: number[] = [];     // [ms] from the gateway to the pixels, of the newest robot states
 
   private topics = new Map<string, Map<string, Item<unknown>>>();
+  private goals = new Map<string, Goal>();   // also those that were withdrawn
+  private cut?: {since: number; back?: number; id: number; held: boolean; consoles: string[]};
+  private before = {id: 0, held: false, consoles: [] as string[]};   // while the link was there
   private listeners: (() => void)[] = [];
   private noteListeners: ((text: string, well: boolean) => void)[] = [];
   private commands?: WebSocket;
@@ -76,6 +83,8 @@ export class Link {
   all<T>(topic: string): [string, Item<T>][] {
     return [...(this.topics.get(topic) ?? [])] as [string, Item<T>][];
   }
+  // What was asked under that id, also when it was withdrawn since.
+  goal(id: string): Goal | undefined { return this.goals.get(id); }
   onFrame(listener: () => void) { this.listeners.push(listener); }
   onNote(listener: (text: string, well: boolean) => void) { this.noteListeners.push(listener); }
 
@@ -176,6 +185,7 @@ export class Link {
   }
 
   private take(frame: {now: number; items: {t: string; k: string; a: number; d: unknown}[]}) {
+    this.watch();  // as it was until now: this frame may be the first one after a cut
     const now = performance.now();
     const difference = now - 1000 * frame.now;
     this.offset = Number.isNaN(this.offset)
@@ -189,8 +199,40 @@ export class Link {
       if (!items) this.topics.set(t, items = new Map());
       if (d === null) items.delete(k);
       else items.set(k, {data: d, at: now - a - took});
+      if (t === 'goals' && d !== null) this.remember(k, d as Goal);
     }
     this.tell();
+  }
+
+  private remember(id: string, goal: Goal) {
+    this.goals.delete(id);
+    this.goals.set(id, goal);
+    if (this.goals.size > mostGoals) this.goals.delete(this.goals.keys().next().value!);
+  }
+
+  // After a cut: what it was, and what has become of control.
+  private watch() {
+    const now = performance.now();
+    if (!this.connected || !this.commanding || now - this.heard > gone) {
+      if (this.before.id > 0) this.cut = {...(this.cut ?? {since: this.heard, ...this.before}), back: undefined};
+      return;
+    }
+    const control = this.data<ControlState>('console/control');
+    const consoles = this.all<ServiceStatus>('system/status').filter(([, {data}]) => data.name === 'console').map(([key]) => key);
+    const held = this.id !== 0 && control?.holder === this.id;
+    const cut = this.cut;
+    if (cut) {
+      cut.back ??= now;
+      if (!control || now - cut.back < settled) return;
+      this.cut = undefined;
+      const others = consoles.length > 0 && cut.consoles.length > 0 && !consoles.some(key => cut.consoles.includes(key));
+      const first = this.id < cut.id || others ? 'The console was started again: goals from its pages have ended.'
+        : `The connection is back after ${Math.max(1, Math.round((cut.back - cut.since) / 1000))} s.`;
+      const second = !this.mayDrive ? '' : !cut.held ? ' You had no control.'
+        : held ? ' You still have control.' : ' You have lost control: press Drive to take it again.';
+      this.note(first + second, !cut.held || held);
+    }
+    this.before = {id: this.id, held, consoles};
   }
 
   private takeCommand(message: {type: string; [name: string]: unknown}) {
@@ -238,6 +280,7 @@ export class Link {
   }
   private ping() {
     if (this.commanding) this.send({type: 'ping', at: performance.now()});
+    this.watch();
     this.tell();
   }
 }

@@ -2,6 +2,7 @@
 import {render} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {type Kind, type Scene, SimulatorView, type Thing, thingsOf, type World} from './simulator_view';
+import {keyless} from './words';
 
 const retry = 1000;           // [ms]
 const silent = 3000;          // [ms] without a word the simulator is gone, or stands still
@@ -108,12 +109,13 @@ function App() {
   };
   const around = (degrees: number) => thing && put(thing, thing.x, thing.y, thing.th + degrees * Math.PI / 180);
   const label = (t: Thing) => (t.kind === 'robot' ? `robot ${Number(t.name) + 1}` : `${t.kind} ${t.name}`);
+  const why = !mayMove ? keyless : !scene ? 'no simulator is heard' : undefined;
   const contacts = scene?.robots.reduce((sum, r) => sum + r.contacts, 0) ?? 0;
   return <>
     <header>
       <h1>Simulator</h1>
       <span class={`chip link ${connected && !still ? 'good' : 'bad'}`}>{!connected ? 'link gone' : !scene ? 'no simulator' : scene.paused ? 'paused' : still ? 'time stands still' : 'runs'}</span>
-      <span class="grow small faint wide">What is true here the robot does not know. Its own view is <a href="/">the console</a>.</span>
+      <span class="grow small faint wide">The robot does not know this truth. Its own view is <a href="/">the console</a>.</span>
     </header>
     <main>
       <section class="picture" aria-label="World">
@@ -123,12 +125,12 @@ function App() {
       <section class="side sim-side" aria-label="Time, things and worlds">
         {trouble && <p class="note bad" role="status">{trouble}
           <button class="plain" aria-label="Close this message" onClick={() => setTrouble('')}>×</button></p>}
-        {connected && !mayMove && <p class="note">Without the key you may watch: open the address that saphira has printed.</p>}
+        {connected && !mayMove && <p class="note">Without the key you may watch: open the address that the console has printed.</p>}
         <h2>Time</h2>
         <div class="row">
-          <button class="main" disabled={!mayMove || !scene} onClick={() => wish({do: 'pause', on: !scene!.paused})}>{scene?.paused ? 'Go on' : 'Pause'}</button>
-          <button disabled={!mayMove || !scene?.paused} onClick={() => wish({do: 'step'})}>Step 0.1 s</button>
-          <label class="check">Speed <select disabled={!mayMove || !scene} value={String(scene?.rate ?? 1)}
+          <button class="main" disabled={!mayMove || !scene} title={why} onClick={() => wish({do: 'pause', on: !scene!.paused})}>{scene?.paused ? 'Go on' : 'Pause'}</button>
+          <button disabled={!mayMove || !scene?.paused} title={why ?? (scene?.paused ? undefined : 'only while the time is paused')} onClick={() => wish({do: 'step'})}>Step 0.1 s</button>
+          <label class="check">Speed <select disabled={!mayMove || !scene} title={why} value={String(scene?.rate ?? 1)}
             onChange={e => wish({do: 'rate', rate: Number((e.target as HTMLSelectElement).value)})}>
             {[...new Set([...rates, scene?.rate ?? 1])].sort((a, b) => a - b).map(r => <option key={r} value={String(r)}>{r} ×</option>)}
           </select></label>
@@ -145,14 +147,14 @@ function App() {
           <p class="small">x {thing.x.toFixed(2)} m, y {thing.y.toFixed(2)} m{thing.kind !== 'person' && `, ${(thing.th * 180 / Math.PI).toFixed(0)}°`}. Drag it, or move it in steps of 0.1 m.</p>
           <div class="row" onKeyDown={keys}>
             {(thing.kind as Kind) !== 'person' && <>
-              <button disabled={!mayMove} onClick={() => around(stepAround)}>Turn left</button>
-              <button disabled={!mayMove} onClick={() => around(-stepAround)}>Turn right</button></>}
-            {thing.kind === 'robot' && <button disabled={!mayMove} onClick={() => wish({do: 'disconnect', robot: Number(thing.name)})}>Disconnect</button>}
+              <button disabled={!mayMove} title={why} onClick={() => around(stepAround)}>Turn left</button>
+              <button disabled={!mayMove} title={why} onClick={() => around(-stepAround)}>Turn right</button></>}
+            {thing.kind === 'robot' && <button disabled={!mayMove} title={why} onClick={() => wish({do: 'disconnect', robot: Number(thing.name)})}>Disconnect</button>}
             {([['←', 'left', -1, 0], ['→', 'right', 1, 0], ['↑', 'up', 0, 1], ['↓', 'down', 0, -1]] as const).map(([sign, name, dx, dy]) =>
-              <button key={name} disabled={!mayMove} aria-label={`Move it ${name}`}
+              <button key={name} disabled={!mayMove} title={why} aria-label={`Move it ${name}`}
                       onClick={() => put(thing, thing.x + dx * stepAside, thing.y + dy * stepAside)}>{sign}</button>)}
           </div></>}
-        {thing?.kind === 'door' && <div class="row"><button disabled={!mayMove} onClick={() => turnDoor(thing.name)}>
+        {thing?.kind === 'door' && <div class="row"><button disabled={!mayMove} title={why} onClick={() => turnDoor(thing.name)}>
           {scene!.doors.find(d => d.name === thing.name)!.open ? 'Close' : 'Open'}</button></div>}
         <h2>Show</h2>
         <div class="row">
@@ -169,7 +171,7 @@ function App() {
             {[...new Set([...(world?.worlds ?? []), world?.world ?? ''])].map(w => <option key={w} value={w}>{w}</option>)}</select></label>
           <label class="check">Robot <select value={load.robot} onChange={e => setLoad({...load, robot: (e.target as HTMLSelectElement).value})}>
             <option value="">as it is</option>{world?.robots.map(r => <option key={r} value={r}>{r}</option>)}</select></label>
-          <button disabled={!mayMove || !world} onClick={() => wish({do: 'load', world: load.world === world!.world ? '' : load.world, robot: load.robot})}>Load</button>
+          <button disabled={!mayMove || !world} title={why} onClick={() => wish({do: 'load', world: load.world === world!.world ? '' : load.world, robot: load.robot})}>Load</button>
         </div>
         <p class="small faint">The robot begins at the world's start. Its own map stays: saphira map load NAME gives it another.</p>
       </section>

@@ -83,8 +83,9 @@ export interface MapArtifact {
 }
 export interface SaphiraMap { revision: number; source: string; changed: boolean; artifacts: MapArtifact[] }
 export interface Argument { name: string; kind: string; number: number; text: string; point: Pose; frame: string }
-export interface Goal { requester: string; functor: string; arguments: Argument[] }
+export interface Goal { requester: string; functor: string; arguments: Argument[]; priority: number }
 export interface GoalStatus {
+  stamp: Stamp;
   requester: string;
   functor: string;
   state: string;
@@ -134,6 +135,7 @@ export interface IntentionNode {
   blocking: boolean;
   label: string;
   step: string;
+  goal?: {writer: number; number: number};
 }
 export interface Intentions { nodes: IntentionNode[] }
 export interface ProgramMind { source: string; behaviors: Behaviors; intended: Intentions }
@@ -152,7 +154,7 @@ export interface ServiceStatus {
 export interface Processes { service: string; processes: {name: string; state: string; number: number; effect: string}[] }
 export interface Belief { name: string; value: string; said_by: string }
 export interface Message { source: string; text: string }
-export interface Utterance { speaker: string; text: string }
+export interface Utterance { speaker: string; text: string; time: number }
 export interface LogRecord { name: string; level: string; text: string; time_ns: number }
 export interface Drawing {
   source: string;

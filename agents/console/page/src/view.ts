@@ -1,23 +1,33 @@
 // The picture of the local perceptual space, robot-centered or global, on a canvas (manual 2.3.2).
 import {compose, identity, inverse} from './geometry';
+import {pursued} from './goals';
 import type {Link} from './link';
 import {drawShape} from './shapes';
-import type {Behaviors, Drawing, Goal, GoalStatus, GridTile, MapArtifact, Perception, Pose, ProgramMind, Registration,
+import type {Argument, Behaviors, Drawing, GridTile, MapArtifact, Perception, Pose, ProgramMind, Registration,
              RobotDescription, RobotState, SaphiraMap, Vision} from './types';
 
 const wakeTime = 10_000;     // [ms] (manual 2.3.4.4)
 const echoTime = 30_000;     // [ms]
 const mostEchoes = 1500;
 const ahead = 150;           // [ms] that the robot's way is drawn on without news
+const top = 56;              // [pixels] of the picture, under its buttons
+const bottom = 30;           // [pixels] under its scale
+const small = 20;            // [pixels/m] from which on down the labels are smaller
+const apart = 4;             // [pixels] between two labels
+const rankOf: {[type: string]: number} = {ARTIFACT_OFFICE: 0, ARTIFACT_CORRIDOR: 1, ARTIFACT_DOOR: 2};
+const otherRank = 3;
 
 export interface Layers { grid: boolean; sonar: boolean; map: boolean; percepts: boolean; areas: boolean; wake: boolean }
 export interface Target { x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact }
 interface Echo { x: number; y: number; at: number }
 interface Colors { [name: string]: string }
+interface Label { text: string; x: number; y: number; room: number; rank: number }   // room: [m] that it names
+interface Placed { text: string; x: number; y: number; below: number }   // [pixels] below its place
 interface MapLines {
   map: SaphiraMap; closed: string; scale: number;
   strokes: Map<string, {path: Path2D; color: string; width: number; dash: number[]}>;
-  labels: [string, number, number][];
+  labels: Label[];           // the important ones first
+  placed?: {turn: string; labels: Placed[]};
   view?: string; picture?: HTMLCanvasElement;
 }
 
@@ -27,6 +37,8 @@ export class View {
   scale = 45;                // [pixels/m]
   layers: Layers = {grid: true, sonar: true, map: true, percepts: true, areas: true, wake: true};
   target?: Target;           // that was clicked
+  whole = false;             // all of the map is in the picture, and is to stay so
+  bottom = 0;                // [pixels] of the picture that something lies over
   dirty = true;
 
   private context: CanvasRenderingContext2D;
@@ -39,6 +51,7 @@ export class View {
   private tiles = new Map<string, {data: GridTile; image: HTMLCanvasElement; dark: boolean}>();
   private colors: Colors = {};
   private lines?: MapLines;
+  private widths = new Map<string, number>();   // [pixels] of texts, at the size of 10
   private dark = false;
   private ratio = 1;
 
@@ -64,6 +77,7 @@ export class View {
     this.canvas.width = Math.max(1, Math.round(this.canvas.clientWidth * this.ratio));
     this.canvas.height = Math.max(1, Math.round(this.canvas.clientHeight * this.ratio));
     this.dirty = true;
+    if (this.whole) this.fit();
   }
 
   // Where odom is in the world that is drawn: the map, where the robot is known to be on it.
@@ -120,12 +134,13 @@ export class View {
 
   zoom(factor: number) {
     this.scale = Math.min(400, Math.max(4, this.scale * factor));
+    this.whole = false;
     this.dirty = true;
   }
   // [pixels of the page]
   drag(dx: number, dy: number) {
     if (this.local) return;
-    this.follow = false;
+    this.follow = this.whole = false;
     this.center.x -= dx / this.scale;
     this.center.y += dy / this.scale;
     this.dirty = true;
@@ -136,19 +151,21 @@ export class View {
     const robot = this.robotInWorld();
     const xs = robot ? [robot.x] : [], ys = robot ? [robot.y] : [];
     if (this.onMap())
-      for (const {pose_in_map: p, length} of artifacts) {
-        const half = Math.max(length, 0.5) / 2;
-        xs.push(p.x - half * Math.abs(Math.cos(p.th)), p.x + half * Math.abs(Math.cos(p.th)));
-        ys.push(p.y - half * Math.abs(Math.sin(p.th)), p.y + half * Math.abs(Math.sin(p.th)));
+      for (const {pose_in_map: p, length, width} of artifacts) {
+        const [c, s] = [Math.abs(Math.cos(p.th)), Math.abs(Math.sin(p.th))];
+        const [dx, dy] = [(length * c + width * s) / 2, (length * s + width * c) / 2];
+        xs.push(p.x - dx, p.x + dx);
+        ys.push(p.y - dy, p.y + dy);
       }
     if (xs.length === 0) return;
-    const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    this.local = false;
-    this.follow = false;
-    this.center = {x: (x0 + x1) / 2, y: (y0 + y1) / 2};
-    this.scale = Math.min(120, 0.9 * Math.min(this.canvas.clientWidth / Math.max(1, x1 - x0),
-                                              this.canvas.clientHeight / Math.max(1, y1 - y0)));
-    this.dirty = true;
+    const least = (values: number[]) => values.reduce((a, b) => Math.min(a, b)), most = (values: number[]) => values.reduce((a, b) => Math.max(a, b));
+    const [x0, x1, y0, y1] = [least(xs), most(xs), least(ys), most(ys)];
+    this.local = this.follow = false;
+    const below = Math.max(bottom, this.bottom);
+    const height = Math.max(100, this.canvas.clientHeight - top - below);
+    this.scale = Math.min(120, 0.94 * this.canvas.clientWidth / Math.max(1, x1 - x0), height / Math.max(1, y1 - y0));
+    this.center = {x: (x0 + x1) / 2, y: (y0 + y1) / 2 + (top - below) / 2 / this.scale};
+    this.whole = this.dirty = true;
   }
 
   // The view's own frame: x to the right and y up of the screen's middle, in meters.
@@ -176,6 +193,17 @@ export class View {
     });
     return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom',
             artifact: near && near.d * this.scale < 22 ? near.a : room};
+  }
+
+  inWindow(): DOMRect { return this.canvas.getBoundingClientRect(); }
+  // The place that was clicked, and that of what it means [pixels of the window].
+  targetInWindow(): {x: number; y: number}[] {
+    if (!this.target) return [];
+    const {left, top, width, height} = this.inWindow(), world = this.worldInView();
+    return [this.target, this.target.artifact?.pose_in_map ?? this.target].map(({x, y}) => {
+      const at = compose(world, {x, y, th: 0});
+      return {x: left + width / 2 + at.x * this.scale, y: top + height / 2 - at.y * this.scale};
+    });
   }
 
   draw() {
@@ -297,8 +325,9 @@ export class View {
     const closed = [...shut].join();
     if (this.lines?.map === map && this.lines.closed === closed && this.lines.scale === this.scale) return this.lines;
     const made: MapLines = {map, closed, scale: this.scale, strokes: new Map(), labels: []};
-    // The doors of a room bear its name: once is enough.
-    const rooms = new Set(map.artifacts.filter(a => a.type !== 'ARTIFACT_DOOR').map(a => a.name));
+    // The doors and openings of a room bear its name: once is enough.
+    const isWay = (a: MapArtifact) => a.type === 'ARTIFACT_DOOR' || a.type === 'ARTIFACT_BREAK';
+    const rooms = new Set(map.artifacts.filter(a => !isWay(a)).map(a => a.name));
     for (const a of map.artifacts) {
       const p = a.pose_in_map, [cos, sin] = [Math.cos(p.th), Math.sin(p.th)];
       // Points in the artifact's own frame; width and dashes in pixels.
@@ -333,9 +362,10 @@ export class View {
           stroke('corridor', 1.5, '', [-s, 0], [s, 0]);
           stroke('corridor', 1.5, '', [0, -s], [0, s]);
       }
-      if (a.name && this.scale > 14 && !(a.type === 'ARTIFACT_DOOR' && rooms.has(a.name)))
-        made.labels.push([a.name, p.x, p.y]);
+      if (a.name && !(isWay(a) && rooms.has(a.name)))
+        made.labels.push({text: a.name, x: p.x, y: p.y, room: Math.max(a.length, a.width), rank: rankOf[a.type] ?? otherRank});
     }
+    made.labels.sort((l, r) => l.rank - r.rank || r.room - l.room);
     this.lines = made;
     return made;
   }
@@ -348,6 +378,7 @@ export class View {
       lines.view = view;
       lines.picture = undefined;
       this.strokeLines(lines, c);
+      this.drawLabels(lines, c);
     } else {
       if (!lines.picture) {
         lines.picture = document.createElement('canvas');
@@ -356,15 +387,70 @@ export class View {
         const still = lines.picture.getContext('2d')!;
         still.setTransform(m);
         this.strokeLines(lines, still);
+        this.drawLabels(lines, still);
       }
       c.save();
       c.resetTransform();
       c.drawImage(lines.picture, 0, 0);
       c.restore();
     }
-    const within = this.inPicture();
-    for (const [name, x, y] of lines.labels)
-      if (within(x, y)) this.label(name, x, y, this.colors.text);
+  }
+  private fontSize() { return this.scale < small ? 10 : 11; }
+  private width(text: string): number {
+    let width = this.widths.get(text);
+    if (width === undefined) {
+      this.context.font = '10px system-ui, sans-serif';
+      this.widths.set(text, width = this.context.measureText(text).width);
+    }
+    return width * this.fontSize() / 10;
+  }
+  // The labels that do not lie over one that is more important. A map that only moves keeps them.
+  private placeLabels(lines: MapLines, m: DOMMatrix): Placed[] {
+    const turn = [m.a, m.b, m.c, m.d].join();
+    if (lines.placed?.turn === turn) return lines.placed.labels;
+    const turned = m.b !== 0, within = this.inPicture();
+    const height = this.fontSize() + apart, rows = new Map<number, {left: number; right: number; y: number}[]>();
+    const labels: Placed[] = [];
+    for (const label of lines.labels) {
+      if (turned && !within(label.x, label.y)) continue;
+      const width = this.width(label.text);
+      // From far away: the rooms that have place for their name.
+      if (this.scale < small && (label.rank > 1 ? this.scale < small / 2 : width > label.room * this.scale + 2 * apart)) continue;
+      const x = (m.a * label.x + m.c * label.y) / this.ratio, y = (m.b * label.x + m.d * label.y) / this.ratio;
+      const left = x - width / 2 - apart, right = x + width / 2 + apart;
+      // In its place, else below it, else above.
+      for (const below of [0, height, -height]) {
+        const row = Math.floor((y + below) / height);
+        const free = [row - 1, row, row + 1].every(r => (rows.get(r) ?? []).every(o =>
+          Math.abs(o.y - y - below) >= height || o.left >= right || o.right <= left));
+        if (!free) continue;
+        const others = rows.get(row);
+        if (others) others.push({left, right, y: y + below});
+        else rows.set(row, [{left, right, y: y + below}]);
+        labels.push({text: label.text, x: label.x, y: label.y, below});
+        break;
+      }
+    }
+    if (!turned) lines.placed = {turn, labels};
+    return labels;
+  }
+  private drawLabels(lines: MapLines, c: CanvasRenderingContext2D) {
+    const m = c.getTransform(), labels = this.placeLabels(lines, m), within = this.inPicture();
+    c.save();
+    c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    c.font = `${this.fontSize()}px system-ui, sans-serif`;
+    c.textAlign = 'center';
+    c.textBaseline = 'middle';
+    c.lineWidth = 3;
+    c.strokeStyle = this.colors.ground;
+    c.fillStyle = this.colors.text;
+    for (const {text, x, y, below} of labels) {
+      if (!within(x, y)) continue;
+      const [px, py] = [(m.a * x + m.c * y + m.e) / this.ratio, (m.b * x + m.d * y + m.f) / this.ratio + below];
+      c.strokeText(text, px, py);
+      c.fillText(text, px, py);
+    }
+    c.restore();
   }
   private strokeLines({strokes}: MapLines, c: CanvasRenderingContext2D) {
     c.lineCap = 'butt';  // round ones of thousands of lines take most of the time
@@ -463,17 +549,23 @@ export class View {
   }
 
   private drawGoals(odom: Pose) {
-    const states = new Map(this.link.all<GoalStatus>('goals/status').map(([key, item]) => [key, item.data.state]));
-    for (const [key, {data}] of this.link.all<Goal>('goals')) {
-      const state = states.get(key);
-      if (!state || !['GOAL_WAITING', 'GOAL_UNDERWAY', 'GOAL_SUSPENDED'].includes(state)) continue;
-      for (const argument of data.arguments) {
-        // A point relative to the robot is meant from where the robot was.
-        if (argument.kind !== 'ARGUMENT_POINT' || argument.frame === 'FRAME_ROBOT') continue;
-        const frame = this.frameIn(argument.frame, odom);
-        if (frame) this.cross(compose(frame, argument.point), this.colors.goal, 9);
+    const {open} = pursued(this.link);
+    for (const {goal, place} of open) {
+      for (const argument of goal?.arguments ?? []) {
+        const at = this.placeOf(argument, odom);
+        if (!at) continue;
+        this.cross(at, this.colors.goal, 9);
+        if (open.length > 1 && place > 0) this.label(String(place), at.x + this.px(17), at.y + this.px(11), this.colors.goal, 13);
       }
     }
+  }
+  private placeOf({name, kind, text, point, frame: frameName}: Argument, odom: Pose): Pose | undefined {
+    if (kind === 'ARGUMENT_TEXT' && name === 'place' && this.onMap())
+      return this.link.data<SaphiraMap>('map')!.artifacts.find(a => a.name === text)?.pose_in_map;
+    // A point relative to the robot is meant from where the robot was.
+    if (kind !== 'ARGUMENT_POINT' || frameName === 'FRAME_ROBOT') return undefined;
+    const frame = this.frameIn(frameName, odom);
+    return frame && compose(frame, point);
   }
   private cross({x, y}: {x: number; y: number}, color: string, size: number) {
     const s = this.px(size), c = this.context;
@@ -488,7 +580,8 @@ export class View {
     this.line([[x, y + 0.4 * s], [x, y + 1.5 * s]], color, this.px(2));
   }
   private drawTarget(target: Target) {
-    this.cross(target.artifact ? target.artifact.pose_in_map : target, this.colors.text, 7);
+    this.cross(target, this.colors.text, target.artifact ? 4 : 7);
+    if (target.artifact) this.cross(target.artifact.pose_in_map, this.colors.text, 7);
   }
 
   private drawDrawings(odom: Pose) {

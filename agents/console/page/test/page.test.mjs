@@ -101,6 +101,22 @@ async function handBack(page) {
   await page.getByRole('button', {name: 'Hand back'}).click();
   await until('autonomy may drive', async () => !(await page.getByText('autonomy waits').count()));
 }
+const send = async (page, words) => {
+  await page.getByLabel('Ask the robot for something').fill(words);
+  await page.getByRole('button', {name: 'Send'}).click();
+};
+const openGoals = page => page.getByRole('list', {name: 'Goals', exact: true}).locator('.card');
+const endedGoals = page => page.getByRole('list', {name: 'Ended goals'}).locator('.card');
+async function endAll(page) {
+  await page.getByRole('button', {name: 'End all'}).click();
+  await until('the end of every goal', async () => await openGoals(page).count() === 0);
+}
+// A place right of the robot.
+async function choosePlace(page) {
+  const box = await page.locator('canvas').boundingBox();
+  await page.mouse.click(box.x + box.width / 2 + 60, box.y + box.height / 2);
+  await page.getByRole('dialog').waitFor();
+}
 async function gatewayProcess() {
   return until('the console process', async () => {
     for (const pid of readFileSync(`/proc/${up.pid}/task/${up.pid}/children`, 'utf8').trim().split(' '))
@@ -153,9 +169,71 @@ test('a click sends the robot, with an answer and a cancel button', async () => 
   await page.locator('.card.over', {hasText: 'go to'}).waitFor();
   await stands(page);
   // A refused goal shows the reason.
-  await page.getByLabel('Ask the robot for something').fill('go nowhere at all');
-  await page.getByRole('button', {name: 'Send'}).click();
+  await send(page, 'go nowhere at all');
   await page.locator('.told.bad').waitFor();
+  await leave(page);
+});
+
+test('goals wait in their order, one goes instead of them, and an ended one is asked for again', async () => {
+  const page = await person();
+  await open(page);
+  await page.getByRole('button', {name: 'Follow'}).click();
+  await send(page, 'drive 0.05');
+  const [first, second, third] = [0, 1, 2].map(i => openGoals(page).nth(i));
+  await first.filter({hasText: 'drive'}).getByText('underway').waitFor();
+  await send(page, 'turn 90');
+  await first.filter({hasText: '1. drive'}).getByText('in front').waitFor();
+  await second.filter({hasText: '2. turn to'}).getByText('next').waitFor();
+  await second.getByText('waits for "drive"').waitFor();
+  await choosePlace(page);
+  await page.getByText('1 more waits').waitFor();
+  await page.getByRole('button', {name: 'Go here after that'}).click();
+  await third.filter({hasText: '3. go to'}).getByText('waiting').waitFor();
+  await choosePlace(page);
+  await page.getByText('2 more wait').waitFor();
+  await page.getByRole('button', {name: 'Go here instead'}).click();
+  await first.filter({hasText: 'go to'}).getByText('underway').waitFor();
+  for (const ended of ['drive', 'turn to', 'go to']) await endedGoals(page).filter({hasText: ended}).getByText('canceled').first().waitFor();
+  await endAll(page);
+  await page.getByRole('button', {name: 'Ask again: go to'}).first().click();
+  await first.filter({hasText: 'go to'}).getByText('underway').waitFor();
+  await endAll(page);
+  await leave(page);
+});
+
+test('the card of a place does not cover it, and sets the position of the robot after a question only', async () => {
+  for (const options of [{}, {viewport: {width: 390, height: 844}, hasTouch: true, isMobile: true}]) {
+    const page = await person(options);
+    await open(page);
+    await page.locator('dt:text-is("On the map")').waitFor();
+    const card = page.getByRole('dialog'), canvas = await page.locator('canvas').boundingBox();
+    for (const x of [0.05, 0.5, 0.95])
+      for (const y of [0.2, 0.5, 0.95]) {
+        const at = {x: canvas.x + x * canvas.width, y: canvas.y + y * canvas.height};
+        await page.mouse.click(at.x, at.y);
+        await until(`the card beside ${x}, ${y}`, async () => {
+          const box = await card.boundingBox();
+          return box && (at.x < box.x || at.x > box.x + box.width || at.y < box.y || at.y > box.y + box.height);
+        });
+        await card.getByRole('button', {name: 'Close'}).click();
+      }
+    await leave(page);
+  }
+  const page = await person();
+  await open(page);
+  await page.locator('dt:text-is("On the map")').waitFor();
+  await page.getByRole('button', {name: 'Follow'}).click();
+  const canvas = await page.locator('canvas').boundingBox();
+  await page.mouse.click(canvas.x + canvas.width / 2, canvas.y + canvas.height / 2);  // where the robot is
+  const question = page.getByText("Set the robot's position here?"), yes = page.getByRole('button', {name: 'Yes', exact: true});
+  assert.equal(await yes.count(), 0);
+  await page.getByRole('button', {name: 'The robot is here'}).click();
+  await question.waitFor();
+  await page.getByRole('button', {name: 'No', exact: true}).click();
+  await question.waitFor({state: 'detached'});
+  await page.getByRole('button', {name: 'The robot is here'}).click();
+  await yes.click();
+  await page.getByRole('dialog').waitFor({state: 'detached'});
   await leave(page);
 });
 
@@ -184,8 +262,7 @@ test('keys drive while they are held, and somebody else waits for control', asyn
 test('k stops a robot that drives by itself', async () => {
   const page = await person();
   await open(page);
-  await page.getByLabel('Ask the robot for something').fill('drive 0.2');
-  await page.getByRole('button', {name: 'Send'}).click();
+  await send(page, 'drive 0.2');
   await moves(page);
   await takeControl(page, 'ann');
   await page.getByText('it drives by itself until you hold something').waitFor();
@@ -278,6 +355,7 @@ test('a gateway that hangs is told, the robot stands, and afterwards the page on
     }
   }
   await page.locator('.link.live').waitFor();
+  await page.getByText('You have lost control').waitFor();
   await page.getByRole('button', {name: 'Drive', exact: true}).waitFor();
   await stands(page);  // the key is still held
   await page.keyboard.up('m');

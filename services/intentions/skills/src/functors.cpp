@@ -171,11 +171,14 @@ class GoTo : public Activity {
     self.say("driving to " + format_point(target_));
     if (whole_way_ > 0.0)
       self.progress(1.0 - left / whole_way_);
-    if (watchdog_.check(left, self.now()) && !makes_a_detour(self))
-      self.fail(GoalCode::kBlocked,
-                format("no nearer for %.0f s, %.2f m from the point", watchdog_.waited(self.now()),
-                       left) +
-                    why_not_moving(self.robot()));
+    const bool late = watchdog_.check(left, self.now());
+    path_ = watchdog_.waited(self.now()) > 0.0 ? path_ + distance(last_, self.robot().pose_in_odom)
+                                               : 0.0;
+    last_ = self.robot().pose_in_odom;
+    if (late && !makes_a_detour(self))
+      self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.2f m from the point",
+                                           watchdog_.waited(self.now()), left) +
+                                        why_not_moving(self.robot()));
   }
 
  private:
@@ -224,6 +227,8 @@ class GoTo : public Activity {
   double speed_ = 0.0;
   double radius_ = 0.0;
   Watchdog watchdog_;
+  Pose last_;
+  double path_ = 0.0;  ///< [m] since the last progress
   double whole_way_ = 0.0;
   bool new_target_ = true;
   bool there_ = false;

@@ -25,7 +25,7 @@ std::string describe(const v1::Grant& grant);
 /// The goal for people: go_to(position=(3, 1) in odom).
 std::string describe(const v1::Goal& goal);
 
-/// What a person types to the robot, as it is put on the bus. time: [s] since 1970.
+/// A typed sentence of a person to the robot. time: [s] since 1970.
 v1::Utterance typed(std::uint64_t writer, std::uint64_t number, const std::string& speaker,
                     const std::string& text, double time);
 

@@ -1,0 +1,98 @@
+// Goals in the order in which the robot pursues them, in words, and asked for.
+import type {Answer, Link} from './link';
+import type {Goal, GoalStatus} from './types';
+
+const acceptance = 3000;     // [ms] within which the intentions take up a goal
+const look = 50;             // [ms]
+
+export interface Pursued {
+  id: string;
+  status: GoalStatus;
+  goal?: Goal;
+  place: number;             // 1: in front; [0: it has ended, or does not drive]
+}
+export const ended = (status: GoalStatus) => !['GOAL_WAITING', 'GOAL_UNDERWAY', 'GOAL_SUSPENDED'].includes(status.state);
+
+// A goal in a reason of the intentions, such as: goal 1f3a:12 (go_to) of "ann at the console"
+const mention = /goal ([0-9a-f]+):(\d+) \(([^)]*)\)(?: of "([^"]*)")?/;
+const keyOf = (writer: string, number: string) => `${writer}:${BigInt(number).toString(16)}`;
+
+// The goal in front, as the reasons of those that wait name it.
+function named(goals: Pursued[]): string | undefined {
+  for (const {status} of goals) {
+    const found = status.state === 'GOAL_UNDERWAY' ? null : status.reason.match(mention);
+    if (found) return keyOf(found[1], found[2]);
+  }
+  return undefined;
+}
+
+// Open goals in the order in which the robot takes them up (priority, then age); ended ones, the newest first.
+// A picture that is drawn between two frames from the gateway has them from the one before.
+interface Pursuit { open: Pursued[]; over: Pursued[] }
+let known: {link?: Link; heard: number; pursuit: Pursuit} = {heard: NaN, pursuit: {open: [], over: []}};
+export function pursued(link: Link): Pursuit {
+  if (known.link !== link || known.heard !== link.heard) known = {link, heard: link.heard, pursuit: order(link)};
+  return known.pursuit;
+}
+function order(link: Link): Pursuit {
+  const all = link.all<GoalStatus>('goals/status').map(([id, {data}]): Pursued => ({id, status: data, goal: link.goal(id), place: 0}));
+  const accepted = (g: Pursued) => g.status.stamp.cycle - 10 * g.status.elapsed;
+  const number = (g: Pursued) => parseInt(g.id.split(':')[1], 16);
+  const age = (a: Pursued, b: Pursued) => Math.round(accepted(a) - accepted(b)) || number(a) - number(b);
+  const underway = all.filter(g => g.status.state === 'GOAL_UNDERWAY');
+  const front = underway.length > 1 ? named(all.filter(g => !ended(g.status))) : undefined;
+  const rank = (g: Pursued) => g.status.state !== 'GOAL_UNDERWAY' ? 1 : !front || g.id === front ? 0 : 2;
+  const open = all.filter(g => !ended(g.status))
+    .sort((a, b) => rank(a) - rank(b) || (b.goal?.priority ?? 0) - (a.goal?.priority ?? 0) || age(a, b));
+  // Another goal that is underway at the same time does not drive.
+  let place = 0;
+  for (const g of open) if (rank(g) < 2) g.place = ++place;
+  return {open, over: all.filter(g => ended(g.status)).sort((a, b) => age(b, a))};
+}
+
+// The goals that a new one from here waits for.
+export const ahead = (link: Link) => pursued(link).open.filter(g => g.place > 0 && (g.goal?.priority ?? 0) >= 0);
+
+export function nameOf({status, goal}: {status: GoalStatus; goal?: Goal}): string {
+  const first = goal?.arguments[0];
+  const to = !first ? '' : first.kind === 'ARGUMENT_POINT' ? ` (${first.point.x.toFixed(1)}, ${first.point.y.toFixed(1)})`
+    : first.kind === 'ARGUMENT_TEXT' && first.text.length < 20 ? ` ${first.text}` : '';
+  return status.functor.replace(/[_-]/g, ' ') + to;
+}
+
+// Without the ids and the advice that only a command line has a use for.
+export function reasonOf(link: Link, reason: string): string {
+  return reason.replace(/; with a priority of -?\d+ it would go first/, '')
+    .replace(new RegExp(mention, 'g'), (_, writer, number, functor, requester) => {
+      const id = keyOf(writer, number), status = link.get<GoalStatus>('goals/status', id)?.data;
+      return `"${status ? nameOf({status, goal: link.goal(id)}) : functor}"${requester ? ` of ${requester}` : ''}`;
+    });
+}
+
+// The words that ask for the same again; nothing where words cannot say it.
+export function wordsOf(goal?: Goal): string {
+  if (!goal || goal.functor === 'stop') return '';
+  const words = goal.arguments.map(({name, kind, number, text, point, frame}) =>
+    kind === 'ARGUMENT_NUMBER' ? `${name}=${number}`
+    : kind === 'ARGUMENT_POINT' ? `${name}=${point.x},${point.y},${point.th}@${frame.replace('FRAME_', '').toLowerCase()}`
+    : kind === 'ARGUMENT_TEXT' && /^\S+$/.test(text) ? `${name}=${text}` : '');
+  return words.includes('') ? '' : [goal.functor, ...words].join(' ');
+}
+
+// Asks for a goal, and ends others once that one is accepted: a refused one ends nothing.
+export async function askInstead(link: Link, words: string, others: Pursued[]): Promise<Answer> {
+  const answer = await link.ask({type: 'goal', words});
+  if (!answer.well) return answer;
+  const end = performance.now() + acceptance;
+  let status: GoalStatus | undefined;
+  while (!(status = link.get<GoalStatus>('goals/status', answer.id)?.data) && performance.now() < end)
+    await new Promise(resolve => setTimeout(resolve, look));
+  if (!status) return {...answer, well: false, text: 'Nobody has taken up the goal, so the others go on. See Programs.'};
+  if (status.state === 'GOAL_REFUSED') return {...answer, well: false, text: status.reason};
+  // The last ones first, so that none of them begins in between.
+  for (const other of [...others].reverse()) {
+    const ending = await link.ask({type: 'cancel', id: other.id});
+    if (!ending.well) return ending;
+  }
+  return answer;
+}

@@ -1,0 +1,14 @@
+// Words that several parts of the page use.
+export const keyless = 'needs the key: open the address that the console has printed';
+// Of a text of the other programs: commands that have a button here go by its name.
+export function forPage(text: string): string {
+  return text.replace(/saphira estop reset/g, 'Reset').replace(/saphira drive hand-back/g, 'Hand back')
+    .replace(/saphira status/g, 'Programs').replace(/saphira goal list/g, 'Goals');
+}
+export const percent = (value: number) => `${Math.round(100 * Math.min(1, Math.max(0, value)))}%`;
+const two = (n: number) => String(n).padStart(2, '0');
+// [ms since 1970] as HH:MM:SS, here.
+export function clock(time: number): string {
+  const at = new Date(time);
+  return `${two(at.getHours())}:${two(at.getMinutes())}:${two(at.getSeconds())}`;
+}
