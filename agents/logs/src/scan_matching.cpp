@@ -10,11 +10,11 @@ namespace saphira::logs {
 
 namespace {
 
-constexpr double kSearchCell = 0.1;         // [m] of the cells for the search of points
-constexpr double kNormalsAgree = 0.7;        // cosine of the angle between normals that agree
-constexpr double kFieldCell = 0.05;   // [m]
-constexpr double kFieldSigma = 0.08;  // [m]
-constexpr int kFieldReach = 4;        // cells
+constexpr double kSearchCell = 0.1;    // [m] of the cells for the search of points
+constexpr double kNormalsAgree = 0.7;  // cosine of the angle between normals that agree
+constexpr double kFieldCell = 0.05;    // [m]
+constexpr double kFieldSigma = 0.08;   // [m]
+constexpr int kFieldReach = 4;         // cells
 
 int cells_along(double length, double cell) {
   return std::max(1, static_cast<int>(std::floor(length / cell)) + 1);

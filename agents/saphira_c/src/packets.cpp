@@ -20,7 +20,7 @@ using c::Os;
 namespace {
 
 constexpr double kConnectTime = 8.0;  // [s] of a connection
-constexpr double kAtLeast = 0.1;   // [s] least wait of sfWaitClientPacket (manual 8.6)
+constexpr double kAtLeast = 0.1;      // [s] least wait of sfWaitClientPacket (manual 8.6)
 constexpr int kOdometryFrame = 1;
 
 /// A line to the robot server, and its present packet. Only the program's own calls serve it.

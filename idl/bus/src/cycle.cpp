@@ -468,7 +468,8 @@ std::optional<Step> Cycle::next(const Stop& stop, const std::function<void()>& i
       self.node.wait(kIdle, &stop);
     else
       self.node.wait(
-          std::chrono::ceil<std::chrono::milliseconds>(self.looked + kStepLook - Clock::now()), &stop);
+          std::chrono::ceil<std::chrono::milliseconds>(self.looked + kStepLook - Clock::now()),
+          &stop);
   }
   return {};
 }
