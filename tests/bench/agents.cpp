@@ -1,6 +1,6 @@
-// The cost of a request through the facilitator: a routed request (asker, facilitator, agent, asker:
-// three hops between three processes) beside a ping over bare Fast DDS in the same run (two hops),
-// with few agents and with many, while the robot of the demo runs on the same bus.
+// The cost of a request through the facilitator: a routed request (asker, facilitator, agent,
+// asker: three hops between three processes) beside a ping over bare Fast DDS in the same run (two
+// hops), with few agents and with many, while the robot of the demo runs on the same bus.
 #include <stdlib.h>
 #include <unistd.h>
 
