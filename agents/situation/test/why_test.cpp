@@ -183,7 +183,7 @@ TEST_F(WhyTest, ASlowNetworkIsSaidAndHowSlow) {
             std::string::npos)
       << slow.sentence;
   EXPECT_NE(to_text(slow).find("- the network, or a computer, is slow"), std::string::npos);
-  // Where it could drive no faster anyway, the sentence has another subject.
+  // A delay without an effect on the speed is not in the sentence.
   scene.behaviors->limit_reason("");
   scene.grant->command_age(0.4);
   const Explanation slower = why(scene);

@@ -38,15 +38,6 @@ std::string refusal_of(const v1::Grant& grant) {
   for (const v1::Refusal& refusal : grant.refused())
     if (refusal.role() == v1::ROLE_BEHAVIORS)
       return refusal.reason();
-  return grant.waits_for_hand_back() ? grant.reason() : std::string();
-}
-
-/// Why goals that drive wait: a person drives, or has not handed the robot back.
-std::string person_of(const v1::Grant& grant) {
-  if (grant.role() == v1::ROLE_TELEOP)
-    return grant.source() + " drives: goes on when the robot is handed back";
-  if (grant.waits_for_hand_back() && !grant.estopped())
-    return "autonomy waits: goes on when the robot is handed back (saphira drive hand-back)";
   return {};
 }
 
@@ -164,7 +155,7 @@ Core::Inputs Service::inputs_of(const runtime::Turn& turn) {
   take_maps();
   take_goals(inputs.heard);
   take_claims(inputs.heard);
-  take_estops(inputs.heard);
+  take_grants(inputs.heard);
   take_answers(inputs.heard);
   return inputs;
 }
@@ -256,11 +247,16 @@ void Service::take_answers(Core::Heard& heard) {
   }
 }
 
-void Service::take_estops(Core::Heard& heard) {
-  for (const auto& sample : grants_.take())
-    if (!sample.info.disposed)
-      heard.estops.push_back({sample.data.estopped(), sample.data.estop_source(),
-                              refusal_of(sample.data), person_of(sample.data)});
+void Service::take_grants(Core::Heard& heard) {
+  for (const auto& sample : grants_.take()) {
+    if (sample.info.disposed)
+      continue;
+    const v1::Grant& grant = sample.data;
+    const std::string driver = grant.source().empty() ? "a person" : grant.source();
+    heard.grants.push_back({grant.estopped(), grant.estop_source(), refusal_of(grant),
+                            grant.role() == v1::ROLE_TELEOP ? driver : "",
+                            grant.waits_for_hand_back()});
+  }
 }
 
 void Service::look() {

@@ -49,7 +49,7 @@ class Service final : public runtime::Service {
   void take_maps();
   void take_goals(Core::Heard& heard);
   void take_claims(Core::Heard& heard);
-  void take_estops(Core::Heard& heard);
+  void take_grants(Core::Heard& heard);
   void take_answers(Core::Heard& heard);
   Core::Inputs inputs_of(const runtime::Turn& turn);
   std::optional<Core::Vision> vision();

@@ -21,6 +21,15 @@ constexpr double kSilence = 1.0;
 constexpr double kStartsTogether = 3.0;
 constexpr std::uint64_t kVisionLease = 10;  // [cycles] an older result counts as missing
 
+/// Why goals that drive wait: a person drives, or has not handed the robot back.
+std::string why_to_wait(const Core::Heard::Grant& grant) {
+  if (!grant.person.empty())
+    return grant.person + " drives: goes on when the robot is handed back";
+  if (grant.waits_for_hand_back && !grant.pressed)
+    return "autonomy waits: goes on when the robot is handed back (saphira drive hand-back)";
+  return {};
+}
+
 }  // namespace
 
 Core::Core(Settings settings)
@@ -44,7 +53,7 @@ Core::Outputs Core::step(Inputs inputs) {
   now.behaviors_cycle = inputs.behaviors_cycle;
   now.intent_age = inputs.intent_age;
   now.claims = claims_of(inputs.heard);
-  note_estops(inputs.heard.estops);
+  note_grants(inputs.heard.grants);
   now.estop = estop_;
   if (!execution_.works())
     now.hold = execution_.name() + " is suspended";
@@ -309,17 +318,17 @@ std::vector<ClaimEvent> Core::claims_of(const Heard& heard) {
 }
 
 /// From any grant since the last time: a stop that was pressed and reset meanwhile counts as well.
-/// Nothing else of the grant is used, so its time of arrival does not matter.
-void Core::note_estops(const std::vector<Heard::Estop>& estops) {
+/// In lockstep only the stop is used, so that the time of arrival of a grant does not matter.
+void Core::note_grants(const std::vector<Heard::Grant>& grants) {
   bool pressed = false;
-  for (const Heard::Estop& estop : estops) {
-    if (estop.pressed)
-      estop_ = estop.source.empty() ? "a program without a name" : estop.source;
+  for (const Heard::Grant& grant : grants) {
+    if (grant.pressed)
+      estop_ = grant.source.empty() ? "a program without a name" : grant.source;
     else if (!pressed)
       estop_.clear();
-    pressed = pressed || estop.pressed;
-    refusal_ = estop.refusal;
-    person_ = estop.person;
+    pressed = pressed || grant.pressed;
+    refusal_ = grant.refusal;
+    person_ = why_to_wait(grant);
   }
 }
 

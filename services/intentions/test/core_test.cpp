@@ -113,7 +113,7 @@ TEST_F(CoreTest, AGoalThatFailsSaysWhichServiceIsGone) {
 TEST_F(CoreTest, AGoalThatDrivesWaitsForThePersonWhoHasTheRobot) {
   inputs_.heard.goals = {written(1, kKaren)};
   step();
-  inputs_.heard.estops = {{false, "", "", "karen drives: goes on when the robot is handed back"}};
+  inputs_.heard.grants = {{false, "", "", "karen"}};
   EXPECT_TRUE(step().intended.behaviors.empty());
   EXPECT_EQ(state(1), GoalState::kSuspended);
   EXPECT_EQ(statuses_.at({5, 1}).reason, "karen drives: goes on when the robot is handed back");
@@ -122,14 +122,18 @@ TEST_F(CoreTest, AGoalThatDrivesWaitsForThePersonWhoHasTheRobot) {
     step();
   EXPECT_EQ(state(1), GoalState::kSuspended);
   EXPECT_EQ(state(2), GoalState::kWaiting);
-  inputs_.heard.estops = {{false, "", "", ""}};
+  inputs_.heard.grants = {{false, "", "", "", true}};
+  EXPECT_TRUE(step().intended.behaviors.empty());
+  EXPECT_EQ(statuses_.at({5, 1}).reason,
+            "autonomy waits: goes on when the robot is handed back (saphira drive hand-back)");
+  inputs_.heard.grants = {{false, ""}};
   EXPECT_FALSE(step().intended.behaviors.empty());
   EXPECT_EQ(state(1), GoalState::kUnderway);
 }
 
 TEST_F(CoreTest, AStopEndsGoalsThatWaitForAPerson) {
   inputs_.heard.goals = {written(1, kKaren)};
-  inputs_.heard.estops = {{false, "", "", "karen drives"}};
+  inputs_.heard.grants = {{false, "", "", "karen"}};
   step();
   EXPECT_EQ(state(1), GoalState::kWaiting);
   Core::Heard::Goal stop = written(2, kJohn);
@@ -238,7 +242,7 @@ TEST_F(CoreTest, AGoalThatFailsWhileTheBridgeRefusesSaysWhy) {
   inputs_.heard.goals = {written(1, kKaren)};
   inputs_.heard.goals[0].event.goal.deadline = 1.0;
   for (int i = 0; i < 20; ++i) {
-    inputs_.heard.estops = {{false, "", "a person drove last: autonomy waits"}};
+    inputs_.heard.grants = {{false, "", "a person drove last: autonomy waits"}};
     step();
   }
   ASSERT_EQ(state(1), GoalState::kFailed);
@@ -297,10 +301,10 @@ TEST_F(CoreTest, AfterASecondWithoutCyclesThereIsNoRobot) {
 TEST_F(CoreTest, AnEmergencyStopThatWasResetMeanwhileEndsGoalsAsWell) {
   inputs_.heard.goals = {written(1, kKaren)};
   step();
-  inputs_.heard.estops = {{true, "button"}, {false, ""}};
+  inputs_.heard.grants = {{true, "button"}, {false, ""}};
   step();
   EXPECT_EQ(state(1), GoalState::kCanceled);
-  inputs_.heard.estops = {{false, ""}};
+  inputs_.heard.grants = {{false, ""}};
   inputs_.heard.goals = {written(2, kKaren)};
   step();
   EXPECT_EQ(state(2), GoalState::kUnderway);
@@ -360,13 +364,13 @@ TEST_F(CoreTest, AClaimEndsWithItsWriterWhereItSaysSo) {
 TEST_F(CoreTest, AnEmergencyStopSaysWhichProgramPressedIt) {
   inputs_.heard.goals = {written(1, kKaren)};
   step();
-  inputs_.heard.estops = {{true, "button"}};
+  inputs_.heard.grants = {{true, "button"}};
   step();
   EXPECT_NE(statuses_.at({5, 1}).reason.find("button"), std::string::npos);
-  inputs_.heard.estops = {{false, ""}};
+  inputs_.heard.grants = {{false, ""}};
   inputs_.heard.goals = {written(2, kKaren)};
   step();
-  inputs_.heard.estops = {{true, ""}};
+  inputs_.heard.grants = {{true, ""}};
   step();
   EXPECT_NE(statuses_.at({5, 2}).reason.find("a program without a name"), std::string::npos);
 }
@@ -416,7 +420,7 @@ TEST_F(CoreTest, TheSameInputsGiveTheSameOutputs) {
     if (i == 20)
       inputs_.heard.lost_requesters = {kKaren};
     if (i == 30)
-      inputs_.heard.estops = {{true, "button"}, {false, ""}};
+      inputs_.heard.grants = {{true, "button"}, {false, ""}};
     if (i == 40) {
       ++inputs_.robot.odom;
       inputs_.new_frame = true;

@@ -54,21 +54,21 @@ class Core {
       Writer writer{};
       bool ends_with_writer = false;
     };
-    struct Estop {
+    struct Grant {
       bool pressed = false;
       std::string source;
       /// The reason why the bridge does not let the behaviors drive [empty: it does, or they do not
       /// ask].
       std::string refusal{};
-      /// Why goals that drive are to wait: a person drives, or drove last [empty: nobody does].
-      std::string person{};
+      std::string person{};              ///< that drives by teleop [empty: nobody does]
+      bool waits_for_hand_back = false;  ///< a person drove last
     };
     std::vector<Writer> lost_requesters;
     std::vector<Goal> goals;
     std::vector<Writer> lost_claimants;
     std::vector<Claim> claims;
     /// From the bridge's grants. For steps alone: all since the last one together.
-    std::vector<Estop> estops;
+    std::vector<Grant> grants;
     /// Answers of agents, by the number of the question (intentions::Outputs). For steps alone.
     std::vector<std::pair<std::uint64_t, Answer>> answers;
   };
@@ -141,7 +141,7 @@ class Core {
   std::vector<GoalEvent> events_of(const Heard& heard, Notes& notes);
   bool take_sender(const Heard::Goal& goal, GoalEvent& event, Notes& notes);
   std::vector<ClaimEvent> claims_of(const Heard& heard);
-  void note_estops(const std::vector<Heard::Estop>& estops);
+  void note_grants(const std::vector<Heard::Grant>& estops);
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
   std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
