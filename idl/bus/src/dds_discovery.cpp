@@ -128,8 +128,6 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     if (--program.discovered <= 0) {
       if (machines_)
         machines_->forget(to_text(prefix));
-      if (guard_)
-        guard_->end_handshake(Peers::program_of(to_id(info.info.m_guid)));
       programs_.erase(prefix);
       std::erase_if(endpoints_, [&](const auto& item) { return item.first.guidPrefix == prefix; });
     }
@@ -137,11 +135,8 @@ void Discovery::on_participant_discovery(fdds::DomainParticipant* /*participant*
     if (info.status == Info::DISCOVERED_PARTICIPANT) {
       ++program.discovered;
       // Later announcements do not count: the handshake checked the certificate with the first one.
-      if (guard_) {
+      if (guard_)
         program.identity = guard_->identify(prefix, announced_subject(info.info.identity_token_));
-        if (!program.identity->name.empty())
-          guard_->begin_handshake(Peers::program_of(to_id(info.info.m_guid)));
-      }
     }
     program.name = info.info.m_participantName.to_string();
     const auto& bytes = info.info.m_userData.data_vec();
@@ -193,12 +188,6 @@ void Discovery::count_programs_here() {
                       " programs on this one, and there are " + std::to_string(here + 1) +
                       ": some are not found unless this machine's --peer names the others");
   wake_->signal();
-}
-
-void Discovery::onParticipantAuthentication(fdds::DomainParticipant* /*participant*/,
-                                            rtps::ParticipantAuthenticationInfo&& info) {
-  if (guard_ && info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
-    guard_->end_handshake(Peers::program_of(to_id(info.guid)));
 }
 
 void Discovery::on_subscriber_discovery(fdds::DomainParticipant* /*participant*/,

@@ -35,9 +35,6 @@ class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
 
   void on_participant_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                 eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void onParticipantAuthentication(
-      eprosima::fastdds::dds::DomainParticipant* /*participant*/,
-      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* /*participant*/,

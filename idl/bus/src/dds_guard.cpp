@@ -100,23 +100,6 @@ bool Guard::revoked(const std::uint8_t* prefix) const {
   return revoked_.contains(head);
 }
 
-void Guard::begin_handshake(const Handshakes::Program& program) {
-  const std::scoped_lock lock(mutex_);
-  handshakes_.begin(program);
-}
-
-void Guard::end_handshake(const Handshakes::Program& program) {
-  const std::scoped_lock lock(mutex_);
-  handshakes_.end(program);
-}
-
-bool Guard::announced(const std::uint8_t* prefix) {
-  Handshakes::Program program{};
-  std::copy_n(prefix, program.size(), program.begin());
-  const std::scoped_lock lock(mutex_);
-  return handshakes_.announced(program, BootClock::now());
-}
-
 void Guard::take(const security::Revoked& list) {
   std::set<security::PrefixHead> heads;
   for (const std::string& member : list.members)

@@ -10,7 +10,6 @@
 #include <set>
 #include <string>
 
-#include "handshakes.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/bus/endpoint.hpp"
 #include "saphira/bus/node.hpp"
@@ -19,7 +18,7 @@
 namespace saphira::bus::internal {
 
 /// The security of a node: its credentials, the identities of the others, and the programs that are
-/// revoked or not let in.
+/// revoked.
 class Guard {
  public:
   /// None for an open bus. std::invalid_argument where the credentials are unusable.
@@ -43,12 +42,6 @@ class Guard {
   /// True where the certificate of a packet's sender is revoked. From any thread.
   bool revoked(const std::uint8_t* prefix) const;
 
-  // The handshakes with programs that announce themselves. From any thread.
-  void begin_handshake(const Handshakes::Program& program);
-  void end_handshake(const Handshakes::Program& program);
-  /// A packet's sender announces itself. True: forget the sender, so that both begin anew.
-  bool announced(const std::uint8_t* prefix);
-
   /// Looks for a newer list of revoked certificates, at intervals.
   void look(const std::string& program);
 
@@ -67,7 +60,6 @@ class Guard {
   mutable std::mutex mutex_;
   std::set<security::PrefixHead> revoked_;
   std::atomic<bool> any_{false};
-  Handshakes handshakes_;
 };
 
 }  // namespace saphira::bus::internal

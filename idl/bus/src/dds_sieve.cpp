@@ -4,7 +4,6 @@
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
 #include <fastrtps/utils/IPLocator.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -12,7 +11,6 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "log.hpp"
@@ -26,10 +24,6 @@ namespace transport = eprosima::fastdds::rtps;
 
 // Between two announcements of a program.
 constexpr std::chrono::milliseconds kOnce{50};
-// Between two packets of a handshake that is sent to all. While many programs begin, the packets
-// queue; each waits no longer than this.
-constexpr std::chrono::milliseconds kHandshake{4};
-constexpr std::chrono::milliseconds kLongestHandshake{40};
 
 class Sieve : public transport::ChainingTransport {
  public:
@@ -43,8 +37,6 @@ class Sieve : public transport::ChainingTransport {
             const std::chrono::steady_clock::time_point& timeout) override {
     if (*descriptor_.mute)
       return true;
-    if (descriptor_.guard && handshake_for(buffer, size) != nullptr)
-      handshake_sent_ = ticks(BootClock::now());
     const bool sent = low->send(buffer, size, begin, end, timeout);
     if (descriptor_.machines && is_announcement(buffer, size))
       announce(low, buffer, size, timeout);
@@ -58,17 +50,17 @@ class Sieve : public transport::ChainingTransport {
     if (sound == 0 || (descriptor_.ignore && descriptor_.ignore(sender_of(buffer), remote)) ||
         !plausible(buffer, sound))
       return;
+    std::unique_lock<std::mutex> alone;
     if (descriptor_.guard) {
-      if (descriptor_.guard->revoked(sender_of(buffer)) ||
-          (is_announcement(buffer, sound) && descriptor_.guard->announced(sender_of(buffer)))) {
+      if (descriptor_.guard->revoked(sender_of(buffer))) {
         const auto gone = farewell(sender_of(buffer));
         pass(next, gone.data(), static_cast<std::uint32_t>(gone.size()), local, remote);
         return;
       }
       if (is_forgeable(buffer, sound))
         return;
-      if (handshake_for(buffer, sound) != nullptr)
-        wait_for_own_handshake();
+      if (is_announcement(buffer, sound) || is_handshake(buffer, sound))
+        alone = std::unique_lock(introductions());
     }
     if (descriptor_.machines && remote.kind == LOCATOR_KIND_UDPv4 && is_announcement(buffer, sound))
       descriptor_.machines->hear(rtps::IPLocator::toIPv4string(remote),
@@ -118,19 +110,13 @@ class Sieve : public transport::ChainingTransport {
     return places;
   }
 
-  /// Fast DDS 2.9 drops the part of a handshake that comes while it still sends its own to the same
-  /// program. Each side repeats its part every second, so that two sides that began together would
-  /// drop each other's part for ever.
-  void wait_for_own_handshake() const {
-    const auto begun = BootClock::now();
-    for (auto now = begun; now - begun < kLongestHandshake &&
-                           ticks(now) - handshake_sent_ < BootClock::duration(kHandshake).count();
-         now = BootClock::now())
-      std::this_thread::sleep_for(kHandshake / 4);
-  }
-
-  static BootClock::rep ticks(BootClock::time_point time) {
-    return time.time_since_epoch().count();
+  /// Fast DDS 2.9 prepares a handshake in variables that the threads of all ports share, without a
+  /// lock (SecurityManager::match_builtin_endpoints). Where two programs are found at once, one of
+  /// them is never let in. Programs in one process call each other directly, so one lock serves the
+  /// process.
+  static std::mutex& introductions() {
+    static std::mutex mutex;
+    return mutex;
   }
 
   bool plausible(const rtps::octet* buffer, std::uint32_t size) {
@@ -144,7 +130,6 @@ class Sieve : public transport::ChainingTransport {
   std::set<std::pair<std::string, std::uint32_t>> opened_;
   transport::SendResourceList openers_;
   Sequences sequences_;
-  std::atomic<BootClock::rep> handshake_sent_{0};  // time of the last own part of one
 };
 
 }  // namespace

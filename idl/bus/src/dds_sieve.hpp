@@ -26,8 +26,7 @@ struct SieveDescriptor : eprosima::fastdds::rtps::ChainingTransportDescriptor {
 
   /// While `mute` is set nothing is sent. `machines`, if any, get the sources of announcements; the
   /// program announces itself to them, at each of these ports. With a `guard`, packets from senders
-  /// with a revoked certificate are dropped, and so are farewells, which anybody can forge. A
-  /// sender that announces itself for long and is not let in is forgotten.
+  /// with a revoked certificate are dropped, and so are farewells, which anybody can forge.
   SieveDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
                   Mute the_mute, std::shared_ptr<Machines> the_machines = nullptr,
                   std::vector<std::uint32_t> the_ports = {},

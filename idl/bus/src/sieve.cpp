@@ -92,18 +92,14 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size) {
   return size;
 }
 
-const std::uint8_t* handshake_for(const std::uint8_t* message, std::size_t size) {
-  // Behind the encapsulation: the message's own GUID and number, those of the message that it
-  // answers, and the addressee.
-  constexpr std::size_t kMeant = 20 + 4 + 24 + 24;
+bool is_handshake(const std::uint8_t* message, std::size_t size) {
   std::size_t next = 0;
   for (std::size_t at = kHeader; at + kSubmessageHeader <= size; at = next) {
     const Submessage part = submessage(message, size, at, next);
-    if (part.id == kData && part.size >= kMeant + 16 &&
-        std::memcmp(part.data + 8, kHandshakeWriter, 4) == 0)
-      return part.data + kMeant;
+    if (part.id == kData && part.size >= 20 && std::memcmp(part.data + 8, kHandshakeWriter, 4) == 0)
+      return true;
   }
-  return nullptr;
+  return false;
 }
 
 const std::uint8_t* sender_of(const std::uint8_t* message) {

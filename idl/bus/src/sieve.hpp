@@ -21,10 +21,8 @@ std::size_t sound_length(const std::uint8_t* packet, std::size_t size);
 /// True where a sound message announces a participant.
 bool is_announcement(const std::uint8_t* message, std::size_t size);
 
-/// The GUID prefix of the addressee, where a sound message is part of a handshake of two
-/// participants; nullptr for any other message. A handshake message is sent to all, and meant for
-/// one.
-const std::uint8_t* handshake_for(const std::uint8_t* message, std::size_t size);
+/// True where a sound message is part of the handshake of two participants.
+bool is_handshake(const std::uint8_t* message, std::size_t size);
 
 /// The GUID prefix of the participant that a sound message claims as its sender.
 const std::uint8_t* sender_of(const std::uint8_t* message);
