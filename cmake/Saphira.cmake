@@ -68,12 +68,18 @@ endfunction()
 
 # saphira_program(<name> SOURCES main.cpp... LINK t... [COMPONENT speech]): an executable that is
 # installed, with the package core where nothing else is said.
+# SAPHIRA_COMPILE_ONLY: it is compiled, and neither linked nor installed.
 # The target saphira_programs builds all of them, without the tests.
 add_custom_target(saphira_programs)
 function(saphira_program name)
   cmake_parse_arguments(arg "" "COMPONENT" "SOURCES;LINK" ${ARGN})
   if(NOT arg_COMPONENT)
     set(arg_COMPONENT core)
+  endif()
+  if(SAPHIRA_COMPILE_ONLY)
+    add_library(${name} OBJECT ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE ${arg_LINK} saphira_warnings)
+    return()
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LINK} saphira_warnings)
