@@ -184,6 +184,7 @@ function Tabs({tab, choose}: {tab: Tab; choose: (tab: Tab) => void}) {
 function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen}) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const card = useRef<HTMLDivElement>(null);
+  const closer = useRef(() => {});
   const view = useRef<View>();
   const [target, setTarget] = useState<Target>();
   const [corner, setCorner] = useState('');
@@ -210,11 +211,16 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
       requestAnimationFrame(draw);
     };
     draw();
-    listen(canvas.current!, v, at => {
-      v.target = at;
-      v.dirty = true;
-      setTarget(at);
-      setCorner(cornerFor(v, card.current));
+    listen(canvas.current!, v, {
+      choose: at => {
+        v.target = at;
+        v.dirty = true;
+        setTarget(at);
+        setCorner(cornerFor(v, card.current));
+      },
+      enter: () => card.current?.querySelector<HTMLElement>('.main')?.focus(),
+      close: () => closer.current(),
+      driving: () => drive.mine(),
     });
   }, []);
   // The stick lies over the picture: all of the map goes beside it.
@@ -226,8 +232,9 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
     if (v.whole) v.fit();
   }, [driving]);
   const v = view.current;
-  const close = () => {
+  const close = closer.current = () => {
     if (v) v.target = undefined, v.dirty = true;
+    if (card.current?.contains(document.activeElement)) canvas.current!.focus({preventScroll: true});
     setTarget(undefined);
   };
   const toggle = (layer: keyof Layers) => {
@@ -242,8 +249,8 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
   const stale = s.state !== 'live';
   return <>
     <div class="map">
-      <canvas ref={canvas} class={stale ? 'stale' : ''} role="img"
-              aria-label={`${v?.local ? 'Around the robot' : 'Map'} with the robot, its sonar echoes and percepts`} />
+      <canvas ref={canvas} class={stale ? 'stale' : ''} role="application" tabIndex={0}
+              aria-label={`${v?.local ? 'Around the robot' : 'Map'} with the robot, its sonar echoes and percepts. Arrow keys choose a place, Enter goes to its buttons, Escape leaves it.`} />
       {stale && <p class="banner" role="status">{bannerText(s)}</p>}
       <div class="tools" role="group" aria-label="View">
         <button aria-pressed={!!v?.local} title="the robot in the middle, pointing up" onClick={() => act(() => { v!.local = !v!.local; v!.whole = false; })}>Local</button>
@@ -289,8 +296,21 @@ function bannerText(s: Seen): string {
   }
 }
 
-// A click chooses a place; a drag moves the map, a wheel or two fingers change its scale.
-function listen(canvas: HTMLCanvasElement, view: View, clicked: (target: Target) => void) {
+// A click chooses a place; a drag moves the map, a wheel or two fingers change its scale. Arrow keys
+// choose a place too, from the middle on: by 8 pixels, with Shift by 40.
+const ways: {[key: string]: [number, number]} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1], Enter: [0, 0]};
+interface Choice { choose: (target: Target) => void; enter: () => void; close: () => void; driving: () => boolean }
+function listen(canvas: HTMLCanvasElement, view: View, {choose, enter, close, driving}: Choice) {
+  canvas.addEventListener('keydown', e => {
+    if (e.key === 'Escape') close();
+    if (!ways[e.key] || driving()) return;   // the keys drive
+    e.preventDefault();
+    const {left, top, width, height} = view.inWindow(), at = view.targetInWindow()[0];
+    if (at && e.key === 'Enter') return enter();
+    const step = at ? e.shiftKey ? 40 : 8 : 0, [x, y] = at ? [at.x - left, at.y - top] : [width / 2, height / 2];
+    const inside = (value: number, size: number) => Math.max(0, Math.min(size - 1, value));
+    choose(view.at(inside(x + step * ways[e.key][0], width), inside(y + step * ways[e.key][1], height)));
+  });
   const pointers = new Map<number, {x: number; y: number}>();
   let moved = 0, apart = 0;
   canvas.addEventListener('pointerdown', e => {
@@ -314,7 +334,7 @@ function listen(canvas: HTMLCanvasElement, view: View, clicked: (target: Target)
     }
   });
   const end = (e: PointerEvent) => {
-    if (pointers.size === 1 && moved <= 5 && e.type === 'pointerup') clicked(view.at(e.offsetX, e.offsetY));
+    if (pointers.size === 1 && moved <= 5 && e.type === 'pointerup') choose(view.at(e.offsetX, e.offsetY));
     pointers.delete(e.pointerId);
     apart = 0;
   };
@@ -358,7 +378,7 @@ function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDi
     </>;
   const waiting = before.length - 1;
   return <div ref={card} class={`target ${corner}`} role="dialog" aria-label="A place on the map" onKeyDown={e => e.key === 'Escape' && close()}>
-    <div class="row"><strong>{name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
+    <div class="row"><strong aria-live="polite">{name || `${target.x.toFixed(2)}, ${target.y.toFixed(2)} m`}</strong><span class="grow" />
       <button class="plain" aria-label="Close" onClick={close}>×</button></div>
     {link.mayDrive ? <>
       {before.length > 0 && <p class="small">In front: {nameOf(before[0])}, by {before[0].status.requester}

@@ -174,6 +174,28 @@ test('a click sends the robot, with an answer and a cancel button', async () => 
   await leave(page);
 });
 
+test('a place is chosen without a mouse, and left', async () => {
+  const page = await person();
+  await open(page);
+  await page.getByRole('button', {name: 'Follow'}).click();
+  await page.locator('canvas').focus();
+  const dialog = page.getByRole('dialog', {name: 'A place on the map'});
+  const choose = async () => { for (let i = 0; i < 4; ++i) await page.keyboard.press('Shift+ArrowRight'); };
+  await choose();
+  await dialog.waitFor();
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Escape');
+  await dialog.waitFor({state: 'detached'});
+  await choose();   // the picture has the keys again
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Enter');
+  await openGoals(page).filter({hasText: 'go to'}).getByText('underway').waitFor();
+  await moves(page);
+  await endAll(page);
+  await stands(page);
+  await leave(page);
+});
+
 test('goals wait in their order, one goes instead of them, and an ended one is asked for again', async () => {
   const page = await person();
   await open(page);

@@ -26,6 +26,7 @@ before(async () => {
   [port, key] = [Number(address[1]), address[2]];
 });
 after(async () => {
+  for (const person of people) person.leave();   // a test that failed leaves them
   for (const child of [gateway, bridge, simulator]) await end(child);
   rmSync(folder, {recursive: true, force: true});
   console.log(`\n| link | speed [m/s] | what happens | until it stands [s] | afterwards |\n| --- | --- | --- | --- | --- |\n${table.join('\n')}`);
@@ -65,6 +66,7 @@ async function link(delay = 0, loss = 0) {
 }
 
 // A page with a key that is held: `held` false lets it go.
+const people = [];
 async function operator(at, name) {
   const headers = {Host: `localhost:${port}`, Origin: `http://localhost:${port}`};
   const self = {name, held: false, velocity: wanted, control: {}, cycle: 0};
@@ -101,6 +103,7 @@ async function operator(at, name) {
     for (const lane of lanes) lane.texts.length = 0;
     lanes[number % lanes.length].say({type: 'drive', number: ++number, at: performance.now() / 1000, active: self.held, velocity: self.held ? self.velocity : 0, rotation: 0, cycle: self.cycle});
   }, period);
+  people.push(self);
   self.say = message => commands.say(message);
   self.leave = () => {
     clearInterval(beat);
