@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
                           "Routes requests to the agents that can answer them", {},
                           [](const bus::NodeOptions& options, const bus::Stop& stop) {
                             bus::Node node(options);
-                            agent_interface::FacilitatorShell(node).run(stop);
+                            using agent_interface::FacilitatorShell;
+                            FacilitatorShell(node, FacilitatorShell::seconds()).run(stop);
                             return bus::kExitOk;
                           });
 }

@@ -9,13 +9,9 @@
 namespace saphira::agent_interface {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
+// Agents that are there are found within this time after the start, also with security.
+constexpr double kKnown = 2.0;                   // [s]
 constexpr std::chrono::microseconds kSpin{500};  // after a request: most agents answer within that
-
-double seconds() {
-  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-}
 
 template <class Key>
 void note(std::multimap<bus::WriterId, Key>& of, const bus::WriterId& writer, const Key& key) {
@@ -26,7 +22,7 @@ void note(std::multimap<bus::WriterId, Key>& of, const bus::WriterId& writer, co
 
 }  // namespace
 
-FacilitatorShell::FacilitatorShell(bus::Node& node)
+FacilitatorShell::FacilitatorShell(bus::Node& node, double now)
     : node_(node),
       agents_(node.reader(bus::topics::kAgents)),
       triggers_(node.reader(bus::topics::kTriggers)),
@@ -35,7 +31,9 @@ FacilitatorShell::FacilitatorShell(bus::Node& node)
       answers_(node.reader(bus::topics::kAgentAnswers)),
       requests_(node.writer<v1::Request>(bus::topics::kAgentRequest)),
       solved_(node.writer(bus::topics::kSolved)),
-      facilitator_(node.instance()) {}
+      begun_(now),
+      facilitator_(node.instance(), now + kKnown),
+      robot_(node) {}
 
 void FacilitatorShell::take_agents() {
   for (const auto& sample : agents_.take()) {
@@ -72,6 +70,20 @@ void FacilitatorShell::take_triggers(double now) {
   }
 }
 
+void FacilitatorShell::take_requests(double now) {
+  for (const auto& sample : asked_.take())
+    if (!sample.info.disposed) {
+      note(askers_of_, sample.info.writer, std::uint64_t{sample.data.asker()});
+      facilitator_.ask(saphira::from_bus(sample.data), now);
+    }
+  for (const bus::WriterId& writer : asked_.take_lost()) {
+    const auto [begin, end] = askers_of_.equal_range(writer);
+    for (auto one = begin; one != end; ++one)
+      robot_.forget(one->second);
+    askers_of_.erase(writer);
+  }
+}
+
 void FacilitatorShell::step(double now) {
   take_agents();
   take_triggers(now);
@@ -79,17 +91,24 @@ void FacilitatorShell::step(double now) {
     if (!sample.info.disposed)
       facilitator_.hear(sample.data.service(), sample.data.asker(), sample.data.number(),
                         saphira::from_bus(sample.data), now);
+  // The bus repeats older events to a new reader: triggers fired on them before.
   for (const auto& sample : events_.take())
-    if (!sample.info.disposed)
+    if (!sample.info.disposed && sample.info.age <= now - begun_)
       facilitator_.happened(sample.data.functor(), saphira::from_bus(sample.data.arguments()), now);
-  for (const auto& sample : asked_.take())
-    if (!sample.info.disposed)
-      facilitator_.ask(saphira::from_bus(sample.data), now);
+  take_requests(now);
+  const auto robot_says = [&](const Request& request, const Answer& answer) {
+    facilitator_.hear(robot_.address(), request.asker, request.number, answer, now);
+  };
+  for (const RobotAgent::Report& report : robot_.step(now))
+    robot_says(report.request, report.answer);
 
   const Facilitator::Outputs out = facilitator_.step(now);
   awaits_ = !out.requests.empty();
   for (const Request& request : out.requests)
-    requests_.write(to_bus(request));
+    if (request.service == robot_.address())
+      robot_says(request, robot_.begin(request, now));
+    else
+      requests_.write(to_bus(request));
   for (const Solved& solved : out.solved) {
     v1::Answer answer = to_bus(solved.answer);
     answer.asker(solved.asker);
@@ -99,6 +118,10 @@ void FacilitatorShell::step(double now) {
   }
   for (const std::string& text : out.notes)
     node_.info(text);
+}
+
+double FacilitatorShell::seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void FacilitatorShell::run(const bus::Stop& stop) {

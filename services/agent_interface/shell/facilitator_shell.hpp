@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "agent_interface/shell/robot_agent.hpp"
 #include "saphira/agent_interface/facilitator.hpp"
 #include "saphira/bus/node.hpp"
 
@@ -10,15 +11,18 @@ namespace saphira::agent_interface {
 /// The facilitator on the bus. For the node's own thread.
 class FacilitatorShell {
  public:
-  explicit FacilitatorShell(bus::Node& node);
+  FacilitatorShell(bus::Node& node, double now);
 
   /// Takes the inputs and sends the outputs. now: [s] of a clock that never goes back.
   void step(double now);
   void run(const bus::Stop& stop);
+  /// [s] The clock of run().
+  static double seconds();
 
  private:
   void take_agents();
   void take_triggers(double now);
+  void take_requests(double now);
 
   bus::Node& node_;
   bus::Reader<v1::Agent> agents_;
@@ -28,11 +32,14 @@ class FacilitatorShell {
   bus::Reader<v1::Answer> answers_;
   bus::Writer<v1::Request> requests_;
   bus::Writer<v1::Answer> solved_;
+  const double begun_;  ///< [s] of the clock of step()
   Facilitator facilitator_;
+  RobotAgent robot_;
   bool awaits_ = false;  ///< the last step has sent a request to an agent
   /// The writer of each agent: an agent ends with its writer.
   std::multimap<bus::WriterId, std::uint64_t> agents_of_;
   std::multimap<bus::WriterId, std::pair<std::uint64_t, std::uint64_t>> triggers_of_;
+  std::multimap<bus::WriterId, std::uint64_t> askers_of_;
 };
 
 }  // namespace saphira::agent_interface

@@ -62,6 +62,12 @@ void Facilitator::announce(const AgentInfo& agent) {
   agents_[agent.id] = agent;
   if (!known)
     out_.notes.push_back("agent " + agent.name + " came");
+  std::vector<Id> waiting;
+  for (const auto& [id, open] : open_)
+    if (open.unmatched)
+      waiting.push_back(id);
+  for (const Id& id : waiting)
+    match(id, now_);
 }
 
 void Facilitator::leave(std::uint64_t agent) {
@@ -160,9 +166,20 @@ void Facilitator::begin(const Request& request, std::optional<Id> trigger, doubl
   if (static_cast<std::size_t>(same) >= kOpenOfOne)
     none = Answer{AnswerCode::refused, request.source + " has " + std::to_string(same) +
                                            " requests open: ask again when one has ended"};
-  else
-    none = candidates(open);
   open_[id] = std::move(open);
+  if (none)
+    end(id, kName, *none);
+  else
+    match(id, now);
+}
+
+/// Finds the agents of a request, and asks the first ones.
+void Facilitator::match(const Id& id, double now) {
+  Open& open = open_.at(id);
+  const std::optional<Answer> none = candidates(open);
+  open.unmatched = none && none->code == AnswerCode::nobody && now < known_;
+  if (open.unmatched)
+    return;
   if (none)
     end(id, kName, *none);
   else
@@ -209,8 +226,12 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
   if (asked == open.asked.end())
     return;
   asked->heard = true;
-  if (!ended(answer.code))
+  if (!ended(answer.code)) {
+    // An agent that says again and again that it is at work has the time that it needs.
+    if (open.request.deadline <= 0.0)
+      open.end = now + kUsualDeadline;
     return;
+  }
   const std::string name = agents_.at(asked->agent).name;
   const bool acts = asked->acts;
   open.asked.erase(asked);
@@ -300,11 +321,16 @@ void Facilitator::fire(Armed& armed, const Arguments& found, double now) {
 /// The condition of a data trigger was answered.
 void Facilitator::looked(const Id& trigger, const Answer& answer) {
   const auto found = triggers_.find(trigger);
-  if (found == triggers_.end() || !well(answer.code))
+  // An agent that is missing or silent leaves the value unknown; one that refuses has none.
+  if (found == triggers_.end() || !(well(answer.code) || answer.code == AnswerCode::refused))
     return;
   Armed& armed = found->second;
-  const bool changed = armed.found && *armed.found != answer.results;
-  armed.found = answer.results;
+  std::optional<Arguments> value;
+  if (well(answer.code))
+    value = answer.results;
+  const bool changed = armed.looked && value && armed.found != value;
+  armed.looked = true;
+  armed.found = value;
   if (changed)
     fire(armed, answer.results, now_);
 }
@@ -330,7 +356,12 @@ Facilitator::Outputs Facilitator::step(double now) {
     begin(condition, id, now);
   }
   std::vector<Id> late;
+  std::vector<Id> waiting;
   for (auto& [id, open] : open_) {
+    if (open.unmatched && now >= known_) {
+      waiting.push_back(id);
+      continue;
+    }
     if (now >= open.end) {
       late.push_back(id);
       continue;
@@ -343,6 +374,8 @@ Facilitator::Outputs Facilitator::step(double now) {
         out_.requests.push_back(std::move(request));
       }
   }
+  for (const Id& id : waiting)
+    match(id, now);
   for (const Id& id : late) {
     const Open& open = open_.at(id);
     std::string names;
@@ -363,7 +396,7 @@ std::optional<double> Facilitator::due() const {
       soonest = when;
   };
   for (const auto& [id, open] : open_) {
-    consider(open.end);
+    consider(open.unmatched ? std::min(open.end, known_) : open.end);
     for (const Asked& asked : open.asked)
       if (!asked.heard)
         consider(asked.again);

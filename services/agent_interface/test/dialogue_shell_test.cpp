@@ -200,7 +200,7 @@ TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
 TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
   say("Flakey, John usually knows where Karen is");
   bus::Node hub(test::memory_options("facilitator"), memory);
-  FacilitatorShell facilitator(hub);
+  FacilitatorShell facilitator(hub, 0.0);
   bus::RequestClient client(person, bus::topics::kSolve, "a person");
   v1::Request request;
   request.functor("forget");
@@ -213,6 +213,51 @@ TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {
   EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text(), "forgotten");
   EXPECT_EQ(client.ask(request, 30.0, nullptr, others).text(),
             "nothing is known under 1: saphira knows lists what is");
+}
+
+// A goal is asked for by its activity's name, as anything else that an agent can do.
+TEST_F(DialogueOnTheBus, AnActivityIsRequestedOfTheRobot) {
+  bus::Node hub(test::memory_options("facilitator"), memory);
+  FacilitatorShell facilitator(hub, 0.0);
+  v1::ActivitySchema schema;
+  schema.name("go-to-place");
+  schema.parameters().resize(1);
+  schema.parameters()[0].name("place");
+  schema.parameters()[0].kind(v1::PARAMETER_TEXT);
+  schema.parameters()[0].required(true);
+  v1::ActivitySchemas schemas;
+  schemas.schemas({schema});
+  person.writer(bus::topics::kActivitySchemas).write(schemas);
+  auto client = std::make_unique<bus::RequestClient>(person, bus::topics::kSolve, "a person");
+  v1::Request request;
+  request.functor("go-to-place");
+  double now = 3.0;
+  std::optional<v1::Goal> goal;
+  v1::GoalState state = v1::GOAL_SUCCEEDED;
+  const auto others = [&] {
+    facilitator.step(now += 0.01);
+    for (const auto& sample : goals.take())
+      if (!sample.info.disposed) {
+        goal = sample.data;
+        v1::GoalStatus status;
+        status.id(goal->id());
+        status.state(state);
+        status.reason("as the intentions say");
+        statuses.write(status);
+      }
+  };
+  others();  // the robot announces what it can do
+  EXPECT_EQ(client->ask(request, 30.0, nullptr, others).code(), v1::ANSWER_BAD_ARGUMENT);
+  request.arguments({bus::text("place", "library")});
+  EXPECT_EQ(client->ask(request, 30.0, nullptr, others).code(), v1::ANSWER_DONE);
+  ASSERT_TRUE(goal);
+  EXPECT_EQ(goal->functor(), "go-to-place");
+  EXPECT_EQ(goal->requester(), "a person");
+  EXPECT_EQ(bus::text_of(goal->arguments(), "place"), "library");
+  state = v1::GOAL_FAILED;
+  const v1::Answer failed = client->ask(request, 30.0, nullptr, others);
+  EXPECT_EQ(failed.code(), v1::ANSWER_GIVEN_UP);
+  EXPECT_EQ(failed.text(), "as the intentions say");
 }
 
 TEST_F(DialogueOnTheBus, WhatWasSaidLongAgoIsNotActedOn) {

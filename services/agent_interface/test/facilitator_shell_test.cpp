@@ -91,7 +91,9 @@ TEST_F(OnTheBus, AFacilitatorThatIsKilledIsMissedForAMomentOnly) {
   ask_until(person, v1::ANSWER_DONE);
   facilitator->signal(SIGKILL);
   start();
-  EXPECT_EQ(ask_until(person, v1::ANSWER_DONE).service(), "ann");
+  const v1::Answer answer = person.ask(where_is_karen(), 20.0);
+  EXPECT_EQ(answer.code(), v1::ANSWER_DONE) << "the first one: " << answer.text();
+  EXPECT_EQ(answer.service(), "ann");
   EXPECT_GE(asked, 2);
 }
 

@@ -243,6 +243,86 @@ TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
 
 /// Agents come, go and answer at random. Each request has one end, and no more answers than wanted;
 /// no agent starts an action that another one may have done.
+TEST_F(Facilitation, ATriggerOfDataFiresWhenAValueIsFirstKnown) {
+  AgentInfo speaker = agent(1, "a");
+  speaker.capabilities.push_back(
+      {{"note", "", {optional(text_parameter("place", ""))}}, true, 0.0});
+  facilitator.announce(speaker);
+  facilitator.set({{1, 3},
+                   "ann",
+                   TriggerKind::data,
+                   1.0,
+                   "place_of",
+                   {text("person", "karen"), open_slot("place")},
+                   "note",
+                   {open_slot("place")},
+                   0},
+                  now);
+  const Answer unknown{AnswerCode::refused, "nobody has told me"};
+  const Answer late{AnswerCode::too_late, "no answer"};
+  std::vector<double> fired;
+  for (const Answer& answer :
+       {unknown, unknown, late, library(), library(), late, library(), unknown, library()}) {
+    now += 1.0;
+    for (const Request& request : facilitator.step(now).requests)
+      facilitator.hear(request.service, request.asker, request.number,
+                       request.functor == "note" ? Answer{} : answer, now);
+    for (const Request& request : facilitator.step(now).requests)
+      if (request.functor == "note") {
+        fired.push_back(now);
+        facilitator.hear(request.service, request.asker, request.number, {}, now);
+      }
+  }
+  EXPECT_EQ(fired, (std::vector<double>{104.0, 109.0}));
+}
+
+TEST(FacilitationAtTheStart, ARequestWaitsForAgentsThatMayComeYet) {
+  Facilitator facilitator(kSelf, 102.0);
+  facilitator.ask(place_of(5), 100.0);
+  facilitator.ask(place_of(6), 100.5);
+  EXPECT_TRUE(facilitator.step(100.5).solved.empty());
+  EXPECT_EQ(facilitator.due(), 102.0);
+  facilitator.announce(agent(1, "calendar"));
+  const auto asked = facilitator.step(100.6);
+  EXPECT_TRUE(asked.solved.empty());
+  ASSERT_EQ(asked.requests.size(), 2u);
+  EXPECT_EQ(asked.requests[0].service, "address of calendar");
+  Request other = place_of(7);
+  other.functor = "weather";
+  facilitator.ask(other, 101.5);
+  EXPECT_TRUE(facilitator.step(101.9).solved.empty());
+  const auto none = facilitator.step(102.0).solved;
+  ASSERT_EQ(none.size(), 1u);
+  EXPECT_EQ(none[0].answer.code, AnswerCode::nobody);
+  facilitator.ask(place_of(8), 103.0);
+  facilitator.leave(1);
+  other.number = 9;
+  facilitator.ask(other, 103.0);
+  EXPECT_EQ(facilitator.step(103.0).solved.back().answer.code, AnswerCode::nobody) << "at once";
+}
+
+TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
+  facilitator.announce(agent(1, "robot", true));
+  ask(place_of(5));
+  hear("robot", place_of(5), {AnswerCode::underway, ""});
+  Request short_one = place_of(6);
+  short_one.deadline = 20.0;
+  ask(short_one);
+  hear("robot", short_one, {AnswerCode::underway, ""});
+  std::vector<std::uint64_t> late;
+  for (int i = 0; i < 100; ++i) {
+    now += 5.0;
+    for (const Solved& solved : facilitator.step(now).solved)
+      late.push_back(solved.number);
+    hear("robot", place_of(5), {AnswerCode::underway, ""});
+    hear("robot", short_one, {AnswerCode::underway, ""});
+  }
+  EXPECT_EQ(late, std::vector<std::uint64_t>{6}) << "the one with a deadline";
+  const auto solved = hear("robot", place_of(5), library()).solved;
+  ASSERT_EQ(solved.size(), 1u);
+  EXPECT_EQ(solved[0].answer, library());
+}
+
 TEST(FacilitationAtRandom, EveryRequestHasOneEnd) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);

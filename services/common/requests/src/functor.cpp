@@ -27,7 +27,8 @@ std::string bound(const Parameter& parameter, double value) {
 }
 
 std::string expected(const Parameter& parameter) {
-  std::string words = describe(parameter.kind);
+  std::string words =
+      parameter.kind == ArgumentKind::unbound ? "a value" : describe(parameter.kind);
   if (parameter.kind == ArgumentKind::number)
     words = (parameter.whole ? "a whole number from " : "a number from ") +
             bound(parameter, parameter.low) + " to " + bound(parameter, parameter.high);
@@ -46,6 +47,8 @@ bool is_finite(const Pose& pose) {
 }
 
 bool fits(const Parameter& parameter, const Argument& argument) {
+  if (parameter.kind == ArgumentKind::unbound)
+    return true;
   if (argument.kind != parameter.kind)
     return false;
   switch (argument.kind) {

@@ -53,8 +53,9 @@ struct Solved {
 /// that never goes back.
 class Facilitator {
  public:
-  /// self: the asker in requests of triggers.
-  explicit Facilitator(std::uint64_t self) : self_(self) {}
+  /// self: the asker in requests of triggers. known: the time until which agents may be there that
+  /// have not announced themselves yet; a request that none can answer waits for them.
+  explicit Facilitator(std::uint64_t self, double known = 0.0) : self_(self), known_(known) {}
 
   void announce(const AgentInfo& agent);
   /// The agent's open requests go to another agent, or are answered with the reason.
@@ -101,16 +102,19 @@ class Facilitator {
     Answer trouble{AnswerCode::nobody};  ///< the newest failure
     std::string troubler{};
     std::optional<Id> trigger{};  ///< the trigger whose condition it is
+    bool unmatched = false;       ///< waits for an agent that can answer it
   };
   struct Armed {
     Trigger trigger;
     double next = 0.0;
     std::uint64_t fired = 0;
-    std::optional<Arguments> found{};  ///< at the last check
+    bool looked = false;               ///< the condition was answered
+    std::optional<Arguments> found{};  ///< by the last answer; none: no value
   };
 
   std::optional<Answer> candidates(Open& open) const;
   void begin(const Request& request, std::optional<Id> trigger, double now);
+  void match(const Id& id, double now);
   void advance(const Id& id, double now);
   void send(Open& open, std::uint64_t agent, double now);
   void give(const Id& id, const std::string& service, const Answer& answer);
@@ -120,6 +124,7 @@ class Facilitator {
   const Capability* capability(std::uint64_t agent, const std::string& functor) const;
 
   std::uint64_t self_;
+  double known_;
   std::uint64_t number_ = 0;
   double now_ = 0.0;
   std::map<std::uint64_t, AgentInfo> agents_;

@@ -1,0 +1,104 @@
+#include "agent_interface/shell/robot_agent.hpp"
+
+#include <string>
+#include <utility>
+
+#include "requests/shell/convert.hpp"
+#include "saphira/bus/agent.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr double kClaimed = 5.0;            // [s] a goal that nobody took up is withdrawn then
+constexpr double kReport = 2.0;             // [s] between reports of a goal that is underway
+constexpr std::size_t kMostArguments = 16;  // of a goal
+
+std::string meaning_of(const v1::ActivityParameter& parameter) {
+  static const char* const kinds[] = {"a value", "a number", "a text", "a point"};
+  std::string text = kinds[parameter.kind()];
+  if (!parameter.unit().empty())
+    text += " [" + parameter.unit() + "]";
+  if (!parameter.usual().empty())
+    text += ", usually " + parameter.usual();
+  return text;
+}
+
+}  // namespace
+
+RobotAgent::RobotAgent(bus::Node& node)
+    : announcements_(node.writer(bus::topics::kAgents)),
+      goals_(node, "robot"),
+      schemas_(node.reader(bus::topics::kActivitySchemas)) {
+  self_.id(bus::next_request_number() ^ node.instance());
+  self_.name("robot");
+  self_.summary("pursues goals");
+  address_ = bus::agent_address(self_.id(), self_.name());
+}
+
+void RobotAgent::announce(const v1::ActivitySchemas& schemas) {
+  self_.capabilities().clear();
+  for (const v1::ActivitySchema& schema : schemas.schemas()) {
+    std::vector<v1::CapabilityParameter> parameters;
+    for (const v1::ActivityParameter& one : schema.parameters()) {
+      v1::CapabilityParameter parameter;
+      parameter.name(one.name());
+      parameter.kind(v1::ARGUMENT_UNBOUND);  // the intentions check it
+      parameter.meaning(meaning_of(one));
+      parameter.required(one.required());
+      parameters.push_back(std::move(parameter));
+    }
+    self_.capabilities().push_back(
+        bus::action(schema.name(), schema.summary(), std::move(parameters)));
+  }
+  announcements_.write(self_);
+}
+
+Answer RobotAgent::begin(const Request& request, double now) {
+  if (request.arguments.size() > kMostArguments)
+    return {AnswerCode::refused,
+            "a goal has " + std::to_string(kMostArguments) + " arguments at most"};
+  v1::Goal goal;
+  goal.functor(request.functor);
+  goal.arguments(to_bus(request.arguments));
+  goal.requester(request.source);
+  goal.deadline(request.deadline);
+  goal.writer_lost(v1::WRITER_LOST_CANCEL);
+  begun_.push_back({request, goals_.ask(std::move(goal)), now, now});
+  return {AnswerCode::underway, ""};
+}
+
+void RobotAgent::forget(std::uint64_t asker) {
+  std::erase_if(begun_, [&](const Begun& one) {
+    if (one.request.asker == asker)
+      goals_.cancel(one.goal);
+    return one.request.asker == asker;
+  });
+}
+
+std::vector<RobotAgent::Report> RobotAgent::step(double now) {
+  if (const auto schemas = schemas_.take_newest())
+    announce(*schemas);
+  goals_.poll();
+  std::vector<Report> reports;
+  std::erase_if(begun_, [&](Begun& one) {
+    const auto status = goals_.status(one.goal);
+    Answer answer{AnswerCode::underway, status ? status->reason() : ""};
+    if (status && bus::ended(status->state())) {
+      answer.code = status->state() == v1::GOAL_SUCCEEDED ? AnswerCode::done
+                    : status->state() == v1::GOAL_REFUSED ? AnswerCode::refused
+                                                          : AnswerCode::given_up;
+    } else if (!status && now >= one.when + kClaimed) {
+      goals_.cancel(one.goal);
+      answer = {AnswerCode::refused,
+                "no program has taken up the goal: saphira status shows whether intentions runs"};
+    } else if (now < one.reported + kReport) {
+      return false;
+    }
+    one.reported = now;
+    reports.push_back({one.request, answer});
+    return answer.code != AnswerCode::underway;
+  });
+  return reports;
+}
+
+}  // namespace saphira::agent_interface
