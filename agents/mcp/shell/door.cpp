@@ -95,6 +95,7 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       said_reader_(node.reader(bus::topics::kSaid)),
       heard_writer_(node.writer(bus::topics::kHeard)),
       stop_writer_(node.writer(bus::topics::kDriveEstop)) {
+  session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
 
@@ -120,6 +121,7 @@ void Door::hear() {
 void Door::turn() {
   session_.set_time(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
   session_.set_tools(robot_.tools());
+  session_.wait_for_tools(!robot_.knows_tools());
   hear();
   for (const std::uint64_t number : session_.take_given_up())
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
@@ -172,6 +174,8 @@ void Door::begin(const Call& call) {
     session_.answer(call.number, robot_.map());
   } else if (call.tool == "look") {
     session_.answer(call.number, robot_.view());
+  } else if (call.tool == "knows") {
+    session_.answer(call.number, robot_.facts());
   } else {  // removed between the call and now
     session_.answer(call.number, {"not done: nobody offers this tool now", nullptr, true});
   }
@@ -287,11 +291,15 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     case Waiting::For::words:
       if (!late)
         return false;
-      session_.answer(number,
-                      {waiting.said.empty() ? "the robot said nothing: saphira-dialogue may not run"
-                                            : waiting.said,
-                       {{"said", waiting.said}},
-                       waiting.said.empty()});
+      session_.answer(
+          number,
+          {!waiting.said.empty() ? waiting.said
+           : heard_writer_.matched() == 0
+               ? "the robot said nothing: saphira-dialogue may not run"
+               : "the robot said nothing: a sentence for it begins with its keyword, such as "
+                 "\"Flakey, stop\"",
+           {{"said", waiting.said}},
+           waiting.said.empty()});
       return true;
     case Waiting::For::stop: {
       const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();

@@ -72,6 +72,11 @@ class Session {
   /// The tools from now on. The client is notified of a change.
   void set_tools(std::vector<Tool> tools);
   const std::vector<Tool>& tools() const { return tools_; }
+  /// True: the tools are not all known yet. Lists, readings and calls are held back until false,
+  /// except for calls of tools that are always allowed.
+  void wait_for_tools(bool waits);
+  /// The client sends no more: held calls are dropped. True where held lists are still unanswered.
+  bool leave();
   /// The clock of the limit on calls [s], of any origin.
   void set_time(double time) { time_ = time; }
 
@@ -107,6 +112,12 @@ class Session {
     std::uint64_t exchange = 0;
     bool modern = false;
   };
+  /// A request that is held back until the tools are known.
+  struct Held {
+    std::string method;
+    Request request;
+    Json parameters;
+  };
   struct Open {
     Request request;
     Json token;     ///< of progress; null: none is wanted
@@ -123,6 +134,8 @@ class Session {
   void ask_modern(const std::string& method, const Request& request, const Json& parameters);
   bool fits(const std::string& method, const Request& request, const Json& parameters,
             const Headers& headers);
+  bool has_to_wait(const std::string& method, const Json& parameters) const;
+  void hold(const std::string& method, const Request& request, const Json& parameters);
   void list_tools(const Request& request);
   void listen(const Request& request, const Json& parameters);
   Json capabilities() const;
@@ -139,6 +152,8 @@ class Session {
   const std::string instructions_;
   std::vector<Tool> tools_;
   bool begun_ = false;
+  bool waits_ = false;      ///< for the tools
+  std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::map<std::uint64_t, Open> open_;
   std::vector<Request> listeners_;  ///< those that want changes of the tools
