@@ -13,9 +13,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kDeadline = 600.0;    // [s] of a goal without one
-constexpr std::size_t kMostGoals = 4;  // underway at once
-constexpr double kReply = 10.0;        // [s] for the robot's or an agent's reply
+constexpr double kDeadline = 600.0;     // [s] of a goal without one
+constexpr std::size_t kMostGoals = 4;   // underway at once
+constexpr double kNews = 1e-6;          // of progress, for new words alone
+constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
+constexpr std::size_t kLongestNote = 160;
+constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
 
 milliseconds seconds_of(double seconds) {
   return milliseconds(static_cast<int>(1000 * seconds));
@@ -66,6 +69,21 @@ Json json_of(const v1::Argument& argument) {
       break;
   }
   return nullptr;
+}
+
+/// The first line of a text for the log, without control characters.
+std::string first_line(const std::string& text) {
+  std::string line = text.substr(0, text.find('\n'));
+  if (line.size() > kLongestNote) {
+    std::size_t end = kLongestNote;
+    while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U)
+      --end;  // not within a letter
+    line = line.substr(0, end) + "...";
+  }
+  std::replace_if(
+      line.begin(), line.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
+  return line;
 }
 
 /// The answer of an agent. Several results of one name are a list.
@@ -141,6 +159,19 @@ void Door::turn() {
     press();
   for (auto each = waiting_.begin(); each != waiting_.end();)
     each = is_over(each->first, each->second) ? waiting_.erase(each) : std::next(each);
+  note();
+}
+
+/// Logs each call that has ended.
+void Door::note() {
+  if (const auto now = Clock::now(); now - noted_since_ >= std::chrono::seconds(1)) {
+    noted_since_ = now;
+    noted_ = 0;
+  }
+  for (const Outcome& outcome : session_.take_outcomes())
+    if (++noted_ <= kMostNoted)
+      node_.info(who_ + ": " + outcome.tool + (outcome.is_error ? " (error): " : ": ") +
+                 first_line(outcome.text));
 }
 
 void Door::begin(const Call& call) {
@@ -253,8 +284,13 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     case Waiting::For::goal: {
       const auto status = goals_.status(*waiting.goal);
       if (!late && !(status && bus::ended(status->state()))) {
-        if (status && status->progress() > waiting.told) {
-          waiting.told = status->progress();
+        if (!status)
+          return false;
+        const std::string words =
+            bus::describe(status->state()) + ("\n" + status->step() + "\n" + status->reason());
+        if (status->progress() > waiting.told || words != waiting.words) {
+          waiting.told = std::max(waiting.told + kNews, status->progress());
+          waiting.words = words;
           session_.progress(number, waiting.told, bus::describe(*status));
         }
         return false;

@@ -90,7 +90,8 @@ class Door {
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
     Clock::time_point until = {};
-    double told = -1.0;  ///< progress
+    double told = -1.0;      ///< progress
+    std::string words = {};  ///< of that progress
     std::string said = {};
     std::optional<Result> result = std::nullopt;  ///< of the request
   };
@@ -103,6 +104,7 @@ class Door {
   void say(const Call& call);
   bool is_over(std::uint64_t number, Waiting& waiting);
   void press();
+  void note();
   Result outcome(const v1::GoalId& id) const;
   Json goals() const;
 
@@ -117,6 +119,8 @@ class Door {
   bus::Writer<v1::MotorCommand> stop_writer_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
   std::vector<v1::GoalId> own_;
+  Clock::time_point noted_since_ = {};
+  std::size_t noted_ = 0;  ///< lines of the log in that second
 };
 
 }  // namespace saphira::mcp

@@ -104,6 +104,15 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
   return json;
 }
 
+/// True for an activity that needs a value without a declared kind, such as a path: only another
+/// activity has that.
+bool is_part(const v1::ActivitySchema& schema) {
+  return std::any_of(schema.parameters().begin(), schema.parameters().end(),
+                     [](const v1::ActivityParameter& parameter) {
+                       return parameter.required() && parameter.kind() == v1::PARAMETER_ANY;
+                     });
+}
+
 /// The input schema of a tool with these parameters.
 template <class Parameters>
 Json input_of(const Parameters& parameters) {
@@ -207,7 +216,7 @@ void Robot::make_tools() {
   };
   for (const v1::ActivitySchema& schema : schemas_) {
     const std::string name = tool_name(schema.name());
-    if (!is_new(name))
+    if (is_part(schema) || !is_new(name))
       continue;
     Json input = input_of(schema.parameters());
     input["properties"]["wait_s"] = wait_of(kWait);

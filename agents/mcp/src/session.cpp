@@ -424,16 +424,18 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
     for (const Tool& each : tools_)
       names.push_back(each.name);
     const std::string meant = name.is_string() ? guess(name.get<std::string>(), names) : "";
-    return error(request, kBadParameters,
-                 "there is no tool " + name.dump().substr(0, 70) +
-                     (meant.empty() ? "" : ": did you mean " + meant + "?"));
+    const std::string why = "there is no tool " + name.dump().substr(0, 70) +
+                            (meant.empty() ? "" : ": did you mean " + meant + "?");
+    note("call", why, true);
+    return error(request, kBadParameters, why);
   }
   Json arguments = member(parameters, "arguments");
   if (arguments.is_null())
     arguments = Json::object();
   const std::uint64_t number = ++count_;
   const Json meta = member(parameters, "_meta");
-  open_[number] = {request, meta.is_object() ? member(meta, "progressToken") : Json(), uri};
+  open_[number] = {request, tool->name, meta.is_object() ? member(meta, "progressToken") : Json(),
+                   uri};
   const auto refuse = [&](const std::string& why) {
     answer(number, {"not done: " + why, nullptr, true});
   };
@@ -449,8 +451,16 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   calls_.push_back({number, tool->name, std::move(arguments)});
 }
 
+void Session::note(const std::string& tool, const std::string& text, bool is_error) {
+  if (outcomes_.size() < kMostOpen)
+    outcomes_.push_back({tool, text, is_error});
+}
+
 void Session::erase(std::uint64_t number) {
-  open_.erase(number);
+  if (const auto found = open_.find(number); found != open_.end()) {
+    note(found->second.tool, "given up by the client", false);
+    open_.erase(found);
+  }
   std::erase_if(calls_, [&](const Call& each) { return each.number == number; });
   given_up_.push_back(number);
 }
@@ -490,6 +500,7 @@ void Session::answer(std::uint64_t call, const Result& result) {
     return;
   const Open open = std::move(found->second);
   open_.erase(found);
+  note(open.tool, result.text, result.is_error);
   if (!open.uri.is_null() && result.is_error)
     return error(open.request, kInternal, result.text, {{"uri", open.uri}});
   if (!open.uri.is_null())
@@ -519,6 +530,10 @@ std::vector<Call> Session::take_calls() {
 
 std::vector<std::uint64_t> Session::take_given_up() {
   return std::exchange(given_up_, {});
+}
+
+std::vector<Outcome> Session::take_outcomes() {
+  return std::exchange(outcomes_, {});
 }
 
 std::vector<Line> Session::take_lines() {

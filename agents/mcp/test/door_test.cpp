@@ -87,10 +87,15 @@ TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
     EXPECT_EQ(client.result(1)["serverInfo"]["name"], "saphira");
     // The first list waits for the activities.
     client.say(10, "tools/list", json::object());
-    ASSERT_NE(client.result(10).dump().find("\"go_to\""), std::string::npos);
+    const std::string tools = client.result(10).dump();
+    ASSERT_NE(tools.find("\"go_to\""), std::string::npos);
+    EXPECT_NE(tools.find("\"go_to_place\""), std::string::npos);
+    EXPECT_EQ(tools.find("\"follow_path\""), std::string::npos);  // part of others
     client.call(2, "go_to", {{"position", point(0.8, 0.0)}});
     EXPECT_EQ(client.result(2)["structuredContent"]["state"], "succeeded")
         << client.server().output();
+    EXPECT_TRUE(wait_until(
+        [&] { return client.server().output().find("model: go_to: goal ") != std::string::npos; }));
 
     client.call(3, "go_to", {{"position", point(5.0, 0.5)}, {"wait_s", 0}});
     const std::string goal = client.result(3)["structuredContent"]["goal"];

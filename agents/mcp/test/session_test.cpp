@@ -364,8 +364,29 @@ TEST(McpSession, AnUnknownToolIsGuessed) {
   const auto message = [&](const std::string& name) {
     return client.one(line(1, "tools/call", {{"name", name}}))["error"]["message"];
   };
-  EXPECT_EQ(message("go-to"), "there is no tool \"go-to\": did you mean go_to?");
+  EXPECT_EQ(message("go_too"), "there is no tool \"go_too\": did you mean go_to?");
   EXPECT_EQ(message("dance"), "there is no tool \"dance\"");
+}
+
+TEST(McpSession, EachCallHasAnOutcomeForTheLog) {
+  Client client;
+  client.say(line(1, "tools/call", {{"name", "go"}}));
+  client.say(line(2, "tools/call", {{"name", "go_to"}}));
+  const Json fits{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
+  client.say(line(3, "tools/call", fits));
+  client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
+  client.say(line(4, "tools/call", fits));
+  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":4}})");
+  const auto outcomes = client.session.take_outcomes();
+  ASSERT_EQ(outcomes.size(), 4U);
+  EXPECT_EQ(outcomes[0].text, "there is no tool \"go\": did you mean go_to?");
+  EXPECT_EQ(outcomes[1].text, "not done: \"x\" is missing");
+  EXPECT_TRUE(outcomes[1].is_error);
+  EXPECT_EQ(outcomes[2].tool, "go_to");
+  EXPECT_EQ(outcomes[2].text, "there");
+  EXPECT_FALSE(outcomes[2].is_error);
+  EXPECT_EQ(outcomes[3].text, "given up by the client");
+  EXPECT_TRUE(client.session.take_outcomes().empty());
 }
 
 TEST(McpSession, ASenderIsKnownByWhatItSays) {

@@ -34,6 +34,13 @@ struct Result {
   bool is_error = false;  ///< the request failed; the text gives the reason and advice
 };
 
+/// The end of a call, for the log.
+struct Outcome {
+  std::string tool;
+  std::string text;  ///< as the client gets it
+  bool is_error = false;
+};
+
 /// A message for the client.
 struct Line {
   std::string text;
@@ -95,6 +102,8 @@ class Session {
   /// The progress of a call, for a client that asked for it. value has to rise.
   void progress(std::uint64_t call, double value, const std::string& text);
 
+  /// The calls that have ended since the last call; at most kMostOpen of them.
+  std::vector<Outcome> take_outcomes();
   /// Messages for the client since the last call.
   std::vector<Line> take_lines();
 
@@ -120,6 +129,7 @@ class Session {
   };
   struct Open {
     Request request;
+    std::string tool;
     Json token;     ///< of progress; null: none is wanted
     Json uri = {};  ///< of the resource that is read; null: a tool was called
   };
@@ -146,6 +156,7 @@ class Session {
   double too_soon();
   void give_up(const Json& parameters, std::uint64_t exchange);
   void erase(std::uint64_t call);
+  void note(const std::string& tool, const std::string& text, bool is_error);
 
   const std::string name_;
   const std::string version_;
@@ -159,6 +170,7 @@ class Session {
   std::vector<Request> listeners_;  ///< those that want changes of the tools
   std::vector<Call> calls_;
   std::vector<std::uint64_t> given_up_;
+  std::vector<Outcome> outcomes_;
   std::vector<Line> lines_;
   double time_ = 0.0;
   double allowed_ = kMostAtOnce;  ///< calls allowed at once
