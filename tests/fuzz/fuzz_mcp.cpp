@@ -25,6 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // Lines, and requests of HTTP in turn; a third of the latter is closed.
     const Headers headers{count % 4 == 0 ? Session::kModern : "", "tools/call", "go_to"};
     session.set_time(0.01 * static_cast<double>(count));
+    session.wait_for_tools(count % 5 == 4);
     session.take(text.substr(0, end), count, count % 2 == 0 ? &headers : nullptr);
     if (count % 3 == 0)
       session.close(count);

@@ -13,9 +13,12 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kDeadline = 600.0;    // [s] of a goal without one
-constexpr std::size_t kMostGoals = 4;  // underway at once
-constexpr double kReply = 10.0;        // [s] for the robot's or an agent's reply
+constexpr double kDeadline = 600.0;     // [s] of a goal without one
+constexpr std::size_t kMostGoals = 4;   // underway at once
+constexpr double kNews = 1e-6;          // of progress, for new words alone
+constexpr std::size_t kMostNoted = 20;  // lines of the log in a second
+constexpr std::size_t kLongestNote = 160;
+constexpr double kReply = 10.0;  // [s] for the robot's or an agent's reply
 
 milliseconds seconds_of(double seconds) {
   return milliseconds(static_cast<int>(1000 * seconds));
@@ -68,6 +71,21 @@ Json json_of(const v1::Argument& argument) {
   return nullptr;
 }
 
+/// The first line of a text for the log, without control characters.
+std::string first_line(const std::string& text) {
+  std::string line = text.substr(0, text.find('\n'));
+  if (line.size() > kLongestNote) {
+    std::size_t end = kLongestNote;
+    while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0U) == 0x80U)
+      --end;  // not within a letter
+    line = line.substr(0, end) + "...";
+  }
+  std::replace_if(
+      line.begin(), line.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == '\x7f'; }, ' ');
+  return line;
+}
+
 /// The answer of an agent. Several results of one name are a list.
 Result result_of(const v1::Answer& answer) {
   Json value = Json::object();
@@ -95,6 +113,7 @@ Door::Door(bus::Node& node, const Robot& robot, Session& session, const std::str
       said_reader_(node.reader(bus::topics::kSaid)),
       heard_writer_(node.writer(bus::topics::kHeard)),
       stop_writer_(node.writer(bus::topics::kDriveEstop)) {
+  session_.wait_for_tools(!robot_.knows_tools());
   session_.set_tools(robot_.tools());
 }
 
@@ -120,6 +139,7 @@ void Door::hear() {
 void Door::turn() {
   session_.set_time(std::chrono::duration<double>(Clock::now().time_since_epoch()).count());
   session_.set_tools(robot_.tools());
+  session_.wait_for_tools(!robot_.knows_tools());
   hear();
   for (const std::uint64_t number : session_.take_given_up())
     if (const auto found = waiting_.find(number); found != waiting_.end()) {
@@ -139,6 +159,19 @@ void Door::turn() {
     press();
   for (auto each = waiting_.begin(); each != waiting_.end();)
     each = is_over(each->first, each->second) ? waiting_.erase(each) : std::next(each);
+  note();
+}
+
+/// Logs each call that has ended.
+void Door::note() {
+  if (const auto now = Clock::now(); now - noted_since_ >= std::chrono::seconds(1)) {
+    noted_since_ = now;
+    noted_ = 0;
+  }
+  for (const Outcome& outcome : session_.take_outcomes())
+    if (++noted_ <= kMostNoted)
+      node_.info(who_ + ": " + outcome.tool + (outcome.is_error ? " (error): " : ": ") +
+                 first_line(outcome.text));
 }
 
 void Door::begin(const Call& call) {
@@ -172,6 +205,8 @@ void Door::begin(const Call& call) {
     session_.answer(call.number, robot_.map());
   } else if (call.tool == "look") {
     session_.answer(call.number, robot_.view());
+  } else if (call.tool == "knows") {
+    session_.answer(call.number, robot_.facts());
   } else {  // removed between the call and now
     session_.answer(call.number, {"not done: nobody offers this tool now", nullptr, true});
   }
@@ -249,8 +284,13 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     case Waiting::For::goal: {
       const auto status = goals_.status(*waiting.goal);
       if (!late && !(status && bus::ended(status->state()))) {
-        if (status && status->progress() > waiting.told) {
-          waiting.told = status->progress();
+        if (!status)
+          return false;
+        const std::string words =
+            bus::describe(status->state()) + ("\n" + status->step() + "\n" + status->reason());
+        if (status->progress() > waiting.told || words != waiting.words) {
+          waiting.told = std::max(waiting.told + kNews, status->progress());
+          waiting.words = words;
           session_.progress(number, waiting.told, bus::describe(*status));
         }
         return false;
@@ -287,11 +327,15 @@ bool Door::is_over(std::uint64_t number, Waiting& waiting) {
     case Waiting::For::words:
       if (!late)
         return false;
-      session_.answer(number,
-                      {waiting.said.empty() ? "the robot said nothing: saphira-dialogue may not run"
-                                            : waiting.said,
-                       {{"said", waiting.said}},
-                       waiting.said.empty()});
+      session_.answer(
+          number,
+          {!waiting.said.empty() ? waiting.said
+           : heard_writer_.matched() == 0
+               ? "the robot said nothing: saphira-dialogue may not run"
+               : "the robot said nothing: a sentence for it begins with its keyword, such as "
+                 "\"Flakey, stop\"",
+           {{"said", waiting.said}},
+           waiting.said.empty()});
       return true;
     case Waiting::For::stop: {
       const bool latched = robot_.mind().grant() != nullptr && robot_.mind().grant()->estopped();

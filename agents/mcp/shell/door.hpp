@@ -24,6 +24,8 @@ class Robot {
   /// Takes the newest samples.
   void poll();
   const std::vector<Tool>& tools() const { return tools_; }
+  /// The activities were heard, or have been awaited for long enough.
+  bool knows_tools() const;
   /// The activity or capability behind the tool of this name; null: another kind of tool.
   const v1::ActivitySchema* activity(const std::string& tool) const;
   const v1::Capability* capability(const std::string& tool) const;
@@ -34,6 +36,7 @@ class Robot {
   Result why() const;
   Result map() const { return map_of(surroundings()); }
   Result view() const { return view_of(surroundings()); }
+  Result facts() const { return facts_of(knowledge_ ? &*knowledge_ : nullptr); }
 
  private:
   void make_tools();
@@ -48,11 +51,15 @@ class Robot {
   bus::Reader<v1::Vision> vision_reader_;
   bus::Reader<v1::FloorMap> map_reader_;
   bus::Reader<v1::Registration> registration_reader_;
+  bus::Reader<v1::Knowledge> knowledge_reader_;
   std::optional<v1::SonarBuckets> sonars_;
   std::optional<v1::Perception> perception_;
   std::optional<v1::Vision> vision_;
   std::optional<v1::FloorMap> map_;
   std::optional<v1::Registration> registration_;
+  std::optional<v1::Knowledge> knowledge_;
+  const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  bool heard_schemas_ = false;
   std::vector<v1::ActivitySchema> schemas_;
   std::map<std::uint64_t, v1::Agent> agents_;
   std::vector<Tool> tools_;
@@ -83,7 +90,8 @@ class Door {
     std::optional<v1::GoalId> goal = std::nullopt;
     std::uint64_t number = 0;  ///< of the utterance or the request
     Clock::time_point until = {};
-    double told = -1.0;  ///< progress
+    double told = -1.0;      ///< progress
+    std::string words = {};  ///< of that progress
     std::string said = {};
     std::optional<Result> result = std::nullopt;  ///< of the request
   };
@@ -96,6 +104,7 @@ class Door {
   void say(const Call& call);
   bool is_over(std::uint64_t number, Waiting& waiting);
   void press();
+  void note();
   Result outcome(const v1::GoalId& id) const;
   Json goals() const;
 
@@ -110,6 +119,8 @@ class Door {
   bus::Writer<v1::MotorCommand> stop_writer_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the call
   std::vector<v1::GoalId> own_;
+  Clock::time_point noted_since_ = {};
+  std::size_t noted_ = 0;  ///< lines of the log in that second
 };
 
 }  // namespace saphira::mcp

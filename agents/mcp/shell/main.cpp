@@ -50,9 +50,11 @@ int serve(const bus::NodeOptions& options, const std::string& who, const bus::St
   mcp::Door door(node, robot, session, who);
   std::string input;
   bool open = true;
-  while (open && !stop.requested()) {
-    std::array<pollfd, 3> fds{
-        {{STDIN_FILENO, POLLIN, 0}, {stop.fd(), POLLIN, 0}, {node.wake_fd(), POLLIN, 0}}};
+  // Lists that wait for the tools are answered after the end of the input too.
+  while ((open || session.leave()) && !stop.requested()) {
+    std::array<pollfd, 3> fds{{{open ? STDIN_FILENO : -1, POLLIN, 0},
+                               {stop.fd(), POLLIN, 0},
+                               {node.wake_fd(), POLLIN, 0}}};
     poll(fds.data(), fds.size(), kTurn);
     if ((fds[0].revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
       std::array<char, 4096> buffer{};

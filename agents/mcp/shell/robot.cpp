@@ -1,5 +1,6 @@
 // The robot for a language model: tools, and their requests.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "door.hpp"
@@ -9,7 +10,8 @@ namespace saphira::mcp {
 
 namespace {
 
-constexpr double kStill = 0.01;  // [m/s], [rad/s]
+constexpr std::chrono::seconds kLongestStart{3};  // for the activities
+constexpr double kStill = 0.01;                   // [m/s], [rad/s]
 constexpr std::size_t kMostTools = 250;
 constexpr std::size_t kLongestText = 300;  // of another agent
 
@@ -102,6 +104,15 @@ Json schema_of(const v1::CapabilityParameter& parameter) {
   return json;
 }
 
+/// True for an activity that needs a value without a declared kind, such as a path: only another
+/// activity has that.
+bool is_part(const v1::ActivitySchema& schema) {
+  return std::any_of(schema.parameters().begin(), schema.parameters().end(),
+                     [](const v1::ActivityParameter& parameter) {
+                       return parameter.required() && parameter.kind() == v1::PARAMETER_ANY;
+                     });
+}
+
 /// The input schema of a tool with these parameters.
 template <class Parameters>
 Json input_of(const Parameters& parameters) {
@@ -128,6 +139,9 @@ std::vector<Tool> fixed_tools() {
       {"look",
        "The walls, doors, people and echoes around the robot, nearest first; x ahead, y left [m]",
        object(nullptr), true},
+      {"knows",
+       "What people told the robot, and it knows now: each fact with its number, speaker and time",
+       object(nullptr), true},
       {"goals", "Every goal that is known, and what became of it", object(nullptr), true},
       {"goal", "The outcome of one goal; waits for its end",
        object({{"goal", {{"type", "string"}}}, {"wait_s", wait_of(kWait)}}, {"goal"}), true},
@@ -136,8 +150,8 @@ std::vector<Tool> fixed_tools() {
            {{"goal", {{"type", "string"}, {"description", "all of yours where it is not given"}}}}),
        false},
       {"say",
-       "Says a sentence to the robot, such as: Flakey, go to Karen's office. Answers what the "
-       "robot says",
+       "Says a sentence to the robot, such as: Flakey, go to Karen's office. It has to begin with "
+       "the robot's keyword, such as Flakey. Answers what the robot says",
        object({{"text", {{"type", "string"}}}}, {"text"}), false},
       {.name = "emergency_stop",
        .description = "Stops the robot by the hardest means. Only a person can release it",
@@ -156,7 +170,8 @@ Robot::Robot(bus::Node& node)
       perception_reader_(node.reader(bus::topics::kPerception)),
       vision_reader_(node.reader(bus::topics::kVision)),
       map_reader_(node.reader(bus::topics::kMap)),
-      registration_reader_(node.reader(bus::topics::kRegistration)) {
+      registration_reader_(node.reader(bus::topics::kRegistration)),
+      knowledge_reader_(node.reader(bus::topics::kKnows)) {
   make_tools();
 }
 
@@ -171,9 +186,11 @@ void Robot::poll() {
   take(vision_reader_, vision_);
   take(map_reader_, map_);
   take(registration_reader_, registration_);
+  take(knowledge_reader_, knowledge_);
   bool changed = false;
   if (const auto newest = schema_reader_.take_newest()) {
     schemas_ = newest->schemas();
+    heard_schemas_ = true;
     changed = true;
   }
   for (const auto& sample : agent_reader_.take()) {
@@ -199,7 +216,7 @@ void Robot::make_tools() {
   };
   for (const v1::ActivitySchema& schema : schemas_) {
     const std::string name = tool_name(schema.name());
-    if (!is_new(name))
+    if (is_part(schema) || !is_new(name))
       continue;
     Json input = input_of(schema.parameters());
     input["properties"]["wait_s"] = wait_of(kWait);
@@ -219,6 +236,10 @@ void Robot::make_tools() {
                         input_of(capability.parameters()), !capability.acts()});
       capabilities_[name] = capability;
     }
+}
+
+bool Robot::knows_tools() const {
+  return heard_schemas_ || std::chrono::steady_clock::now() - began_ >= kLongestStart;
 }
 
 const v1::ActivitySchema* Robot::activity(const std::string& tool) const {

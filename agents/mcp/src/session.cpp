@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "saphira/base/guess.hpp"
+
 namespace saphira::mcp {
 
 namespace {
@@ -124,6 +126,8 @@ void Session::set_tools(std::vector<Tool> tools) {
   if (tools == tools_)
     return;
   tools_ = std::move(tools);
+  if (waits_)
+    return;  // the client has no list yet
   const Json changed{{"jsonrpc", "2.0"}, {"method", "notifications/tools/list_changed"}};
   if (begun_)
     send(changed, 0);
@@ -132,6 +136,39 @@ void Session::set_tools(std::vector<Tool> tools) {
     told["params"]["_meta"][kMeta + "subscriptionId"] = listener.id;
     send(told, listener.exchange);
   }
+}
+
+void Session::wait_for_tools(bool waits) {
+  waits_ = waits;
+  if (waits_)
+    return;
+  for (const Held& held : std::exchange(held_, {}))
+    ask_either(held.method, held.request, held.parameters);
+}
+
+bool Session::leave() {
+  std::erase_if(held_, [](const Held& each) {
+    return each.method == "tools/call" || each.method == "resources/read";
+  });
+  return !held_.empty();
+}
+
+/// A stop is never held back.
+bool Session::has_to_wait(const std::string& method, const Json& parameters) const {
+  if (!waits_)
+    return false;
+  const Json name = member(parameters, "name");
+  if (method == "tools/call")
+    return std::none_of(tools_.begin(), tools_.end(),
+                        [&](const Tool& each) { return each.always && name == each.name; });
+  return method == "tools/list" || method == "resources/list" || method == "resources/read";
+}
+
+void Session::hold(const std::string& method, const Request& request, const Json& parameters) {
+  if (held_.size() >= kMostOpen)
+    return error(request, kInternal,
+                 "the tools of the robot are not known yet, and too many requests wait for them");
+  held_.push_back({method, request, parameters});
 }
 
 void Session::reply(const Request& request, Json result) {
@@ -268,6 +305,8 @@ void Session::ask(const std::string& method, const Request& request, const Json&
 /// The methods that both eras have.
 void Session::ask_either(const std::string& method, const Request& request,
                          const Json& parameters) {
+  if (has_to_wait(method, parameters))
+    return hold(method, request, parameters);
   if (method == "tools/list")
     return list_tools(request);
   if (method == "tools/call")
@@ -380,14 +419,23 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   const Json name = member(parameters, "name");
   const auto tool = std::find_if(tools_.begin(), tools_.end(),
                                  [&](const Tool& each) { return name == each.name; });
-  if (tool == tools_.end())
-    return error(request, kBadParameters, "there is no tool " + name.dump().substr(0, 70));
+  if (tool == tools_.end()) {
+    std::vector<std::string> names;
+    for (const Tool& each : tools_)
+      names.push_back(each.name);
+    const std::string meant = name.is_string() ? guess(name.get<std::string>(), names) : "";
+    const std::string why = "there is no tool " + name.dump().substr(0, 70) +
+                            (meant.empty() ? "" : ": did you mean " + meant + "?");
+    note("call", why, true);
+    return error(request, kBadParameters, why);
+  }
   Json arguments = member(parameters, "arguments");
   if (arguments.is_null())
     arguments = Json::object();
   const std::uint64_t number = ++count_;
   const Json meta = member(parameters, "_meta");
-  open_[number] = {request, meta.is_object() ? member(meta, "progressToken") : Json(), uri};
+  open_[number] = {request, tool->name, meta.is_object() ? member(meta, "progressToken") : Json(),
+                   uri};
   const auto refuse = [&](const std::string& why) {
     answer(number, {"not done: " + why, nullptr, true});
   };
@@ -403,8 +451,16 @@ void Session::call(const Request& request, const Json& parameters, const Json& u
   calls_.push_back({number, tool->name, std::move(arguments)});
 }
 
+void Session::note(const std::string& tool, const std::string& text, bool is_error) {
+  if (outcomes_.size() < kMostOpen)
+    outcomes_.push_back({tool, text, is_error});
+}
+
 void Session::erase(std::uint64_t number) {
-  open_.erase(number);
+  if (const auto found = open_.find(number); found != open_.end()) {
+    note(found->second.tool, "given up by the client", false);
+    open_.erase(found);
+  }
   std::erase_if(calls_, [&](const Call& each) { return each.number == number; });
   given_up_.push_back(number);
 }
@@ -419,11 +475,17 @@ void Session::give_up(const Json& parameters, std::uint64_t exchange) {
     return request.id == id && (!request.modern || request.exchange == exchange);
   });
   if (found != open_.end())
-    erase(found->first);
+    return erase(found->first);
+  std::erase_if(held_, [&](const Held& each) {
+    return each.request.id == id && (!each.request.modern || each.request.exchange == exchange);
+  });
 }
 
 void Session::close(std::uint64_t exchange) {
   std::erase_if(listeners_, [&](const Request& each) { return each.exchange == exchange; });
+  std::erase_if(held_, [&](const Held& each) {
+    return each.request.modern && each.request.exchange == exchange;
+  });
   std::vector<std::uint64_t> gone;
   for (const auto& [number, each] : open_)
     if (each.request.modern && each.request.exchange == exchange)
@@ -438,6 +500,7 @@ void Session::answer(std::uint64_t call, const Result& result) {
     return;
   const Open open = std::move(found->second);
   open_.erase(found);
+  note(open.tool, result.text, result.is_error);
   if (!open.uri.is_null() && result.is_error)
     return error(open.request, kInternal, result.text, {{"uri", open.uri}});
   if (!open.uri.is_null())
@@ -467,6 +530,10 @@ std::vector<Call> Session::take_calls() {
 
 std::vector<std::uint64_t> Session::take_given_up() {
   return std::exchange(given_up_, {});
+}
+
+std::vector<Outcome> Session::take_outcomes() {
+  return std::exchange(outcomes_, {});
 }
 
 std::vector<Line> Session::take_lines() {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <map>
 #include <string>
 
@@ -15,6 +16,8 @@ namespace {
 
 constexpr std::size_t kMostPlaces = 200;
 constexpr std::size_t kMostSeen = 40;
+constexpr std::size_t kMostFacts = 200;
+constexpr std::size_t kLongestWords = 300;  // of a fact
 
 Pose pose(const v1::Pose2& from) {
   return {from.x(), from.y(), from.th()};
@@ -30,6 +33,18 @@ std::string format(const char* form, Values... values) {
 /// Two decimals are enough for a reader.
 double rounded(double value) {
   return std::round(100.0 * value) / 100.0;
+}
+
+/// Such as 2026-11-26 12:30 UTC; empty where the time [s since 1970] is not known.
+std::string date_of(double time) {
+  if (!(time > 0.0 && time < 1e11))
+    return {};
+  const auto seconds = static_cast<std::time_t>(time);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  std::array<char, 64> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &parts);
+  return text.data();
 }
 
 const char* kind_of(v1::ArtifactType type) {
@@ -231,6 +246,36 @@ Result view_of(const Surroundings& around) {
         (text.empty() ? "" : "\n") + format("%.2f m %s: ", seen.place.norm(), where) + seen.name;
   }
   return {text.empty() ? "nothing is near, or no sensor is heard" : text, value, false};
+}
+
+Result facts_of(const v1::Knowledge* knowledge) {
+  if (knowledge == nullptr)
+    return {"nothing is heard about what the robot knows: saphira-dialogue may not run", nullptr,
+            true};
+  const auto& all = knowledge->known();
+  Json value{{"known", Json::array()}};
+  if (all.empty())
+    return {"the robot was told nothing that it knows now", value, false};
+  const std::size_t first = all.size() - std::min(all.size(), kMostFacts);
+  std::string text = "what people told the robot, by number:";
+  if (first > 0)
+    text += "\n(older ones are left out: " + std::to_string(first) + ")";
+  for (std::size_t i = first; i < all.size(); ++i) {
+    const v1::Advice& advice = all[i];
+    const std::string words = advice.words().substr(0, kLongestWords);
+    const std::string said = advice.said().substr(0, kLongestWords);
+    const std::string speaker =
+        advice.speaker().empty() ? "somebody" : advice.speaker().substr(0, kLongestWords);
+    const std::string date = date_of(advice.time());
+    value["known"].push_back({{"number", advice.number()},
+                              {"what", words},
+                              {"speaker", speaker},
+                              {"time", date.empty() ? Json() : Json(date)},
+                              {"said", said}});
+    text += "\n" + std::to_string(advice.number()) + ": " + words + " (by " + speaker +
+            (date.empty() ? "" : ", " + date) + (said.empty() ? "" : ": \"" + said + "\"") + ")";
+  }
+  return {text, value, false};
 }
 
 }  // namespace saphira::mcp

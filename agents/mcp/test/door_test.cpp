@@ -71,22 +71,31 @@ json point(double x, double y) {
   return {{"x", x}, {"y", y}, {"frame", "odom"}};
 }
 
+/// Waits until the intentions service has said its activities.
+bool wait_activities(System& system) {
+  auto reader = system.node().reader(bus::topics::kActivitySchemas);
+  return wait_until([&] { return reader.take_newest().has_value(); });
+}
+
 TEST(McpDoor, AModelSendsTheRobotAndItsGoalsEndWithIt) {
   System system;
   system.start_all();
+  ASSERT_TRUE(wait_activities(system));
   {
     Client client(system, "first");
     client.say(1, "initialize", {{"protocolVersion", "2025-06-18"}});
     EXPECT_EQ(client.result(1)["serverInfo"]["name"], "saphira");
-    // The tools of the activities appear when intentions is discovered.
-    int id = 10;
-    ASSERT_TRUE(wait_until([&] {
-      client.say(++id, "tools/list", json::object());
-      return client.result(id).dump().find("\"go_to\"") != std::string::npos;
-    }));
+    // The first list waits for the activities.
+    client.say(10, "tools/list", json::object());
+    const std::string tools = client.result(10).dump();
+    ASSERT_NE(tools.find("\"go_to\""), std::string::npos);
+    EXPECT_NE(tools.find("\"go_to_place\""), std::string::npos);
+    EXPECT_EQ(tools.find("\"follow_path\""), std::string::npos);  // part of others
     client.call(2, "go_to", {{"position", point(0.8, 0.0)}});
     EXPECT_EQ(client.result(2)["structuredContent"]["state"], "succeeded")
         << client.server().output();
+    EXPECT_TRUE(wait_until(
+        [&] { return client.server().output().find("model: go_to: goal ") != std::string::npos; }));
 
     client.call(3, "go_to", {{"position", point(5.0, 0.5)}, {"wait_s", 0}});
     const std::string goal = client.result(3)["structuredContent"]["goal"];
@@ -147,9 +156,22 @@ std::string value_of(const std::string& answer, const std::string& header) {
              : answer.substr(at + header.size(), answer.find('\r', at) - at - header.size());
 }
 
+// Without intentions the first list comes after 3 s, also where the input has ended.
+TEST(McpDoor, WithoutIntentionsTheListHasTheFixedTools) {
+  System system;
+  Process server(
+      {"/bin/sh", "-c",
+       R"(echo '{"jsonrpc":"2.0","id":1,"method":"tools/list"}' | )" + program("saphira-mcp")},
+      system.folder().path("piped.out"), {{"SAPHIRA_ROBOT", system.robot()}});
+  EXPECT_EQ(server.wait(), 0);
+  EXPECT_NE(server.output().find("\"robot_status\""), std::string::npos) << server.output();
+  EXPECT_EQ(server.output().find("\"go_to\""), std::string::npos);
+}
+
 TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   System system;
   system.start_all();
+  ASSERT_TRUE(wait_activities(system));
   const std::string file = system.folder().path("token");
   Process server({program("saphira-mcp"), "--http", "0", "--token-file", file},
                  system.folder().path("http.out"), {{"SAPHIRA_ROBOT", system.robot()}});
@@ -178,10 +200,8 @@ TEST(McpDoor, ByHttpTheRobotIsSentAndStandsWhenTheClientEnds) {
   std::string session = begin();
   EXPECT_TRUE(
       http(port, session, R"({"method":"notifications/initialized"})").starts_with("HTTP/1.1 202"));
-  ASSERT_TRUE(wait_until([&] {
-    return http(port, session, R"({"id":2,"method":"tools/list"})").find("\"go_to\"") !=
-           std::string::npos;
-  }));
+  ASSERT_NE(http(port, session, R"({"id":2,"method":"tools/list"})").find("\"go_to\""),
+            std::string::npos);
   const auto go = [](double x, double wait) {
     return json{{"name", "go_to"}, {"arguments", {{"position", point(x, 0.0)}, {"wait_s", wait}}}};
   };

@@ -274,6 +274,121 @@ TEST(McpSession, AFloodIsHeldBackAndAStopIsNot) {
   EXPECT_EQ(send(go)["isError"], true);
 }
 
+std::string line(int id, const std::string& method, const Json& parameters = Json::object()) {
+  return Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", parameters}}.dump();
+}
+
+Tool emergency_stop() {
+  return {"stop", "stops", {{"type", "object"}}, false, true};
+}
+
+TEST(McpSession, ListsAndCallsWaitUntilTheToolsAreKnown) {
+  Client client;
+  client.session.set_tools({emergency_stop()});
+  client.session.wait_for_tools(true);
+  EXPECT_EQ(client.one(line(1, "initialize"))["id"], 1);
+  EXPECT_EQ(client.one(line(2, "ping"))["id"], 2);
+  EXPECT_EQ(client.one(modern("d", "server/discover"))["id"], "d");
+  EXPECT_EQ(client.one(line(3, "prompts/list"))["error"]["code"], -32601);
+  EXPECT_TRUE(client.say(line(4, "tools/list")).empty());
+  EXPECT_TRUE(client.say(modern("m", "tools/list")).empty());
+  EXPECT_TRUE(client.say(line(5, "resources/list")).empty());
+  EXPECT_TRUE(
+      client.say(line(6, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}})).empty());
+  EXPECT_TRUE(client.session.take_calls().empty());
+
+  // The client has no list yet, so it is not notified of a change.
+  client.session.set_tools({go_to(), emergency_stop()});
+  EXPECT_TRUE(client.heard().empty());
+  client.session.wait_for_tools(false);
+  const auto answers = client.heard();
+  ASSERT_EQ(answers.size(), 3U);
+  EXPECT_EQ(answers[0]["id"], 4);
+  EXPECT_EQ(answers[0]["result"]["tools"].size(), 2U);
+  EXPECT_EQ(answers[1]["id"], "m");
+  EXPECT_EQ(answers[1]["result"]["tools"].size(), 2U);
+  EXPECT_EQ(answers[2]["id"], 5);
+  const auto calls = client.session.take_calls();
+  ASSERT_EQ(calls.size(), 1U);
+  EXPECT_EQ(calls[0].tool, "go_to");
+  client.session.wait_for_tools(false);
+  EXPECT_TRUE(client.heard().empty());
+}
+
+TEST(McpSession, AStopDoesNotWaitForTheTools) {
+  Client client;
+  client.session.set_tools({emergency_stop()});
+  client.session.wait_for_tools(true);
+  client.say(line(1, "tools/call", {{"name", "stop"}}));
+  EXPECT_EQ(client.session.take_calls().size(), 1U);
+}
+
+TEST(McpSession, AWaitingRequestThatIsGivenUpIsNotAnswered) {
+  Client client;
+  client.session.wait_for_tools(true);
+  client.say(line(1, "tools/list"));
+  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":1}})");
+  client.session.take(modern("a", "tools/list"), 1);
+  client.session.take(modern("a", "tools/list"), 2);
+  client.session.close(1);
+  client.session.wait_for_tools(false);
+  const auto lines = client.session.take_lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].exchange, 2U);
+}
+
+TEST(McpSession, AClientThatLeavesGetsItsListsAndCallsNothing) {
+  Client client;
+  EXPECT_FALSE(client.session.leave());
+  client.session.wait_for_tools(true);
+  client.say(line(1, "tools/call", {{"name", "go_to"}, {"arguments", {{"x", 1}}}}));
+  EXPECT_FALSE(client.session.leave());
+  client.say(line(2, "tools/list"));
+  EXPECT_TRUE(client.session.leave());
+  client.session.wait_for_tools(false);
+  EXPECT_TRUE(client.session.take_calls().empty());
+  EXPECT_EQ(client.heard().at(0)["id"], 2);
+  EXPECT_FALSE(client.session.leave());
+}
+
+TEST(McpSession, WaitingRequestsHaveALimit) {
+  Client client;
+  client.session.wait_for_tools(true);
+  for (std::size_t i = 0; i < Session::kMostOpen; ++i)
+    EXPECT_TRUE(client.say(line(1, "tools/list")).empty());
+  EXPECT_EQ(client.one(line(2, "tools/list"))["error"]["code"], -32603);
+}
+
+TEST(McpSession, AnUnknownToolIsGuessed) {
+  Client client;
+  const auto message = [&](const std::string& name) {
+    return client.one(line(1, "tools/call", {{"name", name}}))["error"]["message"];
+  };
+  EXPECT_EQ(message("go_too"), "there is no tool \"go_too\": did you mean go_to?");
+  EXPECT_EQ(message("dance"), "there is no tool \"dance\"");
+}
+
+TEST(McpSession, EachCallHasAnOutcomeForTheLog) {
+  Client client;
+  client.say(line(1, "tools/call", {{"name", "go"}}));
+  client.say(line(2, "tools/call", {{"name", "go_to"}}));
+  const Json fits{{"name", "go_to"}, {"arguments", {{"x", 1}}}};
+  client.say(line(3, "tools/call", fits));
+  client.session.answer(client.session.take_calls().at(0).number, {"there", nullptr, false});
+  client.say(line(4, "tools/call", fits));
+  client.say(R"({"jsonrpc":"2.0","method":"notifications/cancelled","params":{"requestId":4}})");
+  const auto outcomes = client.session.take_outcomes();
+  ASSERT_EQ(outcomes.size(), 4U);
+  EXPECT_EQ(outcomes[0].text, "there is no tool \"go\": did you mean go_to?");
+  EXPECT_EQ(outcomes[1].text, "not done: \"x\" is missing");
+  EXPECT_TRUE(outcomes[1].is_error);
+  EXPECT_EQ(outcomes[2].tool, "go_to");
+  EXPECT_EQ(outcomes[2].text, "there");
+  EXPECT_FALSE(outcomes[2].is_error);
+  EXPECT_EQ(outcomes[3].text, "given up by the client");
+  EXPECT_TRUE(client.session.take_outcomes().empty());
+}
+
 TEST(McpSession, ASenderIsKnownByWhatItSays) {
   EXPECT_TRUE(sender_of(R"({"id":1,"method":"initialize"})").begins);
   EXPECT_FALSE(sender_of(R"({"id":1,"method":"initialize"})").modern);

@@ -119,5 +119,37 @@ TEST_F(SurroundingsTest, SamplesOfAnotherFrameAreLeftOut) {
   EXPECT_TRUE(view_of({}).is_error);
 }
 
+TEST(McpFacts, TheKnowledgeHasTheNumbersThatForgetTakes) {
+  EXPECT_TRUE(facts_of(nullptr).is_error);
+  v1::Knowledge knowledge;
+  EXPECT_EQ(facts_of(&knowledge).text, "the robot was told nothing that it knows now");
+  EXPECT_FALSE(facts_of(&knowledge).is_error);
+  v1::Advice office;
+  office.number(3);
+  office.words("room EJ-231 is Karen's office");
+  office.speaker("ann");
+  office.said("Flakey, this is Karen's office");
+  office.time(1764160200.0);
+  v1::Advice hazard;
+  hazard.number(4);
+  hazard.words("there is a hole in the lobby");
+  knowledge.known({office, hazard});
+  const Result result = facts_of(&knowledge);
+  EXPECT_EQ(result.text,
+            "what people told the robot, by number:\n"
+            "3: room EJ-231 is Karen's office (by ann, 2025-11-26 12:30 UTC: \"Flakey, this is "
+            "Karen's office\")\n"
+            "4: there is a hole in the lobby (by somebody)");
+  EXPECT_EQ(result.value["known"][0]["number"], 3);
+  EXPECT_EQ(result.value["known"][0]["time"], "2025-11-26 12:30 UTC");
+  EXPECT_EQ(result.value["known"][1]["time"], nullptr);
+  EXPECT_FALSE(result.is_error);
+
+  knowledge.known(std::vector<v1::Advice>(201, office));
+  const Result many = facts_of(&knowledge);
+  EXPECT_EQ(many.value["known"].size(), 200U);
+  EXPECT_NE(many.text.find("(older ones are left out: 1)"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace saphira::mcp

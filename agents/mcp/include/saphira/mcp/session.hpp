@@ -34,6 +34,13 @@ struct Result {
   bool is_error = false;  ///< the request failed; the text gives the reason and advice
 };
 
+/// The end of a call, for the log.
+struct Outcome {
+  std::string tool;
+  std::string text;  ///< as the client gets it
+  bool is_error = false;
+};
+
 /// A message for the client.
 struct Line {
   std::string text;
@@ -72,6 +79,11 @@ class Session {
   /// The tools from now on. The client is notified of a change.
   void set_tools(std::vector<Tool> tools);
   const std::vector<Tool>& tools() const { return tools_; }
+  /// True: the tools are not all known yet. Lists, readings and calls are held back until false,
+  /// except for calls of tools that are always allowed.
+  void wait_for_tools(bool waits);
+  /// The client sends no more: held calls are dropped. True where held lists are still unanswered.
+  bool leave();
   /// The clock of the limit on calls [s], of any origin.
   void set_time(double time) { time_ = time; }
 
@@ -90,6 +102,8 @@ class Session {
   /// The progress of a call, for a client that asked for it. value has to rise.
   void progress(std::uint64_t call, double value, const std::string& text);
 
+  /// The calls that have ended since the last call; at most kMostOpen of them.
+  std::vector<Outcome> take_outcomes();
   /// Messages for the client since the last call.
   std::vector<Line> take_lines();
 
@@ -107,8 +121,15 @@ class Session {
     std::uint64_t exchange = 0;
     bool modern = false;
   };
+  /// A request that is held back until the tools are known.
+  struct Held {
+    std::string method;
+    Request request;
+    Json parameters;
+  };
   struct Open {
     Request request;
+    std::string tool;
     Json token;     ///< of progress; null: none is wanted
     Json uri = {};  ///< of the resource that is read; null: a tool was called
   };
@@ -123,6 +144,8 @@ class Session {
   void ask_modern(const std::string& method, const Request& request, const Json& parameters);
   bool fits(const std::string& method, const Request& request, const Json& parameters,
             const Headers& headers);
+  bool has_to_wait(const std::string& method, const Json& parameters) const;
+  void hold(const std::string& method, const Request& request, const Json& parameters);
   void list_tools(const Request& request);
   void listen(const Request& request, const Json& parameters);
   Json capabilities() const;
@@ -133,17 +156,21 @@ class Session {
   double too_soon();
   void give_up(const Json& parameters, std::uint64_t exchange);
   void erase(std::uint64_t call);
+  void note(const std::string& tool, const std::string& text, bool is_error);
 
   const std::string name_;
   const std::string version_;
   const std::string instructions_;
   std::vector<Tool> tools_;
   bool begun_ = false;
+  bool waits_ = false;      ///< for the tools
+  std::vector<Held> held_;  ///< meanwhile, oldest first
   std::uint64_t count_ = 0;
   std::map<std::uint64_t, Open> open_;
   std::vector<Request> listeners_;  ///< those that want changes of the tools
   std::vector<Call> calls_;
   std::vector<std::uint64_t> given_up_;
+  std::vector<Outcome> outcomes_;
   std::vector<Line> lines_;
   double time_ = 0.0;
   double allowed_ = kMostAtOnce;  ///< calls allowed at once

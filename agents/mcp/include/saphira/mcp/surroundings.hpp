@@ -1,5 +1,6 @@
 #pragma once
 
+#include "agents.h"
 #include "map.h"
 #include "perception.h"
 #include "robot.h"
@@ -24,5 +25,8 @@ Result map_of(const Surroundings& around);
 /// The walls, doors, people and echoes around the robot, nearest first: distance [m], direction,
 /// and place in the frame `robot` [m].
 Result view_of(const Surroundings& around);
+
+/// The facts that people told the robot: number, words, speaker and time. Null: not heard.
+Result facts_of(const v1::Knowledge* knowledge);
 
 }  // namespace saphira::mcp
