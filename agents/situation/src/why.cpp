@@ -65,26 +65,33 @@ Explanation Reason::stopped() const {
   const std::string still = meanwhile();
   sentence.add(0,
                still.empty() ? "The robot stands: " : "The robot is told to stop" + still + ": ");
-  std::vector<std::string> reasons;
+  struct Part {
+    std::string text;
+    std::string brief;
+  };
+  std::vector<Part> reasons;
   if (const std::string held = latched(grant); !held.empty())
-    reasons.push_back(held);
+    reasons.push_back({held, {}});
   else if (grant.stamp().epoch() == 0)
-    reasons.push_back(grant.reason());
+    reasons.push_back({grant.reason(), {}});
   if (auto age = age_cause()) {
     if (!scene_.behaviors->limit_reason().empty())
-      reasons.push_back(age->text);
+      reasons.push_back({age->text, {}});
     cause.because.push_back(std::move(*age));
   }
   if (!idle.empty()) {
-    reasons.push_back(idle);
+    reasons.push_back({idle, idle_reason(true)});
     cause.because.front().because.push_back({"goal", idle, {}});
   }
   if (reasons.empty() && !grant.refused().empty())
-    reasons.push_back("nobody drives it: " + refused(grant.refused().front()));
+    reasons.push_back({"nobody drives it: " + refused(grant.refused().front()), {}});
   if (reasons.empty())
-    reasons.push_back("nobody drives it: " + grant.reason());
-  for (std::size_t i = 0; i < reasons.size(); ++i)
-    sentence.add(static_cast<int>(i), (i == 0 ? "" : "; ") + reasons[i]);
+    reasons.push_back({"nobody drives it: " + grant.reason(), {}});
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    const std::string separator = i == 0 ? "" : "; ";
+    const auto& [text, brief] = reasons[i];
+    sentence.add(static_cast<int>(i), separator + text, brief.empty() ? "" : separator + brief);
+  }
   return finish(sentence, std::move(cause));
 }
 
@@ -103,6 +110,10 @@ Explanation Reason::by_hand() const {
   Cause cause{"wheels",
               grant.role() == v1::ROLE_ESTOP ? "The robot is told to stop" : told(),
               {grant_cause()}};
+  if (auto hindered = hindrance(); hindered && grant.role() != v1::ROLE_ESTOP) {
+    sentence.add(0, "; " + hindered->text);
+    cause.because.push_back(std::move(*hindered));
+  }
   if (auto guard = guard_cause()) {
     sentence.add(1, "; " + guard->text);
     cause.because.push_back(std::move(*guard));
@@ -130,6 +141,10 @@ Explanation Reason::by_behaviors_unknown() const {
   if (scene_.grant) {
     sentence.add(0, told() + ": " + scene_.grant->source() + " drives it");
     cause = {"wheels", told(), {grant_cause()}};
+    if (auto hindered = hindrance()) {
+      sentence.add(0, "; " + hindered->text);
+      cause.because.push_back(std::move(*hindered));
+    }
   } else {
     sentence.add(0, "The robot's command in this cycle is not known");
   }
@@ -171,6 +186,8 @@ Explanation Reason::by_behaviors_known() {
     sentence.add(rank, separator + text, brief.empty() ? "" : separator + brief);
     separator = ", ";
   };
+  if (const auto hindered = hindrance())
+    add(0, hindered->text);
   if (guarded)
     add(1, guard_cause()->text);
   if (aged)

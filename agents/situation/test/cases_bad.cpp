@@ -257,6 +257,59 @@ void bad_line(std::vector<Case>& all) {
            {"nobody asks"}));
 }
 
+/// The wheels do not obey.
+void wheels(std::vector<Case>& all) {
+  const std::string off = "its motors are off (saphira device motors on)";
+  const Change no_power = [](Situation& s) {
+    s.robot->status(v1::MOTORS_NO_POWER);
+    s.robot->velocity(0.0);
+    find(s, "bridge").status.state(v1::SERVICE_DEGRADED);
+    find(s, "bridge")
+        .status.reason("the robot's motors are off (its own button, or: saphira device motors on)");
+  };
+  const Change by_hand = [](Situation& s) {
+    by_keyboard(s, 0.2, 0.0);
+    s.robot->velocity(0.0);
+  };
+  const Change failed = [](Situation& s) {
+    s.goals = driving().goals;
+    s.statuses = {goal_status(v1::GOAL_FAILED,
+                              "no nearer for 20 s, 3.00 m from the point; it has not moved at all: "
+                              "are its motors on? (saphira device motors on)")};
+  };
+  all.push_back(when("the motors are off", "why", driving(), {no_power},
+                     {"drive ahead at 0.30 m/s", off}, {"blocked", "stalled"}));
+  all.push_back(when("the same", "why tree", driving(), {no_power},
+                     {"|- " + off, "bridge is degraded: the robot's motors are off"}));
+  all.push_back(when("the same", "why not faster", driving(), {no_power},
+                     {"It does not go faster", off}, {"It does go"}));
+  all.push_back(when("the same", "why not turn left", driving(), {no_power},
+                     {"It does not turn left", off}, {"It does turn"}));
+  all.push_back(when("the same, and a person drives", "why", driving(), {by_hand, no_power},
+                     {"keyboard of ann drives it", off}));
+  all.push_back(when("the same, and behaviors is not heard", "why", driving(),
+                     {no_power, silent("behaviors", 20)}, {"drive ahead at 0.30 m/s", off}));
+  all.push_back(when("the motors are off, and nothing is asked for", "why", resting(), {no_power},
+                     {"nobody has asked for a goal"}, {off}));
+  all.push_back(when("the motors were switched off as it drove: it still rolls", "why", driving(),
+                     {no_power, [](Situation& s) { s.robot->velocity(0.2); }},
+                     {"now it does 0.20 m/s"}, {off}));
+  all.push_back(when("a goal failed, of a robot that does not report its motors", "why", resting(),
+                     {failed},
+                     {"failed, no nearer",
+                      "it has not moved at all: are its motors on? (saphira device motors "
+                      "on)"}));
+  all.push_back(when("its left wheel is stalled", "why", driving(),
+                     {[](Situation& s) { s.robot->left_stalled(true); }},
+                     {"its left wheel is stalled"}, {"right wheel", "motors are off"}));
+  all.push_back(when("both wheels are stalled at a wall", "why", driving(), {[](Situation& s) {
+                       s.robot->left_stalled(true);
+                       s.robot->right_stalled(true);
+                       s.robot->velocity(0.0);
+                     }},
+                     {"both wheels are stalled"}, {"motors are off"}));
+}
+
 }  // namespace
 
 std::vector<Case> bad_cases() {
@@ -265,6 +318,7 @@ std::vector<Case> bad_cases() {
   behaviors_gone(all);
   bridge_gone(all);
   bad_line(all);
+  wheels(all);
   past(all);
   return all;
 }
