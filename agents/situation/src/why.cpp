@@ -49,12 +49,26 @@ void Reason::add_conditions(Cause& cause) const {
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
       cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
-  // The robot is served with limitations: a bad line, or motors that are off.
   if (scene_.past)
     return;
+  if (lost()) {
+    const v1::Registration& place = *scene_.registration;
+    cause.because.push_back({"registration",
+                             format("the robot does not know where it is on the map, %.0f %% sure",
+                                    100.0 * place.confidence()) +
+                                 (place.reason().empty() ? "" : " (" + place.reason() + ")") +
+                                 ": saphira map place X Y TH",
+                             {}});
+  }
+  // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
     if (program.status.name() == "bridge" && program.status.state() == v1::SERVICE_DEGRADED)
       cause.because.push_back({"program", "bridge is degraded: " + program.status.reason(), {}});
+}
+
+void Reason::add_lost(Sentence& sentence) const {
+  if (lost())
+    sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
 }
 
 Explanation Reason::stopped() const {
@@ -92,6 +106,7 @@ Explanation Reason::stopped() const {
     const auto& [text, brief] = reasons[i];
     sentence.add(static_cast<int>(i), separator + text, brief.empty() ? "" : separator + brief);
   }
+  add_lost(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -118,6 +133,7 @@ Explanation Reason::by_hand() const {
     sentence.add(1, "; " + guard->text);
     cause.because.push_back(std::move(*guard));
   }
+  add_lost(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -151,6 +167,7 @@ Explanation Reason::by_behaviors_unknown() const {
   sentence.add(
       1, "; its reasons are not known" + (how.words.empty() ? "" : ": behaviors " + how.words),
       "; its reasons are not known");
+  add_lost(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -204,6 +221,7 @@ Explanation Reason::by_behaviors_known() {
                   : "no behavior wants a speed");
   }
   add_purpose(sentence, mentioned);
+  add_lost(sentence);
   return finish(sentence, wheels(what));
 }
 

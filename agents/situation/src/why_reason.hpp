@@ -93,6 +93,11 @@ class Reason {
   Explanation finish(const Sentence& sentence, Cause cause) const;
   /// Adds the conditions of the programs involved, as far as they are not well.
   void add_conditions(Cause& cause) const;
+  bool lost() const {
+    return !scene_.past && scene_.registration &&
+           scene_.registration->state() == v1::REGISTRATION_LOST;
+  }
+  void add_lost(Sentence& sentence) const;
 
   const Situation& scene_;
   void add_advice(const v1::IntentionNode& of, Cause& cause);

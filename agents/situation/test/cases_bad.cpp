@@ -310,6 +310,59 @@ void wheels(std::vector<Case>& all) {
                      {"both wheels are stalled"}, {"motors are off"}));
 }
 
+void lost_on_the_map(std::vector<Case>& all) {
+  const std::string words = "the robot does not know where it is on the map";
+  const Change nowhere = [](Situation& s) {
+    v1::Registration place;
+    place.stamp(s.robot->stamp());
+    place.state(v1::REGISTRATION_LOST);
+    place.reason("nothing that it hears fits the map");
+    s.registration = place;
+  };
+  const Change tracking = [](Situation& s) {
+    s.registration.emplace();
+    s.registration->state(v1::REGISTRATION_TRACKING);
+    s.registration->confidence(0.97);
+  };
+  const Change straight_on = [](Situation& s) {
+    auto& behaviors = s.behaviors->behaviors();
+    behaviors.erase(behaviors.begin());
+    behaviors[0].recommends_turn(false);
+    s.behaviors->turning(false);
+  };
+  all.push_back(when("the robot is lost on the map, at rest", "why", resting(), {nowhere},
+                     {"The robot stands: nobody has asked for a goal; " + words}));
+  all.push_back(when("the same", "why tree", resting(), {nowhere},
+                     {words + ", 0 % sure (nothing that it hears fits the map): saphira map place "
+                              "X Y TH"}));
+  all.push_back(when("the robot is lost on the map, a goal in odom drives", "why", driving(),
+                     {nowhere, straight_on},
+                     {"drive ahead at 0.30 m/s", "GoToPos wants 0.30 m/s", words}));
+  all.push_back(when("the same, past an obstacle", "why", driving(), {nowhere},
+                     {"drive ahead at 0.30 m/s", "11 degrees to the left", "lost on the map"}));
+  all.push_back(when("the robot is lost on the map, and a person drives", "why", driving(),
+                     {nowhere, [](Situation& s) { by_keyboard(s, 0.2, 0.0); }},
+                     {"keyboard of ann", words}));
+  all.push_back(when("the robot is lost on the map, and a goal about a place waits", "why",
+                     resting(),
+                     {nowhere,
+                      [](Situation& s) {
+                        s.goals = driving().goals;
+                        s.statuses = {goal_status(v1::GOAL_UNDERWAY)};
+                        s.statuses[0].step("waits to know where it is on the map");
+                      }},
+                     {"waits to know where it is on the map"}));
+  all.push_back(when("the robot is lost on the map now; a standstill of before", "why", resting(),
+                     {nowhere,
+                      [](Situation& s) {
+                        s.past = true;
+                        s.cycle = 900;
+                      }},
+                     {"there was no goal"}, {"map"}));
+  all.push_back(when("the robot knows its place", "why tree", driving(), {tracking}, {},
+                     {"on the map", "map place"}));
+}
+
 }  // namespace
 
 std::vector<Case> bad_cases() {
@@ -319,6 +372,7 @@ std::vector<Case> bad_cases() {
   bridge_gone(all);
   bad_line(all);
   wheels(all);
+  lost_on_the_map(all);
   past(all);
   return all;
 }
