@@ -29,6 +29,7 @@ Mind::Mind(bus::Node& node, bool recalled)
       status_reader_(node.reader(bus::topics::kGoalStatus)),
       schema_reader_(node.reader(bus::topics::kBehaviorSchemas)),
       belief_reader_(node.reader(bus::topics::kBeliefs)),
+      registration_reader_(node.reader(bus::topics::kRegistration)),
       process_reader_(node.reader(bus::topics::kProcesses)),
       program_reader_(node.reader(bus::topics::kProgramMinds)) {
   if (recalled)
@@ -86,6 +87,8 @@ void Mind::poll() {
     schemas_ = std::move(schemas);
   if (auto beliefs = belief_reader_.take_newest())
     beliefs_ = std::move(beliefs);
+  if (auto registration = registration_reader_.take_newest())
+    registration_ = std::move(registration);
   if (!recall_ && !heard() && seconds_since(began_) > kSilence)
     recall();
 }
@@ -228,6 +231,9 @@ situation::Situation Mind::situation(std::uint64_t cycle, bool past) const {
     now.schemas = schemas_->schemas();
   if (beliefs_ && !past)
     now.beliefs = beliefs_->beliefs();
+  if (registration_ && !past && registration_->stamp().epoch() == robots_.epoch() &&
+      registration_->stamp().cycle() + kSaidLately >= robots_.known().newest)
+    now.registration = registration_;
   now.programs = processes_.all();
   for (const SeenProcess& program : now.programs) {
     const auto found = services_.find(program.status.instance());

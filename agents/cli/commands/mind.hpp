@@ -112,6 +112,7 @@ class Mind {
   bus::Reader<v1::GoalStatus> status_reader_;
   bus::Reader<v1::BehaviorSchemas> schema_reader_;
   bus::Reader<v1::BeliefSet> belief_reader_;
+  bus::Reader<v1::Registration> registration_reader_;
   bus::Reader<v1::ProcessSet> process_reader_;
   bus::Reader<v1::ProgramMind> program_reader_;
   std::unique_ptr<Recall> recall_;
@@ -130,6 +131,7 @@ class Mind {
   std::map<std::pair<std::uint64_t, std::uint64_t>, v1::GoalStatusSet> past_goals_;
   std::optional<v1::BehaviorSchemas> schemas_;
   std::optional<v1::BeliefSet> beliefs_;
+  std::optional<v1::Registration> registration_;
   std::map<std::uint64_t, v1::ProcessSet> services_;         ///< by instance
   std::map<std::uint64_t, Past<v1::ProgramMind>> programs_;  ///< likewise
 };

@@ -49,12 +49,26 @@ void Reason::add_conditions(Cause& cause) const {
   for (const char* const name : programs)
     if (const Condition how = condition(scene_, name); !how.words.empty())
       cause.because.push_back({"program", std::string(name) + " " + how.words, {}});
-  // The robot is served with limitations: a bad line, or motors that are off.
   if (scene_.past)
     return;
+  if (lost()) {
+    const v1::Registration& place = *scene_.registration;
+    cause.because.push_back({"registration",
+                             format("the robot does not know where it is on the map, %.0f %% sure",
+                                    100.0 * place.confidence()) +
+                                 (place.reason().empty() ? "" : " (" + place.reason() + ")") +
+                                 ": saphira map place X Y TH",
+                             {}});
+  }
+  // The robot is served with limitations: a bad line, or motors that are off.
   for (const Program& program : scene_.programs)
     if (program.status.name() == "bridge" && program.status.state() == v1::SERVICE_DEGRADED)
       cause.because.push_back({"program", "bridge is degraded: " + program.status.reason(), {}});
+}
+
+void Reason::add_lost(Sentence& sentence) const {
+  if (lost())
+    sentence.add(1, "; the robot does not know where it is on the map", "; it is lost on the map");
 }
 
 Explanation Reason::stopped() const {
@@ -65,26 +79,34 @@ Explanation Reason::stopped() const {
   const std::string still = meanwhile();
   sentence.add(0,
                still.empty() ? "The robot stands: " : "The robot is told to stop" + still + ": ");
-  std::vector<std::string> reasons;
+  struct Part {
+    std::string text;
+    std::string brief;
+  };
+  std::vector<Part> reasons;
   if (const std::string held = latched(grant); !held.empty())
-    reasons.push_back(held);
+    reasons.push_back({held, {}});
   else if (grant.stamp().epoch() == 0)
-    reasons.push_back(grant.reason());
+    reasons.push_back({grant.reason(), {}});
   if (auto age = age_cause()) {
     if (!scene_.behaviors->limit_reason().empty())
-      reasons.push_back(age->text);
+      reasons.push_back({age->text, {}});
     cause.because.push_back(std::move(*age));
   }
   if (!idle.empty()) {
-    reasons.push_back(idle);
+    reasons.push_back({idle, idle_reason(true)});
     cause.because.front().because.push_back({"goal", idle, {}});
   }
   if (reasons.empty() && !grant.refused().empty())
-    reasons.push_back("nobody drives it: " + refused(grant.refused().front()));
+    reasons.push_back({"nobody drives it: " + refused(grant.refused().front()), {}});
   if (reasons.empty())
-    reasons.push_back("nobody drives it: " + grant.reason());
-  for (std::size_t i = 0; i < reasons.size(); ++i)
-    sentence.add(static_cast<int>(i), (i == 0 ? "" : "; ") + reasons[i]);
+    reasons.push_back({"nobody drives it: " + grant.reason(), {}});
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    const std::string separator = i == 0 ? "" : "; ";
+    const auto& [text, brief] = reasons[i];
+    sentence.add(static_cast<int>(i), separator + text, brief.empty() ? "" : separator + brief);
+  }
+  add_lost(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -103,10 +125,15 @@ Explanation Reason::by_hand() const {
   Cause cause{"wheels",
               grant.role() == v1::ROLE_ESTOP ? "The robot is told to stop" : told(),
               {grant_cause()}};
+  if (auto hindered = hindrance(); hindered && grant.role() != v1::ROLE_ESTOP) {
+    sentence.add(0, "; " + hindered->text);
+    cause.because.push_back(std::move(*hindered));
+  }
   if (auto guard = guard_cause()) {
     sentence.add(1, "; " + guard->text);
     cause.because.push_back(std::move(*guard));
   }
+  add_lost(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -130,12 +157,17 @@ Explanation Reason::by_behaviors_unknown() const {
   if (scene_.grant) {
     sentence.add(0, told() + ": " + scene_.grant->source() + " drives it");
     cause = {"wheels", told(), {grant_cause()}};
+    if (auto hindered = hindrance()) {
+      sentence.add(0, "; " + hindered->text);
+      cause.because.push_back(std::move(*hindered));
+    }
   } else {
     sentence.add(0, "The robot's command in this cycle is not known");
   }
   sentence.add(
       1, "; its reasons are not known" + (how.words.empty() ? "" : ": behaviors " + how.words),
       "; its reasons are not known");
+  add_lost(sentence);
   return finish(sentence, std::move(cause));
 }
 
@@ -171,6 +203,8 @@ Explanation Reason::by_behaviors_known() {
     sentence.add(rank, separator + text, brief.empty() ? "" : separator + brief);
     separator = ", ";
   };
+  if (const auto hindered = hindrance())
+    add(0, hindered->text);
   if (guarded)
     add(1, guard_cause()->text);
   if (aged)
@@ -187,6 +221,7 @@ Explanation Reason::by_behaviors_known() {
                   : "no behavior wants a speed");
   }
   add_purpose(sentence, mentioned);
+  add_lost(sentence);
   return finish(sentence, wheels(what));
 }
 

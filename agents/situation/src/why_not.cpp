@@ -38,6 +38,8 @@ Explanation Reason::why_not(Wish wish) {
   };
   if (!scene_.grant || (by_behaviors() && !scene_.behaviors))
     return instead("It is not known whether it is to " + wanted);
+  if (wish != Wish::slower && hindrance())
+    return instead(no);
   if (does(wish))
     return instead("It does " + wanted);
   if (!by_behaviors() || (!scene_.past && scene_.silence > kSilence))

@@ -264,6 +264,24 @@ std::optional<Cause> Reason::guard_cause() const {
                {}};
 }
 
+std::optional<Cause> Reason::hindrance() const {
+  if (!scene_.robot || (!scene_.grant && !scene_.behaviors) ||
+      (std::abs(told_speed()) < kNoSpeed && std::abs(told_turn()) < kNoTurn))
+    return std::nullopt;
+  const v1::RobotState& robot = *scene_.robot;
+  if (robot.status() == v1::MOTORS_NO_POWER && std::abs(robot.velocity()) < kFarFromTold &&
+      std::abs(robot.rotation_velocity()) < kTurning)
+    return Cause{"motors", "its motors are off (saphira device motors on)", {}};
+  if (robot.left_stalled() && robot.right_stalled())
+    return Cause{"motors", "both wheels are stalled", {}};
+  if (robot.left_stalled() || robot.right_stalled())
+    return Cause{
+        "motors",
+        std::string("its ") + (robot.left_stalled() ? "left" : "right") + " wheel is stalled",
+        {}};
+  return std::nullopt;
+}
+
 std::optional<Cause> Reason::age_cause() const {
   if (!scene_.behaviors)
     return std::nullopt;
@@ -381,6 +399,8 @@ Cause Reason::wheels(const std::string& text) {
   Cause cause{"wheels", text, {}};
   if (scene_.grant)
     cause.because.push_back(grant_cause());
+  if (auto hindered = hindrance())
+    cause.because.push_back(std::move(*hindered));
   if (auto guard = guard_cause())
     cause.because.push_back(std::move(*guard));
   if (auto age = age_cause())
@@ -395,7 +415,7 @@ Cause Reason::wheels(const std::string& text) {
   return cause;
 }
 
-std::string Reason::idle_reason() const {
+std::string Reason::idle_reason(bool brief) const {
   for (const char* const name : {"behaviors", "intentions"})
     if (const Condition how = condition(scene_, name); !how.heard())
       return std::string(name) + " " + how.words;
@@ -405,16 +425,18 @@ std::string Reason::idle_reason() const {
     return "behavior control is switched off";
   if (scene_.intentions && !scene_.intentions->behaviors().empty())
     return {};
-  return goals_reason();
+  return goals_reason(brief);
 }
 
 /// For a robot without an intended behavior.
-std::string Reason::goals_reason() const {
+std::string Reason::goals_reason(bool brief) const {
+  const auto goal = [&](const v1::GoalId& id) {
+    return (brief ? goal_name(id) : goal_text(id)) + " of " + requester(id);
+  };
   const v1::GoalStatus* newest = nullptr;
   for (const v1::GoalStatus& status : scene_.statuses) {
     if (status.state() == v1::GOAL_UNDERWAY)
-      return goal_text(status.id()) + " of " + requester(status.id()) +
-             " is underway and intends no behavior now" +
+      return goal(status.id()) + " is underway and intends no behavior now" +
              (status.step().empty() ? "" : ": " + status.step());
     if (newest == nullptr || later(status.stamp(), newest->stamp()))
       newest = &status;
@@ -424,9 +446,9 @@ std::string Reason::goals_reason() const {
       return std::string("which goals there ") + (scene_.past ? "were" : "are") + " is not known";
     return scene_.past ? "there was no goal" : "nobody has asked for a goal";
   }
-  return "no goal is underway; the newest, " + goal_text(newest->id()) + " of " +
-         requester(newest->id()) + ": " + situation::name_of(newest->state()) +
-         (newest->reason().empty() ? "" : ", " + newest->reason());
+  const std::string reason = reason_of(*newest, scene_.grant);
+  return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") + goal(newest->id()) +
+         ": " + situation::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);
 }
 
 }  // namespace saphira::situation

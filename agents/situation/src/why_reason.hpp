@@ -65,11 +65,14 @@ class Reason {
   void add_purpose(Sentence& sentence,
                    const std::vector<const v1::BehaviorState*>& behaviors) const;
   /// The reason why no behavior drives; empty where unknown.
-  std::string idle_reason() const;
-  std::string goals_reason() const;
+  std::string idle_reason(bool brief = false) const;
+  /// `brief`: without the goal's arguments.
+  std::string goals_reason(bool brief) const;
 
   Cause grant_cause() const;
   std::optional<Cause> guard_cause() const;
+  /// Of wheels that do not obey: motors that are off, or a stall.
+  std::optional<Cause> hindrance() const;
   /// The old inputs of the behaviors, and their effect on the speed.
   std::optional<Cause> age_cause() const;
   Cause rule_cause(const v1::BehaviorState& behavior, const v1::RuleState& rule) const;
@@ -90,6 +93,11 @@ class Reason {
   Explanation finish(const Sentence& sentence, Cause cause) const;
   /// Adds the conditions of the programs involved, as far as they are not well.
   void add_conditions(Cause& cause) const;
+  bool lost() const {
+    return !scene_.past && scene_.registration &&
+           scene_.registration->state() == v1::REGISTRATION_LOST;
+  }
+  void add_lost(Sentence& sentence) const;
 
   const Situation& scene_;
   void add_advice(const v1::IntentionNode& of, Cause& cause);

@@ -242,6 +242,24 @@ void people(std::vector<Case>& all) {
   all.push_back(
       while_driving("the same", "why not faster", pressed, {"It does not go faster", "EMERGENCY"}));
   all.push_back(while_driving("the same", "drive", pressed, {"EMERGENCY STOP, pressed by panel"}));
+  // The words of intentions (Executor, obey_estop).
+  const auto ended = [](Situation& s) {
+    s.goals = driving().goals;
+    s.statuses = {goal_status(v1::GOAL_CANCELED,
+                              "emergency stop, pressed by \"panel\": saphira estop reset releases "
+                              "it, then ask anew")};
+  };
+  all.push_back(at_rest("the emergency stop was pressed, and is released", "why", ended,
+                        {"canceled, emergency stop, pressed by \"panel\", released since: ask "
+                         "anew"},
+                        {"saphira estop reset", "EMERGENCY"}));
+  all.push_back(at_rest("the same, pressed again", "why",
+                        [&](Situation& s) {
+                          ended(s);
+                          pressed(s);
+                        },
+                        {"EMERGENCY STOP, pressed by panel", "saphira estop reset"},
+                        {"released since"}));
   all.push_back(while_driving("a script drives over drive/direct", "why",
                               [](Situation& s) {
                                 by_keyboard(s, 0.25, 0.0);

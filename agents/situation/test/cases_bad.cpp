@@ -257,6 +257,112 @@ void bad_line(std::vector<Case>& all) {
            {"nobody asks"}));
 }
 
+/// The wheels do not obey.
+void wheels(std::vector<Case>& all) {
+  const std::string off = "its motors are off (saphira device motors on)";
+  const Change no_power = [](Situation& s) {
+    s.robot->status(v1::MOTORS_NO_POWER);
+    s.robot->velocity(0.0);
+    find(s, "bridge").status.state(v1::SERVICE_DEGRADED);
+    find(s, "bridge")
+        .status.reason("the robot's motors are off (its own button, or: saphira device motors on)");
+  };
+  const Change by_hand = [](Situation& s) {
+    by_keyboard(s, 0.2, 0.0);
+    s.robot->velocity(0.0);
+  };
+  const Change failed = [](Situation& s) {
+    s.goals = driving().goals;
+    s.statuses = {goal_status(v1::GOAL_FAILED,
+                              "no nearer for 20 s, 3.00 m from the point; it has not moved at all: "
+                              "are its motors on? (saphira device motors on)")};
+  };
+  all.push_back(when("the motors are off", "why", driving(), {no_power},
+                     {"drive ahead at 0.30 m/s", off}, {"blocked", "stalled"}));
+  all.push_back(when("the same", "why tree", driving(), {no_power},
+                     {"|- " + off, "bridge is degraded: the robot's motors are off"}));
+  all.push_back(when("the same", "why not faster", driving(), {no_power},
+                     {"It does not go faster", off}, {"It does go"}));
+  all.push_back(when("the same", "why not turn left", driving(), {no_power},
+                     {"It does not turn left", off}, {"It does turn"}));
+  all.push_back(when("the same, and a person drives", "why", driving(), {by_hand, no_power},
+                     {"keyboard of ann drives it", off}));
+  all.push_back(when("the same, and behaviors is not heard", "why", driving(),
+                     {no_power, silent("behaviors", 20)}, {"drive ahead at 0.30 m/s", off}));
+  all.push_back(when("the motors are off, and nothing is asked for", "why", resting(), {no_power},
+                     {"nobody has asked for a goal"}, {off}));
+  all.push_back(when("the motors were switched off as it drove: it still rolls", "why", driving(),
+                     {no_power, [](Situation& s) { s.robot->velocity(0.2); }},
+                     {"now it does 0.20 m/s"}, {off}));
+  all.push_back(when("a goal failed, of a robot that does not report its motors", "why", resting(),
+                     {failed},
+                     {"failed, no nearer",
+                      "it has not moved at all: are its motors on? (saphira device motors "
+                      "on)"}));
+  all.push_back(when("its left wheel is stalled", "why", driving(),
+                     {[](Situation& s) { s.robot->left_stalled(true); }},
+                     {"its left wheel is stalled"}, {"right wheel", "motors are off"}));
+  all.push_back(when("both wheels are stalled at a wall", "why", driving(), {[](Situation& s) {
+                       s.robot->left_stalled(true);
+                       s.robot->right_stalled(true);
+                       s.robot->velocity(0.0);
+                     }},
+                     {"both wheels are stalled"}, {"motors are off"}));
+}
+
+void lost_on_the_map(std::vector<Case>& all) {
+  const std::string words = "the robot does not know where it is on the map";
+  const Change nowhere = [](Situation& s) {
+    v1::Registration place;
+    place.stamp(s.robot->stamp());
+    place.state(v1::REGISTRATION_LOST);
+    place.reason("nothing that it hears fits the map");
+    s.registration = place;
+  };
+  const Change tracking = [](Situation& s) {
+    s.registration.emplace();
+    s.registration->state(v1::REGISTRATION_TRACKING);
+    s.registration->confidence(0.97);
+  };
+  const Change straight_on = [](Situation& s) {
+    auto& behaviors = s.behaviors->behaviors();
+    behaviors.erase(behaviors.begin());
+    behaviors[0].recommends_turn(false);
+    s.behaviors->turning(false);
+  };
+  all.push_back(when("the robot is lost on the map, at rest", "why", resting(), {nowhere},
+                     {"The robot stands: nobody has asked for a goal; " + words}));
+  all.push_back(when("the same", "why tree", resting(), {nowhere},
+                     {words + ", 0 % sure (nothing that it hears fits the map): saphira map place "
+                              "X Y TH"}));
+  all.push_back(when("the robot is lost on the map, a goal in odom drives", "why", driving(),
+                     {nowhere, straight_on},
+                     {"drive ahead at 0.30 m/s", "GoToPos wants 0.30 m/s", words}));
+  all.push_back(when("the same, past an obstacle", "why", driving(), {nowhere},
+                     {"drive ahead at 0.30 m/s", "11 degrees to the left", "lost on the map"}));
+  all.push_back(when("the robot is lost on the map, and a person drives", "why", driving(),
+                     {nowhere, [](Situation& s) { by_keyboard(s, 0.2, 0.0); }},
+                     {"keyboard of ann", words}));
+  all.push_back(when("the robot is lost on the map, and a goal about a place waits", "why",
+                     resting(),
+                     {nowhere,
+                      [](Situation& s) {
+                        s.goals = driving().goals;
+                        s.statuses = {goal_status(v1::GOAL_UNDERWAY)};
+                        s.statuses[0].step("waits to know where it is on the map");
+                      }},
+                     {"waits to know where it is on the map"}));
+  all.push_back(when("the robot is lost on the map now; a standstill of before", "why", resting(),
+                     {nowhere,
+                      [](Situation& s) {
+                        s.past = true;
+                        s.cycle = 900;
+                      }},
+                     {"there was no goal"}, {"map"}));
+  all.push_back(when("the robot knows its place", "why tree", driving(), {tracking}, {},
+                     {"on the map", "map place"}));
+}
+
 }  // namespace
 
 std::vector<Case> bad_cases() {
@@ -265,6 +371,8 @@ std::vector<Case> bad_cases() {
   behaviors_gone(all);
   bridge_gone(all);
   bad_line(all);
+  wheels(all);
+  lost_on_the_map(all);
   past(all);
   return all;
 }

@@ -160,6 +160,18 @@ TEST_F(WhyTest, TellsWhatItDoesWhereThatIsNotWhatItIsTold) {
       << sentence();
 }
 
+TEST_F(WhyTest, MotorsThatAreOffComeFirst) {
+  keep_off().running(false);
+  go().recommends_turn(false);
+  scene.behaviors->turning(false);
+  scene.robot->velocity(0.0);
+  scene.robot->status(v1::MOTORS_NO_POWER);
+  EXPECT_EQ(sentence(),
+            "The robot is told to drive ahead at 0.30 m/s, straight on (now it does 0.00 m/s): its "
+            "motors are off (saphira device motors on), GoToPos wants 0.30 m/s; for go_to of "
+            "saphira goal.");
+}
+
 TEST_F(WhyTest, TheGuardComesFirst) {
   scene.grant->guard(v1::GUARD_STOP);
   scene.grant->guard_reason("something 0.12 m ahead: stopped (margin 0.20 m)");

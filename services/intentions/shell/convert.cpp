@@ -221,6 +221,8 @@ Robot from_bus(const v1::RobotState& robot) {
   result.left_stalled = robot.left_stalled();
   result.right_stalled = robot.right_stalled();
   result.bumpers = robot.bumpers();
+  result.target_velocity = robot.target_velocity();
+  result.target_heading_in_odom = robot.target_heading_in_odom();
   return result;
 }
 

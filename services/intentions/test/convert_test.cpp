@@ -105,6 +105,8 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   state.pose_in_odom().th(3.0);
   state.velocity(0.4);
   state.rotation_velocity(-0.5);
+  state.target_velocity(0.3);
+  state.target_heading_in_odom(1.5);
   state.status(v1::MOTORS_MOVING);
   Robot robot = from_bus(state);
   EXPECT_TRUE(robot.connected);
@@ -113,6 +115,8 @@ TEST(Convert, TakesWhatItNeedsOfTheRobotAndTheBehaviors) {
   EXPECT_EQ(robot.pose_in_odom, (Pose{1.0, 2.0, 3.0}));
   EXPECT_EQ(robot.velocity, 0.4);
   EXPECT_EQ(robot.rotation_velocity, -0.5);
+  EXPECT_EQ(robot.target_velocity, 0.3);
+  EXPECT_EQ(robot.target_heading_in_odom, 1.5);
   state.status(v1::MOTORS_NO_POWER);
   EXPECT_FALSE(from_bus(state).has_power);
   state.status(v1::MOTORS_NOT_CONNECTED);

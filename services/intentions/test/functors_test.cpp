@@ -341,7 +341,32 @@ TEST(TurnTo, GivesUp) {
   while (bench.step() && bench.state(1) == GoalState::kUnderway && bench.cycle < 100) {
   }
   EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
-  EXPECT_EQ(bench.status(1).reason, "no nearer for 2 s, 57 degrees off; the motors have no power");
+  EXPECT_EQ(bench.status(1).reason,
+            "no nearer for 2 s, 57 degrees off; the motors have no power (saphira device motors "
+            "on)");
+}
+
+// Some robots do not report that their motors are off.
+TEST(GoTo, AsksForTheMotorsOfARobotThatHasNotMovedAtAll) {
+  const auto reason = [](double told, bool moves_first, bool stalled) {
+    Bench bench;
+    bench.ask(1, "go_to", {point("position", {3.0, 0.0, 0.0}), number("patience", 5.0)});
+    bench.world.held = !moves_first;
+    bench.world.robot.left_stalled = stalled;
+    while (bench.cycle < 300 && (bench.cycle == 0 || bench.state(1) == GoalState::kUnderway)) {
+      bench.world.robot.target_velocity = told;
+      bench.step();
+      bench.world.held = bench.world.held || bench.cycle > 20;
+    }
+    EXPECT_EQ(bench.status(1).code, GoalCode::kBlocked);
+    return bench.status(1).reason;
+  };
+  EXPECT_EQ(reason(0.3, false, false),
+            "no nearer for 5 s, 3.00 m from the point; it has not moved at all: are its motors on? "
+            "(saphira device motors on)");
+  EXPECT_EQ(reason(0.0, false, false), "no nearer for 5 s, 3.00 m from the point");
+  EXPECT_EQ(reason(0.3, false, true), "no nearer for 5 s, 3.00 m from the point");
+  EXPECT_EQ(reason(0.3, true, false).find("motors"), std::string::npos);
 }
 
 TEST(Stop, SucceedsWhenTheRobotIsAtRest) {

@@ -89,8 +89,39 @@ bool begins(const Self& self) {
   return self.state() == IntentionState::kInit || self.state() == IntentionState::kResumed;
 }
 
-std::string why_not_moving(const Robot& robot) {
-  return robot.has_power ? "" : "; the motors have no power";
+/// Notes whether a robot is told to move, and whether it ever does.
+class Motion {
+ public:
+  void note(const Robot& robot) {
+    const Pose& pose = robot.pose_in_odom;
+    if (!first_)
+      first_ = pose;
+    moved_ = moved_ || distance(*first_, pose) > kMoved ||
+             std::abs(norm2_angle(pose.th - first_->th)) > kTurned;
+    told_ = told_ || std::abs(robot.target_velocity) > kRestVelocity ||
+            std::abs(norm2_angle(robot.target_heading_in_odom - pose.th)) > kToldTurn;
+    stalled_ = stalled_ || robot.left_stalled || robot.right_stalled;
+  }
+  /// Some robots do not report that their motors are off.
+  bool none_though_told() const { return told_ && !moved_ && !stalled_; }
+
+ private:
+  static constexpr double kMoved = 0.01;              // [m]
+  static constexpr double kTurned = radians(1.0);     // [rad]
+  static constexpr double kToldTurn = radians(10.0);  // [rad]
+
+  std::optional<Pose> first_;
+  bool moved_ = false;
+  bool told_ = false;
+  bool stalled_ = false;
+};
+
+std::string why_not_moving(const Robot& robot, const Motion& motion) {
+  if (!robot.has_power)
+    return "; the motors have no power (saphira device motors on)";
+  return motion.none_though_told()
+             ? "; it has not moved at all: are its motors on? (saphira device motors on)"
+             : "";
 }
 
 /// The robot stands while its place on the map is unknown, and fails after its patience.
@@ -118,6 +149,7 @@ class GoTo : public Activity {
   }
 
   void step(Self& self) override {
+    motion_.note(self.robot());
     if (self.state() == IntentionState::kInterrupted)
       return;
     const std::optional<Pose> target = in_odom(target_, self.robot());
@@ -178,7 +210,7 @@ class GoTo : public Activity {
     if (late && !makes_a_detour(self))
       self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.2f m from the point",
                                            watchdog_.waited(self.now()), left) +
-                                        why_not_moving(self.robot()));
+                                        why_not_moving(self.robot(), motion_));
   }
 
  private:
@@ -227,6 +259,7 @@ class GoTo : public Activity {
   double speed_ = 0.0;
   double radius_ = 0.0;
   Watchdog watchdog_;
+  Motion motion_;
   Pose last_;
   double path_ = 0.0;  ///< [m] since the last progress
   double whole_way_ = 0.0;
@@ -247,6 +280,7 @@ class Drive : public Activity {
   }
 
   void step(Self& self) override {
+    motion_.note(self.robot());
     if (self.state() == IntentionState::kInterrupted)
       return;
     const Pose& pose = self.robot().pose_in_odom;
@@ -268,8 +302,8 @@ class Drive : public Activity {
     }
     const double still = static_cast<double>(self.now() - anchored_) * kTick;
     if (std::abs(speed_) > kRestVelocity && still >= patience_)
-      self.fail(GoalCode::kBlocked,
-                format("has not moved for %.0f s", patience_) + why_not_moving(self.robot()));
+      self.fail(GoalCode::kBlocked, format("has not moved for %.0f s", patience_) +
+                                        why_not_moving(self.robot(), motion_));
   }
 
   std::string at_deadline(const Robot& robot) override {
@@ -287,6 +321,7 @@ class Drive : public Activity {
   double speed_ = 0.0;
   double patience_ = kPatience;
   bool restart_ = true;
+  Motion motion_;
   Pose anchor_;
   Ticks anchored_ = 0;
   Pose last_;
@@ -306,6 +341,7 @@ class TurnTo : public Activity {
   }
 
   void step(Self& self) override {
+    motion_.note(self.robot());
     if (self.state() == IntentionState::kInterrupted)
       return;
     const Pose& pose = self.robot().pose_in_odom;
@@ -341,7 +377,7 @@ class TurnTo : public Activity {
     else if (watchdog_.check(left, self.now()))
       self.fail(GoalCode::kBlocked, format("no nearer for %.0f s, %.0f degrees off",
                                            watchdog_.patience(), degrees(left)) +
-                                        why_not_moving(self.robot()));
+                                        why_not_moving(self.robot(), motion_));
   }
 
  private:
@@ -363,6 +399,7 @@ class TurnTo : public Activity {
   double angle_ = 0.0;
   double turn_speed_ = 0.0;
   Watchdog watchdog_;
+  Motion motion_;
   double whole_turn_ = 0.0;
   bool new_target_ = true;
 };

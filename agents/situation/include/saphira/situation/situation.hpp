@@ -7,6 +7,7 @@
 
 #include "behavior.h"
 #include "intention.h"
+#include "map.h"
 #include "motion.h"
 #include "robot.h"
 #include "system.h"
@@ -49,13 +50,14 @@ struct Situation {
   Known behaviors_known;
   Known intentions_known;
 
-  std::vector<v1::Goal> goals;              ///< of requesters that are still there
-  std::vector<v1::GoalStatus> statuses;     ///< at that time
-  bool statuses_known = false;              ///< no status means no goal
-  std::vector<v1::Belief> beliefs;          ///< at present: the activities' beliefs
-  std::vector<v1::BehaviorSchema> schemas;  ///< for the rules in their written form
-  std::vector<Program> programs;            ///< at present
-  std::vector<v1::ProcessSet> processes;    ///< at present, of programs that are heard
+  std::vector<v1::Goal> goals;                   ///< of requesters that are still there
+  std::vector<v1::GoalStatus> statuses;          ///< at that time
+  bool statuses_known = false;                   ///< no status means no goal
+  std::optional<v1::Registration> registration;  ///< at present: the robot's place on the map
+  std::vector<v1::Belief> beliefs;               ///< at present: the activities' beliefs
+  std::vector<v1::BehaviorSchema> schemas;       ///< for the rules in their written form
+  std::vector<Program> programs;                 ///< at present
+  std::vector<v1::ProcessSet> processes;         ///< at present, of programs that are heard
 };
 
 /// The health of a program.

@@ -11,8 +11,8 @@ namespace saphira::situation {
 
 /// A fact, and its causes.
 struct Cause {
-  std::string kind;  ///< wheels, grant, guard, speed, turn, behavior, rule, intention, belief,
-                     ///< goal, trouble
+  std::string kind;  ///< wheels, motors, grant, guard, speed, turn, behavior, rule, intention,
+                     ///< belief, goal, registration, program, trouble
   std::string text;
   std::vector<Cause> because;
 };

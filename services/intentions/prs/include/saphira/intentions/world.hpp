@@ -45,7 +45,9 @@ struct Robot {
   std::optional<Pose> odom_in_map{};
   bool left_stalled = false;
   bool right_stalled = false;
-  std::uint16_t bumpers = 0;  ///< as in the packet
+  std::uint16_t bumpers = 0;            ///< as in the packet
+  double target_velocity = 0.0;         ///< [m/s] the setpoint that was sent last
+  double target_heading_in_odom = 0.0;  ///< [rad] the robot's own setpoint
 };
 
 enum class Localization { kNone, kOff, kUnplaced, kLost, kTracking };
