@@ -144,12 +144,17 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     return rest;
   };
   // "go to PLACE", as in speech.
-  if (words[0] == "go" && bare == 2 && rest[0] == "to") {
+  if (words[0] == "go" && bare >= 2 && rest[0] == "to") {
     rest.erase(rest.begin());
     --bare;
   }
-  if (words[0] == "go" && bare == 1 && !parse_number(rest[0]))
-    return parse_goal("go-to-place", with("place=" + rest[0]));
+  // The name of a place can have several words.
+  if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
+    std::string place = rest[0];
+    for (std::size_t i = 1; i < bare; ++i)
+      place += " " + rest[i];
+    return parse_goal("go-to-place", with("place=" + place));
+  }
   if (words[0] == "go") {
     expect(2, "go X Y [m, in odom] or go PLACE");
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));

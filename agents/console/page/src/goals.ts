@@ -69,13 +69,16 @@ export function reasonOf(link: Link, reason: string): string {
     });
 }
 
+// A value of several words, or with quotes, as the gateway reads it.
+export const quoted = (text: string) => /[\s"]/.test(text) ? `"${text.replace(/["\\]/g, '\\$&')}"` : text;
+
 // The words that ask for the same again; nothing where words cannot say it.
 export function wordsOf(goal?: Goal): string {
   if (!goal || goal.functor === 'stop') return '';
   const words = goal.arguments.map(({name, kind, number, text, point, frame}) =>
     kind === 'ARGUMENT_NUMBER' ? `${name}=${number}`
     : kind === 'ARGUMENT_POINT' ? `${name}=${point.x},${point.y},${point.th}@${frame.replace('FRAME_', '').toLowerCase()}`
-    : kind === 'ARGUMENT_TEXT' && /^\S+$/.test(text) ? `${name}=${text}` : '');
+    : kind === 'ARGUMENT_TEXT' && text ? `${name}=${quoted(text)}` : '');
   return words.includes('') ? '' : [goal.functor, ...words].join(' ');
 }
 
