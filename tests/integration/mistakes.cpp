@@ -45,7 +45,7 @@ const std::vector<Mistake>& mistakes() {
       {{"goal", "go", "3", "1", "--priority", "high"}, {"--priority", "high"}},
       {{"goal", "cancel"}, {"cancel"}},
       {{"goal", "cancel", "xyz"}, {"expected goal cancel ID", "found \"xyz\""}},
-      {{"goal", "schemas", "a", "b"}, {"expected goal schemas [FUNCTOR]"}},
+      {{"goal", "activities", "a", "b"}, {"expected goal activities [ACTIVITY]"}},
       // why
       {{"why", "not"}, {"expected why, or why not turn left"}},
       {{"why", "not", "fly"}, {"expected why, or why not turn left"}},

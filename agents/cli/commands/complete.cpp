@@ -73,7 +73,7 @@ std::vector<std::string> candidates(const CLI::App& root, const std::vector<std:
   if (name == "up" || name == "stop")
     return shipped("deployments", ".yaml");
   static const std::map<std::string, std::vector<std::string>> kWords{
-      {"goal", {"go", "drive", "turn", "stop", "list", "cancel", "schemas"}},
+      {"goal", {"go", "drive", "turn", "stop", "list", "cancel", "activities"}},
       {"why", {"not"}},
       {"beliefs", {"set", "unset"}},
       {"processes", {"interrupt", "resume", "suspend"}},

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "saphira/base/guess.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/cli/goal_words.hpp"
 #include "saphira/cli/printer.hpp"
@@ -257,7 +258,7 @@ void print_schema(const v1::ActivitySchema& schema) {
 int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
             const bus::Stop& stop) {
   if (options.words.size() > 2) {
-    std::cerr << "saphira: expected goal schemas [FUNCTOR]\n";
+    std::cerr << "saphira: expected goal activities [ACTIVITY]\n";
     return bus::kExitUsage;
   }
   bus::Node node(node_options);
@@ -276,7 +277,9 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
     return bus::kExitFailed;
   }
   bool any = false;
+  std::vector<std::string> names;
   for (const v1::ActivitySchema& schema : known->schemas()) {
+    names.push_back(schema.name());
     if (options.words.size() == 2 && schema.name() != options.words[1])
       continue;
     print_schema(schema);
@@ -284,8 +287,15 @@ int schemas(const GoalOptions& options, const bus::NodeOptions& node_options,
   }
   if (!known->trouble().empty())
     std::printf("%s\n", known->trouble().c_str());
-  if (!any)
-    std::cerr << "saphira: no such schema\n";
+  if (!any && options.words.size() == 2) {
+    const std::string meant = guess(options.words[1], names);
+    std::cerr << "saphira: there is no activity \"" << options.words[1] << "\""
+              << (meant.empty() ? "; saphira goal activities lists them"
+                                : ": did you mean " + meant + "?")
+              << '\n';
+  } else if (!any) {
+    std::cerr << "saphira: there are no activities\n";
+  }
   return any ? bus::kExitOk : bus::kExitFailed;
 }
 
@@ -296,7 +306,7 @@ void add_goal(CLI::App& app, Chosen& chosen) {
   CLI::App* command = app.add_subcommand("goal", "Send a goal and follow it to its end");
   command->add_option("words", options->words,
                       "go X Y [m, in odom] | go PLACE | drive SPEED | turn DEGREES | stop | "
-                      "FUNCTOR name=value... | list | cancel ID | schemas [FUNCTOR]");
+                      "ACTIVITY name=value... | list | cancel ID | activities [ACTIVITY]");
   command->add_option("--priority", options->priority, "larger is more important (usual: 0)");
   command->add_option("--deadline", options->deadline, "[s] of robot time until it fails")
       ->check(at_least_zero());
@@ -312,7 +322,8 @@ void add_goal(CLI::App& app, Chosen& chosen) {
         return cancel(*options, node, stop);
       if (options->words == std::vector<std::string>{"list"})
         return list_goals(node, stop);
-      if (!options->words.empty() && options->words[0] == "schemas")
+      if (!options->words.empty() &&
+          (options->words[0] == "activities" || options->words[0] == "schemas"))
         return schemas(*options, node, stop);
       return ask(*options, node, stop);
     };

@@ -68,6 +68,7 @@ class Mind {
   std::vector<const v1::ProgramMind*> programs() const;
   const v1::Grant* grant() const { return grants_.newest(); }
   const v1::BehaviorSchema* schema(const std::string& name) const;
+  const v1::BehaviorSchemas* schemas() const { return schemas_ ? &*schemas_ : nullptr; }
   const v1::BeliefSet* beliefs() const { return beliefs_ ? &*beliefs_ : nullptr; }
   bool heard() const { return intentions_.newest() || behaviors_.newest() || grants_.newest(); }
   const Processes& processes() const { return processes_; }

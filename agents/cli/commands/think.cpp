@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr double kMindPatience = 3.0;  // [s] for the first sample
 constexpr milliseconds kOthers{300};   // for programs that are discovered after the services
+constexpr double kSoon = 0.5;          // [s] by then schemas and programs have come as well
 
 struct WatchOptions {
   bool once = false;
@@ -38,10 +39,10 @@ int nobody(const bus::NodeOptions& options, const Mind& mind, const std::string&
 }
 
 /// Shows the result of `draw`, once or repeatedly: `draw` returns nothing until there is something
-/// to show.
+/// to show. A text in `refused` before that ends it: there will be nothing.
 template <class Draw>
 int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOptions& watch,
-         const std::string& what, Draw draw) {
+         const std::string& what, Draw draw, const std::string& refused = {}) {
   bus::Node node(options);
   Mind mind(node, false);
   std::optional<std::string> text;
@@ -49,6 +50,10 @@ int show(const bus::NodeOptions& options, const bus::Stop& stop, const WatchOpti
   while (!stop.requested() && !text) {
     mind.listen(milliseconds(50), stop);
     text = draw(mind);
+    if (!refused.empty()) {
+      std::cerr << "saphira: " << refused << '\n';
+      return bus::kExitFailed;
+    }
     if (!text && seconds_since(began) > kMindPatience)
       return nobody(options, mind, what);
   }
@@ -113,9 +118,9 @@ int intentions(const WatchOptions& watch, const bus::NodeOptions& options, const
 /// are added to `names`.
 std::optional<std::string> find_behavior(const std::string& name, const v1::BehaviorSet& behaviors,
                                          const v1::Intentions* intentions, const Mind& mind,
-                                         std::string& names) {
+                                         std::vector<std::string>& names) {
   for (const v1::BehaviorState& state : behaviors.behaviors()) {
-    names += (names.empty() ? "" : ", ") + state.name();
+    names.push_back(state.name());
     if (state.name() != name && state.schema() != name)
       continue;
     const v1::IntendedBehavior* intended = nullptr;
@@ -128,8 +133,10 @@ std::optional<std::string> find_behavior(const std::string& name, const v1::Beha
   return std::nullopt;
 }
 
-/// Nothing: no samples yet.
-std::optional<std::string> behaviors_text(const std::string& name, const Mind& mind) {
+/// Nothing: no samples yet. `unknown`: why there is no behavior of that name; empty where it is.
+std::optional<std::string> behaviors_text(const std::string& name, const Mind& mind,
+                                          std::string& unknown) {
+  unknown.clear();
   const v1::BehaviorSet* const newest = mind.behaviors();
   const std::vector<const v1::ProgramMind*> programs = mind.programs();
   if (newest == nullptr && programs.empty())
@@ -141,7 +148,7 @@ std::optional<std::string> behaviors_text(const std::string& name, const Mind& m
       text += of_program(*program) + behaviors_display(program->behaviors());
     return text;
   }
-  std::string names;
+  std::vector<std::string> names;
   if (newest != nullptr)
     if (const auto found = find_behavior(name, *newest, mind.intentions(), mind, names))
       return text + *found;
@@ -151,14 +158,31 @@ std::optional<std::string> behaviors_text(const std::string& name, const Mind& m
       return text + *found;
   if (const v1::BehaviorSchema* const schema = mind.schema(name))
     return text + schema_display(*schema);
-  return text + "no behavior " + name + "; there are " + (names.empty() ? "none now" : names) +
-         "\n";
+  if (mind.schemas() != nullptr)
+    for (const v1::BehaviorSchema& schema : mind.schemas()->schemas())
+      names.push_back(schema.name());
+  unknown = unknown_behavior(name, names);
+  return text + unknown + "\n";
 }
 
 int behaviors(const std::string& name, const WatchOptions& watch, const bus::NodeOptions& options,
               const bus::Stop& stop) {
-  return show(options, stop, watch, "behaviors",
-              [&](const Mind& mind) { return behaviors_text(name, mind); });
+  std::string unknown;
+  std::string refused;
+  bool found = false;  // once: a behavior can end while it is shown
+  std::optional<Clock::time_point> began;
+  const auto draw = [&](const Mind& mind) -> std::optional<std::string> {
+    std::optional<std::string> text = behaviors_text(name, mind, unknown);
+    found = found || (text && unknown.empty());
+    if (!text || found)
+      return text;
+    if (!began)
+      began = Clock::now();
+    if (seconds_since(*began) > kSoon)
+      refused = unknown;
+    return std::nullopt;
+  };
+  return show(options, stop, watch, "behaviors", draw, refused);
 }
 
 using situation::Explanation;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/guess.hpp"
 #include "saphira/cli/words.hpp"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/situation/format.hpp"
@@ -263,6 +264,29 @@ std::string schema_display(const v1::BehaviorSchema& schema) {
   for (const v1::RuleText& rule : schema.rules())
     text += "  " + rule.name() + "   if " + rule.antecedent() + " then " + rule.action() + "\n";
   return text;
+}
+
+std::string unknown_behavior(const std::string& name, std::vector<std::string> names) {
+  const auto lower = [](std::string text) {
+    for (char& c : text)
+      c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+  };
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  std::vector<std::string> lowered;
+  std::string list;
+  for (const std::string& each : names) {
+    lowered.push_back(lower(each));
+    list += (list.empty() ? " " : ", ") + each;
+  }
+  const auto meant = std::find(lowered.begin(), lowered.end(), guess(lower(name), lowered));
+  return "no behavior \"" + name.substr(0, 200) + "\": " +
+         (meant == lowered.end()
+              ? "there are"
+              : "did you mean " + names[static_cast<std::size_t>(meant - lowered.begin())] +
+                    "? There are") +
+         (list.empty() ? " none now" : list);
 }
 
 std::string behavior_display(const v1::BehaviorState& behavior,

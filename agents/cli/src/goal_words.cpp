@@ -107,7 +107,7 @@ v1::Argument parse_argument(const std::string& word) {
 
 v1::Goal parse_goal(const std::string& functor, const std::vector<std::string>& words) {
   if (functor.empty() || functor.find('=') != std::string::npos)
-    throw std::invalid_argument("expected a functor such as go_to, found \"" + functor + "\"");
+    throw std::invalid_argument("expected an activity such as go_to, found \"" + functor + "\"");
   if (words.size() > kMostArguments)
     throw std::invalid_argument("a goal has at most 16 arguments");
   v1::Goal goal;
@@ -144,17 +144,22 @@ v1::Goal parse_request(const std::vector<std::string>& words) {
     return rest;
   };
   // "go to PLACE", as in speech.
-  if (words[0] == "go" && bare == 2 && rest[0] == "to") {
+  if (words[0] == "go" && bare >= 2 && rest[0] == "to") {
     rest.erase(rest.begin());
     --bare;
   }
-  if (words[0] == "go" && bare == 1 && !parse_number(rest[0]))
-    return parse_goal("go-to-place", with("place=" + rest[0]));
+  // The name of a place can have several words.
+  if (words[0] == "go" && bare >= 1 && !parse_number(rest[0])) {
+    std::string place = rest[0];
+    for (std::size_t i = 1; i < bare; ++i)
+      place += " " + rest[i];
+    return parse_goal("go-to-place", with("place=" + place));
+  }
   if (words[0] == "go") {
     expect(2, "go X Y [m, in odom] or go PLACE");
     return parse_goal("go_to", with("position=" + rest[0] + "," + rest[1]));
   }
-  // The functor drive in its long form also requires a speed.
+  // The activity drive in its long form also requires a speed.
   if (words[0] == "drive" && std::none_of(rest.begin(), rest.end(), [](const std::string& word) {
         return word.starts_with("speed=");
       })) {

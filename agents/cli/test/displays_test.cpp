@@ -168,6 +168,17 @@ o Stop (end)  4    [        |        ]            [        |        ]
       << behaviors_display(all);
 }
 
+TEST(BehaviorDisplay, AnUnknownNameGetsAGuessAndTheList) {
+  const std::vector<std::string> names{"go-to-pos1", "Stop", "GoToPos", "Stop"};
+  for (const char* const name : {"gotopos", "GoToPso", "GOTOPOS"})
+    EXPECT_EQ(unknown_behavior(name, names),
+              "no behavior \"" + std::string(name) +
+                  "\": did you mean GoToPos? There are GoToPos, Stop, go-to-pos1");
+  EXPECT_EQ(unknown_behavior("Fly", names),
+            "no behavior \"Fly\": there are GoToPos, Stop, go-to-pos1");
+  EXPECT_EQ(unknown_behavior("Fly", {}), "no behavior \"Fly\": there are none now");
+}
+
 TEST(BehaviorDisplay, IsFigure26) {
   v1::IntendedBehavior intended;
   v1::Argument sensitivity;

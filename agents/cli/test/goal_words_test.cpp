@@ -79,6 +79,11 @@ TEST(GoalWords, ShortForms) {
   EXPECT_EQ(said({"go", "3", "1", "speed=0.2"}), "go_to(position=(3, 1) in odom, speed=0.2)");
   EXPECT_EQ(said({"go", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
   EXPECT_EQ(said({"go", "to", "EJ-231"}), "go-to-place(place=\"EJ-231\")");
+  EXPECT_EQ(said({"go", "meeting", "room"}), "go-to-place(place=\"meeting room\")");
+  EXPECT_EQ(said({"go", "meeting room"}), "go-to-place(place=\"meeting room\")");
+  EXPECT_EQ(said({"go", "to", "the", "room", "4", "speed=0.2"}),
+            "go-to-place(place=\"the room 4\", speed=0.2)");
+  EXPECT_EQ(said({"go-to-place", "place=meeting room"}), "go-to-place(place=\"meeting room\")");
   EXPECT_EQ(said({"drive", "0.3"}), "drive(speed=0.3)");
   EXPECT_EQ(said({"drive", "speed=0.3"}), "drive(speed=0.3)");
   EXPECT_EQ(said({"turn", "180"}), "turn_to(heading=3.14159)");
@@ -92,7 +97,7 @@ TEST(GoalWords, WrongShortFormsAreRefused) {
                                                     {"go"},
                                                     {"go", "3"},
                                                     {"go", "3", "1", "2"},
-                                                    {"go", "a", "b"},
+                                                    {"go", "3", "b"},
                                                     {"drive"},
                                                     {"drive", "fast"},
                                                     {"turn"},

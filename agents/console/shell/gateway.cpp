@@ -187,7 +187,7 @@ void Gateway::feed_all() {
   feed(topics::kDrawings, kMany, true);
   feed(topics::kProcesses, kMany, true);
   feed(topics::kBeliefs);
-  feed(topics::kBehaviorSchemas);
+  feed(topics::kActivitySchemas);
   feed(topics::kGrid, kMany, true);
   feed(topics::kLog, kLines);
 }

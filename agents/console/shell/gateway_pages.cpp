@@ -1,7 +1,6 @@
 // The pages' side: their messages, and the replies.
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
 #include "gateway.hpp"
 #include "key.hpp"
@@ -26,14 +25,6 @@ std::optional<v1::GoalId> goal_id(const std::string& text) {
   id.writer(writer);
   id.number(number);
   return id;
-}
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;)
-    words.push_back(word);
-  return words;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 namespace saphira::console {
 
@@ -104,6 +105,35 @@ Message parse_message(std::string_view text) {
   } catch (const std::invalid_argument& error) {
     return Wrong{error.what()};
   }
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  constexpr std::string_view kSpaces = " \t\n\r\v\f";
+  std::vector<std::string> words;
+  std::string word;
+  bool begun = false;   // also by "", which is an empty word
+  bool inside = false;  // of quotes
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      inside = !inside;
+      begun = true;
+    } else if (!inside && kSpaces.find(c) != std::string_view::npos) {
+      if (begun)
+        words.push_back(std::exchange(word, {}));
+      begun = false;
+    } else {
+      const bool escapes =
+          inside && c == '\\' && i + 1 < text.size() && (text[i + 1] == '"' || text[i + 1] == '\\');
+      word += escapes ? text[++i] : c;
+      begun = true;
+    }
+  }
+  if (inside)
+    throw std::invalid_argument("expected a closing \" behind \"" + word);
+  if (begun)
+    words.push_back(word);
+  return words;
 }
 
 }  // namespace saphira::console

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 namespace saphira::console {
 namespace {
 
@@ -73,6 +75,25 @@ TEST(Message, WhatIsNoneSaysWhatWasExpected) {
 TEST(Message, DeepNestingIsNoTrouble) {
   EXPECT_NE(wrong(std::string(4000, '[')), "");
   EXPECT_NE(wrong(R"({"type":)" + std::string(1000, '[') + std::string(1000, ']') + "}"), "");
+}
+
+TEST(Message, TheWordsOfAGoal) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(words_of(""), Words{});
+  EXPECT_EQ(words_of("  go\t3\n 1 "), (Words{"go", "3", "1"}));
+  EXPECT_EQ(words_of(R"(go-to-place place="meeting room" speed=0.2)"),
+            (Words{"go-to-place", "place=meeting room", "speed=0.2"}));
+  EXPECT_EQ(words_of(R"(go "meeting room")"), (Words{"go", "meeting room"}));
+  EXPECT_EQ(words_of(R"(a="" "")"), (Words{"a=", ""}));
+  EXPECT_EQ(words_of(R"(a="the \"big\" room" b="c:\\d e")"),
+            (Words{R"(a=the "big" room)", R"(b=c:\d e)"}));
+  EXPECT_EQ(words_of(R"(a=c:\d b=Karen's)"), (Words{R"(a=c:\d)", "b=Karen's"}));
+  try {
+    words_of(R"(go "meeting room)");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), R"(expected a closing " behind "meeting room)");
+  }
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ TEST(Executor, RefusesWithAReason) {
   EXPECT_EQ(bench.state(1), GoalState::kRefused);
   EXPECT_EQ(bench.status(1).code, GoalCode::kUnknownFunctor);
   EXPECT_EQ(bench.status(1).reason,
-            "unknown functor \"fly\": There are 5 schemas (saphira goal schemas)");
+            "there is no activity \"fly\": there are 5 (saphira goal activities)");
   bench.ask(4, "go_too", {});
   bench.step();
   EXPECT_EQ(bench.status(4).reason,
-            "unknown functor \"go_too\": do you mean go_to? There are 5 schemas (saphira goal "
-            "schemas)");
+            "there is no activity \"go_too\": did you mean go_to? There are 5 (saphira goal "
+            "activities)");
   EXPECT_EQ(bench.status(2).code, GoalCode::kBadArgument);
   EXPECT_EQ(bench.status(3).reason, "expected a deadline of 0 (none) or more seconds, got -1");
   EXPECT_TRUE(bench.out.behaviors.empty());

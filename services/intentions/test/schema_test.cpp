@@ -97,7 +97,7 @@ TEST(Schema, AReloadedSchemaTakesThePlaceOfTheOldOne) {
   registry.add(schema);
   EXPECT_EQ(registry.find("stop")->summary, "another");
   EXPECT_EQ(registry.instead_of("stpo"),
-            "do you mean stop? There are 5 schemas (saphira goal schemas)");
+            "did you mean stop? There are 5 (saphira goal activities)");
 }
 
 }  // namespace

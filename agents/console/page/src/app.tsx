@@ -3,7 +3,7 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {Drive} from './drive';
 import {DrivePanel} from './drive_panel';
 import {degrees, heading} from './geometry';
-import {ahead, askInstead, nameOf} from './goals';
+import {ahead, askInstead, nameOf, quoted} from './goals';
 import {gone, Link} from './link';
 import {BehaviorList, Goals, IntentionTree, Messages, nothing, Programs, WhyTree} from './panels';
 import type {ConsoleInfo, Grant, Registration, RobotState, Why} from './types';
@@ -383,7 +383,7 @@ function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDi
     {link.mayDrive ? <>
       {before.length > 0 && <p class="small">In front: {nameOf(before[0])}, by {before[0].status.requester}
         {waiting > 0 && `; ${waiting} more ${waiting === 1 ? 'waits' : 'wait'}`}.</p>}
-      {name && <div class="row">{go(`to ${name}`, `go-to-place place=${name}`, true, 'by the route that the map gives')}</div>}
+      {name && <div class="row">{go(`to ${name}`, `go-to-place place=${quoted(name)}`, true, 'by the route that the map gives')}</div>}
       <div class="row">{go('here', `go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`, !name, 'straight to this point, without a route')}</div>
       <div class="row apart">
         {sure ? <><span class="grow">Set the robot's position here?</span>

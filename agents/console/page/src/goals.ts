@@ -1,6 +1,6 @@
 // Goals in the order in which the robot pursues them, in words, and asked for.
 import type {Answer, Link} from './link';
-import type {Goal, GoalStatus} from './types';
+import type {ActivitySchemas, Goal, GoalStatus, SaphiraMap} from './types';
 
 const acceptance = 3000;     // [ms] within which the intentions take up a goal
 const look = 50;             // [ms]
@@ -69,13 +69,33 @@ export function reasonOf(link: Link, reason: string): string {
     });
 }
 
+// A value of several words, or with quotes, as the gateway reads it.
+export const quoted = (text: string) => /[\s"]/.test(text) ? `"${text.replace(/["\\]/g, '\\$&')}"` : text;
+
+// Words that ask for a place in short, where its name allows that.
+const goTo = (place: string) => /^(?!to )[a-z][^\s"=]*( [^\s"=]+)*$/i.test(place) ? `go ${place}` : `go-to-place place=${quoted(place)}`;
+const placeTypes = ['ARTIFACT_OFFICE', 'ARTIFACT_CORRIDOR', 'ARTIFACT_LANE', 'ARTIFACT_JUNCTION', 'ARTIFACT_POSITION'];   // the first ones are better examples
+
+// What can be asked for: the places of the map, and the activities with the values that they need.
+export interface Wishes { list: {words: string; about: string}[]; example: string }
+export function wishes(link: Link): Wishes {
+  const named = (link.data<SaphiraMap>('map')?.artifacts ?? []).filter(a => a.name && placeTypes.includes(a.type))
+    .sort((a, b) => placeTypes.indexOf(a.type) - placeTypes.indexOf(b.type));
+  const places = [...new Set(named.map(a => a.name))].map(name => ({words: goTo(name), about: 'a place of the map'}));
+  const activities = (link.data<ActivitySchemas>('intentions/schemas')?.schemas ?? []).map(({name, summary, parameters}) =>
+    ({words: [name, ...parameters.filter(p => p.required).map(p => `${p.name}=`)].join(' '), about: summary}));
+  const example = [...places.slice(0, 1).map(place => place.words), 'go 3 1', 'turn 90',
+    ...activities.filter(({words}) => words === 'patrol').map(({words}) => words)].join(', ');
+  return {list: [...places, ...activities], example};
+}
+
 // The words that ask for the same again; nothing where words cannot say it.
 export function wordsOf(goal?: Goal): string {
   if (!goal || goal.functor === 'stop') return '';
   const words = goal.arguments.map(({name, kind, number, text, point, frame}) =>
     kind === 'ARGUMENT_NUMBER' ? `${name}=${number}`
     : kind === 'ARGUMENT_POINT' ? `${name}=${point.x},${point.y},${point.th}@${frame.replace('FRAME_', '').toLowerCase()}`
-    : kind === 'ARGUMENT_TEXT' && /^\S+$/.test(text) ? `${name}=${text}` : '');
+    : kind === 'ARGUMENT_TEXT' && text ? `${name}=${quoted(text)}` : '');
   return words.includes('') ? '' : [goal.functor, ...words].join(' ');
 }
 

@@ -2,7 +2,7 @@
 import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
 import {degrees} from './geometry';
-import {ended, nameOf, type Pursued, pursued, reasonOf, wordsOf} from './goals';
+import {ended, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
 import {clock, forPage, keyless, percent} from './words';
@@ -50,6 +50,7 @@ export function Goals({link}: {link: Link}) {
     if (answer.well) setWords('');
   };
   const {open, over} = pursued(link);
+  const {list, example} = wishes(link);
   const many = open.some(g => g.place > 1);
   const why = link.mayDrive ? undefined : keyless;
   return <>
@@ -57,12 +58,13 @@ export function Goals({link}: {link: Link}) {
       <label for="goal-words">Ask the robot for something</label>
       <div class="row">
         <input id="goal-words" value={words} disabled={!link.mayDrive} title={why} autocomplete="off" spellcheck={false}
-               placeholder="go EJ-231, go 3 1, turn 90, patrol"
+               placeholder={example} list="goal-wishes"
                onInput={e => setWords((e.target as HTMLInputElement).value)} />
+        <datalist id="goal-wishes">{list.map(({words, about}) => <option key={words} value={words} label={about} />)}</datalist>
         <button type="submit" disabled={!link.mayDrive} title={why}>Send</button>
         <button type="button" disabled={!link.mayDrive} title={why ?? 'ends every goal that drives, of everybody'} onClick={() => link.ask({type: 'goal', words: 'stop'}).then(answer => setTold(answer.well ? undefined : answer))}>End all</button>
       </div>
-      {told && <p class={told.well ? 'told' : 'told bad'} role="status">{told.text}</p>}
+      {told && <p class={told.well ? 'told' : 'told bad'} role="status">{forPage(told.text)}</p>}
     </form>
     {open.length + over.length === 0 && nothing('No goals. Click on the map to send the robot somewhere.')}
     {many && <h2>One goal after the other, in this order</h2>}

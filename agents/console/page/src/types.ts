@@ -138,6 +138,8 @@ export interface IntentionNode {
   goal?: {writer: number; number: number};
 }
 export interface Intentions { nodes: IntentionNode[] }
+export interface ActivityParameter { name: string; kind: string; unit: string; required: boolean; usual: string }
+export interface ActivitySchemas { schemas: {name: string; summary: string; parameters: ActivityParameter[]}[]; trouble: string }
 export interface ProgramMind { source: string; behaviors: Behaviors; intended: Intentions }
 export interface Cause { kind: string; text: string; because: Cause[] }
 export interface Why { cycle: number; sentence: string; tree: Cause }

@@ -168,9 +168,20 @@ test('a click sends the robot, with an answer and a cancel button', async () => 
   await card.getByRole('button', {name: 'Cancel'}).click();
   await page.locator('.card.over', {hasText: 'go to'}).waitFor();
   await stands(page);
-  // A refused goal shows the reason.
-  await send(page, 'go nowhere at all');
+  // A refused goal shows the reason: words that are no goal at once, and a place that the map does not have in its card.
+  await send(page, 'go 3 nowhere');
   await page.locator('.told.bad').waitFor();
+  await send(page, 'go nowhere at all');
+  await endedGoals(page).filter({hasText: 'the map has no place "nowhere at all"'}).first().waitFor();
+  await leave(page);
+});
+
+test('says what can be asked for', async () => {
+  const page = await person();
+  await open(page);
+  for (const words of ['go N1', 'go corridor', 'go_to position=', 'patrol'])
+    await page.locator(`#goal-wishes option[value="${words}"]`).waitFor({state: 'attached'});
+  assert.equal(await page.getByLabel('Ask the robot for something').getAttribute('placeholder'), 'go lobby, go 3 1, turn 90, patrol');
   await leave(page);
 });
 

@@ -326,7 +326,8 @@ std::string Executor::complaint(const Goal& goal, GoalCode& code, Arguments& com
   const Schema* const schema = registry_->find(goal.functor);
   if (schema == nullptr) {
     code = GoalCode::kUnknownFunctor;
-    return "unknown functor " + quoted(goal.functor) + ": " + registry_->instead_of(goal.functor);
+    return "there is no activity " + quoted(goal.functor) + ": " +
+           registry_->instead_of(goal.functor);
   }
   code = GoalCode::kBadArgument;
   if (goal.id == GoalId{})

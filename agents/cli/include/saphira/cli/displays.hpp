@@ -29,6 +29,10 @@ std::string behavior_display(const v1::BehaviorState& behavior,
 /// The window of a behavior that is not intended: parameters and rules, from its file.
 std::string schema_display(const v1::BehaviorSchema& schema);
 
+/// For a name that no behavior has: the one that is meant, in whatever case, and all the `names`,
+/// each once.
+std::string unknown_behavior(const std::string& name, std::vector<std::string> names);
+
 /// The beliefs whose name contains `part` (all: empty), with source and age.
 std::string beliefs_table(const v1::BeliefSet& beliefs, const std::string& part = {});
 

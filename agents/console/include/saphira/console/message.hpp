@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "saphira/console/control.hpp"
 
@@ -74,5 +75,10 @@ using Message = std::variant<Wrong, Hello, Ack, Ping, TakeControl, AskForControl
 
 /// Any text gives a message: Wrong, with the expected form, for an invalid one.
 Message parse_message(std::string_view text);
+
+/// The words of AskGoal. Double quotes keep the spaces of a value, as in place="meeting room";
+/// there, a backslash is before a quote or a backslash of the value. std::invalid_argument for a
+/// quote that is not closed.
+std::vector<std::string> words_of(std::string_view text);
 
 }  // namespace saphira::console

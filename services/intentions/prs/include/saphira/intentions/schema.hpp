@@ -74,7 +74,7 @@ class Registry {
   std::shared_ptr<const Schema> intended(std::string_view name) const;
   /// By name.
   std::vector<const Schema*> all() const;
-  /// A hint for an unknown functor: the most similar one, and the place of the list.
+  /// A hint for an unknown activity: the most similar one, and the place of the list.
   std::string instead_of(std::string_view functor) const;
 
   /// All existing behaviors; from now on others are errors.
