@@ -214,8 +214,10 @@ void Robot::make_tools() {
            std::none_of(tools_.begin(), tools_.end(),
                         [&](const Tool& tool) { return tool.name == name; });
   };
+  std::set<std::string> activities;
   for (const v1::ActivitySchema& schema : schemas_) {
     const std::string name = tool_name(schema.name());
+    activities.insert(name);
     if (is_part(schema) || !is_new(name))
       continue;
     Json input = input_of(schema.parameters());
@@ -228,7 +230,8 @@ void Robot::make_tools() {
   for (const auto& [id, agent] : agents_)
     for (const v1::Capability& capability : agent.capabilities()) {
       const std::string name = tool_name(capability.functor());
-      if (!is_new(name))
+      // The agent "robot" announces the activities once more.
+      if (activities.contains(name) || !is_new(name))
         continue;
       tools_.push_back({name,
                         capability.summary().substr(0, kLongestText) + " (agent " +
