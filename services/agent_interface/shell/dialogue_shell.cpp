@@ -13,6 +13,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -169,14 +170,13 @@ void DialogueShell::claim(const Claimed& claim) {
 void DialogueShell::rename(const Naming& naming) {
   Request request;
   request.functor = "put";
-  request.arguments = {
-      number("id", naming.feature.id),
-      text("type", naming.feature.type == lps::PointType::door ? "DOOR" : "CORRIDOR"),
-      point("position", naming.feature.pose_in_map, Frame::map),
-      number("length", naming.feature.length),
-      number("width", naming.feature.width),
-      text("name", naming.feature.name),
-      truth("learned", naming.feature.learned)};
+  request.arguments = {number("id", naming.feature.id),
+                       text("type", std::string(maps::traits(naming.feature.type).word)),
+                       point("position", naming.feature.pose_in_map, Frame::map),
+                       number("length", naming.feature.length),
+                       number("width", naming.feature.width),
+                       text("name", naming.feature.name),
+                       truth("learned", naming.feature.learned)};
   registration_.send(to_bus(request));
 }
 

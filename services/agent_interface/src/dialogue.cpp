@@ -93,6 +93,29 @@ std::string way_to(const std::string& place, const Situation& situation) {
          " away, " + direction_of(*nearest);
 }
 
+/// A name in the letters of the text that it is from.
+std::string as_said(const std::string& name, const std::string& text) {
+  const std::size_t at = lower(text).rfind(name);
+  return at == std::string::npos ? name : text.substr(at, name.size());
+}
+
+/// The corridor around a position; or the room, otherwise the nearest doorway.
+const maps::Feature* feature_at(const maps::Map& map, const Vec2& position, bool corridor) {
+  const maps::Feature* nearest = nullptr;
+  double distance = kDoorInSight;
+  for (const maps::Feature& feature : map.features) {
+    if ((corridor ? feature.type == lps::PointType::corridor : is_room(feature.type)) &&
+        feature.width > 0.0 && maps::contains(feature, position))
+      return &feature;
+    const double away = (feature.pose_in_map.position() - position).norm();
+    if (!corridor && feature.type == lps::PointType::door && away < distance) {
+      nearest = &feature;
+      distance = away;
+    }
+  }
+  return nearest;
+}
+
 bool is_open(const KnownGoal& goal) {
   return goal.state != KnownGoal::State::failed && goal.state != KnownGoal::State::over;
 }
@@ -452,12 +475,16 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   }
   if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
     const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
-    if (known == nullptr && slot(meaning, "place") == "this")
+    if (known == nullptr && slot(meaning, "place") == "this" && advice.about != kKeepOut)
       known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
     if (known == nullptr) {
       say(utterance, "I knew of no " + advice.about + " at " + advice.value, true, out);
     } else {
-      say(utterance, "good: no " + advice.about + " at " + known->value + " any more", true, out);
+      say(utterance,
+          advice.about == kKeepOut
+              ? "good: I may go to " + known->value + " again"
+              : "good: no " + advice.about + " at " + known->value + " any more",
+          true, out);
       withdraw(known->number, out);
     }
     return true;
@@ -466,6 +493,38 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     say(utterance, wrong, true, out);
   else
     take(advice, utterance, out);
+  return true;
+}
+
+/// A name for the nameless room, doorway or corridor at the robot. A name that the map has stays.
+bool Dialogue::naming(const Meaning& meaning, const Utterance& utterance,
+                      const Situation& situation, Outputs& out) {
+  if (meaning.functor != "name_of")
+    return false;
+  const std::string name = as_said(slot(meaning, "name"), utterance.text);
+  const bool corridor = slot(meaning, "kind") == "corridor";
+  const std::string known = place(lower(name), situation);
+  if (!situation.pose_in_map) {
+    say(utterance, "I do not know where I am on the map", true, out);
+    return true;
+  }
+  const maps::Feature* const here =
+      feature_at(situation.map, situation.pose_in_map->position(), corridor);
+  if (here == nullptr) {
+    say(utterance,
+        std::string("I know no ") + (corridor ? "corridor" : "room or doorway") + " here", true,
+        out);
+  } else if (!here->name.empty()) {
+    say(utterance, (here->name == known ? "I know: this is " : "on my map this is ") + here->name,
+        true, out);
+  } else if (!known.empty()) {
+    say(utterance, "my map has " + known + " at another place", true, out);
+  } else {
+    Naming naming{*here};
+    naming.feature.name = name;
+    out.namings.push_back(naming);
+    say(utterance, "I put it on my map: this is " + name, true, out);
+  }
   return true;
 }
 
@@ -523,7 +582,7 @@ void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Sit
                    Outputs& out) {
   if (move(meaning, utterance, out) || task(meaning, utterance, situation, out) ||
       question(meaning, utterance, situation, out) || advice(meaning, utterance, situation, out) ||
-      reply(meaning, utterance, situation, out))
+      naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
   say(utterance, "I understand " + meaning.functor + ", and do not know how to do it", true, out);
 }

@@ -236,6 +236,38 @@ TEST_F(DialogueTest, HazardsAreClaimedWithTheirPlacesSoThatRoutesAvoidThem) {
   EXPECT_EQ(last.claims[0].value, "");
 }
 
+TEST_F(DialogueTest, PlacesToKeepOutOfAreHazardsUntilTheRobotMayGoThere) {
+  EXPECT_EQ(said("Flakey, keep out of EJ-233"), "I know now that I am to keep out of EJ-233");
+  ASSERT_EQ(last.claims.size(), 1u);
+  EXPECT_EQ(last.claims[0].name, "hazards");
+  EXPECT_EQ(last.claims[0].value, "keep-out at EJ-233");
+  EXPECT_EQ(said("Flakey, you may go to EJ-231"), "I knew of no keep-out at EJ-231");
+  EXPECT_EQ(said("Flakey, you may enter this corridor"), "I knew of no keep-out at upper corridor");
+  EXPECT_EQ(said("Flakey, you may go to EJ-233 again"), "good: I may go to EJ-233 again");
+  EXPECT_EQ(last.claims.at(0).value, "");
+  EXPECT_EQ(said("Flakey, keep out of the attic"), "I know no place called attic");
+  hear("Flakey, EJ-231 is Karen's office");
+  EXPECT_EQ(said("Flakey, stay out of Karen's office"),
+            "I know now that I am to keep out of EJ-231");
+}
+
+TEST_F(DialogueTest, WhatIsNamelessOnTheMapGetsAName) {
+  EXPECT_EQ(said("Flakey, this is the kitchen"), "on my map this is EJ-231");
+  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "on my map this is upper corridor");
+  situation.pose_in_map = Pose{3.0, 0.5, 0.0};
+  EXPECT_EQ(said("Flakey, this is the Kitchen"), "I put it on my map: this is Kitchen");
+  ASSERT_EQ(last.namings.size(), 1u);
+  EXPECT_EQ(last.namings[0].feature.id, 1235u);
+  EXPECT_EQ(last.namings[0].feature.name, "Kitchen");
+  EXPECT_EQ(said("Flakey, this room is called EJ-233"), "my map has EJ-233 at another place");
+  EXPECT_TRUE(last.namings.empty());
+  for (maps::Feature& feature : situation.map.features)
+    if (feature.type == lps::PointType::corridor)
+      feature.name.clear();
+  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "I put it on my map: this is J-wing");
+  EXPECT_EQ(last.namings.at(0).feature.type, lps::PointType::corridor);
+}
+
 TEST_F(DialogueTest, ThingsAreBroughtToWhoIsNearTheirOwnRoom) {
   hear("Flakey, this is Alice's office");
   hear("Flakey, get the report from Karen");

@@ -142,6 +142,8 @@ class Dialogue {
                 Outputs& out);
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
+  bool naming(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+              Outputs& out);
   bool reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
              Outputs& out);
   void take(const Advice& advice, const Utterance& utterance, Outputs& out);
