@@ -1,8 +1,10 @@
 #include "agent_interface/shell/dialogue_shell.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "agent_interface/shell/convert.hpp"
 #include "geometry/shell/convert.hpp"
@@ -11,6 +13,7 @@
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
+#include "saphira/maps/artifact_traits.hpp"
 
 namespace saphira::agent_interface {
 namespace {
@@ -32,6 +35,24 @@ std::string literal(const std::string& text) {
   for (const char c : text)
     result += c == '"' || c == '\\' ? ' ' : c;
   return result + "\"";
+}
+
+KnownGoal::State state_of(v1::GoalState state) {
+  switch (state) {
+    case v1::GOAL_WAITING:
+      return KnownGoal::State::waiting;
+    case v1::GOAL_UNDERWAY:
+      return KnownGoal::State::underway;
+    case v1::GOAL_SUSPENDED:
+      return KnownGoal::State::suspended;
+    case v1::GOAL_REFUSED:
+    case v1::GOAL_FAILED:
+      return KnownGoal::State::failed;
+    case v1::GOAL_SUCCEEDED:
+    case v1::GOAL_CANCELED:
+      break;
+  }
+  return KnownGoal::State::over;
 }
 
 }  // namespace
@@ -149,14 +170,13 @@ void DialogueShell::claim(const Claimed& claim) {
 void DialogueShell::rename(const Naming& naming) {
   Request request;
   request.functor = "put";
-  request.arguments = {
-      number("id", naming.feature.id),
-      text("type", naming.feature.type == lps::PointType::door ? "DOOR" : "CORRIDOR"),
-      point("position", naming.feature.pose_in_map, Frame::map),
-      number("length", naming.feature.length),
-      number("width", naming.feature.width),
-      text("name", naming.feature.name),
-      truth("learned", naming.feature.learned)};
+  request.arguments = {number("id", naming.feature.id),
+                       text("type", std::string(maps::traits(naming.feature.type).word)),
+                       point("position", naming.feature.pose_in_map, Frame::map),
+                       number("length", naming.feature.length),
+                       number("width", naming.feature.width),
+                       text("name", naming.feature.name),
+                       truth("learned", naming.feature.learned)};
   registration_.send(to_bus(request));
 }
 
@@ -234,6 +254,26 @@ void DialogueShell::take_beliefs() {
       situation_.asked_about = belief.value();
 }
 
+std::vector<KnownGoal> DialogueShell::known_goals() const {
+  std::vector<v1::GoalStatus> statuses = goals_.statuses();
+  std::stable_sort(statuses.begin(), statuses.end(),
+                   [](const v1::GoalStatus& a, const v1::GoalStatus& b) {
+                     return std::pair(a.stamp().epoch(), a.stamp().cycle()) <
+                            std::pair(b.stamp().epoch(), b.stamp().cycle());
+                   });
+  std::vector<KnownGoal> goals;
+  for (const v1::GoalStatus& status : statuses) {
+    KnownGoal& goal = goals.emplace_back();
+    goal.functor = status.functor();
+    goal.asker = status.requester() == kName ? "" : status.requester();
+    goal.state = state_of(status.state());
+    goal.reason = !status.reason().empty() ? status.reason()
+                  : !status.note().empty() ? status.note()
+                                           : status.step();
+  }
+  return goals;
+}
+
 void DialogueShell::take_utterances() {
   for (const auto& sample : heard_.take()) {
     if (sample.info.disposed)
@@ -250,6 +290,7 @@ void DialogueShell::take_utterances() {
     utterance.text = sample.data.text().substr(0, 255);
     utterance.confidence = sample.data.confidence();
     utterance.time = sample.data.time();
+    situation_.goals = known_goals();
     perform(dialogue_.hear(utterance, situation_));
   }
 }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "saphira/agent_interface/dialogue.hpp"
 #include "saphira/base/watched_folder.hpp"
@@ -34,6 +35,7 @@ class DialogueShell {
   void take_goals();
   void take_beliefs();
   void take_utterances();
+  std::vector<KnownGoal> known_goals() const;
   void perform(const Dialogue::Outputs& out);
   void want(const WantedGoal& goal);
   void claim(const Claimed& claim);

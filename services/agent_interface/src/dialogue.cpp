@@ -52,6 +52,106 @@ std::string time_text(double unix_time) {
   return text;
 }
 
+/// Sentences that the shipped grammar understands.
+constexpr const char* kExamples =
+    "You can say, for example: go to the library; go forward two meters; turn left; follow me; "
+    "get the report from Karen; this is Karen's office; where is Karen; there is a leak here; "
+    "what are you doing; why; stop";
+
+/// The direction of a point, seen from the robot.
+std::string direction_of(const Vec2& from_robot) {
+  const double angle =
+      std::atan2(from_robot.y(), from_robot.x()) / std::numbers::pi * 180.0;  // [deg] left: > 0
+  const std::string side = angle > 0.0 ? "left" : "right";
+  const double off = std::abs(angle);
+  return off < 22.5    ? "ahead of me"
+         : off < 67.5  ? "ahead of me on the " + side
+         : off < 112.5 ? "on my " + side
+         : off < 157.5 ? "behind me on the " + side
+                       : "behind me";
+}
+
+/// The way to a place of the map, as the crow flies. Empty: no such place.
+std::string way_to(const std::string& place, const Situation& situation) {
+  if (place.empty() || !situation.pose_in_map)
+    return place.empty() ? "" : place + " is on my map, but I do not know where I am on it";
+  const Pose& robot = *situation.pose_in_map;
+  if (place_at(situation.map, robot.position()) == place)
+    return "I am in " + place;
+  std::optional<Vec2> nearest;
+  for (const maps::Feature& feature : situation.map.features) {
+    const Vec2 from_robot = to_frame(robot, feature.pose_in_map.position());
+    if (feature.name == place && (!nearest || from_robot.norm() < nearest->norm()))
+      nearest = from_robot;
+  }
+  if (!nearest)
+    return {};
+  const long meters = std::lround(nearest->norm());
+  return place + " is " +
+         (meters < 1 ? std::string("less than a meter")
+                     : "about " + std::to_string(meters) + (meters == 1 ? " meter" : " meters")) +
+         " away, " + direction_of(*nearest);
+}
+
+/// A name in the letters of the text that it is from.
+std::string as_said(const std::string& name, const std::string& text) {
+  const std::size_t at = lower(text).rfind(name);
+  return at == std::string::npos ? name : text.substr(at, name.size());
+}
+
+/// The corridor around a position; or the room, otherwise the nearest doorway.
+const maps::Feature* feature_at(const maps::Map& map, const Vec2& position, bool corridor) {
+  const maps::Feature* nearest = nullptr;
+  double distance = kDoorInSight;
+  for (const maps::Feature& feature : map.features) {
+    if ((corridor ? feature.type == lps::PointType::corridor : is_room(feature.type)) &&
+        feature.width > 0.0 && maps::contains(feature, position))
+      return &feature;
+    const double away = (feature.pose_in_map.position() - position).norm();
+    if (!corridor && feature.type == lps::PointType::door && away < distance) {
+      nearest = &feature;
+      distance = away;
+    }
+  }
+  return nearest;
+}
+
+bool is_open(const KnownGoal& goal) {
+  return goal.state != KnownGoal::State::failed && goal.state != KnownGoal::State::over;
+}
+
+std::string state_in_words(KnownGoal::State state) {
+  switch (state) {
+    case KnownGoal::State::waiting:
+      return "is waiting";
+    case KnownGoal::State::underway:
+      return "is underway";
+    case KnownGoal::State::suspended:
+      return "is suspended";
+    case KnownGoal::State::failed:
+      return "failed";
+    case KnownGoal::State::over:
+      return "is over";
+  }
+  return {};
+}
+
+/// The reason for which the robot stands: of the newest goal that is held up, otherwise of the
+/// newest one that is underway, otherwise of the newest one that has ended.
+std::string why_standing(const std::vector<KnownGoal>& goals) {
+  const auto rank = [](const KnownGoal& goal) {
+    return !is_open(goal) ? 0 : goal.state == KnownGoal::State::underway ? 1 : 2;
+  };
+  const KnownGoal* best = nullptr;
+  for (const KnownGoal& goal : goals)
+    if (best == nullptr || rank(goal) >= rank(*best))
+      best = &goal;
+  if (best == nullptr)
+    return "I have nothing to do";
+  return best->functor + (best->asker.empty() ? "" : " of " + best->asker) + " " +
+         state_in_words(best->state) + (best->reason.empty() ? "" : ": " + best->reason);
+}
+
 Meaning with(Meaning meaning, const std::string& name, const std::string& value) {
   meaning.slots[name] = value;
   return meaning;
@@ -280,6 +380,16 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
   return true;
 }
 
+std::string Dialogue::doing(const Situation& situation) const {
+  std::string text = open_.empty() ? "" : open_.back().what;
+  for (const KnownGoal& goal : situation.goals)
+    if (is_open(goal) && !goal.asker.empty())
+      text +=
+          (text.empty() ? "" : "; ") + ("for " + goal.asker) + ": " + goal.functor +
+          (goal.state == KnownGoal::State::underway ? "" : ", which " + state_in_words(goal.state));
+  return text.empty() ? "nothing that I was told" : text;
+}
+
 bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
                         const Situation& situation, Outputs& out) {
   if (meaning.functor == "where_are_you") {
@@ -291,15 +401,21 @@ bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
                                : "I am in " + here,
         true, out);
   } else if (meaning.functor == "what_are_you_doing") {
-    say(utterance, open_.empty() ? "nothing that I was told" : open_.back().what, true, out);
+    say(utterance, doing(situation), true, out);
+  } else if (meaning.functor == "why") {
+    say(utterance, why_standing(situation.goals), true, out);
+  } else if (meaning.functor == "what_can_you_do") {
+    say(utterance, kExamples, true, out);
   } else if (meaning.functor == "where_is") {
     const std::string person = slot(meaning, "person");
     std::string text;
     for (const Advice& one : knowledge_.all())
-      if (one.kind != Advice::Kind::hazard && one.about == person)
+      if (one.about == person)
         text += (text.empty() ? "" : "; ") +
                 (one.speaker.empty() ? std::string("somebody") : one.speaker) + " said that " +
                 describe(one);
+    if (text.empty())
+      text = way_to(place(person, situation), situation);
     say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
   } else {
     return false;
@@ -359,12 +475,16 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   }
   if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
     const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
-    if (known == nullptr && slot(meaning, "place") == "this")
+    if (known == nullptr && slot(meaning, "place") == "this" && advice.about != kKeepOut)
       known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
     if (known == nullptr) {
       say(utterance, "I knew of no " + advice.about + " at " + advice.value, true, out);
     } else {
-      say(utterance, "good: no " + advice.about + " at " + known->value + " any more", true, out);
+      say(utterance,
+          advice.about == kKeepOut
+              ? "good: I may go to " + known->value + " again"
+              : "good: no " + advice.about + " at " + known->value + " any more",
+          true, out);
       withdraw(known->number, out);
     }
     return true;
@@ -373,6 +493,38 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     say(utterance, wrong, true, out);
   else
     take(advice, utterance, out);
+  return true;
+}
+
+/// A name for the nameless room, doorway or corridor at the robot. A name that the map has stays.
+bool Dialogue::naming(const Meaning& meaning, const Utterance& utterance,
+                      const Situation& situation, Outputs& out) {
+  if (meaning.functor != "name_of")
+    return false;
+  const std::string name = as_said(slot(meaning, "name"), utterance.text);
+  const bool corridor = slot(meaning, "kind") == "corridor";
+  const std::string known = place(lower(name), situation);
+  if (!situation.pose_in_map) {
+    say(utterance, "I do not know where I am on the map", true, out);
+    return true;
+  }
+  const maps::Feature* const here =
+      feature_at(situation.map, situation.pose_in_map->position(), corridor);
+  if (here == nullptr) {
+    say(utterance,
+        std::string("I know no ") + (corridor ? "corridor" : "room or doorway") + " here", true,
+        out);
+  } else if (!here->name.empty()) {
+    say(utterance, (here->name == known ? "I know: this is " : "on my map this is ") + here->name,
+        true, out);
+  } else if (!known.empty()) {
+    say(utterance, "my map has " + known + " at another place", true, out);
+  } else {
+    Naming naming{*here};
+    naming.feature.name = name;
+    out.namings.push_back(naming);
+    say(utterance, "I put it on my map: this is " + name, true, out);
+  }
   return true;
 }
 
@@ -430,7 +582,7 @@ void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Sit
                    Outputs& out) {
   if (move(meaning, utterance, out) || task(meaning, utterance, situation, out) ||
       question(meaning, utterance, situation, out) || advice(meaning, utterance, situation, out) ||
-      reply(meaning, utterance, situation, out))
+      naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
   say(utterance, "I understand " + meaning.functor + ", and do not know how to do it", true, out);
 }

@@ -136,7 +136,7 @@ class Grammar::Reader {
 
   void header() {
     const std::size_t from = at_;
-    const std::string first = word("keyword, names, no-names, list, reply or a functor");
+    const std::string first = word("keyword, names, no-names, list, reply, urgent or a functor");
     if (first == "keyword") {
       expect(':');
       do
@@ -153,8 +153,10 @@ class Grammar::Reader {
     } else if (first == "list") {
       list();
     } else {
-      const bool reply = first == "reply";
-      rule(reply ? word("a functor") : first, reply, from);
+      const Use use = first == "reply"    ? Use::reply
+                      : first == "urgent" ? Use::urgent
+                                          : Use::command;
+      rule(use == Use::command ? first : word("a functor"), use, from);
     }
     skip();
     if (at_ < line_.size())
@@ -200,11 +202,11 @@ class Grammar::Reader {
   }
 
   /// move(direction=forward, distance=1) "going $distance m"
-  void rule(const std::string& functor, bool reply, std::size_t from) {
+  void rule(const std::string& functor, Use use, std::size_t from) {
     check_last();
     Rule rule;
     rule.meaning.functor = functor;
-    rule.reply = reply;
+    rule.use = use;
     last_ = {number_, from, std::string(line_)};
     expect('(');
     while (!take(')')) {
@@ -424,30 +426,35 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.addressed = true;
     words.erase(words.begin());
   }
-  if (words.size() > kLongestUtterance || (!result.addressed && !replies))
-    return result;
-  std::size_t best = 0;
-  for (const Rule& rule : rules_) {
-    if (rule.reply ? !replies : !result.addressed)
-      continue;
-    for (const Node& pattern : rule.patterns)
-      for (const Match& match : this->match(pattern, words, {})) {
-        // A mere name is a reply, not a word to the robot by its name.
-        if (match.end != words.size() || match.literal < best ||
-            (match.literal == 0 && result.addressed))
-          continue;
-        Meaning meaning = rule.meaning;
-        for (const auto& [slot, value] : match.slots)
-          meaning.slots[slot] = value;
-        // The meaning whose pattern explains more of the words is better.
-        if (match.literal > best)
-          result.meanings.clear();
-        best = match.literal;
-        if (std::find(result.meanings.begin(), result.meanings.end(), meaning) ==
-            result.meanings.end())
-          result.meanings.push_back(std::move(meaning));
-      }
-  }
+  const auto look = [&](bool urgent) {
+    std::size_t best = 0;
+    for (const Rule& rule : rules_) {
+      if ((rule.use == Use::urgent) != urgent ||
+          (rule.use == Use::reply ? !replies : !result.addressed))
+        continue;
+      for (const Node& pattern : rule.patterns)
+        for (const Match& match : this->match(pattern, words, {})) {
+          // A mere name is a reply, not a word to the robot by its name.
+          if ((match.end != words.size() && !urgent) || match.literal < best ||
+              (match.literal == 0 && result.addressed))
+            continue;
+          Meaning meaning = rule.meaning;
+          for (const auto& [slot, value] : match.slots)
+            meaning.slots[slot] = value;
+          // The meaning whose pattern explains more of the words is better.
+          if (match.literal > best)
+            result.meanings.clear();
+          best = match.literal;
+          if (std::find(result.meanings.begin(), result.meanings.end(), meaning) ==
+              result.meanings.end())
+            result.meanings.push_back(std::move(meaning));
+        }
+    }
+  };
+  if (words.size() <= kLongestUtterance)
+    look(false);
+  if (result.meanings.empty())
+    look(true);
   return result;
 }
 
@@ -514,9 +521,9 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
   for (const std::string& keyword : keywords_)
     maker.graph.arcs.push_back({WordGraph::kStart, WordGraph::kAddressed, keyword});
   for (const Rule& rule : rules_)
-    if (!rule.reply || replies)
+    if (rule.use != Use::reply || replies)
       for (const Node& pattern : rule.patterns)
-        maker.lead(pattern, rule.reply ? WordGraph::kStart : WordGraph::kAddressed,
+        maker.lead(pattern, rule.use == Use::reply ? WordGraph::kStart : WordGraph::kAddressed,
                    WordGraph::kEnd);
   return std::move(maker.graph);
 }

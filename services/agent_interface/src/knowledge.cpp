@@ -85,6 +85,8 @@ std::string describe(const Advice& advice) {
     case Advice::Kind::hazard:
       break;
   }
+  if (advice.about == kKeepOut)
+    return "I am to keep out of " + advice.value;
   return "there is a " + advice.about + " at " + advice.value;
 }
 

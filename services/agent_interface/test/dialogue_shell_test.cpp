@@ -68,6 +68,14 @@ TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
   EXPECT_EQ(asked[0].data.functor(), "turn_to");
   v1::GoalStatus status;
   status.id(asked[0].data.id());
+  status.functor("turn_to");
+  status.requester("dialogue");
+  status.state(v1::GOAL_SUSPENDED);
+  status.reason("a more important goal");
+  statuses.write(status);
+  dialogue->step();
+  EXPECT_EQ(say("Flakey, why are you standing?"),
+            std::vector<std::string>{"turn_to is suspended: a more important goal"});
   status.state(v1::GOAL_SUCCEEDED);
   status.reason("turned");
   statuses.write(status);

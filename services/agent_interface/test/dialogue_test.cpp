@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "process.hpp"
 
 namespace saphira::agent_interface {
@@ -141,6 +143,67 @@ TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
 }
 
+TEST_F(DialogueTest, APlaceOfTheMapIsAnsweredWithItsDistanceAndDirection) {
+  EXPECT_EQ(said("Flakey, where is EJ-233?"),
+            "EJ-233 is about 4 meters away, ahead of me");  // its doorway
+  situation.pose_in_map = Pose{7.0, 1.0, std::numbers::pi};
+  EXPECT_EQ(said("Flakey, where is the EJ-233?"), "EJ-233 is about 1 meter away, on my right");
+  EXPECT_EQ(said("Flakey, where is the upper corridor?"), "I am in upper corridor");
+  situation.pose_in_map.reset();
+  EXPECT_EQ(said("Flakey, where is EJ-233?"),
+            "EJ-233 is on my map, but I do not know where I am on it");
+  EXPECT_EQ(said("Flakey, where is the library?"), "nobody has told me where library is");
+  hear("Flakey, there is a leak in EJ-231");
+  EXPECT_EQ(said("Flakey, where is the leak?"), "Alice said that there is a leak at EJ-231");
+  hear("Flakey, Karen is in EJ-231");
+  EXPECT_EQ(said("Flakey, where is Karen?"), "Alice said that karen is at EJ-231");
+}
+
+TEST_F(DialogueTest, TheReasonIsOfTheNewestGoalThatIsHeldUp) {
+  using State = KnownGoal::State;
+  EXPECT_EQ(said("Flakey, why are you standing?"), "I have nothing to do");
+  situation.goals = {{"go_to", "console", State::failed, "the way is blocked"}};
+  EXPECT_EQ(said("Flakey, why?"), "go_to of console failed: the way is blocked");
+  situation.goals.push_back({"drive", "mcp", State::underway, ""});
+  EXPECT_EQ(said("Flakey, why?"), "drive of mcp is underway");
+  situation.goals.insert(situation.goals.begin(),
+                         {"explore", "", State::suspended, "drive is more important"});
+  EXPECT_EQ(said("Flakey, why?"), "explore is suspended: drive is more important");
+}
+
+TEST_F(DialogueTest, WhatTheRobotDoesIncludesTheGoalsOfOthers) {
+  EXPECT_EQ(said("Flakey, what are you doing?"), "nothing that I was told");
+  hear("Flakey, go to EJ-233");
+  situation.goals = {{"go-to-place", "", KnownGoal::State::suspended, ""},
+                     {"turn_to", "mcp", KnownGoal::State::over, ""},
+                     {"explore", "console", KnownGoal::State::waiting, ""},
+                     {"drive", "mcp", KnownGoal::State::underway, ""}};
+  EXPECT_EQ(said("Flakey, what are you doing?"),
+            "I go to EJ-233; for console: explore, which is waiting; for mcp: drive");
+}
+
+TEST_F(DialogueTest, TheExamplesOfWhatItCanDoAreUnderstood) {
+  std::string examples = said("Flakey, what can you do?");
+  const std::string begin = "You can say, for example: ";
+  ASSERT_TRUE(examples.starts_with(begin));
+  examples = examples.substr(begin.size()) + "; ";
+  const Grammar shipped = grammar();
+  for (std::size_t end = 0; (end = examples.find("; ")) != std::string::npos;
+       examples.erase(0, end + 2))
+    EXPECT_EQ(shipped.understand("flakey " + examples.substr(0, end)).meanings.size(), 1u)
+        << examples;
+}
+
+TEST_F(DialogueTest, StopStopsWhateverFollows) {
+  hear("Flakey, go to EJ-233");
+  const std::uint64_t first = last.goals.at(0).tag;
+  EXPECT_EQ(said("Flakey, please stop going there!"), "I stop");
+  EXPECT_EQ(last.canceled, std::vector{first});
+  EXPECT_EQ(goals(), "stop ");
+  EXPECT_EQ(said("Flakey, never stop"), "what?");
+  EXPECT_TRUE(last.goals.empty());
+}
+
 TEST_F(DialogueTest, HazardsAreKnownUntilTheyAreGone) {
   EXPECT_EQ(said("Flakey, there's a water leak in this corridor"),
             "I know now that there is a water leak at upper corridor");
@@ -171,6 +234,38 @@ TEST_F(DialogueTest, HazardsAreClaimedWithTheirPlacesSoThatRoutesAvoidThem) {
   ASSERT_EQ(last.claims.size(), 1u);
   EXPECT_EQ(last.claims[0].name, "hazards");
   EXPECT_EQ(last.claims[0].value, "");
+}
+
+TEST_F(DialogueTest, PlacesToKeepOutOfAreHazardsUntilTheRobotMayGoThere) {
+  EXPECT_EQ(said("Flakey, keep out of EJ-233"), "I know now that I am to keep out of EJ-233");
+  ASSERT_EQ(last.claims.size(), 1u);
+  EXPECT_EQ(last.claims[0].name, "hazards");
+  EXPECT_EQ(last.claims[0].value, "keep-out at EJ-233");
+  EXPECT_EQ(said("Flakey, you may go to EJ-231"), "I knew of no keep-out at EJ-231");
+  EXPECT_EQ(said("Flakey, you may enter this corridor"), "I knew of no keep-out at upper corridor");
+  EXPECT_EQ(said("Flakey, you may go to EJ-233 again"), "good: I may go to EJ-233 again");
+  EXPECT_EQ(last.claims.at(0).value, "");
+  EXPECT_EQ(said("Flakey, keep out of the attic"), "I know no place called attic");
+  hear("Flakey, EJ-231 is Karen's office");
+  EXPECT_EQ(said("Flakey, stay out of Karen's office"),
+            "I know now that I am to keep out of EJ-231");
+}
+
+TEST_F(DialogueTest, WhatIsNamelessOnTheMapGetsAName) {
+  EXPECT_EQ(said("Flakey, this is the kitchen"), "on my map this is EJ-231");
+  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "on my map this is upper corridor");
+  situation.pose_in_map = Pose{3.0, 0.5, 0.0};
+  EXPECT_EQ(said("Flakey, this is the Kitchen"), "I put it on my map: this is Kitchen");
+  ASSERT_EQ(last.namings.size(), 1u);
+  EXPECT_EQ(last.namings[0].feature.id, 1235u);
+  EXPECT_EQ(last.namings[0].feature.name, "Kitchen");
+  EXPECT_EQ(said("Flakey, this room is called EJ-233"), "my map has EJ-233 at another place");
+  EXPECT_TRUE(last.namings.empty());
+  for (maps::Feature& feature : situation.map.features)
+    if (feature.type == lps::PointType::corridor)
+      feature.name.clear();
+  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "I put it on my map: this is J-wing");
+  EXPECT_EQ(last.namings.at(0).feature.type, lps::PointType::corridor);
 }
 
 TEST_F(DialogueTest, ThingsAreBroughtToWhoIsNearTheirOwnRoom) {

@@ -17,6 +17,8 @@ go_to(place)
   go to [the] {place}
 reply yes()
   yes | of course
+urgent stop()
+  [please] halt
 )";
 
 const Grammar& grammar() {
@@ -66,6 +68,20 @@ TEST(Grammar, TheKeywordComesFirstAndAllWordsCount) {
   EXPECT_EQ(meaning("flakey"), "what?");
 }
 
+TEST(Grammar, UrgentWordsBeginASentenceThatNoOtherLineHas) {
+  EXPECT_EQ(meaning("flakey halt"), "stop()");
+  EXPECT_EQ(meaning("flakey please halt, the door is closed"), "stop()");
+  std::string endless = "flakey halt";
+  for (int i = 0; i < 100; ++i)
+    endless += " now";
+  EXPECT_EQ(meaning(endless), "stop()");
+  EXPECT_EQ(meaning("flakey go to halt"), "go_to(place=halt)");
+  EXPECT_EQ(meaning("flakey never halt"), "what?");
+  EXPECT_EQ(meaning("flakey turn left and halt"), "what?");
+  EXPECT_EQ(meaning("halt"), "");
+  EXPECT_EQ(meaning("halt", true), "");
+}
+
 TEST(Grammar, RepliesNeedNoKeywordAndCountWhereTheRobotHasAsked) {
   EXPECT_EQ(meaning("of course", true), "yes()");
   EXPECT_EQ(meaning("of course"), "");
@@ -88,6 +104,8 @@ TEST(Grammar, MistakesNameLineAndColumn) {
   EXPECT_EQ(mistake("keyword: f\nstop()\nhalt()\n  halt\n"),
             "2:1: expected a line with words below stop");
   EXPECT_EQ(mistake("keyword: f\nstop()\n  stop (now | \n"), "3:15: expected a word");
+  EXPECT_EQ(mistake("keyword: f\nurgent\n  stop\n"), "2:7: expected a functor");
+  EXPECT_EQ(mistake("keyword: f\nurgent stop()\n"), "2:1: expected a line with words below stop");
   EXPECT_EQ(mistake("keyword: f\nstop()\n  stop (now\n"), "3:12: expected )");
   EXPECT_EQ(mistake("keyword: f\nturn(degrees)\n  turn <side:degrees>\n"),
             "3:9: there is no list \"side\" above this line");

@@ -60,11 +60,21 @@ struct Naming {
   maps::Feature feature;
 };
 
+/// A goal of anybody.
+struct KnownGoal {
+  enum class State { waiting, underway, suspended, failed, over };
+  std::string functor;
+  std::string asker;  ///< empty: this dialogue
+  State state = State::underway;
+  std::string reason;
+};
+
 /// The world as the dialogue knows it, beside the advice.
 struct Situation {
   std::optional<Pose> pose_in_map;  ///< of the robot; none: unknown
   maps::Map map;
-  std::string asked_about;  ///< the question of an activity to people; empty: none
+  std::string asked_about;       ///< the question of an activity to people; empty: none
+  std::vector<KnownGoal> goals;  ///< the newest change last
 };
 
 /// The state of a goal that the dialogue asked for.
@@ -132,6 +142,8 @@ class Dialogue {
                 Outputs& out);
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
+  bool naming(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+              Outputs& out);
   bool reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
              Outputs& out);
   void take(const Advice& advice, const Utterance& utterance, Outputs& out);
@@ -140,6 +152,8 @@ class Dialogue {
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
             Arguments arguments, Outputs& out, double deadline = 0.0, bool lasting = false);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
+  /// The robot's present goals in words: its own one, and those of others.
+  std::string doing(const Situation& situation) const;
   /// The destination "here" of things to bring; empty: none.
   std::string bring_to(const Utterance& utterance, const Situation& situation) const;
   /// The place of the map with that name; empty: none.

@@ -82,9 +82,14 @@ class Grammar {
     std::vector<std::string> words;
     std::string value;
   };
+  enum class Use {
+    command,
+    reply,  ///< without the keyword, after a question of the robot
+    urgent  ///< where no other rule matches; more words may follow
+  };
   struct Rule {
     Meaning meaning;  ///< slots with their default values
-    bool reply = false;
+    Use use = Use::command;
     std::string paraphrase;
     std::vector<Node> patterns{};
   };

@@ -23,6 +23,9 @@ struct Advice {
   friend bool operator==(const Advice&, const Advice&) = default;
 };
 
+/// The kind of a hazard that is only a wish: people want the robot out of that place.
+inline constexpr const char* kKeepOut = "keep-out";
+
 /// Such as "office_of".
 const char* describe(Advice::Kind kind);
 /// As a sentence: "EJ-231 is karen's office".
