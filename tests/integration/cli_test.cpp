@@ -20,7 +20,9 @@
 #include "node_options.hpp"
 #include "process.hpp"
 #include "saphira/base/text.hpp"
+#include "saphira/bus/agent.hpp"
 #include "saphira/bus/goal_client.hpp"
+#include "saphira/bus/introspect.hpp"
 #include "saphira/bus/node.hpp"
 
 namespace saphira {
@@ -211,6 +213,116 @@ TEST_F(Answers, WhatIsWrongIsAUsageError) {
     EXPECT_EQ(outcome.code, 2) << testing::PrintToString(words) << outcome.text;
     EXPECT_FALSE(outcome.text.empty());
   }
+}
+
+/// The names in the help's list of commands, a line each.
+std::string commands_of(const std::string& help) {
+  std::istringstream lines(help.substr(help.find("Subcommands:\n")));
+  std::string names;
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line) && line.starts_with("  ");)
+    names += line.substr(2, line.find(' ', 2) - 2) + "\n";
+  return names;
+}
+
+TEST_F(Answers, CompletionListsWhatMayComeNext) {
+  std::string all_topics;
+  std::string of_robot;
+  for (const bus::TopicEntry& topic : bus::known_topics()) {
+    all_topics += topic.name + "\n";
+    if (topic.name.starts_with("robot/"))
+      of_robot += topic.name + "\n";
+  }
+  const std::string commands = commands_of(run({"help"}).text);
+  ASSERT_TRUE(has(commands, "demo\n") && has(commands, "help\n")) << commands;
+  ASSERT_TRUE(has(of_robot, "robot/state\n")) << of_robot;
+  const std::string deployments =
+      "demo\nlaptop\noffice\npioneer\nrobot\nseeing\nseeing-office\ntwo-robots\n";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> begun{
+      {{""}, commands},
+      {{"go"}, "goal\n"},
+      {{"st"}, "stop\nstatus\n"},
+      {{"--robot", "drive", "go"}, "goal\n"},
+      {{"help", "dem"}, "demo\n"},
+      {{"up", ""}, deployments},
+      {{"stop", "seeing"}, "seeing\nseeing-office\n"},
+      {{"echo", ""}, all_topics},
+      {{"write", "robot/"}, of_robot},
+      {{"goal", "--priority", "2", ""}, "go\ndrive\nturn\nstop\nlist\ncancel\nschemas\n"},
+      {{"goal", "go", ""}, ""},
+      {{"beliefs", ""}, "set\nunset\n"},
+      {{"estop", ""}, "reset\n"},
+      {{"ask", "--js"}, "--json\n"},
+      {{"--prof"}, "--profile\n"},
+      {{"ask", "--he"}, "--help\n"},
+      {{"fly", "to", "mo"}, "move\n"}};
+  for (const auto& [words, expected] : begun) {
+    std::vector<std::string> line{"complete"};
+    line.insert(line.end(), words.begin(), words.end());
+    const Outcome outcome = run(line);
+    EXPECT_EQ(outcome.code, 0) << testing::PrintToString(words);
+    EXPECT_EQ(outcome.text, expected) << testing::PrintToString(words);
+  }
+  EXPECT_TRUE(has(run({"complete", "--"}).text, "--domain\n"));
+}
+
+TEST_F(CliTest, CompletionKnowsTheGoalsAndRequestsThatProgramsDeclare) {
+  bus::Node node(test::node_options("declarer", robot_));
+  auto writer = node.writer(topics::kActivitySchemas);
+  v1::ActivitySchemas schemas;
+  schemas.schemas().resize(2);
+  schemas.schemas()[0].name("go_to");
+  schemas.schemas()[1].name("patrol");
+  writer.write(schemas);
+  bus::Agent agent(node, "calendar", "where people are");
+  agent.can(bus::capability("place_of", "where a person is", {}),
+            [](const v1::Request&) { return bus::done({}); });
+  // On a machine at work an answer may come too late for a command line.
+  std::string goals;
+  EXPECT_TRUE(test::wait_until([&] {
+    goals = run({"complete", "goal", "go"}).text;
+    return goals == "go\ngo_to\n";
+  })) << goals;
+  std::string requests;
+  EXPECT_TRUE(test::wait_until([&] {
+    requests = run({"complete", "ask", ""}).text;
+    return requests == "place_of\n";
+  })) << requests;
+}
+
+TEST_F(CliTest, TriggersOfTwoShellsAreTwoAndTheListSaysWhoHoldsThem) {
+  const std::vector<std::string> words{
+      "write", "triggers", R"({"kind": "TRIGGER_TIME", "period": 5, "action": "note"})"};
+  test::Process one(command(words), folder_.path("one"));
+  test::Process two(command(words), folder_.path("two"));
+  for (test::Process* const each : {&one, &two})
+    ASSERT_TRUE(test::wait_until([&] { return has(each->output(), "holds it"); }))
+        << each->output();
+  const auto held_by = [](const test::Process& process) {
+    return ", process " + std::to_string(process.pid());
+  };
+  std::string listed;
+  EXPECT_TRUE(test::wait_until([&] {
+    listed = run({"agents"}).text;
+    return has(listed, held_by(one)) && has(listed, held_by(two));
+  })) << listed;
+  const std::size_t first = listed.find("every 5 s: note");
+  EXPECT_NE(first, std::string::npos) << listed;
+  EXPECT_NE(listed.find("every 5 s: note", first + 1), std::string::npos) << listed;
+  EXPECT_TRUE(has(listed, " of saphira write")) << listed;
+  one.signal(SIGINT);
+  EXPECT_EQ(one.wait(), 0);
+  EXPECT_TRUE(test::wait_until([&] {
+    listed = run({"agents"}).text;
+    return !has(listed, held_by(one)) && has(listed, held_by(two));
+  })) << listed;
+}
+
+TEST_F(CliTest, AskForProgramsSaysThatNobodyAnswers) {
+  const Outcome outcome = run({"ask", "place_of", "--json", "--deadline", "0.2"});
+  EXPECT_EQ(outcome.code, 1) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, R"({"agent":"","code":"nobody","text":"no program takes)"))
+      << outcome.text;
 }
 
 TEST_F(CliTest, StatusOfAnEmptyBusSaysSo) {

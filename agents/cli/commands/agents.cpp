@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/bus/introspect.hpp"
 #include "saphira/cli/talk_words.hpp"
 #include "watch.hpp"
 
@@ -20,6 +21,7 @@ struct AskOptions {
   std::string agent;
   int answers = 1;
   bool list = false;
+  bool json = false;
   double patience = 10.0;
 };
 
@@ -42,30 +44,50 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   Processes processes(node);
   bus::RequestClient client(node, bus::topics::kSolve, "saphira ask");
   auto answers = node.reader(bus::topics::kSolved);
+  const auto tell = [&](const v1::Answer& answer) {
+    std::printf("%s\n", (ask_options.json ? to_json(answer) : line_of(answer)).c_str());
+  };
   const auto show = [&] {
     processes.poll();
     for (const auto& sample : answers.take())
       if (!sample.info.disposed && sample.data.asker() == node.instance() &&
           sample.data.code() == v1::ANSWER_UNDERWAY)
-        std::printf("%s\n", line_of(sample.data).c_str());
+        tell(sample.data);
   };
   const v1::Answer end = client.ask(request, ask_options.patience + 1.0, &stop, show);
   if (end.service().empty()) {
+    if (ask_options.json)
+      tell(end);
     std::cerr << "saphira: " << end.text() << "; " << who_is_there(options, processes) << '\n';
     return bus::kExitFailed;
   }
   show();
-  std::printf("%s\n", line_of(end).c_str());
+  tell(end);
   return bus::well(end.code()) ? bus::kExitOk : bus::kExitFailed;
+}
+
+/// The program that holds a trigger, for people; empty: unknown.
+std::string holder(const bus::Census& census, const bus::WriterId& writer) {
+  std::string id;
+  for (const auto byte : writer) {
+    id += "0123456789abcdef"[byte >> 4U];
+    id += "0123456789abcdef"[byte & 15U];
+  }
+  for (const bus::EndpointEntry& entry : census.endpoints())
+    if (entry.writer && entry.id == id)
+      return entry.program + ", process " + std::to_string(entry.pid) +
+             (entry.host.empty() ? "" : " at " + entry.host);
+  return {};
 }
 
 int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
   bus::Node node(options);
   Processes processes(node);
+  const bus::Census census(node);
   auto agents = node.reader(bus::topics::kAgents);
   auto triggers = node.reader(bus::topics::kTriggers);
   std::map<std::uint64_t, v1::Agent> known;
-  std::map<std::pair<std::uint64_t, std::uint64_t>, v1::Trigger> set;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, bus::Sample<v1::Trigger>> set;
   const auto end = Clock::now() + milliseconds(1300);
   while (!stop.requested() && Clock::now() < end) {
     node.wait(std::chrono::ceil<milliseconds>(end - Clock::now()), &stop);
@@ -82,13 +104,16 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
       if (sample.info.disposed)
         set.erase(id);
       else
-        set[id] = sample.data;
+        set[id] = sample;
     }
   }
   for (const auto& [id, agent] : known)
     std::fputs(describe(agent).c_str(), stdout);
-  for (const auto& [id, trigger] : set)
-    std::printf("%s\n", describe(trigger).c_str());
+  for (const auto& [id, trigger] : set) {
+    const std::string held_by = holder(census, trigger.info.writer);
+    std::printf("%s%s\n", describe(trigger.data).c_str(),
+                held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
+  }
   if (known.empty())
     std::printf("no agents; %s\n", who_is_there(options, processes).c_str());
   return bus::kExitOk;
@@ -110,6 +135,8 @@ void add_ask(CLI::App& app, Chosen& chosen) {
   command->add_option("--deadline", options->patience, "[s] for the answer")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 3600.0));
+  command->add_flag("--json", options->json,
+                    "one JSON object for each answer: agent, code, text, values");
   command->footer("Exit code 0: it was answered; 1: it was not, and why.");
   command->callback([options, &chosen] {
     if (options->functor.empty() != options->list)
@@ -123,6 +150,8 @@ void add_ask(CLI::App& app, Chosen& chosen) {
 void add_agents(CLI::App& app, Chosen& chosen) {
   CLI::App* command =
       app.add_subcommand("agents", "The agents, what each can be asked for, and the triggers");
+  command->footer(
+      "A trigger lasts as long as the program that holds it: Ctrl-C for saphira write triggers.");
   command->callback([&chosen] {
     chosen.run = [](const bus::NodeOptions& node, const bus::Stop& stop) {
       return list_agents(node, stop);

@@ -32,7 +32,7 @@ int print_help(const CLI::App& root, const std::string& name) {
 /// Without bus options, a command joins a running bus of this machine.
 bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options) {
   static const std::set<std::string> others{"demo",  "scenario", "up",       "check", "stop",
-                                            "renew", "log",      "security", "bench", "complete"};
+                                            "renew", "log",      "security", "bench"};
   for (const char* const option : {"--robot", "--domain", "--profile", "--peer", "--interface"})
     if (root.get_option(option)->count() > 0)
       return options;
@@ -44,8 +44,9 @@ bus::NodeOptions with_running_bus(const CLI::App& root, bus::NodeOptions options
   const RunningBus* const meant = bus_meant(usual, running);
   if (meant == nullptr)
     return options;
-  complain("saphira: of %s that runs here (%s)\n", meant->what.c_str(),
-           options_of(*meant, usual).c_str());
+  if (commands.front()->get_name() != "complete")
+    complain("saphira: of %s that runs here (%s)\n", meant->what.c_str(),
+             options_of(*meant, usual).c_str());
   options.robot = meant->robot;
   options.domain = meant->domain;
   options.profile = bus::profile_of(meant->profile);
@@ -105,10 +106,11 @@ int main(int argc, char** argv) {
         app.add_subcommand("help", "This text; with a command's name: what that takes")
             ->add_option("command", about, "name of a command");
         // --robot and the like may stand behind the subcommand as well. (Separate programs have
-        // their own options.)
+        // their own options, and the words of complete are for no parser.)
         for (CLI::App* command : app.get_subcommands({})) {
           const std::string name = command->get_name();
-          command->fallthrough(name != "bench" && name != "console" && name != "mcp");
+          command->fallthrough(name != "bench" && name != "console" && name != "mcp" &&
+                               name != "complete");
         }
       },
       [&](const bus::NodeOptions& options, const bus::Stop& stop) -> int {

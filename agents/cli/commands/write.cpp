@@ -148,14 +148,18 @@ int ask(const WriteOptions& options, const bus::RequestTopic& topic,
 /// Adds members that have to be unique, and that a person would not write.
 std::string completed(const std::string& topic, const std::string& text, const bus::Node& node) {
   nlohmann::json json = object_of(text);
-  if (topic == bus::topics::kGoals.name && json.is_object()) {
-    if (!json.contains("id"))
-      json["id"] = {{"writer", node.instance()}, {"number", 1}};
-    if (!json.contains("requester"))
-      json["requester"] = person("saphira write");
-    return json.dump();
-  }
-  return text;
+  const bool goal = topic == bus::topics::kGoals.name;
+  const bool other =
+      topic == bus::topics::kTriggers.name || topic == bus::topics::kBeliefClaims.name;
+  if (!json.is_object() || (!goal && !other))
+    return text;
+  // Each line of the input changes the same goal, and sets another trigger or belief.
+  if (!json.contains("id"))
+    json["id"] = {{"writer", node.instance()}, {"number", goal ? 1 : bus::next_request_number()}};
+  const char* const requester = goal ? "requester" : "source";
+  if (!json.contains(requester))
+    json[requester] = person("saphira write");
+  return json.dump();
 }
 
 /// Holds samples of QoS goal or latched until Ctrl-C or for the given time; writes others once.

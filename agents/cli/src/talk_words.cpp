@@ -1,7 +1,10 @@
 #include "saphira/cli/talk_words.hpp"
 
 #include <array>
+#include <cstdio>
 #include <ctime>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "requests/shell/convert.hpp"
 #include "saphira/base/numbers.hpp"
@@ -33,6 +36,64 @@ const char* word(v1::AnswerCode code) {
       return "lost";
   }
   return "?";
+}
+
+/// The code for programs.
+const char* code_name(v1::AnswerCode code) {
+  switch (code) {
+    case v1::ANSWER_UNDERWAY:
+      return "underway";
+    case v1::ANSWER_DONE:
+      return "done";
+    case v1::ANSWER_SENT:
+      return "sent";
+    case v1::ANSWER_REFUSED:
+      return "refused";
+    case v1::ANSWER_UNKNOWN_FUNCTOR:
+      return "unknown_functor";
+    case v1::ANSWER_BAD_ARGUMENT:
+      return "bad_argument";
+    case v1::ANSWER_NOBODY:
+      return "nobody";
+    case v1::ANSWER_TOO_LATE:
+      return "too_late";
+    case v1::ANSWER_GIVEN_UP:
+      return "given_up";
+    case v1::ANSWER_LOST:
+      return "lost";
+  }
+  return "?";
+}
+
+const char* frame_name(v1::Frame frame) {
+  return frame == v1::FRAME_ROBOT ? "robot" : frame == v1::FRAME_MAP ? "map" : "odom";
+}
+
+nlohmann::ordered_json value_of(const v1::Argument& argument) {
+  switch (argument.kind()) {
+    case v1::ARGUMENT_NUMBER:
+      return argument.number();
+    case v1::ARGUMENT_TEXT:
+      return argument.text();
+    case v1::ARGUMENT_TRUTH:
+      return argument.number() != 0.0;
+    case v1::ARGUMENT_POINT:
+      return {{"x", argument.point().x()},
+              {"y", argument.point().y()},
+              {"th", argument.point().th()},
+              {"frame", frame_name(argument.frame())}};
+    case v1::ARGUMENT_UNBOUND:
+      break;
+  }
+  return nullptr;
+}
+
+/// As the commands take and print ids of goals.
+std::string id_text(const v1::GoalId& id) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%llx:%llu", static_cast<unsigned long long>(id.writer()),
+                static_cast<unsigned long long>(id.number()));
+  return text.data();
 }
 
 /// The local time of day, such as 10:02.
@@ -76,6 +137,25 @@ std::string line_of(const v1::Answer& answer) {
   return line == answer.service() + ":" ? line + " done" : line;
 }
 
+std::string to_json(const v1::Answer& answer) {
+  nlohmann::ordered_json json{{"agent", answer.service()},
+                              {"code", code_name(answer.code())},
+                              {"text", answer.text()},
+                              {"values", nlohmann::ordered_json::object()}};
+  std::map<std::string, int> count;
+  for (const v1::Argument& result : answer.results()) {
+    nlohmann::ordered_json& value = json["values"][result.name()];
+    const int before = count[result.name()]++;
+    if (before == 1)
+      value = nlohmann::ordered_json::array({value});
+    if (before == 0)
+      value = value_of(result);
+    else
+      value.push_back(value_of(result));
+  }
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 std::string describe(const v1::Agent& agent) {
   std::string text = agent.name() + "  " + agent.summary() + "\n";
   for (const v1::Capability& capability : agent.capabilities()) {
@@ -97,7 +177,9 @@ std::string describe(const v1::Trigger& trigger) {
     when = "when the answer to " + trigger.condition() + " changes";
   else if (trigger.kind() == v1::TRIGGER_EVENT)
     when = "when " + trigger.condition() + " happens";
-  return "trigger of " + trigger.source() + ": " + when + ": " + trigger.action();
+  return "trigger " + id_text(trigger.id()) + " of " +
+         (trigger.source().empty() ? "somebody" : trigger.source()) + ": " + when + ": " +
+         trigger.action();
 }
 
 std::string knowledge_table(const v1::Knowledge& knowledge) {

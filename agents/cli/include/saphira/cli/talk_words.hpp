@@ -17,10 +17,12 @@ std::string line_of(const v1::Utterance& utterance, const std::string& robot = {
 
 /// Such as "calendar: place="library"", or the code and the reason.
 std::string line_of(const v1::Answer& answer);
+/// One JSON object: agent, code, text, and values by name; several values of one name are a list.
+std::string to_json(const v1::Answer& answer);
 
 /// An agent with a line for each capability.
 std::string describe(const v1::Agent& agent);
-/// Such as "ann: every 5 s: note()".
+/// Such as "trigger 1f3a:2 of ann: every 5 s: note".
 std::string describe(const v1::Trigger& trigger);
 
 /// The advice to the robot, each with its number, speaker and time.

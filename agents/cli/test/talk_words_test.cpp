@@ -1,0 +1,65 @@
+#include "saphira/cli/talk_words.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::cli {
+namespace {
+
+v1::Argument named(const std::string& name, v1::ArgumentKind kind) {
+  v1::Argument argument;
+  argument.name(name);
+  argument.kind(kind);
+  return argument;
+}
+
+TEST(TalkWords, AnAnswerIsOneObject) {
+  v1::Answer answer;
+  answer.service("calendar");
+  answer.code(v1::ANSWER_DONE);
+  EXPECT_EQ(to_json(answer), R"({"agent":"calendar","code":"done","text":"","values":{}})");
+
+  v1::Argument place = named("place", v1::ARGUMENT_TEXT);
+  place.text("library");
+  v1::Argument open = named("open", v1::ARGUMENT_TRUTH);
+  open.number(1.0);
+  v1::Argument position = named("position", v1::ARGUMENT_POINT);
+  position.point().x(1.5);
+  position.point().y(-2.0);
+  position.frame(v1::FRAME_MAP);
+  v1::Argument hour = named("hour", v1::ARGUMENT_NUMBER);
+  hour.number(9.5);
+  v1::Argument later = hour;
+  later.number(10.5);
+  v1::Argument last = hour;
+  last.number(11.5);
+  answer.text("found");
+  answer.results({place, open, position, hour, later, last, named("who", v1::ARGUMENT_UNBOUND)});
+  EXPECT_EQ(to_json(answer),
+            R"({"agent":"calendar","code":"done","text":"found","values":{"place":"library",)"
+            R"("open":true,"position":{"x":1.5,"y":-2.0,"th":0.0,"frame":"map"},)"
+            R"("hour":[9.5,10.5,11.5],"who":null}})");
+
+  v1::Answer refused;
+  refused.service("calendar");
+  refused.code(v1::ANSWER_BAD_ARGUMENT);
+  refused.text("no such person");
+  EXPECT_EQ(to_json(refused),
+            R"({"agent":"calendar","code":"bad_argument","text":"no such person","values":{}})");
+}
+
+TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
+  v1::Trigger trigger;
+  trigger.id().writer(0x1f3a);
+  trigger.id().number(2);
+  trigger.kind(v1::TRIGGER_TIME);
+  trigger.period(5.0);
+  trigger.action("note");
+  EXPECT_EQ(describe(trigger), "trigger 1f3a:2 of somebody: every 5 s: note");
+  trigger.source("ann");
+  trigger.kind(v1::TRIGGER_EVENT);
+  trigger.condition("door_opened");
+  EXPECT_EQ(describe(trigger), "trigger 1f3a:2 of ann: when door_opened happens: note");
+}
+
+}  // namespace
+}  // namespace saphira::cli
