@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "door.hpp"
 #include "saphira/situation/words.hpp"
