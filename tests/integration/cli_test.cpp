@@ -318,6 +318,51 @@ TEST_F(CliTest, TriggersOfTwoShellsAreTwoAndTheListSaysWhoHoldsThem) {
   })) << listed;
 }
 
+TEST_F(CliTest, TalkSaysEachLineWithTheKeywordAndPrintsWhatTheRobotSays) {
+  bus::Node node(test::node_options("dialogue", robot_));
+  auto heard = node.reader(topics::kHeard);
+  auto said = node.writer(topics::kSaid);
+  std::string line = "printf 'stop\\n\\nRobot, turn left\\nyes' |";
+  std::vector<std::string> words = command({"talk", "--as", "Alice"});
+  words.front() = test::program("saphira");
+  for (const std::string& word : words)
+    line += " '" + word + "'";
+  test::Process talk({"/bin/sh", "-c", line}, folder_.path("talk"));
+  std::vector<std::string> texts;
+  EXPECT_TRUE(test::wait_until([&] {
+    for (const auto& sample : heard.take()) {
+      texts.push_back(sample.data.speaker() + ": " + sample.data.text());
+      v1::Utterance answer;
+      answer.id().writer(node.instance());
+      answer.id().number(texts.size());
+      answer.answers(sample.data.id());
+      answer.text("I heard " + sample.data.text());
+      answer.end(true);
+      said.write(answer);
+    }
+    return texts.size() == 3;
+  })) << talk.output();
+  EXPECT_EQ(talk.wait(), 0) << talk.output();
+  const std::vector<std::string> expected{"Alice: flakey, stop", "Alice: Robot, turn left",
+                                          "Alice: flakey, yes"};
+  EXPECT_EQ(texts, expected);
+  for (const std::string& text : expected) {
+    EXPECT_TRUE(has(talk.output(), text + "\n")) << talk.output();
+    EXPECT_TRUE(has(talk.output(), robot_ + ": I heard " + text.substr(7) + "\n")) << talk.output();
+  }
+}
+
+TEST_F(CliTest, TalkSaysThatNobodyListens) {
+  const Outcome outcome = run({"talk", "--grammar", "nothing"});
+  EXPECT_EQ(outcome.code, 2) << outcome.text;
+  test::Process talk({"/bin/sh", "-c",
+                      "echo stop | " + test::program("saphira") + " --robot " + robot_ +
+                          " --domain " + test::domain() + " talk"},
+                     folder_.path("talk"));
+  EXPECT_EQ(talk.wait(), 1) << talk.output();
+  EXPECT_TRUE(has(talk.output(), "nothing was answered. No program listens")) << talk.output();
+}
+
 TEST_F(CliTest, AskForProgramsSaysThatNobodyAnswers) {
   const Outcome outcome = run({"ask", "place_of", "--json", "--deadline", "0.2"});
   EXPECT_EQ(outcome.code, 1) << outcome.text;

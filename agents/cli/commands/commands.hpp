@@ -52,6 +52,7 @@ void add_device(CLI::App& app, Chosen& chosen);
 void add_map(CLI::App& app, Chosen& chosen);
 void add_scenario(CLI::App& app, Chosen& chosen);
 void add_say(CLI::App& app, Chosen& chosen);
+void add_talk(CLI::App& app, Chosen& chosen);
 void add_knows(CLI::App& app, Chosen& chosen);
 void add_ask(CLI::App& app, Chosen& chosen);
 void add_agents(CLI::App& app, Chosen& chosen);

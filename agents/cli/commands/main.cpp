@@ -89,6 +89,7 @@ int main(int argc, char** argv) {
         cli::add_beliefs(app, chosen);
         cli::add_processes(app, chosen);
         cli::add_say(app, chosen);
+        cli::add_talk(app, chosen);
         cli::add_knows(app, chosen);
         cli::add_ask(app, chosen);
         cli::add_agents(app, chosen);

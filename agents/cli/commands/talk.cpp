@@ -1,4 +1,4 @@
-// say and knows: talking to the robot, and its knowledge from that.
+// say, talk and knows: talking to the robot, and its knowledge from that.
 #include <unistd.h>
 
 #include <cstdio>
@@ -6,7 +6,11 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "input_lines.hpp"
+#include "saphira/agent_interface/grammar.hpp"
 #include "saphira/base/boot_clock.hpp"
+#include "saphira/base/places.hpp"
+#include "saphira/base/text.hpp"
 #include "saphira/bus/agent.hpp"
 #include "saphira/cli/printer.hpp"
 #include "saphira/cli/talk_words.hpp"
@@ -25,6 +29,11 @@ struct SayOptions {
   std::vector<std::string> words;
   std::string speaker;
   bool quick = false;
+};
+
+struct TalkOptions {
+  std::string speaker;
+  std::string grammar = "flakey";
 };
 
 std::string user() {
@@ -96,6 +105,70 @@ int say(const SayOptions& say_options, const bus::NodeOptions& options, const bu
   return bus::kExitFailed;
 }
 
+/// The sentence, addressed to the robot. A reply to its question needs no keyword.
+std::string with_keyword(const std::string& line, const agent_interface::Grammar& grammar,
+                         bool asked) {
+  const agent_interface::Grammar::Understood understood = grammar.understand(line, asked);
+  if (understood.addressed || !understood.meanings.empty() || grammar.keywords().empty())
+    return line;
+  return grammar.keywords().front() + ", " + line;
+}
+
+/// Says each line of the input, and prints what the robot says.
+int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const bus::Stop& stop) {
+  const agent_interface::Grammar grammar(read_file(talk_options.grammar), talk_options.grammar);
+  const std::string speaker = talk_options.speaker.empty() ? user() : talk_options.speaker;
+  const bool terminal = isatty(STDIN_FILENO) == 1;  // which shows what is typed
+  bus::Node node(options);
+  Processes processes(node);
+  auto writer = node.writer(bus::topics::kHeard);
+  auto said = node.reader(bus::topics::kSaid);
+  InputLines input;
+  const auto began = Clock::now();
+  auto spoke = began;
+  std::uint64_t number = 0;  // of the newest sentence
+  bool answered = true;      // the newest sentence
+  bool over = true;          // with all that it led to
+  bool asked = false;        // the robot's newest words are a question
+  int code = bus::kExitOk;
+  while (!stop.requested() && !out().closed() && !(input.ended() && (terminal ? answered : over))) {
+    node.wait(milliseconds(50), &stop);
+    processes.poll();
+    for (const auto& sample : said.take()) {
+      const bool ours = sample.data.answers().writer() == node.instance();
+      // A living writer repeats its earlier sentences to a new reader.
+      if (sample.info.disposed || (!ours && sample.info.age > seconds_since(began) + 1.0))
+        continue;
+      const std::string& text = sample.data.text();
+      asked = text.ends_with("?") && !text.starts_with("what?");
+      print("%s\n", line_of(sample.data, options.robot).c_str());
+      if (!ours || sample.data.answers().number() != number)
+        continue;
+      answered = true;
+      over = over || sample.data.end();
+      code = text.starts_with("what?") ? bus::kExitFailed : bus::kExitOk;
+    }
+    while (const auto line = input.next()) {
+      const v1::Utterance utterance = situation::typed(
+          node.instance(), ++number, speaker, with_keyword(*line, grammar, asked), unix_time());
+      writer.write(utterance);
+      if (!terminal)
+        print("%s\n", line_of(utterance).c_str());
+      answered = over = false;
+      spoke = Clock::now();
+    }
+    if (answered || seconds_since(spoke) < kSilence)
+      continue;
+    complain("saphira: nothing was answered. %s\n",
+             writer.matched() == 0
+                 ? ("No program listens: " + who_is_there(options, processes)).c_str()
+                 : "Its grammar may be another one: --grammar");
+    answered = over = true;
+    code = bus::kExitFailed;
+  }
+  return code;
+}
+
 /// Waits for the robot's knowledge on the bus; nothing where none comes within kSilence.
 std::optional<v1::Knowledge> known(bus::Node& node, Processes& processes, const bus::Stop& stop) {
   auto reader = node.reader(bus::topics::kKnows);
@@ -155,6 +228,33 @@ void add_say(CLI::App& app, Chosen& chosen) {
   command->callback([options, &chosen] {
     chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
       return say(*options, node, stop);
+    };
+  });
+}
+
+void add_talk(CLI::App& app, Chosen& chosen) {
+  auto options = std::make_shared<TalkOptions>();
+  CLI::App* command =
+      app.add_subcommand("talk", "Talk with the robot: each line of the input is said to it");
+  command->add_option("--as", options->speaker, "who says it (usual: your name here)");
+  command
+      ->add_option("--grammar", options->grammar,
+                   "the robot's: a name of config/grammars, or a file")
+      ->capture_default_str();
+  command->footer(
+      "A line without the keyword of the grammar gets it in front; replies to a question of the "
+      "robot do not need it.\n"
+      "Ends with the input, or with Ctrl-C; without a terminal, when all is done that the last "
+      "line led to.\n"
+      "Exit code 0: the last line was understood; 1: not.");
+  command->callback([options, &chosen] {
+    try {
+      options->grammar = find_file(config_folder() + "/grammars", options->grammar, ".grammar");
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--grammar", error.what());
+    }
+    chosen.run = [options](const bus::NodeOptions& node, const bus::Stop& stop) {
+      return talk(*options, node, stop);
     };
   });
 }

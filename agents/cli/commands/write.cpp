@@ -1,16 +1,13 @@
 // write: any topic by its name, from a shell or a script.
-#include <poll.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <deque>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "commands.hpp"
 #include "direct.hpp"
+#include "input_lines.hpp"
 #include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "saphira/bus/request_client.hpp"
@@ -38,42 +35,19 @@ class Samples {
  public:
   explicit Samples(const std::string& json) : input_(json == "-") {
     if (!input_)
-      lines_.push_back(json);
+      given_ = json;
   }
   /// Nothing: none has come yet, or there is no other.
   std::optional<std::string> next() {
-    if (input_)
-      read();
-    if (lines_.empty())
-      return std::nullopt;
-    std::string line = lines_.front();
-    lines_.pop_front();
-    return line;
+    return input_ ? lines_.next() : std::exchange(given_, std::nullopt);
   }
-  bool ended() const { return lines_.empty() && (!input_ || ended_); }
+  bool ended() const { return input_ ? lines_.ended() : !given_; }
   bool from_input() const { return input_; }
 
  private:
-  void read() {
-    std::array<char, 4096> buffer{};
-    pollfd fd{STDIN_FILENO, POLLIN, 0};
-    while (!ended_ && poll(&fd, 1, 0) > 0) {
-      const ssize_t n = ::read(STDIN_FILENO, buffer.data(), buffer.size());
-      ended_ = n <= 0;
-      text_.append(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
-    }
-    if (ended_ && !text_.empty() && text_.back() != '\n')
-      text_ += '\n';
-    for (std::size_t end = 0; (end = text_.find('\n')) != std::string::npos;
-         text_.erase(0, end + 1))
-      if (text_.find_first_not_of(" \t\r") < end)
-        lines_.push_back(text_.substr(0, end));
-  }
-
   bool input_;
-  bool ended_ = false;
-  std::string text_;
-  std::deque<std::string> lines_;
+  std::optional<std::string> given_;
+  InputLines lines_;
 };
 
 nlohmann::json object_of(const std::string& text) {

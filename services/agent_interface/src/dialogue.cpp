@@ -275,7 +275,8 @@ void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const st
     out.canceled.push_back(open.tag);
   open_.clear();
   say(utterance, what, false, out);
-  out.goals.push_back({++tag_, functor, std::move(arguments), deadline, lasting});
+  out.goals.push_back(
+      {++tag_, functor, std::move(arguments), deadline, lasting, utterance.speaker});
   open_.push_back({tag_, what, utterance.id, utterance.speaker, {}});
 }
 

@@ -46,6 +46,7 @@ struct WantedGoal {
   Arguments arguments;
   double deadline = 0.0;  ///< [s]; 0: none
   bool lasting = false;   ///< a task, which continues while the dialogue restarts
+  std::string speaker{};  ///< the person who asked for it; empty: unknown
 };
 
 /// A claim for activities. Empty value: withdrawn.
