@@ -139,7 +139,7 @@ void DialogueShell::want(const WantedGoal& wanted) {
   goal.arguments(to_bus(wanted.arguments));
   goal.deadline(wanted.deadline);
   if (!wanted.speaker.empty())
-    goal.requester(wanted.speaker + ", by words");
+    goal.requester(wanted.speaker + " (by words)");
   const bool lasting = wanted.lasting && !options_.memory.empty();
   goal.writer_lost(lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
   const v1::GoalId id = goals_.ask(goal);

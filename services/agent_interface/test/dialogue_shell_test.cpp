@@ -66,7 +66,7 @@ TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
   const auto asked = goals.take();
   ASSERT_EQ(asked.size(), 1u);
   EXPECT_EQ(asked[0].data.functor(), "turn_to");
-  EXPECT_EQ(asked[0].data.requester(), "Alice, by words");
+  EXPECT_EQ(asked[0].data.requester(), "Alice (by words)");
   v1::GoalStatus status;
   status.id(asked[0].data.id());
   status.functor("turn_to");
