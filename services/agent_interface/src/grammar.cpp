@@ -136,7 +136,8 @@ class Grammar::Reader {
 
   void header() {
     const std::size_t from = at_;
-    const std::string first = word("keyword, names, no-names, list, reply, urgent or a functor");
+    const std::string first =
+        word("keyword, names, no-names, list, typed, reply, urgent or a functor");
     if (first == "keyword") {
       expect(':');
       do
@@ -153,7 +154,8 @@ class Grammar::Reader {
     } else if (first == "list") {
       list();
     } else {
-      const Use use = first == "reply"    ? Use::reply
+      const Use use = first == "typed"    ? Use::typed
+                      : first == "reply"  ? Use::reply
                       : first == "urgent" ? Use::urgent
                                           : Use::command;
       rule(use == Use::command ? first : word("a functor"), use, from);
@@ -521,7 +523,7 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
   for (const std::string& keyword : keywords_)
     maker.graph.arcs.push_back({WordGraph::kStart, WordGraph::kAddressed, keyword});
   for (const Rule& rule : rules_)
-    if (rule.use != Use::reply || replies)
+    if (rule.use != Use::typed && (rule.use != Use::reply || replies))
       for (const Node& pattern : rule.patterns)
         maker.lead(pattern, rule.use == Use::reply ? WordGraph::kStart : WordGraph::kAddressed,
                    WordGraph::kEnd);

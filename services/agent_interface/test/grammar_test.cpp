@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace saphira::agent_interface {
 namespace {
 
@@ -19,6 +21,8 @@ reply yes()
   yes | of course
 urgent stop()
   [please] halt
+typed turn(direction, degrees=90)
+  veer <side:direction>
 )";
 
 const Grammar& grammar() {
@@ -86,6 +90,19 @@ TEST(Grammar, RepliesNeedNoKeywordAndCountWhereTheRobotHasAsked) {
   EXPECT_EQ(meaning("of course", true), "yes()");
   EXPECT_EQ(meaning("of course"), "");
   EXPECT_EQ(meaning("stop", true), "");
+}
+
+TEST(Grammar, TypedSentencesAreNotListenedFor) {
+  EXPECT_EQ(meaning("flakey veer left"), "turn(degrees=90, direction=left)");
+  EXPECT_EQ(meaning("veer left", true), "");
+  const auto listens_for = [](const std::string& word) {
+    const WordGraph graph = grammar().graph({}, true);
+    return std::any_of(graph.arcs.begin(), graph.arcs.end(),
+                       [&](const WordGraph::Arc& arc) { return arc.word == word; });
+  };
+  EXPECT_TRUE(listens_for("turn"));
+  EXPECT_TRUE(listens_for("halt"));
+  EXPECT_FALSE(listens_for("veer"));
 }
 
 TEST(Grammar, ParaphrasesFillTheSlots) {

@@ -65,8 +65,9 @@ class Grammar {
   /// name, too.
   const std::vector<std::string>& names() const { return names_; }
 
-  /// All accepted phrases, as they are spoken: with these names where the grammar has a name, and
-  /// with the words of its lists where it has a number. replies: also rules without the keyword.
+  /// All accepted phrases but the typed ones, as they are spoken: with these names where the
+  /// grammar has a name, and with the words of its lists where it has a number. replies: also rules
+  /// without the keyword.
   WordGraph graph(const std::vector<std::string>& names, bool replies) const;
 
   struct Node {
@@ -84,6 +85,7 @@ class Grammar {
   };
   enum class Use {
     command,
+    typed,  ///< a command that a recognizer of speech does not listen for
     reply,  ///< without the keyword, after a question of the robot
     urgent  ///< where no other rule matches; more words may follow
   };
