@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr double kMindPatience = 3.0;  // [s] for the first sample
 constexpr milliseconds kOthers{300};   // for programs that are discovered after the services
-constexpr double kSoon = 0.5;          // [s] by then schemas and programs have come as well
+constexpr double kRest = 0.5;          // [s] by then schemas and programs have come as well
 
 struct WatchOptions {
   bool once = false;
@@ -178,7 +178,7 @@ int behaviors(const std::string& name, const WatchOptions& watch, const bus::Nod
       return text;
     if (!began)
       began = Clock::now();
-    if (seconds_since(*began) > kSoon)
+    if (seconds_since(*began) > kRest)
       refused = unknown;
     return std::nullopt;
   };

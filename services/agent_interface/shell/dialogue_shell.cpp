@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
+constexpr const char* kByWords = " (by words)";    // behind the speaker who asked for a goal
 constexpr const char* kQuestion = "asking-about";  // the belief of config/activities/people.act
 
 constexpr double kOld = 60.0;  // [s] after which an utterance is too old to act on
@@ -139,7 +140,7 @@ void DialogueShell::want(const WantedGoal& wanted) {
   goal.arguments(to_bus(wanted.arguments));
   goal.deadline(wanted.deadline);
   if (!wanted.speaker.empty())
-    goal.requester(wanted.speaker + " (by words)");
+    goal.requester(wanted.speaker + kByWords);
   const bool lasting = wanted.lasting && !options_.memory.empty();
   goal.writer_lost(lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
   const v1::GoalId id = goals_.ask(goal);
@@ -267,7 +268,8 @@ std::vector<KnownGoal> DialogueShell::known_goals() const {
   for (const v1::GoalStatus& status : statuses) {
     KnownGoal& goal = goals.emplace_back();
     goal.functor = status.functor();
-    goal.asker = status.requester() == kName ? "" : status.requester();
+    const bool own = status.requester() == kName || status.requester().ends_with(kByWords);
+    goal.asker = own ? "" : status.requester();
     goal.state = state_of(status.state());
     goal.reason = !status.reason().empty() ? status.reason()
                   : !status.note().empty() ? status.note()
