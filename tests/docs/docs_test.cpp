@@ -71,7 +71,8 @@ TEST(Docs, LinksLeadToFilesThatAreThere) {
 // In `...`: paths from the root that are neither examples nor topics.
 TEST(Docs, PathsAreThere) {
   const std::regex example(
-      "services/spin|idl/spin|/(NAME|SUBCLASS|SUBJECT)[.]|^agents/(request|answers|solve|solved|events)$");
+      "services/spin|idl/spin|/(NAME|SUBCLASS|SUBJECT)[.]|^agents/"
+      "(request|answers|solve|solved|events)$");
   const std::regex path(
       R"(`((?:services|idl|bridge|sim|agents|config|tests|docs)/[A-Za-z0-9_./-]+)`)");
   int paths = 0;
