@@ -248,7 +248,7 @@ TEST_F(Answers, CompletionListsWhatMayComeNext) {
       {{"stop", "seeing"}, "seeing\nseeing-office\n"},
       {{"echo", ""}, all_topics},
       {{"write", "robot/"}, of_robot},
-      {{"goal", "--priority", "2", ""}, "go\ndrive\nturn\nstop\nlist\ncancel\nschemas\n"},
+      {{"goal", "--priority", "2", ""}, "go\ndrive\nturn\nstop\nlist\ncancel\nactivities\n"},
       {{"goal", "go", ""}, ""},
       {{"beliefs", ""}, "set\nunset\n"},
       {{"estop", ""}, "reset\n"},
