@@ -22,6 +22,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{1};
 constexpr milliseconds kRetry{50};  // to find the robot
+constexpr milliseconds kRest{20};   // after which no more bytes of a packet come
 
 int connect_to(const std::string& path) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -114,6 +115,7 @@ bool SerialLine::give(int fd, int direction) {
 
 void SerialLine::run() {
   auto next_try = Clock::now();
+  auto came = Clock::now();  // the newest bytes to the robot
   // The bytes to the robot still go through at the end: otherwise it would have half a packet.
   for (bool done = false; !done;) {
     const bool stop = stop_;
@@ -135,8 +137,10 @@ void SerialLine::run() {
     if (!listened_)
       std::this_thread::sleep_for(kTick);  // poll does not wait on a closed descriptor
     const bool comes = (fds[0].revents & POLLIN) != 0 && fds[0].fd == master_;
-    if (comes)
+    if (comes) {
       take(master_, 0);
+      came = Clock::now();
+    }
     bool robot_is_there = true;
     if (fds[1].revents != 0 && robot_ >= 0)
       robot_is_there = take(robot_, 1);
@@ -147,7 +151,7 @@ void SerialLine::run() {
       ::close(robot_);
       robot_ = -1;
     }
-    done = stop && !comes && directions_[0].waiting.empty();
+    done = stop && Clock::now() - came > kRest && directions_[0].waiting.empty();
   }
 }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <utility>
 
 #include "commands.hpp"
 #include "saphira/bus/agent.hpp"
@@ -22,8 +23,11 @@ struct AskOptions {
   int answers = 1;
   bool list = false;
   bool json = false;
-  double patience = 10.0;
+  double deadline = 0.0;  // [s]; 0: none
 };
+
+// Without a deadline: until an agent says that it is at work, and then until it says so again.
+constexpr double kSilence = 11.0;  // [s]
 
 int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bus::Stop& stop) {
   v1::Request request;
@@ -36,7 +40,7 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   }
   request.functor(ask_options.functor);
   request.service(ask_options.agent);
-  request.deadline(ask_options.patience);
+  request.deadline(ask_options.deadline);
   if (ask_options.answers != 1)
     request.arguments().push_back(bus::number("answers", ask_options.answers));
 
@@ -44,17 +48,22 @@ int ask(const AskOptions& ask_options, const bus::NodeOptions& options, const bu
   Processes processes(node);
   bus::RequestClient client(node, bus::topics::kSolve, "saphira ask");
   auto answers = node.reader(bus::topics::kSolved);
+  std::string told;
   const auto tell = [&](const v1::Answer& answer) {
-    std::printf("%s\n", (ask_options.json ? to_json(answer) : line_of(answer)).c_str());
+    const std::string text = ask_options.json ? to_json(answer) : line_of(answer);
+    if (text != std::exchange(told, text))
+      std::printf("%s\n", text.c_str());
   };
   const auto show = [&] {
     processes.poll();
     for (const auto& sample : answers.take())
       if (!sample.info.disposed && sample.data.asker() == node.instance() &&
-          sample.data.code() == v1::ANSWER_UNDERWAY)
+          sample.data.code() == v1::ANSWER_UNDERWAY &&
+          !(sample.data.text().empty() && sample.data.results().empty()))
         tell(sample.data);
   };
-  const v1::Answer end = client.ask(request, ask_options.patience + 1.0, &stop, show);
+  const v1::Answer end = client.ask(
+      request, ask_options.deadline > 0.0 ? ask_options.deadline + 1.0 : kSilence, &stop, show);
   if (end.service().empty()) {
     if (ask_options.json)
       tell(end);
@@ -132,8 +141,9 @@ void add_ask(CLI::App& app, Chosen& chosen) {
   command->add_option("--answers", options->answers, "how many are wanted; 0: of each that can")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--deadline", options->patience, "[s] for the answer")
-      ->capture_default_str()
+  command
+      ->add_option("--deadline", options->deadline,
+                   "[s] for the answer (usual: 10 s, and while the agent says that it is at work)")
       ->check(CLI::Range(0.1, 3600.0));
   command->add_flag("--json", options->json,
                     "one JSON object for each answer: agent, code, text, values");

@@ -88,8 +88,9 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
   newest.text(std::string("no program takes what is asked on ") + topic_.name);
   bool heard = false;
   auto again = Clock::now();
-  const auto end =
-      again + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
+  const auto limit =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(patience));
+  auto end = again + limit;
   for (auto now = again; now < end && (stop == nullptr || !stop->requested()); now = Clock::now()) {
     if (!heard && now >= again && writer_.matched() > 0 && writer_.write(request)) {
       again = now + kAgain;
@@ -109,6 +110,8 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
       newest = std::move(answer);
       if (ended(newest.code()))
         return newest;
+      if (request.deadline() <= 0.0)
+        end = Clock::now() + limit;
     }
   }
   if (heard) {

@@ -230,6 +230,8 @@ void Facilitator::hear(const std::string& address, std::uint64_t asker, std::uin
     // An agent that says again and again that it is at work has the time that it needs.
     if (open.request.deadline <= 0.0)
       open.end = now + kUsualDeadline;
+    if (open.wanted == 1)
+      give(id, agents_.at(asked->agent).name, answer);
     return;
   }
   const std::string name = agents_.at(asked->agent).name;
@@ -377,7 +379,11 @@ Facilitator::Outputs Facilitator::step(double now) {
   for (const Id& id : waiting)
     match(id, now);
   for (const Id& id : late) {
-    const Open& open = open_.at(id);
+    Open& open = open_.at(id);
+    if (open.unmatched) {
+      end(id, kName, candidates(open).value_or(Answer{AnswerCode::too_late, "no time is left"}));
+      continue;
+    }
     std::string names;
     for (const Asked& asked : open.asked)
       names += (names.empty() ? "" : ", ") + agents_.at(asked.agent).name;

@@ -294,7 +294,6 @@ TEST(FacilitationAtTheStart, ARequestWaitsForAgentsThatMayComeYet) {
   const auto none = facilitator.step(102.0).solved;
   ASSERT_EQ(none.size(), 1u);
   EXPECT_EQ(none[0].answer.code, AnswerCode::nobody);
-  facilitator.ask(place_of(8), 103.0);
   facilitator.leave(1);
   other.number = 9;
   facilitator.ask(other, 103.0);
@@ -304,7 +303,10 @@ TEST(FacilitationAtTheStart, ARequestWaitsForAgentsThatMayComeYet) {
 TEST_F(Facilitation, AnAgentThatSaysThatItIsAtWorkHasTheTimeThatItNeeds) {
   facilitator.announce(agent(1, "robot", true));
   ask(place_of(5));
-  hear("robot", place_of(5), {AnswerCode::underway, ""});
+  const auto told = hear("robot", place_of(5), {AnswerCode::underway, "on its way"}).solved;
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].answer.text, "on its way");
+  EXPECT_EQ(told[0].service, "robot");
   Request short_one = place_of(6);
   short_one.deadline = 20.0;
   ask(short_one);
