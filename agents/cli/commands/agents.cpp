@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "saphira/bus/agent.hpp"
+#include "saphira/bus/goal_client.hpp"
 #include "saphira/bus/introspect.hpp"
 #include "saphira/cli/talk_words.hpp"
 #include "watch.hpp"
@@ -120,7 +121,7 @@ int list_agents(const bus::NodeOptions& options, const bus::Stop& stop) {
     std::fputs(describe(agent).c_str(), stdout);
   for (const auto& [id, trigger] : set) {
     const std::string held_by = holder(census, trigger.info.writer);
-    std::printf("%s%s\n", describe(trigger.data).c_str(),
+    std::printf("%s%s\n", describe(trigger.data, bus::describe(trigger.data.id())).c_str(),
                 held_by.empty() ? "" : (" (until " + held_by + ", ends or withdraws it)").c_str());
   }
   if (known.empty())

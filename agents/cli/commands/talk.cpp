@@ -114,7 +114,7 @@ std::string with_keyword(const std::string& line, const agent_interface::Grammar
   return grammar.keywords().front() + ", " + line;
 }
 
-/// Says each line of the input, and prints what the robot says.
+/// Each line of the input is said to the robot, and the robot's words are printed.
 int talk(const TalkOptions& talk_options, const bus::NodeOptions& options, const bus::Stop& stop) {
   const agent_interface::Grammar grammar(read_file(talk_options.grammar), talk_options.grammar);
   const std::string speaker = talk_options.speaker.empty() ? user() : talk_options.speaker;

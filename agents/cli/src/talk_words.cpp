@@ -88,14 +88,6 @@ nlohmann::ordered_json value_of(const v1::Argument& argument) {
   return nullptr;
 }
 
-/// As the commands take and print ids of goals.
-std::string id_text(const v1::GoalId& id) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%llx:%llu", static_cast<unsigned long long>(id.writer()),
-                static_cast<unsigned long long>(id.number()));
-  return text.data();
-}
-
 /// The local time of day, such as 10:02.
 std::string time_of(double time) {
   if (time <= 0.0)
@@ -171,15 +163,14 @@ std::string describe(const v1::Agent& agent) {
   return text;
 }
 
-std::string describe(const v1::Trigger& trigger) {
+std::string describe(const v1::Trigger& trigger, const std::string& id) {
   std::string when = "every " + plain(trigger.period()) + " s";
   if (trigger.kind() == v1::TRIGGER_DATA)
     when = "when the answer to " + trigger.condition() + " changes";
   else if (trigger.kind() == v1::TRIGGER_EVENT)
     when = "when " + trigger.condition() + " happens";
-  return "trigger " + id_text(trigger.id()) + " of " +
-         (trigger.source().empty() ? "somebody" : trigger.source()) + ": " + when + ": " +
-         trigger.action();
+  return "trigger " + id + " of " + (trigger.source().empty() ? "somebody" : trigger.source()) +
+         ": " + when + ": " + trigger.action();
 }
 
 std::string knowledge_table(const v1::Knowledge& knowledge) {

@@ -49,16 +49,14 @@ TEST(TalkWords, AnAnswerIsOneObject) {
 
 TEST(TalkWords, ATriggerHasItsIdAndItsSource) {
   v1::Trigger trigger;
-  trigger.id().writer(0x1f3a);
-  trigger.id().number(2);
   trigger.kind(v1::TRIGGER_TIME);
   trigger.period(5.0);
   trigger.action("note");
-  EXPECT_EQ(describe(trigger), "trigger 1f3a:2 of somebody: every 5 s: note");
+  EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of somebody: every 5 s: note");
   trigger.source("ann");
   trigger.kind(v1::TRIGGER_EVENT);
   trigger.condition("door_opened");
-  EXPECT_EQ(describe(trigger), "trigger 1f3a:2 of ann: when door_opened happens: note");
+  EXPECT_EQ(describe(trigger, "1f3a:2"), "trigger 1f3a:2 of ann: when door_opened happens: note");
 }
 
 }  // namespace

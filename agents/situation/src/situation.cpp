@@ -210,7 +210,7 @@ std::string to_json(const Situation& situation) {
     json["goals"].push_back({{"functor", status.functor()},
                              {"requester", status.requester()},
                              {"state", name_of(status.state())},
-                             {"reason", reason_of(status, situation.grant)},
+                             {"reason", status.reason()},
                              {"step", status.step()},
                              {"progress", status.progress()}});
   json["missing"] = missing_services(situation.programs);

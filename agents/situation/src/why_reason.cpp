@@ -446,7 +446,7 @@ std::string Reason::goals_reason(bool brief) const {
       return std::string("which goals there ") + (scene_.past ? "were" : "are") + " is not known";
     return scene_.past ? "there was no goal" : "nobody has asked for a goal";
   }
-  const std::string reason = reason_of(*newest, scene_.grant);
+  const std::string& reason = newest->reason();
   return std::string("no goal is underway; ") + (brief ? "" : "the newest, ") + goal(newest->id()) +
          ": " + situation::name_of(newest->state()) + (reason.empty() ? "" : ", " + reason);
 }

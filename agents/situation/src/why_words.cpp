@@ -130,13 +130,4 @@ std::string with_arguments(const v1::IntentionNode& node) {
   return intention_name(node) + (node.arguments().empty() ? "" : " [" + node.arguments() + "]");
 }
 
-std::string reason_of(const v1::GoalStatus& status, const std::optional<v1::Grant>& grant) {
-  // The goal ended with the stop; its reason is of that time.
-  const std::string advice = ": saphira estop reset releases it, then ask anew";
-  const std::string& reason = status.reason();
-  if (!grant || grant->estopped() || !reason.ends_with(advice))
-    return reason;
-  return reason.substr(0, reason.size() - advice.size()) + ", released since: ask anew";
-}
-
 }  // namespace saphira::situation

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "behavior.h"
 #include "intention.h"
-#include "motion.h"
 #include "saphira/geometry/pose.hpp"
 #include "saphira/situation/format.hpp"
 
@@ -50,8 +48,5 @@ std::string intention_name(const v1::IntentionNode& node);
 /// "name=karen".
 bool concerns(const v1::Belief& belief, const v1::IntentionNode& node);
 std::string with_arguments(const v1::IntentionNode& node);
-/// The reason of a goal's state. Advice to release an emergency stop that is released already is
-/// left out.
-std::string reason_of(const v1::GoalStatus& status, const std::optional<v1::Grant>& grant);
 
 }  // namespace saphira::situation

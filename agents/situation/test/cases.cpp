@@ -245,13 +245,12 @@ void people(std::vector<Case>& all) {
   // The words of intentions (Executor, obey_estop).
   const auto ended = [](Situation& s) {
     s.goals = driving().goals;
-    s.statuses = {goal_status(v1::GOAL_CANCELED,
-                              "emergency stop, pressed by \"panel\": saphira estop reset releases "
-                              "it, then ask anew")};
+    s.statuses = {goal_status(
+        v1::GOAL_CANCELED, "emergency stop, pressed by \"panel\": ask anew once it is released")};
   };
   all.push_back(at_rest("the emergency stop was pressed, and is released", "why", ended,
-                        {"canceled, emergency stop, pressed by \"panel\", released since: ask "
-                         "anew"},
+                        {"canceled, emergency stop, pressed by \"panel\": ask anew once it is "
+                         "released"},
                         {"saphira estop reset", "EMERGENCY"}));
   all.push_back(at_rest("the same, pressed again", "why",
                         [&](Situation& s) {

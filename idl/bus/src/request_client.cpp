@@ -116,7 +116,7 @@ v1::Answer RequestClient::ask(v1::Request request, double patience, const Stop* 
   }
   if (heard) {
     newest.code(v1::ANSWER_TOO_LATE);
-    newest.text("the request is still under way after " + seconds(patience));
+    newest.text("the request is still under way");
   }
   return newest;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "agent_interface/shell/convert.hpp"
+#include "agent_interface/shell/unclaimed.hpp"
 #include "geometry/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
@@ -21,14 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-constexpr const char* kByWords = " (by words)";    // behind the speaker who asked for a goal
 constexpr const char* kQuestion = "asking-about";  // the belief of config/activities/people.act
 
 constexpr double kOld = 60.0;  // [s] after which an utterance is too old to act on
-
-constexpr std::chrono::seconds kTakenUp{5};  // an unclaimed goal is withdrawn then
-constexpr const char* kNotTakenUp =
-    "no program has taken up the goal: saphira status shows whether intentions runs";
 
 /// A text in the activity language: "karen's office".
 std::string literal(const std::string& text) {
@@ -140,7 +136,7 @@ void DialogueShell::want(const WantedGoal& wanted) {
   goal.arguments(to_bus(wanted.arguments));
   goal.deadline(wanted.deadline);
   if (!wanted.speaker.empty())
-    goal.requester(wanted.speaker + kByWords);
+    goal.requester(wanted.speaker + " (by words)");
   const bool lasting = wanted.lasting && !options_.memory.empty();
   goal.writer_lost(lasting ? v1::WRITER_LOST_KEEP : v1::WRITER_LOST_CANCEL);
   const v1::GoalId id = goals_.ask(goal);
@@ -268,7 +264,9 @@ std::vector<KnownGoal> DialogueShell::known_goals() const {
   for (const v1::GoalStatus& status : statuses) {
     KnownGoal& goal = goals.emplace_back();
     goal.functor = status.functor();
-    const bool own = status.requester() == kName || status.requester().ends_with(kByWords);
+    const bool own = status.id().writer() == node_.instance() ||
+                     std::any_of(asked_.begin(), asked_.end(),
+                                 [&](const auto& one) { return one.second.goal == status.id(); });
     goal.asker = own ? "" : status.requester();
     goal.state = state_of(status.state());
     goal.reason = !status.reason().empty() ? status.reason()

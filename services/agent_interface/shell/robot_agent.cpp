@@ -3,13 +3,13 @@
 #include <string>
 #include <utility>
 
+#include "agent_interface/shell/unclaimed.hpp"
 #include "requests/shell/convert.hpp"
 #include "saphira/bus/agent.hpp"
 
 namespace saphira::agent_interface {
 namespace {
 
-constexpr double kClaimed = 5.0;            // [s] a goal that nobody took up is withdrawn then
 constexpr double kReport = 2.0;             // [s] between reports of a goal that is underway
 constexpr std::size_t kMostArguments = 16;  // of a goal
 
@@ -87,10 +87,9 @@ std::vector<RobotAgent::Report> RobotAgent::step(double now) {
       answer.code = status->state() == v1::GOAL_SUCCEEDED ? AnswerCode::done
                     : status->state() == v1::GOAL_REFUSED ? AnswerCode::refused
                                                           : AnswerCode::given_up;
-    } else if (!status && now >= one.when + kClaimed) {
+    } else if (!status && now >= one.when + std::chrono::duration<double>(kTakenUp).count()) {
       goals_.cancel(one.goal);
-      answer = {AnswerCode::refused,
-                "no program has taken up the goal: saphira status shows whether intentions runs"};
+      answer = {AnswerCode::refused, kNotTakenUp};
     } else if (now < one.reported + kReport) {
       return false;
     }

@@ -52,12 +52,6 @@ std::string time_text(double unix_time) {
   return text;
 }
 
-/// Sentences that the shipped grammar understands.
-constexpr const char* kExamples =
-    "You can say, for example: go to the library; go forward two meters; turn left; follow me; "
-    "get the report from Karen; this is Karen's office; where is Karen; there is a leak here; "
-    "what are you doing; why; stop";
-
 /// The direction of a point, seen from the robot.
 std::string direction_of(const Vec2& from_robot) {
   const double angle =
@@ -406,7 +400,7 @@ bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
   } else if (meaning.functor == "why") {
     say(utterance, why_standing(situation.goals), true, out);
   } else if (meaning.functor == "what_can_you_do") {
-    say(utterance, kExamples, true, out);
+    say(utterance, grammar_.paraphrase(meaning), true, out);
   } else if (meaning.functor == "where_is") {
     const std::string person = slot(meaning, "person");
     std::string text;

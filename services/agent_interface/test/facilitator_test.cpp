@@ -47,6 +47,24 @@ Answer library() {
   return {AnswerCode::done, "", {text("place", "library")}};
 }
 
+AgentInfo agent_that_notes() {
+  AgentInfo result = agent(1, "a");
+  result.capabilities.push_back({{"note", "", {optional(text_parameter("place", ""))}}, true, 0.0});
+  return result;
+}
+
+Trigger note_place_of_karen() {
+  return {{1, 3},
+          "ann",
+          TriggerKind::data,
+          1.0,
+          "place_of",
+          {text("person", "karen"), open_slot("place")},
+          "note",
+          {open_slot("place")},
+          0};
+}
+
 struct Facilitation : testing::Test {
   Facilitator::Outputs ask(const Request& request) {
     facilitator.ask(request, now);
@@ -184,10 +202,7 @@ TEST_F(Facilitation, WhoFloodsHurtsItselfOnly) {
 }
 
 TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
-  AgentInfo speaker = agent(1, "a");
-  speaker.capabilities.push_back(
-      {{"note", "", {optional(text_parameter("place", ""))}}, true, 0.0});
-  facilitator.announce(speaker);
+  facilitator.announce(agent_that_notes());
   Trigger trigger{{1, 1}, "ann", TriggerKind::time, 5.0, "", {}, "note", {}, 1};
   facilitator.set(trigger, now);
   EXPECT_TRUE(facilitator.step(now).requests.empty());
@@ -217,16 +232,7 @@ TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
   facilitator.happened("moved", {text("person", "karen"), text("place", "kitchen")}, now);
   EXPECT_TRUE(facilitator.step(now).requests.empty());
 
-  trigger = {{1, 3},
-             "ann",
-             TriggerKind::data,
-             1.0,
-             "place_of",
-             {text("person", "karen"), open_slot("place")},
-             "note",
-             {open_slot("place")},
-             0};
-  facilitator.set(trigger, now);
+  facilitator.set(note_place_of_karen(), now);
   std::vector<std::string> noted;
   for (const char* const place : {"library", "library", "kitchen"}) {
     now += 1.0;
@@ -244,20 +250,8 @@ TEST_F(Facilitation, TriggersOfTimeEventsAndDataAskForTheirActions) {
 /// Agents come, go and answer at random. Each request has one end, and no more answers than wanted;
 /// no agent starts an action that another one may have done.
 TEST_F(Facilitation, ATriggerOfDataFiresWhenAValueIsFirstKnown) {
-  AgentInfo speaker = agent(1, "a");
-  speaker.capabilities.push_back(
-      {{"note", "", {optional(text_parameter("place", ""))}}, true, 0.0});
-  facilitator.announce(speaker);
-  facilitator.set({{1, 3},
-                   "ann",
-                   TriggerKind::data,
-                   1.0,
-                   "place_of",
-                   {text("person", "karen"), open_slot("place")},
-                   "note",
-                   {open_slot("place")},
-                   0},
-                  now);
+  facilitator.announce(agent_that_notes());
+  facilitator.set(note_place_of_karen(), now);
   const Answer unknown{AnswerCode::refused, "nobody has told me"};
   const Answer late{AnswerCode::too_late, "no answer"};
   std::vector<double> fired;

@@ -181,8 +181,7 @@ TEST(Executor, AnEmergencyStopEndsWhatDrivesAndWhatIsAskedMeanwhile) {
     EXPECT_EQ(bench.state(ended), GoalState::kCanceled);
     EXPECT_EQ(bench.status(ended).code, GoalCode::kPreempted);
     EXPECT_EQ(bench.status(ended).reason,
-              "emergency stop, pressed by \"button\": saphira estop reset releases it, then ask "
-              "anew");
+              "emergency stop, pressed by \"button\": ask anew once it is released");
   }
   EXPECT_TRUE(bench.out.behaviors.empty());
   bench.estop.clear();

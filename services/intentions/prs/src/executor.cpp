@@ -509,8 +509,7 @@ void Executor::obey_estop(const std::string& source) {
   for (auto& [id, entry] : entries_) {
     if (open(entry.status) && !entry.schema->concurrent && !entry.schema->replaces)
       end(entry, GoalState::kCanceled, GoalCode::kPreempted,
-          "emergency stop, pressed by " + quoted(source) +
-              ": saphira estop reset releases it, then ask anew");
+          "emergency stop, pressed by " + quoted(source) + ": ask anew once it is released");
   }
 }
 

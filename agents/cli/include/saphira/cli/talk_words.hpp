@@ -23,7 +23,7 @@ std::string to_json(const v1::Answer& answer);
 /// An agent with a line for each capability.
 std::string describe(const v1::Agent& agent);
 /// Such as "trigger 1f3a:2 of ann: every 5 s: note".
-std::string describe(const v1::Trigger& trigger);
+std::string describe(const v1::Trigger& trigger, const std::string& id);
 
 /// The advice to the robot, each with its number, speaker and time.
 std::string knowledge_table(const v1::Knowledge& knowledge);
