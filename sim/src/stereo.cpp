@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "pixels.hpp"
+
 namespace saphira::sim {
 
 namespace {
@@ -22,57 +24,6 @@ constexpr double kRobotHeight = 0.3;  // [m] no robot of ours is much higher
 constexpr double kShoulder = 0.83;
 constexpr double kHead = 0.42;
 constexpr double kBelt = 0.52;
-
-std::uint32_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  std::uint32_t h = a * 0x9E3779B1U + b * 0x85EBCA77U + c * 0xC2B2AE3DU;
-  h ^= h >> 15U;
-  h *= 0x2C1B3C6DU;
-  return h ^ h >> 13U;
-}
-
-std::int32_t floor_of(double value) {
-  const auto whole = static_cast<std::int32_t>(value);
-  return value < whole ? whole - 1 : whole;
-}
-
-// Values between -1 and 1 on a unit lattice, linear between.
-double lattice(double u, double v, std::uint32_t seed) {
-  const std::int32_t fu = floor_of(u);
-  const std::int32_t fv = floor_of(v);
-  const auto iu = static_cast<std::uint32_t>(fu);
-  const auto iv = static_cast<std::uint32_t>(fv);
-  const auto value = [&](std::uint32_t i, std::uint32_t j) {
-    return static_cast<std::int32_t>(hash(iu + i, iv + j, seed)) * 0x1p-31;
-  };
-  const double a = u - fu;
-  const double b = v - fv;
-  return (value(0, 0) * (1.0 - a) + value(1, 0) * a) * (1.0 - b) +
-         (value(0, 1) * (1.0 - a) + value(1, 1) * a) * b;
-}
-
-// The visible details of a texture for a pixel of this size: those of two pixels and more. Finer
-// ones are left out, since they would differ between the cameras.
-struct Detail {
-  double scale = 100.0;  // [1/m] of the finest: 1 cm, or its double, ...
-  double fade = 1.0;     // its share
-  std::uint32_t octave = 0;
-
-  static Detail of(double pixel) {
-    const double level = std::max(0.0, std::log2(2.0 * pixel / 0.01));
-    const int first = static_cast<int>(level);
-    return {std::ldexp(100.0, -first), 1.0 - (level - first), static_cast<std::uint32_t>(first)};
-  }
-};
-
-// A texture between -1 and 1.
-double texture(double u, double v, std::uint32_t seed, const Detail& detail) {
-  const double scale = detail.scale;
-  const std::uint32_t first = seed + detail.octave * 977U;
-  return (detail.fade * lattice(u * scale, v * scale, first) +
-          lattice(u * scale * 0.5, v * scale * 0.5, first + 977U) +
-          lattice(u * scale * 0.125, v * scale * 0.125, first + 3U * 977U)) /
-         1.6;
-}
 
 // An upright face of an object, from low to high.
 struct Face {
@@ -246,30 +197,31 @@ std::vector<Row> rows_of(const StereoRig& rig) {
   return rows;
 }
 
-double pixel_grey(const StereoRig& rig, const std::vector<Meeting>& meetings, const Vec2& eye,
-                  const Vec2& way, const Row& row) {
+void look(const StereoRig& rig, const std::vector<Meeting>& meetings, const Vec2& eye,
+          const Vec2& way, const Row& row, std::size_t at, Pixels& pixels) {
   const double end = std::min(row.depth, rig.range);
   for (const Meeting& meeting : meetings) {
     if (meeting.depth >= end)
       break;
     const Face& face = *meeting.face;
-    const double at = rig.height + row.slope * meeting.depth;
-    if (at < face.low || at > face.high)
+    const double height = rig.height + row.slope * meeting.depth;
+    if (height < face.low || height > face.high)
       continue;
     if (meeting.leaves) {
       const Vec2 lid = eye + way * ((face.high - rig.height) / row.slope);
-      return face.grey + 20.0 +
-             kTexture * texture(lid.x(), lid.y(), face.seed + 7000U, meeting.detail);
+      return pixels.set(at, face.grey + 20.0, kTexture, lid.x(), lid.y(), face.seed + 7000U,
+                        meeting.detail);
     }
-    const double grey = at < face.belt ? 0.5 * face.grey : face.grey;
-    return grey + meeting.light + kTexture * texture(meeting.u, at, face.seed, meeting.detail);
+    const double grey = height < face.belt ? 0.5 * face.grey : face.grey;
+    return pixels.set(at, grey + meeting.light, kTexture, meeting.u, height, face.seed,
+                      meeting.detail);
   }
   if (end >= rig.range)
-    return kFar;
+    return pixels.set(at, kFar);
   const Vec2 point = eye + way * end;
   const bool floor = row.slope < 0.0;
-  return (floor ? kFloor : kCeiling) +
-         kTexture * texture(point.x(), point.y(), floor ? 100001U : 100003U, row.detail);
+  pixels.set(at, floor ? kFloor : kCeiling, kTexture, point.x(), point.y(),
+             floor ? 100001U : 100003U, row.detail);
 }
 
 GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, double left,
@@ -280,25 +232,21 @@ GreyImage render(const Scene& scene, RobotNumber robot, const StereoRig& rig, do
   const Faces faces(scene, robot, middle.position() + aside * left, rig);
   const std::vector<Row> rows = rows_of(rig);
   const double focal = rig.focal();
-  // The sum of two uniform draws is triangular with this half width.
-  const double spread = rig.noise * std::sqrt(6.0);
+  const double noise = rig.noise * std::sqrt(6.0);
   GreyImage image{rig.columns, rig.rows, {}};
-  image.pixels.resize(static_cast<std::size_t>(rig.columns) * static_cast<std::size_t>(rig.rows));
+  const auto columns = static_cast<std::size_t>(rig.columns);
+  image.pixels.resize(columns * rows.size());
   std::vector<Meeting> meetings;
-  for (int column = 0; column < rig.columns; ++column) {
-    const double across = (column + 0.5 - 0.5 * rig.columns) / focal;
+  Pixels pixels(rows.size());
+  for (std::size_t column = 0; column < columns; ++column) {
+    const double across = (static_cast<double>(column) + 0.5 - 0.5 * rig.columns) / focal;
     const Vec2 way = ahead - aside * across;
     faces.meet(way, meetings);
-    for (int row = 0; row < rig.rows; ++row) {
-      const std::uint32_t draw = random.next();
-      const double noise = ((draw & 0xFFFFU) + (draw >> 16U)) / 65536.0 - 1.0;
-      const double grey =
-          gain * pixel_grey(rig, meetings, faces.eye(), way, rows[static_cast<std::size_t>(row)]) +
-          spread * noise;
-      image.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(rig.columns) +
-                   static_cast<std::size_t>(column)] =
-          static_cast<std::uint8_t>(std::clamp(floor_of(grey + 0.5), 0, 255));
-    }
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      look(rig, meetings, faces.eye(), way, rows[row], row, pixels);
+    const std::vector<std::uint8_t>& values = pixels.expose(gain, noise, random);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      image.pixels[row * columns + column] = values[row];
   }
   return image;
 }

@@ -42,18 +42,18 @@ class Census {
                             int last_row);
 
  private:
-  using Words = std::vector<std::uint32_t>;
-
-  void add_differences(const Words& left, const Words& right, int row, bool add);
+  void compare_row(const ImageView& image, int row, std::uint8_t* out) const;
+  void take_row(const ImageView& left, const ImageView& right, int row);
   void match_row(float* out);
 
   CensusSettings settings_;
   DisparityMap map_;
   int columns_ = 0;
-  Words left_;
-  Words right_;
+  // [eight neighbours each][column]
+  std::vector<std::uint8_t> left_, right_;
   // [disparity][column of the left picture]
-  std::vector<std::int16_t> sums_;  ///< of the differences in the window's rows
+  std::vector<std::uint8_t> counts_;  ///< of different bits, for each of the window's rows
+  std::vector<std::int16_t> sums_;    ///< of them over the window's rows
   std::vector<std::int16_t> cost_;
   std::vector<std::int16_t> best_cost_, best_at_, before_, after_, last_;
   std::vector<std::int16_t> right_cost_, right_at_;
