@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saphira/base/wide.hpp"
 #include "saphira/geometry/cone.hpp"
 
 namespace saphira::lps {
@@ -17,6 +18,18 @@ std::size_t area(int cells) {
   return static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells);
 }
 
+SAPHIRA_WIDE void scale(std::vector<double>& values, double factor) {
+  for (double& value : values)
+    value *= factor;
+}
+
+SAPHIRA_WIDE long count_from(double least, const double* values, long count) {
+  long found = 0;
+  for (long i = 0; i < count; ++i)
+    found += values[i] >= least ? 1 : 0;
+  return found;
+}
+
 }  // namespace
 
 ObstacleMemory::ObstacleMemory(MemorySettings settings)
@@ -29,8 +42,7 @@ void ObstacleMemory::clear() {
 }
 
 void ObstacleMemory::move_to(const Pose& robot_in_odom) {
-  for (double& belief : beliefs_)
-    belief *= settings_.fading;
+  scale(beliefs_, settings_.fading);
   const long half = settings_.cells / 2;
   const long column0 = std::lround(robot_in_odom.x / settings_.cell) - half;
   const long row0 = std::lround(robot_in_odom.y / settings_.cell) - half;
@@ -154,9 +166,7 @@ void ObstacleMemory::collect(const Pose& robot_in_odom) {
   // Most rows are empty, and counting a whole row is faster than searching it.
   for (long row = 0; row < n; ++row) {
     const double* const beliefs = beliefs_.data() + row * n;
-    long obstacles = 0;
-    for (long column = 0; column < n; ++column)
-      obstacles += beliefs[column] >= obstacle ? 1 : 0;
+    long obstacles = count_from(obstacle, beliefs, n);
     for (long column = 0; obstacles > 0; ++column) {
       if (beliefs[column] < obstacle)
         continue;
