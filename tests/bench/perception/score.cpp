@@ -168,8 +168,7 @@ void Score::look(const Moment& moment, const std::vector<lps::Percept>& percepts
       continue;
     const Pose at = in_world(percept);
     Judged& judged = judged_[percept.id];
-    judged.percept = percept;
-    judged.pose_in_world = at;
+    judged.type = percept.type;
     if (!is_real(percept, at)) {
       if (judged.real)
         mistakes_.push_back({percept, at, moment.cycle});
@@ -217,7 +216,7 @@ void Score::pass(const Moment& seen, const std::vector<lps::Percept>& percepts) 
 Count Score::count(PointType type) const {
   Count count;
   for (const auto& [id, judged] : judged_)
-    if (judged.percept.type == type) {
+    if (judged.type == type) {
       ++count.reported;
       count.real += judged.real ? 1 : 0;
     }

@@ -44,10 +44,9 @@ struct Passage {
   bool found = false;
 };
 
-/// A percept in its newest report.
+/// The judgement of a percept.
 struct Judged {
-  lps::Percept percept;
-  Pose pose_in_world;
+  lps::PointType type = lps::PointType::invalid;
   bool real = true;  ///< true in every report
 };
 
