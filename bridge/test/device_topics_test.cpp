@@ -69,6 +69,17 @@ TEST_F(DeviceTopicsTest, WhatIsOutOfRangeIsRefused) {
   EXPECT_EQ(topics.refused(), 1U);
 }
 
+TEST_F(DeviceTopicsTest, AFunctorOfAnotherTopicIsUnknown) {
+  auto server = person.writer<v1::Request>(bus::topics::kServer);
+  v1::Request request;
+  request.source("a person");
+  request.functor("servo");
+  request.arguments({bus::number("width", 1500)});
+  server.write(request);
+  topics.take({}, true);
+  EXPECT_EQ(answer().code(), v1::ANSWER_UNKNOWN_FUNCTOR);
+}
+
 TEST_F(DeviceTopicsTest, ANewerRequestTakesThePlaceOfAnOlderOne) {
   ask(4, 1500);
   topics.take({}, true);

@@ -12,7 +12,7 @@ namespace {
 class Aria : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Aria, ConnectsConfiguresDrivesSeesAndStops) {
-  PureLine line(GetParam());
+  Line line(GetParam());
   AriaClient client(line);
   ASSERT_EQ(client.connect(), "");
   EXPECT_EQ(client.robot_class(), "Pioneer");
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, Aria, ::testing::ValuesIn(subclasses()),
 
 // A killed client did not send CLOSE; on a serial line the robot continues to send.
 TEST(AriaAgain, FindsAnOpenRobot) {
-  PureLine line("p3dx-sh");
+  Line line("p3dx-sh");
   {
     AriaClient client(line);
     ASSERT_EQ(client.connect(), "");

@@ -16,7 +16,7 @@ struct Robot {
 class Bee : public ::testing::TestWithParam<Robot> {};
 
 TEST_P(Bee, EveryPacketObeys) {
-  PureLine line(GetParam().subclass);
+  Line line(GetParam().subclass);
   BeeClient client(line, GetParam().fewest, GetParam().most);
   ASSERT_TRUE(client.connect());
   const double x0 = line.robot().pose_in_world().x;

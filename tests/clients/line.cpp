@@ -42,30 +42,26 @@ Wire packet(std::uint8_t command, int argument) {
                      static_cast<std::uint8_t>(size >> 8 & 0xFF)});
 }
 
-std::string hall() {
-  return kHall;
-}
-
-PureLine::PureLine(const std::string& file)
+Line::Line(const std::string& file)
     : world_(sim::parse_world(kHall, "hall.wld")),
       parameters_(protocol::load_parameters(source("config/robots/" + file + ".p"))),
       scene_(world_),
       server_(scene_, parameters_, kStart, {}),
       checker_([this](const protocol::RobotIdentity&) { return parameters_; }) {}
 
-void PureLine::send(const Wire& bytes) {
+void Line::send(const Wire& bytes) {
   checker_.feed(protocol::Side::kClient, bytes, time_);
   server_.receive(bytes);
   take();
 }
 
-void PureLine::take() {
+void Line::take() {
   const auto bytes = server_.take_output();
   checker_.feed(protocol::Side::kServer, bytes, time_);
-  collect(bytes);
+  received_.insert(received_.end(), bytes.begin(), bytes.end());
 }
 
-void PureLine::wait(double seconds) {
+void Line::wait(double seconds) {
   for (int i = 0; i < static_cast<int>(std::lround(seconds / sim::kTick)); ++i) {
     server_.advance(1);
     time_ += sim::kTick;
@@ -93,7 +89,7 @@ std::optional<Wire> Line::next() {
 }
 
 std::optional<Wire> Line::expect(const std::function<bool(const Wire&)>& property, double seconds) {
-  const double until = now() + seconds * patience();
+  const double until = now() + seconds;
   while (true) {
     while (const auto body = next())
       if (property(*body))
@@ -104,7 +100,7 @@ std::optional<Wire> Line::expect(const std::function<bool(const Wire&)>& propert
   }
 }
 
-std::string PureLine::violations() const {
+std::string Line::violations() const {
   std::string out;
   for (const auto& finding : checker_.findings())
     if (finding.kind == protocol::Finding::Kind::kViolation)

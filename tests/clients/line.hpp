@@ -19,47 +19,27 @@ Wire packet(const Wire& body);
 /// With an integer, by type 0x3B or 0x1B as they do.
 Wire packet(std::uint8_t command, int argument);
 
-/// A client's line to a robot.
+/// In the hall of all robots here: a wall ahead, 3 m from the robot's middle.
+inline const Pose kStart{4.0, 4.0, 0.0};
+
+/// A simulated robot with a client's line on which time passes only when the client waits, and the
+/// strict checker on it.
 class Line {
  public:
-  virtual ~Line() = default;
-  Line() = default;
+  /// `file`: a robot of config/robots, in the hall.
+  explicit Line(const std::string& file);
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
 
-  virtual void send(const Wire& bytes) = 0;
+  void send(const Wire& bytes);
   /// Lets time pass [s] and collects received bytes.
-  virtual void wait(double seconds) = 0;
-  virtual double now() const = 0;  ///< [s]
+  void wait(double seconds);
+  double now() const { return time_; }  ///< [s]
   /// Waits until a body with that property has come, takes all up to it, and returns it; nothing
-  /// after `seconds` times the patience of the line.
+  /// after `seconds`.
   std::optional<Wire> expect(const std::function<bool(const Wire&)>& property, double seconds);
   /// The next complete body that was not taken yet; nothing without one.
   std::optional<Wire> next();
-
- protected:
-  /// A program on a busy machine answers later than a robot does.
-  virtual double patience() const { return 1.0; }
-  void collect(const Wire& bytes) { received_.insert(received_.end(), bytes.begin(), bytes.end()); }
-
- private:
-  Wire received_;
-};
-
-/// The hall of all robots here: a wall ahead, 3 m from the robot's middle.
-std::string hall();
-inline const Pose kStart{4.0, 4.0, 0.0};
-
-/// A simulated robot with a line on which time passes only when the client waits, and the strict
-/// checker on it.
-class PureLine : public Line {
- public:
-  /// `file`: a robot of config/robots, in the hall.
-  explicit PureLine(const std::string& file);
-
-  void send(const Wire& bytes) override;
-  void wait(double seconds) override;
-  double now() const override { return time_; }
 
   const sim::Robot& robot() const { return server_.robot(); }
   const sim::Server& server() const { return server_; }
@@ -79,6 +59,7 @@ class PureLine : public Line {
   sim::Server server_;
   protocol::Checker checker_;
   double time_ = 0.0;
+  Wire received_;
 };
 
 /// A subclass of robots in the client families' own parameter tables.

@@ -10,7 +10,7 @@ namespace {
 class Player : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Player, ConnectsDrivesSeesAndStops) {
-  PureLine line(GetParam());
+  Line line(GetParam());
   PlayerClient client(line);
   ASSERT_EQ(client.connect(), "");
   EXPECT_FALSE(client.warned);
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, Player,
 
 // Without pulses the robot's watchdog stops it after two seconds, and the next command revives it.
 TEST(PlayerAgain, SilenceStopsTheRobot) {
-  PureLine line("p3dx-sh");
+  Line line("p3dx-sh");
   PlayerClient client(line);
   ASSERT_EQ(client.connect(), "");
   client.motors(true);
@@ -57,7 +57,7 @@ TEST(PlayerAgain, SilenceStopsTheRobot) {
 
 // A robot without a subclass is not in its table: it warns and takes another entry.
 TEST(PlayerAgain, AForeignClassIsWarnedOf) {
-  PureLine line("b21");
+  Line line("b21");
   PlayerClient client(line);
   ASSERT_EQ(client.connect(), "");
   EXPECT_TRUE(client.warned);

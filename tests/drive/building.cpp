@@ -15,18 +15,17 @@ namespace {
 
 constexpr std::uint64_t kLook = 50;  // [cycles] between two looks at the graph
 
-WholeOptions from_nothing(const DriveOptions& drive, bool snap) {
+WholeOptions from_nothing(const DriveOptions& drive) {
   WholeOptions options;
   options.drive = drive;
   options.map = "none";
-  options.snap = snap;
   return options;
 }
 
 }  // namespace
 
-Building::Building(const DriveOptions& options, bool snap_to_right_angle_grid)
-    : whole(from_nothing(options, snap_to_right_angle_grid)), goal_(whole.ask("build-map")) {}
+Building::Building(const DriveOptions& options)
+    : whole(from_nothing(options)), goal_(whole.ask("build-map")) {}
 
 void Building::run(std::uint64_t limit) {
   for (std::uint64_t i = 0; i < limit && !whole.ended(goal_); ++i) {

@@ -13,7 +13,7 @@ namespace saphira::test {
 /// A simulated robot that builds the map of its floor from nothing (the activity build-map).
 class Building {
  public:
-  explicit Building(const DriveOptions& options, bool snap_to_right_angle_grid = true);
+  explicit Building(const DriveOptions& options);
 
   /// Runs until the map is built, for that number of cycles at most.
   void run(std::uint64_t limit);

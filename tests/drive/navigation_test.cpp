@@ -375,27 +375,6 @@ const char* const kAnnInTheCorridor =
     "person ann 17500 10500\n"
     "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
 
-TEST(Seeing, APersonIsFollowedAroundACorner) {
-  WholeOptions options = office(1, office_with("ann", kAnnInTheCorridor));
-  options.sees = true_eyes();
-  Whole whole(options);
-  const auto goal = whole.ask("follow-person", {saphira::number("seconds", 50.0)});
-  double nearest = 10.0;
-  whole.advance_until(
-      [&] {
-        nearest = std::min(
-            nearest, (whole.drive().scene().persons()[0].at - whole.truth().position()).norm());
-        return whole.ended(goal);
-      },
-      1000);
-  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
-  EXPECT_GT(whole.truth().x, 20.0) << "around the corner";
-  EXPECT_LT((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 2.5);
-  EXPECT_GT(nearest, 0.6);
-  EXPECT_EQ(whole.drive().contacts(), 0);
-  EXPECT_EQ(whole.trouble(), "");
-}
-
 TEST(Seeing, WithoutACameraOrAPersonItSaysSo) {
   Whole blind(office());
   EXPECT_EQ(blind.achieve("attend-person", {}, 100).reason,
@@ -411,18 +390,6 @@ TEST(Seeing, WithoutACameraOrAPersonItSaysSo) {
 }
 
 const char* const kRedBox = "box crate 17800 10000 0  300 300 50 tall 500 color red\n";
-
-TEST(Seeing, AColourIsSearchedForAndApproached) {
-  WholeOptions options = office(1, office_with("crate", kRedBox));
-  options.sees = true_eyes({"red"});
-  options.drive.start_in_world = Pose{17.5, 14.0, kPi / 2};  // it is behind the robot
-  Whole whole(options);
-  const GoalStatus status = whole.achieve("blob-search", {}, 1500);
-  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
-  EXPECT_LT((whole.truth().position() - Vec2(17.8, 10.0)).norm(), 1.1);
-  EXPECT_EQ(whole.drive().contacts(), 0);
-  EXPECT_TRUE(whole.at_rest());
-}
 
 // ---- Mapping (manual 6.9.2)
 

@@ -152,6 +152,7 @@ TEST(VisionEyes, APersonIsFollowedAroundACorner) {
   EXPECT_LT((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 2.5);
   EXPECT_GT(nearest, 0.6);
   EXPECT_EQ(whole.drive().contacts(), 0);
+  EXPECT_EQ(whole.trouble(), "");
 }
 
 // Manual 9.3, search_and_go_blob: behind its back at first.

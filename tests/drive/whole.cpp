@@ -22,7 +22,6 @@ DriveOptions drive_options(const WholeOptions& options) {
                                  options.map.empty() ? options.drive.world : options.map, ".map"));
   DriveOptions drive = registered_on(std::move(map), options.drive, options.knows_pose);
   drive.registration->add_features = options.adds_objects;
-  drive.registration->snap = options.snap;
   drive.intentions.emplace();
   drive.intentions->registry = options.schemas.value_or(
       shipped_schemas(options.drive.behaviors.value_or(behaviors::predefined())));

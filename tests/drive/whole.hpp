@@ -21,7 +21,6 @@ struct WholeOptions {
   std::string map;  ///< a name of config/maps; empty: the world's; none: no map
   std::shared_ptr<const maps::Map> made_map;  ///< instead of it
   bool knows_pose = true;                     ///< registration gets the robot's start
-  bool snap = true;                           ///< new artifacts are aligned with right angles
   bool adds_objects = false;                  ///< objects that are not on the map are added to it
   /// Else the built-in schemas and the shipped activities.
   std::optional<intentions::Registry> schemas;

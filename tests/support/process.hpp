@@ -54,8 +54,6 @@ class Process {
 
   /// The violations found so far, a line each.
   std::string violations() const;
-  /// All output of the checker: findings, and a summary for each closed connection.
-  std::string checked() const;
   /// The test damages the line: violations are no failure.
   void expect_violations() { violations_expected_ = true; }
 
@@ -64,6 +62,9 @@ class Process {
   static void (*complain)(const std::string& found);
 
  private:
+  /// All output of the checker: findings, and a summary for each closed connection.
+  std::string checked() const;
+
   pid_t pid_ = -1;
   std::optional<int> status_;
   std::string output_file_;

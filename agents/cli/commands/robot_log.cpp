@@ -19,7 +19,7 @@ namespace saphira::cli {
 namespace {
 
 struct RobotLogOptions {
-  logs::LogFiles files;
+  std::string log;
   std::string map;      ///< map: output file; evaluate: the map for localization
   std::string drawing;  ///< output picture; empty: none
   std::vector<double> start;
@@ -28,8 +28,8 @@ struct RobotLogOptions {
 };
 
 logs::DataSet read(const RobotLogOptions& options) {
-  const std::string name = std::filesystem::path(options.files.raw).filename().string();
-  logs::DataSet log = logs::load_data_set(name, options.files);
+  const std::string name = std::filesystem::path(options.log).filename().string();
+  logs::DataSet log = logs::load_data_set(name, options.log);
   std::fprintf(stderr, "%s: %zu scans, %.0f m by dead reckoning\n", name.c_str(), log.scans.size(),
                log.odometry.length());
   for (const std::string& note : log.notes)
@@ -143,7 +143,7 @@ CLI::App* add(CLI::App& log, Chosen& chosen, const char* name, const char* what,
               const std::shared_ptr<RobotLogOptions>& options) {
   CLI::App* command = log.add_subcommand(name, what);
   command->fallthrough();
-  command->add_option("log", options->files.raw, "the log in CARMEN's format, packed (.gz) or not")
+  command->add_option("log", options->log, "the log in CARMEN's format, packed (.gz) or not")
       ->required()
       ->check(CLI::ExistingFile);
   command->callback([options, run, &chosen] {

@@ -1,5 +1,7 @@
 #include "screenshot.hpp"
 
+#include <libwebsockets.h>
+
 #include <chrono>
 #include <fstream>
 #include <stdexcept>
@@ -14,22 +16,12 @@ namespace {
 constexpr std::chrono::milliseconds kSettle{1500};  // echoes and grid come
 
 std::string decode_base64(const std::string& text) {
-  static const std::string digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  unsigned value = 0;
-  int bits = 0;
-  for (const char c : text) {
-    const std::size_t digit = digits.find(c);
-    if (digit == std::string::npos)
-      break;
-    value = (value << 6U | static_cast<unsigned>(digit)) & 0xffffffU;
-    bits += 6;
-    if (bits >= 8) {
-      bits -= 8;
-      bytes += static_cast<char>(value >> static_cast<unsigned>(bits) & 0xffU);
-    }
-  }
+  std::string bytes(text.size() + 4, '\0');
+  const int size =
+      lws_b64_decode_string(text.c_str(), bytes.data(), static_cast<int>(bytes.size()));
+  if (size < 0)
+    throw std::runtime_error("the browser's picture cannot be read");
+  bytes.resize(static_cast<std::size_t>(size));
   return bytes;
 }
 

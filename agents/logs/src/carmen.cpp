@@ -165,14 +165,12 @@ bool lay_beams(LaserScan& scan, double resolution) {
 }
 
 // Stamp, host, and the logger's stamp, as far as present.
-Stamps stamps(Words& words, std::string* host = nullptr) {
+Stamps stamps(Words& words) {
   Stamps time;
   time.ipc = time.logger = words.stamp(std::nan(""));
   if (words.at_end())
     return time;
-  const std::string_view name = words.word("a host");
-  if (host != nullptr)
-    *host = name;
+  words.word("a host");
   time.logger = words.stamp(time.ipc);
   return time;
 }
@@ -201,7 +199,7 @@ LaserScan old_laser(Words& words, Laser laser, Parameters& parameters) {
   scan.pose = words.pose();
   scan.laser_in_robot = relative(scan.pose, in_log);
   scan.no_return = 0.0;
-  scan.time = stamps(words, &scan.host);
+  scan.time = stamps(words);
   return scan;
 }
 
@@ -235,7 +233,7 @@ LaserScan new_laser(Words& words, Laser laser, bool with_robot) {
     for (int i = 0; i < 5; ++i)  // velocities, safety distances, the turn's axis
       words.number("a number");
   }
-  scan.time = stamps(words, &scan.host);
+  scan.time = stamps(words);
   return scan;
 }
 
@@ -340,7 +338,6 @@ void stamp_all(CarmenLog& log) {
   const auto unstamped = [](const auto& m) {
     return !std::isfinite(m.time.ipc) || !std::isfinite(m.time.logger);
   };
-  std::erase_if(log.truth, unstamped);
   const auto without = std::count_if(log.scans.begin(), log.scans.end(), unstamped);
   if (without < std::ssize(log.scans)) {
     std::vector<char> kept;
@@ -435,13 +432,13 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
                              : new_laser(words, laser->laser, name.starts_with("ROBOT"));
         scans[laser->laser].push_back(std::move(scan));
         before[laser->laser].push_back(log.odometry.size());
-      } else if (name == "ODOM" || name == "TRUEPOS") {
+      } else if (name == "ODOM") {
         OdomRecord record;
         record.pose = words.pose();
         for (int i = 0; i < 3; ++i)  // velocities and acceleration; dead reckoning
           words.number("a velocity");
         record.time = stamps(words);
-        (name == "ODOM" ? log.odometry : log.truth).push_back(record);
+        log.odometry.push_back(record);
       } else if (name == "PARAM") {
         const std::string_view what = words.word("a parameter's name");
         if (what == "laser_front_laser_resolution") {
@@ -515,25 +512,6 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file) {
       scan.no_return = parameters.longest > 1.0 ? parameters.longest - 0.01 : 1e8;
   }
   return log;
-}
-
-std::vector<Relation> parse_relations(std::string_view text, const std::string& file) {
-  std::vector<Relation> out;
-  for (const Row& row : rows_of(text)) {
-    Words words(row, file);
-    if (row.text.starts_with("#") || words.at_end())
-      continue;
-    Relation relation;
-    relation.from = words.number("a stamp");
-    relation.to = words.number("a stamp");
-    relation.to_in_from.x = words.number("dx");
-    relation.to_in_from.y = words.number("dy");
-    for (const char* ignored : {"dz", "roll", "pitch"})
-      words.number(ignored);
-    relation.to_in_from.th = norm2_angle(words.number("yaw"));
-    out.push_back(relation);
-  }
-  return out;
 }
 
 std::string read_log(const std::string& path, std::string* trouble) {

@@ -43,8 +43,8 @@ Accuracy accuracy(const std::vector<StampedPose>& poses, const Trajectory& truth
             ? 1U
             : 0U;
   result.within = static_cast<double>(near) / static_cast<double>(pairs.estimate.size());
-  result.drift = errors.translation.median;
-  result.drift_heading = errors.rotation.median;
+  result.drift = errors.translation;
+  result.drift_heading = errors.rotation;
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace saphira::logs {
 
@@ -16,6 +17,14 @@ double distance(const Pose& a, const Pose& b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
+double median(std::vector<double> values) {
+  if (values.empty())
+    return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
@@ -23,7 +32,7 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
                    [](const StampedPose& a, const StampedPose& b) { return a.time < b.time; });
 }
 
-std::optional<Pose> Trajectory::at(double time, double gap) const {
+std::optional<Pose> Trajectory::at(double time) const {
   const auto after = std::lower_bound(poses_.begin(), poses_.end(), time,
                                       [](const StampedPose& p, double t) { return p.time < t; });
   constexpr double kSame = 1e-4;  // stamps are written to a microsecond
@@ -34,7 +43,7 @@ std::optional<Pose> Trajectory::at(double time, double gap) const {
   const auto before = after - 1;
   if (time - before->time < kSame)
     return before->pose;
-  if (after == poses_.end() || after->time - before->time > gap)
+  if (after == poses_.end())
     return std::nullopt;
   return between(before->pose, after->pose, (time - before->time) / (after->time - before->time));
 }
@@ -44,125 +53,6 @@ double Trajectory::length() const {
   for (std::size_t i = 1; i < poses_.size(); ++i)
     sum += distance(poses_[i - 1].pose, poses_[i].pose);
   return sum;
-}
-
-Trajectory densify(const Trajectory& scans, const Trajectory& odometry) {
-  std::vector<StampedPose> out = scans.poses();
-  const auto& at_scans = scans.poses();
-  std::size_t next = 0;
-  for (const StampedPose& record : odometry.poses()) {
-    while (next < at_scans.size() && at_scans[next].time <= record.time)
-      ++next;
-    if (next == 0 || next == at_scans.size())
-      continue;
-    const StampedPose& before = at_scans[next - 1];
-    const StampedPose& after = at_scans[next];
-    const auto odom_before = odometry.at(before.time);
-    const auto odom_after = odometry.at(after.time);
-    if (!odom_before || !odom_after || record.time - before.time < 1e-4)
-      continue;
-    // In the frame of the scan before, where turns have a short lever.
-    const Pose gone = relative(*odom_before, *odom_after);
-    const Pose here = relative(*odom_before, record.pose);
-    const Pose off = compose(relative(before.pose, after.pose), relative(gone, Pose{}));
-    const double share = (record.time - before.time) / (after.time - before.time);
-    const Pose bent = compose(before.pose, compose(between({}, off, share), here));
-    out.push_back({record.time, bent});
-  }
-  return Trajectory(std::move(out));
-}
-
-OdometryErrors fit_odometry(const std::vector<Pose>& odometry, const std::vector<Pose>& truth) {
-  // Turns: true = scale * measured + per_metre * way; ways: true = scale * measured.
-  double tt = 0.0;
-  double tw = 0.0;
-  double ww = 0.0;
-  double to_turn = 0.0;
-  double to_way = 0.0;
-  double measured_way = 0.0;
-  double true_way = 0.0;
-  double turn = 0.0;
-  double true_turn = 0.0;
-  double way = 0.0;
-  for (std::size_t i = 1; i < odometry.size(); ++i) {
-    turn += norm2_angle(odometry[i].th - odometry[i - 1].th);
-    true_turn += norm2_angle(truth[i].th - truth[i - 1].th);
-    way += distance(odometry[i], odometry[i - 1]);
-    measured_way += distance(odometry[i], odometry[i - 1]);
-    true_way += distance(truth[i], truth[i - 1]);
-    if (way < 1.0 && std::abs(turn) < 0.5)
-      continue;
-    tt += turn * turn;
-    tw += turn * way;
-    ww += way * way;
-    to_turn += true_turn * turn;
-    to_way += true_turn * way;
-    turn = true_turn = way = 0.0;
-  }
-  OdometryErrors out;
-  const double det = tt * ww - tw * tw;
-  if (det > 1e-9) {
-    out.turn_scale = (to_turn * ww - to_way * tw) / det;
-    out.turn_per_metre = (to_way * tt - to_turn * tw) / det;
-  }
-  if (measured_way > 1.0)
-    out.way_scale = true_way / measured_way;
-  return out;
-}
-
-std::vector<Pose> calibrated(const std::vector<Pose>& odometry, const OdometryErrors& errors) {
-  std::vector<Pose> out;
-  for (std::size_t i = 0; i < odometry.size(); ++i) {
-    if (i == 0) {
-      out.push_back(odometry.front());
-      continue;
-    }
-    const Pose step = relative(odometry[i - 1], odometry[i]);
-    const double turn =
-        errors.turn_scale * step.th + errors.turn_per_metre * std::hypot(step.x, step.y);
-    out.push_back(
-        compose(out.back(), {errors.way_scale * step.x, errors.way_scale * step.y, turn}));
-  }
-  return out;
-}
-
-Spread spread_of(const std::vector<double>& values) {
-  Spread out;
-  out.count = values.size();
-  if (values.empty())
-    return out;
-  const auto n = static_cast<double>(values.size());
-  for (const double v : values) {
-    out.mean += v / n;
-    out.squared += v * v / n;
-    out.most = std::max(out.most, v);
-  }
-  out.deviation = std::sqrt(std::max(0.0, out.squared - out.mean * out.mean));
-  std::vector<double> sorted = values;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  out.median = *middle;
-  return out;
-}
-
-RelationErrors relation_errors(const Trajectory& estimate, const std::vector<Relation>& relations) {
-  RelationErrors out;
-  std::vector<double> translations;
-  std::vector<double> rotations;
-  for (const Relation& relation : relations) {
-    const auto from = estimate.at(relation.from);
-    const auto to = estimate.at(relation.to);
-    if (!from || !to) {
-      ++out.missing;
-      continue;
-    }
-    const Pose off = relative(relation.to_in_from, relative(*from, *to));
-    translations.push_back(std::hypot(off.x, off.y));
-    rotations.push_back(std::abs(off.th));
-  }
-  out.translation = spread_of(translations);
-  out.rotation = spread_of(rotations);
-  return out;
 }
 
 Pairs pair_up(const Trajectory& estimate, const Trajectory& reference) {
@@ -231,7 +121,7 @@ DriftErrors drift(const Pairs& pairs, double length) {
     if (from + 1 < pairs.reference.size())
       way -= distance(pairs.reference[from], pairs.reference[from + 1]);
   }
-  return {spread_of(translations), spread_of(rotations)};
+  return {median(std::move(translations)), median(std::move(rotations))};
 }
 
 }  // namespace saphira::logs

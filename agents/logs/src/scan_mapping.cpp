@@ -141,7 +141,6 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
     loops_at_.emplace_back();
     last_odom_ = node_odom_ = pose_in_odom;
     hung_.push_back({0, {}});
-    report_.nodes = 1;
     return {};
   }
   const std::size_t last = poses_.size() - 1;
@@ -164,7 +163,6 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   settings.guess_information = turned(odom_information(step), -guess.th);
   Alignment found = align(local, scan, guess, settings);
   if (found.overlap < settings_.good_overlap) {
-    ++report_.searches;
     const double gone = std::hypot(step.x, step.y);
     const SearchWindow window{0.15 + 0.3 * gone, radians(25.0) + 0.3 * std::abs(step.th),
                               radians(1.0)};
@@ -204,7 +202,6 @@ Pose ScanMapper::add(const Pose& pose_in_odom, Scan scan) {
   scans_.push_back(std::move(scan));
   believed_in_node_ = {};
   hung_.push_back({last + 1, {}});
-  report_.nodes = poses_.size();
   if (path_.back() - searched_at_ >= settings_.loop_every) {
     searched_at_ = path_.back();
     close_loops();
@@ -400,7 +397,6 @@ void ScanMapper::close_loops() {
     auto closure = find_closure(candidate.pass, here, candidate.covariance, query);
     if (!closure)
       continue;
-    ++report_.loop_candidates;
     // Within the graph's uncertainty.
     const Pose off = relative(closure->to_in_from, relative(poses_[closure->from], poses_[here]));
     const Eigen::Vector3d e(off.x, off.y, off.th);

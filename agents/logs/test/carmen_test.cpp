@@ -79,8 +79,6 @@ TEST(CarmenKinds, CommentsParametersCrlfAndUnknownLinesDoNotMatter) {
   ASSERT_EQ(log.scans.size(), 2U);
   EXPECT_GT(log.scans[0].ranges[0], 1e6);
   EXPECT_EQ(log.scans[0].ranges[1], -1.0);
-  ASSERT_EQ(log.truth.size(), 1U);
-  EXPECT_EQ(log.truth[0].pose, (Pose{1.0, 2.0, 0.5}));
   for (const LaserScan& scan : log.scans) {
     Beams beams;
     beams.max_range = scan.no_return;
@@ -141,7 +139,6 @@ TEST(Carmen, ARobotLaserWithOrWithoutACountOfRemissions) {
     EXPECT_EQ(log.scans[0].ranges.size(), 5U);
     EXPECT_NEAR(log.scans[0].pose.x, 1.0, 1e-9);
     EXPECT_NEAR(log.scans[0].laser_in_robot.x, 0.1, 1e-9);
-    EXPECT_EQ(log.scans[0].host, "host");
     EXPECT_NEAR(log.scans[0].time.ipc, 10.5, 1e-9);
   }
 }
@@ -224,45 +221,23 @@ TEST(CarmenFiles, APackedLogThatEndsTooEarlyIsReadAsFarAsItGoes) {
   EXPECT_TRUE(parse(half).damaged.empty());
 }
 
-TEST(CarmenFiles, LogsOfOneFolderHaveTheirOwnReferences) {
+TEST(CarmenFiles, AClockThatWasSetBackIsNotTakenIfTheOtherIsSound) {
   const TempDir folder;
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::filesystem::create_directories(std::filesystem::path(folder.path(name)).parent_path());
-    std::ofstream(folder.path(name)) << text;
+  const auto load = [&](const char* last) {
+    std::string text = flaser("FLASER", 181, 0, 30.0, " 100 h 1");
+    text += flaser("FLASER", 181, 1, 30.0, " 50 h 2");
+    text += flaser("FLASER", 181, 2, 30.0, last);
+    std::ofstream(folder.path("a.log")) << text;
+    return load_data_set("a", folder.path("a.log"));
   };
-  for (const char* name : {"aces.clf", "csail.log", "csail.gfs.log", "aces.relations",
-                           "intel/raw.log", "intel/corrected.log"})
-    write(name, "");
-  const auto logs = find_logs(folder.path());
-  ASSERT_EQ(logs.size(), 3U);
-  EXPECT_EQ(logs[0].name, "aces");
-  EXPECT_TRUE(logs[0].relations.ends_with("aces.relations"));
-  EXPECT_TRUE(logs[0].corrected.empty());
-  EXPECT_EQ(logs[1].name, "csail");
-  EXPECT_TRUE(logs[1].corrected.ends_with("csail.gfs.log"));
-  EXPECT_EQ(logs[2].name, "intel");
-  EXPECT_TRUE(logs[2].corrected.ends_with("corrected.log"));
-}
-
-TEST(CarmenFiles, ReferencesOfAnotherTimeAreToldAndLeftOut) {
-  const TempDir folder;
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::ofstream(folder.path(name)) << text;
-    return folder.path(name);
-  };
-  std::string text;
-  for (int i = 0; i < 5; ++i)
-    text += flaser("FLASER", 181, i, 30.0, (" " + std::to_string(100 + i) + " h 1").c_str());
-  LogFiles files;
-  files.raw = write("a.log", text);
-  files.corrected = write("b.log", flaser("FLASER", 90, 0, 30.0, " 7 h 7"));
-  files.relations = write("a.relations", "100 104 0.4 0 0 0 0 0\n5000 5001 0 0 0 0 0 0\n");
-  const DataSet set = load_data_set("a", files);
-  EXPECT_EQ(set.relations.size(), 2U);
-  EXPECT_EQ(set.exact_relations.size(), 1U);
-  EXPECT_FALSE(set.reference);
-  EXPECT_EQ(set.notes.size(), 3U);
-  EXPECT_GT(set.scans.front().points.size(), 170U);
+  const DataSet sound = load(" 51 h 3");
+  EXPECT_EQ(sound.times, (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_NEAR(sound.odometry.length(), 0.2, 1e-9);
+  EXPECT_GT(sound.scans.front().points.size(), 170U);
+  EXPECT_TRUE(sound.notes.empty());
+  const DataSet neither = load(" 51 h -3");
+  EXPECT_EQ(neither.times, (std::vector<double>{50.0, 51.0, 100.0}));
+  EXPECT_EQ(neither.notes.size(), 1U);
 }
 
 // Reading a damaged file gives scans with finite poses and times, or an error that begins with the

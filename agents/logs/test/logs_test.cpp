@@ -6,7 +6,6 @@
 #include "saphira/logs/carmen.hpp"
 #include "saphira/logs/laser_map.hpp"
 #include "saphira/logs/metrics.hpp"
-#include "saphira/logs/stamps.hpp"
 #include "saphira/logs/virtual_sonar.hpp"
 
 namespace saphira::logs {
@@ -62,7 +61,6 @@ TEST(Carmen, ADamagedLineIsNamedAndPassedOver) {
   EXPECT_TRUE(log.damaged[0].starts_with("a.log:2:12: expected a range")) << log.damaged[0];
   EXPECT_TRUE(log.damaged[1].starts_with("a.log:3:13:")) << log.damaged[1];
   EXPECT_THROW(parse_carmen("ODOM 0 0 0 0 0 0 1 h 1\n", "a.log"), FileError);
-  EXPECT_THROW(parse_relations("1 2 3\n", "a.relations"), FileError);
   EXPECT_THROW(read_log("/nowhere/a.log"), std::runtime_error);
 }
 
@@ -75,28 +73,6 @@ std::vector<StampedPose> a_way() {
     pose = compose(pose, {0.1, 0.0, 0.03 * std::sin(0.05 * i)});
   }
   return way;
-}
-
-TEST(Metrics, RelationsNeedNoCommonFrame) {
-  const auto way = a_way();
-  std::vector<Relation> relations;
-  for (std::size_t i = 0; i + 50 < way.size(); i += 10)
-    relations.push_back({way[i].time, way[i + 50].time, relative(way[i].pose, way[i + 50].pose)});
-  std::vector<StampedPose> elsewhere;
-  for (const StampedPose& p : way)
-    elsewhere.push_back({p.time, compose({5.0, -3.0, 2.0}, p.pose)});
-  const auto same = relation_errors(Trajectory(elsewhere), relations);
-  EXPECT_NEAR(same.translation.most, 0.0, 1e-9);
-  EXPECT_NEAR(same.rotation.most, 0.0, 1e-9);
-  EXPECT_EQ(same.missing, 0U);
-
-  for (Relation& relation : relations)
-    relation.to_in_from.x += 0.3;
-  relations.push_back({0.0, 1000.0, {}});
-  const auto off = relation_errors(Trajectory(elsewhere), relations);
-  EXPECT_NEAR(off.translation.mean, 0.3, 1e-9);
-  EXPECT_NEAR(off.translation.deviation, 0.0, 1e-6);
-  EXPECT_EQ(off.missing, 1U);
 }
 
 TEST(Metrics, AlignmentTakesAwayTheFrameAndNothingElse) {
@@ -126,75 +102,7 @@ TEST(Metrics, DriftIsPerDistance) {
     }
   }
   const auto errors = drift(pair_up(Trajectory(drifting), Trajectory(way)), 10.0);
-  EXPECT_NEAR(degrees(errors.rotation.median), 10.0, 0.2);
-}
-
-TEST(Metrics, ConstantErrorsOfDeadReckoningAreFound) {
-  std::vector<Pose> truth;
-  for (const StampedPose& p : a_way())
-    truth.push_back(p.pose);
-  const OdometryErrors wrong{radians(-1.0), 0.95, 1.02};
-  const std::vector<Pose> measured = calibrated(truth, wrong);
-  ASSERT_GT((measured.back().position() - truth.back().position()).norm(), 1.0);
-  const std::vector<Pose> again = calibrated(measured, fit_odometry(measured, truth));
-  EXPECT_LT((again.back().position() - truth.back().position()).norm(), 0.2);
-}
-
-TEST(Metrics, BetweenScansItGoesAsDeadReckoningDid) {
-  const auto way = a_way();
-  std::vector<StampedPose> scans;
-  for (std::size_t i = 0; i < way.size(); i += 50)
-    scans.push_back(way[i]);
-  const Trajectory dense = densify(Trajectory(scans), Trajectory(way));
-  for (std::size_t i = 0; i < 250; ++i) {
-    const auto pose = dense.at(way[i].time);
-    ASSERT_TRUE(pose);
-    EXPECT_NEAR((pose->position() - way[i].pose.position()).norm(), 0.0, 1e-9);
-  }
-  EXPECT_FALSE(dense.at(-1.0));
-  EXPECT_FALSE(dense.at(1000.0));
-}
-
-TEST(Stamps, AreMendedByDeadReckoning) {
-  // Every fifth scan has its stamp; the others are spaced evenly, up to 0.6 s off.
-  const auto way = a_way();
-  CarmenLog raw;
-  CarmenLog corrected;
-  std::vector<double> truth;
-  for (std::size_t i = 0; i < 300; i += 3) {
-    LaserScan scan;
-    scan.pose = way[i].pose;
-    scan.ranges = {1.0 + 0.02 * static_cast<double>(i)};
-    const bool original = i % 15 == 0;
-    const double off = original ? 0.0 : 0.6 * std::sin(0.02 * static_cast<double>(i));
-    scan.time = {1000.0 + way[i].time + off, 1000.0 + way[i].time + off};
-    scan.host = original ? "B" : "A";
-    raw.scans.push_back(scan);
-    truth.push_back(1000.0 + way[i].time);
-    if (!original)
-      continue;
-    // Corrected poses differ; between them the motion is that of dead reckoning.
-    scan.time = {way[i].time, way[i].time};
-    const Pose there = compose({3.0, 4.0, 1.0}, way[i].pose);
-    scan.pose = there;
-    corrected.scans.push_back(scan);
-    for (std::size_t k = i; k < std::min(i + 15, way.size()); ++k) {
-      OdomRecord record;
-      record.time = {k == i ? 0.0 : way[k].time, 0.0};
-      record.pose = compose(there, relative(way[i].pose, way[k].pose));
-      record.scans_before = corrected.scans.size();
-      corrected.odometry.push_back(record);
-    }
-  }
-  std::stable_sort(raw.scans.begin(), raw.scans.end(),
-                   [](const auto& a, const auto& b) { return a.time.ipc < b.time.ipc; });
-  EXPECT_NEAR(clock_offset(raw, Clock::ipc, corrected).value_or(0.0), 1000.0, 1e-9);
-  const TimeBase base = mend_stamps(raw, corrected);
-  EXPECT_EQ(base.mended, 80U);
-  std::size_t good = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    good += std::abs(raw.scans[i].time.ipc - truth[i]) < 0.05 ? 1U : 0U;
-  EXPECT_GE(good, 95U);
+  EXPECT_NEAR(degrees(errors.rotation), 10.0, 0.2);
 }
 
 Scan before_a_wall(double angle) {

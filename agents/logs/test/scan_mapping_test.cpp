@@ -68,6 +68,69 @@ TEST(ScanMapper, ClosesTheLoopAndKnowsWhereItWas) {
   EXPECT_LT(worst(mapper.trajectory(), drive), 0.25);
 }
 
+// Eight rooms of 5 m on either side of a corridor, all the same, with thinned scans and wheels that
+// slip: into three rooms on the way there and into three others on the way back.
+TEST(ScanMapper, RoomsThatLookAlikeAreNotTakenForOneAnother) {
+  std::vector<test::Piece> floor{{{0.0, -1.0}, {0.0, 1.0}}, {{40.0, -1.0}, {40.0, 1.0}}};
+  for (double x = 0.0; x < 40.0; x += 5.0)
+    for (const double y : {-1.0, 1.0}) {
+      const auto wall = [&](double x0, double y0, double x1, double y1) {
+        floor.push_back({{x + x0, y * y0}, {x + x1, y * y1}});
+      };
+      wall(0.0, 1.0, 2.0, 1.0);
+      wall(3.0, 1.0, 5.0, 1.0);
+      wall(0.0, 1.0, 0.0, 6.0);
+      wall(5.0, 1.0, 5.0, 6.0);
+      wall(0.0, 6.0, 5.0, 6.0);
+      wall(3.5, 4.0, 4.5, 4.0);  // a desk
+    }
+  Drive drive;
+  Random random(3);
+  Pose truth{1.0, 0.0, 0.0};
+  Pose odom;
+  double since_scan = 1.0;
+  int steps = 0;
+  const auto go = [&](const Pose& step) {
+    truth = compose(truth, step);
+    const double slip = ++steps % 300 == 0 ? radians(random.chance(0.5) ? 20.0 : -20.0) : 0.0;
+    odom = compose(odom, {step.x * random.normal(1.0, 0.02), 0.0,
+                          step.th * random.normal(1.0, 0.05) + radians(0.5) * step.x + slip});
+    since_scan += std::abs(step.x) + 0.5 * std::abs(step.th);
+    if (since_scan < 0.8)
+      return;
+    since_scan = 0.0;
+    drive.truth.push_back(truth);
+    drive.odom.push_back(odom);
+    drive.scans.push_back(test::scan_from(truth, &random, floor));
+  };
+  const auto to = [&](double x, double y) {
+    const double turn = norm2_angle(std::atan2(y - truth.y, x - truth.x) - truth.th);
+    for (int i = 0; i < 10; ++i)
+      go({0.0, 0.0, turn / 10.0});
+    for (double left = (Vec2(x, y) - truth.position()).norm(); left > 0.05; left -= 0.1)
+      go({0.1, 0.0, 0.0});
+  };
+  for (const auto& [room, side] : {std::pair(1, 3.0),
+                                   {4, -3.0},
+                                   {6, 3.0},
+                                   {7, 0.0},
+                                   {5, 3.0},
+                                   {3, -3.0},
+                                   {2, 3.0},
+                                   {0, 0.0},
+                                   {4, 0.0}}) {
+    to(5.0 * room + 2.5, 0.0);
+    to(5.0 * room + 2.5, side == 0.0 ? 0.1 : side);
+    to(5.0 * room + 2.5, 0.0);
+  }
+  ScanMapper mapper;
+  for (std::size_t i = 0; i < drive.scans.size(); ++i)
+    mapper.add(drive.odom[i], drive.scans[i]);
+  mapper.refine(2);
+  EXPECT_GE(mapper.report().loops, 1U);
+  EXPECT_LT(worst(mapper.trajectory(), drive), 0.15);
+}
+
 TEST(ScanMapper, TheSameInputsGiveTheSamePoses) {
   const Drive drive = around_the_block(1, 2);
   ScanMapper first;

@@ -48,10 +48,10 @@ inline const std::vector<Piece>& pieces() {
   return kPieces;
 }
 
-inline double range_to(const Vec2& origin, double angle) {
+inline double range_to(const Vec2& origin, double angle, const std::vector<Piece>& among) {
   const Vec2 ahead(std::cos(angle), std::sin(angle));
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Piece& piece : pieces()) {
+  for (const Piece& piece : among) {
     const Vec2 along = piece.to - piece.from;
     const double cross = ahead.x() * along.y() - ahead.y() * along.x();
     if (std::abs(cross) < 1e-12)
@@ -66,12 +66,14 @@ inline double range_to(const Vec2& origin, double angle) {
 }
 
 /// 181 beams from a pose of the robot there, exact or with noise.
-inline Scan scan_from(const Pose& pose, Random* random = nullptr) {
+inline Scan scan_from(const Pose& pose, Random* random = nullptr,
+                      const std::vector<Piece>& among = pieces()) {
   std::vector<double> ranges;
   const Beams beams;
   for (int i = 0; i <= 180; ++i)
-    ranges.push_back(range_to(pose.position(), pose.th + beams.first_angle + i * beams.step) +
-                     (random != nullptr ? random->normal(0.0, 0.01) : 0.0));
+    ranges.push_back(
+        range_to(pose.position(), pose.th + beams.first_angle + i * beams.step, among) +
+        (random != nullptr ? random->normal(0.0, 0.01) : 0.0));
   return make_scan(ranges, beams);
 }
 

@@ -85,6 +85,15 @@ TEST(Devices, AMaskLeavesTheOtherBits) {
   EXPECT_EQ(b.only().answer.code, AnswerCode::done) << "the other bits are not what was asked for";
 }
 
+TEST(Devices, AServoIsShownByARobotOfThatGeneration) {
+  Bench b;
+  b.ask(ServoWish{1500});
+  EXPECT_EQ(b.cycle(protocol::Ptu{1500}), 1);
+  b.packet.ptu = 1500;
+  b.cycle(Command{});
+  EXPECT_EQ(b.only().answer.code, AnswerCode::done);
+}
+
 TEST(Devices, AreGivenUpAfterFiveSeconds) {
   Bench b;
   b.ask(ServoWish{1500});

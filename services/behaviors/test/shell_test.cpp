@@ -46,7 +46,7 @@ class ShellTest : public testing::TestWithParam<bool> {
     v1::RobotState sample;
     sample.stamp().epoch(epoch);
     sample.stamp().cycle(++cycle);
-    sample.odom(odom);
+    sample.odom(1);
     sample.pose_in_odom().th(heading);
     states.write(sample);
   }
@@ -89,7 +89,6 @@ class ShellTest : public testing::TestWithParam<bool> {
 
   std::uint64_t epoch = 77;
   std::uint64_t cycle = 0;
-  std::uint64_t odom = 1;
   double heading = 1.0;
   v1::MotorCommand command;
   v1::BehaviorSet told;
@@ -117,18 +116,6 @@ TEST_P(ShellTest, CommandsWhatIsIntended) {
   EXPECT_TRUE(told.behaviors().empty());
 }
 
-TEST_P(ShellTest, SaysWhatCannotBeHad) {
-  describe();
-  one({behavior("Fly", 0), behavior("Stop", 3)});
-  state();
-  step();
-  EXPECT_FALSE(command.active());
-  EXPECT_NE(told.trouble().find("unknown schema \"Fly\""), std::string::npos);
-  ASSERT_EQ(told.missing().size(), 1U);
-  EXPECT_NE(told.missing()[0].reason().find("unknown schema"), std::string::npos);
-  EXPECT_EQ(told.behaviors().size(), 1U);
-}
-
 TEST_P(ShellTest, ANewEpochBeginsAnew) {
   describe();
   one({behavior("ConstantVelocity", 2)});
@@ -142,18 +129,6 @@ TEST_P(ShellTest, ANewEpochBeginsAnew) {
   one({});
   EXPECT_TRUE(command.active());
   EXPECT_EQ(told.behaviors().at(0).schema(), "Stop");
-}
-
-TEST_P(ShellTest, WhatWasIntendedInAnotherOdomIsNotDrivenBy) {
-  describe();
-  one({behavior("ConstantVelocity", 2)});
-  one({behavior("ConstantVelocity", 2)});
-  EXPECT_TRUE(command.active());
-  odom = 2;
-  one({behavior("ConstantVelocity", 2)});
-  EXPECT_FALSE(command.active());
-  one({});
-  EXPECT_TRUE(command.active());
 }
 
 class LiveShellTest : public ShellTest {};
@@ -193,35 +168,6 @@ TEST_P(LiveShellTest, SaysThatItWaitsForTheDescription) {
   EXPECT_TRUE(command.active());
   // The status may report a skipped cycle.
   EXPECT_NE(service.status().state(), v1::SERVICE_WAITING) << service.status().reason();
-}
-
-// Manual 6.5: suspending the driver stops the robot.
-TEST_P(ShellTest, ReleasesTheRobotWhileItIsSuspended) {
-  bus::Writer<v1::Request> requests{bridge.writer<v1::Request>(bus::topics::kProcessRequest)};
-  const auto request = [&](const char* functor) {
-    v1::Request sample;
-    sample.source("a person");
-    sample.service("behaviors");
-    sample.functor(functor);
-    sample.arguments({bus::text("process", "execute-current-behaviors")});
-    requests.write(sample);
-  };
-  describe();
-  const auto ahead = behavior("ConstantVelocity", 2, {bus::number("speed", 0.25)});
-  one({ahead});
-  one({ahead});
-  EXPECT_TRUE(command.active());
-  request("interrupt");
-  for (int i = 0; i < 3; ++i) {
-    one({ahead});
-    EXPECT_FALSE(command.active());
-    EXPECT_FALSE(told.control());
-    EXPECT_TRUE(told.behaviors().empty());
-  }
-  request("resume");
-  one({ahead});
-  EXPECT_TRUE(command.active());
-  EXPECT_EQ(told.behaviors().size(), 1U);
 }
 
 // A minute of published samples is kept for late readers.

@@ -104,36 +104,6 @@ Goal from_bus(const v1::Goal& goal) {
   return result;
 }
 
-v1::Goal to_bus(const Goal& goal) {
-  v1::Goal result;
-  result.id(to_bus(goal.id));
-  result.requester(goal.requester);
-  result.functor(goal.functor);
-  result.arguments(saphira::to_bus(goal.arguments));
-  result.priority(goal.priority);
-  result.deadline(goal.deadline);
-  result.level(goal.level);
-  result.writer_lost(kPolicies.theirs(goal.writer_lost));
-  return result;
-}
-
-GoalStatus from_bus(const v1::GoalStatus& status) {
-  GoalStatus result;
-  result.id = from_bus(status.id());
-  result.requester = status.requester();
-  result.functor = status.functor();
-  result.state = kStates.ours(status.state(), GoalState::kWaiting);
-  result.code = kCodes.ours(status.code(), GoalCode::kNone);
-  result.reason = status.reason();
-  result.step = status.step();
-  result.progress = status.progress();
-  result.level = status.level();
-  result.trend = kTrends.ours(status.trend(), Trend::kSteady);
-  result.elapsed = status.elapsed();
-  result.note = status.note();
-  return result;
-}
-
 v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   v1::GoalStatus result;
   result.id(to_bus(status.id));
@@ -152,18 +122,6 @@ v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   return result;
 }
 
-IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {
-  IntendedBehavior result;
-  result.name = behavior.name();
-  result.schema = behavior.schema();
-  result.priority = behavior.priority();
-  result.running = behavior.running();
-  result.parameters = saphira::from_bus(behavior.parameters());
-  result.intention = behavior.intention();
-  result.blocking = behavior.blocking();
-  return result;
-}
-
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
   v1::IntendedBehavior result;
   result.name(behavior.name);
@@ -173,23 +131,6 @@ v1::IntendedBehavior to_bus(const IntendedBehavior& behavior) {
   result.parameters(saphira::to_bus(behavior.parameters));
   result.intention(behavior.intention);
   result.blocking(behavior.blocking);
-  return result;
-}
-
-IntentionNode from_bus(const v1::IntentionNode& node) {
-  IntentionNode result;
-  result.id = node.id();
-  result.parent = node.parent();
-  result.name = node.name();
-  result.schema = node.schema();
-  result.arguments = node.arguments();
-  result.state = kIntentionStates.ours(node.state(), IntentionState::kRunning);
-  result.blocking = node.blocking();
-  result.label = node.label();
-  result.step = node.step();
-  result.since = static_cast<Ticks>(node.since());
-  result.priority = node.priority();
-  result.goal = from_bus(node.goal());
   return result;
 }
 

@@ -21,15 +21,9 @@ GoalId from_bus(const v1::GoalId& id);
 v1::GoalId to_bus(const GoalId& id);
 
 Goal from_bus(const v1::Goal& goal);
-v1::Goal to_bus(const Goal& goal);
-
-GoalStatus from_bus(const v1::GoalStatus& status);
 v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp);
 
-IntendedBehavior from_bus(const v1::IntendedBehavior& behavior);
 v1::IntendedBehavior to_bus(const IntendedBehavior& behavior);
-
-IntentionNode from_bus(const v1::IntentionNode& node);
 v1::IntentionNode to_bus(const IntentionNode& node);
 
 Robot from_bus(const v1::RobotState& robot);

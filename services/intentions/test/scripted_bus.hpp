@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "intentions/shell/convert.hpp"
+#include "intention.h"
+#include "requests/shell/convert.hpp"
 #include "saphira/bus/node.hpp"
 #include "saphira/bus/request_client.hpp"
 #include "scripted_robot.hpp"
@@ -18,6 +19,16 @@ inline v1::Goal go_to(double x, double y) {
   goal.functor("go_to");
   goal.arguments().push_back(bus::point("position", x, y, 0.0, v1::FRAME_ODOM));
   return goal;
+}
+
+inline IntendedBehavior from_bus(const v1::IntendedBehavior& behavior) {
+  return {behavior.name(),
+          behavior.schema(),
+          behavior.priority(),
+          behavior.running(),
+          saphira::from_bus(behavior.parameters()),
+          behavior.intention(),
+          behavior.blocking()};
 }
 
 /// The bridge and the behaviors service in one, in the simplest form, on the bus.
@@ -91,19 +102,10 @@ class ScriptedBus {
       state.goal(level.goal);
       sample.behaviors().push_back(state);
     }
-    for (const IntendedBehavior& behavior : behaviors) {
-      if (behavior.schema != missing.first)
-        continue;
-      sample.missing().emplace_back();
-      sample.missing().back().name(behavior.name);
-      sample.missing().back().reason(missing.second);
-    }
     behaviors_.write(sample);
     return true;
   }
 
-  /// A schema of a behavior that cannot be made, and the reason.
-  std::pair<std::string, std::string> missing;
   std::optional<v1::Intentions> intended;  ///< the newest that were acted on
 
  private:

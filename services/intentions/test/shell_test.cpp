@@ -94,54 +94,6 @@ TEST_F(ShellTest, AnEmergencyStopInTheGrantEndsGoals) {
   EXPECT_EQ(state(next), v1::GOAL_UNDERWAY) << bus::describe(*goals.status(next));
 }
 
-TEST_F(ShellTest, PublishesTheTree) {
-  start();
-  goals.ask(go_to(1.0, 0.5));
-  cycle();
-  ASSERT_EQ(robot.intended->nodes().size(), 5U);
-  EXPECT_EQ(robot.intended->nodes()[0].schema(), "go_to");
-  EXPECT_EQ(robot.intended->nodes()[1].parent(), robot.intended->nodes()[0].id());
-}
-
-// Manual 6.5, and 2.3.8 for one intention alone.
-TEST_F(ShellTest, HoldsAllGoalsWhileItIsSuspendedAndOneIntentionByItsName) {
-  bus::Writer<v1::Request> requests{requester.writer<v1::Request>(bus::topics::kProcessRequest)};
-  bus::Reader<v1::Answer> answers{requester.reader(bus::topics::kProcessAnswers)};
-  const auto request = [&](const std::string& process, const char* functor) {
-    v1::Request sample;
-    sample.source("a person");
-    sample.service("intentions");
-    sample.functor(functor);
-    sample.arguments({bus::text("process", process)});
-    requests.write(sample);
-    cycle();
-    return answers.take_newest().value().text();
-  };
-  start();
-  const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
-  cycle();
-  EXPECT_FALSE(robot.intended->behaviors().empty());
-  EXPECT_EQ(request("execute-intentions", "suspend"), "");
-  EXPECT_TRUE(robot.intended->behaviors().empty());
-  EXPECT_EQ(state(id), v1::GOAL_SUSPENDED);
-  EXPECT_EQ(goals.status(id)->reason(), "execute-intentions is suspended");
-  EXPECT_EQ(request("execute-intentions", "resume"), "");
-  cycle();
-  EXPECT_FALSE(robot.intended->behaviors().empty());
-  EXPECT_EQ(state(id), v1::GOAL_UNDERWAY);
-
-  const std::string name = robot.intended->nodes()[0].name();
-  EXPECT_EQ(request(name, "interrupt"), "");
-  cycle();
-  EXPECT_TRUE(robot.intended->behaviors().empty());
-  EXPECT_EQ(request(std::to_string(robot.intended->nodes()[0].id()), "resume"), "");
-  cycle();
-  EXPECT_FALSE(robot.intended->behaviors().empty());
-  EXPECT_EQ(request(name, "resume"), name + " was not interrupted");
-  EXPECT_EQ(request("nothing", "interrupt"),
-            "no process \"nothing\"; there are execute-intentions");
-}
-
 TEST_F(ShellTest, CancelsByDispose) {
   start();
   const v1::GoalId id = goals.ask(go_to(5.0, 0.0));
@@ -351,23 +303,6 @@ TEST_F(ShellTest, InLockstepItKnowsWhatBehaviorsThereAre) {
   EXPECT_EQ(state(id), v1::GOAL_FAILED);
   EXPECT_NE(goals.status(id)->reason().find("neither an activity nor a behavior"),
             std::string::npos)
-      << goals.status(id)->reason();
-}
-
-TEST_F(ShellTest, ABehaviorThatThereIsNotFailsTheGoalWithTheReason) {
-  const test::TempDir files;
-  folder = files.path();
-  std::ofstream(files.path("mine.act"))
-      << "(defintention :fly :goals '((INTEND :Fly () :priority 2)))";
-  start();
-  v1::Goal goal;
-  goal.functor("fly");
-  const v1::GoalId id = goals.ask(goal);
-  robot.missing = {"Fly", "unknown schema"};
-  for (int i = 0; i < 20; ++i)
-    cycle();
-  EXPECT_EQ(state(id), v1::GOAL_FAILED);
-  EXPECT_NE(goals.status(id)->reason().find("unknown schema"), std::string::npos)
       << goals.status(id)->reason();
 }
 

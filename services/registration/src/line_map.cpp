@@ -293,10 +293,8 @@ Field::Field(const maps::Map& map, const LineMap& lines) {
   };
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)
-      if (const Vec2 p = middle(column, row); inside(p)) {
+      if (inside(middle(column, row)))
         known_[at(column, row)] = 1;
-        known_cells_.push_back(p);
-      }
 }
 
 std::optional<std::size_t> Field::index(const Vec2& position) const {

@@ -477,6 +477,17 @@ TEST(RegistrationCore, ARestartKnowsTheMapThatWasLoadedAndNoStartOnIt) {
   EXPECT_EQ(robot.stand(next).state, State::unplaced);
 }
 
+TEST(RegistrationCore, ARestartKnowsThatTheMapWasDeleted) {
+  Core core(settings());
+  Robot robot;
+  robot.stand(core);
+  core.act(request("delete"));
+  robot.stand(core);
+  const Core next(settings(), parse_remembered(to_text(*core.remembered()), "memory"));
+  EXPECT_EQ(next.map_source(), "");
+  EXPECT_TRUE(next.map().features.empty());
+}
+
 TEST(RegistrationCore, WhatWasRememberedOfAnotherMapDoesNotCount) {
   Core core(settings());
   Robot robot;

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <limits>
 
 #include "drive/drive.hpp"
 #include "interpretation/shell/service.hpp"
@@ -78,13 +77,9 @@ class Folder {
 class RegistrationShell : public testing::Test {
  protected:
   RegistrationShell() {
-    describe();
     drive.scene().set_door("n2", true);
-  }
-
-  void describe() {
     v1::RobotDescription description;
-    description.stamp().epoch(epoch);
+    description.stamp().epoch(7);
     description.radius(0.22);
     for (const lps::SonarMount& mount : drive.mounts()) {
       v1::SonarPose pose;
@@ -106,9 +101,8 @@ class RegistrationShell : public testing::Test {
   void cycle() {
     const test::Seen& seen = drive.advance();
     v1::RobotState state;
-    state.stamp().epoch(epoch);
-    const std::uint64_t now = seen.cycle - before_epoch;
-    state.stamp().cycle(now);
+    state.stamp().epoch(7);
+    state.stamp().cycle(seen.cycle);
     state.odom(odom);
     state.pose_in_odom(lps::to_bus(seen.pose_in_odom));
     for (const lps::SonarReading& reading : seen.readings) {
@@ -126,15 +120,8 @@ class RegistrationShell : public testing::Test {
       const auto newest = registrations.take_newest();
       ASSERT_TRUE(newest);
       registration = *newest;
-    } while (registration.stamp().epoch() < epoch || registration.stamp().cycle() < now);
-    ASSERT_EQ(registration.stamp().cycle(), now);
-  }
-
-  /// The link to the robot was lost, and is there again.
-  void reconnect() {
-    ++epoch;
-    before_epoch = drive.seen().cycle;
-    describe();
+    } while (registration.stamp().cycle() < seen.cycle);
+    ASSERT_EQ(registration.stamp().cycle(), seen.cycle);
   }
 
   /// The service ends when the memory has its whole state, and another one begins.
@@ -253,8 +240,6 @@ class RegistrationShell : public testing::Test {
   maps::Map newest_map;
   std::uint64_t odom = 1795260425632;  ///< as the bridge makes them, from the time
   std::uint64_t number = 0;
-  std::uint64_t epoch = 7;
-  std::uint64_t before_epoch = 0;  ///< cycles of the robot
 };
 
 TEST_F(RegistrationShell, KeepsTheRobotOnTheMap) {
@@ -341,34 +326,6 @@ TEST_F(RegistrationShell, ADoorIsSaidToBeClosedUntilItIsOpen) {
   EXPECT_TRUE(registration.closed_doors().empty());
 }
 
-TEST_F(RegistrationShell, ASuspendedProcessSaysNothingUntilItIsResumed) {
-  start({map_path("office"), "start", ""});
-  bus::Writer<v1::Request> process_requests =
-      bridge.writer<v1::Request>(bus::topics::kProcessRequest);
-  const auto request = [&](const std::string& process, const char* functor) {
-    v1::Request sample;
-    sample.source("test");
-    sample.service("registration");
-    sample.functor(functor);
-    sample.arguments({bus::text("process", process)});
-    process_requests.write(sample);
-    cycle();
-  };
-  cycle();
-  ASSERT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
-  ASSERT_EQ(registration.environment(), 1U);
-  request("test-environment", "suspend");
-  EXPECT_EQ(registration.environment(), 0U);
-  request("test-environment", "resume");
-  EXPECT_EQ(registration.environment(), 1U);
-  request("test-match", "interrupt");
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
-  EXPECT_EQ(registration.reason(), "test-match is suspended: the pose goes on by dead reckoning");
-  request("test-match", "resume");
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
-}
-
 TEST_F(RegistrationShell, ARestartKnowsWhereItWas) {
   const Options options{map_path("office"), "start", folder.path("memory")};
   start(options);
@@ -431,79 +388,6 @@ TEST_F(RegistrationShell, TakesRequestsAndSaysWhyNot) {
   EXPECT_TRUE(maps.take_newest()->artifacts().empty());
 }
 
-TEST_F(RegistrationShell, RefusesPlacesThatAreNone) {
-  start({map_path("office"), "start", ""});
-  cycle();
-  const v1::Registration before = registration;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Pose& wrong : {Pose{nan, 7.0, 1.0}, Pose{5.0, 7.0, nan}}) {
-    const Answer answer = ask(place(wrong));
-    EXPECT_EQ(answer.code, AnswerCode::bad_argument);
-    EXPECT_NE(answer.text.find("place: argument \"position\": expected a point in the map"),
-              std::string::npos)
-        << answer.text;
-  }
-  const Answer far = ask(place({5.0, 1e13, 1.0}));
-  EXPECT_EQ(far.code, AnswerCode::refused);
-  EXPECT_NE(far.text.find("within 10 km"), std::string::npos) << far.text;
-  EXPECT_NEAR(registration.pose_in_map().x(), before.pose_in_map().x(), 0.1);
-  EXPECT_NEAR(registration.pose_in_map().y(), before.pose_in_map().y(), 0.1);
-}
-
-TEST_F(RegistrationShell, AMapThatIsTooLargeChangesNothing) {
-  start({map_path("office"), "start", ""});
-  cycle();
-  const auto before = maps.take_newest();
-  ASSERT_TRUE(before);
-  EXPECT_NE(
-      ask(load("campus.map", "OFFICE (1) 0, 0, 0, 2000000, 2000000\n")).text.find("at most 25 ha"),
-      std::string::npos);
-  EXPECT_NE(ask(put("OBJECT", {9000.0, 9000.0, 0.0}, 1.0)).text.find("at most 25 ha"),
-            std::string::npos);
-  EXPECT_FALSE(maps.take_newest()) << "nothing has changed";
-  EXPECT_EQ(registration.map_revision(), before->revision());
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
-}
-
-TEST_F(RegistrationShell, ARestartKnowsTheMapThatWasLoaded) {
-  const Options given{map_path("office"), "start", folder.path("memory")};
-  start(given);
-  cycle();
-  EXPECT_TRUE(done(
-      load("a;b  c.map", "CORRIDOR (5) 0, 0, 0, 30000, 2000 \"hall\"\nWALL 0, 5000, 0, 3000\n")));
-  EXPECT_TRUE(done(place({-3.0, 0.2, 0.1})));
-  maps.take_newest();
-  restart(given);
-  auto map = maps.take_newest();
-  ASSERT_TRUE(map);
-  EXPECT_EQ(map->source(), "a;b  c.map");
-  EXPECT_FALSE(map->changed());
-  EXPECT_EQ(map->artifacts().size(), 2U);
-  EXPECT_NEAR(registration.pose_in_map().x(), -3.0, 0.1);
-  // A changed option of the command line counts again.
-  Options other = given;
-  other.map_file = map_path("loop");
-  restart(given);
-  shell.reset();
-  service.reset();
-  start(other);
-  map = maps.take_newest();
-  ASSERT_TRUE(map);
-  EXPECT_EQ(map->source(), other.map_file);
-}
-
-TEST_F(RegistrationShell, ARestartKnowsThatTheMapWasDeleted) {
-  const Options given{map_path("office"), "start", folder.path("memory")};
-  start(given);
-  cycle();
-  EXPECT_TRUE(done({"delete"}));
-  restart(given);
-  const auto map = maps.take_newest();
-  ASSERT_TRUE(map);
-  EXPECT_EQ(map->source(), "");
-  EXPECT_TRUE(map->artifacts().empty());
-}
-
 TEST_F(RegistrationShell, ABadMemoryIsNone) {
   const std::string option = "option " + map_path("office") + "\n";
   for (const std::string& text : {std::string(), option + "odom 99999999999999999999999\nmap\n",
@@ -521,49 +405,6 @@ TEST_F(RegistrationShell, ABadMemoryIsNone) {
   start({map_path("office"), "start", folder.path("memory")});
   cycle();
   EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
-}
-
-TEST_F(RegistrationShell, WhatWasSaidOutlastsTheLink) {
-  start({map_path("office"), "start", ""});
-  cycle();
-  EXPECT_TRUE(done(on_or_off("switch", false)));
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
-  reconnect();
-  cycle();
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_OFF);
-  EXPECT_TRUE(done(on_or_off("switch", true)));
-  EXPECT_TRUE(done({"find"}));
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_UNPLACED);
-  reconnect();
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_UNPLACED) << "it may be far from the start";
-}
-
-TEST_F(RegistrationShell, BuildsAnEmptyMapAndRefusesWhatWouldBeLost) {
-  start({"", "start", ""});
-  cycle();
-  EXPECT_TRUE(registration.adds_features());
-  EXPECT_EQ(registration.reason(), "builds the map");
-  for (const Request& request :
-       {put("POS", {1.0, 0.0, 0.0}, 0.0), Request{"remove", {{"id", 1.0}}}, place({1.0, 0.0, 0.0}),
-        Request{"find"}, on_or_off("switch", false)}) {
-    const Answer answer = ask(request);
-    EXPECT_EQ(answer.code, AnswerCode::refused);
-    EXPECT_NE(answer.text.find("being built"), std::string::npos) << answer.text;
-  }
-  test::Tour there({{8.0, 0.0}}, false);
-  tour(there, 400);
-  EXPECT_GT(maps.take_newest()->artifacts().size(), 0U);
-  EXPECT_TRUE(done(on_or_off("add_features", false)));
-  // On the built map, at the same place.
-  cycle();
-  EXPECT_EQ(registration.state(), v1::REGISTRATION_TRACKING);
-  EXPECT_LT((lps::from_bus(registration.pose_in_map()).position() -
-             (drive.seen().true_pose_in_world.position() - Vec2(1.5, 7.0)))
-                .norm(),
-            0.4);
 }
 
 TEST(StartPose, IsAPlaceOrAPose) {

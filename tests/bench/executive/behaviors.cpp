@@ -1,12 +1,9 @@
-// The CPU time of behaviors: a thousand of them, and the behavior language compared with C++.
+// The CPU time of behaviors: a thousand of them.
 
-#include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <stdexcept>
 
 #include "behaviors/test/pioneer.hpp"
-#include "behaviors_in_cpp.hpp"
 #include "executive_bench.hpp"
 #include "saphira/base/random.hpp"
 #include "saphira/behaviors/language.hpp"
@@ -99,39 +96,6 @@ double step_ms(std::size_t count, int steps) {
   return (cpu_seconds() - begin) * 1000.0 / steps;
 }
 
-/// [s] of CPU for that number of updates of one behavior. The LPS is constant: it is the same for
-/// both.
-double updates(const Schema& schema, const std::vector<Argument>& arguments, int count,
-               double& check) {
-  const RobotModel model = pioneer();
-  lps::LocalPerceptualSpace lps(model.lps);
-  Random random(1);
-  for (std::uint64_t cycle = 1; cycle <= 30; ++cycle)
-    lps.update({0.02 * static_cast<double>(cycle), 0.0, 0.0}, readings(random), cycle);
-  RobotNow robot{{0.6, 0.0, 0.0}, 0.3, 0.0};
-  std::string trouble;
-  const auto parameters =
-      Parameters::check(schema.parameters, arguments, robot.pose_in_odom, trouble);
-  if (!parameters)
-    throw std::logic_error(trouble);
-  const std::unique_ptr<Behavior> behavior = schema.make();
-  check = 0.0;
-  double begin = 0.0;
-  for (int i = 0; i < count; ++i) {
-    if (i == 1)
-      begin = cpu_seconds();
-    Shared shared;
-    robot.pose_in_odom.th = 0.001 * (i % 1000);
-    const Context context{model, robot, lps, static_cast<std::uint64_t>(i), shared};
-    if (i == 0)
-      behavior->init(*parameters, context);
-    const Evaluation evaluation = behavior->update(*parameters, context);
-    for (const Rule& rule : evaluation.rules)
-      check += rule.strength * rule.value;
-  }
-  return cpu_seconds() - begin;
-}
-
 }  // namespace
 
 double behaviors_1000_ms() {
@@ -140,32 +104,6 @@ double behaviors_1000_ms() {
 
 double behaviors_10_ms() {
   return step_ms(10, 2000);
-}
-
-double language_over_cpp() {
-  const Registry shipped = predefined();
-  double worst = 0.0;
-  struct Pair {
-    Schema cpp;
-    std::vector<Argument> arguments;
-  };
-  for (const Pair& pair :
-       {Pair{avoid_collision_in_cpp(), {}}, Pair{go_to_pos_in_cpp(), {place(5.0, 1.0)}}}) {
-    // The best of several, in turns: a disturbance of one run does not affect the ratio.
-    double cpp = 1e9;
-    double language = 1e9;
-    for (int run = 0; run < 5; ++run) {
-      double cpp_check = 0.0;
-      double language_check = 0.0;
-      cpp = std::min(cpp, updates(pair.cpp, pair.arguments, 50'000, cpp_check));
-      language = std::min(
-          language, updates(*shipped.find(pair.cpp.name), pair.arguments, 50'000, language_check));
-      if (std::abs(cpp_check - language_check) > 1e-6 * (1.0 + std::abs(cpp_check)))
-        throw std::logic_error(pair.cpp.name + " in C++ and in the language do not do the same");
-    }
-    worst = std::max(worst, language / cpp);
-  }
-  return worst;
 }
 
 }  // namespace saphira::bench

@@ -6,8 +6,6 @@ namespace saphira::bench {
 
 double behaviors_10_ms();    ///< 10 behaviors with 5 rules each
 double behaviors_1000_ms();  ///< 1,000 behaviors with 5 rules each
-/// The time of an update of a behavior in the language, relative to the same behavior in C++.
-double language_over_cpp();
 
 /// A delivery as in Figure 10 of the paper: 12 intentions, with reported levels of their behaviors.
 double intentions_12_ms();

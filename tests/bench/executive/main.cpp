@@ -22,14 +22,12 @@ int main(int argc, char** argv) {
     const double behaviors_10 = behaviors_10_ms();
     const double behaviors_1000 = behaviors_1000_ms();
     const double intentions_10000 = intentions_10000_ms();
-    const double language = language_over_cpp();
     if (json) {
       std::printf(
           "{\"paper_load_ms\": %.5f, \"intentions_12_ms\": %.5f, \"behaviors_10_ms\": %.5f, "
-          "\"behaviors_1000_ms\": %.4f, \"intentions_10000_ms\": %.4f, \"language_over_cpp\": "
-          "%.3f}\n",
+          "\"behaviors_1000_ms\": %.4f, \"intentions_10000_ms\": %.4f}\n",
           intentions_12 + behaviors_10, intentions_12, behaviors_10, behaviors_1000,
-          intentions_10000, language);
+          intentions_10000);
     } else {
       std::printf("CPU time of a cycle, without the bus\n");
       std::printf("  12 intentions and 10 behaviors (the paper's load)  %8.3f ms\n",
@@ -38,7 +36,6 @@ int main(int argc, char** argv) {
                   behaviors_1000);
       std::printf("  10,000 intentions that wait                        %8.3f ms\n",
                   intentions_10000);
-      std::printf("  a behavior in the language over the same in C++    %8.2f\n", language);
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "saphira bench executive: %s\n", error.what());

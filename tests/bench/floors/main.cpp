@@ -213,7 +213,7 @@ struct Built {
 Built build(const Options& options, const Site& site) {
   constexpr double kStep = 0.25;  // [m]
   Built result;
-  test::Building building(drive_of(options, site), true);
+  test::Building building(drive_of(options, site));
   building.run(static_cast<std::uint64_t>(options.building * 600.0));
   const maps::Map map = building.aligned_map();
   for (const maps::Feature& corridor : site.map->features) {

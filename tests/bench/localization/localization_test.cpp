@@ -69,7 +69,7 @@ TEST(Localization, TheSameSeedGivesTheSamePoseToTheLastBit) {
 }
 
 TEST(Localization, DeadReckoningThatTurnsByAConstantTooMuchDoesNotLoseIt) {
-  // As much as that of the Intel log's robot (tests/bench/registration/README.md).
+  // As much as that of the Intel log's robot (agents/logs/README.md).
   for (const double turn : {radians(3.4), radians(-3.4)}) {
     DriveOptions options = on_office(doubled(4));
     options.bend = turn;

@@ -46,7 +46,7 @@ const Vec2& nearest(const std::vector<Vec2>& path, const Vec2& at) {
 }  // namespace
 
 Score::Score(Drive& drive, maps::Map map)
-    : Score(std::move(map), [&drive](const Vec2& about) {
+    : map_(std::move(map)), surfaces_([&drive](const Vec2& about) {
         sim::Things things{drive.world().segments, {}};
         drive.scene().add_movable(about, 12.0, drive.robot().number(), things);
         return things;
@@ -167,12 +167,9 @@ void Score::look(const Moment& moment, const std::vector<lps::Percept>& percepts
     if (known != judged_.end() && percept.seen != moment.cycle)
       continue;
     const Pose at = in_world(percept);
-    if (covered_ && !covered_(at.position()))
-      continue;
     Judged& judged = judged_[percept.id];
-    judged.percept = percept;
-    judged.pose_in_world = at;
-    if (!(judge_ ? judge_(percept, at) : is_real(percept, at))) {
+    judged.type = percept.type;
+    if (!is_real(percept, at)) {
       if (judged.real)
         mistakes_.push_back({percept, at, moment.cycle});
       judged.real = false;
@@ -184,7 +181,7 @@ void Score::look(const Moment& moment, const std::vector<lps::Percept>& percepts
 void Score::pass(const Moment& seen, const std::vector<lps::Percept>& percepts) {
   for (std::size_t i = 0; i < map_.features.size(); ++i) {
     const maps::Feature& door = map_.features[i];
-    if (door.type != PointType::door || (covered_ && !covered_(door.pose_in_map.position())))
+    if (door.type != PointType::door)
       continue;
     // Seen from the door: x away from its wall, y along it.
     const Pose robot = relative(door.pose_in_map, seen.true_pose_in_world);
@@ -219,13 +216,23 @@ void Score::pass(const Moment& seen, const std::vector<lps::Percept>& percepts) 
 Count Score::count(PointType type) const {
   Count count;
   for (const auto& [id, judged] : judged_)
-    if (judged.percept.type == type) {
+    if (judged.type == type) {
       ++count.reported;
       count.real += judged.real ? 1 : 0;
     }
   return count;
 }
 
+namespace {
+
+// The ground truth for a grid, in the grid's frame.
+struct GridTruth {
+  enum class Cell { unknown, free, occupied };
+  std::vector<Vec2> surfaces;           // points of visible surfaces within 2 m of the way
+  std::vector<maps::Feature> doorways;  // open ones, within 1.5 m of it
+  std::function<Cell(const Vec2& at)> cell;
+};
+// True for a point within 2 m of the path that is not `blocked` from its nearest point.
 bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
                const std::function<bool(const Vec2& from, const Vec2& to)>& blocked) {
   return !path.empty() && (nearest(path, at) - at).norm() <= 2.0 && !blocked(nearest(path, at), at);
@@ -333,6 +340,8 @@ GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth) {
   score.free = wrong / std::max(1.0, all_empty);
   return score;
 }
+
+}  // namespace
 
 std::vector<Vec2> patrol(const std::string& world) {
   if (world == "office-floor")

@@ -44,10 +44,9 @@ struct Passage {
   bool found = false;
 };
 
-/// A percept in its newest report.
+/// The judgement of a percept.
 struct Judged {
-  lps::Percept percept;
-  Pose pose_in_world;
+  lps::PointType type = lps::PointType::invalid;
   bool real = true;  ///< true in every report
 };
 
@@ -55,16 +54,6 @@ struct Judged {
 /// report of it is. Doors count as passed where the robot goes by along their wall.
 class Score {
  public:
-  /// The present surfaces near a place.
-  using Surfaces = std::function<sim::Things(const Vec2& about)>;
-  /// True where the truth about a place is complete; reports elsewhere are not judged.
-  using Covered = std::function<bool(const Vec2& at)>;
-
-  Score(maps::Map map, Surfaces surfaces, Covered covered = {})
-      : map_(std::move(map)), surfaces_(std::move(surfaces)), covered_(std::move(covered)) {}
-  /// Another judge of percepts, with their place. No door is passed.
-  using Judge = std::function<bool(const lps::Percept& percept, const Pose& in_world)>;
-  explicit Score(Judge judge) : judge_(std::move(judge)) {}
   /// In a simulated world. The drive outlives the score.
   Score(Drive& drive, maps::Map map);
 
@@ -77,11 +66,8 @@ class Score {
   Count count(lps::PointType type) const;
   int doors_passed() const { return passed_; }
   int doors_found() const { return found_; }
-  double recall() const { return passed_ == 0 ? 1.0 : static_cast<double>(found_) / passed_; }
   const std::vector<Mistake>& mistakes() const { return mistakes_; }
   const std::vector<Passage>& passages() const { return passages_; }
-  /// By id.
-  const std::map<std::uint32_t, Judged>& judged() const { return judged_; }
 
   /// Errors of real percepts, and the same in sigmas.
   std::vector<double> wall_offset, wall_heading, wall_offset_sigmas, wall_heading_sigmas;
@@ -103,10 +89,8 @@ class Score {
   void pass(const Moment& moment, const std::vector<lps::Percept>& percepts);
 
   maps::Map map_;
-  Surfaces surfaces_;
-  Covered covered_;
-  Judge judge_;
-  std::map<std::uint64_t, Pose> odom_in_world_;  // by cycle
+  std::function<sim::Things(const Vec2& about)> surfaces_;  // the present ones, near a place
+  std::map<std::uint64_t, Pose> odom_in_world_;             // by cycle
   std::map<std::uint32_t, Judged> judged_;
   std::map<std::size_t, Passing> passing_;
   int passed_ = 0;
@@ -115,19 +99,6 @@ class Score {
   std::vector<Passage> passages_;
 };
 
-/// The ground truth for a grid, in the grid's frame.
-struct GridTruth {
-  enum class Cell { unknown, free, occupied };
-  std::vector<Vec2> surfaces;           ///< points of visible surfaces within 2 m of the way
-  std::vector<maps::Feature> doorways;  ///< open ones, within 1.5 m of it
-  std::function<Cell(const Vec2& at)> cell;
-};
-/// True for a point within 2 m of the path that is not `blocked` from its nearest point.
-bool seen_from(const std::vector<Vec2>& path, const Vec2& at,
-               const std::function<bool(const Vec2& from, const Vec2& to)>& blocked);
-std::vector<maps::Feature> doorways_beside(const std::vector<Vec2>& path, const maps::Map& map);
-GridTruth grid_truth(const sim::World& world, const maps::Map& map, const std::vector<Vec2>& path);
-
 struct GridScore {
   double walls = 0.0;  ///< share of the surfaces along the way that the grid has
   /// Share of the open doorways along the way that the grid shows as blocked; nothing without any.
@@ -135,7 +106,6 @@ struct GridScore {
   double free = 0.0;  ///< share of the free cells that the grid shows as occupied
   double auc = 0.0;   ///< probability that an occupied cell has a higher value than a free one
 };
-GridScore score_grid(const interpretation::Grid& grid, const GridTruth& truth);
 /// MURIEL's and the cone model's after a patrol, from the same readings at the true pose: only the
 /// models are compared.
 std::array<GridScore, 2> compare_grids(const DriveOptions& options, std::uint64_t cycles);

@@ -2,7 +2,6 @@
 // driver, and no motion without one.
 #include <gtest/gtest.h>
 
-#include "node_options.hpp"
 #include "scene.hpp"
 
 namespace saphira::test {
@@ -68,54 +67,6 @@ TEST(Bridge, StopsWithinHalfASecondOfTheLastCommand) {
   EXPECT_LE(still, last + 5 + 1) << "0.5 s, and the cycle that had begun";
 }
 
-TEST(Bridge, ASecondOneOfTheSameNameWaitsForTheFirst) {
-  Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  const std::string socket = scene.folder.path("other");
-  const Process simulator({"saphira-sim", "--world", source("config/worlds/office.wld"), "--robot",
-                           source("config/robots/pioneer.p"), "--socket", socket},
-                          scene.folder.path("other.sim"));
-  const Process second({"saphira-bridge", "--robot", scene.robot, "--domain", domain(),
-                        "--robot-port", "unix:" + socket, "--robots", source("config/robots")},
-                       scene.folder.path("other.log"));
-  ASSERT_TRUE(scene.until([&] {
-    return second.output().find("another bridge, process " + std::to_string(scene.bridge->pid())) !=
-           std::string::npos;
-  })) << second.output();
-  const std::uint64_t cycle = scene.state.stamp().cycle();
-  ASSERT_TRUE(scene.until([&] { return scene.state.stamp().cycle() > cycle + 10; }));
-  EXPECT_EQ(scene.state.stamp().epoch(), epoch);
-  scene.bridge->signal(SIGTERM);
-  EXPECT_TRUE(scene.until([&] { return scene.state.stamp().epoch() > epoch; })) << second.output();
-}
-
-TEST(Bridge, OneThatNobodyHearsBeginsAnewOnTheBus) {
-  Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  const std::uint64_t epoch = scene.state.stamp().epoch();
-  forward(scene.command, 0.2);
-  scene.drives = true;
-  // The only program that follows the robot reports that it does not hear it.
-  bus::Node deaf(node_options("behaviors", scene.robot));
-  deaf.status().state(v1::SERVICE_WAITING);
-  deaf.status().reason("waits for robot/state of cycle 7");
-  ASSERT_TRUE(scene.until([&] {
-    deaf.publish_status();
-    return scene.bridge_log().find("began anew on the bus") != std::string::npos;
-  })) << scene.bridge_log();
-  // The connection to the robot is the same, and the same driver drives again.
-  const std::uint64_t cycle = scene.state.stamp().cycle();
-  EXPECT_TRUE(scene.until([&] {
-    return scene.state.stamp().cycle() > cycle + 5 && scene.state.velocity() > 0.18;
-  })) << scene.bridge_log();
-  EXPECT_EQ(scene.state.stamp().epoch(), epoch);
-}
-
 TEST(BridgeInLockstep, TheGuardStopsBeforeAWall) {
   Scene scene(true);
   scene.world += "11500 8000 11500 12000\n";
@@ -163,39 +114,6 @@ TEST(BridgeInLockstep, DrivesADistanceAndTurnsToAHeading) {
   ASSERT_TRUE(scene.until([&] { return scene.state.pose_in_odom().th() > 1.4; }));
   ASSERT_TRUE(scene.until([&] { return scene.rests(); }));
   EXPECT_NEAR(scene.state.pose_in_odom().th(), kPi / 2, radians(2.0));
-}
-
-TEST(Bridge, DevicesReflect) {
-  Scene scene;
-  scene.start_simulator();
-  scene.start_bridge();
-  ASSERT_TRUE(scene.until([&] { return scene.connected(); })) << scene.bridge_log();
-  const v1::Answer output =
-      scene.ask(bus::topics::kDigitalOutput, "output", {bus::number("bits", 0x5A)});
-  EXPECT_EQ(output.code(), v1::ANSWER_DONE);
-  EXPECT_EQ(output.text(), "output 0x5A: the robot shows it");
-  // The state comes on another topic: there is no order between the two.
-  EXPECT_TRUE(scene.until([&] { return scene.state.digital_output() == 0x5A; }));
-  scene.ask(bus::topics::kDigitalOutput, "output",
-            {bus::number("bits", 0x0C), bus::number("mask", 0x0F)});
-  EXPECT_TRUE(scene.until([&] { return scene.state.digital_output() == 0x5C; }));
-
-  scene.ask(bus::topics::kServo, "servo", {bus::number("width", 1500)});
-  EXPECT_TRUE(scene.until([&] { return scene.state.ptu() == 1500; }));
-
-  const v1::Answer timer = scene.ask(bus::topics::kTimer, "timer", {bus::number("pin", 9)});
-  EXPECT_EQ(timer.code(), v1::ANSWER_BAD_ARGUMENT);
-  EXPECT_NE(timer.text().find("expected a whole number from 0 to 7"), std::string::npos)
-      << timer.text();
-  EXPECT_EQ(scene.ask(bus::topics::kServer, "motors", {bus::number("on", 7)}).code(),
-            v1::ANSWER_BAD_ARGUMENT);
-  EXPECT_EQ(scene.ask(bus::topics::kServer, "servo").code(), v1::ANSWER_UNKNOWN_FUNCTOR)
-      << "another topic's";
-  EXPECT_TRUE(scene.until([&] {
-    return scene.bridge_log().find(
-               "a request of test: motors: argument \"on\": expected yes or no") !=
-           std::string::npos;
-  })) << scene.bridge_log();
 }
 
 TEST(Bridge, SaysWhichParameterFilesItLookedFor) {

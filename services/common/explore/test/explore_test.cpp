@@ -19,8 +19,6 @@ using test::DriveOptions;
 struct Case {
   std::string world;
   std::uint64_t seed;
-  double errors;
-  bool snap;
 };
 
 class Explore : public ::testing::TestWithParam<Case> {};
@@ -29,8 +27,7 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
   DriveOptions options;
   options.world = GetParam().world;
   options.seed = GetParam().seed;
-  options.errors = GetParam().errors;
-  Building built(options, GetParam().snap);
+  Building built(options);
   built.run(20000);
   const std::string name = options.world + "-" + std::to_string(options.seed);
   built.draw(name);
@@ -52,9 +49,8 @@ TEST_P(Explore, BuildsTheMapOfAFloorFromNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Explore,
-                         ::testing::Values(Case{"loop", 1, 1.0, true}, Case{"loop", 2, 1.0, true},
-                                           Case{"office-floor", 1, 1.0, true},
-                                           Case{"office-floor", 2, 1.0, true}));
+                         ::testing::Values(Case{"loop", 1}, Case{"loop", 2},
+                                           Case{"office-floor", 1}, Case{"office-floor", 2}));
 
 // The east corridor is walled off in its middle: a dead end from the south and one from the north.
 TEST(Explore, AClosedWayIsADeadEndFromBothSides) {

@@ -7,7 +7,7 @@
 
 #include "saphira/geometry/pose.hpp"
 
-/// Robot logs in CARMEN's format, and the relations of the SLAM benchmark.
+/// Robot logs in CARMEN's format.
 namespace saphira::logs {
 
 /// A message's two stamps [s]: of the sender, and of the logger (since the beginning of the log, in
@@ -28,7 +28,6 @@ struct LaserScan {
   double step = radians(1.0);
   double no_return = 50.0;  ///< [m] this range and longer ones: no return
   std::vector<double> ranges;
-  std::string host;
   Laser laser = Laser::flaser;
 };
 
@@ -42,12 +41,11 @@ struct CarmenLog {
   std::string file;
   std::vector<LaserScan> scans;  ///< of one laser
   std::vector<OdomRecord> odometry;
-  std::vector<OdomRecord> truth;     ///< TRUEPOS, of simulators
   std::vector<std::string> damaged;  ///< unreadable lines, with their FileError
   std::vector<std::string> notes;    ///< remarks for people about the reading
 };
 
-/// Reads the lines FLASER, RLASER, LASER3 and 4, ROBOTLASER1 and 2, RAWLASER1 to 4, ODOM, TRUEPOS
+/// Reads the lines FLASER, RLASER, LASER3 and 4, ROBOTLASER1 and 2, RAWLASER1 to 4, ODOM
 /// and the PARAM of lasers; others are skipped. Of several lasers the front one is kept, of several
 /// messages the one with the robot's pose. Without them in the log, the beams' angles are those of
 /// usual lasers with that number of beams, the laser's place follows from its poses, and the range
@@ -58,16 +56,6 @@ CarmenLog parse_carmen(std::string_view text, const std::string& file);
 /// The range [m] from which ranges are no returns: the shortest of the long ranges at which they
 /// pile up. Nothing if they do not.
 std::optional<double> find_no_return(const std::vector<LaserScan>& scans);
-
-/// The pose at `to`, relative to that at `from`.
-struct Relation {
-  double from = 0.0;
-  double to = 0.0;
-  Pose to_in_from;
-};
-
-/// Lines `t1 t2 dx dy dz roll pitch yaw`. FileError where it is wrong.
-std::vector<Relation> parse_relations(std::string_view text, const std::string& file);
 
 /// The content of a file, unpacked if it is a .gz. Of a damaged or truncated .gz the readable part,
 /// with the error in `trouble`. std::runtime_error where nothing is readable.

@@ -52,11 +52,8 @@ struct ScanMapSettings {
 /// The counts of ScanMapper.
 struct ScanMapReport {
   std::size_t scans = 0;
-  std::size_t nodes = 0;
-  std::size_t searches = 0;   ///< times that alignment alone was insufficient
   std::size_t unmatched = 0;  ///< scans placed by dead reckoning alone
-  std::size_t loop_candidates = 0;
-  std::size_t loops = 0;  ///< accepted
+  std::size_t loops = 0;      ///< closed
 };
 
 /// Builds a consistent trajectory from scans and dead reckoning: each scan is matched with the

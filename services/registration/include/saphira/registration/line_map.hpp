@@ -67,8 +67,6 @@ class Field {
   /// True where the map defines the place: the inside of a corridor, junction, lane or office. In a
   /// map of walls alone, everything within them.
   bool known(const Vec2& position_in_map) const;
-  const std::vector<Vec2>& known_cells() const { return known_cells_; }  ///< their middles
-  double cell() const { return kCell; }
 
  private:
   static constexpr double kCell = 0.1;    // [m]
@@ -81,7 +79,6 @@ class Field {
   int rows_ = 0;
   std::vector<std::uint16_t> nearest_;  // of surfaces, by rows
   std::vector<std::uint8_t> known_;
-  std::vector<Vec2> known_cells_;
   struct Line {
     Vec2 from;
     Vec2 way;  // unit vector
