@@ -18,11 +18,14 @@ Vec2 point(LineReader& in, const std::string& of, const Pose& frame) {
   return transform(frame, Vec2(x, y));
 }
 
+double angle(LineReader& in, const std::string& what) {
+  return norm2_angle(radians(in.number(what + " in degrees", -3600, 3600)));
+}
+
 Pose pose(LineReader& in, const std::string& of) {
   const double x = in.number("x of " + of + " in mm", -kMax, kMax) * kMillimetre;
   const double y = in.number("y of " + of + " in mm", -kMax, kMax) * kMillimetre;
-  const double th = radians(in.number("theta of " + of + " in degrees", -3600, 3600));
-  return {x, y, norm2_angle(th)};
+  return {x, y, angle(in, "theta of " + of)};
 }
 
 double size(LineReader& in, const std::string& what) {
@@ -85,10 +88,16 @@ bool MovableReader::read(std::string_view word, LineReader& in, const Pose& fram
     PersonPlan::Leg leg;
     leg.wait = in.number("time in s", 0.0, kMostTime);
     plans_.persons.back().script.push_back(leg);
+  } else if (word == "point") {
+    needs(Last::kPerson, "person");
+    PersonPlan::Leg leg;
+    leg.points = norm2_angle(frame_in_world.th + angle(in, "direction"));
+    leg.wait = in.number("time in s", 0.0, kMostTime);
+    plans_.persons.back().script.push_back(leg);
   } else if (word == "repeat") {
     needs(Last::kPerson, "person");
     if (plans_.persons.back().script.empty())
-      in.fail("expected walk, lead or wait before this repeat");
+      in.fail("expected walk, lead, wait or point before this repeat");
     plans_.persons.back().repeats = true;
   } else if (word == "door") {
     DoorPlan door;

@@ -34,6 +34,10 @@ constexpr double kShin = 0.06;   // [m] radius
 constexpr double kApart = 0.10;  // [m] from the person's middle, to each side
 constexpr double kStep = 0.30;   // [m] before the middle and behind it
 
+// A person's outstretched arm, from the person's middle: inside of the body, and the finger tips.
+constexpr double kArmBegin = 0.20;  // [m]
+constexpr double kArmEnd = 0.80;    // [m]
+
 // Numbers of things for sonars, kind by kind.
 constexpr std::uint32_t kOfPersons = 1U << 24U;
 constexpr std::uint32_t kOfPosts = 2U << 24U;
@@ -68,6 +72,13 @@ std::array<Shin, 2> shins(const Person& person) {
   return pair;
 }
 
+std::optional<Segment> arm(const Person& person) {
+  if (!person.points)
+    return std::nullopt;
+  const Vec2 way(std::cos(*person.points), std::sin(*person.points));
+  return Segment{person.at + kArmBegin * way, person.at + kArmEnd * way};
+}
+
 Scene::Scene(const World& world)
     : world_(&world),
       hulls_near_(world.width, world.height),
@@ -81,6 +92,8 @@ Scene::Scene(const World& world)
                                    [](const PersonPlan::Leg& leg) { return leg.speed > 0.0; });
     if (walk != plan.script.end())
       look_towards(persons_.back(), walk->to);
+    if (!plan.script.empty())
+      persons_.back().points = plan.script.front().points;
     for (const PersonPlan::Leg& leg : plan.script)
       fastest_ = std::max(fastest_, leg.speed);
   }
@@ -205,6 +218,16 @@ bool Scene::set_person(std::string_view name, const Vec2& at) {
   return false;
 }
 
+bool Scene::set_arm(std::string_view name, std::optional<double> direction_in_world) {
+  for (Person& person : persons_) {
+    if (person.plan->look.name != name)
+      continue;
+    person.points = direction_in_world;
+    return true;
+  }
+  return false;
+}
+
 void Scene::walk(Person& person) {
   const std::vector<PersonPlan::Leg>& script = person.plan->script;
   if (person.leg >= script.size()) {
@@ -246,6 +269,9 @@ void Scene::next_leg(Person& person) {
   ++person.leg;
   if (person.leg == person.plan->script.size() && person.plan->repeats)
     person.leg = 0;
+  person.points.reset();
+  if (person.leg < person.plan->script.size())
+    person.points = person.plan->script[person.leg].points;
 }
 
 bool Scene::has_robot_within(double reach, const Vec2& point) const {

@@ -24,6 +24,8 @@ constexpr double kRobotHeight = 0.3;  // [m] no robot of ours is much higher
 constexpr double kShoulder = 0.83;
 constexpr double kHead = 0.42;
 constexpr double kBelt = 0.52;
+constexpr double kArmpit =
+    0.77;  // the lower edge of an outstretched arm; the upper is the shoulder
 
 // An upright face of an object, from low to high.
 struct Face {
@@ -55,19 +57,21 @@ class Faces {
       : eye_(eye), range_(rig.range), pixel_(1.0 / rig.focal()) {
     std::uint32_t seed = 1;
     for (const Segment& segment : scene.world().segments)
-      add(segment, kWallHeight, kWallGrey, seed++, ++things_);
+      add(segment, 0.0, kWallHeight, kWallGrey, seed++, ++things_);
     for (const Door& door : scene.doors())
-      add(scene.leaf(door), door.plan->look.height, 120.0, seed++, ++things_);
+      add(scene.leaf(door), 0.0, door.plan->look.height, 120.0, seed++, ++things_);
     for (const Box& box : scene.boxes()) {
       ++things_;
       for (const Segment& side : scene.sides(box))
-        add(side, box.plan->look.height, grey(seed), seed, things_);
+        add(side, 0.0, box.plan->look.height, grey(seed), seed, things_);
       ++seed;
     }
     for (const Person& person : scene.persons()) {
       const double height = person.plan->look.height;
       const double radius = person.plan->radius;
       add({person.at, radius}, 0.0, kShoulder * height, grey(seed), seed, 0.0, kBelt * height);
+      if (const auto line = arm(person))
+        add(*line, kArmpit * height, kShoulder * height, grey(seed), seed, ++things_);
       ++seed;
       add({person.at, kHead * radius}, kShoulder * height, height, 150.0, seed++, 0.0, 0.0);
     }
@@ -107,11 +111,13 @@ class Faces {
   static double grey(std::uint32_t seed) { return 80.0 + hash(seed, 3, 7) % 110U; }
   static double light(const Vec2& normal) { return 18.0 * (0.8 * normal.x() + 0.6 * normal.y()); }
 
-  void add(const Segment& segment, double high, double grey, std::uint32_t seed, int thing) {
+  void add(const Segment& segment, double low, double high, double grey, std::uint32_t seed,
+           int thing) {
     if ((nearest_point(segment, eye_) - eye_).norm() > range_)
       return;
     Face face;
     face.segment = segment;
+    face.low = low;
     face.high = high;
     face.grey = grey;
     face.seed = seed;

@@ -107,12 +107,15 @@ std::string describe_scene(const Simulation& simulation, const Pacing& pacing) {
   for (RobotNumber i = 0; i < simulation.size(); ++i)
     robots.push_back(describe_robot(simulation.server(i)));
   Json people = Json::array();
-  for (const Person& person : scene.persons())
+  for (const Person& person : scene.persons()) {
     people.push_back({{"name", person.plan->look.name},
                       {"x", rounded(person.at.x())},
                       {"y", rounded(person.at.y())},
                       {"th", rounded(person.heading)},
                       {"radius", person.plan->radius}});
+    if (const auto line = arm(person))
+      people.back()["arm"] = segment(*line);
+  }
   Json doors = Json::array();
   for (const Door& door : scene.doors())
     doors.push_back({{"name", door.plan->look.name},
@@ -151,6 +154,12 @@ Wish parse_wish(std::string_view text) {
     return PlaceRobot{robot_in(json), pose_in(json)};
   if (what == "person")
     return PlacePerson{name_in(json, "name"), place_in(json)};
+  if (what == "point") {
+    RaiseArm wish{name_in(json, "name"), {}};
+    if (json.contains("th"))
+      wish.direction_in_world = norm2_angle(number(json, "th", -1e3, 1e3));
+    return wish;
+  }
   if (what == "box")
     return PlaceBox{name_in(json, "name"), pose_in(json)};
   if (what == "door")
@@ -166,7 +175,7 @@ Wish parse_wish(std::string_view text) {
   if (what == "load")
     return Load{name_in(json, "world", true), name_in(json, "robot", true)};
   throw std::invalid_argument(
-      "\"do\": expected place, person, box, door, pause, step, rate, disconnect or load");
+      "\"do\": expected place, person, point, box, door, pause, step, rate, disconnect or load");
 }
 
 std::string change_scene(Simulation& simulation, const Wish& wish) {
@@ -178,6 +187,10 @@ std::string change_scene(Simulation& simulation, const Wish& wish) {
   }
   if (const auto* person = std::get_if<PlacePerson>(&wish))
     return scene.set_person(person->name, person->at) ? "" : "there is no room for " + person->name;
+  if (const auto* raise = std::get_if<RaiseArm>(&wish))
+    return scene.set_arm(raise->name, raise->direction_in_world)
+               ? ""
+               : "there is no person " + raise->name;
   if (const auto* box = std::get_if<PlaceBox>(&wish))
     return scene.set_box(box->name, box->pose_in_world) ? "" : "there is no room for " + box->name;
   if (const auto* door = std::get_if<SetDoor>(&wish))

@@ -71,6 +71,33 @@ TEST(Movable, WhoLeadsWaitsForTheRobot) {
   EXPECT_LT(ann.at.x(), 5.1) << "2.5 m from a robot that stays where it is";
 }
 
+TEST(Movable, WhoPointsStretchesOutAnArmForThatTime) {
+  const World it = world(
+      "push 0 0 90 person ann 5000 -5000 wait 1 point -45 2 walk 5000 -6000 500 repeat pop\n"
+      "person ben 2000 2000 point 180 1000");
+  Scene scene(it);
+  const Person& ann = scene.persons()[0];
+  EXPECT_FALSE(arm(ann));
+  EXPECT_EQ(scene.persons()[1].points, kPi) << "from the beginning";
+  run(scene, 1.5);
+  ASSERT_TRUE(arm(ann));
+  const double diagonal = std::sqrt(0.5);
+  EXPECT_NEAR((arm(ann)->from - Vec2(5.0 + 0.2 * diagonal, 5.0 + 0.2 * diagonal)).norm(), 0.0,
+              1e-9);
+  EXPECT_NEAR((arm(ann)->to - Vec2(5.0 + 0.8 * diagonal, 5.0 + 0.8 * diagonal)).norm(), 0.0, 1e-9);
+  Things around;
+  scene.add_movable(ann.at, 2.0, kNobody, around);
+  EXPECT_EQ(around.segments.size(), 0U) << "no robot is so high";
+  run(scene, 2.0);
+  EXPECT_FALSE(arm(ann)) << "she walks";
+  EXPECT_TRUE(scene.set_arm("ann", 1.0));
+  run(scene, 0.5);
+  EXPECT_EQ(ann.points, 1.0);
+  run(scene, 2.0);
+  EXPECT_FALSE(ann.points) << "the script goes on";
+  EXPECT_FALSE(scene.set_arm("carl", 1.0));
+}
+
 TEST(Movable, OfASecondFileIsPutIntoTheWorldAndItsMistakesNameThatFile) {
   const test::TempDir folder;
   const std::string more = folder.path("more.wld");
@@ -108,8 +135,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BrokenLine{"person", 7, "a name"}, BrokenLine{"person ann x 0", 12, "x of the person"},
         BrokenLine{"walk 0 0 800", 1, "person before this walk"},
+        BrokenLine{"point 90 5", 1, "person before this point"},
+        BrokenLine{"person ann 1000 1000 point left 5", 28, "direction in degrees"},
         BrokenLine{"person ann 0 0 walk 1 1 0", 25, "speed"},
-        BrokenLine{"person ann 0 0 repeat", 16, "walk, lead or wait"},
+        BrokenLine{"person ann 0 0 repeat", 16, "walk, lead, wait or point"},
         BrokenLine{"lead 0 0 800", 1, "person before this lead"},
         BrokenLine{"person ann 0 0 person ann 1 1", 23, "another name"},
         BrokenLine{"door d 0 0 5 0 90", 14, "wider"},

@@ -203,6 +203,33 @@ TEST(Stereo, ABoxIsSeenWithItsLidAndHidesWhatIsBehind) {
     EXPECT_GT(one.right, 24) << &one - found;
 }
 
+// From 1.35 to 1.45 m above the floor, with the far wall below it.
+TEST(Stereo, AnArmIsABarBesideThePerson) {
+  for (const double side : {1.0, -1.0}) {
+    const World it = world("person ann 4000 3000 point " + std::to_string(90 * int(side)) + " 100");
+    Scene scene(it);
+    scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
+    const StereoRig rig;
+    Random random(5);
+    const StereoPair pair = render_stereo(scene, 0, rig, random);
+    // The left eye's column of a point beside her.
+    const auto column = [&](double aside) {
+      return static_cast<std::size_t>(0.5 * rig.columns -
+                                      (aside - rig.baseline / 2.0) * rig.focal() / 2.0);
+    };
+    const auto range = [&](double height, double aside) {
+      const int row = rig.rows / 2 - static_cast<int>((height - rig.height) * rig.focal() / 2.0);
+      return ranges(pair, rig, row)[column(aside)].value_or(0.0);
+    };
+    for (const double out : {0.4, 0.7}) {
+      EXPECT_TRUE(fits(rig, range(1.40, side * out), 2.0)) << side << ", " << out;
+      EXPECT_TRUE(fits(rig, range(1.20, side * out), 8.0)) << side << ", " << out;
+      EXPECT_TRUE(fits(rig, range(1.40, -side * out), 8.0)) << side << ", " << out;
+    }
+    EXPECT_TRUE(fits(rig, range(1.40, side * 0.95), 8.0)) << side;
+  }
+}
+
 TEST(Stereo, ASeedDecidesThePicture) {
   const World it = world("person ann 5000 3000 post can 4000 3500 100");
   Scene scene(it);

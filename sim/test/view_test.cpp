@@ -54,6 +54,12 @@ TEST(View, DoesWhatItIsAskedForAndSaysWhyNot) {
   EXPECT_EQ(simulation.scene().persons()[0].at, Vec2(7.0, 7.0));
   EXPECT_NE(act(R"({"do":"person","name":"ann","x":4,"y":3.1})"), "") << "there stands the robot";
   EXPECT_NE(act(R"({"do":"person","name":"bob","x":7,"y":7})"), "");
+  EXPECT_EQ(act(R"({"do":"point","name":"ann","th":1.5})"), "");
+  EXPECT_EQ(simulation.scene().persons()[0].points, 1.5);
+  EXPECT_EQ(json::parse(describe_scene(simulation, {})).at("people").at(0).at("arm").size(), 4U);
+  EXPECT_EQ(act(R"({"do":"point","name":"ann"})"), "");
+  EXPECT_FALSE(simulation.scene().persons()[0].points);
+  EXPECT_NE(act(R"({"do":"point","name":"bob","th":1.5})"), "");
   EXPECT_EQ(act(R"({"do":"box","name":"crate","x":5,"y":6,"th":0.5})"), "");
   EXPECT_EQ(act(R"({"do":"door","name":"d","open":true})"), "");
   EXPECT_TRUE(simulation.scene().doors()[0].opens);

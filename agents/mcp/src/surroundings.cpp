@@ -130,13 +130,23 @@ std::vector<Seen> percepts(const Surroundings& around, const Pose& robot) {
   return all;
 }
 
+/// The side to which a person has just pointed.
+const char* gesture(const v1::SeenThing& person, std::uint64_t now, const Pose& robot) {
+  constexpr std::uint64_t kRecent = 20;  // [cycles]
+  if (person.pointed() == 0 || person.pointed() + kRecent <= now)
+    return "";
+  const Vec2 sight = pose(person.pose_in_odom()).position() - robot.position();
+  const Vec2 arm(std::cos(person.points()), std::sin(person.points()));
+  return cross(sight, arm) > 0.0 ? ", points left" : ", points right";
+}
+
 std::vector<Seen> people(const v1::Vision& vision, const Pose& robot) {
   std::vector<Seen> all;
   for (const v1::SeenThing& thing : vision.things())
     if (thing.range_known())
       all.push_back(
           {thing.kind() == v1::SEEN_PERSON
-               ? "person"
+               ? std::string("person") + gesture(thing, vision.stamp().cycle(), robot)
                : "colour of channel " + std::string(1, static_cast<char>('A' + thing.channel())),
            relative(robot, pose(thing.pose_in_odom())).position()});
   return all;

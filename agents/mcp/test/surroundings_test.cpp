@@ -90,6 +90,9 @@ TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
   person.kind(v1::SEEN_PERSON);
   person.range_known(true);
   person.pose_in_odom(pose(5.0, 7.5, 0.0));
+  person.points(3.0);
+  person.pointed(95);
+  vision_.stamp().cycle(100);
   vision_.things({person});
   v1::SonarBucket behind;  // read half a metre further back
   behind.reading().echo(true);
@@ -103,7 +106,7 @@ TEST_F(SurroundingsTest, TheViewIsInTheFrameOfTheRobotNearestFirst) {
   EXPECT_EQ(result.text,
             "1.00 m left: wall, 6.0 m long\n"
             "1.41 m ahead right: door, open, 0.9 m wide\n"
-            "2.50 m ahead: person\n"
+            "2.50 m ahead: person, points left\n"
             "3.00 m behind: echo");
   EXPECT_EQ(result.value["seen"][1]["x"], 1.0);
   EXPECT_EQ(result.value["seen"][1]["y"], -1.0);

@@ -9,8 +9,10 @@
 #include "agent_interface/shell/convert.hpp"
 #include "agent_interface/shell/unclaimed.hpp"
 #include "geometry/shell/convert.hpp"
+#include "lps/shell/convert.hpp"
 #include "maps/shell/convert.hpp"
 #include "requests/shell/convert.hpp"
+#include "saphira/agent_interface/pointing.hpp"
 #include "saphira/base/boot_clock.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/places.hpp"
@@ -67,6 +69,7 @@ DialogueShell::DialogueShell(bus::Node& node, const DialogueOptions& options)
       beliefs_(node.reader(bus::topics::kBeliefs)),
       registrations_(node.reader(bus::topics::kRegistration)),
       maps_(node.reader(bus::topics::kMap)),
+      visions_(node.reader(bus::topics::kVision)),
       said_(node.writer(bus::topics::kSaid)),
       claims_(node.writer(bus::topics::kBeliefClaims)),
       knows_(node.writer(bus::topics::kKnows)) {
@@ -253,6 +256,29 @@ void DialogueShell::take_beliefs() {
       situation_.asked_about = belief.value();
 }
 
+/// Of the robot, and of a person who points.
+void DialogueShell::take_places() {
+  if (auto vision = visions_.take_newest())
+    seen_ = std::move(*vision);
+  const auto registration = registrations_.take_newest();
+  if (!registration)
+    return;
+  situation_.pose_in_map.reset();
+  situation_.pointing_in_map.reset();
+  if (registration->state() != v1::REGISTRATION_TRACKING)
+    return;
+  situation_.pose_in_map = saphira::from_bus(registration->pose_in_map());
+  if (seen_.stamp().epoch() != registration->stamp().epoch() ||
+      seen_.odom() != registration->odom())
+    return;
+  std::vector<lps::SeenThing> things;
+  for (const v1::SeenThing& thing : seen_.things())
+    things.push_back(lps::from_bus(thing));
+  situation_.pointing_in_map =
+      pointing(things, std::max(seen_.stamp().cycle(), registration->stamp().cycle()),
+               saphira::from_bus(registration->odom_in_map()), situation_.pose_in_map->position());
+}
+
 std::vector<KnownGoal> DialogueShell::known_goals() const {
   std::vector<v1::GoalStatus> statuses = goals_.statuses();
   std::stable_sort(statuses.begin(), statuses.end(),
@@ -303,11 +329,7 @@ void DialogueShell::step() {
     node_.status().state(v1::SERVICE_RUNNING);
     node_.status().reason("");
   }
-  if (const auto registration = registrations_.take_newest()) {
-    situation_.pose_in_map.reset();
-    if (registration->state() == v1::REGISTRATION_TRACKING)
-      situation_.pose_in_map = saphira::from_bus(registration->pose_in_map());
-  }
+  take_places();
   registration_.poll();
   take_beliefs();
   for (const auto& sample : messages_.take())

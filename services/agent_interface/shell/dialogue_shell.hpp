@@ -34,6 +34,7 @@ class DialogueShell {
   void announce();
   void take_goals();
   void take_beliefs();
+  void take_places();
   void take_utterances();
   std::vector<KnownGoal> known_goals() const;
   void perform(const Dialogue::Outputs& out);
@@ -55,10 +56,12 @@ class DialogueShell {
   bus::Reader<v1::BeliefSet> beliefs_;
   bus::Reader<v1::Registration> registrations_;
   bus::Reader<v1::FloorMap> maps_;
+  bus::Reader<v1::Vision> visions_;
   bus::Writer<v1::Utterance> said_;
   bus::Writer<v1::BeliefClaim> claims_;
   bus::Writer<v1::Knowledge> knows_;
   Situation situation_;
+  v1::Vision seen_;  ///< the newest
   struct Asked {
     v1::GoalId goal;
     std::chrono::steady_clock::time_point when;

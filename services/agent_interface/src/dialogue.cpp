@@ -6,6 +6,7 @@
 #include <ctime>
 #include <numbers>
 
+#include "saphira/agent_interface/pointing.hpp"
 #include "saphira/base/durable.hpp"
 #include "saphira/base/guess.hpp"
 #include "saphira/base/numbers.hpp"
@@ -93,8 +94,12 @@ std::string as_said(const std::string& name, const std::string& text) {
   return at == std::string::npos ? name : text.substr(at, name.size());
 }
 
-/// The corridor around a position; or the room, otherwise the nearest doorway.
-const maps::Feature* feature_at(const maps::Map& map, const Vec2& position, bool corridor) {
+/// The corridor around the robot; or the room, otherwise the nearest doorway. Of a corridor and a
+/// doorway, the one at which a person points.
+const maps::Feature* feature_at(const maps::Map& map, const Vec2& position,
+                                const std::optional<Pose>& arm, bool corridor) {
+  if (corridor && arm)
+    return area_at(map, *arm, true);
   const maps::Feature* nearest = nullptr;
   double distance = kDoorInSight;
   for (const maps::Feature& feature : map.features) {
@@ -107,7 +112,7 @@ const maps::Feature* feature_at(const maps::Map& map, const Vec2& position, bool
       distance = away;
     }
   }
-  return nearest;
+  return arm ? doorway_at(map, *arm) : nearest;
 }
 
 bool is_open(const KnownGoal& goal) {
@@ -224,10 +229,14 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
     wrong = "I do not know where I am on the map";
     return {};
   }
-  // "This office" is the nearest doorway (paper 4.5), or before that the room around the robot.
+  // "This office" is the nearest doorway (paper 4.5), or before that the room around the robot. A
+  // person may point at a doorway or area (paper 4.2).
   const Pose& robot = *situation.pose_in_map;
+  const std::optional<Pose>& arm = situation.pointing_in_map;
   if (meaning.functor != "office_of") {
-    const std::string here = place_at(situation.map, robot.position());
+    const maps::Feature* const area = arm ? area_at(situation.map, *arm, false) : nullptr;
+    const std::string here =
+        area != nullptr ? area->name : place_at(situation.map, robot.position());
     if (here.empty())
       wrong = "where I am has no name on the map";
     return here;
@@ -249,8 +258,13 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
     nearest = &feature;
     distance = from_robot.norm();
   }
+  const bool points = arm && side.empty();
+  if (points)
+    nearest = doorway_at(situation.map, *arm);
   if (nearest == nullptr) {
-    wrong = "I know no doorway here" + (side.empty() ? "" : " on the " + side);
+    wrong = points         ? "I know no doorway where you point"
+            : side.empty() ? "I know no doorway here"
+                           : "I know no doorway here on the " + side;
     return {};
   }
   artifact = nearest->id;
@@ -503,12 +517,13 @@ bool Dialogue::naming(const Meaning& meaning, const Utterance& utterance,
     say(utterance, "I do not know where I am on the map", true, out);
     return true;
   }
-  const maps::Feature* const here =
-      feature_at(situation.map, situation.pose_in_map->position(), corridor);
+  const maps::Feature* const here = feature_at(situation.map, situation.pose_in_map->position(),
+                                               situation.pointing_in_map, corridor);
   if (here == nullptr) {
     say(utterance,
-        std::string("I know no ") + (corridor ? "corridor" : "room or doorway") + " here", true,
-        out);
+        std::string("I know no ") + (corridor ? "corridor" : "room or doorway") +
+            (situation.pointing_in_map ? " where you point" : " here"),
+        true, out);
   } else if (!here->name.empty()) {
     say(utterance, (here->name == known ? "I know: this is " : "on my map this is ") + here->name,
         true, out);

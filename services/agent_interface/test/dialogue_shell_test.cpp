@@ -61,6 +61,44 @@ class DialogueOnTheBus : public testing::Test {
   std::uint64_t number = 0;
 };
 
+TEST_F(DialogueOnTheBus, AnArmOfTheLastTwoSecondsPointsAtAnOffice) {
+  auto maps = person.writer(bus::topics::kMap);
+  auto registrations = person.writer(bus::topics::kRegistration);
+  auto visions = person.writer(bus::topics::kVision);
+  v1::FloorMap map;
+  for (const auto& [id, name, y] : {std::tuple(1U, "north", 1.0), {2U, "south", -1.2}}) {
+    v1::MapArtifact door;
+    door.id(id);
+    door.type(v1::ARTIFACT_DOOR);
+    door.name(name);
+    door.pose_in_map().x(2.0);
+    door.pose_in_map().y(y);
+    door.width(0.9);
+    map.artifacts().push_back(door);
+  }
+  maps.write(map);
+  v1::Registration registration;
+  registration.state(v1::REGISTRATION_TRACKING);
+  registration.stamp().cycle(100);
+  registration.odom_in_map().x(-3.0);
+  registrations.write(registration);
+  v1::SeenThing alice;
+  alice.kind(v1::SEEN_PERSON);
+  alice.pose_in_odom().x(5.0);
+  alice.points(-1.5);
+  alice.pointed(90);
+  v1::Vision vision;
+  vision.stamp().cycle(100);
+  vision.things({alice});
+  visions.write(vision);
+  EXPECT_EQ(say("Flakey, this is Karen's office"),
+            std::vector<std::string>{"I know now that south is karen's office"});
+  registration.stamp().cycle(111);
+  registrations.write(registration);
+  EXPECT_EQ(say("Flakey, this is Bob's office"),
+            std::vector<std::string>{"I know now that north is bob's office"});
+}
+
 TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
   EXPECT_EQ(say("Flakey, turn left"), std::vector<std::string>{"I turn 90 degrees to the left"});
   const auto asked = goals.take();

@@ -118,6 +118,46 @@ TEST_F(DialogueTest, AnOfficeOnASideIsOnThatSideAndANamelessDoorwayGetsAName) {
   EXPECT_EQ(said("Flakey, this is Ann's office"), "I do not know where I am on the map");
 }
 
+// Paper 4.2. The nearest doorway is that of EJ-231.
+TEST_F(DialogueTest, ThisOfficeIsTheOneAtWhichAPersonPoints) {
+  const Pose alice(4.0, 1.4, 0.0);
+  const auto points = [&](double degrees) {
+    situation.pointing_in_map = Pose(alice.x, alice.y, degrees / 180.0 * std::numbers::pi);
+  };
+  points(20.0);
+  EXPECT_EQ(said("Flakey, this is Karen's office"), "I know now that EJ-233 is karen's office");
+  EXPECT_EQ(dialogue.knowledge().all().at(0).artifact, 1233u);
+  points(-130.0);
+  EXPECT_EQ(said("Flakey, this office is Bob's"), "I know now that bob's office is bob's office");
+  EXPECT_EQ(last.namings.at(0).feature.id, 1235u);
+  points(-10.0);
+  EXPECT_EQ(said("Flakey, this is Ann's office"), "I know now that EJ-233 is ann's office");
+  points(-60.0);
+  EXPECT_EQ(said("Flakey, this is Tom's office"), "I know no doorway where you point");
+  EXPECT_TRUE(last.claims.empty());
+  EXPECT_EQ(said("Flakey, the office on the left is Tom's"),
+            "I know now that EJ-231 is tom's office");
+  situation.pose_in_map = Pose{7.5, 4.0, 0.0};  // in a room "this office" is the room
+  EXPECT_EQ(said("Flakey, this is John's office"), "I know now that EJ-233 is john's office");
+}
+
+TEST_F(DialogueTest, HereIsWhereAPersonPoints) {
+  situation.pointing_in_map = Pose{3.2, 1.4, std::numbers::pi / 2.0};
+  EXPECT_EQ(said("Flakey, there is a water leak here"),
+            "I know now that there is a water leak at EJ-231");
+  situation.pointing_in_map = Pose{3.2, 1.4, 0.1};
+  EXPECT_EQ(said("Flakey, there is a spill in this corridor"),
+            "I know now that there is a spill at upper corridor");
+  situation.pointing_in_map = Pose{3.2, 0.6, -std::numbers::pi / 2.0};
+  EXPECT_EQ(said("Flakey, this is the Kitchen"), "I put it on my map: this is Kitchen");
+  EXPECT_EQ(last.namings.at(0).feature.id, 1235u);
+  situation.map.features.push_back(
+      {lps::PointType::corridor, 2, Pose{8.0, -3.0, -std::numbers::pi / 2.0}, 6.0, 2.0, "", false});
+  situation.pointing_in_map = Pose{8.0, 0.8, -1.5};
+  EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "I put it on my map: this is J-wing");
+  EXPECT_EQ(last.namings.at(0).feature.id, 2u);
+}
+
 TEST_F(DialogueTest, AContradictionIsAskedBack) {
   hear("Flakey, EJ-231 is Karen's office");
   EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"),

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "median.hpp"
+
 namespace saphira::vision {
 namespace {
 
@@ -17,12 +19,6 @@ constexpr double kTellsRound = 0.15;      // [m] of two sigmas of a range
 constexpr double kSigmaDisparity = 0.3;   // [pixels]
 constexpr double kTooNear = 1.2;          // [m]
 constexpr double kNearestTorso = 0.8;     // [m] of a torso that lies in the picture
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Neighbouring columns of a band at one range.
 struct Shape {
@@ -67,9 +63,29 @@ class Shapes {
            std::abs(depth(a) - depth(b)) < settings_.apart + slack(nearer);
   }
 
+  // True where there is nothing below: a part of an arm.
+  bool overhangs(std::size_t column) const {
+    const auto& below = bands_.bands.front()[column];
+    return below && below->x() - eye_ > depth(column) + settings_.apart;
+  }
+
   void take(const std::vector<std::size_t>& run, std::vector<Shape>& found) const {
-    if (run.size() < 3)
+    if (take_whole(run, found))
       return;
+    // Perhaps a torso with an outstretched arm.
+    auto first = run.begin();
+    auto last = run.end();
+    while (first != last && overhangs(*first))
+      ++first;
+    while (first != last && overhangs(*(last - 1)))
+      --last;
+    if (first != run.begin() || last != run.end())
+      take_whole({first, last}, found);
+  }
+
+  bool take_whole(const std::vector<std::size_t>& run, std::vector<Shape>& found) const {
+    if (run.size() < 3)
+      return false;
     Shape shape{run.front(), run.back(), 0.0, band_[run.front()]->y(), band_[run.back()]->y(),
                 true};
     std::vector<double> depths;
@@ -83,18 +99,20 @@ class Shapes {
     if (shape.range < settings_.nearest || shape.range > settings_.farthest ||
         width < settings_.narrowest || width > settings_.widest + 0.1 * shape.range ||
         deep > settings_.deepest + slack(shape.range))
-      return;
+      return false;
     if (slack(shape.range) < kTellsRound && bulge(run) < settings_.round)
-      return;
+      return false;
     if (goes_on_above(run, shape.range))
-      return;
+      return false;
     const int before = background(run.front(), -1, shape.range);
     const int behind = background(run.back(), 1, shape.range);
     if (before < 0 && behind < 0)
-      return;  // seen through a gap
+      return false;  // seen through a gap
     shape.whole = before > 0 && behind > 0;
-    if (before + behind > 0)
-      found.push_back(shape);
+    if (before + behind <= 0)
+      return false;
+    found.push_back(shape);
+    return true;
   }
 
   // The lead of the middle half over the sides [m], for any turn of the shape.

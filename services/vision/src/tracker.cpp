@@ -14,6 +14,8 @@ constexpr double kLearn = 0.35;       // share of the way to certainty for each 
 constexpr double kSlow = 0.7;         // [s] in which a track out of sight loses its velocity
 constexpr double kTentative = 0.4;    // [s] of misses for an unconfirmed track
 constexpr std::size_t kMost = 64;
+constexpr double kNewArm = 0.3;  // share of the newest direction
+constexpr int kMostArms = 6;
 
 double seconds(std::uint64_t from, std::uint64_t to) {
   return to > from ? static_cast<double>(to - from) * kCycle : 0.0;
@@ -73,6 +75,27 @@ void Tracker::update(Track& track, const Sight& sight, const Pose& robot) const 
   const double speed = track.state.tail<2>().norm();
   if (speed > settings_.fastest)
     track.state.tail<2>() *= settings_.fastest / speed;
+}
+
+void Tracker::watch_arm(Track& track, const Sight& sight, std::uint64_t cycle,
+                        const Pose& robot) const {
+  if (!sight.points) {
+    track.arms = std::max(0, track.arms - 1);
+    return;
+  }
+  const double th = robot.th + *sight.points;
+  const Vec2 way(std::cos(th), std::sin(th));
+  if (track.arms == 0 || track.arm.dot(way) < std::cos(settings_.same_arm) * track.arm.norm()) {
+    track.arm = way;
+    track.arms = 1;
+    return;
+  }
+  track.arm += kNewArm * (way - track.arm);
+  track.arms = std::min(track.arms + 1, kMostArms);
+  if (track.arms < settings_.hold)
+    return;
+  track.thing.points_in_odom = std::atan2(track.arm.y(), track.arm.x());
+  track.thing.pointed = cycle;
 }
 
 void Tracker::begin(const Sight& sight, std::uint64_t cycle, const Pose& robot) {
@@ -155,6 +178,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
     blend(thing.width, sight.width);
     blend(thing.height, sight.height);
     thing.seen = cycle;
+    watch_arm(track, sight, cycle, robot);
   }
   for (std::size_t t = 0; t < seen.size(); ++t) {
     Track& track = tracks_[t];

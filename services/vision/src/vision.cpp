@@ -6,13 +6,21 @@ using Kind = lps::SeenThing::Kind;
 
 void Vision::see(const StereoPicture& picture, const Pose& robot_in_odom) {
   const auto [first, last] = torso_rows(picture.rig, picture.rows);
-  see(bands_of(census_.match(picture.left(), picture.right(), first, last), picture.rig,
-               picture.rows),
-      picture.cycle, robot_in_odom);
+  const DisparityMap& map = census_.match(picture.left(), picture.right(), first, last);
+  const Bands bands = bands_of(map, picture.rig, picture.rows);
+  std::vector<Sight> people = find_people(bands);
+  for (Sight& person : people)
+    person.points = arm_of(person, map, picture.rig, picture.rows);
+  see_people(bands, people, picture.cycle, robot_in_odom);
 }
 
 void Vision::see(const Bands& bands, std::uint64_t cycle, const Pose& robot_in_odom) {
-  tracker_.see(Kind::person, cycle, robot_in_odom, find_people(bands),
+  see_people(bands, find_people(bands), cycle, robot_in_odom);
+}
+
+void Vision::see_people(const Bands& bands, const std::vector<Sight>& people, std::uint64_t cycle,
+                        const Pose& robot_in_odom) {
+  tracker_.see(Kind::person, cycle, robot_in_odom, people,
                [&](const Vec2& place) { return in_view(bands, place); });
 }
 

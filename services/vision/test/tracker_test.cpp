@@ -112,6 +112,36 @@ TEST(Tracker, OneSightIsNobody) {
   EXPECT_TRUE(tracker.things(9, {}).empty());
 }
 
+TEST(Tracker, AnArmPointsOnceItHasHeld) {
+  Tracker tracker;
+  const Pose robot(1.0, 2.0, radians(90.0));
+  std::uint64_t cycle = 0;
+  const auto see = [&](std::optional<double> points) {
+    Sight sight = person_at(2.0, 0.0);
+    sight.points = points;
+    tracker.see(Kind::person, ++cycle, robot, {sight}, everywhere);
+    const auto things = tracker.things(cycle, robot);
+    return things.empty() ? lps::SeenThing{} : things[0];
+  };
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(see(std::nullopt).pointed, 0U);
+  // Now on this side, now on that: nothing holds.
+  for (int i = 0; i < 8; ++i)
+    EXPECT_EQ(see(radians(i % 2 == 0 ? 80.0 : -80.0)).pointed, 0U);
+  see(std::nullopt);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(see(radians(80.0)).pointed, 0U) << i;
+  lps::SeenThing thing = see(radians(84.0));
+  EXPECT_EQ(thing.pointed, cycle);
+  EXPECT_NEAR(degrees(thing.points_in_odom), 172.0, 4.0);
+  const std::uint64_t last = cycle;
+  EXPECT_EQ(see(std::nullopt).pointed, last);  // a single miss
+  EXPECT_EQ(see(radians(80.0)).pointed, cycle);
+  for (int i = 0; i < 20; ++i)
+    thing = see(std::nullopt);
+  EXPECT_EQ(thing.pointed, last + 2);
+}
+
 // An object that is seen from two places in two directions has a range.
 TEST(Tracker, DirectionsFromSeveralPlacesMakeAPlace) {
   Tracker tracker;

@@ -124,6 +124,8 @@ SeenThing from_bus(const v1::SeenThing& thing) {
   result.confidence = thing.confidence();
   result.since = thing.since();
   result.seen = thing.seen();
+  result.points_in_odom = thing.points();
+  result.pointed = thing.pointed();
   return result;
 }
 
@@ -143,6 +145,8 @@ v1::SeenThing to_bus(const SeenThing& thing) {
   result.confidence(thing.confidence);
   result.since(thing.since);
   result.seen(thing.seen);
+  result.points(thing.points_in_odom);
+  result.pointed(thing.pointed);
   return result;
 }
 

@@ -53,6 +53,8 @@ TEST(Convert, SeenThings) {
   thing.confidence = 0.8;
   thing.since = 10;
   thing.seen = 12;
+  thing.points_in_odom = 1.2;
+  thing.pointed = 11;
   for (const int channel : {-1, 0, 1, 2}) {
     thing.kind = channel < 0 ? SeenThing::Kind::person : SeenThing::Kind::blob;
     thing.channel = channel;
@@ -70,6 +72,8 @@ TEST(Convert, SeenThings) {
     EXPECT_EQ(back.confidence, thing.confidence);
     EXPECT_EQ(back.since, thing.since);
     EXPECT_EQ(back.seen, thing.seen);
+    EXPECT_EQ(back.points_in_odom, thing.points_in_odom);
+    EXPECT_EQ(back.pointed, thing.pointed);
   }
 }
 

@@ -33,10 +33,11 @@ struct Look {
 /// A person who walks by a script.
 struct PersonPlan {
   struct Leg {
-    Vec2 to{0.0, 0.0};   ///< the target, unless speed is 0
-    double speed = 0.0;  ///< [m/s]; 0: waits
-    double wait = 0.0;   ///< [s]
-    bool leads = false;  ///< walks while a robot is near, and waits for one otherwise
+    Vec2 to{0.0, 0.0};               ///< the target, unless speed is 0
+    double speed = 0.0;              ///< [m/s]; 0: waits
+    double wait = 0.0;               ///< [s]
+    bool leads = false;              ///< walks while a robot is near, and waits for one otherwise
+    std::optional<double> points{};  ///< [rad] stretches out an arm that way while waiting
   };
   Look look;
   Vec2 at{0.0, 0.0};

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -29,7 +30,12 @@ struct Person {
   double way = 0.0;      ///< [m] walked since he last stood; 0: stands
   std::size_t leg = 0;   ///< of the script
   double waited = 0.0;   ///< [s] in this leg
+  /// [rad] Direction of an outstretched arm, in the world.
+  std::optional<double> points{};
 };
+
+/// A person's outstretched arm, from the shoulder to the hand; none without a direction.
+std::optional<Segment> arm(const Person& person);
 
 struct Door {
   const DoorPlan* plan = nullptr;
@@ -111,6 +117,9 @@ class Scene {
   bool set_box(std::string_view name, const Pose& pose_in_world);
   /// A person is at once elsewhere; their script goes on. False likewise.
   bool set_person(std::string_view name, const Vec2& at);
+  /// A person stretches out an arm, or lowers it, until the script goes on. False for an unknown
+  /// person.
+  bool set_arm(std::string_view name, std::optional<double> direction_in_world);
 
   /// A sonar has fired; those of a single robot in a scene are not stored.
   void sound(const Ping& ping);

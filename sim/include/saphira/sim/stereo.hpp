@@ -47,8 +47,8 @@ struct StereoPair {
 
 /// The pictures of the two cameras of a robot: walls, doors, people, boxes, posts, other robots,
 /// floor and ceiling, each with its own fixed texture, so that a point of the world looks alike in
-/// both. People are a body with a head. No shadows, no mirrors, no blur. `random` is for the noise
-/// of the pixels alone.
+/// both. People are a body with a head, and an arm while they point. No shadows, no mirrors, no
+/// blur. `random` is for the noise of the pixels alone.
 StereoPair render_stereo(const Scene& scene, RobotNumber robot, const StereoRig& rig,
                          Random& random);
 

@@ -41,6 +41,10 @@ struct PlacePerson {
   std::string name;
   Vec2 at{0.0, 0.0};
 };
+struct RaiseArm {
+  std::string name;
+  std::optional<double> direction_in_world;  ///< [rad] [none: lowers it]
+};
 struct PlaceBox {
   std::string name;
   Pose pose_in_world;
@@ -63,8 +67,8 @@ struct Load {
   std::string world;  ///< a shipped name [empty: the same]
   std::string robot;  ///< likewise
 };
-using Wish = std::variant<PlaceRobot, PlacePerson, PlaceBox, SetDoor, Pause, StepOnce, SetRate,
-                          Disconnect, Load>;
+using Wish = std::variant<PlaceRobot, PlacePerson, RaiseArm, PlaceBox, SetDoor, Pause, StepOnce,
+                          SetRate, Disconnect, Load>;
 
 /// std::invalid_argument gives the expected form.
 Wish parse_wish(std::string_view text);

@@ -76,6 +76,8 @@ struct Situation {
   maps::Map map;
   std::string asked_about;       ///< the question of an activity to people; empty: none
   std::vector<KnownGoal> goals;  ///< the newest change last
+  /// A person who points: their place, with the heading of the arm (pointing.hpp).
+  std::optional<Pose> pointing_in_map{};
 };
 
 /// The state of a goal that the dialogue asked for.

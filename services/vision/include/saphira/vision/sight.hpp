@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "saphira/geometry/pose.hpp"
 #include "saphira/lps/seen_thing.hpp"
 
@@ -12,12 +14,13 @@ struct Sight {
   /// [m] On the floor. Without a range: any place in that direction.
   Vec2 place_in_robot{0.0, 0.0};
   bool range_known = true;
-  double sigma_range = 0.1;   ///< [m] along the line of sight
-  double sigma_across = 0.1;  ///< [m]
-  double width = 0.0;         ///< [m] 0: unknown
-  double height = 0.0;        ///< [m] 0: unknown
-  double area = 0.0;          ///< [0..1] of the picture, of a blob
-  double evidence = 1.0;      ///< [0..1] likeness to its kind
+  double sigma_range = 0.1;        ///< [m] along the line of sight
+  double sigma_across = 0.1;       ///< [m]
+  double width = 0.0;              ///< [m] 0: unknown
+  double height = 0.0;             ///< [m] 0: unknown
+  double area = 0.0;               ///< [0..1] of the picture, of a blob
+  double evidence = 1.0;           ///< [0..1] likeness to its kind
+  std::optional<double> points{};  ///< [rad] direction of a person's outstretched arm, robot frame
 };
 
 }  // namespace saphira::vision

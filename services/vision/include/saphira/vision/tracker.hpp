@@ -22,7 +22,9 @@ struct TrackerSettings {
   double sure = 0.45;    ///< with this confidence
   double forget_in_view = 2.0;       ///< [s] without a sight in view
   double forget_out_of_view = 15.0;  ///< [s] without a sight out of view
-  double coast = 1.5;  ///< [s] of constant velocity out of sight, before it slows down
+  double coast = 1.5;               ///< [s] of constant velocity out of sight, before it slows down
+  int hold = 4;                     ///< sights that make a pointing arm
+  double same_arm = radians(40.0);  ///< [rad] between the directions of one arm
 };
 
 /// Assigns sights to tracks, and estimates the places of tracks between and after sights (paper
@@ -54,11 +56,14 @@ class Tracker {
     bool ranged = true;    // of its newest sight
     bool told = false;
     int sights = 0;
+    Vec2 arm{0.0, 0.0};   // direction of an outstretched arm, smooth
+    int arms = 0;         // sights of it, less those without it
     double missed = 0.0;  // [s] in view without a sight
   };
 
   void predict(Track& track, std::uint64_t cycle) const;
   void update(Track& track, const Sight& sight, const Pose& robot) const;
+  void watch_arm(Track& track, const Sight& sight, std::uint64_t cycle, const Pose& robot) const;
   void begin(const Sight& sight, std::uint64_t cycle, const Pose& robot);
 
   TrackerSettings settings_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "saphira/vision/arms.hpp"
 #include "saphira/vision/blobs.hpp"
 #include "saphira/vision/people.hpp"
 #include "saphira/vision/picture.hpp"
@@ -17,7 +18,7 @@ class Vision {
   explicit Vision(const ColorCamera& camera = {}) : camera_(camera) {}
 
   void see(const StereoPicture& picture, const Pose& robot_in_odom);
-  /// The result of a stereo system, if there is one.
+  /// The result of a stereo system, if there is one. It shows no arms.
   void see(const Bands& bands, std::uint64_t cycle, const Pose& robot_in_odom);
   void see(const Channels& channels, std::uint64_t cycle, const Pose& robot_in_odom);
 
@@ -30,6 +31,9 @@ class Vision {
   void reset() { tracker_.reset(); }
 
  private:
+  void see_people(const Bands& bands, const std::vector<Sight>& people, std::uint64_t cycle,
+                  const Pose& robot_in_odom);
+
   ColorCamera camera_;
   Census census_;
   Tracker tracker_;

@@ -29,6 +29,9 @@ struct SeenThing {
   double confidence = 0.0;  ///< [0..1] that the thing exists
   std::uint64_t since = 0;  ///< cycle in which it was seen first
   std::uint64_t seen = 0;   ///< cycle in which it was seen last
+  /// [rad] Direction of a person's arm, when it was stretched out to a side last, in odom.
+  double points_in_odom = 0.0;
+  std::uint64_t pointed = 0;  ///< cycle in which that was seen last; 0: never
 };
 
 }  // namespace saphira::lps
