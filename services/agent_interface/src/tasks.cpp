@@ -4,9 +4,12 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
+#include <utility>
 
 namespace saphira::agent_interface {
 namespace {
+
+constexpr double kLongestHold = 600.0;  // [s]
 
 bool is_stop(const Task& task) {
   return task.goal.functor == "stop";
@@ -44,14 +47,29 @@ Task* Tasks::task() {
 }
 
 void Tasks::begin(Task task, Outputs& out) {
+  const bool interrupts = task.brief && this->task() != nullptr;
+  if (interrupts && !task.then.empty() && hold_ == 0) {
+    hold_ = ++tag_;
+    WantedGoal hold{hold_, "pause", {number("seconds", kLongestHold)}};
+    hold.speaker = task.goal.speaker;
+    hold.priority = 1;
+    out.goals.push_back(std::move(hold));
+  }
   task.goal.tag = ++tag_;
-  task.goal.priority = task.brief && this->task() != nullptr ? 1 : 0;
+  task.goal.priority = !interrupts ? 0 : hold_ == 0 ? 1 : 2;
   out.goals.push_back(task.goal);
   open_.push_back(std::move(task));
 }
 
+void Tasks::release(Outputs& out) {
+  if (hold_ != 0)
+    out.canceled.push_back(std::exchange(hold_, 0));
+}
+
 /// Ends what is open, and tells its owner why.
 void Tasks::drop(bool brief, const std::string& by, const std::string& text, Outputs& out) {
+  if (brief)
+    release(out);
   for (auto one = open_.begin(); one != open_.end();) {
     // A stop ends in a moment; what comes after it waits for that.
     if (one->brief != brief || is_stop(*one)) {
@@ -151,6 +169,8 @@ Tasks::Outputs Tasks::answer(bool yes, const Utterance& utterance) {
 
 Tasks::Outputs Tasks::ended(const Outcome& outcome) {
   Outputs out;
+  if (outcome.tag == hold_)
+    hold_ = 0;
   const auto found = std::find_if(open_.begin(), open_.end(),
                                   [&](const Task& one) { return one.goal.tag == outcome.tag; });
   if (found == open_.end())
@@ -162,8 +182,11 @@ Tasks::Outputs Tasks::ended(const Outcome& outcome) {
   if (more && !outcome.success)
     text += "; so the rest is not done";
   out.said.push_back({task.answers, task.goal.speaker, text, !more || !outcome.success});
-  if (!more || !outcome.success)
+  if (!more || !outcome.success) {
+    if (task.brief)
+      release(out);
     return out;
+  }
   Task next = std::move(task.then.front());
   next.then.assign(std::make_move_iterator(task.then.begin() + 1),
                    std::make_move_iterator(task.then.end()));

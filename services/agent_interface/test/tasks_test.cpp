@@ -175,15 +175,32 @@ TEST_F(TasksTest, AStopEndsTheLaterStepsToo) {
   EXPECT_EQ(told(tasks.ended({1, false, "canceled"})), "");
 }
 
-TEST_F(TasksTest, BriefStepsLetATaskGoOnAfterTheLast) {
+TEST_F(TasksTest, BetweenBriefStepsTheRobotStandsAndTheTaskGoesOnAfterTheLast) {
   want({errand("alice", "the mail")}, "alice");
   EXPECT_EQ(want({motion("bob"), motion("bob")}, "bob"),
             "bob: I turn, and then I turn, and then I go on with the mail for alice\n"
-            "goal 2 turn_to 1\n");
-  EXPECT_EQ(told(tasks.ended({2, true, "turned"})),
+            "goal 2 pause 1\n"
+            "goal 3 turn_to 2\n");
+  EXPECT_EQ(told(tasks.ended({3, true, "turned"})),
             "bob: done: turned\n"
             "bob: I turn\n"
-            "goal 3 turn_to 1\n");
+            "goal 4 turn_to 2\n");
+  EXPECT_EQ(told(tasks.ended({4, true, "turned"})),
+            "bob: done: turned.\n"
+            "cancel 2\n");
+  want({motion("bob"), motion("bob")}, "bob");
+  EXPECT_EQ(told(tasks.ended({6, false, "blocked"})),
+            "bob: I could not: blocked; so the rest is not done.\n"
+            "cancel 5\n");
+  want({motion("bob"), motion("bob")}, "bob");
+  EXPECT_EQ(want({motion("carol", "stop")}, "carol"),
+            "carol: I stop\n"
+            "alice: I drop the mail for alice: carol said \"do it\".\n"
+            "bob: I drop the turn for bob, and what was to follow: carol said \"do it\".\n"
+            "cancel 1\n"
+            "cancel 7\n"
+            "cancel 8\n"
+            "goal 9 stop 0\n");
 }
 
 TEST_F(TasksTest, LastingGoalsOutliveARestart) {

@@ -104,10 +104,14 @@ class Tasks {
   Task* task();
   void begin(Task task, Outputs& out);
   void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
+  void release(Outputs& out);
 
   std::vector<Task> open_;  ///< at most one brief goal and one task
   std::optional<Question> question_;
   std::uint64_t tag_ = 0;
+  /// A goal that stands between brief steps, so that the interrupted task does not go on there; 0:
+  /// none.
+  std::uint64_t hold_ = 0;
 };
 
 }  // namespace saphira::agent_interface
