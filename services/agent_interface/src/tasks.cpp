@@ -117,14 +117,8 @@ Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) 
   if (brief && other != nullptr)
     text += ", and then I go on with " + named_task(*other, utterance.speaker);
   const Said announced{utterance.id, utterance.speaker, text, false};
-  if (stop) {
+  if (stop)
     out.said.push_back(announced);
-    // On the bus the new stop ends the one before.
-    for (const Task& one : open_)
-      if (is_stop(one))
-        out.said.push_back({one.answers, one.goal.speaker, "I stop", true});
-    std::erase_if(open_, is_stop);
-  }
   if (!brief) {
     question_.reset();
     drop(false, utterance.speaker, utterance.text, out);
@@ -178,7 +172,11 @@ Tasks::Outputs Tasks::ended(const Outcome& outcome) {
   Task task = std::move(*found);
   open_.erase(found);
   const bool more = !task.then.empty();
-  std::string text = outcome.success ? "done: " + outcome.reason : "I could not: " + outcome.reason;
+  // On the bus a new stop ends the one before.
+  const bool replaced = is_stop(task) && std::any_of(open_.begin(), open_.end(), is_stop);
+  std::string text = replaced          ? "done: I was told again to stop"
+                     : outcome.success ? "done: " + outcome.reason
+                                       : "I could not: " + outcome.reason;
   if (more && !outcome.success)
     text += "; so the rest is not done";
   out.said.push_back({task.answers, task.goal.speaker, text, !more || !outcome.success});

@@ -139,10 +139,12 @@ TEST_F(TasksTest, AStopOfAnybodyEndsEverythingAndEachOwnerHearsIt) {
             "goal 4 deliver 0\n");
   EXPECT_EQ(want({motion("bob", "stop")}, "bob"),
             "bob: I stop\n"
-            "bob: I stop.\n"
             "alice: I drop the mail for alice: bob said \"do it\".\n"
             "cancel 4\n"
             "goal 5 stop 0\n");
+  EXPECT_EQ(told(tasks.ended({3, false, "canceled by a stop"})),
+            "bob: done: I was told again to stop.\n");
+  EXPECT_EQ(told(tasks.ended({5, true, "at rest"})), "bob: done: at rest.\n");
 }
 
 TEST_F(TasksTest, StepsAreDoneOneAfterAnother) {
