@@ -325,6 +325,106 @@ TEST(People, AReportIsFetchedFromWhomItTakesTwoQuestionsToFind) {
   EXPECT_EQ(whole.trouble(), "");
 }
 
+// Errands between people: from here, and with an answer.
+TEST(People, WhatIsHandedOverHereIsBrought) {
+  Whole whole(office());
+  People people({{"Please give me the report", "given", kYes},
+                 {"Here is the report from alice, please take it", "taken", kYes}});
+  const auto goal = whole.ask(
+      "deliver", {text("object", "the report"), text("to", "EJ-247"), text("sender", "alice")});
+  const GoalStatus status = among(whole, people, goal, 6000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "the report was brought from alice to EJ-247");
+  EXPECT_EQ(whole.said().at(0), "Please give me the report");
+  EXPECT_TRUE(is_in(whole, "EJ-247"));
+  EXPECT_EQ(whole.trouble(), "");
+}
+
+TEST(People, AMessageIsBroughtAndTheAnswerComesBack) {
+  Whole whole(office());
+  whole.claim("place-of-karen", "EJ-247");
+  People people({{"Is karen here?", "answer", "yes"},
+                 {"karen, alice says: the meeting is at five", "answer", "no"}});
+  const auto goal =
+      whole.ask("tell", {text("person", "karen"), text("message", "the meeting is at five"),
+                         text("sender", "alice"), text("back", "EJ-245")});
+  const GoalStatus status = among(whole, people, goal, 9000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "karen was told, and said no");
+  EXPECT_TRUE(people.all_answered());
+  EXPECT_TRUE(is_in(whole, "EJ-245"));
+  EXPECT_EQ(whole.trouble(), "");
+}
+
+TEST(People, AMessageWithoutAnAnswerOrAPlaceToReportAtIsTold) {
+  Whole whole(office());
+  whole.claim("place-of-karen", "EJ-247");
+  People people({{"Is karen here?", "answer", "yes"}});
+  const auto goal = whole.ask("tell", {text("person", "karen"), text("message", "it is late"),
+                                       saphira::number("patience", 3.0)});
+  const GoalStatus status = among(whole, people, goal, 6000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "karen was told, and did not answer");
+  EXPECT_EQ(whole.said().back(), "karen, somebody says: it is late");
+  EXPECT_TRUE(is_in(whole, "EJ-247"));
+}
+
+TEST(People, APersonIsAskedAndTheAnswerComesBack) {
+  Whole whole(office());
+  whole.claim("place-of-john", "EJ-247");
+  People people({{"Is john here?", "answer", "yes"},
+                 {"john, alice asks where karen is?", "answer", "EJ-244"}});
+  const auto goal =
+      whole.ask("inquire", {text("person", "john"), text("question", "where karen is"),
+                            text("sender", "alice"), text("back", "EJ-245")});
+  const GoalStatus status = among(whole, people, goal, 9000);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "john, asked where karen is, said EJ-244");
+  EXPECT_TRUE(is_in(whole, "EJ-245"));
+  EXPECT_EQ(whole.trouble(), "");
+}
+
+TEST(People, WhoIsNotFoundIsReportedToo) {
+  Whole whole(office());
+  whole.claim("place-of-john", "EJ-247");
+  People people({{"Is john here?", "answer", "no"}});
+  const auto goal =
+      whole.ask("inquire", {text("person", "john"), text("question", "where karen is"),
+                            text("back", "EJ-245"), saphira::number("patience", 3.0)});
+  const GoalStatus status = among(whole, people, goal, 9000);
+  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.reason,
+            "john was not asked: find-person: john is not to be found, neither at EJ-247");
+  EXPECT_TRUE(is_in(whole, "EJ-245"));
+}
+
+TEST(People, AGuestIsShownTheWayAndTheRobotComesBackToItsSpot) {
+  Whole whole(office());
+  const Pose begin = whole.truth();
+  const GoalStatus shown = whole.achieve("guide", {text("place", "EJ-247")}, 6000);
+  EXPECT_EQ(shown.reason, "this is EJ-247");
+  EXPECT_EQ(whole.said().back(), "this is EJ-247");
+  const GoalStatus back = whole.achieve(
+      "come-back", {text("place", "central corridor"), saphira::point("spot", begin, Frame::map)},
+      6000);
+  EXPECT_EQ(back.state, GoalState::kSucceeded) << back.reason;
+  EXPECT_EQ(back.reason, "the robot is back at central corridor");
+  EXPECT_LT((whole.truth().position() - begin.position()).norm(), 1.0);
+  EXPECT_EQ(whole.achieve("go-to-place", {text("place", "start")}, 3000).state,
+            GoalState::kSucceeded);
+  EXPECT_EQ(whole.drive().contacts(), 0);
+}
+
+TEST(People, APauseEndsWithItsTime) {
+  Whole whole(office());
+  const std::uint64_t begin = whole.cycle();
+  const GoalStatus status = whole.achieve("pause", {saphira::number("seconds", 5.0)}, 200);
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "the time is over");
+  EXPECT_GE(whole.cycle() - begin, 49u);
+  EXPECT_LE(whole.cycle() - begin, 55u);
+}
+
 TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
   Whole whole(office());
   People people({{"Please give me the key", "given", "no"},

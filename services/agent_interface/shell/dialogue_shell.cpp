@@ -138,6 +138,7 @@ void DialogueShell::want(const WantedGoal& wanted) {
   goal.functor(wanted.functor);
   goal.arguments(to_bus(wanted.arguments));
   goal.deadline(wanted.deadline);
+  goal.priority(wanted.priority);
   if (!wanted.speaker.empty())
     goal.requester(wanted.speaker + " (by words)");
   const bool lasting = wanted.lasting && !options_.memory.empty();

@@ -20,6 +20,8 @@ constexpr double kDoorInSight = 5.0;         // [m] "this office" is no farther
 constexpr double kAhead = 10.0;              // [m] of the point to turn to
 constexpr double kLongestWay = 20.0;         // [m] that one command of motion may take
 constexpr std::size_t kHeard = 256;
+/// Goals that interrupt a task for a moment.
+constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "attend-person", "pause"};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
 constexpr const char* kSaidLine = "said\t";
@@ -277,29 +279,14 @@ std::string Dialogue::referred(const Meaning& meaning, const Situation& situatio
 }
 
 void Dialogue::want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
-                    Arguments arguments, Outputs& out, double deadline, bool lasting) {
-  const std::string what = grammar_.paraphrase(meaning);
-  for (const Open& open : open_)
-    out.canceled.push_back(open.tag);
-  open_.clear();
-  say(utterance, what, false, out);
-  out.goals.push_back(
-      {++tag_, functor, std::move(arguments), deadline, lasting, utterance.speaker});
-  open_.push_back({tag_, what, utterance.id, utterance.speaker, {}});
-}
-
-void Dialogue::asked(std::uint64_t tag, const GoalRef& goal) {
-  for (Open& open : open_)
-    if (open.tag == tag)
-      open.goal = goal;
-}
-
-std::vector<std::pair<std::uint64_t, GoalRef>> Dialogue::lasting() const {
-  std::vector<std::pair<std::uint64_t, GoalRef>> goals;
-  for (const Open& open : open_)
-    if (open.goal != GoalRef{})
-      goals.emplace_back(open.tag, open.goal);
-  return goals;
+                    Arguments arguments, Outputs&, double deadline, bool lasting) {
+  Task task;
+  task.goal = {0, functor, std::move(arguments), deadline, lasting, utterance.speaker};
+  task.brief = std::find(kBrief.begin(), kBrief.end(), functor) != kBrief.end();
+  task.what = grammar_.paraphrase(meaning);
+  task.doing = grammar_.paraphrase(meaning, Grammar::Form::doing);
+  task.name = grammar_.paraphrase(meaning, Grammar::Form::task);
+  wanted_.push_back(std::move(task));
 }
 
 bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs& out) {
@@ -311,7 +298,11 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
     want(meaning, utterance, "stop", {}, out);
   } else if (meaning.functor == "move") {
     const double distance = number_of(meaning, "distance");
-    if (distance <= 0.0 || distance > kLongestWay) {
+    if (distance <= 0.0) {
+      say(utterance, "that is no way to go", true, out);
+      return true;
+    }
+    if (distance > kLongestWay) {
       say(utterance, "I go up to " + plain(kLongestWay) + " m at a time", true, out);
       return true;
     }
@@ -324,7 +315,11 @@ bool Dialogue::move(const Meaning& meaning, const Utterance& utterance, Outputs&
   } else if (meaning.functor == "turn" || meaning.functor == "turn_around") {
     const bool around = meaning.functor == "turn_around";
     const double degrees = around ? 180.0 : number_of(meaning, "degrees");
-    if (degrees <= 0.0 || degrees > 180.0) {
+    if (degrees <= 0.0) {
+      say(utterance, "that is no turn", true, out);
+      return true;
+    }
+    if (degrees > 180.0) {
       say(utterance, "I turn by up to 180 degrees at a time", true, out);
       return true;
     }
@@ -390,7 +385,7 @@ bool Dialogue::task(const Meaning& meaning, const Utterance& utterance, const Si
 }
 
 std::string Dialogue::doing(const Situation& situation) const {
-  std::string text = open_.empty() ? "" : open_.back().what;
+  std::string text = tasks_.doing();
   for (const KnownGoal& goal : situation.goals)
     if (is_open(goal) && !goal.asker.empty())
       text +=
@@ -542,6 +537,13 @@ bool Dialogue::naming(const Meaning& meaning, const Utterance& utterance,
 bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                      Outputs& out) {
   const bool yes = meaning.functor == "yes";
+  if ((yes || meaning.functor == "no") && tasks_.asks(utterance)) {
+    add(tasks_.answer(yes, utterance), out);
+    note_begin(situation, out);
+    return true;
+  }
+  if (situation.asked_about.empty() && tasks_.asks(utterance))
+    return true;  // it answers something else
   if (doubt_ && (yes || meaning.functor == "no")) {
     const Doubt doubt = *doubt_;
     doubt_.reset();
@@ -591,10 +593,35 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
 void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                    Outputs& out) {
   if (move(meaning, utterance, out) || task(meaning, utterance, situation, out) ||
+      errand(meaning, utterance, situation, out) || inquiry(meaning, utterance, situation, out) ||
       question(meaning, utterance, situation, out) || advice(meaning, utterance, situation, out) ||
       naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
   say(utterance, "I understand " + meaning.functor + ", and do not know how to do it", true, out);
+}
+
+void Dialogue::add(Tasks::Outputs more, Outputs& out) {
+  out.said.insert(out.said.end(), more.said.begin(), more.said.end());
+  out.canceled.insert(out.canceled.end(), more.canceled.begin(), more.canceled.end());
+  out.goals.insert(out.goals.end(), more.goals.begin(), more.goals.end());
+}
+
+/// A sentence of several steps counts as a whole: where one is not possible, nothing is done.
+void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
+                          const Situation& situation, Outputs& out) {
+  wanted_.clear();
+  act(understood.meanings.front(), utterance, situation, out);
+  for (const Meaning& meaning : understood.then) {
+    const std::size_t before = wanted_.size();
+    if (before == 0)
+      return;  // the reason is said
+    act(meaning, utterance, situation, out);
+    if (wanted_.size() == before)
+      return;
+  }
+  add(tasks_.want(std::move(wanted_), utterance), out);
+  wanted_.clear();
+  note_begin(situation, out);
 }
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
@@ -607,8 +634,8 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       heard_.erase(heard_.begin());
     out.learned = true;
   }
-  const bool asked =
-      !situation.asked_about.empty() || (doubt_ && doubt_->speaker == utterance.speaker);
+  const bool asked = !situation.asked_about.empty() ||
+                     (doubt_ && doubt_->speaker == utterance.speaker) || tasks_.asks(utterance);
   const Grammar::Understood understood = grammar_.understand(utterance.text, asked);
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
@@ -620,21 +647,14 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       choices += (choices.empty() ? "" : ", or ") + describe(meaning);
     say(utterance, "what? That may mean " + choices, true, out);
   } else {
-    act(understood.meanings.front(), utterance, situation, out);
+    act_on_all(understood, utterance, situation, out);
   }
   return out;
 }
 
 Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {
   Outputs out;
-  const auto found = std::find_if(open_.begin(), open_.end(),
-                                  [&](const Open& one) { return one.tag == outcome.tag; });
-  if (found == open_.end())
-    return out;
-  const std::string text =
-      outcome.success ? "done: " + outcome.reason : "I could not: " + outcome.reason;
-  out.said.push_back({found->answers, found->listener, text, true});
-  open_.erase(found);
+  add(tasks_.ended(outcome), out);
   return out;
 }
 
@@ -643,10 +663,7 @@ Dialogue::Outputs Dialogue::says(const std::string& text, const CycleRef& when) 
   if (when.first == before_.first && when.second <= before_.second)
     return out;
   said_ = when;
-  Said said{{}, {}, text, false};
-  if (!open_.empty())
-    said.answers = open_.back().answers;
-  out.said.push_back(std::move(said));
+  out.said.push_back({tasks_.spoken_for(), {}, text, false});
   return out;
 }
 
@@ -702,37 +719,9 @@ std::string Dialogue::save() const {
     text +=
         sealed_line(kSaidLine + std::to_string(said_.first) + "\t" + std::to_string(said_.second)) +
         "\n";
-  for (const Open& open : open_)
-    if (open.goal != GoalRef{})
-      text +=
-          sealed_line(
-              kOpenLine + std::to_string(open.tag) + "\t" + std::to_string(open.goal.first) + "\t" +
-              std::to_string(open.goal.second) + "\t" + std::to_string(open.answers.first) + "\t" +
-              std::to_string(open.answers.second) + "\t" + open.listener + "\t" + open.what) +
-          "\n";
+  for (const std::string& line : tasks_.save())
+    text += sealed_line(kOpenLine + line) + "\n";
   return text;
-}
-
-void Dialogue::restore_open(const std::string& line) {
-  std::array<std::uint64_t, 5> numbers{};
-  const char* at = line.c_str();
-  for (std::uint64_t& number : numbers) {
-    char* end = nullptr;
-    number = std::strtoull(at, &end, 10);
-    if (*end != '\t')
-      return;
-    at = end + 1;
-  }
-  const std::string words = at;
-  const std::size_t tab = words.find('\t');
-  if (tab == std::string::npos)
-    return;
-  tag_ = std::max(tag_, numbers[0]);
-  open_.push_back({numbers[0],
-                   words.substr(tab + 1),
-                   {numbers[3], numbers[4]},
-                   words.substr(0, tab),
-                   {numbers[1], numbers[2]}});
 }
 
 std::size_t Dialogue::restore(std::string_view text) {
@@ -754,7 +743,7 @@ std::size_t Dialogue::restore(std::string_view text) {
       before_.second = std::strtoull(end, nullptr, 10);
       said_ = before_;
     } else if (content && content->starts_with(kOpenLine)) {
-      restore_open(std::string(content->substr(std::string_view(kOpenLine).size())));
+      tasks_.restore(std::string(content->substr(std::string_view(kOpenLine).size())));
     } else {
       advice += std::string(line) + "\n";
     }

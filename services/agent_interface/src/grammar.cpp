@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kLongestUtterance = 40;  // words; a longer one is no command
 constexpr std::size_t kLongestName = 3;        // words
 constexpr std::size_t kMostMatches = 1000;
+constexpr std::size_t kMostSteps = 8;  // of a sequence
 
 bool is_letter(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -66,6 +67,23 @@ std::vector<std::string> words_of(std::string_view text) {
   end();
   return words;
 }
+
+namespace {
+
+/// Words as people write them: "karen's office".
+std::string joined(const std::vector<std::string>& words, std::size_t from) {
+  std::string text;
+  for (std::size_t i = from; i < words.size(); ++i)
+    text += (text.empty() || words[i] == "'s" ? "" : " ") + words[i];
+  return text;
+}
+
+bool has_rest(const Grammar::Node& node) {
+  return node.kind == Grammar::Node::Kind::rest ||
+         std::any_of(node.parts.begin(), node.parts.end(), has_rest);
+}
+
+}  // namespace
 
 /// Reads the file: see config/grammars/README.md.
 class Grammar::Reader {
@@ -137,7 +155,7 @@ class Grammar::Reader {
   void header() {
     const std::size_t from = at_;
     const std::string first =
-        word("keyword, names, no-names, list, typed, reply, urgent or a functor");
+        word("keyword, names, no-names, steps, list, typed, reply, urgent, later or a functor");
     if (first == "keyword") {
       expect(':');
       do
@@ -151,12 +169,18 @@ class Grammar::Reader {
       }
     } else if (first == "names") {
       names();
+    } else if (first == "steps") {
+      expect(':');
+      do
+        grammar_.steps_.push_back(word("a functor"));
+      while (take('|'));
     } else if (first == "list") {
       list();
     } else {
       const Use use = first == "typed"    ? Use::typed
                       : first == "reply"  ? Use::reply
                       : first == "urgent" ? Use::urgent
+                      : first == "later"  ? Use::later
                                           : Use::command;
       rule(use == Use::command ? first : word("a functor"), use, from);
     }
@@ -218,11 +242,11 @@ class Grammar::Reader {
       if (!take(',') && (at_ >= line_.size() || line_[at_] != ')'))
         fail("expected , or )");
     }
-    if (take('"')) {
+    while (rule.paraphrases.size() < 3 && take('"')) {
       const std::size_t end = line_.find('"', at_);
       if (end == std::string_view::npos)
         fail("expected \" at the end of the paraphrase");
-      rule.paraphrase = line_.substr(at_, end - at_);
+      rule.paraphrases.emplace_back(line_.substr(at_, end - at_));
       at_ = end + 1;
     }
     grammar_.rules_.push_back(std::move(rule));
@@ -266,14 +290,29 @@ class Grammar::Reader {
     return choice.parts.size() == 1 ? choice.parts.front() : choice;
   }
 
+  Node inner(char closing) {
+    ++depth_;
+    Node node = parts(closing);
+    --depth_;
+    return node;
+  }
+
   Node part() {
     if (take('('))
-      return parts(')');
+      return inner(')');
     if (take('['))
-      return {Node::Kind::optional, {}, {}, {parts(']')}};
+      return {Node::Kind::optional, {}, {}, {inner(']')}};
     if (take('{')) {
       Node node{Node::Kind::name, {}, slot()};
+      skip();
+      if (line_.substr(at_).starts_with("...")) {
+        at_ += 3;
+        node.kind = Node::Kind::rest;
+      }
       expect('}');
+      skip();
+      if (node.kind == Node::Kind::rest && at_ < line_.size() && (line_[at_] != '|' || depth_ > 0))
+        fail("expected the end of the line after {" + node.slot + " ...}");
       return node;
     }
     if (take('<')) {
@@ -314,7 +353,8 @@ class Grammar::Reader {
   std::string_view line_;
   int number_ = 0;
   std::size_t at_ = 0;
-  Place last_;  ///< the newest functor's
+  int depth_ = 0;  ///< of brackets
+  Place last_;     ///< the newest functor's
 };
 
 Grammar::Grammar(std::string_view text, const std::string& file) {
@@ -400,6 +440,14 @@ std::vector<Grammar::Match> Grammar::match(const Node& node, const std::vector<s
       return entry(node, words, from);
     case Node::Kind::name:
       return name(node, words, from);
+    case Node::Kind::rest:
+      if (from.end < words.size()) {
+        matches.push_back(from);
+        std::string& text = matches.back().slots[node.slot];
+        text += (text.empty() ? "" : " ") + joined(words, from.end);
+        matches.back().end = words.size();
+      }
+      return matches;
     case Node::Kind::sequence:
       return sequence(node.parts, words, from);
     case Node::Kind::optional:
@@ -428,36 +476,84 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.addressed = true;
     words.erase(words.begin());
   }
-  const auto look = [&](bool urgent) {
-    std::size_t best = 0;
-    for (const Rule& rule : rules_) {
-      if ((rule.use == Use::urgent) != urgent ||
-          (rule.use == Use::reply ? !replies : !result.addressed))
-        continue;
-      for (const Node& pattern : rule.patterns)
-        for (const Match& match : this->match(pattern, words, {})) {
-          // A mere name is a reply, not a word to the robot by its name.
-          if ((match.end != words.size() && !urgent) || match.literal < best ||
-              (match.literal == 0 && result.addressed))
-            continue;
-          Meaning meaning = rule.meaning;
-          for (const auto& [slot, value] : match.slots)
-            meaning.slots[slot] = value;
-          // The meaning whose pattern explains more of the words is better.
-          if (match.literal > best)
-            result.meanings.clear();
-          best = match.literal;
-          if (std::find(result.meanings.begin(), result.meanings.end(), meaning) ==
-              result.meanings.end())
-            result.meanings.push_back(std::move(meaning));
-        }
-    }
-  };
   if (words.size() <= kLongestUtterance)
-    look(false);
+    result.meanings = look(words, result.addressed, replies, Among::usual);
+  if (result.meanings.empty() && result.addressed && words.size() <= kLongestUtterance) {
+    // Of several ways to divide it, the one with the fewest steps.
+    std::vector<std::vector<Meaning>> ways = divided(words, true);
+    std::stable_sort(ways.begin(), ways.end(),
+                     [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (!ways.empty() && (ways.size() == 1 || ways[0].size() < ways[1].size())) {
+      result.meanings = {ways[0].front()};
+      result.then.assign(ways[0].begin() + 1, ways[0].end());
+    }
+  }
   if (result.meanings.empty())
-    look(true);
+    result.meanings = look(words, result.addressed, replies, Among::urgent);
   return result;
+}
+
+std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool addressed,
+                                   bool replies, Among among) const {
+  std::vector<Meaning> meanings;
+  std::size_t best = 0;
+  for (const Rule& rule : rules_) {
+    const Among of = rule.use == Use::urgent  ? Among::urgent
+                     : rule.use == Use::later ? Among::later
+                                              : Among::usual;
+    if (of != among || (rule.use == Use::reply ? !replies : !addressed))
+      continue;
+    for (const Node& pattern : rule.patterns)
+      for (const Match& match : this->match(pattern, words, {})) {
+        // A mere name is a reply, not a word to the robot by its name.
+        if ((match.end != words.size() && among != Among::urgent) || match.literal < best ||
+            (match.literal == 0 && addressed))
+          continue;
+        Meaning meaning = rule.meaning;
+        for (const auto& [slot, value] : match.slots)
+          meaning.slots[slot] = value;
+        // The meaning whose pattern explains more of the words is better.
+        if (match.literal > best)
+          meanings.clear();
+        best = match.literal;
+        if (std::find(meanings.begin(), meanings.end(), meaning) == meanings.end())
+          meanings.push_back(std::move(meaning));
+      }
+  }
+  return meanings;
+}
+
+std::vector<std::vector<Meaning>> Grammar::divided(const std::vector<std::string>& words,
+                                                   bool first) const {
+  std::vector<std::vector<Meaning>> ways;
+  const auto step = [&](const std::vector<std::string>& sentence) -> std::optional<Meaning> {
+    std::vector<Meaning> meanings;
+    if (!first)
+      meanings = look(sentence, true, false, Among::later);
+    if (meanings.empty())
+      meanings = look(sentence, true, false, Among::usual);
+    if (meanings.size() != 1 ||
+        std::find(steps_.begin(), steps_.end(), meanings[0].functor) == steps_.end())
+      return std::nullopt;
+    return meanings[0];
+  };
+  if (const auto whole = step(words); whole && !first)
+    ways.push_back({*whole});
+  for (std::size_t i = 1; i + 1 < words.size(); ++i) {
+    if (words[i] != "and" && words[i] != "then")
+      continue;
+    const auto at = words.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto head = step({words.begin(), at});
+    if (!head)
+      continue;
+    const bool both = words[i] == "and" && words[i + 1] == "then";
+    for (std::vector<Meaning>& rest : divided({at + (both ? 2 : 1), words.end()}, false)) {
+      rest.insert(rest.begin(), *head);
+      if (rest.size() <= kMostSteps)
+        ways.push_back(std::move(rest));
+    }
+  }
+  return ways;
 }
 
 /// Each part of a pattern leads from one state to another.
@@ -493,6 +589,8 @@ class Grammar::GraphMaker {
         for (const auto& name : names_)
           words(name, from, to);
         return;
+      case Node::Kind::rest:
+        return;
       case Node::Kind::sequence:
         for (std::size_t i = 0; i < node.parts.size(); ++i) {
           const int next = i + 1 == node.parts.size() ? to : graph.states++;
@@ -506,7 +604,8 @@ class Grammar::GraphMaker {
         return;
       case Node::Kind::choice:
         for (const Node& part : node.parts)
-          lead(part, from, to);
+          if (!has_rest(part))
+            lead(part, from, to);
         return;
     }
   }
@@ -523,18 +622,26 @@ WordGraph Grammar::graph(const std::vector<std::string>& names, bool replies) co
   for (const std::string& keyword : keywords_)
     maker.graph.arcs.push_back({WordGraph::kStart, WordGraph::kAddressed, keyword});
   for (const Rule& rule : rules_)
-    if (rule.use != Use::typed && (rule.use != Use::reply || replies))
+    if (rule.use != Use::typed && rule.use != Use::later && (rule.use != Use::reply || replies))
       for (const Node& pattern : rule.patterns)
-        maker.lead(pattern, rule.use == Use::reply ? WordGraph::kStart : WordGraph::kAddressed,
-                   WordGraph::kEnd);
+        if (pattern.kind == Node::Kind::choice || !has_rest(pattern))
+          maker.lead(pattern, rule.use == Use::reply ? WordGraph::kStart : WordGraph::kAddressed,
+                     WordGraph::kEnd);
   return std::move(maker.graph);
 }
 
 std::string Grammar::paraphrase(const Meaning& meaning) const {
+  return paraphrase(meaning, Form::announced);
+}
+
+std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {
+  const auto index = static_cast<std::size_t>(form);
   for (const Rule& rule : rules_) {
     if (rule.meaning.functor != meaning.functor)
       continue;
-    std::string text = rule.paraphrase;
+    if (index >= rule.paraphrases.size())
+      return {};
+    std::string text = rule.paraphrases[index];
     for (auto slot = meaning.slots.rbegin(); slot != meaning.slots.rend(); ++slot)
       for (std::size_t at = text.find('$' + slot->first); at != std::string::npos;
            at = text.find('$' + slot->first, at + slot->second.size()))

@@ -26,11 +26,11 @@ class DialogueOnTheBus : public testing::Test {
     dialogue = std::make_unique<DialogueShell>(*service, options);
   }
   /// The robot's answer.
-  std::vector<std::string> say(const std::string& text) {
+  std::vector<std::string> say(const std::string& text, const std::string& speaker = "Alice") {
     v1::Utterance utterance;
     utterance.id().writer(5);
     utterance.id().number(++number);
-    utterance.speaker("Alice");
+    utterance.speaker(speaker);
     utterance.text(text);
     utterance.confidence(1.0);
     heard.write(utterance);
@@ -229,6 +229,47 @@ TEST_F(DialogueOnTheBus, ATaskOfBeforeARestartIsWithdrawnByTheNextCommand) {
   EXPECT_TRUE(std::any_of(then.begin(), then.end(), [&](const auto& sample) {
     return sample.info.disposed && sample.data.id() == first[0].data.id();
   }));
+}
+
+TEST_F(DialogueOnTheBus, AMotionInterruptsATaskByItsPriorityAndAQuestionComesBeforeADrop) {
+  say("Flakey, take the mail from EJ-231 to EJ-233");
+  auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].data.priority(), 0);
+  const v1::GoalId first = asked[0].data.id();
+  EXPECT_EQ(say("Flakey, turn left", "Bob"),
+            std::vector<std::string>{
+                "I turn 90 degrees to the left, and then I go on with the mail for Alice"});
+  asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_FALSE(asked[0].info.disposed);
+  EXPECT_EQ(asked[0].data.priority(), 1);
+  EXPECT_EQ(say("Flakey, explore", "Bob"),
+            std::vector<std::string>{"I am bringing the mail for Alice. Shall I drop that?"});
+  EXPECT_TRUE(goals.take().empty());
+  EXPECT_EQ(say("yes", "Bob").size(), 3u);  // both drops, and the task
+  asked = goals.take();
+  ASSERT_EQ(asked.size(), 3u);
+  EXPECT_TRUE(asked[0].info.disposed);
+  EXPECT_EQ(asked[0].data.id(), first);
+  EXPECT_EQ(asked[2].data.functor(), "explore");
+}
+
+TEST_F(DialogueOnTheBus, TheNextStepBeginsWhereTheOneBeforeHasEnded) {
+  EXPECT_EQ(say("Flakey, turn left and go forward"),
+            std::vector<std::string>{"I turn 90 degrees to the left, and then I go forward 1 m"});
+  const auto asked = goals.take();
+  ASSERT_EQ(asked.size(), 1u);
+  v1::GoalStatus status;
+  status.id(asked[0].data.id());
+  status.state(v1::GOAL_SUCCEEDED);
+  status.reason("turned");
+  statuses.write(status);
+  dialogue->step();
+  EXPECT_EQ(answers(), (std::vector<std::string>{"done: turned", "I go forward 1 m"}));
+  const auto next = goals.take();
+  ASSERT_FALSE(next.empty());
+  EXPECT_EQ(next.back().data.functor(), "go_to");
 }
 
 TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {

@@ -68,7 +68,7 @@ TEST_F(DialogueTest, ANewCommandTakesThePlaceOfTheOneBefore) {
   hear("Flakey, go to EJ-233");
   EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
   const std::uint64_t first = last.goals.at(0).tag;
-  EXPECT_EQ(said("flakey stop"), "I stop");
+  EXPECT_EQ(said("flakey stop"), "I stop / I drop the way to EJ-233");
   EXPECT_EQ(last.canceled, std::vector{first});
   EXPECT_TRUE(dialogue.ended({first, false, "withdrawn"}).said.empty());
 }
@@ -237,7 +237,7 @@ TEST_F(DialogueTest, TheExamplesOfWhatItCanDoAreUnderstood) {
 TEST_F(DialogueTest, StopStopsWhateverFollows) {
   hear("Flakey, go to EJ-233");
   const std::uint64_t first = last.goals.at(0).tag;
-  EXPECT_EQ(said("Flakey, please stop going there!"), "I stop");
+  EXPECT_EQ(said("Flakey, please stop going there!"), "I stop / I drop the way to EJ-233");
   EXPECT_EQ(last.canceled, std::vector{first});
   EXPECT_EQ(goals(), "stop ");
   EXPECT_EQ(said("Flakey, never stop"), "what?");
@@ -354,6 +354,168 @@ TEST_F(DialogueTest, KnowledgeOutlivesARestart) {
   EXPECT_EQ(restarted.restore(dialogue.save() + "nonsense\n"), 1u);
   EXPECT_EQ(restarted.knowledge().all(), dialogue.knowledge().all());
   EXPECT_EQ(restarted.claims().size(), 2u);
+}
+
+// Whose task it is, errands, and ways of several steps.
+
+TEST_F(DialogueTest, AMotionLetsTheTaskOfSomebodyElseGoOn) {
+  hear("Flakey, get the mail from John");
+  EXPECT_EQ(said("Flakey, turn left", "Bob"),
+            "I turn 90 degrees to the left, and then I go on with the mail for Alice");
+  EXPECT_TRUE(last.canceled.empty());
+  ASSERT_EQ(last.goals.size(), 1u);
+  EXPECT_EQ(last.goals[0].priority, 1);
+  EXPECT_EQ(said("Flakey, look at me", "Alice"),
+            "I drop the turn for Bob: Alice said \"Flakey, look at me\" / I look for you, and then "
+            "I go on with the mail");
+  EXPECT_EQ(last.goals.at(0).priority, 1);
+}
+
+TEST_F(DialogueTest, TheTaskOfSomebodyElseIsDroppedOnlyAfterAQuestion) {
+  hear("Flakey, get the mail from John");
+  const std::uint64_t first = last.goals.at(0).tag;
+  EXPECT_EQ(said("Flakey, go to EJ-233", "Bob"),
+            "I am bringing the mail for Alice. Shall I drop that?");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(said("good morning", "Bob"), "");
+  EXPECT_EQ(said("yes", "Carol"), "");
+  EXPECT_EQ(said("no", "Bob"), "good: I go on with the mail for Alice");
+  EXPECT_EQ(said("yes", "Bob"), "");
+  hear("Flakey, go to EJ-233", "Bob");
+  EXPECT_EQ(said("yes please", "Bob"),
+            "I drop the mail for Alice: Bob said \"Flakey, go to EJ-233\" / I go to EJ-233");
+  EXPECT_EQ(last.canceled, std::vector{first});
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-233\"");
+  EXPECT_EQ(said("Flakey, explore", "Bob"), "I drop the way to EJ-233 / I explore");
+  EXPECT_EQ(said("Flakey, stop", "Alice"),
+            "I stop / I drop the exploration for Bob: Alice said \"Flakey, stop\"");
+}
+
+TEST_F(DialogueTest, WhatIsGivenToTheRobotHereIsBrought) {
+  EXPECT_EQ(said("Flakey, take this report to Karen"), "I take the report to karen");
+  EXPECT_EQ(goals(), "deliver object=\"the report\" to=\"karen\" sender=\"Alice\"");
+  EXPECT_TRUE(last.goals.at(0).lasting);
+  EXPECT_EQ(said("Flakey, take the mail to Karen's office"),
+            "nobody has told me where karen's office is");
+  hear("Flakey, EJ-231 is Karen's office");
+  EXPECT_EQ(said("Flakey, take the mail to Karen's office"),
+            "I drop the report / I take the mail to EJ-231");
+  EXPECT_EQ(goals(), "deliver object=\"the mail\" to=\"EJ-231\" sender=\"Alice\"");
+}
+
+TEST_F(DialogueTest, MessagesAndQuestionsGoToAPersonAndTheirAnswerComesBack) {
+  EXPECT_EQ(said("Flakey, tell Karen that John's meeting isn't at five."),
+            "I tell karen: John's meeting isn't at five");
+  EXPECT_EQ(goals(),
+            "tell person=\"karen\" message=\"John's meeting isn't at five\" sender=\"Alice\" "
+            "back=\"upper corridor\"");
+  EXPECT_EQ(said("Flakey, ask John where Karen is"),
+            "I drop the message to karen / I ask john where karen is");
+  EXPECT_EQ(goals(),
+            "inquire person=\"john\" question=\"where karen is\" sender=\"Alice\" "
+            "back=\"upper corridor\"");
+  EXPECT_TRUE(dialogue.knowledge().all().empty());
+  situation.pose_in_map.reset();
+  hear("Flakey, ask Karen if she has the report");
+  EXPECT_EQ(goals(),
+            "inquire person=\"karen\" question=\"if she has the report\" sender=\"Alice\" "
+            "back=\"\"");
+  situation.asked_about = "answer";
+  hear("Flakey, EJ-233 is John's office");
+  EXPECT_EQ(said("ask John", "Carol"), "thank you");
+  EXPECT_EQ(last.claims.at(0).value, "john");
+}
+
+TEST_F(DialogueTest, StepsAreDoneOneAfterAnotherOrNotAtAll) {
+  EXPECT_EQ(said("Flakey, turn left and go forward 2 meters"),
+            "I turn 90 degrees to the left, and then I go forward 2 m");
+  ASSERT_EQ(last.goals.size(), 1u);
+  EXPECT_EQ(last.goals[0].functor, "turn_to");
+  const Dialogue::Outputs next = dialogue.ended({last.goals[0].tag, true, "turned"});
+  ASSERT_EQ(next.said.size(), 2u);
+  EXPECT_EQ(next.said[0].text, "done: turned");
+  EXPECT_FALSE(next.said[0].end);
+  EXPECT_EQ(next.said[1].text, "I go forward 2 m");
+  ASSERT_EQ(next.goals.size(), 1u);
+  EXPECT_EQ(next.goals[0].functor, "go_to");
+  EXPECT_TRUE(dialogue.ended({next.goals[0].tag, true, "arrived"}).said.at(0).end);
+  EXPECT_EQ(said("Flakey, go to EJ-231 and then go to the attic"), "I know no place called attic");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(said("Flakey, go to EJ-233 and wait there"), "I go to EJ-233, and then I wait there");
+  const Dialogue::Outputs there = dialogue.ended({last.goals.at(0).tag, true, "arrived"});
+  EXPECT_EQ(there.goals.at(0).functor, "pause");
+  EXPECT_EQ(said("Flakey, explore", "Bob"), "I am waiting for Alice. Shall I drop that?");
+  hear("Flakey, stop");
+  hear("Flakey, turn left and go forward");
+  EXPECT_EQ(dialogue.ended({last.goals.at(0).tag, false, "no robot"}).said.at(0).text,
+            "I could not: no robot; so the rest is not done");
+}
+
+TEST_F(DialogueTest, ItComesBackToWhereItsTaskBegan) {
+  EXPECT_EQ(said("Flakey, come back"),
+            "I do not know where that is: my map has no place called home or start");
+  EXPECT_EQ(said("Flakey, go home"),
+            "I do not know where that is: my map has no place called home or start");
+  hear("Flakey, go to EJ-233");
+  situation.pose_in_map = Pose{7.0, 4.0, 0.0};
+  dialogue.ended({last.goals.at(0).tag, true, "arrived"});
+  EXPECT_EQ(said("Flakey, come back"), "I go back to upper corridor");
+  EXPECT_EQ(goals(), "come-back place=\"upper corridor\" spot=(3.5, 1.2, 0)");
+  dialogue.ended({last.goals.at(0).tag, true, "arrived"});
+  EXPECT_EQ(said("Flakey, go to EJ-231 and come back"),
+            "I go to EJ-231, and then I go back to EJ-233");
+  hear("Flakey, stop");
+  situation.map = maps::parse_map(std::string(kMap) + "POS (90) 1000, 1000, 0 \"start\"\n", "map");
+  EXPECT_EQ(said("Flakey, go home"), "I go home, to start");
+  EXPECT_EQ(goals(), "go-to-place place=\"start\"");
+}
+
+TEST_F(DialogueTest, ItShowsTheWayWaitsAndPatrols) {
+  hear("Flakey, EJ-231 is Karen's office");
+  EXPECT_EQ(said("Flakey, show me Karen's office"), "I go to EJ-231 slowly; please come with me");
+  EXPECT_EQ(goals(), "guide place=\"EJ-231\"");
+  EXPECT_EQ(said("Flakey, wait five minutes", "Bob"),
+            "I wait 5 minutes, and then I go on with the way to EJ-231 for Alice");
+  EXPECT_EQ(goals(), "pause seconds=300");
+  EXPECT_EQ(last.goals.at(0).priority, 1);
+  EXPECT_EQ(said("Flakey, wait 500 minutes", "Bob"), "I wait for up to an hour");
+  EXPECT_EQ(said("Flakey, take me to the attic"), "I know no place called attic");
+  EXPECT_EQ(said("Flakey, patrol"),
+            "I drop the way to EJ-231 / I drop the wait for Bob: Alice said \"Flakey, patrol\" / I "
+            "patrol this corridor");
+  EXPECT_EQ(goals(), "patrol ");
+  EXPECT_EQ(said("Flakey, turn left 0 degrees"), "that is no turn");
+  EXPECT_EQ(said("Flakey, go forward 0 meters"), "that is no way to go");
+  EXPECT_TRUE(last.goals.empty());
+  EXPECT_EQ(said("Flakey, go to the nearest door"),
+            "the nearest door with a name is that of EJ-231: say go to EJ-231");
+}
+
+TEST_F(DialogueTest, ItSaysWhatItKnows) {
+  EXPECT_EQ(said("Flakey, what do you know?"), "nobody has told me anything");
+  EXPECT_EQ(said("Flakey, is there a leak?"), "nobody has told me of a leak");
+  EXPECT_EQ(said("Flakey, who is in EJ-233?"), "nobody has told me who is in EJ-233");
+  EXPECT_EQ(said("Flakey, who is in the attic?"), "I know no place called attic");
+  hear("Flakey, EJ-231 is Karen's office");
+  hear("Flakey, John is in EJ-233", "Bob");
+  hear("Flakey, there is a water leak in this corridor");
+  hear("Flakey, keep out of EJ-231");
+  EXPECT_EQ(said("Flakey, what do you know?"),
+            "I know 1 offices, 1 places of people, 2 hazards and places to keep out of; Alice said "
+            "that I am to keep out of EJ-231; Alice said that there is a water leak at upper "
+            "corridor; Bob said that john is at EJ-233");
+  EXPECT_EQ(said("Flakey, is there a leak?"),
+            "Alice said that there is a water leak at upper corridor");
+  EXPECT_EQ(said("Flakey, is there a leak in EJ-233?"), "nobody has told me of a leak at EJ-233");
+  EXPECT_EQ(said("Flakey, who is in EJ-233?"), "Bob said that john is at EJ-233");
+  EXPECT_EQ(said("Flakey, who is in Karen's office?"), "Alice said that EJ-231 is karen's office");
+  EXPECT_EQ(said("Flakey, are you lost?"), "no: I am in upper corridor");
+  EXPECT_EQ(said("Flakey, you are in the upper corridor"), "I know: I am in upper corridor");
+  EXPECT_EQ(said("Flakey, you are in EJ-233"),
+            "I think that I am in upper corridor. To put me in EJ-233 I need the exact place: "
+            "saphira map place X Y HEADING, or saphira map find");
+  situation.pose_in_map.reset();
+  EXPECT_EQ(said("Flakey, are you lost?"), "yes: I do not know where I am on the map");
 }
 
 }  // namespace

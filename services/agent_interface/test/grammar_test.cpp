@@ -23,6 +23,12 @@ urgent stop()
   [please] halt
 typed turn(direction, degrees=90)
   veer <side:direction>
+list asking: if | where
+steps: turn | go_to | tell | wait_there
+tell(person, message) "I tell $person: $message" "bringing $person a message" "the message"
+  tell {person} [that] <asking:message> {message ...} | tell {person} to {message ...}
+later wait_there()
+  stop now | wait there
 )";
 
 const Grammar& grammar() {
@@ -105,10 +111,57 @@ TEST(Grammar, TypedSentencesAreNotListenedFor) {
   EXPECT_FALSE(listens_for("veer"));
 }
 
+TEST(Grammar, TheRestOfASentenceIsFreeText) {
+  EXPECT_EQ(meaning("flakey tell karen to be at John's office, and to wait"),
+            "tell(message=be at john's office and to wait, person=karen)");
+  EXPECT_EQ(meaning("flakey tell karen where it is"), "tell(message=where it is, person=karen)");
+  EXPECT_EQ(meaning("flakey tell karen to"), "what?");
+  EXPECT_EQ(meaning("flakey tell karen where"), "what?");
+  // A recognizer of speech has no words for it.
+  const WordGraph graph = grammar().graph({"karen"}, true);
+  EXPECT_TRUE(std::none_of(graph.arcs.begin(), graph.arcs.end(),
+                           [](const WordGraph::Arc& arc) { return arc.word == "tell"; }));
+}
+
+TEST(Grammar, SentencesOfStepsMayBeJoined) {
+  const auto steps = [](const std::string& text) {
+    const Grammar::Understood understood = grammar().understand(text);
+    std::string all = understood.meanings.empty() ? "what?" : describe(understood.meanings[0]);
+    for (const Meaning& step : understood.then)
+      all += "; " + describe(step);
+    return all;
+  };
+  EXPECT_EQ(steps("flakey turn left and go to the lab"),
+            "turn(degrees=90, direction=left); go_to(place=lab)");
+  EXPECT_EQ(steps("flakey turn left, then turn right and then wait there"),
+            "turn(degrees=90, direction=left); turn(degrees=90, direction=right); wait_there()");
+  EXPECT_EQ(steps("flakey turn left and stop now"),
+            "turn(degrees=90, direction=left); wait_there()");
+  EXPECT_EQ(steps("flakey stop now and turn left"), "what?");
+  EXPECT_EQ(steps("flakey wait there"), "what?");
+  EXPECT_EQ(steps("flakey turn left and"), "what?");
+  EXPECT_EQ(steps("flakey turn left and dance"), "what?");
+  EXPECT_EQ(steps("flakey turn left and never turn right"), "what?");
+  EXPECT_EQ(steps("flakey turn left and tell karen to turn left and go to the lab"),
+            "turn(degrees=90, direction=left); tell(message=turn left and go to the lab, "
+            "person=karen)");
+  EXPECT_EQ(steps("turn left and turn right"), "what?");
+  std::string many = "flakey turn left";
+  for (int i = 0; i < 7; ++i)
+    many += " and turn left";
+  EXPECT_EQ(grammar().understand(many).then.size(), 7u);
+  EXPECT_EQ(steps(many + " and turn left"), "what?");
+}
+
 TEST(Grammar, ParaphrasesFillTheSlots) {
   EXPECT_EQ(grammar().paraphrase({"turn", {{"degrees", "30"}, {"direction", "left"}}}),
             "I turn 30 degrees to the left");
   EXPECT_EQ(grammar().paraphrase({"go_to", {}}), "");
+  const Meaning tell{"tell", {{"person", "karen"}, {"message", "be here"}}};
+  EXPECT_EQ(grammar().paraphrase(tell), "I tell karen: be here");
+  EXPECT_EQ(grammar().paraphrase(tell, Grammar::Form::doing), "bringing karen a message");
+  EXPECT_EQ(grammar().paraphrase(tell, Grammar::Form::task), "the message");
+  EXPECT_EQ(grammar().paraphrase({"stop", {}}, Grammar::Form::doing), "");
 }
 
 TEST(Grammar, MistakesNameLineAndColumn) {
@@ -128,6 +181,10 @@ TEST(Grammar, MistakesNameLineAndColumn) {
             "3:9: there is no list \"side\" above this line");
   EXPECT_EQ(mistake("keyword: f\nturn(degrees)\n  turn <number:angle>\n"),
             "3:16: the functor turn has no slot \"angle\"");
+  EXPECT_EQ(mistake("keyword: f\ntell(x)\n  tell {x ...} now\n"),
+            "3:16: expected the end of the line after {x ...}");
+  EXPECT_EQ(mistake("keyword: f\ntell(x)\n  tell (a {x ...} | b) c\n"),
+            "3:19: expected the end of the line after {x ...}");
   EXPECT_EQ(mistake("keyword: f\nstop( \"I stop\"\n  stop\n"), "2:7: expected the name of a slot");
 }
 

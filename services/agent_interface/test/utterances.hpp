@@ -9,7 +9,7 @@
 
 namespace saphira::agent_interface {
 
-/// Sentences, and the meaning that a person would give them: a functor with its slots, `what?`,
+/// Sentences, and the meaning that a person would give them: functors with their slots, `what?`,
 /// `nothing` for words that are not meant for the robot, or `ambiguous`.
 struct SaidAndMeant {
   std::string text;
@@ -38,8 +38,12 @@ inline std::vector<SaidAndMeant> read_utterances(const std::string& content) {
 /// The grammar's meaning of a phrase, in the words of those lines.
 inline std::string meaning_of(const Grammar& grammar, const SaidAndMeant& phrase) {
   const Grammar::Understood understood = grammar.understand(phrase.text, phrase.reply);
-  if (understood.meanings.size() == 1)
-    return describe(understood.meanings.front());
+  if (understood.meanings.size() == 1) {
+    std::string text = describe(understood.meanings.front());
+    for (const Meaning& step : understood.then)
+      text += "; then " + describe(step);
+    return text;
+  }
   if (understood.meanings.size() > 1)
     return "ambiguous";
   return understood.addressed ? "what?" : "nothing";

@@ -9,45 +9,14 @@
 
 #include "saphira/agent_interface/grammar.hpp"
 #include "saphira/agent_interface/knowledge.hpp"
+#include "saphira/agent_interface/tasks.hpp"
 #include "saphira/maps/map.hpp"
 #include "saphira/requests/argument.hpp"
 
 namespace saphira::agent_interface {
 
-using UtteranceId = std::pair<std::uint64_t, std::uint64_t>;
-
-/// An utterance to the robot.
-struct Utterance {
-  UtteranceId id{};
-  std::string speaker;  ///< empty: unknown
-  std::string text;
-  double confidence = 1.0;  ///< [0..1] of the recognizer
-  double time = 0.0;        ///< [s] since 1970; 0: unknown
-};
-
-/// An utterance of the robot.
-struct Said {
-  UtteranceId answers{};  ///< 0, 0: to none
-  std::string listener;
-  std::string text;
-  bool end = false;  ///< no more answers to that utterance follow
-};
-
-/// A goal on the bus: its asker, and its number there.
-using GoalRef = std::pair<std::uint64_t, std::uint64_t>;
-
 /// Epoch and cycle of the robot.
 using CycleRef = std::pair<std::uint64_t, std::uint64_t>;
-
-/// A goal that the dialogue wants; `tag` is its name within the dialogue.
-struct WantedGoal {
-  std::uint64_t tag = 0;
-  std::string functor;
-  Arguments arguments;
-  double deadline = 0.0;  ///< [s]; 0: none
-  bool lasting = false;   ///< a task, which continues while the dialogue restarts
-  std::string speaker{};  ///< the person who asked for it; empty: unknown
-};
 
 /// A claim for activities. Empty value: withdrawn.
 struct Claimed {
@@ -80,13 +49,6 @@ struct Situation {
   std::optional<Pose> pointing_in_map{};
 };
 
-/// The state of a goal that the dialogue asked for.
-struct Outcome {
-  std::uint64_t tag = 0;
-  bool success = false;
-  std::string reason;
-};
-
 /// Turns people's words into meanings, and meanings into goals, answers and knowledge (paper 4).
 /// States its interpretation before it acts. A value: no clock, bus or file.
 class Dialogue {
@@ -105,9 +67,9 @@ class Dialogue {
   Outputs hear(const Utterance& utterance, const Situation& situation);
   Outputs ended(const Outcome& outcome);
   /// A lasting goal was asked for, under that name. save() includes it.
-  void asked(std::uint64_t tag, const GoalRef& goal);
+  void asked(std::uint64_t tag, const GoalRef& goal) { tasks_.asked(tag, goal); }
   /// The lasting goals that have not ended, by tag.
-  std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const;
+  std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const { return tasks_.lasting(); }
   /// An activity's message to people. Messages from before a restart are not repeated.
   Outputs says(const std::string& text, const CycleRef& when);
   /// Withdraws advice by its number. Says so where that number is unknown.
@@ -128,19 +90,25 @@ class Dialogue {
     Advice advice;
     std::string speaker;
   };
-  struct Open {
-    std::uint64_t tag = 0;
-    std::string what;  ///< the paraphrase
-    UtteranceId answers{};
-    std::string listener;
-    GoalRef goal{};  ///< the goal of a lasting one
-  };
 
   void act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
            Outputs& out);
+  void act_on_all(const Grammar::Understood& understood, const Utterance& utterance,
+                  const Situation& situation, Outputs& out);
+  static void add(Tasks::Outputs more, Outputs& out);
   bool move(const Meaning& meaning, const Utterance& utterance, Outputs& out);
   bool task(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
             Outputs& out);
+  /// Tasks for people that are not in 4.6 of the paper (errands.cpp).
+  bool errand(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+              Outputs& out);
+  /// Questions about what the robot knows (errands.cpp).
+  bool inquiry(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+               Outputs& out) const;
+  /// Where a new task begins, for "come back".
+  void note_begin(const Situation& situation, const Outputs& out);
+  void go_back(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+               Outputs& out);
   bool question(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                 Outputs& out);
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -165,13 +133,17 @@ class Dialogue {
   std::string referred(const Meaning& meaning, const Situation& situation, Outputs& out,
                        std::uint32_t& artifact, std::string& wrong) const;
 
-  void restore_open(const std::string& line);
-
   Grammar grammar_;
   Knowledge knowledge_;
   std::optional<Doubt> doubt_;
-  std::vector<Open> open_;
-  std::uint64_t tag_ = 0;
+  struct Spot {
+    std::string place;
+    Pose pose_in_map;
+  };
+
+  Tasks tasks_;
+  std::optional<Spot> began_;       ///< the newest task, there
+  std::vector<Task> wanted_;        ///< the tasks of the sentence that is being heard
   CycleRef said_{};                 ///< of an activity's newest message
   CycleRef before_{};               ///< the same, before a restart
   std::vector<UtteranceId> heard_;  ///< the newest, so that none is carried out twice

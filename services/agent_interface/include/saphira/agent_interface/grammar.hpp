@@ -53,6 +53,7 @@ class Grammar {
   struct Understood {
     bool addressed = false;         ///< it began with the keyword
     std::vector<Meaning> meanings;  ///< none: not understood; several: ambiguous
+    std::vector<Meaning> then{};    ///< "... and ...": what to do after the first meaning
   };
   /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
   /// asked a question.
@@ -60,6 +61,10 @@ class Grammar {
 
   /// The meaning in words, for the robot to say before it acts; empty without one in the file.
   std::string paraphrase(const Meaning& meaning) const;
+  /// The same in another form: what the robot is doing ("going to the library"), and what the task
+  /// is called ("the way to the library"). Empty without one in the file.
+  enum class Form { announced, doing, task };
+  std::string paraphrase(const Meaning& meaning, Form form) const;
   const std::vector<std::string>& keywords() const { return keywords_; }
   /// Words that may be the name of a person, place or thing. In writing, `{slot}` takes any other
   /// name, too.
@@ -71,7 +76,7 @@ class Grammar {
   WordGraph graph(const std::vector<std::string>& names, bool replies) const;
 
   struct Node {
-    enum class Kind { word, list, name, number, sequence, choice, optional };
+    enum class Kind { word, list, name, number, rest, sequence, choice, optional };
     Kind kind = Kind::sequence;
     std::string text{};  ///< of a word, or the name of a list
     std::string slot{};  ///< the slot to fill
@@ -87,12 +92,13 @@ class Grammar {
     command,
     typed,  ///< a command that a recognizer of speech does not listen for
     reply,  ///< without the keyword, after a question of the robot
+    later,  ///< a later step of a sequence
     urgent  ///< where no other rule matches; more words may follow
   };
   struct Rule {
     Meaning meaning;  ///< slots with their default values
     Use use = Use::command;
-    std::string paraphrase;
+    std::vector<std::string> paraphrases;  ///< in the order of Form
     std::vector<Node> patterns{};
   };
   struct Match {
@@ -111,10 +117,17 @@ class Grammar {
                           const Match& from) const;
   std::vector<Match> entry(const Node& node, const std::vector<std::string>& words,
                            const Match& from) const;
+  enum class Among { usual, urgent, later };  ///< the rules that may match
+  std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
+                            Among among) const;
+  /// The ways to divide words into sentences with one meaning each, all of them steps.
+  std::vector<std::vector<Meaning>> divided(const std::vector<std::string>& words,
+                                            bool first) const;
 
   std::vector<std::string> keywords_;
   std::vector<std::string> names_;
   std::vector<std::string> no_names_;  ///< words that no name contains
+  std::vector<std::string> steps_;     ///< functors that a sequence may have
   std::map<std::string, std::vector<Entry>> lists_;
   std::vector<Rule> rules_;
 };

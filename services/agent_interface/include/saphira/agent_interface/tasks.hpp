@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saphira/requests/argument.hpp"
+
+namespace saphira::agent_interface {
+
+using UtteranceId = std::pair<std::uint64_t, std::uint64_t>;
+
+/// An utterance to the robot.
+struct Utterance {
+  UtteranceId id{};
+  std::string speaker;  ///< empty: unknown
+  std::string text;
+  double confidence = 1.0;  ///< [0..1] of the recognizer
+  double time = 0.0;        ///< [s] since 1970; 0: unknown
+};
+
+/// An utterance of the robot.
+struct Said {
+  UtteranceId answers{};  ///< 0, 0: to none
+  std::string listener;
+  std::string text;
+  bool end = false;  ///< no more answers to that utterance follow
+};
+
+/// A goal on the bus: its asker, and its number there.
+using GoalRef = std::pair<std::uint64_t, std::uint64_t>;
+
+/// A goal that the dialogue wants; `tag` is its name within the dialogue.
+struct WantedGoal {
+  std::uint64_t tag = 0;
+  std::string functor;
+  Arguments arguments;
+  double deadline = 0.0;  ///< [s]; 0: none
+  bool lasting = false;   ///< a task, which continues while the dialogue restarts
+  std::string speaker{};  ///< the person who asked for it; empty: unknown
+  int priority = 0;       ///< larger: suspends the others
+};
+
+/// The state of a goal that the dialogue asked for.
+struct Outcome {
+  std::uint64_t tag = 0;
+  bool success = false;
+  std::string reason;
+};
+
+/// What a person asked for. Its owner is the speaker of its goal.
+struct Task {
+  WantedGoal goal;
+  std::string what;        ///< "I go to the library"
+  std::string doing;       ///< "going to the library"; empty: unknown
+  std::string name;        ///< "the way to the library"; empty: unknown
+  UtteranceId answers{};   ///< the utterance that asked for it
+  GoalRef ref{};           ///< of a lasting goal on the bus
+  bool brief = false;      ///< a motion or a look: a task goes on after it
+  std::vector<Task> then;  ///< the later steps of a sequence
+};
+
+/// Whose tasks the robot does, and in which order. A brief goal (a motion, a look) interrupts a
+/// task, which goes on afterwards. A task takes the place of an earlier one of the same person; for
+/// that of somebody else the robot asks first. A value: no clock.
+class Tasks {
+ public:
+  struct Outputs {
+    std::vector<Said> said;
+    std::vector<std::uint64_t> canceled;  ///< tags; before the new goals
+    std::vector<WantedGoal> goals;
+  };
+  static constexpr double kPatience = 20.0;  ///< [s] for the answer to a question
+
+  /// The steps of a command, one after another. A goal of "stop" ends all others at once.
+  Outputs want(std::vector<Task> steps, const Utterance& utterance);
+  /// Whether a yes or no of that person answers "Shall I drop that?".
+  bool asks(const Utterance& utterance) const;
+  Outputs answer(bool yes, const Utterance& utterance);
+  Outputs ended(const Outcome& outcome);
+
+  /// A lasting goal was asked for, under that name. save() includes it.
+  void asked(std::uint64_t tag, const GoalRef& goal);
+  /// The lasting goals that have not ended, by tag.
+  std::vector<std::pair<std::uint64_t, GoalRef>> lasting() const;
+  /// In the robot's words, the newest first; empty: nothing.
+  std::string doing() const;
+  /// The utterance that an activity's message answers; 0, 0: none.
+  UtteranceId spoken_for() const;
+
+  /// The lasting goals, a line of text each. The later steps of a sequence are not kept.
+  std::vector<std::string> save() const;
+  void restore(const std::string& line);
+
+ private:
+  struct Question {
+    std::vector<Task> steps;
+    std::string speaker;
+    std::string text;
+    double time = 0.0;
+  };
+  Task* task();
+  void begin(Task task, Outputs& out);
+  void drop(bool brief, const std::string& by, const std::string& text, Outputs& out);
+  void release(Outputs& out);
+
+  std::vector<Task> open_;  ///< at most one brief goal and one task
+  std::optional<Question> question_;
+  std::uint64_t tag_ = 0;
+  /// A goal that stands between brief steps, so that the interrupted task does not go on there; 0:
+  /// none.
+  std::uint64_t hold_ = 0;
+};
+
+}  // namespace saphira::agent_interface

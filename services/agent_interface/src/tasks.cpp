@@ -1,0 +1,273 @@
+#include "saphira/agent_interface/tasks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <utility>
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr double kLongestHold = 600.0;  // [s]
+
+bool is_stop(const Task& task) {
+  return task.goal.functor == "stop";
+}
+
+bool same_person(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+    return std::tolower(x) == std::tolower(y);
+  });
+}
+
+std::string named_person(const std::string& name) {
+  return name.empty() ? "somebody" : name;
+}
+
+/// "the mail for alice"; for the person themselves without their name.
+std::string named_task(const Task& task, const std::string& to) {
+  return (task.name.empty() ? "that" : task.name) +
+         (same_person(task.goal.speaker, to) ? "" : " for " + named_person(task.goal.speaker));
+}
+
+std::string whole_text(const Task& task) {
+  std::string text = task.what;
+  for (const Task& step : task.then)
+    text += ", and then " + step.what;
+  return text;
+}
+
+}  // namespace
+
+Task* Tasks::task() {
+  const auto found =
+      std::find_if(open_.begin(), open_.end(), [](const Task& one) { return !one.brief; });
+  return found == open_.end() ? nullptr : &*found;
+}
+
+void Tasks::begin(Task task, Outputs& out) {
+  const bool interrupts = task.brief && this->task() != nullptr;
+  if (interrupts && !task.then.empty() && hold_ == 0) {
+    hold_ = ++tag_;
+    WantedGoal hold{hold_, "pause", {number("seconds", kLongestHold)}};
+    hold.speaker = task.goal.speaker;
+    hold.priority = 1;
+    out.goals.push_back(std::move(hold));
+  }
+  task.goal.tag = ++tag_;
+  task.goal.priority = !interrupts ? 0 : hold_ == 0 ? 1 : 2;
+  out.goals.push_back(task.goal);
+  open_.push_back(std::move(task));
+}
+
+void Tasks::release(Outputs& out) {
+  if (hold_ != 0)
+    out.canceled.push_back(std::exchange(hold_, 0));
+}
+
+/// Ends what is open, and tells its owner why.
+void Tasks::drop(bool brief, const std::string& by, const std::string& text, Outputs& out) {
+  if (brief)
+    release(out);
+  for (auto one = open_.begin(); one != open_.end();) {
+    // A stop ends in a moment; what comes after it waits for that.
+    if (one->brief != brief || is_stop(*one)) {
+      ++one;
+      continue;
+    }
+    const std::string& owner = one->goal.speaker;
+    out.canceled.push_back(one->goal.tag);
+    out.said.push_back(
+        {one->answers, owner,
+         "I drop " + named_task(*one, by) + (one->then.empty() ? "" : ", and what was to follow") +
+             (same_person(owner, by) ? "" : ": " + named_person(by) + " said \"" + text + "\""),
+         true});
+    one = open_.erase(one);
+  }
+}
+
+Tasks::Outputs Tasks::want(std::vector<Task> steps, const Utterance& utterance) {
+  Outputs out;
+  if (steps.empty())
+    return out;
+  const bool all_brief =
+      std::all_of(steps.begin(), steps.end(), [](const Task& step) { return step.brief; });
+  for (Task& step : steps) {
+    step.answers = utterance.id;
+    step.brief = all_brief;
+  }
+  Task first = std::move(steps.front());
+  first.then.assign(std::make_move_iterator(steps.begin() + 1),
+                    std::make_move_iterator(steps.end()));
+  const bool stop = is_stop(first);
+  const bool brief = !stop && first.brief;
+  Task* const other = task();
+  if (!stop && !brief && other != nullptr && !same_person(other->goal.speaker, utterance.speaker)) {
+    const std::string owner = named_person(other->goal.speaker);
+    out.said.push_back({utterance.id, utterance.speaker,
+                        (other->doing.empty() ? "I am at work for " + owner + ": " + other->what
+                                              : "I am " + other->doing + " for " + owner) +
+                            ". Shall I drop that?",
+                        true});
+    question_ = Question{{std::move(first)}, utterance.speaker, utterance.text, utterance.time};
+    return out;
+  }
+  std::string text = whole_text(first);
+  if (brief && other != nullptr)
+    text += ", and then I go on with " + named_task(*other, utterance.speaker);
+  const Said announced{utterance.id, utterance.speaker, text, false};
+  if (stop)
+    out.said.push_back(announced);
+  if (!brief) {
+    question_.reset();
+    drop(false, utterance.speaker, utterance.text, out);
+  }
+  drop(true, utterance.speaker, utterance.text, out);
+  if (!stop)
+    out.said.push_back(announced);
+  begin(std::move(first), out);
+  return out;
+}
+
+bool Tasks::asks(const Utterance& utterance) const {
+  return question_ && same_person(question_->speaker, utterance.speaker) &&
+         (question_->time <= 0.0 || utterance.time <= 0.0 ||
+          utterance.time - question_->time <= kPatience);
+}
+
+Tasks::Outputs Tasks::answer(bool yes, const Utterance& utterance) {
+  Outputs out;
+  if (!question_)
+    return out;
+  Question question = std::move(*question_);
+  question_.reset();
+  if (!yes) {
+    const Task* const other = task();
+    out.said.push_back(
+        {utterance.id, utterance.speaker,
+         other == nullptr ? "good" : "good: I go on with " + named_task(*other, utterance.speaker),
+         true});
+    return out;
+  }
+  drop(false, question.speaker, question.text, out);
+  drop(true, question.speaker, question.text, out);
+  Task task = std::move(question.steps.front());
+  task.answers = utterance.id;
+  for (Task& step : task.then)
+    step.answers = utterance.id;
+  out.said.push_back({utterance.id, utterance.speaker, whole_text(task), false});
+  begin(std::move(task), out);
+  return out;
+}
+
+Tasks::Outputs Tasks::ended(const Outcome& outcome) {
+  Outputs out;
+  if (outcome.tag == hold_)
+    hold_ = 0;
+  const auto found = std::find_if(open_.begin(), open_.end(),
+                                  [&](const Task& one) { return one.goal.tag == outcome.tag; });
+  if (found == open_.end())
+    return out;
+  Task task = std::move(*found);
+  open_.erase(found);
+  const bool more = !task.then.empty();
+  // On the bus a new stop ends the one before.
+  const bool replaced = is_stop(task) && std::any_of(open_.begin(), open_.end(), is_stop);
+  std::string text = replaced          ? "done: I was told again to stop"
+                     : outcome.success ? "done: " + outcome.reason
+                                       : "I could not: " + outcome.reason;
+  if (more && !outcome.success)
+    text += "; so the rest is not done";
+  out.said.push_back({task.answers, task.goal.speaker, text, !more || !outcome.success});
+  if (!more || !outcome.success) {
+    if (task.brief)
+      release(out);
+    return out;
+  }
+  Task next = std::move(task.then.front());
+  next.then.assign(std::make_move_iterator(task.then.begin() + 1),
+                   std::make_move_iterator(task.then.end()));
+  out.said.push_back({next.answers, next.goal.speaker, next.what, false});
+  begin(std::move(next), out);
+  return out;
+}
+
+void Tasks::asked(std::uint64_t tag, const GoalRef& goal) {
+  for (Task& one : open_)
+    if (one.goal.tag == tag)
+      one.ref = goal;
+}
+
+std::vector<std::pair<std::uint64_t, GoalRef>> Tasks::lasting() const {
+  std::vector<std::pair<std::uint64_t, GoalRef>> goals;
+  for (const Task& one : open_)
+    if (one.ref != GoalRef{})
+      goals.emplace_back(one.goal.tag, one.ref);
+  return goals;
+}
+
+std::string Tasks::doing() const {
+  std::string text;
+  for (auto one = open_.rbegin(); one != open_.rend(); ++one)
+    text += (text.empty() ? "" : "; ") + whole_text(*one);
+  return text;
+}
+
+UtteranceId Tasks::spoken_for() const {
+  UtteranceId answers{};
+  for (const Task& one : open_)
+    if (answers == UtteranceId{} || !one.brief)
+      answers = one.answers;
+  return answers;
+}
+
+std::vector<std::string> Tasks::save() const {
+  std::vector<std::string> lines;
+  for (const Task& one : open_)
+    if (one.ref != GoalRef{})
+      lines.push_back(std::to_string(one.goal.tag) + "\t" + std::to_string(one.ref.first) + "\t" +
+                      std::to_string(one.ref.second) + "\t" + std::to_string(one.answers.first) +
+                      "\t" + std::to_string(one.answers.second) + "\t" + one.goal.speaker + "\t" +
+                      one.what + "\t" + one.doing + "\t" + one.name + "\t" + one.goal.functor);
+  return lines;
+}
+
+void Tasks::restore(const std::string& line) {
+  std::array<std::uint64_t, 5> numbers{};
+  const char* at = line.c_str();
+  for (std::uint64_t& number : numbers) {
+    char* end = nullptr;
+    number = std::strtoull(at, &end, 10);
+    if (*end != '\t')
+      return;
+    at = end + 1;
+  }
+  std::string words = at;
+  std::array<std::string, 5> texts;  // an older file has two of them
+  std::size_t count = 0;
+  for (std::string& text : texts) {
+    const std::size_t tab = std::min(words.find('\t'), words.size());
+    text = words.substr(0, tab);
+    words.erase(0, tab + 1);
+    ++count;
+    if (words.empty())
+      break;
+  }
+  if (count < 2)
+    return;
+  tag_ = std::max(tag_, numbers[0]);
+  Task task;
+  task.goal.tag = numbers[0];
+  task.goal.functor = texts[4];
+  task.goal.lasting = true;
+  task.goal.speaker = texts[0];
+  task.what = texts[1];
+  task.doing = texts[2];
+  task.name = texts[3];
+  task.answers = {numbers[3], numbers[4]};
+  task.ref = {numbers[1], numbers[2]};
+  open_.push_back(std::move(task));
+}
+
+}  // namespace saphira::agent_interface

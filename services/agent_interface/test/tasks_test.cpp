@@ -1,0 +1,235 @@
+#include "saphira/agent_interface/tasks.hpp"
+
+#include <gtest/gtest.h>
+
+namespace saphira::agent_interface {
+namespace {
+
+Task errand(const std::string& speaker, const std::string& name) {
+  Task task;
+  task.goal.functor = "deliver";
+  task.goal.lasting = true;
+  task.goal.speaker = speaker;
+  task.what = "I bring " + name;
+  task.doing = "bringing " + name;
+  task.name = name;
+  return task;
+}
+
+Task motion(const std::string& speaker, const std::string& functor = "turn_to") {
+  Task task;
+  task.goal.functor = functor;
+  task.goal.speaker = speaker;
+  task.brief = true;
+  task.what = functor == "stop" ? "I stop" : "I turn";
+  task.name = "the turn";
+  return task;
+}
+
+struct TasksTest : testing::Test {
+  /// The robot's words with their listeners, the canceled goals, and the new ones with priorities.
+  std::string told(const Tasks::Outputs& out) const {
+    std::string all;
+    for (const Said& one : out.said)
+      all += one.listener + ": " + one.text + (one.end ? "." : "") + "\n";
+    for (const std::uint64_t tag : out.canceled)
+      all += "cancel " + std::to_string(tag) + "\n";
+    for (const WantedGoal& goal : out.goals)
+      all += "goal " + std::to_string(goal.tag) + " " + goal.functor + " " +
+             std::to_string(goal.priority) + "\n";
+    return all;
+  }
+  std::string want(std::vector<Task> steps, const std::string& speaker, double time = 0.0) {
+    said = Utterance{{7, ++number}, speaker, "do it", 1.0, time};
+    return told(tasks.want(std::move(steps), said));
+  }
+  std::string reply(bool yes, const std::string& speaker, double time = 0.0) {
+    said = Utterance{{7, ++number}, speaker, yes ? "yes" : "no", 1.0, time};
+    return tasks.asks(said) ? told(tasks.answer(yes, said)) : "not asked";
+  }
+
+  Tasks tasks;
+  Utterance said;
+  std::uint64_t number = 0;
+};
+
+TEST_F(TasksTest, AMotionInterruptsATaskWhichGoesOn) {
+  EXPECT_EQ(want({errand("alice", "the mail")}, "alice"),
+            "alice: I bring the mail\n"
+            "goal 1 deliver 0\n");
+  EXPECT_EQ(want({motion("bob")}, "bob"),
+            "bob: I turn, and then I go on with the mail for alice\n"
+            "goal 2 turn_to 1\n");
+  EXPECT_EQ(tasks.doing(), "I turn; I bring the mail");
+  EXPECT_EQ(told(tasks.ended({2, true, "turned"})), "bob: done: turned.\n");
+  EXPECT_EQ(told(tasks.ended({1, true, "brought"})), "alice: done: brought.\n");
+  EXPECT_EQ(want({motion("bob")}, "bob"), "bob: I turn\ngoal 3 turn_to 0\n");
+}
+
+TEST_F(TasksTest, AMotionTakesThePlaceOfAnother) {
+  want({errand("alice", "the mail")}, "alice");
+  want({motion("bob")}, "bob");
+  EXPECT_EQ(want({motion("carol")}, "carol"),
+            "bob: I drop the turn for bob: carol said \"do it\".\n"
+            "carol: I turn, and then I go on with the mail for alice\n"
+            "cancel 2\n"
+            "goal 3 turn_to 1\n");
+  EXPECT_EQ(want({motion("Alice")}, "Alice"),
+            "carol: I drop the turn for carol: Alice said \"do it\".\n"
+            "Alice: I turn, and then I go on with the mail\n"
+            "cancel 3\n"
+            "goal 4 turn_to 1\n");
+}
+
+TEST_F(TasksTest, ATaskTakesThePlaceOfAnotherOfTheSamePerson) {
+  want({errand("alice", "the mail")}, "alice");
+  EXPECT_EQ(want({errand("Alice", "the book")}, "Alice"),
+            "alice: I drop the mail.\n"
+            "Alice: I bring the book\n"
+            "cancel 1\n"
+            "goal 2 deliver 0\n");
+}
+
+TEST_F(TasksTest, ForTheTaskOfSomebodyElseItAsks) {
+  want({errand("alice", "the mail")}, "alice");
+  EXPECT_EQ(want({errand("bob", "the book")}, "bob"),
+            "bob: I am bringing the mail for alice. Shall I drop that?.\n");
+  EXPECT_EQ(reply(true, "carol"), "not asked");
+  EXPECT_EQ(reply(false, "bob"), "bob: good: I go on with the mail for alice.\n");
+  EXPECT_EQ(reply(true, "bob"), "not asked");
+  want({errand("bob", "the book")}, "bob");
+  EXPECT_EQ(reply(true, "bob"),
+            "alice: I drop the mail for alice: bob said \"do it\".\n"
+            "bob: I bring the book\n"
+            "cancel 1\n"
+            "goal 2 deliver 0\n");
+}
+
+TEST_F(TasksTest, TheQuestionIsOpenForTwentySeconds) {
+  want({errand("alice", "the mail")}, "alice", 1000.0);
+  want({errand("bob", "the book")}, "bob", 1000.0);
+  EXPECT_EQ(reply(true, "bob", 1020.1), "not asked");
+  EXPECT_EQ(reply(false, "bob", 1019.9), "bob: good: I go on with the mail for alice.\n");
+}
+
+TEST_F(TasksTest, AnythingElseThatTheRobotBeginsEndsTheQuestion) {
+  want({errand("alice", "the mail")}, "alice");
+  want({errand("bob", "the book")}, "bob");
+  want({motion("carol")}, "carol");
+  want({errand("alice", "the cup")}, "alice");
+  EXPECT_EQ(reply(true, "bob"), "not asked");
+  want({errand("bob", "the book")}, "bob");
+  want({motion("carol", "stop")}, "carol");
+  EXPECT_EQ(reply(true, "bob"), "not asked");
+}
+
+TEST_F(TasksTest, AStopOfAnybodyEndsEverythingAndEachOwnerHearsIt) {
+  want({errand("alice", "the mail")}, "alice");
+  want({motion("bob")}, "bob");
+  EXPECT_EQ(want({motion("bob", "stop")}, "bob"),
+            "bob: I stop\n"
+            "alice: I drop the mail for alice: bob said \"do it\".\n"
+            "bob: I drop the turn.\n"
+            "cancel 1\n"
+            "cancel 2\n"
+            "goal 3 stop 0\n");
+  // What comes next waits for the stop.
+  EXPECT_EQ(want({errand("alice", "the mail")}, "alice"),
+            "alice: I bring the mail\n"
+            "goal 4 deliver 0\n");
+  EXPECT_EQ(want({motion("bob", "stop")}, "bob"),
+            "bob: I stop\n"
+            "alice: I drop the mail for alice: bob said \"do it\".\n"
+            "cancel 4\n"
+            "goal 5 stop 0\n");
+  EXPECT_EQ(told(tasks.ended({3, false, "canceled by a stop"})),
+            "bob: done: I was told again to stop.\n");
+  EXPECT_EQ(told(tasks.ended({5, true, "at rest"})), "bob: done: at rest.\n");
+}
+
+TEST_F(TasksTest, StepsAreDoneOneAfterAnother) {
+  EXPECT_EQ(want({motion("bob"), errand("bob", "the mail")}, "bob"),
+            "bob: I turn, and then I bring the mail\n"
+            "goal 1 turn_to 0\n");
+  EXPECT_EQ(tasks.doing(), "I turn, and then I bring the mail");
+  EXPECT_EQ(told(tasks.ended({1, true, "turned"})),
+            "bob: done: turned\n"
+            "bob: I bring the mail\n"
+            "goal 2 deliver 0\n");
+  EXPECT_EQ(told(tasks.ended({2, true, "brought"})), "bob: done: brought.\n");
+  EXPECT_EQ(tasks.doing(), "");
+}
+
+TEST_F(TasksTest, AStepThatFailsEndsTheRest) {
+  want({motion("bob"), errand("bob", "the mail")}, "bob");
+  EXPECT_EQ(told(tasks.ended({1, false, "the way is blocked"})),
+            "bob: I could not: the way is blocked; so the rest is not done.\n");
+  EXPECT_EQ(tasks.doing(), "");
+}
+
+TEST_F(TasksTest, AStopEndsTheLaterStepsToo) {
+  want({motion("bob"), motion("bob")}, "bob");
+  EXPECT_EQ(want({motion("alice", "stop")}, "alice"),
+            "alice: I stop\n"
+            "bob: I drop the turn for bob, and what was to follow: alice said \"do it\".\n"
+            "cancel 1\n"
+            "goal 2 stop 0\n");
+  EXPECT_EQ(told(tasks.ended({1, false, "canceled"})), "");
+}
+
+TEST_F(TasksTest, BetweenBriefStepsTheRobotStandsAndTheTaskGoesOnAfterTheLast) {
+  want({errand("alice", "the mail")}, "alice");
+  EXPECT_EQ(want({motion("bob"), motion("bob")}, "bob"),
+            "bob: I turn, and then I turn, and then I go on with the mail for alice\n"
+            "goal 2 pause 1\n"
+            "goal 3 turn_to 2\n");
+  EXPECT_EQ(told(tasks.ended({3, true, "turned"})),
+            "bob: done: turned\n"
+            "bob: I turn\n"
+            "goal 4 turn_to 2\n");
+  EXPECT_EQ(told(tasks.ended({4, true, "turned"})),
+            "bob: done: turned.\n"
+            "cancel 2\n");
+  want({motion("bob"), motion("bob")}, "bob");
+  EXPECT_EQ(told(tasks.ended({6, false, "blocked"})),
+            "bob: I could not: blocked; so the rest is not done.\n"
+            "cancel 5\n");
+  want({motion("bob"), motion("bob")}, "bob");
+  EXPECT_EQ(want({motion("carol", "stop")}, "carol"),
+            "carol: I stop\n"
+            "alice: I drop the mail for alice: carol said \"do it\".\n"
+            "bob: I drop the turn for bob, and what was to follow: carol said \"do it\".\n"
+            "cancel 1\n"
+            "cancel 7\n"
+            "cancel 8\n"
+            "goal 9 stop 0\n");
+}
+
+TEST_F(TasksTest, LastingGoalsOutliveARestart) {
+  want({errand("alice", "the mail")}, "alice");
+  want({motion("alice")}, "alice");
+  tasks.asked(1, {40, 2});
+  const std::vector<std::string> lines = tasks.save();
+  ASSERT_EQ(lines.size(), 1u);
+  Tasks restarted;
+  restarted.restore(lines[0]);
+  EXPECT_EQ(restarted.lasting(), tasks.lasting());
+  EXPECT_EQ(restarted.doing(), "I bring the mail");
+  EXPECT_EQ(restarted.spoken_for(), (UtteranceId{7, 1}));
+  EXPECT_EQ(restarted.save(), lines);
+  std::swap(tasks, restarted);
+  EXPECT_EQ(want({errand("bob", "the book")}, "bob"),
+            "bob: I am bringing the mail for alice. Shall I drop that?.\n");
+  EXPECT_EQ(want({motion("bob")}, "bob"),
+            "bob: I turn, and then I go on with the mail for alice\n"
+            "goal 2 turn_to 1\n");
+  // The form of before names no kind of task.
+  Tasks older;
+  older.restore("3\t40\t2\t7\t1\tAlice\tI bring the mail");
+  EXPECT_EQ(older.doing(), "I bring the mail");
+  older.restore("not a line");
+  EXPECT_EQ(older.lasting().size(), 1u);
+}
+
+}  // namespace
+}  // namespace saphira::agent_interface
