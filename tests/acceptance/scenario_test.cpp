@@ -33,7 +33,8 @@ TEST_P(Story, EndsAsItsCastSaysAndTheSameEachTime) {
   EXPECT_EQ(scenario({"--cast", GetParam(), "--seed", "1", "--seeds", "2"}), first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Casts, Story, testing::Values("report", "early", "away", "leak"),
+INSTANTIATE_TEST_SUITE_P(Casts, Story,
+                         testing::Values("report", "early", "away", "leak", "knowers"),
                          [](const auto& cast) { return std::string(cast.param); });
 
 // Paper 4.4: it follows its supervisor, by its cameras, around a corner and through a door.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <string>
 
 #include "drive/eyes.hpp"
@@ -436,6 +438,110 @@ TEST(People, WhereItIsNotToBeHadTheRobotAsksWhoHasIt) {
   EXPECT_EQ(status.state, GoalState::kFailed);
   EXPECT_EQ(status.reason, "nobody at EJ-250 took the key");
   EXPECT_TRUE(people.all_answered());
+}
+
+/// The result of a search among people who give these answers.
+GoalStatus found_from(Whole& whole, std::vector<Answer> answers, const std::string& name) {
+  People people(std::move(answers));
+  const auto goal =
+      whole.ask("find-person", {text("name", name), saphira::number("patience", 4.0)});
+  const GoalStatus status = among(whole, people, goal, 9000);
+  EXPECT_TRUE(people.all_answered());
+  EXPECT_EQ(whole.drive().contacts(), 0);
+  return status;
+}
+
+TEST(People, APlaceOrAPersonThatIsNamedAtOnceIsNext) {
+  Whole whole(office());
+  whole.claim("place-of-john", "EJ-248");
+  whole.claim("place-of-alice", "EJ-250");
+  const GoalStatus status = found_from(whole,
+                                       {{"Is john here?", "answer", "alice"},
+                                        {"Is john here?", "answer", "EJ-246"},
+                                        {"Is john here?", "answer", "yes"}},
+                                       "john");
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "john is at EJ-246");
+  EXPECT_FALSE(said(whole, "Who knows"));
+}
+
+intentions::Value knowers(std::vector<std::string> names) {
+  intentions::Value::List all;
+  for (std::string& name : names)
+    all.emplace_back(std::move(name));
+  return intentions::Value(std::move(all));
+}
+
+TEST(People, ThePlacesOfAllWhoKnowAreTried) {
+  Whole whole(office());
+  whole.claim("knows-where-karen", knowers({"john", "mr alda", "alice"}));
+  whole.claim("place-of-john", "EJ-248");
+  whole.claim("place-of-alice", "EJ-250");
+  const GoalStatus status = found_from(whole,
+                                       {{"Is karen here?", "answer", "no"},
+                                        {"Who knows where karen is?", "answer", "no"},
+                                        {"Is karen here?", "answer", "no"},
+                                        {"Who knows where karen is?", "answer", "EJ-246"},
+                                        {"Is karen here?", "answer", "yes"}},
+                                       "karen");
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "karen is at EJ-246");
+}
+
+TEST(People, WhoKnowsAndHasNoPlaceIsFoundByThoseWhoKnowThat) {
+  Whole whole(office());
+  whole.claim("knows-where-karen", "john");
+  whole.claim("knows-where-john", knowers({"alice"}));
+  whole.claim("knows-where-alice", knowers({"karen", "bob"}));
+  whole.claim("place-of-bob", "EJ-250");
+  const GoalStatus status = found_from(whole,
+                                       {{"Is alice here?", "answer", "no"},
+                                        {"Who knows where alice is?", "answer", "EJ-248"},
+                                        {"Is alice here?", "answer", "yes"},
+                                        {"Who knows where john is?", "answer", "EJ-246"},
+                                        {"Is john here?", "answer", "yes"},
+                                        {"Who knows where karen is?", "answer", "EJ-244"},
+                                        {"Is karen here?", "answer", "yes"}},
+                                       "karen");
+  EXPECT_EQ(status.state, GoalState::kSucceeded) << status.reason;
+  EXPECT_EQ(status.reason, "karen is at EJ-244");
+}
+
+TEST(People, ThoseWhoKnowOfEachOtherAloneAreNoHelp) {
+  Whole whole(office());
+  whole.claim("knows-where-karen", knowers({"john"}));
+  whole.claim("knows-where-john", knowers({"karen"}));
+  const GoalStatus status = found_from(whole, {}, "karen");
+  EXPECT_EQ(status.state, GoalState::kFailed);
+  EXPECT_EQ(status.reason,
+            "nobody has said where karen may be, nor where those who know it may be: john");
+  EXPECT_TRUE(whole.said().empty());
+}
+
+TEST(People, TheQuestionEndsWithTheActivityThatAsks) {
+  Whole whole(office());
+  std::map<std::string, intentions::Value> asking;
+  const auto advance_until = [&](const std::function<bool()>& done) {
+    whole.advance_until(
+        [&] {
+          if (const auto& beliefs = whole.drive().cores().said().intentions.beliefs) {
+            asking.clear();
+            for (const intentions::Belief& belief : *beliefs)
+              if (belief.name.starts_with("asking-"))
+                asking[belief.name] = belief.value;
+          }
+          return done();
+        },
+        20);
+  };
+  const auto goal = whole.ask("ask", {text("question", "Is karen here?"), text("whom", "karen")});
+  advance_until([&] { return asking.size() == 2; });
+  EXPECT_EQ(asking["asking-about"], intentions::Value("answer"));
+  EXPECT_EQ(asking["asking-for"], intentions::Value("karen"));
+  whole.ask("stop");
+  advance_until([&] { return whole.ended(goal) && asking.empty(); });
+  EXPECT_TRUE(whole.ended(goal));
+  EXPECT_TRUE(asking.empty());
 }
 
 TEST(People, WhoIsNowhereIsNotFoundAndTheReasonSaysWhere) {

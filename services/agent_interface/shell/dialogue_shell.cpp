@@ -24,7 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kName = "dialogue";
-constexpr const char* kQuestion = "asking-about";  // the belief of config/activities/people.act
+// Beliefs of config/activities/people.act: the claim that the robot waits for, and the person whose
+// place it asks; the place where it has found somebody.
+constexpr const char* kQuestion = "asking-about";
+constexpr const char* kPerson = "asking-for";
+constexpr const char* kPlaceOf = "place-of-";
+constexpr const char* kFinder = "find-person";
 
 constexpr double kOld = 60.0;  // [s] after which an utterance is too old to act on
 
@@ -34,6 +39,25 @@ std::string literal(const std::string& text) {
   for (const char c : text)
     result += c == '"' || c == '\\' ? ' ' : c;
   return result + "\"";
+}
+
+std::string literal(const Claimed& claim) {
+  if (claim.nil)
+    return "nil";
+  if (claim.list.empty())
+    return literal(claim.value);
+  std::string result = "(";
+  for (const std::string& one : claim.list)
+    result += (result.size() == 1 ? "" : " ") + literal(one);
+  return result + ")";
+}
+
+/// The text of a belief; empty: nil.
+std::string text_of(const v1::Belief& belief) {
+  const std::string& value = belief.value();
+  return value == "nil"                             ? std::string()
+         : value.size() > 1 && value.front() == '"' ? value.substr(1, value.size() - 2)
+                                                    : value;
 }
 
 KnownGoal::State state_of(v1::GoalState state) {
@@ -164,7 +188,7 @@ void DialogueShell::claim(const Claimed& claim) {
                                              : std::uint64_t{known->second.id().number()});
   sample.source(claim.source);
   sample.name(claim.name);
-  sample.value(literal(claim.value));
+  sample.value(literal(claim));
   sample.writer_lost(v1::WRITER_LOST_CANCEL);
   claimed_[claim.name] = sample;
   claims_.write(sample);
@@ -250,11 +274,20 @@ void DialogueShell::take_beliefs() {
   if (!beliefs)
     return;
   situation_.asked_about.clear();
-  for (const v1::Belief& belief : beliefs->beliefs())
-    if (belief.name() == kQuestion && belief.value().size() > 2 && belief.value().front() == '"')
-      situation_.asked_about = belief.value().substr(1, belief.value().size() - 2);
-    else if (belief.name() == kQuestion && belief.value() != "nil")
-      situation_.asked_about = belief.value();
+  situation_.asked_for.clear();
+  const std::string_view place_of(kPlaceOf);
+  for (const v1::Belief& belief : beliefs->beliefs()) {
+    const std::string& name = belief.name();
+    const std::pair news(text_of(belief), std::uint64_t{belief.since()});
+    if (name == kQuestion)
+      situation_.asked_about = text_of(belief);
+    else if (name == kPerson)
+      situation_.asked_for = text_of(belief);
+    else if (belief.said_by() == kFinder && std::string_view(name).starts_with(place_of) &&
+             !news.first.empty() && std::exchange(found_[name], news) != news)
+      perform(dialogue_.found(name.substr(place_of.size()), news.first, unix_time(), !looked_));
+  }
+  looked_ = true;
 }
 
 /// Of the robot, and of a person who points.
@@ -295,6 +328,9 @@ std::vector<KnownGoal> DialogueShell::known_goals() const {
                      std::any_of(asked_.begin(), asked_.end(),
                                  [&](const auto& one) { return one.second.goal == status.id(); });
     goal.asker = own ? "" : status.requester();
+    for (const auto& [tag, asked] : asked_)
+      if (asked.goal == status.id())
+        goal.tag = tag;
     goal.state = state_of(status.state());
     goal.reason = !status.reason().empty() ? status.reason()
                   : !status.note().empty() ? status.note()

@@ -68,6 +68,9 @@ class DialogueShell {
   };
   std::map<std::uint64_t, Asked> asked_;            ///< by the dialogue's tag
   std::map<std::string, v1::BeliefClaim> claimed_;  ///< by the belief's name
+  /// Newest places where an activity has found people, with the cycle; by the belief's name.
+  std::map<std::string, std::pair<std::string, std::uint64_t>> found_;
+  bool looked_ = false;  ///< at beliefs
   std::uint64_t number_ = 0;
 };
 

@@ -19,12 +19,15 @@ constexpr double kSure = 0.5;                // a lower confidence of a recogniz
 constexpr double kDoorInSight = 5.0;         // [m] "this office" is no farther
 constexpr double kAhead = 10.0;              // [m] of the point to turn to
 constexpr double kLongestWay = 20.0;         // [m] that one command of motion may take
+constexpr double kDoubtful = 20.0;           // [s] that a doubt waits for a yes
+constexpr std::size_t kMostGone = 256;
 constexpr std::size_t kHeard = 256;
 /// Goals that interrupt a task for a moment.
 constexpr std::array kBrief{"go_to", "drive", "turn_to", "stop", "attend-person", "pause"};
 constexpr const char* kHeardLine = "heard\t";
 constexpr const char* kOpenLine = "open\t";
 constexpr const char* kSaidLine = "said\t";
+constexpr const char* kGoneLine = "gone\t";
 
 std::string slot(const Meaning& meaning, const std::string& name) {
   const auto found = meaning.slots.find(name);
@@ -137,20 +140,93 @@ std::string state_in_words(KnownGoal::State state) {
   return {};
 }
 
-/// The reason for which the robot stands: of the newest goal that is held up, otherwise of the
-/// newest one that is underway, otherwise of the newest one that has ended.
-std::string why_standing(const std::vector<KnownGoal>& goals) {
+/// The goal that is the reason why the robot stands or drives: the newest one that is held up,
+/// otherwise the newest one that is underway, otherwise the newest one that has ended. A stop after
+/// a failure is not the reason.
+const KnownGoal* reason_of(const std::vector<KnownGoal>& goals) {
   const auto rank = [](const KnownGoal& goal) {
     return !is_open(goal) ? 0 : goal.state == KnownGoal::State::underway ? 1 : 2;
   };
   const KnownGoal* best = nullptr;
-  for (const KnownGoal& goal : goals)
+  const KnownGoal* before_stop = nullptr;
+  for (const KnownGoal& goal : goals) {
     if (best == nullptr || rank(goal) >= rank(*best))
       best = &goal;
-  if (best == nullptr)
-    return "I have nothing to do";
-  return best->functor + (best->asker.empty() ? "" : " of " + best->asker) + " " +
-         state_in_words(best->state) + (best->reason.empty() ? "" : ": " + best->reason);
+    if (!is_open(goal) && goal.functor != "stop")
+      before_stop = &goal;
+  }
+  const bool stopped = best != nullptr && best->functor == "stop" && rank(*best) < 2;
+  return stopped && before_stop != nullptr && before_stop->state == KnownGoal::State::failed
+             ? before_stop
+             : best;
+}
+
+/// "passes a door, and waits" as "pass a door, and wait". Empty: not in such words.
+std::string first_person(const std::string& words) {
+  constexpr std::array<const char*, 10> kFurther{"waits", "keeps", "follows", "brings", "backs",
+                                                 "turns", "comes", "faces",   "stays",  "goes"};
+  std::string text;
+  std::string word;
+  for (const char c : words + ' ') {
+    if (c != ' ') {
+      word += c;
+      continue;
+    }
+    if (word == "it" || word == "robot")
+      return {};
+    const bool verb =
+        text.empty() || std::find(kFurther.begin(), kFurther.end(), word) != kFurther.end();
+    const auto ends = [&](const char* end) { return word.ends_with(end); };
+    if (verb && (ends("sses") || ends("shes") || ends("ches") || ends("oes")))
+      word.resize(word.size() - 2);
+    else if (verb && ends("s"))
+      word.pop_back();
+    else if (text.empty())
+      return {};
+    text += (text.empty() ? "" : " ") + word;
+    word.clear();
+  }
+  return text;
+}
+
+/// The step of a goal, such as "through-door: passes a door", as a sentence of the robot.
+std::string step_in_words(const std::string& step) {
+  const std::size_t colon = step.find(": ");
+  if (colon == std::string::npos || step.find(' ') < colon)
+    return step;
+  const std::string words = step.substr(colon + 2);
+  const std::string mine = first_person(words);
+  return mine.empty() ? "the robot " + words : "I " + mine;
+}
+
+/// "Alice asked me to go to EJ-233", of an announcement.
+std::string asked_in_words(const std::string& speaker, const std::string& what) {
+  const std::string who = speaker.empty() ? "somebody" : speaker;
+  constexpr std::string_view kYou = " you";
+  if (what.ends_with(kYou))
+    return asked_in_words(speaker, what.substr(0, what.size() - kYou.size() + 1) + who);
+  return who + (what.starts_with("I ") ? " asked me to " + what.substr(2)
+                                       : " asked me: \"" + what + "\"");
+}
+
+/// The origin of a claim that follows from an utterance.
+std::string claim_source(const Utterance& utterance) {
+  return (utterance.speaker.empty() ? "somebody" : utterance.speaker) + " said \"" +
+         utterance.text + "\"";
+}
+
+bool is_yes_or_no(const Meaning& meaning) {
+  return meaning.functor == "yes" || meaning.functor == "no";
+}
+
+std::string speaker_of(const Advice& advice) {
+  return advice.speaker.empty() ? "somebody" : advice.speaker;
+}
+
+/// "Alice said that karen is at EJ-231".
+std::string as_told(const Advice& advice) {
+  return advice.speaker == kRobot ? "I found " + advice.about + " at " + advice.value
+                                  : speaker_of(advice) + " said that " + describe(advice);
 }
 
 Meaning with(Meaning meaning, const std::string& name, const std::string& value) {
@@ -205,8 +281,9 @@ std::string Dialogue::bring_to(const Utterance& utterance, const Situation& situ
 
 std::string Dialogue::referred(const Meaning& meaning, const Situation& situation, Outputs& out,
                                std::uint32_t& artifact, std::string& wrong) const {
-  const std::string owner = slot(meaning, "owner");
   const std::string name = slot(meaning, "place");
+  const std::string written = place(name, situation).empty() ? owner_in(name) : std::string();
+  const std::string owner = written.empty() ? slot(meaning, "owner") : written;
   const std::string side = slot(meaning, "side");
   if (!owner.empty()) {
     const Advice* const office = knowledge_.find(Advice::Kind::office_of, owner);
@@ -394,6 +471,78 @@ std::string Dialogue::doing(const Situation& situation) const {
   return text.empty() ? "nothing that I was told" : text;
 }
 
+std::string Dialogue::why(const Situation& situation) const {
+  const KnownGoal* const goal = reason_of(situation.goals);
+  if (ended_ && (goal == nullptr || (!is_open(*goal) && goal->asker.empty()) ||
+                 (goal->tag == stop_ && stop_ != 0 && !ended_->success)))
+    return asked_in_words(ended_->speaker, ended_->what) +
+           (ended_->success ? "; that is done: " : "; that failed: ") + ended_->reason;
+  if (goal == nullptr)
+    return "I have nothing to do";
+  const Task* const asked = goal->tag == 0 ? nullptr : tasks_.find(goal->tag);
+  const bool underway = goal->state == KnownGoal::State::underway;
+  const std::string reason = underway ? step_in_words(goal->reason) : goal->reason;
+  if (asked != nullptr)
+    return asked_in_words(asked->goal.speaker, asked->what) +
+           (underway
+                ? (reason.empty() ? "" : "; " + reason)
+                : "; that " + state_in_words(goal->state) + (reason.empty() ? "" : ": " + reason));
+  return goal->functor + (goal->asker.empty() ? "" : " of " + goal->asker) + " " +
+         state_in_words(goal->state) + (reason.empty() ? "" : ": " + reason);
+}
+
+/// First where a person is, then who knows it.
+std::string Dialogue::told_of(const std::string& about) const {
+  std::string text;
+  for (const Advice::Kind kind : {Advice::Kind::person_at, Advice::Kind::office_of,
+                                  Advice::Kind::hazard, Advice::Kind::knows_where})
+    for (const Advice& one : knowledge_.all())
+      if (one.kind == kind && one.about == about)
+        text += (text.empty() ? "" : "; ") + as_told(one);
+  return text;
+}
+
+std::string Dialogue::owner_in(const std::string& name) const {
+  for (const char* const room : {" office", " room"}) {
+    if (!name.ends_with(room))
+      continue;
+    std::string owner = name.substr(0, name.size() - std::string_view(room).size());
+    if (knowledge_.knows(owner))
+      return owner;
+    if (owner.ends_with('s') && knowledge_.knows(owner.substr(0, owner.size() - 1)))
+      return owner.substr(0, owner.size() - 1);
+  }
+  return {};
+}
+
+std::string Dialogue::in_words(const Meaning& meaning) const {
+  Meaning shown = meaning;
+  if (slot(meaning, "place") == "this")
+    shown.slots["place"] = "this place";
+  if (const std::string owner = slot(meaning, "owner"); !owner.empty()) {
+    shown.slots["owner"] = owner + "'s office";
+    if (shown.slots.contains("place"))
+      shown.slots["place"] = "";
+  }
+  return grammar_.paraphrase(shown);
+}
+
+void Dialogue::choices(const std::vector<Meaning>& meanings, const Utterance& utterance,
+                       Outputs& out) const {
+  std::vector<std::string> all;
+  for (const Meaning& meaning : meanings)
+    if (const std::string words = in_words(meaning);
+        !words.empty() && std::find(all.begin(), all.end(), words) == all.end())
+      all.push_back(words);
+  std::string text;
+  for (const std::string& one : all)
+    text += (text.empty() ? "\"" : ", or \"") + one + "\"";
+  if (all.size() < 2)
+    text = "several things";
+  text = "what? That may mean " + text;
+  say(utterance, text, true, out);
+}
+
 bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
                         const Situation& situation, Outputs& out) {
   if (meaning.functor == "where_are_you") {
@@ -407,20 +556,25 @@ bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
   } else if (meaning.functor == "what_are_you_doing") {
     say(utterance, doing(situation), true, out);
   } else if (meaning.functor == "why") {
-    say(utterance, why_standing(situation.goals), true, out);
+    say(utterance, why(situation), true, out);
   } else if (meaning.functor == "what_can_you_do") {
     say(utterance, grammar_.paraphrase(meaning), true, out);
   } else if (meaning.functor == "where_is") {
     const std::string person = slot(meaning, "person");
-    std::string text;
-    for (const Advice& one : knowledge_.all())
-      if (one.about == person)
-        text += (text.empty() ? "" : "; ") +
-                (one.speaker.empty() ? std::string("somebody") : one.speaker) + " said that " +
-                describe(one);
+    const std::string owner = place(person, situation).empty() ? owner_in(person) : std::string();
+    if (!owner.empty())
+      return question(with({"where_office", {}}, "person", owner), utterance, situation, out);
+    std::string text = told_of(person);
     if (text.empty())
       text = way_to(place(person, situation), situation);
     say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
+  } else if (meaning.functor == "where_office") {
+    const std::string person = slot(meaning, "person");
+    const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
+    say(utterance,
+        office == nullptr ? "nobody has told me where " + person + "'s office is"
+                          : as_told(*office),
+        true, out);
   } else {
     return false;
   }
@@ -428,10 +582,36 @@ bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
 }
 
 void Dialogue::learn(const Advice& advice, Outputs& out) {
+  const std::vector<Claimed> before = claims();
   knowledge_.learn(advice);
+  if (advice.kind == Advice::Kind::person_at || advice.kind == Advice::Kind::office_of)
+    std::erase_if(gone_, [&](const Gone& one) { return one.person == advice.about; });
   out.learned = true;
-  const std::vector<Claimed> all = claims();
-  out.claims.insert(out.claims.end(), all.begin(), all.end());
+  claim_changes(before, "", out);
+}
+
+void Dialogue::claim_changes(const std::vector<Claimed>& before, const std::string& name,
+                             Outputs& out) const {
+  for (Claimed& one : claims())
+    if (one.name == name || std::find(before.begin(), before.end(), one) == before.end())
+      out.claims.push_back(std::move(one));
+}
+
+Dialogue::Outputs Dialogue::found(const std::string& person, const std::string& place, double time,
+                                  bool before) {
+  Outputs out;
+  Advice advice;
+  advice.kind = Advice::Kind::person_at;
+  advice.about = lower(person);
+  if (before && (knowledge_.find(advice.kind, advice.about) != nullptr ||
+                 std::any_of(gone_.begin(), gone_.end(),
+                             [&](const Gone& one) { return one.person == advice.about; })))
+    return out;
+  advice.value = place;
+  advice.speaker = kRobot;
+  advice.time = time;
+  learn(advice, out);
+  return out;
 }
 
 void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& out) {
@@ -443,8 +623,8 @@ void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& o
   // A person's place changes all the time; the owner of an office does not.
   if (known != nullptr && advice.kind == Advice::Kind::office_of) {
     say(utterance,
-        (known->speaker.empty() ? std::string("somebody") : known->speaker) + " told me that " +
-            describe(*known) + ". Is it now " + advice.value + "?",
+        speaker_of(*known) + " told me that " + describe(*known) + ". Is it now " + advice.value +
+            "?",
         true, out);
     doubt_ = Doubt{advice, utterance.speaker};
     return;
@@ -493,10 +673,79 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
     }
     return true;
   }
-  if (!wrong.empty())
+  if (!wrong.empty()) {
     say(utterance, wrong, true, out);
-  else
+  } else {
     take(advice, utterance, out);
+    answer_with(advice, utterance, situation, out);
+  }
+  return true;
+}
+
+/// What people say about a person after the keyword may be what the robot has asked for.
+void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
+                           const Situation& situation, Outputs& out) const {
+  if (situation.asked_about.empty() || lower(situation.asked_for) != advice.about)
+    return;
+  if (advice.kind == Advice::Kind::person_at ||
+      (advice.kind == Advice::Kind::knows_where && knowledge_.findable(advice.value)))
+    out.claims.push_back({situation.asked_about, advice.value, claim_source(utterance)});
+}
+
+/// Facts about people that hold no longer.
+bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
+                          const Situation& situation, Outputs& out) {
+  using Kind = Advice::Kind;
+  const std::string person = slot(meaning, "person");
+  std::vector<Advice> wrong;
+  std::string unknown;
+  const auto doubt = [&](Kind kind, const std::string& value) {
+    Advice meant;
+    meant.kind = kind;
+    meant.about = person;
+    meant.value = value;
+    const Advice* const known = knowledge_.find(kind, person, value);
+    if (known != nullptr && known->value == value)
+      wrong.push_back(*known);
+    else
+      unknown = "I did not believe that " + describe(meant);
+  };
+  if (meaning.functor == "not_at" || meaning.functor == "not_office_of") {
+    const bool office = meaning.functor == "not_office_of";
+    Meaning where = meaning;
+    where.functor = office ? "office_of" : meaning.functor;
+    Outputs unnamed;  // a nameless doorway stays so
+    std::uint32_t artifact = 0;
+    std::string no_place;
+    const std::string place = referred(where, situation, unnamed, artifact, no_place);
+    if (!no_place.empty()) {
+      say(utterance, no_place, true, out);
+      return true;
+    }
+    doubt(office ? Kind::office_of : Kind::person_at, place);
+  } else if (meaning.functor == "not_knows") {
+    doubt(Kind::knows_where, slot(meaning, "other"));
+  } else if (meaning.functor == "forget") {
+    const std::string what = slot(meaning, "what");
+    for (const Advice& one : knowledge_.all())
+      if (one.about == person && (what == "all"      ? one.kind != Kind::hazard
+                                  : what == "office" ? one.kind == Kind::office_of
+                                                     : one.kind == Kind::person_at))
+        wrong.push_back(one);
+    if (wrong.empty())
+      unknown = "nobody has told me " + (what == "all"      ? "anything about " + person
+                                         : what == "office" ? "where " + person + "'s office is"
+                                                            : "where " + person + " is");
+  } else {
+    return false;
+  }
+  std::string text;
+  for (const Advice& one : wrong) {
+    text += (text.empty() ? "I no longer believe that " : ", nor that ") + describe(one);
+    withdraw(one.number, out, &utterance);
+  }
+  const std::string rest = told_of(person);
+  say(utterance, (text.empty() ? unknown : text) + (rest.empty() ? "" : "; " + rest), true, out);
   return true;
 }
 
@@ -544,7 +793,7 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
   }
   if (situation.asked_about.empty() && tasks_.asks(utterance))
     return true;  // it answers something else
-  if (doubt_ && (yes || meaning.functor == "no")) {
+  if (doubt_ && doubt_->speaker == utterance.speaker && is_yes_or_no(meaning)) {
     const Doubt doubt = *doubt_;
     doubt_.reset();
     if (yes) {
@@ -556,37 +805,55 @@ bool Dialogue::reply(const Meaning& meaning, const Utterance& utterance, const S
     return true;
   }
   std::string value;
-  if (yes) {
+  const std::string asked_for = lower(situation.asked_for);
+  Advice told;  // about nobody: nothing
+  told.kind = Advice::Kind::person_at;
+  told.about = asked_for;
+  told.speaker = utterance.speaker;
+  told.said = utterance.text;
+  told.time = utterance.time;
+  const bool open = !situation.asked_about.empty();
+  if (yes || meaning.functor == "handed") {
     value = "yes";
+    told.about.clear();
   } else if (meaning.functor == "no" || meaning.functor == "dont_know") {
     value = "no";
+    told.about.clear();
   } else if (meaning.functor == "somebody") {
     const std::string name = slot(meaning, "person");
     const std::string known = place(name, situation);
     value = known.empty() ? name : known;
-    if (known.empty() && knowledge_.place_of(name).empty()) {
+    if (open && known.empty() && !knowledge_.findable(name)) {
       say(utterance, "nobody has told me where " + name + " is", true, out);
       return true;
     }
+    if (known.empty())
+      told.kind = Advice::Kind::knows_where;
   } else if (meaning.functor == "at") {
     std::uint32_t artifact = 0;
     std::string wrong;
-    Meaning where = meaning;
-    where.functor = "at";
-    value = referred(where, situation, out, artifact, wrong);
-    if (value.empty()) {
+    value = referred(meaning, situation, out, artifact, wrong);
+    if (open && value.empty()) {
       say(utterance, wrong, true, out);
       return true;
     }
+    if (const std::string who = slot(meaning, "who"); !who.empty())
+      told.about = who;
   } else {
     return false;
   }
-  if (situation.asked_about.empty())
+  if (!open)
     return true;  // no question is open
-  say(utterance, "thank you", true, out);
-  out.claims.push_back({situation.asked_about, value,
-                        (utterance.speaker.empty() ? "somebody" : utterance.speaker) + " said \"" +
-                            utterance.text + "\""});
+  told.value = value;
+  const bool answers = asked_for.empty() || told.about.empty() || told.about == asked_for;
+  say(utterance,
+      answers ? "thank you"
+              : "I know now that " + describe(told) + ", and still ask for " + asked_for,
+      true, out);
+  if (answers)
+    out.claims.push_back({situation.asked_about, value, claim_source(utterance)});
+  if (!told.about.empty() && told.about != value)
+    learn(told, out);
   return true;
 }
 
@@ -595,6 +862,7 @@ void Dialogue::act(const Meaning& meaning, const Utterance& utterance, const Sit
   if (move(meaning, utterance, out) || task(meaning, utterance, situation, out) ||
       errand(meaning, utterance, situation, out) || inquiry(meaning, utterance, situation, out) ||
       question(meaning, utterance, situation, out) || advice(meaning, utterance, situation, out) ||
+      correction(meaning, utterance, situation, out) ||
       naming(meaning, utterance, situation, out) || reply(meaning, utterance, situation, out))
     return;
   say(utterance, "I understand " + meaning.functor + ", and do not know how to do it", true, out);
@@ -622,6 +890,10 @@ void Dialogue::act_on_all(const Grammar::Understood& understood, const Utterance
   add(tasks_.want(std::move(wanted_), utterance), out);
   wanted_.clear();
   note_begin(situation, out);
+  if (!out.goals.empty() && out.goals.back().functor == "stop")
+    stop_ = out.goals.back().tag;
+  else if (!out.goals.empty())
+    ended_.reset();
 }
 
 Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& situation) {
@@ -634,18 +906,25 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
       heard_.erase(heard_.begin());
     out.learned = true;
   }
-  const bool asked = !situation.asked_about.empty() ||
-                     (doubt_ && doubt_->speaker == utterance.speaker) || tasks_.asks(utterance);
-  const Grammar::Understood understood = grammar_.understand(utterance.text, asked);
+  if (doubt_ && utterance.time > 0.0 && doubt_->advice.time > 0.0 &&
+      utterance.time - doubt_->advice.time > kDoubtful)
+    doubt_.reset();
+  const bool doubted = doubt_ && doubt_->speaker == utterance.speaker;
+  const bool drops = tasks_.asks(utterance);
+  const bool asked = !situation.asked_about.empty();
+  Grammar::Understood understood = grammar_.understand(utterance.text, asked || doubted || drops);
+  if ((doubted || drops) && !asked && !understood.addressed)
+    std::erase_if(understood.meanings, [](const Meaning& one) { return !is_yes_or_no(one); });
+  // Whoever goes on to something else leaves the doubt.
+  if (doubted && utterance.confidence >= kSure &&
+      (understood.meanings.size() != 1 || !is_yes_or_no(understood.meanings.front())))
+    doubt_.reset();
   if (!understood.addressed && understood.meanings.empty())
     return out;  // people talk to each other
   if (understood.meanings.empty() || utterance.confidence < kSure) {
     say(utterance, "what?", true, out);
   } else if (understood.meanings.size() > 1) {
-    std::string choices;
-    for (const Meaning& meaning : understood.meanings)
-      choices += (choices.empty() ? "" : ", or ") + describe(meaning);
-    say(utterance, "what? That may mean " + choices, true, out);
+    choices(understood.meanings, utterance, out);
   } else {
     act_on_all(understood, utterance, situation, out);
   }
@@ -654,6 +933,9 @@ Dialogue::Outputs Dialogue::hear(const Utterance& utterance, const Situation& si
 
 Dialogue::Outputs Dialogue::ended(const Outcome& outcome) {
   Outputs out;
+  const Task* const task = tasks_.find(outcome.tag);
+  if (task != nullptr && (outcome.tag != stop_ || !ended_ || ended_->success))
+    ended_ = Ended{task->what, task->goal.speaker, outcome.success, outcome.reason};
   add(tasks_.ended(outcome), out);
   return out;
 }
@@ -673,38 +955,59 @@ Dialogue::Outputs Dialogue::forget(std::uint64_t number) {
   return out;
 }
 
-void Dialogue::withdraw(std::uint64_t number, Outputs& out) {
+void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* because) {
+  const std::vector<Claimed> before = claims();
   const std::optional<Advice> forgotten = knowledge_.forget(number);
   if (!forgotten)
     return;
   out.learned = true;
-  const char* const name = forgotten->kind == Advice::Kind::hazard        ? kHazards
-                           : forgotten->kind == Advice::Kind::knows_where ? "knows-where-"
-                                                                          : "place-of-";
-  out.claims.push_back(
-      {name + (forgotten->kind == Advice::Kind::hazard ? "" : forgotten->about), "", ""});
-  const std::vector<Claimed> all = claims();
-  out.claims.insert(out.claims.end(), all.begin(), all.end());
+  const bool hazard = forgotten->kind == Advice::Kind::hazard;
+  const bool knows = forgotten->kind == Advice::Kind::knows_where;
+  const std::string name =
+      hazard ? kHazards : (knows ? "knows-where-" : "place-of-") + forgotten->about;
+  // What activities believe of the person is withdrawn, too.
+  if (!hazard && !knows && knowledge_.place_of(forgotten->about).empty()) {
+    if (gone_.size() >= kMostGone)
+      gone_.erase(gone_.begin());
+    Gone gone{forgotten->about, because == nullptr ? "taken back" : claim_source(*because)};
+    std::replace(gone.source.begin(), gone.source.end(), '\n', ' ');  // a line of save()
+    gone_.push_back(std::move(gone));
+  }
+  out.claims.push_back({name, "", ""});
+  claim_changes(before, name, out);
 }
 
 std::vector<Claimed> Dialogue::claims() const {
   std::vector<Claimed> result;
   const auto source = [](const Advice& advice) {
-    return (advice.speaker.empty() ? std::string("somebody") : advice.speaker) + " said " +
-           time_text(advice.time) + "\"" + advice.said + "\"";
+    return advice.speaker == kRobot
+               ? kRobot + (" found " + advice.about) + " " + time_text(advice.time) + "there"
+               : speaker_of(advice) + " said " + time_text(advice.time) + "\"" + advice.said + "\"";
+  };
+  const auto join = [&](Claimed& all, const Advice& advice, const std::string& value,
+                        const char* between) {
+    all.value += (all.value.empty() ? "" : between) + value;
+    all.source += (all.source.empty() ? "" : "; ") + source(advice);
   };
   Claimed hazards{kHazards, "", ""};
   for (const Advice& one : knowledge_.all()) {
+    const std::string name =
+        (one.kind == Advice::Kind::knows_where ? "knows-where-" : "place-of-") + one.about;
+    const auto same = std::find_if(result.begin(), result.end(),
+                                   [&](const Claimed& each) { return each.name == name; });
     if (one.kind == Advice::Kind::hazard) {
-      const char* const between = hazards.value.empty() ? "" : "; ";
-      hazards.value += between + one.about + " at " + one.value;
-      hazards.source += between + source(one);
+      join(hazards, one, one.about + " at " + one.value, "; ");
     } else if (one.kind == Advice::Kind::knows_where) {
-      result.push_back({"knows-where-" + one.about, one.value, source(one)});
-    } else if (knowledge_.place_of(one.about) == one.value) {
-      result.push_back({"place-of-" + one.about, one.value, source(one)});
+      Claimed& all = same == result.end() ? result.emplace_back(Claimed{name, "", ""}) : *same;
+      join(all, one, one.value, ", ");
+      all.list.push_back(one.value);
+    } else if (one.kind == Advice::Kind::person_at ||
+               knowledge_.find(Advice::Kind::person_at, one.about) == nullptr) {
+      result.push_back({name, one.value, source(one)});
     }
   }
+  for (const Gone& one : gone_)
+    result.push_back({"place-of-" + one.person, "nil", one.source, {}, true});
   if (!hazards.value.empty())
     result.push_back(std::move(hazards));
   return result;
@@ -715,6 +1018,8 @@ std::string Dialogue::save() const {
   for (const UtteranceId& id : heard_)
     text += sealed_line(kHeardLine + std::to_string(id.first) + "\t" + std::to_string(id.second)) +
             "\n";
+  for (const Gone& one : gone_)
+    text += sealed_line(kGoneLine + one.person + "\t" + one.source) + "\n";
   if (said_ != CycleRef{})
     text +=
         sealed_line(kSaidLine + std::to_string(said_.first) + "\t" + std::to_string(said_.second)) +
@@ -742,6 +1047,11 @@ std::size_t Dialogue::restore(std::string_view text) {
       before_.first = std::strtoull(rest.c_str(), &end, 10);
       before_.second = std::strtoull(end, nullptr, 10);
       said_ = before_;
+    } else if (content && content->starts_with(kGoneLine)) {
+      const std::string rest(content->substr(std::string_view(kGoneLine).size()));
+      const std::size_t tab = rest.find('\t');
+      if (tab != std::string::npos)
+        gone_.push_back({rest.substr(0, tab), rest.substr(tab + 1)});
     } else if (content && content->starts_with(kOpenLine)) {
       tasks_.restore(std::string(content->substr(std::string_view(kOpenLine).size())));
     } else {

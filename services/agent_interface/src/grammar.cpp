@@ -476,6 +476,7 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
     result.addressed = true;
     words.erase(words.begin());
   }
+  // With the keyword a sentence is meant for the robot, whatever it has asked.
   if (words.size() <= kLongestUtterance)
     result.meanings = look(words, result.addressed, replies, Among::usual);
   if (result.meanings.empty() && result.addressed && words.size() <= kLongestUtterance) {
@@ -488,6 +489,8 @@ Grammar::Understood Grammar::understand(std::string_view text, bool replies) con
       result.then.assign(ways[0].begin() + 1, ways[0].end());
     }
   }
+  if (result.meanings.empty() && words.size() <= kLongestUtterance)
+    result.meanings = look(words, result.addressed, replies, Among::reply);
   if (result.meanings.empty())
     result.meanings = look(words, result.addressed, replies, Among::urgent);
   return result;
@@ -499,6 +502,7 @@ std::vector<Meaning> Grammar::look(const std::vector<std::string>& words, bool a
   std::size_t best = 0;
   for (const Rule& rule : rules_) {
     const Among of = rule.use == Use::urgent  ? Among::urgent
+                     : rule.use == Use::reply ? Among::reply
                      : rule.use == Use::later ? Among::later
                                               : Among::usual;
     if (of != among || (rule.use == Use::reply ? !replies : !addressed))
@@ -636,12 +640,21 @@ std::string Grammar::paraphrase(const Meaning& meaning) const {
 
 std::string Grammar::paraphrase(const Meaning& meaning, Form form) const {
   const auto index = static_cast<std::size_t>(form);
-  for (const Rule& rule : rules_) {
-    if (rule.meaning.functor != meaning.functor)
+  // Of several rules of a functor, the one with the same slots.
+  const auto same = [&](const Rule& rule, bool slots) {
+    return rule.meaning.functor == meaning.functor &&
+           (!slots || std::equal(rule.meaning.slots.begin(), rule.meaning.slots.end(),
+                                 meaning.slots.begin(), meaning.slots.end(),
+                                 [](const auto& a, const auto& b) { return a.first == b.first; }));
+  };
+  for (const bool slots : {true, false}) {
+    const auto rule = std::find_if(rules_.begin(), rules_.end(),
+                                   [&](const Rule& one) { return same(one, slots); });
+    if (rule == rules_.end())
       continue;
-    if (index >= rule.paraphrases.size())
+    if (index >= rule->paraphrases.size())
       return {};
-    std::string text = rule.paraphrases[index];
+    std::string text = rule->paraphrases[index];
     for (auto slot = meaning.slots.rbegin(); slot != meaning.slots.rend(); ++slot)
       for (std::size_t at = text.find('$' + slot->first); at != std::string::npos;
            at = text.find('$' + slot->first, at + slot->second.size()))

@@ -18,6 +18,11 @@ constexpr std::array<std::pair<Advice::Kind, const char*>, 4> kKinds{{
     {Advice::Kind::hazard, "hazard"},
 }};
 
+/// Several pieces of advice of that kind may be true of one subject.
+bool several(Advice::Kind kind) {
+  return kind == Advice::Kind::hazard || kind == Advice::Kind::knows_where;
+}
+
 /// Fields of a line are separated by tabs; tabs in people's words are replaced.
 std::string field(std::string text) {
   std::replace_if(
@@ -91,10 +96,10 @@ std::string describe(const Advice& advice) {
 }
 
 const Advice* Knowledge::find(Advice::Kind kind, std::string_view about,
-                              std::string_view place) const {
+                              std::string_view value) const {
   for (const Advice& one : all_)
     if (one.kind == kind && one.about == about &&
-        (kind != Advice::Kind::hazard || place.empty() || one.value == place))
+        (!several(kind) || value.empty() || one.value == value))
       return &one;
   return nullptr;
 }
@@ -102,7 +107,7 @@ const Advice* Knowledge::find(Advice::Kind kind, std::string_view about,
 const Advice& Knowledge::learn(Advice advice) {
   std::erase_if(all_, [&](const Advice& one) {
     return one.kind == advice.kind && one.about == advice.about &&
-           (one.kind != Advice::Kind::hazard || one.value == advice.value);
+           (!several(one.kind) || one.value == advice.value);
   });
   if (all_.size() >= kMost)
     all_.erase(all_.begin());
@@ -125,6 +130,17 @@ std::string Knowledge::place_of(std::string_view person) const {
     if (const Advice* const advice = find(kind, person))
       return advice->value;
   return {};
+}
+
+bool Knowledge::findable(std::string_view person) const {
+  return !place_of(person).empty() || find(Advice::Kind::knows_where, person) != nullptr;
+}
+
+bool Knowledge::knows(std::string_view person) const {
+  return std::any_of(all_.begin(), all_.end(), [&](const Advice& one) {
+    return one.kind != Advice::Kind::hazard &&
+           (one.about == person || (one.kind == Advice::Kind::knows_where && one.value == person));
+  });
 }
 
 std::string Knowledge::save() const {

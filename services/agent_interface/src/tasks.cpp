@@ -193,6 +193,12 @@ Tasks::Outputs Tasks::ended(const Outcome& outcome) {
   return out;
 }
 
+const Task* Tasks::find(std::uint64_t tag) const {
+  const auto found = std::find_if(open_.begin(), open_.end(),
+                                  [&](const Task& one) { return one.goal.tag == tag; });
+  return found == open_.end() ? nullptr : &*found;
+}
+
 void Tasks::asked(std::uint64_t tag, const GoalRef& goal) {
   for (Task& one : open_)
     if (one.goal.tag == tag)

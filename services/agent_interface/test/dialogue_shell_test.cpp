@@ -114,7 +114,8 @@ TEST_F(DialogueOnTheBus, ACommandBecomesAGoalAndItsEndIsSaid) {
   statuses.write(status);
   dialogue->step();
   EXPECT_EQ(say("Flakey, why are you standing?"),
-            std::vector<std::string>{"turn_to is suspended: a more important goal"});
+            std::vector<std::string>{"Alice asked me to turn 90 degrees to the left; that is "
+                                     "suspended: a more important goal"});
   status.state(v1::GOAL_SUCCEEDED);
   status.reason("turned");
   statuses.write(status);
@@ -170,7 +171,7 @@ TEST_F(DialogueOnTheBus, WhatIsToldIsClaimedKnownAndOutlivesARestart) {
   const auto claimed = claims.take();
   ASSERT_EQ(claimed.size(), 1u);
   EXPECT_EQ(claimed[0].data.name(), "knows-where-karen");
-  EXPECT_EQ(claimed[0].data.value(), "\"john\"");
+  EXPECT_EQ(claimed[0].data.value(), "(\"john\")");
   EXPECT_EQ(claimed[0].data.source(), "Alice said \"Flakey, John usually knows where Karen is\"");
   start();
   const auto known = knows.take_newest();
@@ -283,6 +284,42 @@ TEST_F(DialogueOnTheBus, ARepliedQuestionIsClaimed) {
   ASSERT_EQ(claimed.size(), 1u);
   EXPECT_EQ(claimed[0].data.name(), "given");
   EXPECT_EQ(claimed[0].data.value(), "\"yes\"");
+}
+
+TEST_F(DialogueOnTheBus, WhatAnActivityFindsIsKnownAndWhatPeopleTakeBackCoversIt) {
+  v1::BeliefSet found;
+  found.beliefs().resize(3);
+  found.beliefs()[0].name("asking-about");
+  found.beliefs()[0].value("\"answer\"");
+  found.beliefs()[1].name("asking-for");
+  found.beliefs()[1].value("\"john\"");
+  found.beliefs()[2].name("place-of-karen");
+  found.beliefs()[2].value("\"EJ-231\"");
+  found.beliefs()[2].said_by("find-person");
+  found.beliefs()[2].since(70);
+  beliefs.write(found);
+  dialogue->step();
+  beliefs.write(found);
+  claims.take();
+  EXPECT_EQ(say("Flakey, where is Karen?"), std::vector<std::string>{"I found karen at EJ-231"});
+  EXPECT_TRUE(claims.take().empty());
+  EXPECT_EQ(say("ask Karen"), std::vector<std::string>{"thank you"});
+  std::vector<std::string> told;
+  for (const auto& sample : claims.take())
+    told.push_back(sample.data.name() + " " + sample.data.value());
+  EXPECT_EQ(told, (std::vector<std::string>{"answer \"karen\"", "knows-where-john (\"karen\")"}));
+  EXPECT_EQ(say("Flakey, Karen left"),
+            std::vector<std::string>{"I no longer believe that karen is at EJ-231"});
+  std::vector<std::string> values;
+  for (const auto& sample : claims.take())
+    values.push_back(sample.info.disposed ? "disposed" : sample.data.value());
+  EXPECT_EQ(values, (std::vector<std::string>{"disposed", "nil"}));
+  // What is believed since before a restart is older than that.
+  start();
+  dialogue->step();
+  answers();
+  EXPECT_EQ(say("Flakey, where is Karen?"),
+            std::vector<std::string>{"nobody has told me where karen is"});
 }
 
 TEST_F(DialogueOnTheBus, AdviceIsTakenBackByARequest) {

@@ -29,7 +29,7 @@ struct DialogueTest : testing::Test {
   }
   Dialogue::Outputs hear(const std::string& text, const std::string& speaker = "Alice") {
     Utterance utterance{{7, ++number}, speaker, text};
-    utterance.time = 1e9;
+    utterance.time = now;
     last = dialogue.hear(utterance, situation);
     return last;
   }
@@ -52,6 +52,7 @@ struct DialogueTest : testing::Test {
   Dialogue dialogue{grammar()};
   Dialogue::Outputs last;
   std::uint64_t number = 0;
+  double now = 1e9;  ///< [s]
 };
 
 TEST_F(DialogueTest, ACommandIsParaphrasedAndThenCarriedOut) {
@@ -171,6 +172,33 @@ TEST_F(DialogueTest, AContradictionIsAskedBack) {
   EXPECT_EQ(dialogue.knowledge().place_of("karen"), "EJ-233");
 }
 
+TEST_F(DialogueTest, ADoubtIsItsOwnSpeakersAndEndsWithTheirNextSentenceOrInTime) {
+  const std::string doubt = "Alice told me that EJ-231 is karen's office. Is it now EJ-233?";
+  hear("Flakey, EJ-231 is Karen's office");
+  situation.asked_about = "given";
+  EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"), doubt);
+  EXPECT_EQ(said("yes", "John"), "thank you");
+  ASSERT_EQ(last.claims.size(), 1u);
+  EXPECT_EQ(last.claims[0].name, "given");
+  EXPECT_EQ(last.claims[0].value, "yes");
+  // Thanks are for the task. They end the doubt.
+  EXPECT_EQ(said("here you are", "Bob"), "thank you");
+  EXPECT_EQ(last.claims.at(0).name, "given");
+  EXPECT_EQ(said("yes", "Bob"), "thank you");
+  EXPECT_EQ(dialogue.knowledge().place_of("karen"), "EJ-231");
+  situation.asked_about.clear();
+  EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"), doubt);
+  EXPECT_EQ(said("good morning", "Bob"), "");
+  EXPECT_EQ(said("yes", "Bob"), "");
+  EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"), doubt);
+  now += 21.0;
+  EXPECT_EQ(said("yes", "Bob"), "");
+  EXPECT_EQ(said("Flakey, EJ-233 is Karen's office", "Bob"), doubt);
+  now += 19.0;
+  EXPECT_EQ(said("of course not", "Alice"), "");
+  EXPECT_EQ(said("yes", "Bob"), "I know now that EJ-233 is karen's office");
+}
+
 TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   hear("Flakey, EJ-231 is Karen's office");
   hear("Flakey, John usually knows where Karen is", "Bob");
@@ -181,6 +209,88 @@ TEST_F(DialogueTest, WhatIsKnownIsAnsweredAndTakenBack) {
   EXPECT_EQ(out.claims.at(0).value, "");
   EXPECT_FALSE(dialogue.forget(2).learned);
   EXPECT_EQ(said("Flakey, where are you?"), "I am in upper corridor");
+}
+
+TEST_F(DialogueTest, SeveralMayKnowWhereSomebodyIs) {
+  hear("Flakey, John usually knows where Karen is");
+  EXPECT_EQ(said("Flakey, Alice knows where Karen is", "Bob"),
+            "I know now that alice knows where karen is");
+  ASSERT_EQ(last.claims.size(), 1u);
+  EXPECT_EQ(last.claims[0].name, "knows-where-karen");
+  EXPECT_EQ(last.claims[0].value, "john, alice");
+  EXPECT_EQ(last.claims[0].list, (std::vector<std::string>{"john", "alice"}));
+  EXPECT_EQ(said("Flakey, John knows where Karen is"), "I know: john knows where karen is");
+  EXPECT_EQ(said("Flakey, where is Karen?"),
+            "Alice said that john knows where karen is; Bob said that alice knows where karen is");
+  EXPECT_EQ(said("Flakey, John does not know where Karen is"),
+            "I no longer believe that john knows where karen is; Bob said that alice knows where "
+            "karen is");
+  ASSERT_EQ(last.claims.size(), 2u);
+  EXPECT_EQ(last.claims[0].value, "");
+  EXPECT_EQ(last.claims[1].list, std::vector<std::string>{"alice"});
+}
+
+TEST_F(DialogueTest, WhereAPersonIsComesBeforeWhoKnowsAndAnOfficeIsAnOffice) {
+  hear("Flakey, John knows where Karen is");
+  EXPECT_EQ(said("Flakey, where is Karen's office?"), "nobody has told me where karen's office is");
+  hear("Flakey, EJ-231 is Karen's office", "Bob");
+  hear("Flakey, Karen is in EJ-233", "Carol");
+  EXPECT_EQ(said("Flakey, where is Karen's office?"), "Bob said that EJ-231 is karen's office");
+  EXPECT_EQ(said("Flakey, where is Karens office?"), "Bob said that EJ-231 is karen's office");
+  EXPECT_EQ(said("Flakey, where is Karen?"),
+            "Carol said that karen is at EJ-233; Bob said that EJ-231 is karen's office; "
+            "Alice said that john knows where karen is");
+  EXPECT_EQ(said("Flakey, go to Karens office"), "I go to EJ-231");
+  EXPECT_EQ(goals(), "go-to-place place=\"EJ-231\"");
+  EXPECT_EQ(said("Flakey, go to Johns office"), "nobody has told me where john's office is");
+  EXPECT_EQ(said("Flakey, go to Bobs office"), "I know no place called bobs office");
+}
+
+TEST_F(DialogueTest, FactsAboutPeopleAreTakenBackInWords) {
+  EXPECT_EQ(said("Flakey, Karen is not in EJ-231"), "I did not believe that karen is at EJ-231");
+  EXPECT_EQ(said("Flakey, forget Karen's office"), "nobody has told me where karen's office is");
+  EXPECT_EQ(said("Flakey, Karen left"), "nobody has told me where karen is");
+  EXPECT_EQ(said("Flakey, forget Karen"), "nobody has told me anything about karen");
+  EXPECT_TRUE(dialogue.knowledge().all().empty());
+  hear("Flakey, EJ-231 is Karen's office");
+  hear("Flakey, Karen is in EJ-233");
+  EXPECT_EQ(said("Flakey, Karen is not in EJ-231"),
+            "I did not believe that karen is at EJ-231; Alice said that karen is at EJ-233; "
+            "Alice said that EJ-231 is karen's office");
+  EXPECT_EQ(
+      said("Flakey, Karen isn't in EJ-233"),
+      "I no longer believe that karen is at EJ-233; Alice said that EJ-231 is karen's office");
+  ASSERT_EQ(last.claims.size(), 2u);
+  EXPECT_EQ(last.claims[0].name, "place-of-karen");
+  EXPECT_EQ(last.claims[0].value, "");
+  EXPECT_EQ(last.claims[1].value, "EJ-231");
+  EXPECT_EQ(said("Flakey, Karen's office is not EJ-233"),
+            "I did not believe that EJ-233 is karen's office; Alice said that EJ-231 is karen's "
+            "office");
+  EXPECT_EQ(said("Flakey, Karen's office is not EJ-231"),
+            "I no longer believe that EJ-231 is karen's office");
+  EXPECT_TRUE(dialogue.knowledge().all().empty());
+  // nil also covers what an activity believes, until somebody says a place; over a restart, too.
+  ASSERT_EQ(last.claims.size(), 2u);
+  EXPECT_EQ(last.claims[1].name, "place-of-karen");
+  EXPECT_TRUE(last.claims[1].nil);
+  Dialogue restarted{grammar()};
+  EXPECT_EQ(restarted.restore(dialogue.save()), 0u);
+  EXPECT_EQ(restarted.claims(), dialogue.claims());
+  hear("Flakey, Karen is in EJ-233");
+  ASSERT_EQ(dialogue.claims().size(), 1u);
+  EXPECT_FALSE(dialogue.claims()[0].nil);
+  EXPECT_EQ(said("Flakey, Karen is on holiday"), "I no longer believe that karen is at EJ-233");
+  EXPECT_EQ(said("Flakey, Karen is not in the attic"), "I know no place called attic");
+  hear("Flakey, this is Karen's office");
+  hear("Flakey, John knows where Karen is");
+  EXPECT_EQ(said("Flakey, this is not Karen's office"),
+            "I no longer believe that EJ-231 is karen's office; Alice said that john knows where "
+            "karen is");
+  hear("Flakey, Karen is in EJ-233");
+  EXPECT_EQ(said("Flakey, forget Karen"),
+            "I no longer believe that john knows where karen is, nor that karen is at EJ-233");
+  EXPECT_TRUE(dialogue.knowledge().all().empty());
 }
 
 TEST_F(DialogueTest, APlaceOfTheMapIsAnsweredWithItsDistanceAndDirection) {
@@ -209,6 +319,61 @@ TEST_F(DialogueTest, TheReasonIsOfTheNewestGoalThatIsHeldUp) {
   situation.goals.insert(situation.goals.begin(),
                          {"explore", "", State::suspended, "drive is more important"});
   EXPECT_EQ(said("Flakey, why?"), "explore is suspended: drive is more important");
+}
+
+TEST_F(DialogueTest, TheReasonBeginsWithWhatWasAskedAndByWhom) {
+  using State = KnownGoal::State;
+  hear("Flakey, take the mail from EJ-231 to Alice");
+  const std::uint64_t tag = last.goals.at(0).tag;
+  situation.goals = {
+      {"deliver", "", State::underway, "through-door: passes a door or another opening", tag}};
+  EXPECT_EQ(said("Flakey, why?", "Bob"),
+            "Alice asked me to get the mail from ej-231 and bring it to alice; I pass a door or "
+            "another opening");
+  situation.goals[0].reason = "ask: asks people something, and waits for the answer";
+  EXPECT_EQ(said("Flakey, why?"),
+            "Alice asked me to get the mail from ej-231 and bring it to alice; I ask people "
+            "something, and wait for the answer");
+  situation.goals[0].reason = "find-position: moves about until the robot knows where it is";
+  EXPECT_EQ(said("Flakey, why?"),
+            "Alice asked me to get the mail from ej-231 and bring it to alice; the robot moves "
+            "about until the robot knows where it is");
+  situation.goals[0] = {"deliver", "", State::suspended, "drive is more important", tag};
+  EXPECT_EQ(said("Flakey, why?"),
+            "Alice asked me to get the mail from ej-231 and bring it to alice; that is suspended: "
+            "drive is more important");
+}
+
+TEST_F(DialogueTest, AfterAFailureAStopIsNotTheReason) {
+  using State = KnownGoal::State;
+  const std::string failed =
+      "Alice asked me to get the mail from ej-231 and bring it to john; that failed: nobody at "
+      "EJ-231 gave the robot the mail";
+  hear("Flakey, take the mail from EJ-231 to John");
+  dialogue.ended({last.goals.at(0).tag, false, "nobody at EJ-231 gave the robot the mail"});
+  situation.goals = {{"deliver", "", State::failed, "nobody at EJ-231 gave the robot the mail"}};
+  EXPECT_EQ(said("Flakey, why?"), failed);
+  hear("Flakey, stop", "Bob");
+  const std::uint64_t stop = last.goals.at(0).tag;
+  situation.goals.push_back({"stop", "", State::underway, "", stop});
+  EXPECT_EQ(said("Flakey, why?"), failed);
+  dialogue.ended({stop, true, "the robot is at rest"});
+  situation.goals.back() = {"stop", "", State::over, "the robot is at rest"};
+  EXPECT_EQ(said("Flakey, why?"), failed);
+  // After a restart of the dialogue, too.
+  Dialogue restarted{grammar()};
+  EXPECT_EQ(restarted.hear({{9, 1}, "Alice", "Flakey, why?"}, situation).said.at(0).text,
+            "deliver failed: nobody at EJ-231 gave the robot the mail");
+  hear("Flakey, follow me", "Bob");
+  situation.goals.push_back(
+      {"follow-person", "", State::underway, "waits for a person", last.goals.at(0).tag});
+  EXPECT_EQ(said("Flakey, why?"), "Bob asked me to follow Bob; waits for a person");
+  situation.goals.pop_back();
+  hear("Flakey, turn left");
+  dialogue.ended({last.goals.at(0).tag, true, "turned"});
+  situation.goals.push_back({"turn_to", "", State::over, "turned"});
+  EXPECT_EQ(said("Flakey, why?"),
+            "Alice asked me to turn 90 degrees to the left; that is done: turned");
 }
 
 TEST_F(DialogueTest, WhatTheRobotDoesIncludesTheGoalsOfOthers) {
@@ -345,6 +510,74 @@ TEST_F(DialogueTest, RepliesAreClaimedAsWhatWasAskedFor) {
   EXPECT_EQ(last.claims.at(0).value, "no");
   EXPECT_EQ(said("good morning"), "nobody has told me where good morning is");
   EXPECT_TRUE(last.claims.empty());
+}
+
+TEST_F(DialogueTest, RepliesAboutAPersonAreKept) {
+  situation.asked_about = "answer";
+  situation.asked_for = "Karen";
+  EXPECT_EQ(said("she is in EJ-233", "John"), "thank you");
+  ASSERT_EQ(last.claims.size(), 2u);
+  EXPECT_EQ(last.claims[0].name, "answer");
+  EXPECT_EQ(last.claims[0].value, "EJ-233");
+  EXPECT_EQ(last.claims[1].name, "place-of-karen");
+  EXPECT_EQ(last.claims[1].value, "EJ-233");
+  EXPECT_EQ(said("Flakey, where is Karen?"), "John said that karen is at EJ-233");
+  EXPECT_EQ(dialogue.knowledge().all().at(0).time, now);
+  hear("Flakey, Bob is in EJ-231");
+  EXPECT_EQ(said("ask Bob", "John"), "thank you");
+  EXPECT_EQ(last.claims.at(0).value, "bob");
+  EXPECT_EQ(last.claims.at(1).list, std::vector<std::string>{"bob"});
+  hear("no, sorry");
+  EXPECT_EQ(last.claims.size(), 1u);
+  // What an activity finds takes the place of what was said.
+  const Dialogue::Outputs out = dialogue.found("karen", "EJ-231", now);
+  ASSERT_EQ(out.claims.size(), 1u);
+  EXPECT_EQ(out.claims[0].value, "EJ-231");
+  EXPECT_EQ(said("Flakey, where is Karen?"),
+            "I found karen at EJ-231; John said that bob knows where karen is");
+}
+
+TEST_F(DialogueTest, AReplyAboutAnotherPersonIsNoAnswer) {
+  situation.asked_about = "answer";
+  situation.asked_for = "john";
+  EXPECT_EQ(said("Alice is in EJ-233", "Bob"),
+            "I know now that alice is at EJ-233, and still ask for john");
+  ASSERT_EQ(last.claims.size(), 1u);
+  EXPECT_EQ(last.claims[0].name, "place-of-alice");
+  EXPECT_EQ(said("John is in EJ-231", "Bob"), "thank you");
+  EXPECT_EQ(last.claims.at(0).name, "answer");
+  EXPECT_EQ(last.claims.at(0).value, "EJ-231");
+  EXPECT_EQ(last.claims.at(1).name, "place-of-john");
+}
+
+TEST_F(DialogueTest, WithTheKeywordAFactIsAFactAndMayAnswerTheQuestion) {
+  situation.asked_about = "answer";
+  situation.asked_for = "john";
+  EXPECT_EQ(said("Flakey, Karen is in EJ-231"), "I know now that karen is at EJ-231");
+  ASSERT_EQ(last.claims.size(), 1u);
+  EXPECT_EQ(last.claims[0].name, "place-of-karen");
+  EXPECT_EQ(said("Flakey, John is in EJ-233"), "I know now that john is at EJ-233");
+  ASSERT_EQ(last.claims.size(), 2u);
+  EXPECT_EQ(last.claims[0].name, "place-of-john");
+  EXPECT_EQ(last.claims[1].name, "answer");
+  EXPECT_EQ(last.claims[1].value, "EJ-233");
+  EXPECT_EQ(said("Flakey, Karen knows where John is"), "I know now that karen knows where john is");
+  EXPECT_EQ(last.claims.at(1).value, "karen");
+}
+
+TEST_F(DialogueTest, SeveralMeaningsAreNamedInWords) {
+  dialogue.use(
+      Grammar("keyword: flakey\nno-names: is in\n"
+              "person_at(person, place=this, owner) \"$person is at $place$owner\"\n"
+              "  {person} is in {place} | {person} is in {owner}\n"
+              "go_to(place) \"I go to $place\"\n  go {place}\n"
+              "drive_to(place)\n  go {place}\nroll_to(place)\n  roll {place}\nrun_to(place)\n  "
+              "roll {place}\n",
+              "test"));
+  EXPECT_EQ(said("flakey Karen is in Bob"),
+            "what? That may mean \"karen is at bob\", or \"karen is at bob's office\"");
+  EXPECT_EQ(said("flakey go EJ-231"), "what? That may mean several things");
+  EXPECT_EQ(said("flakey roll EJ-231"), "what? That may mean several things");
 }
 
 TEST_F(DialogueTest, KnowledgeOutlivesARestart) {

@@ -98,6 +98,29 @@ TEST(Grammar, RepliesNeedNoKeywordAndCountWhereTheRobotHasAsked) {
   EXPECT_EQ(meaning("stop", true), "");
 }
 
+TEST(Grammar, WithTheKeywordAReplyCountsWhereNothingElseIsMeant) {
+  const Grammar one(
+      "keyword: f\nno-names: is\ngo(place)\n  is {place}\nreply at(place)\n"
+      "  is {place} | is in {place}\n",
+      "test");
+  const auto meant = [&](const std::string& text) {
+    const auto meanings = one.understand(text, true).meanings;
+    return meanings.size() == 1 ? describe(meanings.front()) : "";
+  };
+  EXPECT_EQ(meant("f is x"), "go(place=x)");
+  EXPECT_EQ(meant("is x"), "at(place=x)");
+  EXPECT_EQ(meant("is in x"), "at(place=x)");
+}
+
+TEST(Grammar, AParaphraseIsOfTheRuleWithTheSameSlots) {
+  const Grammar one(
+      "keyword: f\ngo(place) \"to $place\"\n  go {place}\n"
+      "go(owner) \"to $owner's\"\n  visit {owner}\n",
+      "test");
+  EXPECT_EQ(one.paraphrase({"go", {{"owner", "bob"}}}), "to bob's");
+  EXPECT_EQ(one.paraphrase({"go", {{"place", "lab"}, {"side", "left"}}}), "to lab");
+}
+
 TEST(Grammar, TypedSentencesAreNotListenedFor) {
   EXPECT_EQ(meaning("flakey veer left"), "turn(degrees=90, direction=left)");
   EXPECT_EQ(meaning("veer left", true), "");

@@ -471,6 +471,36 @@ TEST(Modality, BehaviorControlIsBackWhenNobodyWantsItOff) {
   EXPECT_TRUE(stage.belief("*behavior-control*").truthy());
 }
 
+TEST(Modality, ABeliefWhileAnIntentionLastsEndsWithIt) {
+  Stage stage(
+      activity("(INTEND :part () :timeout 1s :else (= late t)) (WAIT-FOR nil :forever t)") +
+      "(defintention :part :goals '((EXECUTE (believe-while 'asking \"x\"))"
+      "                             (EXECUTE (believe 'kept \"y\"))"
+      "                             (WAIT-FOR stalled :forever t)))"
+      "(defintention :other :concurrent t :goals"
+      " '((EXECUTE (believe-while 'asking \"mine\")) (EXECUTE (believe 'asking \"all\"))))");
+  ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
+  stage.ask(1, "it");
+  stage.step(3);
+  EXPECT_EQ(to_text(stage.belief("asking")), "\"x\"");
+  // Its own end.
+  stage.step(20);
+  EXPECT_TRUE(stage.belief("asking").nil());
+  EXPECT_EQ(to_text(stage.belief("kept")), "\"y\"");
+  // The end of its goal.
+  stage.dispose(1);
+  stage.ask(2, "it");
+  stage.step(3);
+  EXPECT_EQ(to_text(stage.belief("asking")), "\"x\"");
+  stage.dispose(2);
+  stage.step();
+  EXPECT_TRUE(stage.belief("asking").nil());
+  // As set afterwards for good.
+  stage.ask(3, "other");
+  stage.step(5);
+  EXPECT_EQ(to_text(stage.belief("asking")), "\"all\"");
+}
+
 TEST(Modality, ABehaviorThatCannotBeMadeFailsAlsoWhoDoesNotWaitForIt) {
   Stage stage(activity("(INTEND :part () :else (EXECUTE (say \"~a\" (reason))))") +
               "(defintention :part :goals '((INTEND :Avoid () :blocking nil)"

@@ -110,6 +110,7 @@ constexpr const char* kAboutTurn =
 
 constexpr const char* kErrand =
     "(defintention :errand :goals '((EXECUTE (setq *pace* 0.4))"
+    " (EXECUTE (believe-while 'on-errand \"on\"))"
     " (INTEND :Stop () :blocking nil :priority 3 :name stand)"
     " (EXECUTE (say \"sets out\"))"
     " (INTEND :GoToPos ((goal . (offset (robot) 1 0)) (speed . *pace*) (radius . 0.05))"
@@ -123,7 +124,7 @@ constexpr const char* kErrand =
     " ((= round 0))"
     " (:again (= round (+ round 1)) (EXECUTE (say \"round ~a\" round))"
     "   (WAIT-FOR at-rest :timeout 5s) (IF (< round 3) (GOTO :again)))"
-    " (SUCCEED \"~a, ~a\" (state 'way) *pace*)))"
+    " (SUCCEED \"~a, ~a, ~a\" (state 'way) *pace* (belief 'on-errand))))"
     "(defintention :detour :params ((far :number 1)) :goals '("
     " ((= was (robot))"
     "  (INTEND :GoToPos ((goal . (offset (robot) far 0)) (speed . 0.2) (radius . 0.05))))"
@@ -189,7 +190,7 @@ TEST(Work, StepsThatAreDoneAreNotDoneAgain) {
   for (; !whole.over() && cycles < 500; ++cycles)
     whole.step();
   ASSERT_EQ(whole.status.state, GoalState::kSucceeded) << whole.status.reason << whole.said;
-  EXPECT_EQ(whole.status.reason, "success, 0.4");
+  EXPECT_EQ(whole.status.reason, "success, 0.4, on");
   EXPECT_NEAR(whole.driven, 1.9, 0.2);
   for (std::uint64_t at = 1; at < cycles; ++at) {
     Site site(kErrand, "errand");

@@ -645,8 +645,9 @@ std::optional<Work> Executor::take_work() {
   Work work{epoch_, cycle_, *odom_, now_, {}, {}};
   work.beliefs = beliefs_->set_by_activities();
   // Its setter saves that with its own progress.
-  std::erase_if(work.beliefs,
-                [](const Belief& belief) { return normal(belief.name) == kBehaviorControl; });
+  std::erase_if(work.beliefs, [&](const Belief& belief) {
+    return normal(belief.name) == kBehaviorControl || forest_.ends_with_intention(belief.name);
+  });
   for (const auto& [id, entry] : entries_)
     if (entry.node != 0)
       work.goals.push_back({id, entry.goal.functor, forest_.save(entry.node)});

@@ -247,6 +247,11 @@ void Forest::drop(std::uint32_t id) {
     std::erase(roots_, id);
   if (control_off_.erase(id) > 0 && control_off_.empty())
     beliefs_->unset(kBehaviorControl);
+  std::erase_if(whiles_, [&](const auto& one) {
+    if (one.second == id)
+      beliefs_->unset(one.first);
+    return one.second == id;
+  });
   order_is_old_ = true;
   changed_ = true;
   node.gone = true;
@@ -477,6 +482,10 @@ bool Forest::is_activity(std::uint32_t id) const {
 
 std::size_t Forest::size() const {
   return nodes_.size();
+}
+
+bool Forest::ends_with_intention(std::string_view belief) const {
+  return whiles_.contains(normal(belief));
 }
 
 bool Forest::behavior_control() const {

@@ -139,7 +139,13 @@ void Forest::Handle::believe(const std::string& name, Value value) {
     if (!forest_.behavior_control())
       value = Value();  // another one still keeps it off
   }
+  forest_.whiles_.erase(normal(name));
   forest_.beliefs_->set(name, std::move(value), node_.shown.schema, world_.now);
+}
+
+void Forest::Handle::believe_while(const std::string& name, Value value) {
+  believe(name, std::move(value));
+  forest_.whiles_[normal(name)] = node_.shown.id;
 }
 
 void Forest::Handle::succeed(std::string reason) {

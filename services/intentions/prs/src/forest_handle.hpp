@@ -47,6 +47,7 @@ class Forest::Handle : public Self {
   void request(Request request) override { forest_.requests_.push_back(std::move(request)); }
   std::uint64_t ask(Request request) override { return forest_.ask(std::move(request)); }
   void believe(const std::string& name, Value value) override;
+  void believe_while(const std::string& name, Value value) override;
 
   void say(std::string step) override { node_.shown.step = std::move(step); }
   void moved_on() override { forest_.changed_ = true; }

@@ -38,7 +38,8 @@ struct SavedNode {
   IntentionState state = IntentionState::kInit;
   GoalCode code = GoalCode::kNone;
   std::string reason;
-  Value activity;  ///< the value of Activity::save()
+  Value activity;       ///< the value of Activity::save()
+  Value::List beliefs;  ///< that end with it: name, value, and so on
 
   SavedNode() = default;
   explicit SavedNode(const Value& saved) {
@@ -56,7 +57,8 @@ struct SavedNode {
   static void fields(Archive& archive, Self& self) {
     archive(self.id, self.parent, self.is_activity, self.name, self.schema, self.given,
             self.blocking, self.until_satisfied, self.priority, self.timeout, self.begun,
-            self.suspended_at, self.holds, self.state, self.code, self.reason, self.activity);
+            self.suspended_at, self.holds, self.state, self.code, self.reason, self.activity,
+            self.beliefs);
   }
 };
 
@@ -89,6 +91,9 @@ Value Forest::save_one(const Node& node) const {
   saved.reason = node.outcome.reason;
   if (node.activity != nullptr)
     saved.activity = node.activity->save();
+  for (const auto& [name, id] : whiles_)
+    if (const Belief* const belief = beliefs_->stored(name); id == node.shown.id && belief)
+      saved.beliefs.insert(saved.beliefs.end(), {Value(belief->name), belief->value});
   return saved.value();
 }
 
@@ -177,6 +182,12 @@ void Forest::restore(std::uint32_t root, const Value& saved, const World& world)
     for (const Hold hold : {Hold::kActivity, Hold::kPerson})
       if ((one.holds & static_cast<unsigned>(hold)) != 0)
         interrupt(ids.at(one.id), hold);
+  for (const SavedNode& one : known)
+    for (std::size_t i = 0; i + 1 < one.beliefs.size(); i += 2)
+      if (const std::string* const name = one.beliefs[i].text()) {
+        whiles_[normal(*name)] = ids.at(one.id);
+        beliefs_->set(*name, one.beliefs[i + 1], one.schema, world.now);
+      }
   if (nodes[0].truthy()) {
     control_off_.insert(root);
     beliefs_->set(kBehaviorControl, Value(), top.shown.schema, world.now);

@@ -280,6 +280,10 @@ void add_lists(Functions& functions) {
                            return Value(std::move(all));
                          },
                          "the list from its end"});
+  functions.add(Function{
+      "as-list", 1, 1,
+      [](const World&, Values a) { return a[0].nil() || a[0].is_list() ? a[0] : list({a[0]}); },
+      "a list as it is, and nil; the list of anything else alone"});
   functions.add(Function{"member", 2, 2,
                          [](const World&, Values a) {
                            const Value::List& all = list_of(a, 1, "member");
@@ -480,6 +484,13 @@ Functions core_functions() {
                          return arguments[1];
                        },
                        "(believe name value): as setq of a variable whose name is computed"});
+  functions.add(Action{"believe-while", 2, 2,
+                       [](Effects& effects, Values arguments) {
+                         effects.believe_while(text_of(arguments, 0, "believe-while"),
+                                               arguments[1]);
+                         return arguments[1];
+                       },
+                       "(believe-while name value): the same, until this intention ends"});
   return functions;
 }
 

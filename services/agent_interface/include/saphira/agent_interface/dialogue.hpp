@@ -21,8 +21,12 @@ using CycleRef = std::pair<std::uint64_t, std::uint64_t>;
 /// A claim for activities. Empty value: withdrawn.
 struct Claimed {
   std::string name;
-  std::string value;   ///< a text
-  std::string source;  ///< speaker, words and time, for people
+  std::string value;                ///< a text
+  std::string source;               ///< speaker, words and time, for people
+  std::vector<std::string> list{};  ///< not empty: the value is this list
+  bool nil = false;                 ///< the value is nil, which also covers what activities believe
+
+  friend bool operator==(const Claimed&, const Claimed&) = default;
 };
 
 /// A new name of an artifact of the map.
@@ -37,6 +41,7 @@ struct KnownGoal {
   std::string asker;  ///< empty: this dialogue
   State state = State::underway;
   std::string reason;
+  std::uint64_t tag = 0;  ///< of this dialogue's goals that have not ended
 };
 
 /// The world as the dialogue knows it, beside the advice.
@@ -44,6 +49,7 @@ struct Situation {
   std::optional<Pose> pose_in_map;  ///< of the robot; none: unknown
   maps::Map map;
   std::string asked_about;       ///< the question of an activity to people; empty: none
+  std::string asked_for{};       ///< the person whose place is asked; empty: none
   std::vector<KnownGoal> goals;  ///< the newest change last
   /// A person who points: their place, with the heading of the arm (pointing.hpp).
   std::optional<Pose> pointing_in_map{};
@@ -74,6 +80,10 @@ class Dialogue {
   Outputs says(const std::string& text, const CycleRef& when);
   /// Withdraws advice by its number. Says so where that number is unknown.
   Outputs forget(std::uint64_t number);
+  /// An activity has found a person. before: before the dialogue's start, so that what people said
+  /// of that person may be newer, and counts.
+  Outputs found(const std::string& person, const std::string& place, double time,
+                bool before = false);
 
   const Knowledge& knowledge() const { return knowledge_; }
   /// The claims for activities that follow from all advice, after a start.
@@ -89,6 +99,16 @@ class Dialogue {
   struct Doubt {  ///< contradicting advice, until its speaker says yes or no
     Advice advice;
     std::string speaker;
+  };
+  struct Gone {  ///< whose place is withdrawn
+    std::string person;
+    std::string source;
+  };
+  struct Ended {  ///< the newest goal that has ended
+    std::string what;
+    std::string speaker;
+    bool success = false;
+    std::string reason;
   };
 
   void act(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
@@ -113,13 +133,31 @@ class Dialogue {
                 Outputs& out);
   bool advice(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
+  bool correction(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
+                  Outputs& out);
   bool naming(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
   bool reply(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
              Outputs& out);
   void take(const Advice& advice, const Utterance& utterance, Outputs& out);
+  /// A fact that also answers the open question.
+  void answer_with(const Advice& advice, const Utterance& utterance, const Situation& situation,
+                   Outputs& out) const;
   void learn(const Advice& advice, Outputs& out);
-  void withdraw(std::uint64_t number, Outputs& out);
+  void withdraw(std::uint64_t number, Outputs& out, const Utterance* because = nullptr);
+  /// Claims that are none of `before`, and those of that name.
+  void claim_changes(const std::vector<Claimed>& before, const std::string& name,
+                     Outputs& out) const;
+  /// What is known of a person or thing, in words; empty: nothing.
+  std::string told_of(const std::string& about) const;
+  /// The meaning as the robot would say it.
+  std::string in_words(const Meaning& meaning) const;
+  /// The known person of "karens office", written without apostrophe; empty: none.
+  std::string owner_in(const std::string& name) const;
+  /// The reason for which the robot stands or drives.
+  std::string why(const Situation& situation) const;
+  void choices(const std::vector<Meaning>& meanings, const Utterance& utterance,
+               Outputs& out) const;
   void want(const Meaning& meaning, const Utterance& utterance, const std::string& functor,
             Arguments arguments, Outputs& out, double deadline = 0.0, bool lasting = false);
   void say(const Utterance& utterance, const std::string& text, bool end, Outputs& out) const;
@@ -141,6 +179,9 @@ class Dialogue {
     Pose pose_in_map;
   };
 
+  std::vector<Gone> gone_;
+  std::optional<Ended> ended_;
+  std::uint64_t stop_ = 0;  ///< the tag of the newest stop
   Tasks tasks_;
   std::optional<Spot> began_;       ///< the newest task, there
   std::vector<Task> wanted_;        ///< the tasks of the sentence that is being heard

@@ -56,7 +56,7 @@ class Grammar {
     std::vector<Meaning> then{};    ///< "... and ...": what to do after the first meaning
   };
   /// The meaning of a text. replies: also accepts rules without the keyword, since the robot has
-  /// asked a question.
+  /// asked a question. With the keyword a reply counts only where no other rule matches.
   Understood understand(std::string_view text, bool replies = false) const;
 
   /// The meaning in words, for the robot to say before it acts; empty without one in the file.
@@ -117,7 +117,7 @@ class Grammar {
                           const Match& from) const;
   std::vector<Match> entry(const Node& node, const std::vector<std::string>& words,
                            const Match& from) const;
-  enum class Among { usual, urgent, later };  ///< the rules that may match
+  enum class Among { usual, reply, urgent, later };  ///< the rules that may match
   std::vector<Meaning> look(const std::vector<std::string>& words, bool addressed, bool replies,
                             Among among) const;
   /// The ways to divide words into sentences with one meaning each, all of them steps.

@@ -26,6 +26,9 @@ struct Advice {
 /// The kind of a hazard that is only a wish: people want the robot out of that place.
 inline constexpr const char* kKeepOut = "keep-out";
 
+/// The speaker of what the robot has found out itself.
+inline constexpr const char* kRobot = "the robot";
+
 /// Such as "office_of".
 const char* describe(Advice::Kind kind);
 /// As a sentence: "EJ-231 is karen's office".
@@ -33,9 +36,11 @@ std::string describe(const Advice& advice);
 
 class Knowledge {
  public:
-  /// The newest advice of a kind about a subject; of a hazard: at that place.
-  const Advice* find(Advice::Kind kind, std::string_view about, std::string_view place = {}) const;
-  /// Replaces advice of the same kind and subject; sets its number.
+  /// The newest advice of a kind about a subject; of a hazard: at that place; of who knows where
+  /// somebody is: by that person. `value` empty: any.
+  const Advice* find(Advice::Kind kind, std::string_view about, std::string_view value = {}) const;
+  /// Replaces advice of the same kind and subject, of which there may be several hazards and
+  /// several persons who know; sets its number.
   const Advice& learn(Advice advice);
   /// Forgets the advice and returns it; nothing for an unknown number.
   std::optional<Advice> forget(std::uint64_t number);
@@ -44,6 +49,10 @@ class Knowledge {
   /// The probable place of a person: the place of a sighting, otherwise their office. Empty:
   /// unknown.
   std::string place_of(std::string_view person) const;
+  /// Whether the robot can look for that person: it knows a place, or somebody who knows.
+  bool findable(std::string_view person) const;
+  /// Whether anything is known about that person, or that person knows about others.
+  bool knows(std::string_view person) const;
 
   /// As text, a sealed line for each (saphira/base/durable.hpp). Unreadable lines are left out;
   /// restore returns their number.

@@ -81,6 +81,8 @@ class Tasks {
   Outputs answer(bool yes, const Utterance& utterance);
   Outputs ended(const Outcome& outcome);
 
+  /// The open task of that tag; nullptr: none.
+  const Task* find(std::uint64_t tag) const;
   /// A lasting goal was asked for, under that name. save() includes it.
   void asked(std::uint64_t tag, const GoalRef& goal);
   /// The lasting goals that have not ended, by tag.

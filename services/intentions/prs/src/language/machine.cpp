@@ -149,6 +149,9 @@ class Machine : public Activity {
     void believe(const std::string& name, Value value) override {
       self_.believe(name, std::move(value));
     }
+    void believe_while(const std::string& name, Value value) override {
+      self_.believe_while(name, std::move(value));
+    }
 
    private:
     const Machine& machine_;

@@ -133,6 +133,8 @@ class Self {
   virtual void request(Request request) = 0;       ///< of registration
   virtual std::uint64_t ask(Request request) = 0;  ///< agents; the number of the question
   virtual void believe(const std::string& name, Value value) = 0;  ///< an environment variable
+  /// The same, until this intention ends or is removed.
+  virtual void believe_while(const std::string& name, Value value) = 0;
 
   /// The present step, for people: short, and the same from cycle to cycle.
   virtual void say(std::string step) = 0;

@@ -132,6 +132,8 @@ class Forest {
   /// False while an existing tree has set *behavior-control* to nil (sfBehaviorControl, manual
   /// 7.4).
   bool behavior_control() const;
+  /// Whether it is believed only while the intention lasts that set it. save() includes its value.
+  bool ends_with_intention(std::string_view belief) const;
 
   /// The intended behaviors, in the order of intending.
   std::vector<IntendedBehavior> behaviors() const;
@@ -187,7 +189,8 @@ class Forest {
   std::vector<Request> requests_;
   std::vector<Request> questions_;
   std::set<std::uint32_t> control_off_;  ///< roots that switched behavior control off
-  std::vector<std::uint32_t> woken_;     ///< resumed behaviors, whose points may be old
+  std::map<std::string, std::uint32_t, std::less<>> whiles_;  ///< beliefs that end with a node
+  std::vector<std::uint32_t> woken_;  ///< resumed behaviors, whose points may be old
 };
 
 }  // namespace saphira::intentions

@@ -35,7 +35,8 @@ class Effects {
   virtual const World& world() const = 0;
   virtual void say(std::string text) = 0;                          ///< to people
   virtual void believe(const std::string& name, Value value) = 0;  ///< an environment variable
-  virtual void request(Request request) = 0;                       ///< of registration
+  virtual void believe_while(const std::string& name, Value value) = 0;  ///< the intention lasts
+  virtual void request(Request request) = 0;                             ///< of registration
   virtual std::uint64_t ask(Request request) = 0;  ///< agents; the number of the question
 };
 
