@@ -131,6 +131,7 @@ GoalStatus from_bus(const v1::GoalStatus& status) {
   result.trend = kTrends.ours(status.trend(), Trend::kSteady);
   result.elapsed = status.elapsed();
   result.note = status.note();
+  result.waits_for = from_bus(status.waits_for());
   return result;
 }
 
@@ -149,6 +150,7 @@ v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   result.trend(kTrends.theirs(status.trend));
   result.elapsed(status.elapsed);
   result.note(status.note);
+  result.waits_for(to_bus(status.waits_for));
   return result;
 }
 

@@ -36,6 +36,7 @@ TEST(Convert, GoalStatusesRoundTrip) {
   status.step = "driving";
   status.progress = 0.3;
   status.elapsed = 4.1;
+  status.waits_for = {0xfffffffffffffffeULL, 7};
   v1::Stamp stamp;
   stamp.epoch(5);
   stamp.cycle(6);

@@ -152,6 +152,8 @@ for (const [name, options] of [['light', {colorScheme: 'light'}], ['dark', {colo
       assert.deepEqual(violations.map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' ')}`), [], tab);
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${tab} is wider than the window`);
     }
+    if (options.isMobile) await page.getByText('Layers').click();
+    await page.getByRole('link', {name: "the simulator's own view"}).waitFor();
     await leave(page);
   });
 
