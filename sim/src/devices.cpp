@@ -18,6 +18,7 @@ constexpr double kLiftStep = 0.1 / 3.0;
 constexpr std::string_view kChannel = "pioneer_";
 constexpr std::string_view kColorIs = "_color=";
 constexpr int kSoundUnitsInCycle = 5;  // of 20 ms
+constexpr int kTimerTick = 10;         // [ms]
 
 // PeopleBots have infrared sensors that look up at tables, on their digital inputs: a clear bit
 // means a table. The first PeopleBot (p2pb) has none.
@@ -152,8 +153,11 @@ Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& 
                 static_cast<std::uint8_t>((digital_output_ & ~mask) | (c.bits & mask));
             return Answer::kTaken;
           },
-          // No pin ever triggers: the reading stays 0.
-          [](const protocol::Timer&) { return Answer::kTaken; },
+          [&](const protocol::Timer& c) {
+            timer_ = 0;
+            timer_pin_ = c.pin;
+            return Answer::kTaken;
+          },
           [&](const protocol::Gripper& c) {
             gripper_.act(c.state);
             return taken(!later_ || parameters_.gripper);
@@ -255,8 +259,9 @@ Bytes Devices::packet(Request request, const Robot& robot) const {
     case kEncoder:
       return encode(EncoderPacket{count(robot.left_way()), count(robot.right_way())});
     case kIo:
-      return encode(IoPacket{
-          {digital_input_}, {digital_output_}, {static_cast<std::uint16_t>(analog_ << 2U)}});
+      return encode(IoPacket{{digital_input_},
+                             {digital_output_},
+                             {static_cast<std::uint16_t>(analog(analog_port_) << 2U)}});
     case Request::kGripper:
       return encode(
           GripperPacket{static_cast<std::uint8_t>(parameters_.gripper ? 2 : 0),
@@ -283,6 +288,17 @@ Bytes Devices::packet(Request request, const Robot& robot) const {
   return {};
 }
 
+void Devices::set_digital_input(std::uint8_t bits) {
+  if (timer_pin_ && ((bits ^ digital_input_) >> *timer_pin_ & 1) != 0)
+    timer_pin_.reset();
+  digital_input_ = bits;
+}
+
+void Devices::tick() {
+  if (timer_pin_)
+    timer_ = static_cast<std::uint16_t>(std::min(timer_ + kTimerTick, 0xFFFF));
+}
+
 void Devices::cycle() {
   gripper_.cycle();
   sounding_ = std::max(0, sounding_ - kSoundUnitsInCycle);
@@ -301,9 +317,10 @@ void Devices::add_packets(const Robot& robot, Bytes& out) const {
 void Devices::reflect(InformationPacket& packet) const {
   packet.digital_input = digital_input_;
   packet.digital_output = digital_output_;
-  packet.analog = analog_;
+  packet.analog = analog(analog_port_);
   if (!later_) {
     packet.ptu = ptu_;
+    packet.timer = timer_;
     packet.say = sounding_ > 0 ? 1 : 0;
     return;
   }
@@ -315,6 +332,7 @@ void Devices::reflect(InformationPacket& packet) const {
 void Devices::disconnect() {
   with_each_ = {};
   sounding_ = 0;
+  timer_pin_.reset();
 }
 
 }  // namespace saphira::sim

@@ -191,6 +191,10 @@ TEST(LaterServer, PacketsOnRequest) {
   EXPECT_EQ(io.digital_outputs, Bytes{0x0F});
   EXPECT_EQ(io.digital_inputs, Bytes{0x12});
   EXPECT_EQ(io.analogs, std::vector<std::uint16_t>{0x200});
+  b.server_.devices().set_analog(0x40, 5);
+  b.send(protocol::AnalogSelect{5});
+  b.advance(0.5);
+  EXPECT_EQ(b.last<protocol::IoPacket>().analogs, std::vector<std::uint16_t>{0x100});
   b.send(protocol::BatteryRequest{1});
   EXPECT_EQ(b.last<protocol::BatteryPacket>().batteries, 1);
   EXPECT_TRUE(b.server_.is_open());

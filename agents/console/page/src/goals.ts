@@ -33,7 +33,7 @@ function order(link: Link): Pursuit {
   const number = (g: Pursued) => parseInt(g.id.split(':')[1], 16);
   const age = (a: Pursued, b: Pursued) => Math.round(accepted(a) - accepted(b)) || number(a) - number(b);
   const underway = all.filter(g => g.status.state === 'GOAL_UNDERWAY');
-  const waited = all.filter(g => !ended(g.status)).map(g => g.status.waits_for).find(id => id.writer !== 0);
+  const waited = all.filter(g => !ended(g.status)).map(g => g.status.waits_for).find(id => id.writer > 0);
   const front = underway.length > 1 && waited ? underway.find(g => isGoal(waited, g.id)) : undefined;
   const rank = (g: Pursued) => g.status.state !== 'GOAL_UNDERWAY' ? 1 : !front || g === front ? 0 : 2;
   const open = all.filter(g => !ended(g.status))
