@@ -42,9 +42,8 @@ class Gripper {
 /// color. It sends packets from the first VISION_COM of a connection on.
 class FastTrack {
  public:
-  /// "pioneer_X_mode=N" with X a, b or c, and N 0 (blob), 1 (line) or 2 (blob with its box);
-  /// "pioneer_X_color=NAME", which stands for the training of a channel; the line parameters
-  /// ("line_..."), which have no effect here. True for one of those.
+  /// A setting of protocol::parse_vision_setting; true for one. The line parameters are those of
+  /// manual 9.1; a line's rows are the slices, counted from the bottom one.
   bool act(const std::string& text);
   void disconnect() { *this = {}; }
 
@@ -56,7 +55,16 @@ class FastTrack {
     protocol::VisionChannel::Mode mode = protocol::VisionChannel::Mode::kBlob;
     std::string color;
   };
+  struct Lines {
+    int bottom = 0;  // [pixels] the first row
+    int slices = Camera{}.rows;
+    int size = 1;  // [pixels] of a slice
+    int mass = 1;  // [pixels] that make a segment
+  };
+  void find_line(const Blob& blob, const Camera& camera, protocol::VisionChannel& channel) const;
+
   bool on_ = false;
+  Lines lines_;
   std::array<Channel, 3> channels_{{{{}, "red"}, {{}, "green"}, {{}, "blue"}}};
 };
 
