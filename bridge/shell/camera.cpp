@@ -15,6 +15,12 @@ constexpr std::uint64_t kSilence = 20;  // [cycles] then the command is sent aga
 Camera::Camera(bus::Node& node, std::vector<std::string> words)
     : words_(std::move(words)), channels_(node.writer(bus::topics::kVisionChannels)) {}
 
+void Camera::keep(const std::string& text) {
+  const std::string name = text.substr(0, text.find('=') + 1);
+  std::erase_if(words_, [&](const std::string& word) { return word.starts_with(name); });
+  words_.push_back(text);
+}
+
 void Camera::connect() {
   packets_.clear();
   asked_ = 0;

@@ -20,6 +20,9 @@ class Camera {
   /// `words`: the commands, such as "pioneer_a_mode=2".
   Camera(bus::Node& node, std::vector<std::string> words);
 
+  /// A setting that has been sent: it takes the place of an earlier one of the same name when the
+  /// commands are repeated.
+  void keep(const std::string& text);
   /// A session begins.
   void connect();
   /// The robot's cycle `cycle` begins: returns the commands to the camera. A command may be lost on

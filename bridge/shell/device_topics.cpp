@@ -17,9 +17,10 @@ DeviceTopics::DeviceTopics(bus::Node& node, reflector::Reflector& reflector)
       desk_(node, bus::topics::kRobotAnswers) {
   // In the order of reflector::Device.
   const bus::RequestTopic* const topics[] = {
-      &bus::topics::kServo,  &bus::topics::kGripper, &bus::topics::kDigitalOutput,
-      &bus::topics::kAnalog, &bus::topics::kTimer,   &bus::topics::kSonar,
-      &bus::topics::kSound,  &bus::topics::kServer,  &bus::topics::kSerial};
+      &bus::topics::kServo,       &bus::topics::kGripper, &bus::topics::kDigitalOutput,
+      &bus::topics::kAnalog,      &bus::topics::kTimer,   &bus::topics::kSonar,
+      &bus::topics::kSound,       &bus::topics::kServer,  &bus::topics::kSerial,
+      &bus::topics::kVisionSystem};
   for (const reflector::Device device : kEnumerators<reflector::Device>)
     desk_.serve(*topics[static_cast<std::size_t>(device)], reflector::functors(device),
                 [this](const Request& request) { return act(request); });
@@ -29,7 +30,14 @@ std::optional<Answer> DeviceTopics::act(const Request& request) {
   if (!session_)
     return Answer{AnswerCode::nobody, "no robot is connected"};
   try {
-    reflector_.request(request, reflector::wish_of(request));
+    const reflector::Wish wish = reflector::wish_of(request);
+    if (const auto* said = std::get_if<reflector::VisionWish>(&wish)) {
+      if (camera_ == nullptr)
+        return Answer{AnswerCode::refused,
+                      "the bridge was started without --vision: it knows of no vision system"};
+      camera_->keep(said->text);
+    }
+    reflector_.request(request, wish);
     return std::nullopt;  // its result comes by publish()
   } catch (const std::invalid_argument& error) {
     return Answer{AnswerCode::bad_argument, error.what()};

@@ -4,6 +4,7 @@
 #include <optional>
 #include <tuple>
 
+#include "camera.hpp"
 #include "device.h"
 #include "requests/shell/desk.hpp"
 #include "saphira/bus/node.hpp"
@@ -17,6 +18,8 @@ class DeviceTopics {
  public:
   DeviceTopics(bus::Node& node, reflector::Reflector& reflector);
 
+  /// The robot's vision system, which outlives it; without one, requests to it are refused.
+  void know(Camera& camera) { camera_ = &camera; }
   /// Takes the requests, and publishes their results. Without a session they are refused.
   void take(const Stamp& stamp, bool session);
   /// Any packet but an information packet.
@@ -36,6 +39,7 @@ class DeviceTopics {
   bus::Writer<v1::Devices> devices_;
   bus::Writer<v1::SerialData> serial_data_;
   Desk desk_;
+  Camera* camera_ = nullptr;
   bool session_ = false;
   /// The fields of the information packet that robot/devices shows; a change writes the topic.
   using Shown =

@@ -5,6 +5,7 @@
 #include "saphira/bus/program.hpp"
 #include "saphira/command_line/command_line.hpp"
 #include "saphira/protocol/parameters.hpp"
+#include "saphira/protocol/vision_setting.hpp"
 #include "saphira/transport/address.hpp"
 #include "shell.hpp"
 
@@ -59,7 +60,15 @@ int main(int argc, char** argv) {
         app.add_option("--vision-say", said,
                        "further words to it (manual 9.1), such as pioneer_a_color=orange for a "
                        "simulator's channel A")
-            .needs(app.option("--vision"));
+            .needs(app.option("--vision"))
+            .check([](const std::string& text) {
+              try {
+                saphira::protocol::parse_vision_setting(text);
+                return std::string();
+              } catch (const std::invalid_argument& error) {
+                return std::string(error.what());
+              }
+            });
       },
       [&](const saphira::bus::NodeOptions& node, const saphira::bus::Stop& stop) {
         options.lease = lease_ms / 1000.0;

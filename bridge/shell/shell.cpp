@@ -130,8 +130,10 @@ Shell::Shell(const bus::NodeOptions& node, BridgeOptions options,
                 [this](const Request& request) {
                   return core_.reset_estop(request.source, BootClock::seconds());
                 });
-  if (!options_.vision.empty())
+  if (!options_.vision.empty()) {
     camera_.emplace(node_, options_.vision);
+    devices_.know(*camera_);
+  }
   const double now = BootClock::seconds();
   if (!lockstep_ && !memory)
     core_.hold_off(now + look_around(node.profile));

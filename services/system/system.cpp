@@ -28,7 +28,7 @@ const runtime::Unit kBridge{
      {"device/output", Use::kEvents},   {"device/analog", Use::kEvents},
      {"device/timer", Use::kEvents},    {"device/sonar", Use::kEvents},
      {"device/sound", Use::kEvents},    {"device/server", Use::kEvents},
-     {"device/serial", Use::kEvents}}};
+     {"device/serial", Use::kEvents},   {"device/vision", Use::kEvents}}};
 
 }  // namespace
 

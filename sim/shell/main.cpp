@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -54,27 +53,6 @@ void set_robots(saphira::sim::HostOptions& options, const std::vector<std::strin
     else
       options.more.push_back({files[std::min(i, files.size() - 1)], position});
   }
-}
-
-/// The view may load shipped files.
-void offer(saphira::sim::HostOptions& options, const std::string& config) {
-  const auto names = [](const std::string& folder, const std::string& extension) {
-    std::vector<std::string> found;
-    std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-      if (entry.path().extension() == extension)
-        found.push_back(entry.path().stem());
-    std::sort(found.begin(), found.end());
-    return found;
-  };
-  options.worlds = names(config + "/worlds", ".wld");
-  options.robots = names(config + "/robots", ".p");
-  options.world_file = [config](const std::string& name) {
-    return saphira::find_file(config + "/worlds", name, ".wld");
-  };
-  options.robot_file = [config](const std::string& name) {
-    return saphira::find_file(config + "/robots", name, ".p");
-  };
 }
 
 void plot(const std::vector<std::string>& files, const saphira::sim::HostOptions& options) {
@@ -170,8 +148,8 @@ int main(int argc, char** argv) {
     options.world = saphira::find_file(config + "/worlds", options.world, ".wld");
     if (pty.given())
       options.terminal = terminal.empty() ? saphira::sim::default_terminal() : terminal;
-    offer(options, config);
     set_robots(options, robots, positions, count);
+    saphira::sim::offer_files(options, config);
     options.rate = rate == "max" ? saphira::sim::kMaxRate : std::stod(rate);
     if (!plot_files.empty()) {
       plot(plot_files, options);

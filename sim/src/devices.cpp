@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <stdexcept>
 
 #include "saphira/base/overloaded.hpp"
+#include "saphira/protocol/vision_setting.hpp"
 
 namespace saphira::sim {
 
@@ -15,9 +16,8 @@ namespace {
 // The paddles take 1.5 s from stop to stop, the lift 3 s: about as long as the Pioneers' gripper.
 constexpr double kPaddleStep = 0.1 / 1.5;
 constexpr double kLiftStep = 0.1 / 3.0;
-constexpr std::string_view kChannel = "pioneer_";
-constexpr std::string_view kColorIs = "_color=";
 constexpr int kSoundUnitsInCycle = 5;  // of 20 ms
+constexpr int kTimerTick = 10;         // [ms]
 
 // PeopleBots have infrared sensors that look up at tables, on their digital inputs: a clear bit
 // means a table. The first PeopleBot (p2pb) has none.
@@ -88,23 +88,54 @@ std::uint8_t Gripper::bits() const {
 
 bool FastTrack::act(const std::string& text) {
   on_ = true;
-  if (text.starts_with("line_"))
+  using What = VisionSetting::What;
+  try {
+    const VisionSetting set = parse_vision_setting(text);
+    Channel& channel = channels_.at(static_cast<std::size_t>(set.channel));
+    switch (set.what) {
+      case What::mode:
+        channel.mode = static_cast<VisionChannel::Mode>(set.value);
+        break;
+      case What::color:
+        channel.color = set.color;
+        break;
+      case What::bottom_row:
+        lines_.bottom = set.value;
+        break;
+      case What::slices:
+        lines_.slices = set.value;
+        break;
+      case What::slice_size:
+        lines_.size = set.value;
+        break;
+      case What::minimum_mass:
+        lines_.mass = set.value;
+        break;
+    }
     return true;
-  if (!text.starts_with(kChannel) || text.size() < kChannel.size() + 2)
+  } catch (const std::invalid_argument&) {
     return false;
-  const char letter = text[kChannel.size()];
-  if (letter < 'a' || letter > 'c')
-    return false;
-  Channel& channel = channels_.at(static_cast<std::size_t>(letter - 'a'));
-  const std::string rest = text.substr(kChannel.size() + 1);
-  if (rest == "_mode=0" || rest == "_mode=1" || rest == "_mode=2") {
-    channel.mode = static_cast<VisionChannel::Mode>(rest.back() - '0');
-    return true;
   }
-  if (!rest.starts_with(kColorIs))
-    return false;
-  channel.color = rest.substr(kColorIs.size());
-  return true;
+}
+
+// A blob is a rectangle here: of all its pixels, each row has as many.
+void FastTrack::find_line(const Blob& blob, const Camera& camera, VisionChannel& channel) const {
+  // Rows count from the bottom of the picture.
+  const int bottom = std::max(blob.y - blob.height / 2 + camera.rows / 2, 0);
+  const int top = std::min(bottom + blob.height, camera.rows);
+  const double in_row = static_cast<double>(blob.area) / std::max(blob.height, 1);
+  for (int slice = 0; slice < lines_.slices; ++slice) {
+    const int from = lines_.bottom + slice * lines_.size;
+    const int rows = std::min(top, from + lines_.size) - std::max(bottom, from);
+    if (rows <= 0 || rows * in_row < lines_.mass) {
+      if (channel.count > 0)
+        break;
+      continue;
+    }
+    if (channel.count == 0)
+      channel.first = static_cast<std::uint16_t>(slice);
+    ++channel.count;
+  }
 }
 
 VisionPacket FastTrack::look(const Scene& scene, RobotNumber robot) const {
@@ -119,10 +150,7 @@ VisionPacket FastTrack::look(const Scene& scene, RobotNumber robot) const {
       continue;
     channel.x = static_cast<std::int16_t>(blob->x);
     if (from.mode == VisionChannel::Mode::kLine) {
-      // Rows count from the bottom of the picture.
-      const int bottom = blob->y - blob->height / 2 + camera.rows / 2;
-      channel.first = static_cast<std::uint16_t>(std::max(bottom, 0));
-      channel.count = static_cast<std::uint16_t>(blob->height);
+      find_line(*blob, camera, channel);
       continue;
     }
     channel.y = static_cast<std::int16_t>(blob->y);
@@ -152,8 +180,11 @@ Devices::Answer Devices::act(const Command& command, const Robot& robot, Bytes& 
                 static_cast<std::uint8_t>((digital_output_ & ~mask) | (c.bits & mask));
             return Answer::kTaken;
           },
-          // No pin ever triggers: the reading stays 0.
-          [](const protocol::Timer&) { return Answer::kTaken; },
+          [&](const protocol::Timer& c) {
+            timer_ = 0;
+            timer_pin_ = c.pin;
+            return Answer::kTaken;
+          },
           [&](const protocol::Gripper& c) {
             gripper_.act(c.state);
             return taken(!later_ || parameters_.gripper);
@@ -255,8 +286,9 @@ Bytes Devices::packet(Request request, const Robot& robot) const {
     case kEncoder:
       return encode(EncoderPacket{count(robot.left_way()), count(robot.right_way())});
     case kIo:
-      return encode(IoPacket{
-          {digital_input_}, {digital_output_}, {static_cast<std::uint16_t>(analog_ << 2U)}});
+      return encode(IoPacket{{digital_input_},
+                             {digital_output_},
+                             {static_cast<std::uint16_t>(analog(analog_port_) << 2U)}});
     case Request::kGripper:
       return encode(
           GripperPacket{static_cast<std::uint8_t>(parameters_.gripper ? 2 : 0),
@@ -283,6 +315,17 @@ Bytes Devices::packet(Request request, const Robot& robot) const {
   return {};
 }
 
+void Devices::set_digital_input(std::uint8_t bits) {
+  if (timer_pin_ && ((bits ^ digital_input_) >> *timer_pin_ & 1) != 0)
+    timer_pin_.reset();
+  digital_input_ = bits;
+}
+
+void Devices::tick() {
+  if (timer_pin_)
+    timer_ = static_cast<std::uint16_t>(std::min(timer_ + kTimerTick, 0xFFFF));
+}
+
 void Devices::cycle() {
   gripper_.cycle();
   sounding_ = std::max(0, sounding_ - kSoundUnitsInCycle);
@@ -301,9 +344,10 @@ void Devices::add_packets(const Robot& robot, Bytes& out) const {
 void Devices::reflect(InformationPacket& packet) const {
   packet.digital_input = digital_input_;
   packet.digital_output = digital_output_;
-  packet.analog = analog_;
+  packet.analog = analog(analog_port_);
   if (!later_) {
     packet.ptu = ptu_;
+    packet.timer = timer_;
     packet.say = sounding_ > 0 ? 1 : 0;
     return;
   }
@@ -315,6 +359,7 @@ void Devices::reflect(InformationPacket& packet) const {
 void Devices::disconnect() {
   with_each_ = {};
   sounding_ = 0;
+  timer_pin_.reset();
 }
 
 }  // namespace saphira::sim

@@ -15,11 +15,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "listener.hpp"
+#include "saphira/base/places.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/sim/line_check.hpp"
 #include "saphira/sim/simulation.hpp"
@@ -552,6 +554,47 @@ class Serving {
 };
 
 }  // namespace
+
+void offer_files(HostOptions& options, const std::string& config) {
+  namespace fs = std::filesystem;
+  // By name: a folder's files; the earlier folders first.
+  const auto found = [](const std::vector<std::string>& folders, const std::string& extension) {
+    std::map<std::string, std::string> files;
+    std::error_code none;
+    for (const std::string& folder : folders)
+      for (const auto& entry : fs::directory_iterator(folder, none))
+        if (entry.path().extension() == extension)
+          files.emplace(entry.path().stem(), entry.path());
+    return files;
+  };
+  const auto names = [](const std::map<std::string, std::string>& files) {
+    std::vector<std::string> all;
+    for (const auto& [name, file] : files)
+      all.push_back(name);
+    return all;
+  };
+  // Anew at each request: a person may have written a file meanwhile.
+  const auto finder = [found](const std::vector<std::string>& folders,
+                              const std::string& extension) {
+    return [=](const std::string& name) {
+      const auto files = found(folders, extension);
+      const auto file = files.find(name);
+      if (file != files.end())
+        return file->second;
+      std::string expected;
+      for (const auto& [each, path] : files)
+        expected += (expected.empty() ? "" : ", ") + each;
+      throw std::runtime_error("there is no file \"" + name + extension + "\": expected one of " +
+                               expected);
+    };
+  };
+  const std::vector<std::string> worlds{folder_of(options.world), config + "/worlds"};
+  const std::vector<std::string> robots{folder_of(options.robot), config + "/robots"};
+  options.worlds = names(found(worlds, ".wld"));
+  options.robots = names(found(robots, ".p"));
+  options.world_file = finder(worlds, ".wld");
+  options.robot_file = finder(robots, ".p");
+}
 
 std::string default_socket() {
   if (const char* path = std::getenv("ROBOT_SOCKET"); path != nullptr && *path != '\0')

@@ -426,6 +426,7 @@ void Server::begin_tick() {
 
 void Server::end_tick() {
   if (is_open()) {
+    devices_.tick();
     if (const auto echo = sonars_.tick(robot_.pose_in_world()))
       readings_.push_back({echo->number, to_range(*echo, parameters_.range_unit)});
     if (!readings_.empty())

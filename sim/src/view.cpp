@@ -35,14 +35,21 @@ double number(const Json& object, const char* name, double least, double most) {
                                 Json(least).dump() + " to " + Json(most).dump());
   return value.get<double>();
 }
+std::uint8_t byte_in(const Json& object, const char* name, int most = 255) {
+  const double value = number(object, name, 0.0, most);
+  if (value != std::floor(value))
+    throw std::invalid_argument(std::string("\"") + name + "\": expected a whole number");
+  return static_cast<std::uint8_t>(value);
+}
 std::string name_in(const Json& object, const char* name, bool may_miss = false) {
   if (may_miss && !object.contains(name))
     return {};
   const Json& value = member(object, name);
-  // A shipped name is no path: a person who may move the robot may not read files.
+  // A name is no path: a person who may move the robot may not read files.
   if (!value.is_string() || value.get_ref<const std::string&>().size() > 100 ||
       value.get_ref<const std::string&>().find('/') != std::string::npos)
-    throw std::invalid_argument(std::string("\"") + name + "\": expected a name");
+    throw std::invalid_argument(std::string("\"") + name +
+                                "\": expected a name of at most 100 characters, without /");
   return value.get<std::string>();
 }
 bool truth(const Json& object, const char* name) {
@@ -62,6 +69,26 @@ RobotNumber robot_in(const Json& object) {
   return static_cast<RobotNumber>(number(object, "robot", 0.0, 1000.0));
 }
 
+SetInput input_in(const Json& object) {
+  SetInput input{robot_in(object), {}, 0, {}};
+  if (object.contains("digital"))
+    input.digital = byte_in(object, "digital");
+  if (object.contains("analog"))
+    input.analog = byte_in(object, "analog");
+  if (object.contains("port"))
+    input.port = byte_in(object, "port");
+  if (!input.digital && !input.analog)
+    throw std::invalid_argument("expected \"digital\" or \"analog\"");
+  return input;
+}
+
+Json describe_inputs(const Devices& devices) {
+  Json analogs = Json::array();
+  for (std::size_t port = 0; port < devices.analog_ports(); ++port)
+    analogs.push_back(devices.analog(port));
+  return {{"digital", devices.digital_input()}, {"analog", analogs}, {"timer", devices.timer()}};
+}
+
 Json describe_robot(const Server& server) {
   const Robot& robot = server.robot();
   const Pose& pose = robot.pose_in_world();
@@ -79,7 +106,22 @@ Json describe_robot(const Server& server) {
           {"rotation", rounded(robot.rotation_velocity())},
           {"contacts", robot.contacts()},
           {"connected", server.is_open()},
+          {"inputs", describe_inputs(server.devices())},
+          {"outputs", server.devices().digital_output()},
           {"sonars", beams}};
+}
+
+std::string set_input(Simulation& simulation, const SetInput& input) {
+  if (input.robot >= simulation.size())
+    return "there is no robot " + std::to_string(input.robot);
+  Devices& devices = simulation.server(input.robot).devices();
+  if (input.port >= devices.analog_ports())
+    return "this robot has the analog ports 0 to " + std::to_string(devices.analog_ports() - 1);
+  if (input.digital)
+    devices.set_digital_input(*input.digital);
+  if (input.analog)
+    devices.set_analog(*input.analog, input.port);
+  return {};
 }
 
 }  // namespace
@@ -164,6 +206,8 @@ Wish parse_wish(std::string_view text) {
     return PlaceBox{name_in(json, "name"), pose_in(json)};
   if (what == "door")
     return SetDoor{name_in(json, "name"), truth(json, "open")};
+  if (what == "input")
+    return input_in(json);
   if (what == "pause")
     return Pause{truth(json, "on")};
   if (what == "step")
@@ -175,7 +219,8 @@ Wish parse_wish(std::string_view text) {
   if (what == "load")
     return Load{name_in(json, "world", true), name_in(json, "robot", true)};
   throw std::invalid_argument(
-      "\"do\": expected place, person, point, box, door, pause, step, rate, disconnect or load");
+      "\"do\": expected place, person, point, box, door, input, pause, step, rate, disconnect or "
+      "load");
 }
 
 std::string change_scene(Simulation& simulation, const Wish& wish) {
@@ -195,6 +240,8 @@ std::string change_scene(Simulation& simulation, const Wish& wish) {
     return scene.set_box(box->name, box->pose_in_world) ? "" : "there is no room for " + box->name;
   if (const auto* door = std::get_if<SetDoor>(&wish))
     return scene.set_door(door->name, door->open) ? "" : "there is no door " + door->name;
+  if (const auto* input = std::get_if<SetInput>(&wish))
+    return set_input(simulation, *input);
   return {};
 }
 

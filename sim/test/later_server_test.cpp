@@ -191,6 +191,10 @@ TEST(LaterServer, PacketsOnRequest) {
   EXPECT_EQ(io.digital_outputs, Bytes{0x0F});
   EXPECT_EQ(io.digital_inputs, Bytes{0x12});
   EXPECT_EQ(io.analogs, std::vector<std::uint16_t>{0x200});
+  b.server_.devices().set_analog(0x40, 5);
+  b.send(protocol::AnalogSelect{5});
+  b.advance(0.5);
+  EXPECT_EQ(b.last<protocol::IoPacket>().analogs, std::vector<std::uint16_t>{0x100});
   b.send(protocol::BatteryRequest{1});
   EXPECT_EQ(b.last<protocol::BatteryPacket>().batteries, 1);
   EXPECT_TRUE(b.server_.is_open());
@@ -323,6 +327,17 @@ TEST(FastTrackTest, SendsWhatTheCameraSees) {
   EXPECT_NEAR(std::abs(b.x), degrees(std::atan2(0.5, 1.85)) * pixels_per_degree, 3.0);
   EXPECT_GT(b.count, 10);
   EXPECT_EQ(c.area, 0) << "nothing is blue";
+  // In slices of ten rows, of which two are below it; then a segment needs more than it has.
+  const int bottom = b.first, rows = b.count;
+  say("line_bottom_row=" + std::to_string(bottom - 20));
+  say("line_slice_size=10");
+  say("line_num_slices=4");
+  say("line_min_mass=8");
+  const protocol::VisionChannel sliced = seen(1).back().channels[1];
+  EXPECT_EQ(sliced.first, 2);
+  EXPECT_EQ(sliced.count, 2) << "slices 2 and 3 of " << rows << " rows";
+  say("line_min_mass=1000");
+  EXPECT_EQ(seen(1).back().channels[1].count, 0);
   say("pioneer_c_color=red");
   EXPECT_NEAR(seen(1).back().channels[2].area, a.area, 5);
   EXPECT_EQ(server.counters().unsupported_commands, 0U);

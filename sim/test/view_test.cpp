@@ -5,6 +5,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -65,12 +67,59 @@ TEST(View, DoesWhatItIsAskedForAndSaysWhyNot) {
   EXPECT_TRUE(simulation.scene().doors()[0].opens);
 }
 
+// Table 5-5's last fields, of a robot of PSOS.
+TEST(View, InputsAreInTheRobotsPackets) {
+  const World world = small();
+  Simulation simulation(world);
+  simulation.add({}, Pose{2.0, 2.0, 0.0}, {});
+  Server& server = simulation.server(0);
+  for (const int sync : {0, 1, 2})
+    server.receive(protocol::encode_sync(sync));
+  server.receive(protocol::encode(protocol::Open{}));
+  const auto act = [&](const std::string& text) {
+    return change_scene(simulation, parse_wish(text));
+  };
+  const auto packet = [&] {
+    server.take_output();
+    simulation.advance(kTicksPerPacket);
+    protocol::PacketParser parser;
+    parser.feed(server.take_output());
+    return protocol::decode_information(parser.next().value()).value();
+  };
+  EXPECT_EQ(act(R"({"do":"input","robot":0,"digital":5,"analog":200})"), "");
+  const protocol::InformationPacket first = packet();
+  EXPECT_EQ(first.digital_input, 5);
+  EXPECT_EQ(first.analog, 200);
+  EXPECT_EQ(first.timer, 0);
+
+  // Another pin than the timer's is no event of it.
+  server.receive(protocol::encode(protocol::Timer{3}));
+  EXPECT_EQ(packet().timer, 100);
+  EXPECT_EQ(act(R"({"do":"input","robot":0,"digital":1})"), "");
+  EXPECT_EQ(packet().timer, 200);
+  EXPECT_EQ(act(R"({"do":"input","robot":0,"digital":9})"), "");
+  EXPECT_EQ(packet().timer, 200);
+  EXPECT_EQ(packet().timer, 200);
+  server.receive(protocol::encode(protocol::Timer{3}));
+  EXPECT_EQ(packet().timer, 100) << "begun again";
+  EXPECT_EQ(packet().analog, 200);
+
+  EXPECT_NE(act(R"({"do":"input","robot":0,"port":1,"analog":1})"), "") << "it has one port";
+  EXPECT_NE(act(R"({"do":"input","robot":1,"digital":1})"), "");
+  const json scene = json::parse(describe_scene(simulation, {}));
+  EXPECT_EQ(scene.at("robots").at(0).at("inputs").at("digital"), 9);
+  EXPECT_EQ(scene.at("robots").at(0).at("inputs").at("analog"), json::array({200}));
+  EXPECT_EQ(scene.at("robots").at(0).at("outputs"), 0);
+}
+
 TEST(View, WhatIsNoWishIsRefusedWithWhatWasExpected) {
   for (const char* const text :
        {"", "[]", "{", R"({"do":"fly"})", R"({"do":"place","robot":0,"x":1e9,"y":0,"th":0})",
         R"({"do":"place","robot":-1,"x":0,"y":0,"th":0})", R"({"do":"pause","on":1})",
         R"({"do":"rate","rate":0})", R"({"do":"door","name":3,"open":true})",
-        R"({"do":"load","world":"../../etc/passwd"})"})
+        R"({"do":"load","world":"../../etc/passwd"})", R"({"do":"load","world":"/tmp/x.wld"})",
+        R"({"do":"input","robot":0})", R"({"do":"input","robot":0,"digital":256})",
+        R"({"do":"input","robot":0,"digital":0.5})", R"({"do":"input","robot":0,"analog":-1})"})
     EXPECT_THROW(parse_wish(text), std::invalid_argument) << text;
 }
 
@@ -144,6 +193,50 @@ TEST(View, PausesStepsAndLoadsAnotherWorldByTheSocket) {
   scene = viewer.next("scene");
   EXPECT_EQ(scene.at("paused"), false);
   EXPECT_NEAR(scene.at("robots").at(0).at("radius").get<double>(), 0.26, 0.05);
+}
+
+// Those that are shipped, those beside the given file, and no others.
+TEST(View, OwnWorldsAreBesideTheGivenOne) {
+  const test::TempDir folder, elsewhere;
+  const auto write = [](const std::string& path, const char* text) {
+    std::ofstream(path) << text << "\n";
+  };
+  constexpr const char* kRoom =
+      "width 9000 height 9000 0 0 9000 0 9000 0 9000 9000 9000 9000 0 9000 0 9000 0 0\n"
+      "position 2000 2000 0";
+  write(folder.path("mine.wld"), kRoom);
+  write(folder.path("arena.wld"), kRoom);
+  write(folder.path("notes.txt"), kRoom);
+  write(elsewhere.path("other.wld"), kRoom);
+  HostOptions options;
+  options.world = folder.path("mine.wld");
+  options.robot = test::source("config/robots/pioneer.p");
+  options.socket = folder.path("robot");
+  options.view_socket = folder.path("view");
+  offer_files(options, test::source("config"));
+  Host host(options);
+  Viewer viewer(host, folder.path("view"));
+  const json world = viewer.next("world");
+  const auto names = world.at("worlds").get<std::vector<std::string>>();
+  const auto offered = [&](const char* name) {
+    return std::count(names.begin(), names.end(), std::string(name));
+  };
+  EXPECT_EQ(offered("mine"), 1);
+  EXPECT_EQ(offered("arena"), 1);
+  EXPECT_EQ(offered("office"), 1);
+  EXPECT_EQ(offered("notes") + offered("other"), 0);
+  viewer.say(R"({"do":"load","world":"office"})");
+  EXPECT_EQ(viewer.next("world").at("world"), "office");
+  for (const char* const name : {"other", "notes.txt", "mine.wld", ".."}) {
+    viewer.say(R"({"do":"load","world":")" + std::string(name) + "\"}");
+    EXPECT_NE(viewer.next("trouble").at("text").get<std::string>().find("expected one of"),
+              std::string::npos);
+  }
+  viewer.say(R"({"do":"load","world":"arena"})");
+  EXPECT_EQ(viewer.next("world").at("width"), 9.0) << "the own one comes first";
+  write(folder.path("new.wld"), kRoom);
+  viewer.say(R"({"do":"load","world":"new"})");
+  EXPECT_EQ(viewer.next("world").at("world"), "new");
 }
 
 }  // namespace

@@ -138,5 +138,59 @@ TEST(ShownCommands, OfGoalsAreGoals) {
   EXPECT_GT(checked, 3);
 }
 
+/// The command of a fresh clone that has the lists of sources and no sources: it can build nothing.
+class EmptyClone : public testing::Test {
+ protected:
+  EmptyClone() {
+    fs::copy_file(test::source("saphira"), dir_.path("saphira"));
+    for (const auto& entry : fs::recursive_directory_iterator(test::source("tests/bench")))
+      if (entry.path().filename() == "CMakeLists.txt") {
+        const fs::path to =
+            dir_.path("tests/bench") / fs::relative(entry.path(), test::source("tests/bench"));
+        fs::create_directories(to.parent_path());
+        fs::copy_file(entry.path(), to);
+      }
+    fs::create_directories(dir_.path("agents/cli"));
+    fs::copy_file(test::source("agents/cli/help.txt"), dir_.path("agents/cli/help.txt"));
+  }
+  int run(std::vector<std::string> words) {
+    words.insert(words.begin(), dir_.path("saphira"));
+    test::Process command(std::move(words), dir_.path("out"));
+    const int code = command.wait().value_or(-1);
+    said_ = command.output();
+    return code;
+  }
+
+  test::TempDir dir_;
+  std::string said_;
+};
+
+TEST_F(EmptyClone, NamesTheBenchmarksThatTheDocumentsName) {
+  ASSERT_EQ(run({"bench"}), 0) << said_;
+  std::set<std::string> names;
+  std::istringstream lines(said_);
+  for (std::string line; std::getline(lines, line);)
+    names.insert(line);
+  const std::string text = read_file(test::source("tests/README.md"));
+  const std::size_t row = text.find("| `bench` |");
+  ASSERT_NE(row, std::string::npos);
+  const std::string told = text.substr(row + 11, text.find('\n', row) - row - 11);
+  const std::regex name("`([a-z-]+)`");
+  int checked = 0;
+  for (auto it = std::sregex_iterator(told.begin(), told.end(), name); it != std::sregex_iterator();
+       ++it, ++checked)
+    EXPECT_TRUE(names.contains((*it)[1])) << (*it)[1];
+  EXPECT_GT(checked, 20);
+}
+
+TEST_F(EmptyClone, AnUnknownBenchmarkIsRefusedBeforeAnythingIsBuilt) {
+  EXPECT_EQ(run({"bench", "poeple"}), 2) << said_;
+  EXPECT_NE(said_.find("no benchmark \"poeple\": did you mean people? expected one of agents"),
+            std::string::npos)
+      << said_;
+  EXPECT_EQ(run({"bench", "xyzzy"}), 2) << said_;
+  EXPECT_EQ(said_.find("did you mean"), std::string::npos) << said_;
+}
+
 }  // namespace
 }  // namespace saphira

@@ -96,7 +96,7 @@ std::vector<std::string> fixed_words(const CLI::App& root, const Begun& line) {
       {"knows", {"forget"}},
       {"device",
        {"list", "follow", "servo", "gripper", "output", "analog", "timer", "sonar", "sound",
-        "motors", "origin", "bumpers", "report", "serial"}},
+        "motors", "origin", "bumpers", "report", "serial", "vision"}},
       {"map",
        {"follow", "list", "save", "show", "build", "load", "delete", "put", "remove", "place",
         "find", "on", "off", "features", "snap", "route"}}};

@@ -24,7 +24,9 @@ const char* const kDeviceWords =
     "  bumpers 0..3                   which of them stall the motors\n"
     "  report configuration\n"
     "  report encoders|io|gripper [off|once|always]\n"
-    "  serial PORT TEXT|0xHEX... [--answer N]\n";
+    "  serial PORT TEXT|0xHEX... [--answer N]\n"
+    "  vision TEXT                    such as pioneer_a_mode=1 (a camera with channels of "
+    "colours)\n";
 
 namespace {
 
@@ -207,6 +209,8 @@ DeviceCommand parse(const std::string& device, Words& words) {
     return {&kServer, report(words)};
   if (device == "serial")
     return {&kSerial, serial(words)};
+  if (device == "vision")
+    return {&kVisionSystem, {"say", {{"text", words.next("a setting, such as pioneer_a_mode=1")}}}};
   if (device == "motors")
     return {&kServer, {"motors", {{"on", on_off(words.next("on or off"))}}}};
   if (device == "origin")
@@ -215,7 +219,7 @@ DeviceCommand parse(const std::string& device, Words& words) {
     return {&kServer, {"bump_stall", {whole_of("value", words.next("0..3"), 3, "which bumpers")}}};
   fail(
       "a device (servo, gripper, output, analog, timer, sonar, sound, motors, origin, bumpers, "
-      "report, serial)",
+      "report, serial, vision)",
       device);
 }
 

@@ -37,6 +37,7 @@ TEST(DeviceWords, AreRequests) {
             "device/server: report packet=\"encoders\" often=\"always\"");
   EXPECT_EQ(parsed({"serial", "2", "0x8130", "hi", "--answer", "9"}),
             "device/serial: serial port=2 data=\"81306869\" answer=9");
+  EXPECT_EQ(parsed({"vision", "pioneer_a_mode=1"}), "device/vision: say text=\"pioneer_a_mode=1\"");
 }
 
 TEST(DeviceWords, SayWhatWasExpected) {

@@ -41,13 +41,16 @@ v1::Argument argument(const std::string& name, const Json& value) {
 }
 
 Json json_of(const v1::GoalStatus& status) {
-  return {{"goal", bus::describe(status.id())},
-          {"what", status.functor()},
-          {"asked_by", status.requester()},
-          {"state", bus::describe(status.state())},
-          {"step", status.step()},
-          {"reason", status.reason()},
-          {"progress", status.progress()}};
+  Json json{{"goal", bus::describe(status.id())},
+            {"what", status.functor()},
+            {"asked_by", status.requester()},
+            {"state", bus::describe(status.state())},
+            {"step", status.step()},
+            {"reason", status.reason()},
+            {"progress", status.progress()}};
+  if (status.waits_for().writer() != 0)
+    json["waits_for"] = bus::describe(status.waits_for());
+  return json;
 }
 
 Json json_of(const v1::Argument& argument) {

@@ -226,7 +226,8 @@ void sfSetFrontBuffer(int n);
 void sfSetSideBuffer(int n);
 extern float sfFrontMaxRange; /* [mm] */
 
-int sfOccBox(int xy, int cx, int cy, int h, int w); /* 6.6.2 */
+/* 6.6.2. Its examples have one argument more, which has no effect. */
+int sfOccBox(int xy, int cx, int cy, int h, int w, ...);
 int sfOccBoxRet(int xy, int cx, int cy, int h, int w, int* x, int* y);
 int sfOccPlane(int xy, int source, int d, int s1, int s2);
 int sfOccPlaneRet(int xy, int source, int d, int s1, int s2, int* x, int* y);

@@ -289,6 +289,12 @@ std::optional<DeviceCall> device_call(const protocol::Bytes& packet) {
     case protocol::Number::kGripper:
       return call(bus::topics::kGripper, "gripper",
                   {bus::text("action", "number"), bus::number("value", low + 256 * high)});
+    case protocol::Number::kVision: {
+      const auto text = packet.begin() + kCommand + 3;
+      const auto end = std::min(text + low, packet.end() - 2);
+      return call(bus::topics::kVisionSystem, "say",
+                  {bus::text("text", std::string(text, std::max(text, end)))});
+    }
     default:
       return std::nullopt;
   }

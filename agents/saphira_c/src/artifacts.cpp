@@ -317,7 +317,7 @@ void sfSetSideBuffer(int n) {
   Os::get().lps.set_side_buffer(static_cast<std::size_t>(n > 0 ? n : 0));
 }
 
-int sfOccBox(int xy, int cx, int cy, int h, int w) {
+int sfOccBox(int xy, int cx, int cy, int h, int w, ...) {
   return sfOccBoxRet(xy, cx, cy, h, w, nullptr, nullptr);
 }
 int sfOccBoxRet(int xy, int cx, int cy, int h, int w, int* x, int* y) {

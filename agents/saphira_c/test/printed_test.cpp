@@ -1,5 +1,7 @@
 #include "printed.hpp"
 
+#include <regex>
+
 #include "programs.hpp"
 
 namespace saphira {
@@ -87,6 +89,23 @@ TEST_F(Printed, Packet) {
   ASSERT_EQ(program.wait(), std::optional<int>(0)) << program.output();
   EXPECT_NE(program.output().find("100 packets received"), std::string::npos) << program.output();
   EXPECT_NEAR(farthest(), 3.0, 0.5);
+}
+
+// 6.6.2 prints calls within its text; sfOccBox has one argument more there than in its signature.
+TEST_F(Printed, OccupancyCallsOfTheText) {
+  const std::string text = test::manual();
+  const std::size_t begin = text.rfind("\n6.6.2. Occupancy");
+  const std::string section = text.substr(begin, text.find("\n6.6.3. Artifacts", begin) - begin);
+  const std::regex call(R"(sfOcc\w+\((sf[A-Z]+,[^()]*)\))");
+  std::string code = "#include \"saphira.h\"\nint main(void) {\n";
+  int calls = 0;
+  for (auto it = std::sregex_iterator(section.begin(), section.end(), call);
+       it != std::sregex_iterator(); ++it, ++calls)
+    code += "  printf(\"%d\\n\", " + it->str() + ");\n";
+  EXPECT_EQ(calls, 3) << section;
+  Process program = start(built(code + "  return 0;\n}\n"));
+  EXPECT_EQ(program.wait(), std::optional<int>(0)) << program.output();
+  EXPECT_EQ(program.output(), "5000\n5000\n5000\n") << "no robot, no reading";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "saphira/base/overloaded.hpp"
 #include "saphira/protocol/impossible.hpp"
+#include "saphira/protocol/vision_setting.hpp"
 
 namespace saphira::reflector {
 
@@ -20,6 +21,10 @@ int action_of(const Wish& wish) {
     return static_cast<int>(server->action);
   if (const auto* serial = std::get_if<SerialWish>(&wish))
     return serial->port;
+  if (const auto* vision = std::get_if<VisionWish>(&wish)) {
+    const protocol::VisionSetting set = protocol::parse_vision_setting(vision->text);
+    return 3 * static_cast<int>(set.what) + set.channel;
+  }
   return 0;
 }
 
@@ -148,6 +153,10 @@ void Devices::plan(Item& item, const Wish& wish, const protocol::RobotParameters
             else
               add(protocol::Aux3Send{}, protocol::Aux3Read{});
             send(std::move(commands), Proof::once);
+          },
+          [&](const VisionWish& w) {
+            send({protocol::VisionCommand(protocol::Bytes(w.text.begin(), w.text.end()))},
+                 Proof::thrice);
           },
       },
       wish);

@@ -8,6 +8,7 @@
 
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/overloaded.hpp"
+#include "saphira/protocol/vision_setting.hpp"
 
 namespace saphira::reflector {
 
@@ -154,6 +155,9 @@ const std::vector<Functor>& functors(Device device) {
          optional(whole_parameter("answer",
                                   "so many bytes are asked of the port afterwards (43, 67, 61)",
                                   0.0, 255.0))}}},
+      {{"say",
+        "a setting of the Fast Track vision system (VISION_COM); the bridge has --vision",
+        {text_parameter("text", "such as pioneer_a_mode=1 or line_min_mass=8 (manual 9.1)")}}},
   }};
   return all_functors.at(static_cast<std::size_t>(device));
 }
@@ -192,6 +196,15 @@ Wish wish_of(const Request& request) {
     return ServerWish{ServerAction::bump_stall, byte("value")};
   if (what == "report")
     return report_of(with);
+  if (what == "say") {
+    const std::string& text = text_of(with, "text");
+    try {
+      protocol::parse_vision_setting(text);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(std::string("say: argument \"text\": ") + error.what());
+    }
+    return VisionWish{text};
+  }
   return serial_of(with);
 }
 
@@ -231,6 +244,7 @@ std::string text(const Wish& wish) {
             return "serial " + std::to_string(w.port) + " " + std::to_string(w.data.size()) +
                    " bytes";
           },
+          [](const VisionWish& w) { return "vision " + w.text; },
       },
       wish);
 }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 namespace saphira::reflector {
 namespace {
@@ -164,6 +166,24 @@ TEST(Devices, WaitForTheLine) {
   EXPECT_EQ(b.devices.due(1.0, 250).size(), 1U);
   EXPECT_TRUE(b.devices.due(1.1, 100).empty());
   EXPECT_EQ(b.devices.due(1.2, 250).size(), 1U);
+  for (const DeviceRequest& request : b.devices.requests())
+    EXPECT_EQ(request.answer.code, AnswerCode::sent) << request.asked;
+}
+
+// Manual 9.1. Two settings do not displace each other; a lost command is repeated.
+TEST(Devices, TheVisionSystemIsSpokenTo) {
+  Bench b(of(protocol::Protocol::kPsos));
+  b.ask(VisionWish{"pioneer_a_mode=1"});
+  b.ask(VisionWish{"pioneer_b_mode=0"});
+  b.ask(VisionWish{"line_min_mass=8"});
+  std::map<std::string, int> said;
+  for (int i = 0; i < 20; ++i)
+    for (const Command& command : b.devices.due(b.now += 0.1)) {
+      const auto& bytes = std::get<protocol::Text>(command).text;
+      ++said[std::string(bytes.begin(), bytes.end())];
+    }
+  EXPECT_EQ(said, (std::map<std::string, int>{
+                      {"pioneer_a_mode=1", 3}, {"pioneer_b_mode=0", 3}, {"line_min_mass=8", 3}}));
   for (const DeviceRequest& request : b.devices.requests())
     EXPECT_EQ(request.answer.code, AnswerCode::sent) << request.asked;
 }

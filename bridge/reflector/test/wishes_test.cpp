@@ -53,6 +53,7 @@ TEST(Wishes, AreMadeOfRequests) {
             "report gripper 0");
   EXPECT_EQ(meant({"serial", {{"port", 2.0}, {"data", std::string("8130ff")}}}),
             "serial 2 3 bytes");
+  EXPECT_EQ(meant({"say", {{"text", std::string("pioneer_a_mode=1")}}}), "vision pioneer_a_mode=1");
 }
 
 TEST(Wishes, OfNumbersAreThoseOfTheRobot) {
@@ -67,6 +68,9 @@ TEST(Wishes, OfNumbersAreThoseOfTheRobot) {
 }
 
 TEST(Wishes, SayWhatWasExpected) {
+  EXPECT_EQ(
+      meant({"say", {{"text", std::string("pioneer_a_mode=3")}}}).find("say: argument \"text\": "),
+      0U);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double wrong : {0.0, -1.0, 6.0, nan})
     EXPECT_NE(meant({"tones", {{"duration", wrong}, {"pitch", 60.0}}}).find("expected a number"),

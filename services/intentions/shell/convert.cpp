@@ -119,6 +119,7 @@ v1::GoalStatus to_bus(const GoalStatus& status, const v1::Stamp& stamp) {
   result.trend(kTrends.theirs(status.trend));
   result.elapsed(status.elapsed);
   result.note(status.note);
+  result.waits_for(to_bus(status.waits_for));
   return result;
 }
 

@@ -49,6 +49,7 @@ TEST(Convert, AStatusIsToldWhole) {
   status.trend = Trend::kFalling;
   status.elapsed = 4.1;
   status.note = "note";
+  status.waits_for = {0xfffffffffffffffeULL, 7};
   v1::Stamp stamp;
   stamp.epoch(5);
   stamp.cycle(6);
@@ -66,6 +67,7 @@ TEST(Convert, AStatusIsToldWhole) {
   EXPECT_EQ(told.trend(), v1::TREND_FALLING);
   EXPECT_EQ(told.elapsed(), 4.1);
   EXPECT_EQ(told.note(), "note");
+  EXPECT_EQ(told.waits_for(), to_bus(status.waits_for));
 }
 
 TEST(Convert, ABehaviorAndItsIntentionAreToldWhole) {

@@ -86,12 +86,15 @@ TEST(Executor, OfEqualsTheFirstIsUnderway) {
   EXPECT_EQ(bench.status(1).reason,
             "waits for goal 1:2 (drive) of \"somebody\", which came first; with a "
             "priority of 1 it would go first");
+  EXPECT_EQ(bench.status(1).waits_for, (GoalId{1, 2}));
+  EXPECT_EQ(bench.status(2).waits_for, GoalId{});
   bench.dispose(2);
   bench.step();
   EXPECT_EQ(bench.state(2), GoalState::kCanceled);
   EXPECT_EQ(bench.status(2).code, GoalCode::kDisposed);
   EXPECT_EQ(bench.state(1), GoalState::kUnderway);
   EXPECT_EQ(bench.status(1).reason, "");
+  EXPECT_EQ(bench.status(1).waits_for, GoalId{});
 }
 
 TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
@@ -106,6 +109,7 @@ TEST(Executor, TheMoreImportantInterruptsAndTheOtherGoesOn) {
   EXPECT_EQ(bench.status(1).reason,
             "interrupted by goal 1:2 (turn_to) of \"somebody\", which is more important (priority "
             "5 over 0)");
+  EXPECT_EQ(bench.status(1).waits_for, (GoalId{1, 2}));
   for (const IntendedBehavior& behavior : bench.out.behaviors)
     EXPECT_TRUE(behavior.schema == "TurnTo" || behavior.schema == "Stop");
   while (bench.step() && bench.state(2) == GoalState::kUnderway && bench.cycle < 100) {
@@ -142,6 +146,7 @@ TEST(Executor, AStopEndsWhatCameBeforeItWhateverItsPriority) {
     EXPECT_EQ(bench.state(stopped), GoalState::kCanceled);
     EXPECT_EQ(bench.status(stopped).code, GoalCode::kPreempted);
     EXPECT_EQ(bench.status(stopped).reason, "stopped by goal 1:4 (stop) of \"somebody\"");
+    EXPECT_EQ(bench.status(stopped).waits_for, (GoalId{1, 4}));
   }
   EXPECT_EQ(bench.state(5), GoalState::kUnderway) << "it came after the stop";
   EXPECT_EQ(bench.state(4), GoalState::kWaiting);
@@ -303,10 +308,15 @@ TEST(Executor, ARefusedChangeIsToldUntilItIsTakenBack) {
             "waits for goal 1:1 (go_to) of \"somebody\", which came first; with a priority of 1 it "
             "would go first; " +
                 refused);
+  EXPECT_EQ(bench.status(2).waits_for, (GoalId{1, 1}));
+  for (const std::uint64_t id : {1U, 2U})
+    EXPECT_EQ(bench.status(id).code, GoalCode::kBadArgument);
   bench.world.robot.connected = false;
   bench.step();
   EXPECT_EQ(bench.status(1).reason, "the robot is not connected; goes on when it is; " + refused);
   EXPECT_EQ(bench.status(2).reason, "waits for the robot; " + refused);
+  EXPECT_EQ(bench.status(2).code, GoalCode::kNoRobot);
+  EXPECT_EQ(bench.status(2).waits_for, GoalId{});
   bench.ask(1, "go_to", kFar);
   bench.ask(2, "drive", kSlow);
   bench.step();

@@ -13,9 +13,12 @@ Channels from_bus(const v1::VisionChannels& channels) {
   Channels out;
   for (std::size_t i = 0; i < out.size() && i < channels.channels().size(); ++i) {
     const v1::VisionChannel& channel = channels.channels()[i];
-    if (channel.mode() == v1::VISION_LINE)
-      continue;
     out[i].x = channel.x();
+    if (channel.mode() == v1::VISION_LINE) {
+      // Of a line its direction alone is known; each of its rows has a pixel at least.
+      out[i].area = channel.count();
+      continue;
+    }
     out[i].y = channel.y();
     out[i].area = channel.area();
     if (channel.mode() == v1::VISION_BLOB_BOX) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace saphira::vision {
 namespace {
 
@@ -19,6 +21,7 @@ TEST(Convert, ChannelsByTheirMode) {
   sample.channels()[0].mode(v1::VISION_BLOB_BOX);
   sample.channels()[1].mode(v1::VISION_BLOB);
   sample.channels()[2].mode(v1::VISION_LINE);
+  sample.channels()[2].count(9);
   const Channels channels = from_bus(sample);
   EXPECT_EQ(channels[0].x, -10);
   EXPECT_EQ(channels[0].y, 5);
@@ -27,7 +30,14 @@ TEST(Convert, ChannelsByTheirMode) {
   EXPECT_EQ(channels[0].height, 12);
   EXPECT_EQ(channels[1].x, -11);
   EXPECT_EQ(channels[1].height, 0);
-  EXPECT_EQ(channels[2].area, 0);
+  // Of a line the direction alone.
+  EXPECT_EQ(channels[2].x, -12);
+  EXPECT_EQ(channels[2].area, 9);
+  EXPECT_EQ(channels[2].height, 0);
+  const auto line = find_blobs({Patch{}, Patch{}, channels[2]});
+  ASSERT_EQ(line.size(), 1U);
+  EXPECT_FALSE(line[0].range_known);
+  EXPECT_LT(std::abs(line[0].place_in_robot.y() - 2.0 * std::sin(radians(11.5 / 3.0))), 1e-6);
   EXPECT_EQ(from_bus(v1::VisionChannels{})[0].area, 0);
 }
 

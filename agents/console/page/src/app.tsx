@@ -263,6 +263,8 @@ function Picture({link, drive, seen: s}: {link: Link; drive: Drive; seen: Seen})
         {(Object.keys(layers) as (keyof Layers)[]).map(name => <label key={name} class="check">
           <input type="checkbox" checked={layers[name]} onChange={() => toggle(name)} /> {layerWords[name]}</label>)}
         <button onClick={() => act(() => v!.clearEchoes())}>Clear echoes</button>
+        {/* In the header where that has room. */}
+        {link.data<ConsoleInfo>('console')?.simulator && <p class="narrow"><a href="/simulator.html">the simulator's own view</a></p>}
       </details>}
     </div>
     {driving && <Stick drive={drive} />}

@@ -1,6 +1,6 @@
 // Goals in the order in which the robot pursues them, in words, and asked for.
 import type {Answer, Link} from './link';
-import type {ActivitySchemas, Goal, GoalStatus, SaphiraMap} from './types';
+import type {ActivitySchemas, Goal, GoalId, GoalStatus, SaphiraMap} from './types';
 
 const acceptance = 3000;     // [ms] within which the intentions take up a goal
 const look = 50;             // [ms]
@@ -13,17 +13,10 @@ export interface Pursued {
 }
 export const ended = (status: GoalStatus) => !['GOAL_WAITING', 'GOAL_UNDERWAY', 'GOAL_SUSPENDED'].includes(status.state);
 
-// A goal in a reason of the intentions, such as: goal 1f3a:12 (go_to) of "ann at the console"
-const mention = /goal ([0-9a-f]+):(\d+) \(([^)]*)\)(?: of "([^"]*)")?/;
-const keyOf = (writer: string, number: string) => `${writer}:${BigInt(number).toString(16)}`;
-
-// The goal in front, as the reasons of those that wait name it.
-function named(goals: Pursued[]): string | undefined {
-  for (const {status} of goals) {
-    const found = status.state === 'GOAL_UNDERWAY' ? null : status.reason.match(mention);
-    if (found) return keyOf(found[1], found[2]);
-  }
-  return undefined;
+// The gateway's key of a goal is in hexadecimal digits.
+export function isGoal(id: GoalId | undefined, key: string): boolean {
+  const [writer, number] = key.split(':').map(digits => Number('0x' + digits));
+  return id?.writer === writer && id.number === number;
 }
 
 // Open goals in the order in which the robot takes them up (priority, then age); ended ones, the newest first.
@@ -40,8 +33,9 @@ function order(link: Link): Pursuit {
   const number = (g: Pursued) => parseInt(g.id.split(':')[1], 16);
   const age = (a: Pursued, b: Pursued) => Math.round(accepted(a) - accepted(b)) || number(a) - number(b);
   const underway = all.filter(g => g.status.state === 'GOAL_UNDERWAY');
-  const front = underway.length > 1 ? named(all.filter(g => !ended(g.status))) : undefined;
-  const rank = (g: Pursued) => g.status.state !== 'GOAL_UNDERWAY' ? 1 : !front || g.id === front ? 0 : 2;
+  const waited = all.filter(g => !ended(g.status)).map(g => g.status.waits_for).find(id => id.writer > 0);
+  const front = underway.length > 1 && waited ? underway.find(g => isGoal(waited, g.id)) : undefined;
+  const rank = (g: Pursued) => g.status.state !== 'GOAL_UNDERWAY' ? 1 : !front || g === front ? 0 : 2;
   const open = all.filter(g => !ended(g.status))
     .sort((a, b) => rank(a) - rank(b) || (b.goal?.priority ?? 0) - (a.goal?.priority ?? 0) || age(a, b));
   // Another goal that is underway at the same time does not drive.
@@ -60,13 +54,16 @@ export function nameOf({status, goal}: {status: GoalStatus; goal?: Goal}): strin
   return status.functor.replace(/[_-]/g, ' ') + to;
 }
 
-// Without the ids and the advice that only a command line has a use for.
-export function reasonOf(link: Link, reason: string): string {
-  return reason.replace(/; with a priority of -?\d+ it would go first/, '')
-    .replace(new RegExp(mention, 'g'), (_, writer, number, functor, requester) => {
-      const id = keyOf(writer, number), status = link.get<GoalStatus>('goals/status', id)?.data;
-      return `"${status ? nameOf({status, goal: link.goal(id)}) : functor}"${requester ? ` of ${requester}` : ''}`;
-    });
+// In the words of the page where another goal is the reason, without its id. A refused change has its own reason.
+const ownCodes = [0, 302];   // CODE_NONE, CODE_PREEMPTED
+export function reasonOf(link: Link, {status, goal}: Pursued): string {
+  const {open, over} = pursued(link);
+  const other = ownCodes.includes(status.code) ? [...open, ...over].find(g => isGoal(status.waits_for, g.id)) : undefined;
+  if (!other) return status.reason;
+  const name = `"${nameOf(other)}" of ${other.status.requester || 'somebody'}`;
+  if (ended(status)) return `stopped by ${name}`;
+  const why = (other.goal?.priority ?? 0) > (goal?.priority ?? 0) ? 'is more important' : 'came first';
+  return `${status.state === 'GOAL_WAITING' ? 'waits for' : 'interrupted by'} ${name}, which ${why}`;
 }
 
 // A value of several words, or with quotes, as the gateway reads it.
@@ -78,11 +75,17 @@ const placeTypes = ['ARTIFACT_OFFICE', 'ARTIFACT_CORRIDOR', 'ARTIFACT_LANE', 'AR
 
 // What can be asked for: the places of the map, and the activities with the values that they need.
 export interface Wishes { list: {words: string; about: string}[]; example: string }
+let made: {map?: SaphiraMap; schemas?: ActivitySchemas; wishes: Wishes} | undefined;
 export function wishes(link: Link): Wishes {
-  const named = (link.data<SaphiraMap>('map')?.artifacts ?? []).filter(a => a.name && placeTypes.includes(a.type))
+  const map = link.data<SaphiraMap>('map'), schemas = link.data<ActivitySchemas>('intentions/schemas');
+  if (!made || made.map !== map || made.schemas !== schemas) made = {map, schemas, wishes: wishesOf(map, schemas)};
+  return made.wishes;
+}
+function wishesOf(map?: SaphiraMap, schemas?: ActivitySchemas): Wishes {
+  const named = (map?.artifacts ?? []).filter(a => a.name && placeTypes.includes(a.type))
     .sort((a, b) => placeTypes.indexOf(a.type) - placeTypes.indexOf(b.type));
   const places = [...new Set(named.map(a => a.name))].map(name => ({words: goTo(name), about: 'a place of the map'}));
-  const activities = (link.data<ActivitySchemas>('intentions/schemas')?.schemas ?? []).map(({name, summary, parameters}) =>
+  const activities = (schemas?.schemas ?? []).map(({name, summary, parameters}) =>
     ({words: [name, ...parameters.filter(p => p.required).map(p => `${p.name}=`)].join(' '), about: summary}));
   const example = [...places.slice(0, 1).map(place => place.words), 'go 3 1', 'turn 90',
     ...activities.filter(({words}) => words === 'patrol').map(({words}) => words)].join(', ');

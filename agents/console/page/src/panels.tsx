@@ -2,7 +2,7 @@
 import type {ComponentChildren} from 'preact';
 import {useState} from 'preact/hooks';
 import {degrees} from './geometry';
-import {ended, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
+import {ended, isGoal, nameOf, type Pursued, pursued, reasonOf, wishes, wordsOf} from './goals';
 import type {Link} from './link';
 import type {BehaviorState, Behaviors, Belief, Cause, Goal, Grant, IntentionNode, Intentions, LogRecord, Message, Processes, ProgramMind, ServiceStatus, Utterance, Why} from './types';
 import {clock, forPage, keyless, percent} from './words';
@@ -80,7 +80,8 @@ function argumentsOf(goal?: Goal): string {
     return `${a.name} ${a.kind === 'ARGUMENT_TEXT' ? a.text : +a.number.toFixed(2)}`;
   }).join(', ');
 }
-function GoalCard({pursued: {id, status, goal, place}, many, link}: {pursued: Pursued; many: boolean; link: Link}) {
+function GoalCard({pursued: self, many, link}: {pursued: Pursued; many: boolean; link: Link}) {
+  const {id, status, goal, place} = self;
   const [told, setTold] = useState('');
   const over = ended(status);
   const grant = link.data<Grant>('drive/grant');
@@ -100,7 +101,7 @@ function GoalCard({pursued: {id, status, goal, place}, many, link}: {pursued: Pu
     </div>
     {goal && <div class="small">{argumentsOf(goal)}</div>}
     {!over && <div class="progress"><Bar value={status.progress} label="progress" /><span class="small">{percent(status.progress)}</span></div>}
-    <div class="small">{forPage(reasonOf(link, status.reason)) || status.step}{status.note && ` (${status.note})`}</div>
+    <div class="small">{forPage(reasonOf(link, self)) || status.step}{status.note && ` (${status.note})`}</div>
     {told && <p class="told bad" role="status">{told}</p>}
     <div class="small faint">by {status.requester}, {status.elapsed.toFixed(0)} s</div>
   </li>;
@@ -179,7 +180,7 @@ function Tree({intentions, link}: {intentions: Intentions; link?: Link}) {
   const preempted = link ? pursued(link).open.filter(g => g.status.state === 'GOAL_SUSPENDED') : [];
   // Behaviors (B), and all that a held intention has begun, go with that.
   const resting = new Set<number>();
-  const canAct = (node: IntentionNode) => link?.mayDrive && node.label !== 'B' && !resting.has(node.parent) && !preempted.some(g => servesGoal(node, g.id));
+  const canAct = (node: IntentionNode) => link?.mayDrive && node.label !== 'B' && !resting.has(node.parent) && !preempted.some(g => isGoal(node.goal, g.id));
   return <><ul class="intentions">{intentions.nodes.map(node => {
     const depth = Math.min(8, (depths.get(node.parent) ?? -1) + 1);
     depths.set(node.id, depth);
@@ -195,11 +196,6 @@ function Tree({intentions, link}: {intentions: Intentions; link?: Link}) {
     </li>;
   })}</ul>
   {link && <p class="small faint">Interrupt holds an intention and all that it has begun, until Resume.</p>}</>;
-}
-// The gateway's key of a goal is in hexadecimal digits; its id in a sample is as near as a number can be.
-function servesGoal({goal}: IntentionNode, key: string): boolean {
-  const [writer, number] = key.split(':').map(digits => Number('0x' + digits));
-  return goal?.writer === writer && goal.number === number;
 }
 // A micro-task or an intention: held, or let go on.
 function Interrupt({link, service, process, name, held}: {link: Link; service: string; process: string; name: string; held: boolean}) {

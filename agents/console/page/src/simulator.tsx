@@ -1,13 +1,14 @@
 // The simulator's own view: what is true, for people; and what they do to it (saphira-sim --view-socket).
 import {render} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {type Kind, type Scene, SimulatorView, type Thing, thingsOf, type World} from './simulator_view';
+import {type Kind, type Robot, type Scene, SimulatorView, type Thing, thingsOf, type World} from './simulator_view';
 import {keyless} from './words';
 
 const retry = 1000;           // [ms]
 const silent = 3000;          // [ms] without a word the simulator is gone, or stands still
 const stepAside = 0.1;        // [m] of an arrow key
 const stepAround = 15;        // [degrees]
+const zoomStep = 1.3;
 const rates = [0.25, 0.5, 1, 2, 5, 10];
 
 function storedKey(): string {
@@ -19,6 +20,24 @@ function storedKey(): string {
   } catch {
     return given;
   }
+}
+
+// The pins and ports for the user's devices (manual 5.3), by hand instead of by hardware.
+interface InputProps { robot: Robot; port: number; setPort: (port: number) => void; disabled: boolean; why?: string; set: (what: object) => void }
+function InputRow({robot: {inputs, outputs}, port, setPort, disabled, why, set}: InputProps) {
+  const chosen = port < inputs.analog.length ? port : 0;
+  return <details><summary class="small">Inputs and outputs</summary>
+    <fieldset class="row" disabled={disabled} title={why}><legend class="small">Digital input, pin 0 to 7</legend>
+      {[0, 1, 2, 3, 4, 5, 6, 7].map(pin => <input key={pin} type="checkbox" aria-label={`Input pin ${pin}`} checked={(inputs.digital >> pin & 1) === 1}
+        onChange={() => set({digital: inputs.digital ^ 1 << pin})} />)}</fieldset>
+    <div class="row">
+      {inputs.analog.length > 1 && <label class="check">Port <select value={String(chosen)} onChange={e => setPort(Number((e.target as HTMLSelectElement).value))}>
+        {inputs.analog.map((_, i) => <option key={i} value={String(i)}>{i}</option>)}</select></label>}
+      <label class="check">Analog <input type="range" min="0" max="255" value={inputs.analog[chosen]} disabled={disabled} title={why}
+        onInput={e => set({port: chosen, analog: Number((e.target as HTMLInputElement).value)})} /> {(inputs.analog[chosen] * 5 / 255).toFixed(2)} V</label>
+    </div>
+    <p class="small">Timer {inputs.timer} ms; outputs {outputs.toString(2).padStart(8, '0')} (pin 7 to 0)</p>
+  </details>;
 }
 
 function App() {
@@ -35,6 +54,8 @@ function App() {
   const [load, setLoad] = useState({world: '', robot: ''});
   const [beams, setBeams] = useState(true);
   const [wake, setWake] = useState(true);
+  const [follow, setFollow] = useState(false);
+  const [port, setPort] = useState(0);
 
   const wish = (what: object) => {
     setTrouble('');
@@ -55,6 +76,7 @@ function App() {
     const made = new SimulatorView(canvas.current!);
     view.current = made;
     made.onChoose = setChosen;
+    made.onFollow = setFollow;
     made.onDrop = (thing, x, y) => (thing.kind === 'door' ? turnDoor(thing.name) : put(thing, x, y));
     const key = storedKey();
     let ended = false;
@@ -100,8 +122,19 @@ function App() {
 
   const things = scene ? thingsOf(scene) : [];
   const thing = things.find(t => `${t.kind} ${t.name}` === chosen);
+  const robot = thing?.kind === 'robot' ? scene!.robots[Number(thing.name)] : undefined;
   const still = performance.now() - heard > silent;
+  const zoomOut = () => view.current?.zoom(1 / zoomStep);
+  const shown: Record<string, () => void> = {
+    '+': () => view.current?.zoom(zoomStep), '=': () => view.current?.zoom(zoomStep), '-': zoomOut, '_': zoomOut,
+    '0': () => view.current?.fit(), c: () => view.current?.recenter(), f: () => view.current?.setFollow(!view.current.follow),
+  };
   const keys = (event: KeyboardEvent) => {
+    const show = event.ctrlKey || event.altKey || event.metaKey ? undefined : shown[event.key];
+    if (show) {
+      event.preventDefault();
+      return show();
+    }
     const way: Record<string, [number, number]> = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
     if (!thing || thing.kind === 'door' || !way[event.key]) return;
     event.preventDefault();
@@ -120,7 +153,7 @@ function App() {
     <main>
       <section class="picture" aria-label="World">
         <canvas ref={canvas} class="sim-canvas" tabIndex={0} onKeyDown={keys}
-                aria-label="The world, from above. Drag robots, people and boxes; press a door; arrow keys move what is chosen." />
+                aria-label="The world, from above. Drag robots, people and boxes; press a door; arrow keys move what is chosen. Plus and minus zoom, 0 shows all, c centers the robot, f follows it." />
       </section>
       <section class="side sim-side" aria-label="Time, things and worlds">
         {trouble && <p class="note bad" role="status">{trouble}
@@ -154,16 +187,22 @@ function App() {
               <button key={name} disabled={!mayMove} title={why} aria-label={`Move it ${name}`}
                       onClick={() => put(thing, thing.x + dx * stepAside, thing.y + dy * stepAside)}>{sign}</button>)}
           </div></>}
+        {robot?.inputs && <InputRow robot={robot} port={port} setPort={setPort} disabled={!mayMove} why={why}
+                            set={what => wish({do: 'input', robot: Number(thing!.name), ...what})} />}
         {thing?.kind === 'door' && <div class="row"><button disabled={!mayMove} title={why} onClick={() => turnDoor(thing.name)}>
           {scene!.doors.find(d => d.name === thing.name)!.open ? 'Close' : 'Open'}</button></div>}
         <h2>Show</h2>
         <div class="row">
+          <button title="the robot comes to the middle of the picture (key c)" onClick={() => view.current?.recenter()}>Recenter</button>
+          <button aria-pressed={follow} title="the picture moves when the robot comes near its edge (key f)" onClick={() => view.current?.setFollow(!follow)}>Follow</button>
+          <button title="the whole world (key 0)" onClick={() => view.current?.fit()}>All</button>
+          <button aria-label="Zoom in" title="key +" onClick={() => view.current?.zoom(zoomStep)}>+</button>
+          <button aria-label="Zoom out" title="key −" onClick={zoomOut}>−</button>
+        </div>
+        <div class="row">
           <label class="check"><input type="checkbox" checked={beams} onChange={() => setBeams(!beams)} /> sonar beams</label>
           <label class="check"><input type="checkbox" checked={wake} onChange={() => setWake(!wake)} /> wake</label>
           <button onClick={() => view.current?.clearWake()}>Clear wake</button>
-          <button aria-label="Zoom in" onClick={() => view.current?.zoom(1.3)}>+</button>
-          <button aria-label="Zoom out" onClick={() => view.current?.zoom(1 / 1.3)}>−</button>
-          <button onClick={() => view.current?.fit()}>All</button>
         </div>
         <h2>World and robot</h2>
         <div class="row">

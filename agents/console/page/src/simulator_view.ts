@@ -1,6 +1,8 @@
 // The simulated world as it is, on a canvas, and things that are dragged in it.
 export interface Robot { x: number; y: number; th: number; name: string; radius: number; velocity: number; rotation: number;
-  contacts: number; connected: boolean; sonars: number[][] }
+  contacts: number; connected: boolean; sonars: number[][]; inputs: Inputs; outputs: number }
+// Of the user's devices: a bit for each pin, [5 V / 255] for each port, [ms].
+export interface Inputs { digital: number; analog: number[]; timer: number }
 export interface Person { name: string; x: number; y: number; th: number; radius: number }
 export interface Door { name: string; leaf: number[]; open: boolean }
 export interface Box { name: string; x: number; y: number; th: number; corners: number[][] }
@@ -12,6 +14,7 @@ export type Kind = 'robot' | 'person' | 'box' | 'door';
 export interface Thing { kind: Kind; name: string; x: number; y: number; th: number; reach: number }
 
 const longestWake = 5000;
+const nearEdge = 0.25;        // of the picture's side
 const near = 0.35;            // [m] a finger is not exact
 
 export function thingsOf(scene: Scene): Thing[] {
@@ -31,6 +34,9 @@ export class SimulatorView {
   beams = true;
   wake = true;
   onChoose = (_: string) => {};
+  // The picture moves when the robot comes near its edge (manual 3.4.4).
+  follow = false;
+  onFollow = (_: boolean) => {};
   onDrop = (_thing: Thing, _x: number, _y: number) => {};
 
   private context: CanvasRenderingContext2D;
@@ -44,6 +50,7 @@ export class SimulatorView {
     this.context = canvas.getContext('2d')!;
     new ResizeObserver(() => { this.fitted = ''; this.draw(); }).observe(canvas);
     canvas.addEventListener('pointerdown', event => this.press(event));
+    canvas.addEventListener('mousedown', event => event.button === 1 && event.preventDefault());   // no scrolling by it
     canvas.addEventListener('pointermove', event => this.move(event));
     canvas.addEventListener('pointerup', event => this.release(event));
     canvas.addEventListener('pointercancel', () => { this.dragged = undefined; });
@@ -68,7 +75,18 @@ export class SimulatorView {
       if (way.length > longestWake) way.shift();
       this.ways.set(i, way);
     });
+    if (this.follow && !this.dragged) this.keepInside();
     this.draw();
+  }
+  // The chosen robot, else the first one, comes to the middle. The robot itself stays where it is.
+  recenter() {
+    const robot = this.robot();
+    if (robot) this.center(robot.x, robot.y);
+  }
+  setFollow(follow: boolean) {
+    this.follow = follow;
+    if (follow) this.recenter();
+    this.onFollow(follow);
   }
   clearWake() {
     this.ways.clear();
@@ -81,15 +99,33 @@ export class SimulatorView {
   }
   fit() {
     this.fitted = '';
+    this.setFollow(false);
     this.draw();
+  }
+
+  private robot(): Robot | undefined {
+    const [kind, name] = this.chosen.split(' ');
+    return this.scene?.robots[kind === 'robot' ? Number(name) : 0] ?? this.scene?.robots[0];
+  }
+  private center(x: number, y: number) {
+    this.origin = {x: this.canvas.clientWidth / 2 - x * this.scale, y: this.canvas.clientHeight / 2 + y * this.scale};
+    this.draw();
+  }
+  private keepInside() {
+    const robot = this.robot();
+    if (!robot) return;
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    const far = (at: number, size: number) => Math.min(at, size - at) < nearEdge * size;
+    if (far(this.origin.x + robot.x * this.scale, width) || far(this.origin.y - robot.y * this.scale, height)) this.center(robot.x, robot.y);
   }
 
   private place(event: PointerEvent) {
     return {x: (event.offsetX - this.origin.x) / this.scale, y: (this.origin.y - event.offsetY) / this.scale};
   }
   private press(event: PointerEvent) {
-    if (!this.scene) return;
+    if (!this.scene || event.button > 1) return;
     const at = this.place(event);
+    if (event.button === 1) return this.center(at.x, at.y);   // manual 3.5
     let thing: Thing | undefined, best = Infinity;
     for (const each of thingsOf(this.scene)) {
       const far = Math.hypot(each.x - at.x, each.y - at.y) - each.reach;
@@ -109,6 +145,7 @@ export class SimulatorView {
       const at = this.place(event);
       this.dragged = {...this.dragged, ...at, moved: true};
     } else {
+      if (this.follow) this.setFollow(false);
       this.origin.x += event.movementX;
       this.origin.y += event.movementY;
     }

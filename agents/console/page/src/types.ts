@@ -84,6 +84,7 @@ export interface MapArtifact {
 export interface SaphiraMap { revision: number; source: string; changed: boolean; artifacts: MapArtifact[] }
 export interface Argument { name: string; kind: string; number: number; text: string; point: Pose; frame: string }
 export interface Goal { requester: string; functor: string; arguments: Argument[]; priority: number }
+export interface GoalId { writer: number; number: number }   // as near as a number can be
 export interface GoalStatus {
   stamp: Stamp;
   requester: string;
@@ -93,7 +94,9 @@ export interface GoalStatus {
   step: string;
   progress: number;
   elapsed: number;
+  code: number;
   note: string;
+  waits_for: GoalId;         // the goal in front of this one, or the one that stopped it [0, 0: none]
 }
 export interface Rule { name: string; strength: number; action: string; value: number }
 export interface BehaviorState {
@@ -135,7 +138,7 @@ export interface IntentionNode {
   blocking: boolean;
   label: string;
   step: string;
-  goal?: {writer: number; number: number};
+  goal?: GoalId;
 }
 export interface Intentions { nodes: IntentionNode[] }
 export interface ActivityParameter { name: string; kind: string; unit: string; required: boolean; usual: string }

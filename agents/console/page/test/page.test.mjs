@@ -152,6 +152,8 @@ for (const [name, options] of [['light', {colorScheme: 'light'}], ['dark', {colo
       assert.deepEqual(violations.map(v => `${v.id}: ${v.nodes.map(n => n.html).join(' ')}`), [], tab);
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${tab} is wider than the window`);
     }
+    if (options.isMobile) await page.getByText('Layers').click();
+    await page.getByRole('link', {name: "the simulator's own view"}).waitFor();
     await leave(page);
   });
 
@@ -499,6 +501,35 @@ test('the simulator is paused, stepped, rearranged and given another world, and 
   await page.mouse.move(...pixel(x + 1, y), {steps: 5});
   await page.mouse.up();
   await until('the robot is carried', async () => Math.abs((await at())[0] - x - 1) < 0.15);
+  // The picture: a pixel's colour tells where the robot is drawn.
+  const drawnAt = (px, py) => page.evaluate(([px, py]) => {
+    const canvas = document.querySelector('canvas'), ratio = canvas.width / canvas.clientWidth;
+    const [r, g, b] = canvas.getContext('2d').getImageData((px - canvas.getBoundingClientRect().x) * ratio, (py - canvas.getBoundingClientRect().y) * ratio, 1, 1).data;
+    return `#${[r, g, b].map(c => c.toString(16).padStart(2, '0')).join('')}`;
+  }, [px, py]);
+  const robotColor = await page.evaluate(() => getComputedStyle(document.documentElement).getPropertyValue('--map-robot').trim());
+  const middle = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  // Beside the line of its heading.
+  const inTheMiddle = async () => [await drawnAt(middle[0] + 4, middle[1] + 4), await drawnAt(middle[0] - 4, middle[1] - 4), await drawnAt(middle[0] + 4, middle[1] - 4)].includes(robotColor);
+  await page.locator('canvas').focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press('+');
+  assert.equal(await inTheMiddle(), false);
+  await page.getByRole('button', {name: 'Recenter'}).click();
+  await until('the robot in the middle', inTheMiddle);
+  await page.getByRole('button', {name: 'Follow'}).click();
+  await page.getByRole('button', {name: 'Follow', pressed: true}).waitFor();
+  await page.mouse.click(middle[0] + canvas.width / 2 - 5, middle[1], {button: 'middle'});   // the robot is at the other edge
+  await until('the picture follows the robot', inTheMiddle);
+  await page.getByRole('button', {name: 'All'}).click();
+  await page.getByRole('button', {name: 'Follow', pressed: false}).waitFor();
+  await until('all of the world', async () => !await inTheMiddle());
+
+  await page.getByText('Inputs and outputs').click();
+  await page.getByLabel('Input pin 2').click();
+  await page.getByLabel('Analog').fill('51');
+  await page.getByText('1.00 V').waitFor();
+  await until('the pin', () => page.getByLabel('Input pin 2').isChecked());
+
   await page.getByRole('button', {name: 'Disconnect'}).click();
   await watcher.locator('.link.live').waitFor();  // the bridge connects again by itself
 

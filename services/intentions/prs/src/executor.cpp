@@ -38,7 +38,8 @@ std::string name_of_goal(const Goal& goal) {
 /// True where an observer needs to know at once.
 bool differs(const GoalStatus& a, const GoalStatus& b) {
   return a.state != b.state || a.code != b.code || a.reason != b.reason || a.step != b.step ||
-         a.requester != b.requester || a.functor != b.functor || a.note != b.note;
+         a.requester != b.requester || a.functor != b.functor || a.note != b.note ||
+         a.waits_for != b.waits_for;
 }
 
 bool open(const GoalStatus& status) {
@@ -298,6 +299,7 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
     // A faulty change leaves the goal as it was.
     entry.status.code = code;
     entry.refusal = wrong;
+    entry.refusal_code = code;
     if (entry.status.state == GoalState::kUnderway)
       entry.status.reason.clear();
     return;
@@ -319,6 +321,7 @@ void Executor::change(Entry& entry, const Goal& goal, const std::string& by) {
     entry.status.requester = goal.requester;
   }
   entry.status.code = GoalCode::kChanged;
+  entry.status.waits_for = {};
   entry.status.reason = "changed by " + (by.empty() ? "its requester" : by);
 }
 
@@ -353,6 +356,7 @@ void Executor::end(Entry& entry, GoalState state, GoalCode code, std::string rea
   entry.status.state = state;
   entry.status.code = code;
   entry.status.reason = reason.empty() ? name_of(state) : std::move(reason);
+  entry.status.waits_for = {};
   entry.status.step.clear();
   if (state == GoalState::kSucceeded)
     entry.status.progress = 1.0;
@@ -366,6 +370,7 @@ void Executor::wait(Entry& entry, GoalCode code, std::string reason) {
   entry.status.state = GoalState::kWaiting;
   entry.status.code = code;
   entry.status.reason = std::move(reason);
+  entry.status.waits_for = {};
 }
 
 void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
@@ -374,6 +379,7 @@ void Executor::suspend(Entry& entry, GoalCode code, std::string reason) {
   entry.status.state = GoalState::kSuspended;
   entry.status.code = code;
   entry.status.reason = std::move(reason);
+  entry.status.waits_for = {};
   entry.status.step.clear();
 }
 
@@ -494,9 +500,11 @@ void Executor::replace() {
     for (auto& [other_id, other] : entries_) {
       const bool earlier =
           std::pair(other.accepted, other.order) < std::pair(stop.accepted, stop.order);
-      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier)
+      if (open(other.status) && !other.schema->replaces && !other.schema->concurrent && earlier) {
         end(other, GoalState::kCanceled, GoalCode::kPreempted,
             "stopped by " + name_of_goal(stop.goal));
+        other.status.waits_for = id;
+      }
     }
   }
 }
@@ -575,6 +583,7 @@ Executor::Entry* Executor::arbitrate(const World& world) {
                            " it would go first"));
     else
       suspend(entry, GoalCode::kPreempted, "interrupted by " + who);
+    entry.status.waits_for = chosen->goal.id;
   }
   begin(*chosen, world);
   return chosen;
@@ -585,6 +594,7 @@ void Executor::begin(Entry& entry, const World& world) {
     entry.status.state = GoalState::kUnderway;
     entry.status.code = GoalCode::kNone;
     entry.status.reason.clear();
+    entry.status.waits_for = {};
     if (entry.node != 0)
       forest_.resume(entry.node);
   }
@@ -756,6 +766,9 @@ News Executor::take_news() {
       refused = entry.status;
       refused->reason += (refused->reason.empty() ? "goes on unchanged, " : "; ");
       refused->reason += "the change was refused: " + entry.refusal;
+      // Only where the state has no reason of its own: what it waits for has its member.
+      if (refused->code == GoalCode::kNone || refused->waits_for != GoalId{})
+        refused->code = entry.refusal_code;
     }
     const GoalStatus& status = refused ? *refused : entry.status;
     const bool due = open(status) && now_ - entry.published_at >= kStatusPeriod;

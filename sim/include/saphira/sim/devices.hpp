@@ -42,9 +42,8 @@ class Gripper {
 /// color. It sends packets from the first VISION_COM of a connection on.
 class FastTrack {
  public:
-  /// "pioneer_X_mode=N" with X a, b or c, and N 0 (blob), 1 (line) or 2 (blob with its box);
-  /// "pioneer_X_color=NAME", which stands for the training of a channel; the line parameters
-  /// ("line_..."), which have no effect here. True for one of those.
+  /// A setting of protocol::parse_vision_setting; true for one. The line parameters are those of
+  /// manual 9.1; a line's rows are the slices, counted from the bottom one.
   bool act(const std::string& text);
   void disconnect() { *this = {}; }
 
@@ -56,7 +55,16 @@ class FastTrack {
     protocol::VisionChannel::Mode mode = protocol::VisionChannel::Mode::kBlob;
     std::string color;
   };
+  struct Lines {
+    int bottom = 0;  // [pixels] the first row
+    int slices = Camera{}.rows;
+    int size = 1;  // [pixels] of a slice
+    int mass = 1;  // [pixels] that make a segment
+  };
+  void find_line(const Blob& blob, const Camera& camera, protocol::VisionChannel& channel) const;
+
   bool on_ = false;
+  Lines lines_;
   std::array<Channel, 3> channels_{{{{}, "red"}, {{}, "green"}, {{}, "blue"}}};
 };
 
@@ -75,6 +83,7 @@ class Devices {
   /// Takes a command for a device. Its immediate packets are added to `out`.
   Answer act(const protocol::Command& command, const Robot& robot, protocol::Bytes& out);
 
+  void tick();   ///< 10 ms
   void cycle();  ///< 100 ms
   /// The packets that were requested with each information packet.
   void add_packets(const Robot& robot, protocol::Bytes& out) const;
@@ -88,10 +97,20 @@ class Devices {
   int bump_stall() const { return bump_stall_; }  ///< bit 0: the front bumpers stall, 1: the rear
 
   // Inputs from the world.
-  void set_digital_input(std::uint8_t bits) { digital_input_ = bits; }
-  void set_analog(std::uint8_t value) { analog_ = value; }  ///< [5 V / 255]
+
+  /// A bit for each pin. A changed bit is the event that ends a timer of its pin.
+  void set_digital_input(std::uint8_t bits);
+  std::uint8_t digital_input() const { return digital_input_; }
+  /// The ports of analog inputs: a robot of PSOS has one, of which every packet tells.
+  std::size_t analog_ports() const { return later_ ? kAnalogPorts : 1; }
+  void set_analog(std::uint8_t value, std::size_t port = 0) { analogs_.at(port) = value; }
+  std::uint8_t analog(std::size_t port) const {  ///< [5 V / 255]
+    return port < analogs_.size() ? analogs_[port] : std::uint8_t{0};
+  }
+  std::uint16_t timer() const { return timer_; }  ///< [ms] of the input timer; PSOS
 
  private:
+  static constexpr std::size_t kAnalogPorts = 8;
   enum Request { kConfig, kEncoder, kIo, kGripper, kGyro, kJoystick, kBattery, kRequests };
 
   Answer act(const protocol::Integer& command, const Robot& robot, protocol::Bytes& out);
@@ -106,8 +125,10 @@ class Devices {
   Gripper gripper_;
   std::uint8_t digital_output_ = 0;
   std::uint8_t digital_input_ = 0;
-  std::uint8_t analog_ = 0;
+  std::array<std::uint8_t, kAnalogPorts> analogs_{};
   std::uint8_t analog_port_ = 0;
+  std::uint16_t timer_ = 0;
+  std::optional<std::uint8_t> timer_pin_;  ///< of a timer that runs
   std::uint16_t ptu_ = 0;
   int bump_stall_ = 0;
   int sounding_ = 0;

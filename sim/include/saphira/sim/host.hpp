@@ -69,6 +69,10 @@ struct HostOptions {
   std::function<void(const std::string&)> log;
 };
 
+/// The view may load the files that are shipped in `config`, and those beside the given world and
+/// robot file, which come first; by their names without ending, and no others.
+void offer_files(HostOptions& options, const std::string& config);
+
 /// $ROBOT_SOCKET, otherwise /tmp/saphira-robot-<uid> (manual 3.1).
 std::string default_socket();
 

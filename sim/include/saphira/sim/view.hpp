@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,6 +54,13 @@ struct SetDoor {
   std::string name;
   bool open = false;
 };
+/// A person at the robot's inputs.
+struct SetInput {
+  RobotNumber robot = 0;
+  std::optional<std::uint8_t> digital;  ///< a bit for each pin
+  std::size_t port = 0;                 ///< of `analog`
+  std::optional<std::uint8_t> analog;   ///< [5 V / 255]
+};
 struct Pause {
   bool on = false;
 };
@@ -64,11 +72,11 @@ struct Disconnect {
   RobotNumber robot = 0;
 };
 struct Load {
-  std::string world;  ///< a shipped name [empty: the same]
+  std::string world;  ///< a name from Choice [empty: the same]
   std::string robot;  ///< likewise
 };
-using Wish = std::variant<PlaceRobot, PlacePerson, RaiseArm, PlaceBox, SetDoor, Pause, StepOnce,
-                          SetRate, Disconnect, Load>;
+using Wish = std::variant<PlaceRobot, PlacePerson, RaiseArm, PlaceBox, SetDoor, SetInput, Pause,
+                          StepOnce, SetRate, Disconnect, Load>;
 
 /// std::invalid_argument gives the expected form.
 Wish parse_wish(std::string_view text);

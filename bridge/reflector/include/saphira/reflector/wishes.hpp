@@ -63,10 +63,13 @@ struct SerialWish {
   std::vector<std::uint8_t> data;
   std::uint8_t answer = 0;
 };
+struct VisionWish {
+  std::string text;  ///< protocol::parse_vision_setting takes it
+};
 /// In the order of Device.
 using Wish = std::variant<ServoWish, GripperWish, OutputWish, AnalogWish, TimerWish, SonarWish,
-                          SoundWish, ServerWish, SerialWish>;
-enum class Device { servo, gripper, output, analog, timer, sonar, sound, server, serial };
+                          SoundWish, ServerWish, SerialWish, VisionWish>;
+enum class Device { servo, gripper, output, analog, timer, sonar, sound, server, serial, vision };
 
 /// A wish in words, such as "servo 1500 us".
 std::string text(const Wish& wish);

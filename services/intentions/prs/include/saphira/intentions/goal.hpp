@@ -80,6 +80,8 @@ struct GoalStatus {
   double level = 0.0;     ///< [0..1] satisfaction
   Trend trend = Trend::kSteady;
   std::string note;  ///< further information; empty: none
+  /// Waiting or suspended: the goal in front of it; canceled: the one that stopped it; 0:0: none.
+  GoalId waits_for;
 
   bool operator==(const GoalStatus&) const = default;
 };
