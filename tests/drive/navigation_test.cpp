@@ -375,6 +375,11 @@ const char* const kAnnInTheCorridor =
     "person ann 17500 10500\n"
     "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
 
+// She is around the corner before the robot can follow.
+const char* const kQuickAnn =
+    "person ann 17500 10500\n"
+    "  wait 20  walk 17500 7500 900  walk 17500 7000 300  walk 20000 7000 900  wait 100\n";
+
 TEST(Seeing, APersonIsFollowedAroundACorner) {
   WholeOptions options = office(1, office_with("ann", kAnnInTheCorridor));
   options.sees = true_eyes();
@@ -507,6 +512,12 @@ std::vector<Scenario> scenarios() {
                   {saphira::number("seconds", 50.0)}};
   follow.options.sees = true_eyes();
   all.push_back(follow);
+  Scenario search_person{"search-person",
+                         office(1, office_with("golden-quick-ann", kQuickAnn)),
+                         "follow-person",
+                         {saphira::number("seconds", 50.0)}};
+  search_person.options.sees = true_eyes();
+  all.push_back(search_person);
   Scenario search{
       "blob-search", office(1, office_with("golden-crate", kRedBox)), "blob-search", {}};
   search.options.sees = true_eyes({"red"});

@@ -23,6 +23,8 @@ struct TrackerSettings {
   double forget_in_view = 2.0;       ///< [s] without a sight in view
   double forget_out_of_view = 15.0;  ///< [s] without a sight out of view
   double coast = 1.5;  ///< [s] of constant velocity out of sight, before it slows down
+  double body =
+      0.45;  ///< [m] from a person's middle to the robot's: nobody walks through the robot
 };
 
 /// Assigns sights to tracks, and estimates the places of tracks between and after sights (paper
@@ -57,7 +59,7 @@ class Tracker {
     double missed = 0.0;  // [s] in view without a sight
   };
 
-  void predict(Track& track, std::uint64_t cycle) const;
+  void predict(Track& track, std::uint64_t cycle, const Pose& robot) const;
   void update(Track& track, const Sight& sight, const Pose& robot) const;
   void begin(const Sight& sight, std::uint64_t cycle, const Pose& robot);
 
