@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lockstep.hpp"
 #include "process.hpp"
@@ -87,19 +89,30 @@ TEST(SeeingAcceptance, InLockstepItIsTheSameEachTime) {
   EXPECT_EQ(first, run());
 }
 
-// The deployment's comment holds: blob-search finds the colour of channel A.
-TEST(SeeingDeployment, FindsTheColourThatItsVisionSystemWasTold) {
-  const TempDir folder;
-  const std::string robot = "seeing-" + std::to_string(getpid());
-  const auto saphira = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"saphira", "--robot", robot});
+// The deployment's comment holds.
+class SeeingDeployment : public testing::Test {
+ protected:
+  std::vector<std::string> saphira(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"saphira", "--robot", robot_});
     return words;
-  };
-  Process up(saphira({"up", "seeing", "--set", "port=0"}), folder.path("up"));
-  Process search(saphira({"goal", "blob-search"}), folder.path("search"));
-  EXPECT_EQ(search.wait(std::chrono::minutes(2)), 0) << search.output() << up.output();
+  }
+
+  TempDir folder_;
+  std::string robot_ = "seeing-" + std::to_string(getpid());
+  Process up_{saphira({"up", "seeing", "--set", "port=0"}), folder_.path("up")};
+};
+
+TEST_F(SeeingDeployment, FindsTheColourThatItsVisionSystemWasTold) {
+  Process search(saphira({"goal", "blob-search"}), folder_.path("search"));
+  EXPECT_EQ(search.wait(std::chrono::minutes(2)), 0) << search.output() << up_.output();
   EXPECT_NE(search.output().find("at the colour of channel a"), std::string::npos)
       << search.output();
+}
+
+TEST_F(SeeingDeployment, ItsPersonIsFollowed) {
+  Process follow(saphira({"goal", "follow-person", "seconds=10"}), folder_.path("follow"));
+  EXPECT_EQ(follow.wait(std::chrono::minutes(2)), 0) << follow.output() << up_.output();
+  EXPECT_NE(follow.output().find("followed for 10 s"), std::string::npos) << follow.output();
 }
 
 }  // namespace

@@ -581,6 +581,11 @@ const char* const kAnnInTheCorridor =
     "person ann 17500 10500\n"
     "  wait 10  walk 17500 7000 300  walk 24000 7000 300  wait 100\n";
 
+// She is around the corner before the robot can follow.
+const char* const kQuickAnn =
+    "person ann 17500 10500\n"
+    "  wait 20  walk 17500 7500 900  walk 17500 7000 300  walk 20000 7000 900  wait 100\n";
+
 TEST(Seeing, WithoutACameraOrAPersonItSaysSo) {
   Whole blind(office());
   EXPECT_EQ(blind.achieve("attend-person", {}, 100).reason,
@@ -680,6 +685,12 @@ std::vector<Scenario> scenarios() {
                   {saphira::number("seconds", 50.0)}};
   follow.options.sees = true_eyes();
   all.push_back(follow);
+  Scenario search_person{"search-person",
+                         office(1, office_with("golden-quick-ann", kQuickAnn)),
+                         "follow-person",
+                         {saphira::number("seconds", 50.0)}};
+  search_person.options.sees = true_eyes();
+  all.push_back(search_person);
   Scenario search{
       "blob-search", office(1, office_with("golden-crate", kRedBox)), "blob-search", {}};
   search.options.sees = true_eyes({"red"});

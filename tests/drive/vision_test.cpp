@@ -155,6 +155,32 @@ TEST(VisionEyes, APersonIsFollowedAroundACorner) {
   EXPECT_EQ(whole.trouble(), "");
 }
 
+// The demo with cameras (deployments/seeing.yaml): whenever one asks, the robot finds the person,
+// who may walk away or come up to it, and follows.
+TEST(VisionEyes, ThePersonOfTheDemoIsFollowedWheneverOneAsks) {
+  const std::string world = testing::TempDir() + "saphira-vision-demo.wld";
+  std::ofstream(world) << read_file(config_folder() + "/worlds/small-office.wld")
+                       << read_file(config_folder() + "/people/walker.wld");
+  for (const int wait : {30, 150, 240, 330}) {
+    WholeOptions options;
+    options.drive.world = world;
+    options.drive.start_in_world = Pose{0.85, 4.4, 0.0};
+    options.drive.guard = true;
+    options.drive.seed = static_cast<std::uint64_t>(wait);
+    options.map = "small-office";
+    options.sees = vision_eyes(Stereo::pictures);
+    Whole whole(options);
+    for (int cycle = 0; cycle < wait; ++cycle)
+      whole.advance();
+    const auto status = whole.achieve("follow-person", {saphira::number("seconds", 10.0)}, 900);
+    EXPECT_EQ(status.state, intentions::GoalState::kSucceeded)
+        << status.reason << ", asked after " << wait << " cycles";
+    EXPECT_LT((whole.drive().scene().persons()[0].at - whole.truth().position()).norm(), 4.0)
+        << wait;
+    EXPECT_EQ(whole.drive().contacts(), 0) << wait;
+  }
+}
+
 // Manual 9.3, search_and_go_blob: behind its back at first.
 TEST(VisionEyes, AColorIsSearchedForAndApproached) {
   WholeOptions options;

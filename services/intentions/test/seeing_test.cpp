@@ -72,6 +72,15 @@ TEST_F(Seeing, TheNearestOfItsKind) {
   EXPECT_THROW(call("seen", {"cat"}), ActivityError);
 }
 
+TEST_F(Seeing, WhoIsOutOfSightDoesNotHideWhoIsInSight) {
+  robot.pose_in_odom = {3.0, 0.0, 0.0};
+  EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 7 0)");
+  around.cycle = 101;  // now it has not seen him for more than a second
+  EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 8 0)");
+  around.cycle = 120;  // and nobody
+  EXPECT_EQ(to_text(call("seen", {"person"})), "(thing 7 0)");
+}
+
 TEST_F(Seeing, AThingHasAPlaceADistanceAndABearing) {
   const Value ann = call("seen", {"person"});
   ASSERT_NE(call("place-of", {ann}).point(), nullptr);

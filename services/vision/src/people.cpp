@@ -53,7 +53,10 @@ class Shapes {
 
  private:
   double depth(std::size_t column) const { return band_[column]->x() - eye_; }
-  double bearing(std::size_t column) const { return std::atan2(band_[column]->y(), depth(column)); }
+  // From the left camera: columns lie side by side in its picture, however far their points are.
+  double bearing(std::size_t column) const {
+    return std::atan2(band_[column]->y() - bands_.eye_left, depth(column));
+  }
   // Two sigmas of a range.
   double slack(double range) const { return 2.0 * bands_.uncertainty * range * range; }
 
@@ -144,13 +147,15 @@ class Shapes {
   // The range beside a shape: 1 farther (or nothing), -1 nearer, 0 as far, or the picture's end.
   int background(std::size_t from, int direction, double range) const {
     const double edge = bearing(from);
+    // To its left the shape hides a strip from the right camera, which has no match.
+    const double beside = kBeside + (direction < 0 ? 2.0 * bands_.eye_left / range : 0.0);
     for (auto column = static_cast<std::ptrdiff_t>(from) + direction;; column += direction) {
       if (column < 0 || column >= static_cast<std::ptrdiff_t>(band_.size()))
         return 0;
       const auto i = static_cast<std::size_t>(column);
       if (!band_[i])
         continue;
-      if (std::abs(bearing(i) - edge) > kBeside)
+      if (std::abs(bearing(i) - edge) > beside)
         return range > kTooNear ? 1 : 0;  // nothing, or so near that it does not match
       const double behind = depth(i) - range;
       if (std::abs(behind) > settings_.apart)
@@ -184,6 +189,7 @@ std::pair<int, int> torso_rows(const Rig& rig, int rows) {
 Bands bands_of(const DisparityMap& map, const Rig& rig, int rows) {
   Bands out;
   out.eye_forward = rig.forward;
+  out.eye_left = rig.baseline / 2.0;
   out.uncertainty = kSigmaDisparity / (rig.focal * rig.baseline);
   std::array<std::vector<double>, kTorso.size()> seen;
   std::vector<double> above;
@@ -269,10 +275,12 @@ std::vector<Sight> find_people(const Bands& bands, const PeopleSettings& setting
 
 bool in_view(const Bands& bands, const Vec2& place_in_robot, const PeopleSettings& settings) {
   const Vec2 from_eye = place_in_robot - Vec2(bands.eye_forward, 0.0);
-  if (from_eye.x() < settings.nearest || from_eye.x() > settings.farthest)
+  const double front = from_eye.x() - settings.radius;
+  if (front < settings.nearest || from_eye.x() > settings.farthest)
     return false;
-  const double bearing = std::atan2(from_eye.y(), from_eye.x());
-  const double half = settings.narrowest / 2.0 / from_eye.norm();
+  const double to_left = std::atan2(from_eye.y() - bands.eye_left, front);
+  const double to_right = std::atan2(from_eye.y() + bands.eye_left, front);
+  const double half = settings.narrowest / 2.0 / front;
   double least = kPi;
   double most = -kPi;
   int free = 0;
@@ -282,13 +290,13 @@ bool in_view(const Bands& bands, const Vec2& place_in_robot, const PeopleSetting
       if (!point)
         continue;
       const double range = point->x() - bands.eye_forward;
-      const double to = std::atan2(point->y(), range);
+      const double to = std::atan2(point->y() - bands.eye_left, range);
       least = std::min(least, to);
       most = std::max(most, to);
-      if (std::abs(to - bearing) < half)
+      if (std::abs(to - to_left) < half)
         (range < from_eye.x() - settings.apart ? hidden : free) += 1;
     }
-  return bearing - half > least && bearing + half < most && hidden <= free;
+  return to_left - half > least && to_right + half < most && hidden <= free;
 }
 
 }  // namespace saphira::vision

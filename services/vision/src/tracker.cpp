@@ -31,9 +31,20 @@ Eigen::Matrix2d noise(const Sight& sight, const Pose& robot) {
   return turn * variances.asDiagonal() * turn.transpose();
 }
 
+// Somebody who comes up to the robot stands before it or walks around it, and does not go on
+// through it.
+void stay_outside(Eigen::Vector4d& state, const Vec2& robot, const Vec2& before, double body) {
+  if ((Vec2(state(0), state(1)) - robot).norm() >= body || before.norm() < 1e-6)
+    return;
+  const Vec2 away = before.normalized();
+  const double towards = std::min(0.0, state(2) * away.x() + state(3) * away.y());
+  state << robot.x() + body * away.x(), robot.y() + body * away.y(), state(2) - towards * away.x(),
+      state(3) - towards * away.y();
+}
+
 }  // namespace
 
-void Tracker::predict(Track& track, std::uint64_t cycle) const {
+void Tracker::predict(Track& track, std::uint64_t cycle, const Pose& robot) const {
   const double acceleration = track.thing.kind == Kind::person ? settings_.acceleration
                               : track.ranged                   ? settings_.blob_acceleration
                                                                : settings_.direction_acceleration;
@@ -43,7 +54,10 @@ void Tracker::predict(Track& track, std::uint64_t cycle) const {
     Covariance step = Covariance::Identity();
     step(0, 2) = step(1, 3) = kCycle;
     step(2, 2) = step(3, 3) = keeps;
+    const Vec2 before = Vec2(track.state(0), track.state(1)) - robot.position();
     track.state = step * track.state;
+    if (track.thing.kind == Kind::person)
+      stay_outside(track.state, robot.position(), before, settings_.body);
     track.covariance = step * track.covariance * step.transpose();
     const double q = acceleration * acceleration;
     for (int i = 0; i < 2; ++i) {
@@ -119,7 +133,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
                   const std::vector<Sight>& sights,
                   const std::function<bool(const Vec2&)>& in_view) {
   struct Pair {
-    double distance;
+    double unlikely;
     std::size_t track;
     std::size_t sight;
   };
@@ -128,7 +142,7 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
     Track& track = tracks_[t];
     if (track.thing.kind != kind)
       continue;
-    predict(track, cycle);
+    predict(track, cycle, robot);
     for (std::size_t s = 0; s < sights.size(); ++s) {
       const Sight& sight = sights[s];
       if (sight.kind != kind || sight.channel != track.thing.channel)
@@ -147,13 +161,14 @@ void Tracker::see(Kind kind, std::uint64_t cycle, const Pose& robot,
         spread =
             Eigen::Matrix2d::Identity() * std::pow(std::min(across, 0.5) + sight.sigma_across, 2.0);
       }
-      const double distance = off.dot(spread.inverse() * off);
-      if (distance < settings_.gate)
-        pairs.push_back({distance, t, s});
+      // Of two tracks the likelier one: a track that has not been seen for long fits everywhere.
+      const double squared = off.dot(spread.inverse() * off);
+      if (squared < settings_.gate)
+        pairs.push_back({squared + std::log(spread.determinant()), t, s});
     }
   }
   std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+                   [](const Pair& a, const Pair& b) { return a.unlikely < b.unlikely; });
   std::vector<bool> seen(tracks_.size(), false);
   std::vector<bool> used(sights.size(), false);
   for (const Pair& pair : pairs) {
@@ -211,7 +226,7 @@ std::vector<lps::SeenThing> Tracker::things(std::uint64_t cycle, const Pose& rob
   for (Track track : tracks_) {
     if (!track.told || seconds(track.thing.seen, cycle) > settings_.forget_out_of_view)
       continue;
-    predict(track, cycle);
+    predict(track, cycle, robot);
     lps::SeenThing& thing = track.thing;
     const Vec2 place(track.state(0), track.state(1));
     const Vec2 to_robot = robot.position() - place;

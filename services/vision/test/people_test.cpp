@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <iostream>
 
 #include "seen.hpp"
@@ -29,6 +30,33 @@ TEST(People, AreFoundWhereTheyStand) {
     EXPECT_NEAR(found[0].place_in_robot.y(), aside, 3.0 * found[0].sigma_across) << away;
     EXPECT_NEAR(found[0].width, 0.5, 0.2) << away;
   }
+}
+
+// In the distance at which the robot attends to somebody. Nearer the cameras match nothing, and a
+// person is not expected to be seen.
+TEST(People, AreFoundAsNearAsTheyCanBeExpected) {
+  for (const double away : {0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.4})
+    for (const double aside : {-0.5, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.5}) {
+      const sim::World world =
+          room("person ann " + std::to_string(2000 + std::lround(1000 * away)) + " " +
+               std::to_string(3000 + std::lround(1000 * aside)));
+      sim::Scene scene(world);
+      scene.add_robot({}, {2.0, 3.0, 0.0}, 1);
+      Random random(5);
+      Census census;
+      const Bands seen = bands(census, picture(scene, random));
+      const bool expected = in_view(seen, {away, aside});
+      const std::vector<Sight> found = find_people(seen);
+      EXPECT_LE(expected ? 1U : 0U, found.size()) << away << " m away, " << aside << " m aside";
+      if (away >= 0.9 && std::abs(aside) < 0.15) {
+        EXPECT_TRUE(expected) << away << " m away, " << aside << " m aside";
+      }
+      if (away < 0.75) {
+        EXPECT_FALSE(expected) << away << " m away, " << aside << " m aside";
+      }
+      for (const Sight& one : found)
+        EXPECT_LT((one.place_in_robot - Vec2(away, aside)).norm(), 0.15) << away << ", " << aside;
+    }
 }
 
 TEST(People, TwoAreTwo) {

@@ -79,6 +79,38 @@ TEST(Tracker, WhoIsHiddenGoesOnAndIsFoundAgain) {
   EXPECT_EQ(tracker.things(46, {})[0].seen, 46U);
 }
 
+// He comes up to the robot until he is too near for the cameras.
+TEST(Tracker, WhoWalksUpToTheRobotStaysBeforeIt) {
+  Tracker tracker;
+  std::uint64_t cycle = 1;
+  for (; cycle <= 20; ++cycle)
+    tracker.see(Kind::person, cycle, {}, {person_at(2.8 - 0.1 * static_cast<double>(cycle), 0.1)},
+                everywhere);
+  for (; cycle <= 60; ++cycle)
+    tracker.see(Kind::person, cycle, {}, {}, nowhere);
+  const auto things = tracker.things(cycle, {});
+  ASSERT_EQ(things.size(), 1U);
+  EXPECT_GT(things[0].pose_in_odom.position().norm(), 0.44);
+  EXPECT_LT(things[0].pose_in_odom.position().norm(), 0.7);
+  EXPECT_GT(things[0].pose_in_odom.x, 0.3);
+}
+
+// Somebody has been out of sight for long, and could be anywhere by now; another is seen all the
+// time and turns around.
+TEST(Tracker, WhoIsInSightKeepsHisIdFromWhoIsLost) {
+  Tracker tracker;
+  std::uint64_t cycle = 1;
+  const auto other = [&] { return person_at(3.5 + 0.08 * static_cast<double>(cycle % 2), 1.0); };
+  for (; cycle <= 20; ++cycle)
+    tracker.see(Kind::person, cycle, {}, {person_at(3.0, -1.0), other()}, everywhere);
+  for (; cycle <= 80; ++cycle)
+    tracker.see(Kind::person, cycle, {}, {other()}, nowhere);
+  // As far as that he is not quite where he was expected.
+  tracker.see(Kind::person, cycle, {}, {person_at(3.4, 0.8)}, nowhere);
+  for (const lps::SeenThing& thing : tracker.things(cycle, {}))
+    EXPECT_EQ(thing.seen, thing.id == 2 ? cycle : 20U) << thing.id;
+}
+
 TEST(Tracker, WhoIsNotWhereHeShouldBeSeenIsForgotten) {
   Tracker tracker;
   std::uint64_t cycle = 1;

@@ -1,6 +1,6 @@
 #include "seeing.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace saphira::intentions {
 namespace {
@@ -21,6 +21,14 @@ std::optional<Wanted> wanted(const std::string& what) {
   if (what.size() == 6 && what.starts_with("blob-") && what[5] >= 'a' && what[5] <= 'c')
     return Wanted{SeenKind::blob, what[5] - 'a'};
   return std::nullopt;
+}
+
+constexpr double kInSight = 1.0;  // [s] since it was seen
+
+double unseen(const World& world, const SeenThing& thing) {
+  return thing.seen < world.around.cycle
+             ? static_cast<double>(world.around.cycle - thing.seen) * kTick
+             : 0.0;
 }
 
 double distance(const World& world, const SeenThing& thing) {
@@ -67,12 +75,16 @@ std::optional<Value> nearest_seen(const World& world, const std::string& what) {
   const std::optional<Wanted> kind = wanted(what);
   if (!kind)
     return std::nullopt;
+  // One out of sight is only a guess, and may have gone: it does not hide one in sight.
+  const auto rank = [&](const SeenThing& thing) {
+    return std::pair(unseen(world, thing) > kInSight, distance(world, thing));
+  };
   const SeenThing* best = nullptr;
   if (world.around.things != nullptr)
     for (const SeenThing& thing : *world.around.things) {
       if (thing.kind != kind->kind || (kind->channel >= 0 && thing.channel != kind->channel))
         continue;
-      if (best == nullptr || distance(world, thing) < distance(world, *best))
+      if (best == nullptr || rank(thing) < rank(*best))
         best = &thing;
     }
   return best == nullptr ? Value() : Value(Reference{Reference::Kind::kThing, best->id, 0});
@@ -83,13 +95,9 @@ void add_seeing(Functions& functions) {
                          [](const World&, const SeenThing& thing) {
                            return Value(Reference{Reference::Kind::kThing, thing.id, 0});
                          }));
-  functions.add(of_thing("seconds-unseen",
-                         "(seconds-unseen THING): since it was seen last [s]; nil once forgotten",
-                         [](const World& world, const SeenThing& thing) {
-                           const double cycles = static_cast<double>(world.around.cycle) -
-                                                 static_cast<double>(thing.seen);
-                           return Value(std::max(0.0, cycles) * kTick);
-                         }));
+  functions.add(of_thing(
+      "seconds-unseen", "(seconds-unseen THING): since it was seen last [s]; nil once forgotten",
+      [](const World& world, const SeenThing& thing) { return Value(unseen(world, thing)); }));
   functions.add(of_thing(
       "speed-of", "(speed-of THING): how fast it moves [m/s]",
       [](const World&, const SeenThing& thing) { return Value(thing.velocity_in_odom.norm()); }));

@@ -22,6 +22,8 @@ struct Bands {
   std::array<Band, kTorso.size()> bands;
   Band above;                ///< the same above people's heads; empty: not used
   double eye_forward = 0.0;  ///< [m] of the cameras, before the robot's centre
+  /// [m] Of the left camera, whose columns these are; the other is as far to the right.
+  double eye_left = 0.0;
   /// [1/m] One sigma of a range z is this times z squared.
   double uncertainty = 0.01;
 
@@ -49,8 +51,8 @@ struct PeopleSettings {
 /// three; not flat, where that is measurable, and not higher than a head.
 std::vector<Sight> find_people(const Bands& bands, const PeopleSettings& settings = {});
 
-/// True where a person at a place in the robot's frame would be seen: within the picture, and not
-/// hidden by a nearer object.
+/// True where a person at a place in the robot's frame would be seen: within both pictures, not
+/// hidden by a nearer object, and not so near that nothing matches.
 bool in_view(const Bands& bands, const Vec2& place_in_robot, const PeopleSettings& settings = {});
 
 }  // namespace saphira::vision

@@ -22,7 +22,9 @@ struct TrackerSettings {
   double sure = 0.45;    ///< with this confidence
   double forget_in_view = 2.0;       ///< [s] without a sight in view
   double forget_out_of_view = 15.0;  ///< [s] without a sight out of view
-  double coast = 1.5;               ///< [s] of constant velocity out of sight, before it slows down
+  double coast = 1.5;  ///< [s] of constant velocity out of sight, before it slows down
+  /// [m] From a person's middle to the robot's: nobody walks through the robot.
+  double body = 0.45;
   int hold = 4;                     ///< sights that make a pointing arm
   double same_arm = radians(40.0);  ///< [rad] between the directions of one arm
 };
@@ -61,7 +63,7 @@ class Tracker {
     double missed = 0.0;  // [s] in view without a sight
   };
 
-  void predict(Track& track, std::uint64_t cycle) const;
+  void predict(Track& track, std::uint64_t cycle, const Pose& robot) const;
   void update(Track& track, const Sight& sight, const Pose& robot) const;
   void watch_arm(Track& track, const Sight& sight, std::uint64_t cycle, const Pose& robot) const;
   void begin(const Sight& sight, std::uint64_t cycle, const Pose& robot);
