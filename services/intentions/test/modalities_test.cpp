@@ -482,23 +482,23 @@ TEST(Modality, ABeliefWhileAnIntentionLastsEndsWithIt) {
   ASSERT_TRUE(stage.loaded.ok()) << errors(stage.loaded);
   stage.ask(1, "it");
   stage.step(3);
-  EXPECT_EQ(to_text(stage.belief("asking")), "\"x\"");
+  EXPECT_EQ(stage.belief("asking"), Value("x"));
   // Its own end.
   stage.step(20);
   EXPECT_TRUE(stage.belief("asking").nil());
-  EXPECT_EQ(to_text(stage.belief("kept")), "\"y\"");
+  EXPECT_EQ(stage.belief("kept"), Value("y"));
   // The end of its goal.
   stage.dispose(1);
   stage.ask(2, "it");
   stage.step(3);
-  EXPECT_EQ(to_text(stage.belief("asking")), "\"x\"");
+  EXPECT_EQ(stage.belief("asking"), Value("x"));
   stage.dispose(2);
   stage.step();
   EXPECT_TRUE(stage.belief("asking").nil());
   // As set afterwards for good.
   stage.ask(3, "other");
   stage.step(5);
-  EXPECT_EQ(to_text(stage.belief("asking")), "\"all\"");
+  EXPECT_EQ(stage.belief("asking"), Value("all"));
 }
 
 TEST(Modality, ABehaviorThatCannotBeMadeFailsAlsoWhoDoesNotWaitForIt) {

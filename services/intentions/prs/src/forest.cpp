@@ -247,17 +247,21 @@ void Forest::drop(std::uint32_t id) {
     std::erase(roots_, id);
   if (control_off_.erase(id) > 0 && control_off_.empty())
     beliefs_->unset(kBehaviorControl);
-  std::erase_if(whiles_, [&](const auto& one) {
-    if (one.second == id)
-      beliefs_->unset(one.first);
-    return one.second == id;
-  });
+  end_beliefs(id);
   order_is_old_ = true;
   changed_ = true;
   node.gone = true;
   const auto found = nodes_.find(id);
   graves_.push_back(std::move(found->second));
   nodes_.erase(found);
+}
+
+void Forest::end_beliefs(std::uint32_t id) {
+  std::erase_if(whiles_, [&](const auto& one) {
+    if (one.second == id)
+      beliefs_->unset(one.first);
+    return one.second == id;
+  });
 }
 
 void Forest::remove_children(Node& parent) {
@@ -418,8 +422,10 @@ void Forest::conclude(Node& node, bool interrupted, const World& world) {
   // An intention that does not run leaves nothing running (manual 8.1.4, and rule 3 of 8.4).
   if (ends || (interrupted && !node.activity->keeps_children()))
     remove_children(node);
-  if (ends)
+  if (ends) {
+    end_beliefs(node.shown.id);
     tell_parent(node);
+  }
   for (const std::uint32_t id : std::exchange(doomed_, {})) {
     if (const Node* const doomed = at(id)) {
       tell_parent(*doomed);

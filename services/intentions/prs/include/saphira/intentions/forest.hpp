@@ -157,6 +157,7 @@ class Forest {
   void watch(Node& node, const World& world);
   void remove_children(Node& parent);
   void drop(std::uint32_t id);
+  void end_beliefs(std::uint32_t id);
   void tell_parent(const Node& node);
   void suspend(Node& node);
   void wake(Node& node);
