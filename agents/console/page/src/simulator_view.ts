@@ -3,7 +3,7 @@ export interface Robot { x: number; y: number; th: number; name: string; radius:
   contacts: number; connected: boolean; sonars: number[][]; inputs: Inputs; outputs: number }
 // Of the user's devices: a bit for each pin, [5 V / 255] for each port, [ms].
 export interface Inputs { digital: number; analog: number[]; timer: number }
-export interface Person { name: string; x: number; y: number; th: number; radius: number }
+export interface Person { name: string; x: number; y: number; th: number; radius: number; arm?: number[] }
 export interface Door { name: string; leaf: number[]; open: boolean }
 export interface Box { name: string; x: number; y: number; th: number; corners: number[][] }
 export interface Post { name: string; x: number; y: number; radius: number; color: string }
@@ -214,6 +214,11 @@ export class SimulatorView {
       c.fillStyle = color('person');
       disc(person.x, person.y, person.radius);
       c.fill();
+      if (person.arm) {
+        c.strokeStyle = color('person');
+        c.lineWidth = 4;
+        line(person.arm);
+      }
     }
     for (const robot of scene.robots) {
       if (this.beams) {

@@ -60,9 +60,10 @@ export interface Percept {
 }
 export interface Perception { odom: number; percepts: Percept[] }
 export interface Vision {
+  stamp: Stamp;
   odom: number;
   things: {id: number; kind: string; pose_in_odom: Pose; velocity_x: number; velocity_y: number;
-           range_known: boolean; confidence: number}[];
+           range_known: boolean; confidence: number; points: number; pointed: number}[];
 }
 export interface GridTile {
   column: number;

@@ -7,6 +7,7 @@ import type {Argument, Behaviors, Drawing, GridTile, MapArtifact, Perception, Po
              RobotDescription, RobotState, SaphiraMap, Vision} from './types';
 
 const wakeTime = 10_000;     // [ms] (manual 2.3.4.4)
+const pointingCycles = 20;   // for which an arm counts after it was seen
 const echoTime = 30_000;     // [ms]
 const mostEchoes = 1500;
 const ahead = 150;           // [ms] that the robot's way is drawn on without news
@@ -538,6 +539,10 @@ export class View {
       c.beginPath();
       c.arc(t.pose_in_odom.x, t.pose_in_odom.y, 0.22, 0, 7);
       c.fill();
+      if (t.pointed && vision.stamp.cycle - t.pointed < pointingCycles) {
+        const {x, y} = t.pose_in_odom;
+        this.line([[x, y], [x + 0.8 * Math.cos(t.points), y + 0.8 * Math.sin(t.points)]], this.colors.person, this.px(4));
+      }
       c.globalAlpha = 1;
     }
   }
