@@ -381,8 +381,10 @@ void Core::begin_anew(const std::string& source) {
   now_.source = source;
   now_.changed = false;
   now_.start.reset();
-  if (registration_)
+  if (registration_) {
     registration_->recall_closed({});
+    registration_->doubt_the_map();
+  }
 }
 
 std::optional<Remembered> Core::remembered() const {

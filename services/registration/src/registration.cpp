@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saphira/maps/artifact_traits.hpp"
+#include "saphira/maps/topology.hpp"
 #include "saphira/registration/state.hpp"
 
 namespace saphira::registration {
@@ -18,6 +19,7 @@ constexpr double kNearTurn = radians(20.0);  // ...this is a correction; farther
 constexpr std::size_t kTurns = 600;          // cycles
 constexpr std::size_t kKeptReadings = 4000;  // used ones that are stored
 constexpr double kUnconfirmed = 0.5;         // the highest confidence of a given pose
+constexpr double kBesideTheMap = 1.0;        // [m] a pose farther outside is not on it
 constexpr std::uint64_t kNoFrame = 0;        // no frame of a robot has this number
 
 Eigen::Matrix3d covariance_of(const Sigmas& sigmas) {
@@ -68,6 +70,7 @@ class Registration::Self {
   void doubt();
   void suspect_it_was_carried();
   bool holds_again() const;
+  void doubt_the_map();
   void forget();
   void switch_on(bool on);
   const RegistrationState& state() const { return now_; }
@@ -126,7 +129,7 @@ void Registration::Self::place(const Pose& pose, const Eigen::Matrix3d& covarian
   now_.search.own_recent = settings_.recently_sure;
   now_.state = State::tracking;
   now_.confirmed = confidence > kUnconfirmed;
-  now_.doubted = now_.carried = false;
+  now_.doubted = now_.carried = now_.other_map = false;
   now_.done.clear();
   now_.cloud.clear();
   now_.leads = false;
@@ -165,9 +168,24 @@ void Registration::Self::doubt() {
                                settings_.drift_error * settings_.drift_error, settings_.reckoning));
 }
 
+/// A pose that has fitted the old map may be wrong by any amount on this one.
+void Registration::Self::doubt_the_map() {
+  now_.start.reset();
+  if (now_.filter &&
+      maps::outside(map_, now_.filter->pose().position(), kBesideTheMap).has_value()) {
+    forget();
+  } else if (now_.filter && now_.state == State::tracking) {
+    const Pose pose = now_.filter->pose();
+    place(pose, covariance_of({}), now_.filter->drift(), now_.filter->covariance()(3, 3),
+          kUnconfirmed);
+  }
+  now_.other_map = now_.state == State::tracking || now_.state == State::unplaced;
+  report();
+}
+
 void Registration::Self::forget() {
   now_.cloud.clear();
-  now_.doubted = now_.carried = false;
+  now_.doubted = now_.carried = now_.other_map = false;
   now_.filter.reset();
   search_.clear();
   now_.state = State::unplaced;
@@ -558,6 +576,7 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     if (now_.state == State::tracking)
       now_.doubted = now_.carried = false;
     now_.confirmed = now_.confirmed || now_.search.own_score >= settings_.sure;
+    now_.other_map = now_.other_map && !now_.confirmed;
     look_for_news(inputs, readings);
   }
   report();
@@ -602,9 +621,10 @@ void Registration::Self::report() {
     now_.output.reason = "the map has no walls";
   } else if (now_.state == State::unplaced) {
     now_.output.confidence = 0.0;
-    now_.output.reason = now_.search.hypotheses.empty()
-                             ? "looking for where it is: no opening seen yet"
-                             : "looking for where it is: several places would do";
+    now_.output.reason =
+        now_.other_map ? "another map was loaded: looking for where the robot is on it"
+        : now_.search.hypotheses.empty() ? "looking for where it is: no opening seen yet"
+                                         : "looking for where it is: several places would do";
   } else if (now_.state == State::lost) {
     now_.output.reason = now_.doubted && now_.carried
                              ? "all around has changed while it stood, as if it had been carried: "
@@ -622,7 +642,9 @@ void Registration::Self::report() {
     if (!now_.confirmed)
       now_.output.confidence = std::min(now_.output.confidence, kUnconfirmed);
     now_.output.reason =
-        !now_.confirmed ? "as it was told or remembered: too little was heard yet to confirm it"
+        !now_.confirmed && now_.other_map
+            ? "another map was loaded: too little was heard yet to confirm the pose on it"
+        : !now_.confirmed ? "as it was told or remembered: too little was heard yet to confirm it"
         : now_.output.confidence < 0.5        ? "the readings hardly fit the map"
         : now_.filter->sigma_position() > 0.5 ? "nothing matched for long: by dead reckoning"
                                               : "matched with the map";
@@ -652,6 +674,10 @@ void Registration::set_map(maps::Map map) {
   next->set_state(self_->state());
   next->follow_edit(self_->map());
   self_ = std::move(next);
+}
+
+void Registration::doubt_the_map() {
+  self_->doubt_the_map();
 }
 
 const maps::Map& Registration::map() const {

@@ -233,6 +233,53 @@ TEST(RegistrationCore, LoadsAMapAndKeepsTheOldOneWhereItIsBad) {
   EXPECT_EQ(robot.stand(core).environment, 7U);
 }
 
+TEST(RegistrationCore, OnAnotherMapThePoseIsAGuess) {
+  Core core(settings());
+  Robot robot;
+  Core::Outputs before;
+  for (int i = 0; i < 100; ++i)
+    before = robot.step(core);
+  ASSERT_GT(before.confidence, 0.9);
+  // The same place on it by chance: the readings confirm the guess.
+  EXPECT_EQ(core.act(load("CORRIDOR (7) 10000, 0, 0, 20000, 2000\n")).text, "");
+  const Core::Outputs guess = robot.stand(core);
+  EXPECT_EQ(guess.state, State::tracking);
+  EXPECT_NEAR(guess.pose_in_map.x, before.pose_in_map.x, 0.1);
+  EXPECT_LE(guess.confidence, 0.5);
+  EXPECT_TRUE(contains(guess.reason, "another map was loaded")) << guess.reason;
+  Core::Outputs later = guess;
+  for (int i = 0; i < 100; ++i)
+    later = robot.step(core);
+  EXPECT_GT(later.confidence, 0.9);
+  EXPECT_FALSE(contains(later.reason, "another map")) << later.reason;
+}
+
+TEST(RegistrationCore, OffAnotherMapThePoseIsForgotten) {
+  Core core(settings());
+  Robot robot;
+  for (int i = 0; i < 100; ++i)
+    robot.step(core);
+  EXPECT_EQ(core.act(load("CORRIDOR (7) 60000, 0, 0, 20000, 2000\n")).text, "");
+  const Core::Outputs after = robot.stand(core);
+  EXPECT_EQ(after.state, State::unplaced);
+  EXPECT_EQ(after.confidence, 0.0);
+  EXPECT_TRUE(contains(after.reason, "another map was loaded")) << after.reason;
+  EXPECT_FALSE(core.remembered()->memory.placed);
+}
+
+TEST(RegistrationCore, AnEditOfTheMapLeavesThePoseInPeace) {
+  Core core(settings());
+  Robot robot;
+  for (int i = 0; i < 100; ++i)
+    robot.step(core);
+  const std::uint32_t id = id_of(core.act(put(lps::PointType::position, {5.0, 0.0, 0.0})));
+  EXPECT_GT(robot.step(core).confidence, 0.9);
+  Request gone = request("remove");
+  gone.arguments = {saphira::number("id", id)};
+  EXPECT_EQ(core.act(gone).text, "");
+  EXPECT_GT(robot.step(core).confidence, 0.9);
+}
+
 TEST(RegistrationCore, DeletesTheMap) {
   Core core(settings());
   Robot robot;

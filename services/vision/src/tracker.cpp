@@ -31,15 +31,18 @@ Eigen::Matrix2d noise(const Sight& sight, const Pose& robot) {
   return turn * variances.asDiagonal() * turn.transpose();
 }
 
-// Somebody who comes up to the robot stands before it or walks around it, and does not go on
-// through it.
+// Somebody who comes straight up to the robot stands before it, and does not go on through it; who
+// comes aslant walks around it.
 void stay_outside(Eigen::Vector4d& state, const Vec2& robot, const Vec2& before, double body) {
   if ((Vec2(state(0), state(1)) - robot).norm() >= body || before.norm() < 1e-6)
     return;
   const Vec2 away = before.normalized();
-  const double towards = std::min(0.0, state(2) * away.x() + state(3) * away.y());
-  state << robot.x() + body * away.x(), robot.y() + body * away.y(), state(2) - towards * away.x(),
-      state(3) - towards * away.y();
+  const Vec2 velocity(state(2), state(3));
+  const double towards = std::min(0.0, velocity.dot(away));
+  const Vec2 aside = velocity - towards * away;
+  const Vec2 place = robot + body * away;
+  const Vec2 left = aside.norm() < -towards ? Vec2(0.0, 0.0) : aside;
+  state << place.x(), place.y(), left.x(), left.y();
 }
 
 }  // namespace

@@ -181,11 +181,16 @@ Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int 
     feature.width = next("the width in mm", 1, kMax) * kMillimetre;
   if (in.at_quote())
     feature.name = in.quoted();
-  if (!in.at_end()) {
+  while (!in.at_end()) {
     const std::string_view extra = in.word();
+    if (extra == "learned" && !feature.learned) {
+      feature.learned = true;
+      continue;
+    }
     in.fail("expected " +
-            std::string(feature.name.empty() ? "a name in quotation marks or the end of the line"
-                                             : "the end of the line") +
+            std::string(feature.name.empty() && !feature.learned
+                            ? "a name in quotation marks or the end of the line"
+                            : "the end of the line") +
             ", found \"" + std::string(extra) + "\"");
   }
   return feature;
@@ -219,6 +224,8 @@ std::string line_of(const Feature& feature) {
     out += ", " + millimetres(feature.width, 1);
   if (!feature.name.empty())
     out += " \"" + feature.name + "\"";
+  if (feature.learned)
+    out += " learned";
   return out + "\n";
 }
 

@@ -216,5 +216,23 @@ TEST(ArtifactTraits, AreAllThatMapsAskOfAType) {
   EXPECT_EQ(words.size(), kArtifactTraits.size() - 1);
 }
 
+TEST(MapFile, WhatTheRobotHasAddedIsStillItsOwnAfterSavingAndLoading) {
+  const std::string text =
+      "CORRIDOR (1) 5000, 0, 0, 10000, 2000 \"hall\"\n"
+      "WALL 5000, 3000, 0, 2000 learned\n"
+      "DOOR (2) 3000, 1000, -90, 900 \"A\" learned\n";
+  const Map map = parse_map(text, "own.map");
+  ASSERT_EQ(map.features.size(), 3U);
+  EXPECT_FALSE(map.features[0].learned);
+  EXPECT_TRUE(map.features[1].learned);
+  EXPECT_TRUE(map.features[2].learned);
+  EXPECT_EQ(map.features[2].name, "A");
+  EXPECT_EQ(parse_map(to_text(map), "again.map"), map);
+  for (const char* const wrong :
+       {"WALL 0, 0, 0, 2000 learned learned\n", "WALL 0, 0, 0, 2000 learnt\n",
+        "WALL 0, 0, 0, 2000 learned \"A\"\n"})
+    EXPECT_THROW(parse_map(wrong, "wrong.map"), FileError) << wrong;
+}
+
 }  // namespace
 }  // namespace saphira::maps

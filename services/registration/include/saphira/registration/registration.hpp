@@ -147,6 +147,9 @@ class Registration {
   /// Another map, or a changed one. The state stays.
   void set_map(maps::Map map);
   const maps::Map& map() const;
+  /// The present map is of another origin than the one before, so the pose on it is a guess;
+  /// outside of the map it is forgotten.
+  void doubt_the_map();
   /// Sets the robot's pose from outside.
   void set_pose(const Pose& pose_in_map, const Sigmas& sigmas = {});
   /// Forgets the robot's pose, and searches for it.

@@ -52,6 +52,9 @@ struct RegistrationState {
   bool doubted = false;
   bool carried = false;       ///< the doubt came from the readings at a standstill
   std::optional<Pose> start;  ///< the alternative pose
+  /// Another map was loaded, and since then no reading has confirmed the pose, and nobody has set
+  /// it.
+  bool other_map = false;
 
   // Dead reckoning.
   std::uint64_t cycle = 0;

@@ -23,7 +23,7 @@ struct Feature {
   double width = 0.0;   ///< [m] across the heading; 0 where the type has none
   std::string name;     ///< of a room, and of its doors; empty: none
   /// The robot has added it itself; its own walls and breaks are removed when they are not seen any
-  /// more. A file does not hold this flag: a map that a person loads is taken as true.
+  /// more. In a file: the word learned at the end of the line.
   bool learned = false;
 
   bool operator==(const Feature&) const = default;
