@@ -22,8 +22,9 @@ constexpr EnumPairs<registration::State, intentions::Localization, 4> kLocalizat
     {},
     {intentions::Localization::kNone}};
 
-behaviors::Intent intent_of(const intentions::Outputs& wanted) {
-  behaviors::Intent intent{0, wanted.behavior_control, {}};
+behaviors::Intent intent_of(const intentions::Core::Outputs& said) {
+  const intentions::Outputs& wanted = said.intended;
+  behaviors::Intent intent{0, wanted.behavior_control, {}, said.limit.speed, said.limit.reason};
   for (const intentions::IntendedBehavior& behavior : wanted.behaviors) {
     behaviors::Intended& intended = intent.behaviors.emplace_back();
     intended.name = behavior.name;
@@ -120,7 +121,7 @@ behaviors::Core::Outputs Cores::step_behaviors(const RobotCycle& robot) {
   if (!intentions_)
     inputs.intent = intent_;
   else if (!first())
-    inputs.intent = intent_of(said_.intentions.intended);
+    inputs.intent = intent_of(said_.intentions);
   if (inputs.intent)
     inputs.intent->cycle = robot.cycle - 1;
   return behaviors_.step(inputs);

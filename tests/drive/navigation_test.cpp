@@ -241,6 +241,130 @@ TEST(Navigation, ADoorThatWasPassedClosedIsAvoidedAndTakenAgainWhenItIsOpen) {
   EXPECT_EQ(whole.drive().contacts(), 0);
 }
 
+/// The office floor with additional lines of its map.
+WholeOptions office_with_zones(const std::string& lines) {
+  WholeOptions options = office();
+  options.made_map = std::make_shared<const maps::Map>(maps::parse_map(
+      read_file(config_folder() + "/maps/office-floor.map") + "\n" + lines + "\n", "zones.map"));
+  return options;
+}
+
+bool does(const Whole& whole, const std::string& schema) {
+  const auto& nodes = whole.intentions().nodes;
+  return std::any_of(nodes.begin(), nodes.end(),
+                     [&](const auto& node) { return node.schema == schema; });
+}
+
+const maps::Feature& zone_of(const Whole& whole) {
+  return *maps::find(whole.map(), 900);
+}
+
+// Not only between two legs: here the robot has already begun to pass the door.
+TEST(Zones, AKeepOutThatIsToldOnTheLastLegIsObeyed) {
+  for (const char* const leg : {"corridor-to-door", "through-door"}) {
+    Whole whole(office());
+    const auto goal = whole.ask("go-to-place", {text("place", "EJ-231")});
+    ASSERT_TRUE(whole.advance_until(
+        [&] { return does(whole, leg) && whole.truth().position().y() > 24.0; }, 3000));
+    ASSERT_FALSE(is_in(whole, "EJ-231"));
+    whole.claim("hazards", "keep-out at EJ-231");
+    bool inside = false;
+    EXPECT_TRUE(whole.advance_until(
+        [&] {
+          inside = inside || is_in(whole, "EJ-231");
+          return whole.ended(goal);
+        },
+        100));
+    EXPECT_EQ(whole.status(goal).state, GoalState::kFailed);
+    EXPECT_EQ(whole.status(goal).reason,
+              "room 231 (EJ-231) is in a place that people told me to keep out of");
+    EXPECT_FALSE(inside) << leg;
+    EXPECT_FALSE(said(whole, "Please open the way"));
+    EXPECT_TRUE(whole.at_rest());
+  }
+}
+
+TEST(Zones, ASlowZoneCapsTheSpeed) {
+  Whole whole(office_with_zones("ZONE (900) 17500, 11000, 0, 3000, 3000 slow 100 \"kitchen\""));
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-265")});
+  double fastest = 0.0;
+  double outside = 0.0;
+  std::string reason;
+  whole.advance_until(
+      [&] {
+        const Vec2 at = whole.truth().position();
+        const double velocity = whole.drive().seen().velocity;
+        // The robot brakes behind the edge.
+        if (at.y() < 12.1 && at.y() > 9.7) {
+          fastest = std::max(fastest, velocity);
+          reason = whole.drive().cores().said().intentions.limit.reason;
+        } else {
+          outside = std::max(outside, velocity);
+        }
+        return whole.ended(goal);
+      },
+      3000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_GT(fastest, 0.05);
+  EXPECT_LT(fastest, 0.12);
+  EXPECT_GT(outside, 0.25);
+  EXPECT_EQ(reason, "slow zone \"kitchen\"");
+}
+
+TEST(Zones, OneWayForcesTheWayAround) {
+  Whole whole(office_with_zones("ZONE (900) 17500, 11000, 90, 3000, 2000 one-way"));
+  const auto goal = whole.ask("go-to-place", {text("place", "EJ-265")});
+  bool entered = false;
+  bool east = false;
+  whole.advance_until(
+      [&] {
+        entered = entered || maps::contains(zone_of(whole), whole.truth().position());
+        east = east || is_in(whole, "upper corridor");
+        return whole.ended(goal);
+      },
+      6000);
+  EXPECT_EQ(whole.status(goal).state, GoalState::kSucceeded) << whole.status(goal).reason;
+  EXPECT_FALSE(entered);
+  EXPECT_TRUE(east);
+}
+
+// Goals without a route: to a point, and on and on.
+TEST(Zones, NoGoalEntersAKeepOut) {
+  const std::string zone = "ZONE (900) 17500, 10000, 0, 4000, 2000 keep-out \"lab\"";
+  for (const auto& [functor, arguments] :
+       {std::pair<std::string, saphira::Arguments>{
+            "go_to", {saphira::point("position", {17.5, 8.0, 0.0}, Frame::map)}},
+        {"drive", {number("speed", 0.3)}},
+        {"roam", {}}}) {
+    Whole whole(office_with_zones(zone));
+    const auto goal = whole.ask(functor, arguments);
+    bool entered = false;
+    whole.advance_until(
+        [&] {
+          entered = entered || maps::contains(zone_of(whole), whole.truth().position());
+          return whole.ended(goal);
+        },
+        600);
+    EXPECT_EQ(whole.status(goal).state, GoalState::kFailed) << functor;
+    EXPECT_EQ(whole.status(goal).reason, "it must not go on: keep-out zone \"lab\"") << functor;
+    EXPECT_FALSE(entered) << functor;
+  }
+  Whole whole(office_with_zones(zone));
+  const GoalStatus inside =
+      whole.achieve("go_to", {saphira::point("position", {17.5, 10.0, 0.0}, Frame::map)}, 100);
+  EXPECT_EQ(inside.state, GoalState::kFailed);
+  EXPECT_EQ(inside.code, GoalCode::kNoRoute);
+  EXPECT_EQ(inside.reason, "(17.50, 10.00) on the map is in keep-out zone \"lab\"");
+}
+
+TEST(Navigation, ToAPointOfTheMapByARoute) {
+  Whole whole(office());
+  const GoalStatus there =
+      whole.achieve("go-to-place", {saphira::point("place", {14.7, 25.0, 0.0}, Frame::map)}, 3000);
+  EXPECT_EQ(there.state, GoalState::kSucceeded) << there.reason;
+  EXPECT_LT((whole.truth().position() - Vec2(14.7, 25.0)).norm(), 0.7);
+}
+
 TEST(Navigation, AThingIsPutOnTheMapAndTakenFromItWhenItIsCarriedOff) {
   WholeOptions options = office(1, office_with("box", "box crate 18200 10000 0 400 600 50\n"));
   options.adds_objects = true;

@@ -28,6 +28,18 @@ constexpr double kMapPatience = 5.0;  ///< [s] for the map, and for an answer
 constexpr double kAllHeard = 0.5;     ///< [s] until every program of this robot is discovered
 
 /// The map and the robot on it, from the bus.
+/// The belief with the zones by advice, its value without the quotation marks.
+v1::Belief hazards_in(const v1::BeliefSet& beliefs) {
+  for (const v1::Belief& belief : beliefs.beliefs())
+    if (const std::string& value = belief.value();
+        belief.name() == "hazards" && value.size() > 2 && value.front() == '"') {
+      v1::Belief found = belief;
+      found.value(value.substr(1, value.size() - 2));
+      return found;
+    }
+  return {};
+}
+
 class View {
  public:
   explicit View(const bus::NodeOptions& options)
@@ -38,6 +50,7 @@ class View {
         grants_(node.reader(bus::topics::kGrant)),
         maps_(node.reader(bus::topics::kMap)),
         registrations_(node.reader(bus::topics::kRegistration)),
+        beliefs_(node.reader(bus::topics::kBeliefs)),
         descriptions_(node.reader(bus::topics::kRobotDescription)) {}
 
   /// True where a new sample of registration came.
@@ -47,6 +60,8 @@ class View {
       holds = latched(*grant);
     if (const auto description = descriptions_.take_newest())
       radius = description->radius();
+    if (const auto beliefs = beliefs_.take_newest())
+      hazards = hazards_in(*beliefs);
     if (auto newest = maps_.take_newest()) {
       sample = std::move(newest);
       map = maps::from_bus(*sample);
@@ -93,6 +108,7 @@ class View {
   maps::Map map;
   std::optional<v1::Registration> registration;
   std::optional<double> radius;  ///< [m] of the robot
+  v1::Belief hazards;            ///< zones by advice
   bus::RequestClient registration_client{node, bus::topics::kRegistrationRequest, "saphira map"};
   std::string holds;  ///< the latches, in words
 
@@ -101,6 +117,7 @@ class View {
   bus::Reader<v1::Grant> grants_;
   bus::Reader<v1::FloorMap> maps_;
   bus::Reader<v1::Registration> registrations_;
+  bus::Reader<v1::BeliefSet> beliefs_;
   bus::Reader<v1::RobotDescription> descriptions_;
 };
 
@@ -353,12 +370,18 @@ int route(const std::string& place, const bus::NodeOptions& options, const bus::
   settings.closed = view.closed_doors();
   if (view.radius)
     settings.needs_width = maps::needed_width(*view.radius);
+  settings.zones = maps::zones_of(view.map);
+  for (maps::Zone& zone :
+       maps::advised_zones(topology, view.hazards.value(), view.hazards.said_by()))
+    settings.zones.push_back(std::move(zone));
   const maps::RouteResult found = maps::find_route(topology, view.position(), place, settings);
   if (!found.route) {
     std::cerr << "saphira: " << found.reason << '\n';
     return bus::kExitFailed;
   }
   std::printf("%.1f m: %s\n", found.route->length, maps::text(topology, *found.route).c_str());
+  if (const std::string remark = found.remark(); !remark.empty())
+    std::printf("it goes %s\n", remark.c_str());
   for (const maps::Leg& leg : found.route->legs)
     if (leg.link && settings.closed.contains(topology.links()[*leg.link].id))
       std::printf(

@@ -78,12 +78,17 @@ Arguments artifact(const std::string& line) {
   if (map.features.size() != 1)
     throw std::invalid_argument("expected one artifact, such as \"DOOR (3) 3000, 1000, 90, 900\"");
   const maps::Feature& one = map.features.front();
-  return {{"id", static_cast<double>(one.id)},
-          {"type", std::string(maps::traits(one.type).word)},
-          {"position", PlacedPoint{one.pose_in_map, Frame::map}},
-          {"length", one.length},
-          {"width", one.width},
-          {"name", one.name}};
+  Arguments arguments{{"id", static_cast<double>(one.id)},
+                      {"type", std::string(maps::traits(one.type).word)},
+                      {"position", PlacedPoint{one.pose_in_map, Frame::map}},
+                      {"length", one.length},
+                      {"width", one.width},
+                      {"name", one.name}};
+  if (one.type == lps::PointType::zone) {
+    arguments.push_back({"rule", std::string(maps::word(one.rule))});
+    arguments.push_back({"speed", one.speed});
+  }
+  return arguments;
 }
 
 Pose place_of(const std::vector<std::string>& words, const maps::Map& map) {

@@ -65,6 +65,8 @@ const char* kind_of(v1::ArtifactType type) {
       return "room";
     case v1::ARTIFACT_BREAK:
       return "end of an opening";
+    case v1::ARTIFACT_ZONE:
+      return "zone";
     default:
       return "object";
   }

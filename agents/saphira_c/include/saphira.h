@@ -234,7 +234,7 @@ int sfOccPlaneRet(int xy, int source, int d, int s1, int s2, int* x, int* y);
 
 typedef enum { SYSTEM, PERCEPT, ARTIFACT } cat_type; /* 6.6.3.1 */
 typedef enum {
-  INVALID, POS, WALL, CORRIDOR, LANE, DOOR, JUNCTION, OFFICE, BREAK, OBJECT
+  INVALID, POS, WALL, CORRIDOR, LANE, DOOR, JUNCTION, OFFICE, BREAK, OBJECT, ZONE
 } pt_type;
 #define SF_POINT                                                        \
   float x, y, th; /* relative to the robot [mm, radians] */             \

@@ -221,8 +221,13 @@ Explanation Reason::by_behaviors_known() {
                   : "no behavior wants a speed");
   }
   add_purpose(sentence, mentioned);
+  Cause cause = wheels(what);
+  if (const std::string way = detour(); !way.empty()) {
+    sentence.add(1, "; " + way);
+    cause.because.push_back({"zone", way, {}});
+  }
   add_lost(sentence);
-  return finish(sentence, wheels(what));
+  return finish(sentence, std::move(cause));
 }
 
 Explanation Reason::known_so_far() {

@@ -8,6 +8,15 @@
 namespace saphira::situation {
 namespace {
 
+/// The text of a value as the activity language writes it: "keep-out zone \\"lab\\"".
+std::string without_escapes(const std::string& value) {
+  std::string text;
+  for (std::size_t i = 1; i + 1 < value.size(); ++i)
+    if (value[i] != '\\' || ++i + 1 < value.size())
+      text += value[i];
+  return text;
+}
+
 /// [s] Older inputs are worth mentioning.
 constexpr double kOldInput = 0.3;
 
@@ -213,6 +222,21 @@ void Reason::add_purpose(Sentence& sentence,
                  "; for " + goal_name(root->goal()) + " of " + requester(root->goal()));
   if (root != own)
     sentence.add(4, ", by " + with_arguments(*own), ", by " + intention_name(*own));
+}
+
+/// The zones that a followed path goes around or through, in words; empty: none, or a past cycle.
+std::string Reason::detour() const {
+  if (scene_.past || !scene_.intentions)
+    return {};
+  const auto& nodes = scene_.intentions->nodes();
+  if (std::none_of(nodes.begin(), nodes.end(), [](const v1::IntentionNode& one) {
+        return one.schema() == "follow-path" && one.state() == v1::INTENTION_RUNNING;
+      }))
+    return {};
+  for (const v1::Belief& belief : scene_.beliefs)
+    if (belief.name() == "*detour*" && belief.value().size() > 2 && belief.value().front() == '"')
+      return "it takes the way " + without_escapes(belief.value());
+  return {};
 }
 
 std::string Reason::of_say(const Say& say, Channel channel, bool with_rule) const {

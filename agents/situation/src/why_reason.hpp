@@ -48,6 +48,7 @@ class Reason {
   std::string told() const;
   /// The robot's motion, where it differs from its setpoints; else empty.
   std::string meanwhile() const;
+  std::string detour() const;
   std::string of_say(const Say& say, Channel channel, bool with_rule) const;
   std::string wants(const std::vector<Say>& speeds, const std::vector<Say>& turns,
                     const v1::BehaviorState& behavior, bool with_rules) const;

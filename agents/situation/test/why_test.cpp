@@ -186,6 +186,27 @@ TEST_F(WhyTest, TheGuardComesFirst) {
             "ahead: stopped (margin 0.20 m)); the behaviors want 0.30 m/s.");
 }
 
+TEST_F(WhyTest, ZonesAreNamed) {
+  scene.behaviors->speed_limit(0.1);
+  scene.behaviors->limit_reason("slow zone \"kitchen\"");
+  EXPECT_NE(sentence().find("slow zone \"kitchen\", so it drives no faster than 0.10 m/s"),
+            std::string::npos)
+      << sentence();
+  scene.behaviors->limit_reason("");
+  v1::Belief detour;
+  detour.name("*detour*");
+  detour.value(R"("around: keep-out zone \"lab\"")");
+  scene.beliefs.push_back(detour);
+  EXPECT_EQ(sentence().find("keep-out"), std::string::npos) << "there is no path";
+  v1::IntentionNode path;
+  path.id(4711);
+  path.schema("follow-path");
+  path.state(v1::INTENTION_RUNNING);
+  scene.intentions->nodes().push_back(path);
+  EXPECT_NE(sentence().find("it takes the way around: keep-out zone \"lab\""), std::string::npos)
+      << sentence();
+}
+
 TEST_F(WhyTest, ASlowNetworkIsSaidAndHowSlow) {
   scene.behaviors->input_age(0.6);
   scene.behaviors->speed_limit(0.3);

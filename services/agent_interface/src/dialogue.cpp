@@ -659,15 +659,24 @@ bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
   }
   if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
     const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
-    if (known == nullptr && slot(meaning, "place") == "this" && advice.about != kKeepOut)
+    const bool rule =
+        advice.about == kKeepOut || advice.about == kSlow || advice.about == kPreferred;
+    if (known == nullptr && slot(meaning, "place") == "this" && !rule)
       known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
     if (known == nullptr) {
-      say(utterance, "I knew of no " + advice.about + " at " + advice.value, true, out);
-    } else {
       say(utterance,
-          advice.about == kKeepOut
-              ? "good: I may go to " + known->value + " again"
-              : "good: no " + advice.about + " at " + known->value + " any more",
+          advice.about == kSlow || advice.about == kPreferred
+              ? "I did not know that " + describe(advice)
+              : "I knew of no " + advice.about + " at " + advice.value,
+          true, out);
+    } else {
+      const std::string& place = known->value;
+      say(utterance,
+          "good: " + (advice.about == kKeepOut ? "I may go to " + place + " again"
+                      : advice.about == kSlow  ? "I may go fast in " + place + " again"
+                      : advice.about == kPreferred
+                          ? "I need not prefer " + place + " any more"
+                          : "no " + advice.about + " at " + place + " any more"),
           true, out);
       withdraw(known->number, out);
     }

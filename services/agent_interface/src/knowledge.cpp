@@ -92,7 +92,12 @@ std::string describe(const Advice& advice) {
   }
   if (advice.about == kKeepOut)
     return "I am to keep out of " + advice.value;
-  return "there is a " + advice.about + " at " + advice.value;
+  if (advice.about == kSlow)
+    return "I am to go slowly in " + advice.value;
+  if (advice.about == kPreferred)
+    return "I am to prefer " + advice.value;
+  return (advice.about == "broken glass" ? "there is " : "there is a ") + advice.about + " at " +
+         advice.value;
 }
 
 const Advice* Knowledge::find(Advice::Kind kind, std::string_view about,

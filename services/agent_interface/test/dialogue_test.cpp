@@ -456,6 +456,23 @@ TEST_F(DialogueTest, PlacesToKeepOutOfAreHazardsUntilTheRobotMayGoThere) {
             "I know now that I am to keep out of EJ-231");
 }
 
+TEST_F(DialogueTest, PlacesToGoSlowlyInAndToPreferAreAdviceUntilItIsWithdrawn) {
+  EXPECT_EQ(said("Flakey, go slowly in EJ-233"), "I know now that I am to go slowly in EJ-233");
+  EXPECT_EQ(said("Flakey, prefer this corridor"), "I know now that I am to prefer upper corridor");
+  EXPECT_EQ(last.claims.at(0).value, "slow at EJ-233; preferred at upper corridor");
+  EXPECT_EQ(said("Flakey, there is broken glass at EJ-231"),
+            "I know now that there is broken glass at EJ-231");
+  EXPECT_EQ(last.claims.at(0).value,
+            "slow at EJ-233; preferred at upper corridor; broken glass at EJ-231");
+  EXPECT_EQ(said("Flakey, you may go fast again here"),
+            "I did not know that I am to go slowly in upper corridor");
+  EXPECT_EQ(said("Flakey, you may go fast again in EJ-233"), "good: I may go fast in EJ-233 again");
+  EXPECT_EQ(said("Flakey, no need to prefer the upper corridor"),
+            "good: I need not prefer upper corridor any more");
+  EXPECT_EQ(said("Flakey, the broken glass is gone"), "good: no broken glass at EJ-231 any more");
+  EXPECT_TRUE(dialogue.knowledge().all().empty());
+}
+
 TEST_F(DialogueTest, WhatIsNamelessOnTheMapGetsAName) {
   EXPECT_EQ(said("Flakey, this is the kitchen"), "on my map this is EJ-231");
   EXPECT_EQ(said("Flakey, this corridor is the J-wing"), "on my map this is upper corridor");

@@ -44,6 +44,10 @@ Intent from_bus(const v1::Intentions& intentions) {
   Intent intent;
   intent.cycle = intentions.stamp().cycle();
   intent.control = intentions.behavior_control();
+  if (!intentions.limit_reason().empty()) {
+    intent.speed_limit = intentions.speed_limit();
+    intent.limit_reason = intentions.limit_reason();
+  }
   intent.behaviors.reserve(intentions.behaviors().size());
   for (const v1::IntendedBehavior& behavior : intentions.behaviors()) {
     intent.behaviors.push_back({behavior.name(), behavior.schema(), behavior.priority(),

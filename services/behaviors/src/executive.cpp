@@ -163,6 +163,7 @@ Output Executive::step(const Inputs& inputs) {
     output.speed_limit = 0.0;
   else
     limit_speed(inputs, output);
+  obey_limit(inputs, output);
   backwards_ = output.speed < 0.0;
   return output;
 }
@@ -233,6 +234,19 @@ void Executive::limit_speed(const Inputs& inputs, Output& output) {
     return;
   output.speed = std::copysign(output.speed_limit, output.speed);
   output.limit_reason = kSlow + why;
+}
+
+/// The intended limit. The reason of a lower one, by the age of the inputs, stays.
+void Executive::obey_limit(const Inputs& inputs, Output& output) {
+  if (inputs.intent == nullptr || inputs.intent->speed_limit < 0.0)
+    return;
+  const double limit = inputs.intent->speed_limit;
+  if (output.speed_limit < 0.0 || limit < output.speed_limit)
+    output.speed_limit = limit;
+  if (std::abs(output.speed) <= limit)
+    return;
+  output.speed = std::copysign(limit, output.speed);
+  output.limit_reason = inputs.intent->limit_reason;
 }
 
 std::string Executive::reconcile(const std::vector<Intended>& intended, const Pose& robot_in_odom) {

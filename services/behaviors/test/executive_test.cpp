@@ -63,6 +63,22 @@ TEST_F(ExecutiveTest, MakesWhatIsIntendedAndKeepsIt) {
   EXPECT_EQ(output.speed, 0.4);  // limited to the robot's
 }
 
+TEST_F(ExecutiveTest, AnIntendedLimitCapsTheSpeedAndIsNamed) {
+  Intent intent{20, true, {{"p", "Probe", 0, true, {}}}, 0.1, "slow zone 7"};
+  Output output = executive_.step({21, robot_, {}, &intent});
+  EXPECT_EQ(output.speed, 0.1);
+  EXPECT_EQ(output.speed_limit, 0.1);
+  EXPECT_EQ(output.limit_reason, "slow zone 7");
+  intent = {21, true, {{"p", "Probe", 0, true, {number("value", 0.05)}}}, 0.1, "slow zone 7"};
+  output = executive_.step({22, robot_, {}, &intent});
+  EXPECT_EQ(output.speed, 0.05);
+  EXPECT_EQ(output.limit_reason, "") << "it is slower anyway";
+  intent = {22, true, {{"p", "Probe", 0, true, {}}}};
+  output = executive_.step({23, robot_, {}, &intent});
+  EXPECT_EQ(output.speed, 0.4);
+  EXPECT_LT(output.speed_limit, 0.0);
+}
+
 TEST_F(ExecutiveTest, TakesOverChangedParametersWithoutInit) {
   step({{"p", "Probe", 0, true, {}}});
   step({{"p", "Probe", 3, true, {number("value", 0.25)}}});

@@ -1,5 +1,6 @@
 #include "intentions/shell/service.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -106,7 +107,7 @@ std::string Service::missing() {
 void Service::step(const runtime::Turn& turn) {
   const Core::Outputs outputs = core_.step(inputs_of(turn));
   remember(outputs.intended.news);
-  publish(outputs.intended);
+  publish(outputs.intended, outputs.limit);
   publish(outputs.intended.news);
   if (outputs.beliefs)
     publish(*outputs.beliefs);
@@ -326,7 +327,7 @@ void Service::publish(const News& news) {
   ports_.say(notes.lines());
 }
 
-void Service::publish(const intentions::Outputs& outputs) {
+void Service::publish(const intentions::Outputs& outputs, const SpeedLimit& limit) {
   for (const Request& request : outputs.requests)
     map_requests_.ask(request);
   for (const Request& question : outputs.questions)
@@ -335,6 +336,8 @@ void Service::publish(const intentions::Outputs& outputs) {
     questions_.erase(questions_.begin());
   v1::Intentions sample;
   sample.behavior_control(outputs.behavior_control);
+  sample.speed_limit(std::max(0.0, limit.speed));
+  sample.limit_reason(limit.reason);
   for (const IntendedBehavior& behavior : outputs.behaviors)
     sample.behaviors().push_back(to_bus(behavior));
   for (const IntentionNode& node : outputs.nodes)

@@ -70,6 +70,7 @@ Core::Outputs Core::step(Inputs inputs) {
     for (GoalStatus& status : outputs.intended.news.changed)
       if (status.state == GoalState::kFailed)
         status.reason += "; " + gone;
+  outputs.limit = limit_of(now, outputs.intended);
   nodes_ = outputs.intended.nodes;
   outputs.way = look_for_way(now);
   tell(outputs.intended.news, outputs.notes);
@@ -81,6 +82,19 @@ Core::Outputs Core::step(Inputs inputs) {
     outputs.beliefs = executor_.beliefs().all();
   }
   return outputs;
+}
+
+/// The speed that the zones around the robot allow what is intended.
+SpeedLimit Core::limit_of(const intentions::Inputs& now,
+                          const intentions::Outputs& intended) const {
+  if (intended.behaviors.empty())
+    return {};
+  const bool backwards = std::any_of(
+      intended.behaviors.begin(), intended.behaviors.end(), [](const IntendedBehavior& each) {
+        const Argument* const speed = find(each.parameters, "speed");
+        return each.running && speed != nullptr && speed->number < 0.0;
+      });
+  return speed_limit({now.robot, now.around, executor_.beliefs(), 0}, backwards);
 }
 
 /// The points of the path of a running follow-path intention, where they have changed.

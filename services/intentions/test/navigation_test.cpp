@@ -129,6 +129,48 @@ TEST_F(Navigation, WhatPeopleWarnOfIsNotOnThePath) {
   EXPECT_FALSE(path("south").nil());
 }
 
+TEST_F(Navigation, ZonesOfTheMapForbidAndSlowDown) {
+  const auto with = [&](const std::string& line) {
+    around.map = std::make_shared<const maps::Map>(maps::parse_map(kMap + line, "test.map"));
+  };
+  around.robot_radius = 0.25;
+  const Value south = path("south");
+  with("ZONE (900) 3000, -3000, 90, 4000, 4000 keep-out \"lab\"");
+  EXPECT_TRUE(path("south").nil());
+  EXPECT_EQ(spoken(call("why-no-path", {Value(), "south"})),
+            "room 12 (south) is in keep-out zone \"lab\"");
+  EXPECT_EQ(spoken(call("hazard-on", {south})), "keep-out zone \"lab\"");
+  const Value here = condition("*cur-region*");
+  EXPECT_FALSE(call("could-be-opened", {here, "south"}).truthy()) << "people cannot open it";
+  EXPECT_FALSE(path("north").nil());
+  // In the doorway, about to enter.
+  be_at({4.5, -0.3, -kPi / 2});
+  EXPECT_EQ(spoken(call("hazard-on", {south})), "keep-out zone \"lab\"");
+  EXPECT_TRUE(call("keep-out-ahead", {}).nil());
+  EXPECT_LT(speed_limit(world(), false).speed, 0.4);
+  be_at({4.5, -0.7, -kPi / 2});
+  EXPECT_EQ(spoken(call("keep-out-ahead", {})), "keep-out zone \"lab\"");
+  EXPECT_EQ(speed_limit(world(), false).speed, 0.0);
+  EXPECT_EQ(speed_limit(world(), false).reason, "keep-out zone \"lab\" is ahead");
+  EXPECT_LT(speed_limit(world(), true).speed, 0.0);
+  be_at({4.5, -0.7, kPi / 2});
+  EXPECT_LT(speed_limit(world(), false).speed, 0.0);
+  EXPECT_EQ(speed_limit(world(), true).speed, 0.0);
+
+  be_at({1.0, 0.0, 0.0});
+  with(
+      "ZONE (900) 2000, 0, 0, 3000, 2000 slow 150 \"k\"\nZONE (901) 1000, 0, 0, 1000, 1000 slow "
+      "80");
+  EXPECT_DOUBLE_EQ(speed_limit(world(), false).speed, 0.08);
+  EXPECT_EQ(speed_limit(world(), false).reason, "slow zone 901");
+  EXPECT_EQ(spoken(call("zones-on", {path("cross")})),
+            "through: slow zone \"k\", through: slow zone 901");
+  beliefs.set("hazards", "slow at hall", "test", now);
+  be_at({6.0, 0.0, 0.0});
+  EXPECT_DOUBLE_EQ(speed_limit(world(), false).speed, 0.15);
+  EXPECT_EQ(speed_limit(world(), false).reason, "people told me to go slowly in hall");
+}
+
 TEST_F(Navigation, APathOfAnotherRevisionOfTheMapIsNoMoreOne) {
   const Value north = path("north");
   EXPECT_TRUE(call("path-current", {north}).truthy());

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "saphira/base/enumerators.hpp"
 #include "saphira/maps/artifact_traits.hpp"
 #include "saphira/maps/topology.hpp"
 #include "saphira/registration/line_map.hpp"
@@ -36,6 +37,13 @@ std::vector<std::string> artifact_words() {
   return words;
 }
 
+std::vector<std::string> rule_words() {
+  std::vector<std::string> words;
+  for (const maps::ZoneRule rule : kEnumerators<maps::ZoneRule>)
+    words.emplace_back(maps::word(rule));
+  return words;
+}
+
 maps::Feature artifact_of(const Arguments& arguments) {
   maps::Feature artifact;
   for (const maps::ArtifactTraits& traits : maps::kArtifactTraits)
@@ -47,6 +55,11 @@ maps::Feature artifact_of(const Arguments& arguments) {
   artifact.width = number_of(arguments, "width");
   artifact.name = text_of(arguments, "name");
   artifact.learned = truth_of(arguments, "learned");
+  if (artifact.type == lps::PointType::zone) {
+    artifact.rule = maps::zone_rule(text_of(arguments, "rule")).value_or(maps::ZoneRule::keep_out);
+    if (artifact.rule == maps::ZoneRule::slow)
+      artifact.speed = number_of(arguments, "speed");
+  }
   return artifact;
 }
 
@@ -293,7 +306,9 @@ const std::vector<Functor>& Core::functors() {
         optional(number_parameter("length", "along its heading [m]", 0.0, far)),
         optional(number_parameter("width", "across its heading [m]", 0.0, far)),
         optional(text_parameter("name", "of a room and of its doors")),
-        optional(truth_parameter("learned", "taken back where it is seen no more"))}},
+        optional(truth_parameter("learned", "taken back where it is seen no more")),
+        optional(text_parameter("rule", "of a zone", rule_words())),
+        optional(number_parameter("speed", "of a slow zone [m/s]", 0.0, 10.0))}},
       {"remove", "removes an artifact", {whole_parameter("id", "of the artifact", 1.0, most_ids)}},
       {"place", "the robot is there", {point_parameter("position", "of the robot", Frame::map)}},
       {"find", "the robot may be anywhere: finds it"},

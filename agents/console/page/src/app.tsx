@@ -386,7 +386,9 @@ function TargetCard({card, corner, link, target, close}: {card: RefObject<HTMLDi
       {before.length > 0 && <p class="small">In front: {nameOf(before[0])}, by {before[0].status.requester}
         {waiting > 0 && `; ${waiting} more ${waiting === 1 ? 'waits' : 'wait'}`}.</p>}
       {name && <div class="row">{go(`to ${name}`, `go-to-place place=${quoted(name)}`, true, 'by the route that the map gives')}</div>}
-      <div class="row">{go('here', `go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`, !name, 'straight to this point, without a route')}</div>
+      <div class="row">{target.routed
+        ? go('here', `go-to-place place=${target.x.toFixed(3)},${target.y.toFixed(3)}@map`, !name, 'to this point, by the route that the map gives')
+        : go('here', `go_to position=${target.x.toFixed(3)},${target.y.toFixed(3)}@${target.frame}`, !name, 'straight to this point, without a route')}</div>
       <div class="row apart">
         {sure ? <><span class="grow">Set the robot's position here?</span>
             <button onClick={place}>Yes</button><button onClick={() => setSure(false)}>No</button></>

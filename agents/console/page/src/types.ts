@@ -81,6 +81,8 @@ export interface MapArtifact {
   width: number;
   name: string;
   learned: boolean;
+  rule: string;    // of a zone
+  speed: number;
 }
 export interface SaphiraMap { revision: number; source: string; changed: boolean; artifacts: MapArtifact[] }
 export interface Argument { name: string; kind: string; number: number; text: string; point: Pose; frame: string }

@@ -17,9 +17,11 @@ const small = 20;            // [pixels/m] from which on down the labels are sma
 const apart = 4;             // [pixels] between two labels
 const rankOf: {[type: string]: number} = {ARTIFACT_OFFICE: 0, ARTIFACT_CORRIDOR: 1, ARTIFACT_DOOR: 2};
 const otherRank = 3;
+const zoneColor: {[rule: string]: string} = {ZONE_KEEP_OUT: '#d32f2f', ZONE_SLOW: '#e69f00', ZONE_ONE_WAY: '#1976d2', ZONE_PREFERRED: '#2e9d55'};
+const regionTypes = ['ARTIFACT_OFFICE', 'ARTIFACT_CORRIDOR', 'ARTIFACT_LANE', 'ARTIFACT_JUNCTION'];
 
 export interface Layers { grid: boolean; sonar: boolean; map: boolean; percepts: boolean; areas: boolean; wake: boolean }
-export interface Target { x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact }
+export interface Target { x: number; y: number; frame: 'map' | 'odom'; artifact?: MapArtifact; routed: boolean }   // routed: in a region of the map
 interface Echo { x: number; y: number; at: number }
 interface Colors { [name: string]: string }
 interface Label { text: string; x: number; y: number; room: number; rank: number }   // room: [m] that it names
@@ -188,11 +190,12 @@ export class View {
         .map(a => ({a, d: Math.hypot(a.pose_in_map.x - world.x, a.pose_in_map.y - world.y)}))
         .sort((l, r) => l.d - r.d)[0];
     // A click anywhere in a room means the room.
-    const room = artifacts.find(a => {
+    const around = artifacts.filter(a => {
       const at = compose(inverse(a.pose_in_map), {...world, th: 0});
-      return a.name && a.type === 'ARTIFACT_OFFICE' && Math.abs(at.x) < a.length / 2 && Math.abs(at.y) < a.width / 2;
+      return regionTypes.includes(a.type) && Math.abs(at.x) < a.length / 2 && Math.abs(at.y) < a.width / 2;
     });
-    return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom',
+    const room = around.find(a => a.name && a.type === 'ARTIFACT_OFFICE');
+    return {x: world.x, y: world.y, frame: this.onMap() ? 'map' : 'odom', routed: around.length > 0,
             artifact: near && near.d * this.scale < 22 ? near.a : room};
   }
 
@@ -328,7 +331,7 @@ export class View {
     const made: MapLines = {map, closed, scale: this.scale, strokes: new Map(), labels: []};
     // The doors and openings of a room bear its name: once is enough.
     const isWay = (a: MapArtifact) => a.type === 'ARTIFACT_DOOR' || a.type === 'ARTIFACT_BREAK';
-    const rooms = new Set(map.artifacts.filter(a => !isWay(a)).map(a => a.name));
+    const rooms = new Set(map.artifacts.filter(a => !isWay(a) && a.type !== 'ARTIFACT_ZONE').map(a => a.name));
     for (const a of map.artifacts) {
       const p = a.pose_in_map, [cos, sin] = [Math.cos(p.th), Math.sin(p.th)];
       // Points in the artifact's own frame; width and dashes in pixels.
@@ -359,6 +362,8 @@ export class View {
         case 'ARTIFACT_OFFICE':
           stroke('corridor', 1, learned, [-l, -w], [l, -w], [l, w], [-l, w], [-l, -w]);
           break;
+        case 'ARTIFACT_ZONE':
+          break;   // an area of its own
         default:
           stroke('corridor', 1.5, '', [-s, 0], [s, 0]);
           stroke('corridor', 1.5, '', [0, -s], [0, s]);
@@ -372,6 +377,8 @@ export class View {
   }
   private drawMap() {
     const c = this.context, m = c.getTransform();
+    for (const zone of this.link.data<SaphiraMap>('map')!.artifacts.filter(a => a.type === 'ARTIFACT_ZONE'))
+      this.within(zone.pose_in_map, () => this.drawZone(zone));
     const lines = this.mapLines(this.link.data<SaphiraMap>('map')!, new Set(this.link.data<Registration>('registration')?.closed_doors));
     // A view that rests has them as a picture.
     const view = [m.a, m.b, m.c, m.d, m.e, m.f, this.canvas.width, this.canvas.height, this.dark].join();
@@ -395,6 +402,18 @@ export class View {
       c.drawImage(lines.picture, 0, 0);
       c.restore();
     }
+  }
+  private drawZone(zone: MapArtifact) {
+    const c = this.context, l = zone.length / 2, w = zone.width / 2, color = zoneColor[zone.rule] ?? zoneColor.ZONE_KEEP_OUT;
+    c.globalAlpha = 0.2;
+    c.fillStyle = color;
+    c.fillRect(-l, -w, zone.length, zone.width);
+    c.globalAlpha = 1;
+    this.line([[-l, -w], [l, -w], [l, w], [-l, w], [-l, -w]], color, this.px(1.5), [this.px(6), this.px(4)]);
+    if (zone.rule !== 'ZONE_ONE_WAY') return;
+    const tip = Math.min(1, l), wing = tip / 3;
+    this.line([[-tip, 0], [tip, 0]], color, this.px(3));
+    this.line([[tip - wing, wing], [tip, 0], [tip - wing, -wing]], color, this.px(3));
   }
   private fontSize() { return this.scale < small ? 10 : 11; }
   private width(text: string): number {

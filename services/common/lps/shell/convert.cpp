@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMostReadings = 64;  // the bound of Percept.readings
 
-constexpr EnumPairs<PointType, v1::ArtifactType, 10> kTypes{{{
+constexpr EnumPairs<PointType, v1::ArtifactType, 11> kTypes{{{
     {PointType::invalid, v1::ARTIFACT_INVALID},
     {PointType::position, v1::ARTIFACT_POSITION},
     {PointType::wall, v1::ARTIFACT_WALL},
@@ -20,6 +20,7 @@ constexpr EnumPairs<PointType, v1::ArtifactType, 10> kTypes{{{
     {PointType::office, v1::ARTIFACT_OFFICE},
     {PointType::breach, v1::ARTIFACT_BREAK},
     {PointType::object, v1::ARTIFACT_OBJECT},
+    {PointType::zone, v1::ARTIFACT_ZONE},
 }}};
 constexpr EnumPairs<Side, v1::Side, 3> kSides{{{
     {Side::none, v1::SIDE_NONE},

@@ -1,8 +1,19 @@
 #include "maps/shell/convert.hpp"
 
 #include "lps/shell/convert.hpp"
+#include "saphira/base/enum_pairs.hpp"
 
 namespace saphira::maps {
+namespace {
+
+constexpr EnumPairs<ZoneRule, v1::ZoneRule, 4> kRules{{{
+    {ZoneRule::keep_out, v1::ZONE_KEEP_OUT},
+    {ZoneRule::slow, v1::ZONE_SLOW},
+    {ZoneRule::one_way, v1::ZONE_ONE_WAY},
+    {ZoneRule::preferred, v1::ZONE_PREFERRED},
+}}};
+
+}  // namespace
 
 Feature from_bus(const v1::MapArtifact& artifact) {
   Feature feature;
@@ -13,6 +24,8 @@ Feature from_bus(const v1::MapArtifact& artifact) {
   feature.width = artifact.width();
   feature.name = artifact.name();
   feature.learned = artifact.learned();
+  feature.rule = kRules.ours(artifact.rule(), ZoneRule::keep_out);
+  feature.speed = artifact.speed();
   return feature;
 }
 
@@ -25,6 +38,8 @@ v1::MapArtifact to_bus(const Feature& feature) {
   artifact.width(feature.width);
   artifact.name(feature.name);
   artifact.learned(feature.learned);
+  artifact.rule(kRules.theirs(feature.rule));
+  artifact.speed(feature.speed);
   return artifact;
 }
 

@@ -61,6 +61,7 @@ class Picture {
   void line(const Vec2& from, const Vec2& to, std::string_view style);
   void label(const Vec2& at, std::string_view text, double size, std::string_view color = "#444");
   void gate(const Feature& feature);
+  void zone(const Feature& feature);
   void ways();
   void strokes();
   void robot();
@@ -172,6 +173,31 @@ void Picture::gate(const Feature& feature) {
   label(transform(feature.pose_in_map, {-0.45, 0.0}), std::to_string(feature.id), 0.3, color);
 }
 
+// In the colour of its rule; a one-way zone with an arrow along its heading.
+void Picture::zone(const Feature& feature) {
+  const char* color = "#0072b2";
+  if (feature.rule == ZoneRule::keep_out)
+    color = "#cc0000";
+  else if (feature.rule == ZoneRule::slow)
+    color = "#e69f00";
+  else if (feature.rule == ZoneRule::preferred)
+    color = "#009e73";
+  rectangle(feature, std::string("fill=\"") + color + "\" fill-opacity=\"0.2\" stroke=\"" + color +
+                         "\" stroke-width=\"0.05\" stroke-dasharray=\"0.2\"");
+  if (feature.rule == ZoneRule::one_way) {
+    const double half = std::min(1.0, feature.length / 2);
+    const Vec2 tip = transform(feature.pose_in_map, {half, 0.0});
+    const std::string style = std::string("stroke=\"") + color + "\" stroke-width=\"0.08\"";
+    line(transform(feature.pose_in_map, {-half, 0.0}), tip, style);
+    for (const double wing : {0.3, -0.3})
+      line(transform(feature.pose_in_map, {half - 0.3, wing}), tip, style);
+  }
+  label(feature.pose_in_map.position(),
+        std::string(word(feature.rule)) + " " +
+            (feature.name.empty() ? std::to_string(feature.id) : feature.name),
+        0.35, color);
+}
+
 void Picture::features() {
   std::set<int> layers;
   for (const ArtifactTraits& each : kArtifactTraits)
@@ -191,6 +217,9 @@ void Picture::features() {
         rectangle(f, f.learned
                          ? R"(fill="#e69f00" fill-opacity="0.8" stroke="#555" stroke-width="0.04")"
                          : R"(fill="#999" fill-opacity="0.7" stroke="#555" stroke-width="0.04")");
+        break;
+      case PointType::zone:
+        zone(f);
         break;
       case PointType::door:
       case PointType::breach:

@@ -1,10 +1,13 @@
 #include "saphira/maps/map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
+#include "saphira/base/enumerators.hpp"
 #include "saphira/base/numbers.hpp"
 #include "saphira/base/text.hpp"
 #include "saphira/maps/artifact_traits.hpp"
@@ -19,6 +22,14 @@ constexpr double kMillimetre = 0.001;
 constexpr double kMax = 1e7;        // [mm] 10 km: more is a typing error
 constexpr double kMaxAngle = 3600;  // [deg]
 constexpr double kMaxId = 2147483647;
+constexpr double kMaxSpeed = 10000;  // [mm/s]
+
+constexpr std::array<std::pair<ZoneRule, std::string_view>, 4> kRules{
+    {{ZoneRule::keep_out, "keep-out"},
+     {ZoneRule::slow, "slow"},
+     {ZoneRule::one_way, "one-way"},
+     {ZoneRule::preferred, "preferred"}}};
+static_assert(kRules.size() == kEnumerators<ZoneRule>.size());
 
 /// Line breaks and other control characters, which no line of a file can hold.
 bool has_control(std::string_view text) {
@@ -179,6 +190,16 @@ Feature parse_line(Scanner& in, std::map<std::uint32_t, int>& lines_of_ids, int 
     feature.length = next("the length in mm", 1, kMax) * kMillimetre;
   if (form->width)
     feature.width = next("the width in mm", 1, kMax) * kMillimetre;
+  if (form->type == PointType::zone) {
+    const std::string_view text = in.word();
+    const auto rule = zone_rule(text);
+    if (!rule)
+      in.fail("expected keep-out, slow, one-way or preferred, found " +
+              (text.empty() ? "the end of the line" : '"' + std::string(text) + '"'));
+    feature.rule = *rule;
+    if (feature.rule == ZoneRule::slow)
+      feature.speed = in.number("the speed in mm/s", 1, kMaxSpeed) * kMillimetre;
+  }
   if (in.at_quote())
     feature.name = in.quoted();
   while (!in.at_end()) {
@@ -222,6 +243,15 @@ std::string line_of(const Feature& feature) {
     out += ", " + millimetres(feature.length, 1);
   if (form.width)
     out += ", " + millimetres(feature.width, 1);
+  if (feature.type == PointType::zone) {
+    out.append(" ").append(word(feature.rule));
+    if (feature.rule == ZoneRule::slow) {
+      const double speed = std::round(feature.speed / kMillimetre * 1000.0) / 1000.0;
+      if (!(speed >= 1.0 && speed <= kMaxSpeed))
+        throw std::invalid_argument("a speed of a slow zone that is not from 0.001 to 10 m/s");
+      out += " " + decimal(speed, 3);
+    }
+  }
   if (!feature.name.empty())
     out += " \"" + feature.name + "\"";
   if (feature.learned)
@@ -230,6 +260,19 @@ std::string line_of(const Feature& feature) {
 }
 
 }  // namespace
+
+std::string_view word(ZoneRule rule) {
+  return std::find_if(kRules.begin(), kRules.end(),
+                      [&](const auto& each) { return each.first == rule; })
+      ->second;
+}
+
+std::optional<ZoneRule> zone_rule(std::string_view word) {
+  for (const auto& [rule, its_word] : kRules)
+    if (its_word == word)
+      return rule;
+  return std::nullopt;
+}
 
 Map parse_map(std::string_view text, const std::string& file) {
   Map map;
@@ -276,6 +319,8 @@ std::string describe(const Feature& feature) {
   std::string text(traits_on_map(feature.type).word);
   for (char& c : text)
     c = static_cast<char>(c - 'A' + 'a');
+  if (feature.type == PointType::zone)
+    text = std::string(word(feature.rule)) + " zone";
   text += " " + std::to_string(feature.id);
   return feature.name.empty() ? text : text + " (" + feature.name + ")";
 }

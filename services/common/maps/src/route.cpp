@@ -26,14 +26,33 @@ Vec2 before(const Link& link, std::size_t region, double clearance) {
   return transform(link.pose_in_map, {link.a == region ? clearance : -clearance, 0.0});
 }
 
+// [m] A shorter stretch in a zone only touches its edge.
+constexpr double kTouches = 0.01;
+
 class Search {
  public:
-  Search(const Topology& topology, const RouteSettings& settings)
-      : topology_(topology), settings_(settings) {}
+  Search(const Topology& topology, const RouteSettings& settings, const Vec2& from);
 
-  RouteResult run(const Vec2& from, const Place& to);
+  RouteResult run(const Place& to);
+  std::string forbidden(const std::vector<Leg>& legs, const std::optional<Vec2>& end) const;
 
  private:
+  /// A zone, and how near it a way may come.
+  struct Held {
+    const Zone* zone;
+    double margin;  // [m]
+  };
+  double inside(const Held& held, std::size_t region, const Vec2& from, const Vec2& to) const;
+  static bool against(const Zone& zone, const Vec2& way);
+  double cost(const Leg& leg, const Vec2& from) const;
+  const Zone* kept_out(const std::vector<std::size_t>& regions,
+                       const std::optional<Vec2>& point) const;
+  std::vector<const Zone*> met_by(const Route& route) const;
+  std::optional<Route> search(const Place& to, const std::vector<std::size_t>& starts) const;
+  RouteSettings without_zones() const;
+  void tell_zones(const Place& to, RouteResult& result) const;
+  std::string why_zones_forbid(const Route& free, const Place& to) const;
+
   bool blocked(std::uint32_t id) const { return id != 0 && settings_.blocked.contains(id); }
   bool usable(std::size_t link) const {
     const Link& l = topology_.links()[link];
@@ -49,7 +68,7 @@ class Search {
     return link.kind == LinkKind::meeting || link.width >= settings_.needs_width;
   }
   std::string narrow_place(const Route& route) const;
-  std::string why_none(const Vec2& from, const std::string& start, const Place& to) const;
+  std::string why_none(const std::string& start, const Place& to) const;
   bool wanted(std::size_t region, const Place& to) const {
     return std::find(to.regions.begin(), to.regions.end(), region) != to.regions.end();
   }
@@ -58,7 +77,119 @@ class Search {
 
   const Topology& topology_;
   const RouteSettings& settings_;
+  Vec2 from_;
+  std::vector<Held> held_;
 };
+
+Search::Search(const Topology& topology, const RouteSettings& settings, const Vec2& from)
+    : topology_(topology), settings_(settings), from_(from) {
+  for (const Zone& zone : settings.zones) {
+    if (zone.rule != ZoneRule::keep_out) {
+      held_.push_back({&zone, 0.0});
+      continue;
+    }
+    const double beside = settings.needs_width / 2;
+    if (!zone.contains(topology, from, zone.area ? 0.0 : settings.tolerance))
+      held_.push_back({&zone, zone.contains(topology, from, beside) ? 0.0 : beside});
+  }
+}
+
+/// [m] of a straight stretch through a region that lies in the zone.
+double Search::inside(const Held& held, std::size_t region, const Vec2& from,
+                      const Vec2& to) const {
+  if (held.zone->area)
+    return length_inside(*held.zone->area, from, to, held.margin);
+  return held.zone->covers(region) ? (to - from).norm() : 0.0;
+}
+
+/// True where a stretch goes against a one-way zone; across it is no matter.
+bool Search::against(const Zone& zone, const Vec2& way) {
+  return zone.rule == ZoneRule::one_way && zone.area &&
+         way.dot(zone.area->pose_in_map.direction()) < -0.5 * way.norm();
+}
+
+/// [m] by which the zones make a leg longer: below 0 in a preferred one, infinite where they forbid
+/// it.
+double Search::cost(const Leg& leg, const Vec2& from) const {
+  double costs = 0.0;
+  for (const Held& held : held_) {
+    const Zone& zone = *held.zone;
+    if (zone.rule == ZoneRule::keep_out && zone.covers(leg.region))
+      return ShortestWays::kNever;
+    Vec2 at = from;
+    for (const Vec2& point : leg.points) {
+      const double length = inside(held, leg.region, at, point);
+      const bool forbidden = zone.rule == ZoneRule::keep_out || against(zone, point - at);
+      at = point;
+      if (length <= kTouches)
+        continue;
+      if (forbidden)
+        return ShortestWays::kNever;
+      if (zone.rule == ZoneRule::slow)
+        costs += length * std::max(0.0, settings_.cruise / zone.speed - 1.0);
+      else if (zone.rule == ZoneRule::preferred)
+        costs -= 0.5 * length;
+    }
+  }
+  return costs;
+}
+
+/// The zones on a route: those that it breaks the rule of, and slow and preferred ones.
+std::vector<const Zone*> Search::met_by(const Route& route) const {
+  std::vector<const Zone*> met;
+  for (const Held& held : held_) {
+    const Zone& zone = *held.zone;
+    bool meets = false;
+    Vec2 at = from_;
+    for (const Leg& leg : route.legs) {
+      meets = meets || (zone.rule == ZoneRule::keep_out && zone.covers(leg.region));
+      for (const Vec2& point : leg.points) {
+        meets = meets || (inside(held, leg.region, at, point) > kTouches &&
+                          (zone.rule != ZoneRule::one_way || against(zone, point - at)));
+        at = point;
+      }
+    }
+    if (meets)
+      met.push_back(&zone);
+  }
+  return met;
+}
+
+RouteSettings Search::without_zones() const {
+  RouteSettings free = settings_;
+  free.zones.clear();
+  return free;
+}
+
+/// The zones that led a route another way, and those on it.
+void Search::tell_zones(const Place& to, RouteResult& result) const {
+  const std::vector<const Zone*> met = met_by(*result.route);
+  const RouteResult free = Search(topology_, without_zones(), from_).run(to);
+  if (free.route && free.route->legs != result.route->legs)
+    for (const Zone* const zone : met_by(*free.route))
+      if (std::find(met.begin(), met.end(), zone) == met.end() && zone->rule != ZoneRule::preferred)
+        result.around.push_back(zone->text);
+  for (const Zone* const zone : met)
+    if (zone->rule == ZoneRule::slow || zone->rule == ZoneRule::preferred)
+      result.through.push_back(zone->text);
+}
+
+/// Why no way is allowed, though there is one.
+std::string Search::why_zones_forbid(const Route& free, const Place& to) const {
+  std::vector<const Zone*> forbidding;
+  for (const Zone* const zone : met_by(free))
+    if (zone->rule == ZoneRule::keep_out || zone->rule == ZoneRule::one_way)
+      forbidding.push_back(zone);
+  const Vec2 end = free.legs.back().points.back();
+  for (const Zone* const zone : forbidding)
+    if (zone->rule == ZoneRule::keep_out &&
+        (zone->covers(free.legs.back().region) || (zone->area && maps::contains(*zone->area, end))))
+      return with_article(to) + " " + zone->inside;
+  std::string names;
+  for (const Zone* const zone : forbidding)
+    names += (names.empty() ? "" : ", ") + zone->text;
+  return "no way to " + with_article(to) + " keeps the rules of the zones: " + names;
+}
 
 Leg Search::leg(std::size_t region, const Vec2& from, std::optional<std::size_t> came_by,
                 std::optional<std::size_t> link, const std::optional<Vec2>& goal) const {
@@ -110,11 +241,14 @@ std::string Search::narrow_place(const Route& route) const {
   return "the robot is too wide";
 }
 
-std::string Search::why_none(const Vec2& from, const std::string& start, const Place& to) const {
+std::string Search::why_none(const std::string& start, const Place& to) const {
+  if (!held_.empty())
+    if (const RouteResult free = Search(topology_, without_zones(), from_).run(to); free.route)
+      return why_zones_forbid(*free.route, to);
   if (settings_.needs_width > 0.0) {
     RouteSettings thin = settings_;
     thin.needs_width = 0.0;
-    if (const RouteResult found = Search(topology_, thin).run(from, to); found.route)
+    if (const RouteResult found = Search(topology_, thin, from_).run(to); found.route)
       return "no way from " + start + " to " + with_article(to) +
              " is wide enough: " + narrow_place(*found.route);
   }
@@ -122,25 +256,38 @@ std::string Search::why_none(const Vec2& from, const std::string& start, const P
          (settings_.blocked.empty() && settings_.blocked_links.empty() ? "" : " and not closed");
 }
 
-RouteResult Search::run(const Vec2& from, const Place& to) {
+RouteResult Search::run(const Place& to) {
   if (to.regions.empty())
     return {std::nullopt, with_article(to) + " is in no corridor, junction or room of the map"};
-  std::vector<std::size_t> starts = topology_.at(from);
+  std::vector<std::size_t> starts = topology_.at(from_);
   if (starts.empty())
-    if (const auto near = topology_.region_at(from, settings_.tolerance))
+    if (const auto near = topology_.region_at(from_, settings_.tolerance))
       starts = {*near};
   if (starts.empty())
     return {std::nullopt,
-            "the start, " + where(from) + ", is in no corridor, junction or room of the map"};
+            "the start, " + where(from_) + ", is in no corridor, junction or room of the map"};
+  if (const Zone* const zone = kept_out(to.regions, to.point))
+    return {std::nullopt, with_article(to) + " " + zone->inside};
+  RouteResult result;
+  result.route = search(to, starts);
+  if (!result.route)
+    result.reason = why_none(topology_.text(starts.front()), to);
+  else if (!held_.empty())
+    tell_zones(to, result);
+  return result;
+}
 
+std::optional<Route> Search::search(const Place& to, const std::vector<std::size_t>& starts) const {
   for (const std::size_t start : starts) {
     if (!wanted(start, to))
       continue;
     Route route;
-    route.legs.push_back(leg(start, from, std::nullopt, std::nullopt, to.point));
+    route.legs.push_back(leg(start, from_, std::nullopt, std::nullopt, to.point));
+    if (cost(route.legs.back(), from_) == ShortestWays::kNever)
+      continue;
     for (const Vec2& point : route.legs.back().points)
-      route.length += (point - from).norm();
-    return {route, {}};
+      route.length += (point - from_).norm();
+    return route;
   }
 
   // Over links; a link is entered on one of its sides, so each has two states.
@@ -152,18 +299,30 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     const Link& link = links[state / 2];
     return state % 2 == 0 ? link.a : *link.b;
   };
+  // A leg of that length: no less than half of it, in preferred zones.
+  const auto priced = [&](double length, std::size_t region, const Vec2& at,
+                          std::optional<std::size_t> by, std::optional<std::size_t> link,
+                          const std::optional<Vec2>& goal) {
+    if (held_.empty())
+      return length;
+    return length + std::max(-0.5 * length, cost(leg(region, at, by, link, goal), at));
+  };
   const auto enter = [&](std::size_t region, const Vec2& at, double so_far,
                          std::optional<std::size_t> by) {
+    const auto came_by = by ? std::optional(*by / 2) : std::nullopt;
     for (const std::size_t i : topology_.regions()[region].links) {
-      if (!usable(i) || (by && i == *by / 2))
+      if (!usable(i) || came_by == i)
         continue;
-      const double length = so_far + (links[i].pose_in_map.position() - at).norm() +
+      const double length = so_far +
+                            priced((links[i].pose_in_map.position() - at).norm(), region, at,
+                                   came_by, i, std::nullopt) +
                             (settings_.closed.contains(links[i].id) ? settings_.closed_costs : 0.0);
-      ways.reach(2 * i + (links[i].a == region ? 1 : 0), length, by);
+      if (length < ShortestWays::kNever)
+        ways.reach(2 * i + (links[i].a == region ? 1 : 0), length, by);
     }
   };
   for (const std::size_t start : starts)
-    enter(start, from, 0.0, std::nullopt);
+    enter(start, from_, 0.0, std::nullopt);
   std::size_t best = states;
   double best_cost = ShortestWays::kNever;
   while (const auto next = ways.next()) {
@@ -172,20 +331,22 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     const std::size_t region = entered(*next);
     const Vec2 at = links[*next / 2].pose_in_map.position();
     if (wanted(region, to)) {
-      const double whole = ways.cost(*next) + (to.point ? (*to.point - at).norm() : 0.0);
+      const double whole = ways.cost(*next) + priced(to.point ? (*to.point - at).norm() : 0.0,
+                                                     region, at, *next / 2, std::nullopt, to.point);
       if (whole < best_cost) {
         best_cost = whole;
         best = *next;
       }
-      continue;
+      if (whole < ShortestWays::kNever)
+        continue;
     }
     enter(region, at, ways.cost(*next), *next);
   }
   if (best == states)
-    return {std::nullopt, why_none(from, topology_.text(starts.front()), to)};
+    return std::nullopt;
 
   Route route;
-  Vec2 at = from;
+  Vec2 at = from_;
   std::optional<std::size_t> came_by;
   const auto add = [&](Leg next) {
     for (const Vec2& point : next.points) {
@@ -201,10 +362,49 @@ RouteResult Search::run(const Vec2& from, const Place& to) {
     came_by = link;
   }
   add(leg(entered(best), at, came_by, std::nullopt, to.point));
-  return {route, {}};
+  return route;
+}
+
+std::string Search::forbidden(const std::vector<Leg>& legs, const std::optional<Vec2>& end) const {
+  if (legs.empty())
+    return {};
+  Route way;
+  Vec2 at = from_;
+  std::optional<std::size_t> came_by;
+  for (const Leg& each : legs) {
+    const bool last = &each == &legs.back();
+    way.legs.push_back(
+        leg(each.region, at, came_by, each.link, last && !each.link ? end : std::nullopt));
+    at = way.legs.back().points.back();
+    came_by = each.link;
+  }
+  for (const Zone* const zone : met_by(way))
+    if (zone->rule == ZoneRule::keep_out || zone->rule == ZoneRule::one_way)
+      return zone->text;
+  const Zone* const there =
+      kept_out(end ? std::vector<std::size_t>{} : std::vector{legs.back().region}, end);
+  return there == nullptr ? std::string() : there->text;
+}
+
+/// The keep-out with the whole of a place: with its point, or else with all its regions.
+const Zone* Search::kept_out(const std::vector<std::size_t>& regions,
+                             const std::optional<Vec2>& point) const {
+  for (const Zone& zone : settings_.zones)
+    if (zone.rule == ZoneRule::keep_out &&
+        (point ? zone.contains(topology_, *point)
+               : std::all_of(regions.begin(), regions.end(),
+                             [&](std::size_t region) { return zone.covers(region); })))
+      return &zone;
+  return nullptr;
 }
 
 }  // namespace
+
+std::string forbidden(const Topology& topology, const Vec2& from_in_map,
+                      const std::vector<Leg>& legs, const std::optional<Vec2>& end,
+                      const RouteSettings& settings) {
+  return Search(topology, settings, from_in_map).forbidden(legs, end);
+}
 
 std::vector<Vec2> Route::points() const {
   std::vector<Vec2> all;
@@ -216,9 +416,20 @@ std::vector<Vec2> Route::points() const {
   return all;
 }
 
+std::string RouteResult::remark() const {
+  std::string text;
+  const auto add = [&](const char* how, const std::vector<std::string>& zones) {
+    for (const std::string& zone : zones)
+      text += (text.empty() ? "" : ", ") + (how + zone);
+  };
+  add("around: ", around);
+  add("through: ", through);
+  return text;
+}
+
 RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const Place& to,
                        const RouteSettings& settings) {
-  return Search(topology, settings).run(from_in_map, to);
+  return Search(topology, settings, from_in_map).run(to);
 }
 
 RouteResult find_route(const Topology& topology, const Vec2& from_in_map,

@@ -63,7 +63,8 @@ std::string lower(std::string_view text) {
 bool same_places(const Map& a, const Map& b) {
   const auto next = [](auto it, auto end) {
     return std::find_if(it, end, [](const Feature& feature) {
-      return feature.type != PointType::object && feature.type != PointType::wall;
+      return feature.type != PointType::object && feature.type != PointType::wall &&
+             feature.type != PointType::zone;
     });
   };
   auto i = next(a.features.begin(), a.features.end());
@@ -135,6 +136,27 @@ Vec2 on_axis(const Feature& feature, const Vec2& position, double margin) {
   const double half = std::max(0.0, feature.length / 2 - margin);
   const double x = to_frame(feature.pose_in_map, position).x();
   return transform(feature.pose_in_map, {std::clamp(x, -half, half), 0.0});
+}
+
+double length_inside(const Feature& feature, const Vec2& from, const Vec2& to, double margin) {
+  const Vec2 a = to_frame(feature.pose_in_map, from);
+  const Vec2 way = to_frame(feature.pose_in_map, to) - a;
+  const std::array<double, 2> half{feature.length / 2 + margin, feature.width / 2 + margin};
+  double enters = 0.0;  // as parts of the way
+  double leaves = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double limit = half[static_cast<std::size_t>(axis)];
+    if (std::abs(way[axis]) < 1e-9) {
+      if (std::abs(a[axis]) > limit)
+        return 0.0;
+      continue;
+    }
+    const double one = (-limit - a[axis]) / way[axis];
+    const double other = (limit - a[axis]) / way[axis];
+    enters = std::max(enters, std::min(one, other));
+    leaves = std::min(leaves, std::max(one, other));
+  }
+  return std::max(0.0, leaves - enters) * way.norm();
 }
 
 double distance_to(const Feature& feature, const Vec2& position) {

@@ -72,20 +72,74 @@ TEST(Map, FindsByIdAndName) {
   EXPECT_FALSE(contains(map.features[1], {1.1, 0.0}));
 }
 
+TEST(Map, ZonesHaveARule) {
+  const Map map = parse_map(
+      "ZONE (900) 1000, 2000, 90, 3000, 1000 keep-out \"lab\"\n"
+      "ZONE (901) 0 0 0 3000 1000 slow 150 \"kitchen\"\n"
+      "zone (902) 0, 0, 180, 3000, 1000 one-way\n"
+      "ZONE (903) 0, 0, 0, 3000, 1000 preferred ; no name\n",
+      "m");
+  ASSERT_EQ(map.features.size(), 4U);
+  EXPECT_EQ(map.features[0], (Feature{PointType::zone,
+                                      900,
+                                      {1.0, 2.0, kPi / 2},
+                                      3.0,
+                                      1.0,
+                                      "lab",
+                                      false,
+                                      ZoneRule::keep_out,
+                                      0.0}));
+  EXPECT_EQ(map.features[1].rule, ZoneRule::slow);
+  EXPECT_DOUBLE_EQ(map.features[1].speed, 0.15);
+  EXPECT_EQ(map.features[2].rule, ZoneRule::one_way);
+  EXPECT_EQ(map.features[3].rule, ZoneRule::preferred);
+  EXPECT_EQ(describe(map.features[0]), "keep-out zone 900 (lab)");
+  EXPECT_EQ(describe(map.features[2]), "one-way zone 902");
+  EXPECT_NE(to_text(map).find("ZONE (901) 0, 0, 0, 3000, 1000 slow 150 \"kitchen\""),
+            std::string::npos)
+      << to_text(map);
+  // A zone is no place and no way.
+  const Topology topology(map);
+  EXPECT_TRUE(topology.regions().empty());
+  EXPECT_FALSE(topology.place("lab"));
+  EXPECT_TRUE(same_places(map, Map{}));
+  const std::string picture = to_svg({map, "", {}, {}, {}, {}, {}, {}, {}, {}});
+  for (const char* const name : {"keep-out lab", "slow kitchen", "one-way 902", "preferred 903"})
+    EXPECT_NE(picture.find(name), std::string::npos) << name;
+  for (const auto& [line, why] :
+       {std::pair{"ZONE (1) 0,0,0,1,1", "keep-out, slow, one-way or preferred, found the end"},
+        {"ZONE (1) 0,0,0,1,1 fast", "found \"fast\""},
+        {"ZONE (1) 0,0,0,1,1 slow", "expected the speed in mm/s, found the end of the line"},
+        {"ZONE (1) 0,0,0,1,1 slow 0", "expected the speed in mm/s between 1 and 10000"},
+        {"ZONE (1) 0,0,0,1,1 keep-out 3", "found \"3\""}}) {
+    try {
+      parse_map(line, "m");
+      ADD_FAILURE() << line;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Map, WhatIsWrittenIsReadAgain) {
   Random random(3);
   Map map;
   const PointType types[] = {PointType::corridor, PointType::door,     PointType::wall,
                              PointType::lane,     PointType::junction, PointType::office,
-                             PointType::breach,   PointType::object,   PointType::position};
-  for (std::uint32_t i = 0; i < 900; ++i) {
+                             PointType::breach,   PointType::object,   PointType::position,
+                             PointType::zone};
+  for (std::uint32_t i = 0; i < 1000; ++i) {
     Feature feature;
-    feature.type = types[i % 9];
+    feature.type = types[i % 10];
     feature.id = feature.type == PointType::wall ? 0 : i + 1;
     feature.pose_in_map = {random.uniform(-1e4, 1e4), random.uniform(-50.0, 50.0),
                            random.uniform(-kPi, kPi)};
     feature.length = random.uniform(0.001, 100.0);
     feature.width = random.uniform(0.001, 100.0);
+    if (feature.type == PointType::zone)
+      feature.rule = static_cast<ZoneRule>(i / 10 % 4);
+    if (feature.rule == ZoneRule::slow)
+      feature.speed = random.uniform(0.001, 10.0);
     if (i % 3 == 0)
       feature.name = "room " + std::to_string(i);
     map.features.push_back(feature);
@@ -99,6 +153,8 @@ TEST(Map, WhatIsWrittenIsReadAgain) {
     EXPECT_EQ(a.type, b.type);
     EXPECT_EQ(a.id, b.id);
     EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.rule, b.rule);
+    EXPECT_NEAR(a.speed, b.speed, 1e-6);
     EXPECT_NEAR((a.pose_in_map.position() - b.pose_in_map.position()).norm(), 0.0, 1e-6);
     EXPECT_NEAR(sub2_angle(a.pose_in_map.th, b.pose_in_map.th), 0.0, 1e-7);
     if (b.length != 0.0) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "saphira/base/places.hpp"
+#include "saphira/maps/zones.hpp"
 
 namespace saphira::maps {
 namespace {
@@ -13,8 +14,9 @@ const Topology& floor() {
 }
 
 TEST(Route, ASequenceOfRegionsWithThePointsToDriveThrough) {
-  const auto [route, reason] = find_route(floor(), Vec2(17.6, 14.0), "EJ-265");
-  ASSERT_TRUE(route) << reason;
+  const RouteResult found = find_route(floor(), Vec2(17.6, 14.0), "EJ-265");
+  const std::optional<Route>& route = found.route;
+  ASSERT_TRUE(route) << found.reason;
   EXPECT_EQ(text(floor(), *route),
             "corridor 2 (central corridor), junction 12, corridor 3 (lower corridor), door 1265, "
             "room 265 (EJ-265)");
@@ -131,6 +133,123 @@ TEST(Route, ADoorWithNothingBehindItIsAPlaceAndNoWay) {
   const auto door = find_route(t, Vec2(-4.0, 0.0), "3");
   ASSERT_TRUE(door.route) << door.reason;
   EXPECT_NEAR((door.route->points().back() - Vec2(1.0, 0.4)).norm(), 0.0, 1e-9);
+}
+
+/// The route to a place of the floor with these lines of zones.
+RouteResult with_zones(const std::string& lines, const Vec2& from, const std::string& to,
+                       const std::string& advice = {}, const std::string& said_by = {}) {
+  RouteSettings settings;
+  settings.needs_width = 0.6;
+  settings.zones = zones_of(parse_map(lines, "zones.map"));
+  for (Zone& zone : advised_zones(floor(), advice, said_by))
+    settings.zones.push_back(std::move(zone));
+  return find_route(floor(), from, to, settings);
+}
+
+const Vec2 kUpper(22.0, 25.0);  // nearer to the east corridor than to the central one
+constexpr const char* kByEast =
+    "corridor 1 (upper corridor), junction 14, corridor 4 (east corridor), junction 13, "
+    "corridor 3 (lower corridor), door 1271, room 271 (EJ-271)";
+constexpr const char* kByCentral =
+    "corridor 1 (upper corridor), junction 11, corridor 2 (central corridor), junction 12, "
+    "corridor 3 (lower corridor), door 1271, room 271 (EJ-271)";
+
+TEST(Zones, AWayDoesNotEnterAKeepOut) {
+  const RouteResult found =
+      with_zones("ZONE (900) 26000, 16000, 0, 3000, 1000 keep-out \"lab\"", kUpper, "EJ-271");
+  ASSERT_TRUE(found.route) << found.reason;
+  EXPECT_EQ(text(floor(), *found.route), kByCentral);
+  EXPECT_EQ(found.remark(), "around: keep-out zone \"lab\"");
+  // One that is not on the way does not matter.
+  const RouteResult other =
+      with_zones("ZONE (900) 3000, 16000, 0, 3000, 1000 keep-out", kUpper, "EJ-271");
+  ASSERT_TRUE(other.route);
+  EXPECT_EQ(text(floor(), *other.route), kByEast);
+  EXPECT_EQ(other.remark(), "");
+}
+
+TEST(Zones, AGoalInAKeepOutHasNoRoute) {
+  EXPECT_EQ(with_zones("ZONE (900) 16150, 4000, 0, 5000, 5000 keep-out \"lab\"", Vec2(17.6, 14.0),
+                       "EJ-265")
+                .reason,
+            "room 265 (EJ-265) is in keep-out zone \"lab\"");
+  RouteSettings settings;
+  settings.zones = zones_of(parse_map("ZONE (7) 17600, 10000, 0, 1000, 1000 keep-out", "m"));
+  const RouteResult point = find_route(floor(), Vec2(17.6, 14.0), Vec2(17.6, 10.2), settings);
+  EXPECT_EQ(point.reason, "the goal, (17600, 10200) mm, is in keep-out zone 7");
+  // All the ways in.
+  const std::string none = with_zones("ZONE (901) 20000, 12000, 0, 50000, 1000 keep-out \"wet\"",
+                                      Vec2(17.6, 14.0), "EJ-265")
+                               .reason;
+  EXPECT_EQ(none,
+            "no way to room 265 (EJ-265) keeps the rules of the zones: keep-out zone \"wet\"");
+}
+
+TEST(Zones, TheRobotMayLeaveAKeepOut) {
+  EXPECT_TRUE(
+      with_zones("ZONE (900) 17600, 14000, 0, 3000, 3000 keep-out", Vec2(17.6, 14.0), "EJ-265")
+          .route);
+  // Beside it the robot does not count as in it.
+  const RouteResult beside =
+      with_zones("ZONE (900) 17600, 12400, 0, 4000, 3000 keep-out", Vec2(17.6, 14.0), "EJ-265");
+  ASSERT_TRUE(beside.route) << beside.reason;
+  EXPECT_NE(text(floor(), *beside.route).find("east corridor"), std::string::npos);
+}
+
+TEST(Zones, ASlowZoneIsLonger) {
+  const RouteResult around =
+      with_zones("ZONE (900) 26000, 16000, 0, 3000, 12000 slow 50", kUpper, "EJ-271");
+  ASSERT_TRUE(around.route);
+  EXPECT_EQ(text(floor(), *around.route), kByCentral);
+  EXPECT_EQ(around.remark(), "around: slow zone 900");
+  const RouteResult through =
+      with_zones("ZONE (900) 26000, 16000, 0, 3000, 500 slow 150 \"k\"", kUpper, "EJ-271");
+  ASSERT_TRUE(through.route);
+  EXPECT_EQ(text(floor(), *through.route), kByEast);
+  EXPECT_EQ(through.remark(), "through: slow zone \"k\"");
+}
+
+TEST(Zones, OneWayHoldsAlongItsHeading) {
+  const RouteResult along =
+      with_zones("ZONE (900) 26000, 16000, -90, 2000, 3000 one-way", kUpper, "EJ-271");
+  ASSERT_TRUE(along.route);
+  EXPECT_EQ(text(floor(), *along.route), kByEast);
+  EXPECT_EQ(along.remark(), "");
+  const RouteResult against =
+      with_zones("ZONE (900) 26000, 16000, 90, 2000, 3000 one-way", kUpper, "EJ-271");
+  ASSERT_TRUE(against.route);
+  EXPECT_EQ(text(floor(), *against.route), kByCentral);
+  EXPECT_EQ(against.remark(), "around: one-way zone 900");
+}
+
+TEST(Zones, APreferredWayCountsHalf) {
+  const RouteResult found =
+      with_zones("ZONE (900) 17600, 16000, 0, 3000, 17000 preferred", Vec2(20.5, 25.0), "EJ-271");
+  ASSERT_TRUE(found.route);
+  EXPECT_EQ(text(floor(), *found.route), kByCentral);
+  EXPECT_EQ(found.remark(), "through: preferred zone 900");
+}
+
+TEST(Zones, ByAdviceTheyAreRegions) {
+  RouteResult found = with_zones("", kUpper, "EJ-271", "keep-out at east corridor",
+                                 "Charlie said \"keep out of the east corridor\"");
+  ASSERT_TRUE(found.route) << found.reason;
+  EXPECT_EQ(text(floor(), *found.route), kByCentral);
+  EXPECT_EQ(found.remark(), "around: east corridor, which Charlie told me to keep out of");
+  found = with_zones("", kUpper, "EJ-271", "leak at lab; keep-out at EJ-271",
+                     "Karen said \"x\"; Charlie said \"y\"");
+  EXPECT_EQ(found.reason, "room 271 (EJ-271) is in a place that Charlie told me to keep out of");
+  found = with_zones("", kUpper, "EJ-271", "water leak at EJ-271");
+  EXPECT_EQ(found.reason, "room 271 (EJ-271) is where people warn of: water leak at EJ-271");
+  found = with_zones("", kUpper, "EJ-271", "preferred at central corridor; slow at east corridor");
+  ASSERT_TRUE(found.route) << found.reason;
+  EXPECT_EQ(text(floor(), *found.route), kByCentral);
+  EXPECT_EQ(found.remark(),
+            "around: people told me to go slowly in east corridor, through: people told me to "
+            "prefer central corridor");
+  found = with_zones("", Vec2(17.6, 14.0), "EJ-265", "wet floor at central corridor");
+  ASSERT_TRUE(found.route) << found.reason;
+  EXPECT_EQ(found.remark(), "through: wet floor at central corridor");
 }
 
 }  // namespace

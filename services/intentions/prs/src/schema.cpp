@@ -29,7 +29,7 @@ std::string expected(const Parameter& parameter) {
     case ArgumentKind::number:
       return "a number from " + plain(parameter.low) + " to " + plain(parameter.high) + unit;
     case ArgumentKind::text:
-      return "a text";
+      return parameter.place ? "the name of a place, or a point x,y@map" : "a text";
     case ArgumentKind::point:
       return "a point x,y or x,y,heading, such as 3,1, within " + plain(kFarthest) + " m";
     case ArgumentKind::truth:
@@ -61,7 +61,8 @@ std::string came(const Argument& argument) {
 
 /// False for NaN, as all comparisons here.
 bool fits(const Parameter& parameter, const Argument& argument) {
-  if (!parameter.any && argument.kind != parameter.kind)
+  const bool instead = parameter.place && argument.kind == ArgumentKind::point;
+  if (!parameter.any && !instead && argument.kind != parameter.kind)
     return false;
   switch (argument.kind) {
     case ArgumentKind::number:

@@ -9,6 +9,7 @@
 
 #include "driving.hpp"
 #include "mapping.hpp"
+#include "zones.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -116,6 +117,26 @@ class Motion {
   bool stalled_ = false;
 };
 
+/// Finds that the robot stands before a keep-out, and does not turn away from it.
+class KeepOut {
+ public:
+  bool stops(const Self& self, bool backwards) {
+    const std::string zone = keep_out_ahead(self.world(), backwards);
+    if (zone.empty() || !at_rest(self.robot()) || zone != zone_) {
+      zone_ = zone;
+      since_ = self.now();
+    }
+    return !zone.empty() && static_cast<double>(self.now() - since_) * kTick >= kStands;
+  }
+  std::string reason() const { return "it must not go on: " + zone_; }
+
+ private:
+  static constexpr double kStands = 2.0;  // [s]
+
+  std::string zone_;
+  Ticks since_ = 0;
+};
+
 std::string why_not_moving(const Robot& robot, const Motion& motion) {
   if (!robot.has_power)
     return "; the motors have no power (saphira device motors on)";
@@ -155,6 +176,11 @@ class GoTo : public Activity {
     const std::optional<Pose> target = in_odom(target_, self.robot());
     if (!target) {
       wait_for_position(self, waiting_since_, watchdog_.patience());
+      return;
+    }
+    if (const std::string why = why_kept_out(self.world(), target_.point, target_.frame);
+        !why.empty()) {
+      self.fail(GoalCode::kNoRoute, format_point(target_) + " " + why);
       return;
     }
     const bool waited = std::exchange(waiting_since_, std::nullopt).has_value();
@@ -203,6 +229,10 @@ class GoTo : public Activity {
     self.say("driving to " + format_point(target_));
     if (whole_way_ > 0.0)
       self.progress(1.0 - left / whole_way_);
+    if (keep_out_.stops(self, false)) {
+      self.fail(GoalCode::kNoRoute, keep_out_.reason());
+      return;
+    }
     const bool late = watchdog_.check(left, self.now());
     path_ = watchdog_.waited(self.now()) > 0.0 ? path_ + distance(last_, self.robot().pose_in_odom)
                                                : 0.0;
@@ -256,6 +286,7 @@ class GoTo : public Activity {
 
   Argument target_;
   std::optional<Ticks> waiting_since_;
+  KeepOut keep_out_;
   double speed_ = 0.0;
   double radius_ = 0.0;
   Watchdog watchdog_;
@@ -301,7 +332,9 @@ class Drive : public Activity {
       anchored_ = self.now();
     }
     const double still = static_cast<double>(self.now() - anchored_) * kTick;
-    if (std::abs(speed_) > kRestVelocity && still >= patience_)
+    if (keep_out_.stops(self, speed_ < 0.0))
+      self.fail(GoalCode::kNoRoute, keep_out_.reason());
+    else if (std::abs(speed_) > kRestVelocity && still >= patience_)
       self.fail(GoalCode::kBlocked, format("has not moved for %.0f s", patience_) +
                                         why_not_moving(self.robot(), motion_));
   }
@@ -321,6 +354,7 @@ class Drive : public Activity {
   double speed_ = 0.0;
   double patience_ = kPatience;
   bool restart_ = true;
+  KeepOut keep_out_;
   Motion motion_;
   Pose anchor_;
   Ticks anchored_ = 0;

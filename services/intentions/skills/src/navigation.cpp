@@ -14,6 +14,7 @@
 #include "saphira/maps/route.hpp"
 #include "saphira/maps/topology.hpp"
 #include "seeing.hpp"
+#include "zones.hpp"
 
 namespace saphira::intentions {
 namespace {
@@ -29,7 +30,6 @@ constexpr double kStep = 0.7;      ///< [m] nearer points are not worth a drive
 constexpr double kWayIn = 1.0;     ///< [m] behind a door, where a room counts as visited
 
 const char* const kClosedWays = "*closed-ways*";
-const char* const kHazards = "hazards";
 
 double seconds(const World& world) {
   return static_cast<double>(world.now) * kTick;
@@ -47,51 +47,12 @@ std::vector<std::pair<Reference, double>> closed_ways(const Value& value) {
   return ways;
 }
 
-/// Hazards that people warn of, by the belief `hazards`: "water leak at upper corridor; fire at
-/// EJ-231".
-struct Hazard {
-  std::string text;
-  std::vector<std::size_t> regions;
-};
-
-std::vector<Hazard> hazards(const World& world) {
-  std::vector<Hazard> found;
-  const Value belief = world.beliefs.get(kHazards, world);
-  const std::string* const text = belief.text();
-  if (text == nullptr || world.around.topology == nullptr)
-    return found;
-  for (std::size_t at = 0; at < text->size();) {
-    const std::size_t end = std::min(text->find("; ", at), text->size());
-    const std::string one = text->substr(at, end - at);
-    at = end + 2;
-    const std::size_t place = one.find(" at ");
-    if (place == std::string::npos)
-      continue;
-    if (const auto named = place_named(*world.around.topology, Value(one.substr(place + 4))))
-      found.push_back({one, named->regions});
-  }
-  return found;
-}
-
-/// The first hazard in the region; empty: none.
-std::string hazard_in(const std::vector<Hazard>& hazards, std::size_t region) {
-  for (const Hazard& hazard : hazards)
-    if (std::find(hazard.regions.begin(), hazard.regions.end(), region) != hazard.regions.end())
-      return hazard.text;
-  return {};
-}
-
 maps::RouteSettings route_settings(const World& world) {
   maps::RouteSettings settings;
   settings.tolerance = kAstray;
   if (world.around.robot_radius > 0.0)
     settings.needs_width = maps::needed_width(world.around.robot_radius);
-  // The robot may leave its own region.
-  const std::optional<std::size_t> here = region_here(world);
-  for (const Hazard& hazard : hazards(world))
-    for (const std::size_t region : hazard.regions)
-      if (region != here)
-        settings.blocked.insert(world.around.topology->regions()[region].area.id);
+  settings.zones = zones_of(world);
   settings.closed = world.around.registration.closed_doors;
   for (const auto& [way, since] : closed_ways(world.beliefs.get(kClosedWays, world))) {
     if (!current(world, way) || seconds(world) - since >= kForget)
@@ -146,6 +107,28 @@ maps::RouteResult route(const World& world, const Value& from, const Value& to,
   if (!place)
     return {std::nullopt, map.no_place(spoken(to))};
   return maps::find_route(map, *start, *place, settings);
+}
+
+/// The zone that forbids the rest of a path, from the robot's place; empty: none.
+std::string hazard_on(const World& world, const Value& path) {
+  const std::optional<Pose> robot = world.robot_in_map();
+  const maps::RouteSettings settings = route_settings(world);
+  if (settings.zones.empty() || !robot)
+    return {};
+  std::vector<maps::Leg> legs;
+  std::optional<Vec2> end;
+  for (const Value& each : path.list()) {
+    const Reference* const reference = each.reference();
+    if (each.point() != nullptr && each.point()->frame == Frame::map) {
+      end = each.point()->pose.position();
+    } else if (reference != nullptr && current(world, *reference)) {
+      if (reference->kind == Kind::kRegion)
+        legs.push_back({reference->id, std::nullopt, {}});
+      else if (!legs.empty())
+        legs.back().link = reference->id;
+    }
+  }
+  return maps::forbidden(*world.around.topology, robot->position(), legs, end, settings);
 }
 
 Value path_of(const World& world, const maps::Route& route, const Value& to) {
@@ -285,13 +268,7 @@ void add_paths(Functions& functions) {
                          "(find-path FROM TO): the regions and ways out to go through, or nil"});
   functions.add(Function{"why-no-path", 2, 2,
                          [](const World& world, Values arguments) {
-                           std::string reason = route(world, arguments[0], arguments[1]).reason;
-                           const char* between = ", and people warn of: ";
-                           for (const Hazard& hazard : hazards(world)) {
-                             reason += between + hazard.text;
-                             between = "; ";
-                           }
-                           return Value(reason);
+                           return Value(route(world, arguments[0], arguments[1]).reason);
                          },
                          "(why-no-path FROM TO): the reason why find-path gives nil"});
   functions.add(Function{"could-be-opened", 2, 2,
@@ -300,7 +277,7 @@ void add_paths(Functions& functions) {
                                route(world, arguments[0], arguments[1], true).route.has_value());
                          },
                          "(could-be-opened FROM TO): whether there would be a way if nothing were "
-                         "closed, blocked or warned of"});
+                         "closed or blocked"});
   functions.add(Function{"way-length", 2, 2,
                          [](const World& world, Values arguments) {
                            const maps::RouteResult found = route(world, arguments[0], arguments[1]);
@@ -317,20 +294,26 @@ void add_paths(Functions& functions) {
                          "(path-current PATH): whether the map is still the one that it is of"});
   functions.add(Function{"hazard-on", 1, 1,
                          [](const World& world, Values arguments) {
-                           const std::vector<Hazard> known = hazards(world);
-                           const std::optional<std::size_t> here = region_here(world);
-                           for (const Value& each : arguments[0].list()) {
-                             const Reference* const region = each.reference();
-                             if (region == nullptr || region->kind != Kind::kRegion ||
-                                 !current(world, *region) || region->id == here)
-                               continue;
-                             const std::string hazard = hazard_in(known, region->id);
-                             if (!hazard.empty())
-                               return Value(hazard);
-                           }
-                           return Value();
+                           const std::string hazard = hazard_on(world, arguments[0]);
+                           return hazard.empty() ? Value() : Value(hazard);
                          },
-                         "(hazard-on PATH): what people warn of in a region of it, or nil"});
+                         "(hazard-on PATH): the zone, of the map or by advice, that forbids the "
+                         "rest of it, or nil"});
+  functions.add(Function{"keep-out-ahead", 0, 0,
+                         [](const World& world, Values) {
+                           const std::string zone = keep_out_ahead(world);
+                           return zone.empty() ? Value() : Value(zone);
+                         },
+                         "(keep-out-ahead): the zone before the robot that it may not enter, or "
+                         "nil"});
+  functions.add(Function{"zones-on", 1, 1,
+                         [](const World& world, Values arguments) {
+                           const Value::List& path = arguments[0].list();
+                           const std::string remark =
+                               path.empty() ? "" : route(world, Value(), path.back()).remark();
+                           return remark.empty() ? Value() : Value(remark);
+                         },
+                         "(zones-on PATH): the zones that it goes around or through, or nil"});
   functions.add(Function{"path-text", 1, 1,
                          [](const World& world, Values arguments) {
                            std::string text;

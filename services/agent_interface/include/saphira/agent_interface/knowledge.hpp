@@ -25,6 +25,8 @@ struct Advice {
 
 /// The kind of a hazard that is only a wish: people want the robot out of that place.
 inline constexpr const char* kKeepOut = "keep-out";
+inline constexpr const char* kSlow = "slow";
+inline constexpr const char* kPreferred = "preferred";
 
 /// The speaker of what the robot has found out itself.
 inline constexpr const char* kRobot = "the robot";

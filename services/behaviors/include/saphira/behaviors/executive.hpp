@@ -28,6 +28,8 @@ struct Intent {
   std::uint64_t cycle = 0;
   bool control = false;  ///< sfBehaviorControl (manual 7.4)
   std::vector<Intended> behaviors;
+  double speed_limit = -1.0;   ///< [m/s] by zones of the map and by advice; below 0: none
+  std::string limit_reason{};  ///< in words
 };
 
 struct Inputs {
@@ -70,7 +72,7 @@ struct Output {
   double heading_in_odom = 0.0;  ///< [rad] (-pi, pi]
 
   double input_age = 0.0;     ///< [s] of the intent
-  double speed_limit = -1.0;  ///< [m/s] from the age of all inputs; below 0: none
+  double speed_limit = -1.0;  ///< [m/s] from the age of all inputs, and intended; below 0: none
   std::string limit_reason;   ///< empty: the speed was not limited
   /// The late input, and its delay, while the robot has to drive more slowly for it; empty: none.
   std::string slow;
@@ -125,6 +127,7 @@ class Executive {
   std::string why_inactive(const Inputs& inputs, bool running) const;
   /// Records the ages of the inputs, and limits the speed by them.
   void limit_speed(const Inputs& inputs, Output& output);
+  static void obey_limit(const Inputs& inputs, Output& output);
   /// Puts the obstacle at a stalled wheel into the LPS.
   void feel(const RobotNow& robot);
   /// Makes the intended instances; returns the errors.

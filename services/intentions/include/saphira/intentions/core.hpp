@@ -13,6 +13,7 @@
 #include "saphira/base/process.hpp"
 #include "saphira/base/stamp.hpp"
 #include "saphira/intentions/executor.hpp"
+#include "saphira/intentions/navigation.hpp"
 #include "saphira/lps/local_perceptual_space.hpp"
 #include "saphira/lps/percept.hpp"
 #include "saphira/lps/seen_thing.hpp"
@@ -111,6 +112,7 @@ class Core {
     /// The present way over the map [m] [map], from the robot's place, where it has changed; empty:
     /// none.
     std::optional<std::vector<Vec2>> way;
+    SpeedLimit limit;  ///< for the intended behaviors
     Notes notes;
   };
   Outputs step(Inputs inputs);
@@ -145,6 +147,7 @@ class Core {
   void look_around(const Inputs& inputs, Surroundings& around);
   void take_maps(std::optional<std::uint64_t> revision);
   std::optional<std::vector<Vec2>> look_for_way(const intentions::Inputs& now);
+  SpeedLimit limit_of(const intentions::Inputs& now, const intentions::Outputs& intended) const;
   void tell(const News& news, Notes& notes);
   std::string who_is_gone(const Inputs& inputs);
 

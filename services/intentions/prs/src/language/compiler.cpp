@@ -111,6 +111,7 @@ class Compiler {
           known = false;
         if (known)
           parameter.any = false;
+        parameter.place = type.is("place");
         typed = known || type.is("any") || type.is("list");
         if (typed)
           ++next;

@@ -17,7 +17,8 @@ enum class PointType {
   junction,
   office,
   breach,  ///< BREAK
-  object
+  object,
+  zone  ///< a part of the floor with a rule for the robot; only on maps
 };
 
 /// A directed point, or an object on one (a wall is its middle and a length along it), with its

@@ -48,7 +48,7 @@ struct ArtifactTraits {
 
 // CORRIDOR, DOOR and WALL are the manual's lines of a map file (6.9.1); the others have the names
 // of its point types (6.6.3.1), in the same form.
-inline constexpr std::array<ArtifactTraits, 10> kArtifactTraits{{
+inline constexpr std::array<ArtifactTraits, 11> kArtifactTraits{{
     {.type = lps::PointType::corridor,
      .word = "CORRIDOR",
      .id = true,
@@ -112,6 +112,7 @@ inline constexpr std::array<ArtifactTraits, 10> kArtifactTraits{{
      .length = true,
      .width = true,
      .missing = ArtifactTraits::Missing::watched},
+    {.type = lps::PointType::zone, .word = "ZONE", .id = true, .length = true, .width = true},
     {.type = lps::PointType::position, .word = "POS", .id = true},
     {.type = lps::PointType::invalid, .word = ""},
 }};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,18 @@
 #include "saphira/lps/artifact.hpp"
 
 namespace saphira::maps {
+
+/// The rule of a zone.
+enum class ZoneRule {
+  keep_out,  ///< the robot does not drive in
+  slow,      ///< no faster than the zone's speed
+  one_way,   ///< routes go only along its heading
+  preferred  ///< routes go there rather than elsewhere
+};
+
+/// Its word in a map file: "keep-out".
+std::string_view word(ZoneRule rule);
+std::optional<ZoneRule> zone_rule(std::string_view word);
 
 /// One line of a map: an artifact with its place in the frame `map`.
 struct Feature {
@@ -25,6 +38,8 @@ struct Feature {
   /// The robot has added it itself; its own walls and breaks are removed when they are not seen any
   /// more. In a file: the word learned at the end of the line.
   bool learned = false;
+  ZoneRule rule = ZoneRule::keep_out;  ///< of a zone
+  double speed = 0.0;                  ///< [m/s] of a slow zone; 0: the artifact is none
 
   bool operator==(const Feature&) const = default;
 };
@@ -57,7 +72,8 @@ const Feature* find(const Map& map, std::uint32_t id);
 /// Every feature of that type and name, in the order of the file.
 std::vector<const Feature*> named(const Map& map, lps::PointType type, std::string_view name);
 
-/// True where a position lies in the rectangle of a corridor, lane, junction, office or object.
+/// True where a position lies in the rectangle of a corridor, lane, junction, office, object or
+/// zone.
 bool contains(const Feature& feature, const Vec2& position_in_map);
 
 }  // namespace saphira::maps

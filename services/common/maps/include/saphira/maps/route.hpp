@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saphira/maps/topology.hpp"
+#include "saphira/maps/zones.hpp"
 
 namespace saphira::maps {
 
@@ -19,6 +20,8 @@ struct Leg {
   /// The points to drive through, in the map, up to and including the way out: along the middle of
   /// a corridor, and straight through a door. Never empty.
   std::vector<Vec2> points;
+
+  bool operator==(const Leg&) const = default;
 };
 
 struct Route {
@@ -46,6 +49,11 @@ struct RouteSettings {
   /// [m] The robot's width between two posts or walls: narrower doors, openings and corridors are
   /// not used. 0: any width.
   double needs_width = 0.0;
+  /// A way does not enter a keep-out, nor go against a one-way zone; the robot may leave the
+  /// keep-outs around its start. Its stretches in slow zones count as longer, in preferred ones as
+  /// half as long.
+  std::vector<Zone> zones;
+  double cruise = 0.3;          ///< [m/s] speed elsewhere
   double door_clearance = 0.7;  ///< [m] way in line before and behind a door
   double tolerance = 0.5;       ///< [m] tolerated distance of the robot from its region
 };
@@ -54,6 +62,12 @@ struct RouteSettings {
 struct RouteResult {
   std::optional<Route> route;
   std::string reason;
+  // The zones that matter, in words.
+  std::vector<std::string> around{};   ///< without them another way would be shorter
+  std::vector<std::string> through{};  ///< slow or preferred zones on the way
+
+  /// "around: keep-out zone "lab", through: slow zone "kitchen""; empty: no zone matters.
+  std::string remark() const;
 };
 
 /// The shortest way from the robot's position to a place (Topology::place), by the lengths of the
@@ -69,6 +83,12 @@ RouteResult find_route(const Topology& topology, const Vec2& from_in_map, const 
 /// From one place to another: from its point, or else from the middle of its first region.
 RouteResult find_route(const Topology& topology, std::string_view from_name_or_id,
                        std::string_view to_name_or_id, const RouteSettings& settings = {});
+
+/// The zone that forbids the legs of a way, of whose points nothing need be known, from a position
+/// on and to `end`; empty: none. The last leg counts even where it began in the zone.
+std::string forbidden(const Topology& topology, const Vec2& from_in_map,
+                      const std::vector<Leg>& legs, const std::optional<Vec2>& end,
+                      const RouteSettings& settings);
 
 /// "corridor 2, junction 12, corridor 3, door 1265, room 265 (EJ-265)".
 std::string text(const Topology& topology, const Route& route);

@@ -78,7 +78,7 @@ class Topology {
 };
 
 /// True where two maps have the same regions, ways and places, so that a plan on one holds on the
-/// other: objects and walls may differ.
+/// other: objects, walls and zones may differ.
 bool same_places(const Map& a, const Map& b);
 
 /// The four corners of a feature's rectangle, counter-clockwise, made larger by `margin` [m] on
@@ -99,6 +99,10 @@ Vec2 end_of(const Feature& feature);
 
 /// The nearest position on the middle line of a feature, which ends `margin` [m] before its ends.
 Vec2 on_axis(const Feature& feature, const Vec2& position, double margin = 0.0);
+
+/// [m] of the way from one position straight to another that lies in the feature's rectangle, which
+/// is made larger by `margin` [m] on every side.
+double length_inside(const Feature& feature, const Vec2& from, const Vec2& to, double margin = 0.0);
 
 /// From a position to the feature's rectangle [m]; 0 inside.
 double distance_to(const Feature& feature, const Vec2& position);

@@ -28,6 +28,7 @@ struct Parameter {
   std::optional<double> usual;            ///< default of an optional number; none: absent
   std::optional<std::string> usual_text;  ///< the default of an optional text
   bool any = false;                       ///< takes every kind; `kind` does not count
+  bool place = false;                     ///< a text that names a place, or a point instead
 };
 
 /// A schema that can be intended: its name, its parameters and its factory (manual 8.3). Goals name

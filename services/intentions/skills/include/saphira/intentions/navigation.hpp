@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "saphira/intentions/functions.hpp"
@@ -12,13 +13,21 @@ namespace saphira::intentions {
 ///
 /// A path is a list: region, way out, region, ..., region, and a point where the place has one. It
 /// is valid for one revision of the map. Ways that proved closed are in the environment variable
-/// *closed-ways*; `find-path` avoids them for five minutes. It also avoids hazards that people warn
-/// of, while the belief `hazards` names them.
+/// *closed-ways*; `find-path` avoids them for five minutes. It also keeps the
+/// rules of the zones of the map, and of those in the belief `hazards`, by advice.
 void add_navigation(Functions& functions);
 
 /// The points of the rest of a path [m] [map]: its ways out and its end. Empty for another revision
 /// of the map.
 std::vector<Vec2> way_points(const Surroundings& around, const Value& path);
+
+/// The speed that zones of the map, and advice, allow the robot at its place.
+struct SpeedLimit {
+  double speed = -1.0;  ///< [m/s]; below 0: none
+  std::string reason;   ///< in words; empty: none
+};
+/// Of the slow zones around the robot, and of a keep-out before it, where it drives to.
+SpeedLimit speed_limit(const World& world, bool backwards);
 
 /// core_functions() and these: all functions of the shipped activities.
 std::shared_ptr<const Functions> all_functions();

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saphira/maps/topology.hpp"
+
+namespace saphira::maps {
+
+/// [m/s] By advice to go slowly, which gives no speed.
+inline constexpr double kSlowly = 0.15;
+
+/// A rule for a part of the floor: of the map, or by advice.
+struct Zone {
+  ZoneRule rule = ZoneRule::keep_out;
+  double speed = 0.0;  ///< [m/s] of slow
+  std::string text;    ///< for people: keep-out zone "lab"; water leak at upper corridor
+  std::string inside;  ///< says of a place that it lies there: is in keep-out zone "lab"
+  // Where: a rectangle, or the whole of some regions.
+  std::optional<Feature> area;
+  std::vector<std::size_t> regions;
+
+  /// True where a position lies in it, or no more than `margin` [m] beside it.
+  bool contains(const Topology& topology, const Vec2& position_in_map, double margin = 0.0) const;
+  bool covers(std::size_t region) const;
+};
+
+/// The zones of a map.
+std::vector<Zone> zones_of(const Map& map);
+
+/// The zones by advice: the belief `hazards`, such as "water leak at upper corridor; slow at lab;
+/// keep-out at EJ-231; preferred at central corridor". `said_by` tells of each who said it, in the
+/// same order: "Charlie said ...; ...". Places that are not on the map are left out.
+std::vector<Zone> advised_zones(const Topology& topology, std::string_view hazards,
+                                std::string_view said_by);
+
+/// The first zone with that rule that holds at a position; nullptr: none.
+const Zone* zone_at(const std::vector<Zone>& zones, ZoneRule rule, const Topology& topology,
+                    const Vec2& position_in_map);
+
+/// The slowest slow zone at a position; nullptr: none.
+const Zone* slowest_at(const std::vector<Zone>& zones, const Topology& topology,
+                       const Vec2& position_in_map);
+
+}  // namespace saphira::maps

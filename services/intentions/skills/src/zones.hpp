@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "saphira/intentions/navigation.hpp"
+#include "saphira/maps/zones.hpp"
+
+/// The zones of the map and by advice, for the activities that drive.
+namespace saphira::intentions {
+
+std::vector<maps::Zone> zones_of(const World& world);
+
+/// The reason why the robot is not to go to a point, in words; empty: it may, or the point's place
+/// on the map is not known.
+std::string why_kept_out(const World& world, const Pose& point, Frame frame);
+
+/// The keep-out before the robot, which ends its way within the next metre or so; empty: none.
+std::string keep_out_ahead(const World& world, bool backwards = false);
+
+}  // namespace saphira::intentions
