@@ -673,6 +673,30 @@ std::vector<Scenario> scenarios() {
        office(),
        "attend",
        {saphira::point("position", {17.5, 10.0, 0.0}, Frame::map), saphira::number("seconds", 1)}});
+  all.push_back({"guide", office(), "guide", {text("place", "EJ-249")}});
+  all.push_back({"come-back",
+                 office(),
+                 "come-back",
+                 {text("place", "EJ-249"), saphira::point("spot", {17.5, 8.0, 0.0}, Frame::map)}});
+  all.push_back({"pause", office(), "pause", {saphira::number("seconds", 2.0)}});
+  Scenario tell{"tell",
+                office(),
+                "tell",
+                {text("person", "karen"), text("message", "it is late"), text("back", "EJ-250")},
+                6000};
+  tell.answers = {{"Is karen here?", "answer", "yes"},
+                  {"karen, somebody says: it is late", "answer", "no"}};
+  tell.claims = {{"place-of-karen", "EJ-249"}};
+  all.push_back(tell);
+  Scenario inquire{"inquire",
+                   office(),
+                   "inquire",
+                   {text("person", "john"), text("question", "where karen is")},
+                   6000};
+  inquire.answers = {{"Is john here?", "answer", "yes"},
+                     {"john, somebody asks where karen is?", "answer", "EJ-244"}};
+  inquire.claims = {{"place-of-john", "EJ-249"}};
+  all.push_back(inquire);
   Scenario deliver{
       "deliver", office(),
       "deliver", {text("object", "the report"), text("from", "karen"), text("to", "EJ-250")},

@@ -333,7 +333,7 @@ TEST_P(Bus, EchoSpeaksJson) {
       R"({"id":{"writer":18446744073709551615,"number":2},"stamp":{"epoch":0,"cycle":0},)"
       R"("requester":"","functor":"","state":"GOAL_FAILED","code":"CODE_BLOCKED",)"
       R"("reason":"a \"wall\"\u000a","step":"","progress":0.1,"level":0,"trend":"TREND_STEADY",)"
-      R"("elapsed":null,"note":""})");
+      R"("elapsed":null,"note":"","waits_for":{"writer":0,"number":0}})");
   writer.dispose(status);
   ASSERT_TRUE(eventually(*b, [&] { return !(lines = echo.take_json()).empty(); }));
   EXPECT_EQ(lines[0].substr(0, 25), R"({"_disposed":true,"id":{")");
