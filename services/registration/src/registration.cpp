@@ -576,7 +576,8 @@ const Output& Registration::Self::step(const Inputs& inputs) {
     if (now_.state == State::tracking)
       now_.doubted = now_.carried = false;
     now_.confirmed = now_.confirmed || now_.search.own_score >= settings_.sure;
-    now_.other_map = now_.other_map && !now_.confirmed;
+    if (now_.state == State::tracking && now_.confirmed)
+      now_.other_map = false;
     look_for_news(inputs, readings);
   }
   report();
