@@ -55,7 +55,7 @@ export function nameOf({status, goal}: {status: GoalStatus; goal?: Goal}): strin
 }
 
 // In the words of the page where another goal is the reason, without its id. A refused change has its own reason.
-const ownCodes = [0, 302];   // CODE_NONE, CODE_PREEMPTED
+const ownCodes = ['CODE_NONE', 'CODE_PREEMPTED'];
 export function reasonOf(link: Link, {status, goal}: Pursued): string {
   const {open, over} = pursued(link);
   const other = ownCodes.includes(status.code) ? [...open, ...over].find(g => isGoal(status.waits_for, g.id)) : undefined;

@@ -97,7 +97,7 @@ export interface GoalStatus {
   step: string;
   progress: number;
   elapsed: number;
-  code: number;
+  code: string;
   note: string;
   waits_for: GoalId;         // the goal in front of this one, or the one that stopped it [0, 0: none]
 }
