@@ -53,6 +53,10 @@ TEST(MapWords, AreRequests) {
   EXPECT_EQ(number_of(put.arguments, "id"), 3.0);
   EXPECT_EQ(text_of(put.arguments, "type"), "DOOR");
   EXPECT_EQ(text_of(put.arguments, "name"), "EJ-231");
+  EXPECT_EQ(saphira::find(put.arguments, "rule"), nullptr);
+  const Request zone = parse({"put", "ZONE (4) 0, 0, 0, 900, 900 slow 150 \"kitchen\""});
+  EXPECT_EQ(text_of(zone.arguments, "rule"), "slow");
+  EXPECT_DOUBLE_EQ(number_of(zone.arguments, "speed"), 0.15);
 }
 
 TEST(MapWords, SayWhatWasExpected) {

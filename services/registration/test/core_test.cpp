@@ -450,6 +450,21 @@ TEST(RegistrationCore, InAnotherOdometryFrameThePoseIsAGuessUntilTheReadingsFitI
   EXPECT_EQ(later.state, State::tracking);
 }
 
+TEST(RegistrationCore, AZoneIsPutWithItsRule) {
+  Core core(settings());
+  Request zone = put(lps::PointType::zone, {5.0, 0.0, 0.0});
+  zone.arguments.push_back({"rule", std::string("slow")});
+  zone.arguments.push_back({"speed", 0.15});
+  const Answer made = core.act(zone);
+  EXPECT_EQ(made.text, "");
+  const maps::Feature* const feature = maps::find(core.map(), id_of(made));
+  ASSERT_NE(feature, nullptr);
+  EXPECT_EQ(feature->rule, maps::ZoneRule::slow);
+  EXPECT_DOUBLE_EQ(feature->speed, 0.15);
+  zone.arguments.back().number = 0.0;
+  EXPECT_TRUE(contains(core.act(zone).text, "a speed of a slow zone"));
+}
+
 TEST(RegistrationCore, APoseThatWasOnlyToldIsHalfTrusted) {
   Core core(settings());
   Robot robot;
