@@ -6,7 +6,10 @@
 namespace saphira::registration {
 
 bool Standing::step(const Pose& moved, const std::vector<lps::SonarReading>& readings) {
-  if (std::hypot(moved.x, moved.y) > settings_.moved || std::abs(moved.th) > settings_.turned) {
+  way_ = compose(way_, moved);
+  if (way_.position().norm() > settings_.moved ||
+      std::abs(norm2_angle(way_.th)) > settings_.turned) {
+    way_ = {};
     sonars_.clear();
     return false;
   }

@@ -47,10 +47,18 @@ TEST(Standing, WhatIsHeardBesidesFromTimeToTimeIsNothingNew) {
   }
 }
 
-TEST(Standing, AlongItsOwnWayEverythingChanges) {
+TEST(Standing, AlongItsOwnWayEverythingChangesHoweverSlowlyItDrives) {
+  for (const double step : {0.03, 0.005, 0.001}) {
+    Standing standing;
+    for (int i = 0; i < 1000; ++i)
+      EXPECT_FALSE(standing.step({step, 0.0, 0.0}, around(1.0 + step * i))) << step << ", " << i;
+  }
+}
+
+TEST(Standing, WhileItTurnsSlowlyEverythingChanges) {
   Standing standing;
-  for (int i = 0; i < 100; ++i)
-    EXPECT_FALSE(standing.step({0.03, 0.0, 0.0}, around(1.0 + 0.03 * i)));
+  for (int i = 0; i < 1000; ++i)
+    EXPECT_FALSE(standing.step({0.0, 0.0, radians(0.5)}, around(1.0 + 0.01 * i))) << i;
 }
 
 TEST(Standing, ACopyGoesOnAsTheFirstOne) {

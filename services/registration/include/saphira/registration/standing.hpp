@@ -9,8 +9,8 @@
 namespace saphira::registration {
 
 struct StandingSettings {
-  double moved = 0.01;           ///< [m] of dead reckoning in a cycle that counts as motion...
-  double turned = radians(1.0);  ///< [rad] ...likewise
+  double moved = 0.05;  ///< [m] of dead reckoning that counts as motion, also a slow one...
+  double turned = radians(2.0);  ///< [rad] ...likewise
   double same = 0.25;            ///< [m] two echoes of one object
   double silence = 5.0;          ///< [m] range that stands for silence
   int learnt = 6;                ///< readings of a sonar that define its normal ranges at a place
@@ -29,7 +29,9 @@ class Standing {
   /// One cycle; `moved` is by dead reckoning. True once where the robot was carried.
   bool step(const Pose& moved, const std::vector<lps::SonarReading>& readings);
 
-  bool operator==(const Standing& other) const { return sonars_ == other.sonars_; }
+  bool operator==(const Standing& other) const {
+    return way_ == other.way_ && sonars_ == other.sonars_;
+  }
 
  private:
   struct Heard {
@@ -40,6 +42,7 @@ class Standing {
   };
 
   StandingSettings settings_;
+  Pose way_;  ///< since the ranges of the place are collected
   std::map<int, Heard> sonars_;
 };
 
