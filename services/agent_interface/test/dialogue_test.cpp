@@ -328,12 +328,12 @@ TEST_F(DialogueTest, TheReasonBeginsWithWhatWasAskedAndByWhom) {
   situation.goals = {
       {"deliver", "", State::underway, "through-door: passes a door or another opening", tag}};
   EXPECT_EQ(said("Flakey, why?", "Bob"),
-            "Alice asked me to get the mail from ej-231 and bring it to alice; I pass a door or "
-            "another opening");
+            "Alice asked me to get the mail from ej-231 and bring it to alice; the robot passes "
+            "a door or another opening");
   situation.goals[0].reason = "ask: asks people something, and waits for the answer";
   EXPECT_EQ(said("Flakey, why?"),
-            "Alice asked me to get the mail from ej-231 and bring it to alice; I ask people "
-            "something, and wait for the answer");
+            "Alice asked me to get the mail from ej-231 and bring it to alice; the robot asks "
+            "people something, and waits for the answer");
   situation.goals[0].reason = "find-position: moves about until the robot knows where it is";
   EXPECT_EQ(said("Flakey, why?"),
             "Alice asked me to get the mail from ej-231 and bring it to alice; the robot moves "
@@ -751,7 +751,7 @@ TEST_F(DialogueTest, ItSaysWhatItKnows) {
   hear("Flakey, there is a water leak in this corridor");
   hear("Flakey, keep out of EJ-231");
   EXPECT_EQ(said("Flakey, what do you know?"),
-            "I know 1 offices, 1 places of people, 2 hazards and places to keep out of; Alice said "
+            "I know 1 offices, 1 places of people, 2 hazards and rules for places; Alice said "
             "that I am to keep out of EJ-231; Alice said that there is a water leak at upper "
             "corridor; Bob said that john is at EJ-233");
   EXPECT_EQ(said("Flakey, is there a leak?"),

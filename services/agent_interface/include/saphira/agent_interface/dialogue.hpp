@@ -122,7 +122,7 @@ class Dialogue {
   /// Tasks for people that are not in 4.6 of the paper (errands.cpp).
   bool errand(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
               Outputs& out);
-  /// Questions about what the robot knows (errands.cpp).
+  /// Questions about what the robot knows (questions.cpp).
   bool inquiry(const Meaning& meaning, const Utterance& utterance, const Situation& situation,
                Outputs& out) const;
   /// Where a new task begins, for "come back".

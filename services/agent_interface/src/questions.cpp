@@ -1,0 +1,237 @@
+// The part of the dialogue for people's questions: about the robot, its reasons, and its knowledge.
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "words.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr std::size_t kFewFacts = 3;
+
+std::string state_in_words(KnownGoal::State state) {
+  switch (state) {
+    case KnownGoal::State::waiting:
+      return "is waiting";
+    case KnownGoal::State::underway:
+      return "is underway";
+    case KnownGoal::State::suspended:
+      return "is suspended";
+    case KnownGoal::State::failed:
+      return "failed";
+    case KnownGoal::State::over:
+      return "is over";
+  }
+  return {};
+}
+
+/// The goal that is the reason why the robot stands or drives: the newest one that is held up,
+/// otherwise the newest one that is underway, otherwise the newest one that has ended. A stop after
+/// a failure is not the reason.
+const KnownGoal* reason_of(const std::vector<KnownGoal>& goals) {
+  const auto rank = [](const KnownGoal& goal) {
+    return !is_open(goal) ? 0 : goal.state == KnownGoal::State::underway ? 1 : 2;
+  };
+  const KnownGoal* best = nullptr;
+  const KnownGoal* before_stop = nullptr;
+  for (const KnownGoal& goal : goals) {
+    if (best == nullptr || rank(goal) >= rank(*best))
+      best = &goal;
+    if (!is_open(goal) && goal.functor != "stop")
+      before_stop = &goal;
+  }
+  const bool stopped = best != nullptr && best->functor == "stop" && rank(*best) < 2;
+  return stopped && before_stop != nullptr && before_stop->state == KnownGoal::State::failed
+             ? before_stop
+             : best;
+}
+
+/// The step of a goal, such as "through-door: passes a door", as a sentence.
+std::string step_in_words(const std::string& step) {
+  const std::size_t colon = step.find(": ");
+  if (colon == std::string::npos || step.find(' ') < colon)
+    return step;
+  return "the robot " + step.substr(colon + 2);
+}
+
+/// "Alice asked me to go to EJ-233", of an announcement.
+std::string asked_in_words(const std::string& speaker, const std::string& what) {
+  const std::string who = speaker.empty() ? "somebody" : speaker;
+  constexpr std::string_view kYou = " you";
+  if (what.ends_with(kYou))
+    return asked_in_words(speaker, what.substr(0, what.size() - kYou.size() + 1) + who);
+  return who + (what.starts_with("I ") ? " asked me to " + what.substr(2)
+                                       : " asked me: \"" + what + "\"");
+}
+
+}  // namespace
+
+std::string Dialogue::doing(const Situation& situation) const {
+  std::string text = tasks_.doing();
+  for (const KnownGoal& goal : situation.goals)
+    if (is_open(goal) && !goal.asker.empty())
+      text +=
+          (text.empty() ? "" : "; ") + ("for " + goal.asker) + ": " + goal.functor +
+          (goal.state == KnownGoal::State::underway ? "" : ", which " + state_in_words(goal.state));
+  return text.empty() ? "nothing that I was told" : text;
+}
+
+std::string Dialogue::why(const Situation& situation) const {
+  const KnownGoal* const goal = reason_of(situation.goals);
+  if (ended_ && (goal == nullptr || (!is_open(*goal) && goal->asker.empty()) ||
+                 (goal->tag == stop_ && stop_ != 0 && !ended_->success)))
+    return asked_in_words(ended_->speaker, ended_->what) +
+           (ended_->success ? "; that is done: " : "; that failed: ") + ended_->reason;
+  if (goal == nullptr)
+    return "I have nothing to do";
+  const Task* const asked = goal->tag == 0 ? nullptr : tasks_.find(goal->tag);
+  const bool underway = goal->state == KnownGoal::State::underway;
+  const std::string reason = underway ? step_in_words(goal->reason) : goal->reason;
+  if (asked != nullptr)
+    return asked_in_words(asked->goal.speaker, asked->what) +
+           (underway
+                ? (reason.empty() ? "" : "; " + reason)
+                : "; that " + state_in_words(goal->state) + (reason.empty() ? "" : ": " + reason));
+  return goal->functor + (goal->asker.empty() ? "" : " of " + goal->asker) + " " +
+         state_in_words(goal->state) + (reason.empty() ? "" : ": " + reason);
+}
+
+bool Dialogue::question(const Meaning& meaning, const Utterance& utterance,
+                        const Situation& situation, Outputs& out) {
+  if (meaning.functor == "where_are_you") {
+    const std::string here =
+        situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position()) : "";
+    say(utterance,
+        !situation.pose_in_map ? "I do not know where I am on the map"
+        : here.empty()         ? "I am at a place without a name"
+                               : "I am in " + here,
+        true, out);
+  } else if (meaning.functor == "what_are_you_doing") {
+    say(utterance, doing(situation), true, out);
+  } else if (meaning.functor == "why") {
+    say(utterance, why(situation), true, out);
+  } else if (meaning.functor == "what_can_you_do") {
+    say(utterance, grammar_.paraphrase(meaning), true, out);
+  } else if (meaning.functor == "where_is") {
+    const std::string person = slot(meaning, "person");
+    const std::string owner = place(person, situation).empty() ? owner_in(person) : std::string();
+    if (!owner.empty())
+      return question(with({"where_office", {}}, "person", owner), utterance, situation, out);
+    std::string text = told_of(person);
+    if (text.empty())
+      text = way_to(place(person, situation), situation);
+    say(utterance, text.empty() ? "nobody has told me where " + person + " is" : text, true, out);
+  } else if (meaning.functor == "where_office") {
+    const std::string person = slot(meaning, "person");
+    const Advice* const office = knowledge_.find(Advice::Kind::office_of, person);
+    say(utterance,
+        office == nullptr ? "nobody has told me where " + person + "'s office is"
+                          : as_told(*office),
+        true, out);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool Dialogue::inquiry(const Meaning& meaning, const Utterance& utterance,
+                       const Situation& situation, Outputs& out) const {
+  const std::string& functor = meaning.functor;
+  const std::vector<Advice>& known = knowledge_.all();
+  if (functor == "nearest") {
+    const maps::Feature* nearest = nullptr;
+    double distance = 0.0;
+    for (const maps::Feature& feature : situation.map.features) {
+      if (!situation.pose_in_map || feature.type != lps::PointType::door || feature.name.empty())
+        continue;
+      const double away =
+          (feature.pose_in_map.position() - situation.pose_in_map->position()).norm();
+      if (nearest == nullptr || away < distance) {
+        nearest = &feature;
+        distance = away;
+      }
+    }
+    say(utterance,
+        !situation.pose_in_map ? "I do not know where I am on the map"
+        : nearest == nullptr   ? "I know no door with a name"
+                               : "the nearest door with a name is that of " + nearest->name +
+                                   ": say go to " + nearest->name,
+        true, out);
+  } else if (functor == "what_do_you_know") {
+    constexpr std::array kKinds{
+        std::pair{Advice::Kind::office_of, "offices"},
+        std::pair{Advice::Kind::person_at, "places of people"},
+        std::pair{Advice::Kind::knows_where, "people who know where others are"},
+        std::pair{Advice::Kind::hazard, "hazards and rules for places"}};
+    std::string counts;
+    for (const auto& [kind, words] : kKinds) {
+      const auto count = std::count_if(known.begin(), known.end(),
+                                       [&](const Advice& one) { return one.kind == kind; });
+      if (count > 0)
+        counts += (counts.empty() ? "" : ", ") + std::to_string(count) + " " + words;
+    }
+    std::string newest;
+    std::vector<const Advice*> by_number;
+    for (const Advice& one : known)
+      by_number.push_back(&one);
+    std::sort(by_number.begin(), by_number.end(),
+              [](const Advice* a, const Advice* b) { return a->number > b->number; });
+    for (std::size_t i = 0; i < std::min(by_number.size(), kFewFacts); ++i)
+      newest += "; " + as_told(*by_number[i]);
+    say(utterance, known.empty() ? "nobody has told me anything" : "I know " + counts + newest,
+        true, out);
+  } else if (functor == "are_you_lost") {
+    const std::string here =
+        situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position()) : "";
+    say(utterance,
+        !situation.pose_in_map ? "yes: I do not know where I am on the map"
+        : here.empty()         ? "no, but this place has no name"
+                               : "no: I am in " + here,
+        true, out);
+  } else if (functor == "is_there" || functor == "who_is_in") {
+    const bool people = functor == "who_is_in";
+    std::string at;
+    if (!slot(meaning, "place").empty() || !slot(meaning, "owner").empty()) {
+      std::uint32_t artifact = 0;
+      std::string wrong;
+      at = referred(meaning, situation, out, artifact, wrong);
+      if (at.empty()) {
+        say(utterance, wrong, true, out);
+        return true;
+      }
+    }
+    std::string all;
+    for (const Advice& one : known)
+      if ((people ? one.kind == Advice::Kind::person_at ||
+                        (one.kind == Advice::Kind::office_of &&
+                         knowledge_.place_of(one.about) == one.value)
+                  : one.kind == Advice::Kind::hazard && !is_rule(one) &&
+                        one.about.ends_with(slot(meaning, "kind"))) &&
+          (at.empty() || one.value == at))
+        all += (all.empty() ? "" : "; ") + as_told(one);
+    if (all.empty())
+      all = people ? "nobody has told me who is in " + at
+                   : "nobody has told me of a " + slot(meaning, "kind") +
+                         (at.empty() ? "" : " at " + at);
+    say(utterance, all, true, out);
+  } else if (functor == "you_are_in") {
+    std::uint32_t artifact = 0;
+    std::string wrong;
+    const std::string at = referred(meaning, situation, out, artifact, wrong);
+    const std::string here =
+        situation.pose_in_map ? place_at(situation.map, situation.pose_in_map->position()) : "";
+    say(utterance,
+        at.empty() ? wrong
+        : at == here
+            ? "I know: I am in " + at
+            : (here.empty() ? "" : "I think that I am in " + here + ". ") + "To put me in " + at +
+                  " I need the exact place: saphira map place X Y HEADING, or saphira map find",
+        true, out);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace saphira::agent_interface

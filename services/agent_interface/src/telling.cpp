@@ -1,0 +1,276 @@
+// The part of the dialogue for what people tell the robot and take back, and the claims that
+// follow.
+#include <algorithm>
+#include <ctime>
+
+#include "words.hpp"
+
+namespace saphira::agent_interface {
+namespace {
+
+constexpr const char* kHazards = "hazards";  // the belief: "leak at lab; fire at hall"
+constexpr std::size_t kMostGone = 256;
+
+/// "at 10:02 ", in local time; empty for an unknown time.
+std::string time_text(double unix_time) {
+  const auto seconds = static_cast<std::time_t>(unix_time);
+  std::tm local{};
+  char text[16] = "";
+  if (seconds > 0 && localtime_r(&seconds, &local) != nullptr)
+    std::strftime(text, sizeof text, "at %H:%M ", &local);
+  return text;
+}
+
+}  // namespace
+
+/// First where a person is, then who knows it.
+std::string Dialogue::told_of(const std::string& about) const {
+  std::string text;
+  for (const Advice::Kind kind : {Advice::Kind::person_at, Advice::Kind::office_of,
+                                  Advice::Kind::hazard, Advice::Kind::knows_where})
+    for (const Advice& one : knowledge_.all())
+      if (one.kind == kind && one.about == about)
+        text += (text.empty() ? "" : "; ") + as_told(one);
+  return text;
+}
+
+void Dialogue::take(const Advice& advice, const Utterance& utterance, Outputs& out) {
+  const Advice* const known = knowledge_.find(advice.kind, advice.about, advice.value);
+  if (known != nullptr && known->value == advice.value) {
+    say(utterance, "I know: " + describe(advice), true, out);
+    return;
+  }
+  // A person's place changes all the time; the owner of an office does not.
+  if (known != nullptr && advice.kind == Advice::Kind::office_of) {
+    say(utterance,
+        speaker_of(*known) + " told me that " + describe(*known) + ". Is it now " + advice.value +
+            "?",
+        true, out);
+    doubt_ = Doubt{advice, utterance.speaker};
+    return;
+  }
+  say(utterance, "I know now that " + describe(advice), true, out);
+  learn(advice, out);
+}
+
+bool Dialogue::advice(const Meaning& meaning, const Utterance& utterance,
+                      const Situation& situation, Outputs& out) {
+  Advice advice;
+  advice.speaker = utterance.speaker;
+  advice.said = utterance.text;
+  advice.time = utterance.time;
+  advice.about = slot(meaning, "person");
+  std::string wrong;
+  if (meaning.functor == "knows_where") {
+    advice.kind = Advice::Kind::knows_where;
+    advice.value = slot(meaning, "other");
+    if (advice.value == advice.about)
+      wrong = advice.about + " knows that, but I would have to find " + advice.about + " first";
+  } else if (meaning.functor == "office_of" || meaning.functor == "person_at" ||
+             meaning.functor == "hazard" || meaning.functor == "no_hazard") {
+    advice.kind = meaning.functor == "office_of"   ? Advice::Kind::office_of
+                  : meaning.functor == "person_at" ? Advice::Kind::person_at
+                                                   : Advice::Kind::hazard;
+    if (advice.kind == Advice::Kind::hazard)
+      advice.about = slot(meaning, "kind");
+    advice.value = referred(meaning, situation, out, advice.artifact, wrong);
+  } else {
+    return false;
+  }
+  if (advice.kind == Advice::Kind::hazard && meaning.functor == "no_hazard" && wrong.empty()) {
+    const Advice* known = knowledge_.find(Advice::Kind::hazard, advice.about, advice.value);
+    if (known == nullptr && slot(meaning, "place") == "this" && !is_rule(advice))
+      known = knowledge_.find(Advice::Kind::hazard, advice.about);  // reported from elsewhere
+    if (known == nullptr) {
+      say(utterance,
+          advice.about == kSlow || advice.about == kPreferred
+              ? "I did not know that " + describe(advice)
+              : "I knew of no " + advice.about + " at " + advice.value,
+          true, out);
+    } else {
+      const std::string& place = known->value;
+      say(utterance,
+          "good: " + (advice.about == kKeepOut ? "I may go to " + place + " again"
+                      : advice.about == kSlow  ? "I may go fast in " + place + " again"
+                      : advice.about == kPreferred
+                          ? "I need not prefer " + place + " any more"
+                          : "no " + advice.about + " at " + place + " any more"),
+          true, out);
+      withdraw(known->number, out);
+    }
+    return true;
+  }
+  if (!wrong.empty()) {
+    say(utterance, wrong, true, out);
+  } else {
+    take(advice, utterance, out);
+    answer_with(advice, utterance, situation, out);
+  }
+  return true;
+}
+
+/// What people say about a person after the keyword may be what the robot has asked for.
+void Dialogue::answer_with(const Advice& advice, const Utterance& utterance,
+                           const Situation& situation, Outputs& out) const {
+  if (situation.asked_about.empty() || lower(situation.asked_for) != advice.about)
+    return;
+  if (advice.kind == Advice::Kind::person_at ||
+      (advice.kind == Advice::Kind::knows_where && knowledge_.findable(advice.value)))
+    out.claims.push_back({situation.asked_about, advice.value, claim_source(utterance)});
+}
+
+/// Facts about people that hold no longer.
+bool Dialogue::correction(const Meaning& meaning, const Utterance& utterance,
+                          const Situation& situation, Outputs& out) {
+  using Kind = Advice::Kind;
+  const std::string person = slot(meaning, "person");
+  std::vector<Advice> wrong;
+  std::string unknown;
+  const auto doubt = [&](Kind kind, const std::string& value) {
+    Advice meant;
+    meant.kind = kind;
+    meant.about = person;
+    meant.value = value;
+    const Advice* const known = knowledge_.find(kind, person, value);
+    if (known != nullptr && known->value == value)
+      wrong.push_back(*known);
+    else
+      unknown = "I did not believe that " + describe(meant);
+  };
+  if (meaning.functor == "not_at" || meaning.functor == "not_office_of") {
+    const bool office = meaning.functor == "not_office_of";
+    Meaning where = meaning;
+    where.functor = office ? "office_of" : meaning.functor;
+    Outputs unnamed;  // a nameless doorway stays so
+    std::uint32_t artifact = 0;
+    std::string no_place;
+    const std::string place = referred(where, situation, unnamed, artifact, no_place);
+    if (!no_place.empty()) {
+      say(utterance, no_place, true, out);
+      return true;
+    }
+    doubt(office ? Kind::office_of : Kind::person_at, place);
+  } else if (meaning.functor == "not_knows") {
+    doubt(Kind::knows_where, slot(meaning, "other"));
+  } else if (meaning.functor == "forget") {
+    const std::string what = slot(meaning, "what");
+    for (const Advice& one : knowledge_.all())
+      if (one.about == person && (what == "all"      ? one.kind != Kind::hazard
+                                  : what == "office" ? one.kind == Kind::office_of
+                                                     : one.kind == Kind::person_at))
+        wrong.push_back(one);
+    if (wrong.empty())
+      unknown = "nobody has told me " + (what == "all"      ? "anything about " + person
+                                         : what == "office" ? "where " + person + "'s office is"
+                                                            : "where " + person + " is");
+  } else {
+    return false;
+  }
+  std::string text;
+  for (const Advice& one : wrong) {
+    text += (text.empty() ? "I no longer believe that " : ", nor that ") + describe(one);
+    withdraw(one.number, out, &utterance);
+  }
+  const std::string rest = told_of(person);
+  say(utterance, (text.empty() ? unknown : text) + (rest.empty() ? "" : "; " + rest), true, out);
+  return true;
+}
+
+void Dialogue::learn(const Advice& advice, Outputs& out) {
+  const std::vector<Claimed> before = claims();
+  knowledge_.learn(advice);
+  if (advice.kind == Advice::Kind::person_at || advice.kind == Advice::Kind::office_of)
+    std::erase_if(gone_, [&](const Gone& one) { return one.person == advice.about; });
+  out.learned = true;
+  claim_changes(before, "", out);
+}
+
+Dialogue::Outputs Dialogue::found(const std::string& person, const std::string& place, double time,
+                                  bool before) {
+  Outputs out;
+  Advice advice;
+  advice.kind = Advice::Kind::person_at;
+  advice.about = lower(person);
+  if (before && (knowledge_.find(advice.kind, advice.about) != nullptr ||
+                 std::any_of(gone_.begin(), gone_.end(),
+                             [&](const Gone& one) { return one.person == advice.about; })))
+    return out;
+  advice.value = place;
+  advice.speaker = kRobot;
+  advice.time = time;
+  learn(advice, out);
+  return out;
+}
+
+Dialogue::Outputs Dialogue::forget(std::uint64_t number) {
+  Outputs out;
+  withdraw(number, out);
+  return out;
+}
+
+void Dialogue::withdraw(std::uint64_t number, Outputs& out, const Utterance* because) {
+  const std::vector<Claimed> before = claims();
+  const std::optional<Advice> forgotten = knowledge_.forget(number);
+  if (!forgotten)
+    return;
+  out.learned = true;
+  const bool hazard = forgotten->kind == Advice::Kind::hazard;
+  const bool knows = forgotten->kind == Advice::Kind::knows_where;
+  const std::string name =
+      hazard ? kHazards : (knows ? "knows-where-" : "place-of-") + forgotten->about;
+  // What activities believe of the person is withdrawn, too.
+  if (!hazard && !knows && knowledge_.place_of(forgotten->about).empty()) {
+    if (gone_.size() >= kMostGone)
+      gone_.erase(gone_.begin());
+    Gone gone{forgotten->about, because == nullptr ? "taken back" : claim_source(*because)};
+    std::replace(gone.source.begin(), gone.source.end(), '\n', ' ');  // a line of save()
+    gone_.push_back(std::move(gone));
+  }
+  out.claims.push_back({name, "", ""});
+  claim_changes(before, name, out);
+}
+
+void Dialogue::claim_changes(const std::vector<Claimed>& before, const std::string& name,
+                             Outputs& out) const {
+  for (Claimed& one : claims())
+    if (one.name == name || std::find(before.begin(), before.end(), one) == before.end())
+      out.claims.push_back(std::move(one));
+}
+
+std::vector<Claimed> Dialogue::claims() const {
+  std::vector<Claimed> result;
+  const auto source = [](const Advice& advice) {
+    return advice.speaker == kRobot
+               ? kRobot + (" found " + advice.about) + " " + time_text(advice.time) + "there"
+               : speaker_of(advice) + " said " + time_text(advice.time) + "\"" + advice.said + "\"";
+  };
+  const auto join = [&](Claimed& all, const Advice& advice, const std::string& value,
+                        const char* between) {
+    all.value += (all.value.empty() ? "" : between) + value;
+    all.source += (all.source.empty() ? "" : "; ") + source(advice);
+  };
+  Claimed hazards{kHazards, "", ""};
+  for (const Advice& one : knowledge_.all()) {
+    const std::string name =
+        (one.kind == Advice::Kind::knows_where ? "knows-where-" : "place-of-") + one.about;
+    const auto same = std::find_if(result.begin(), result.end(),
+                                   [&](const Claimed& each) { return each.name == name; });
+    if (one.kind == Advice::Kind::hazard) {
+      join(hazards, one, one.about + " at " + one.value, "; ");
+    } else if (one.kind == Advice::Kind::knows_where) {
+      Claimed& all = same == result.end() ? result.emplace_back(Claimed{name, "", ""}) : *same;
+      join(all, one, one.value, ", ");
+      all.list.push_back(one.value);
+    } else if (one.kind == Advice::Kind::person_at ||
+               knowledge_.find(Advice::Kind::person_at, one.about) == nullptr) {
+      result.push_back({name, one.value, source(one)});
+    }
+  }
+  for (const Gone& one : gone_)
+    result.push_back({"place-of-" + one.person, "nil", one.source, {}, true});
+  if (!hazards.value.empty())
+    result.push_back(std::move(hazards));
+  return result;
+}
+
+}  // namespace saphira::agent_interface
